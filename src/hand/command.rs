@@ -1,0 +1,318 @@
+//! Everything that can be told to a hand, and the only way to a register write. No framing, no sending.
+
+use crate::hand::dof::{Dof, PerDof};
+use crate::hand::register::{self, Register, Span};
+use crate::hand::units::{Angle, Force, Gesture, HandId, SerialSpeed, Speed, Target};
+use arrayvec::ArrayVec;
+use std::net::Ipv4Addr;
+
+/// Bytes in the longest write: six shorts.
+pub const WRITE_LEN_MAX: usize = 12;
+/// Writes in the longest command: alternate joints, each a run of its own, or four IP parts.
+pub const WRITES_MAX: usize = 6;
+
+/// How gestures are started, because the manual gives GESTURE_NO_SET no address (protocol choice 10).
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum GestureRoute {
+    /// Write the number to 1008, as older drivers do.
+    #[default]
+    Register1008,
+    /// Write the number to 2320, then 1 to 2322, as the maker's newer demos do.
+    ActionLibrary,
+    /// Never write undocumented addresses.
+    Off,
+}
+
+/// One thing that a person can ask of a hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HandCommand {
+    /// Move joints now (manual 2.6.11).
+    Angles(PerDof<Target>),
+    /// Force thresholds of the joints that are given (manual 2.6.12).
+    Forces(PerDof<Option<Force>>),
+    /// Speeds of the joints that are given (manual 2.6.13).
+    Speeds(PerDof<Option<Speed>>),
+    /// Take a stored pose (manual 2.6.7); no write at all if the route is off.
+    Gesture(Gesture, GestureRoute),
+    /// Clear what can be cleared (manual 2.6.3).
+    ClearErrors,
+    /// Write the parameters to flash (manual 2.6.4).
+    Save,
+    /// Return to the factory's parameters (manual 2.6.5).
+    ResetParameters,
+    /// Calibrate the force sensors (manual 2.6.6).
+    CalibrateForce,
+    /// Another id on the bus (manual 2.6.1).
+    Id(HandId),
+    /// Another serial speed (manual 2.6.2).
+    SerialSpeed(SerialSpeed),
+    /// Speeds after power-up (manual 2.6.8).
+    DefaultSpeeds(PerDof<Option<Speed>>),
+    /// Force thresholds after power-up (manual 2.6.9).
+    DefaultForces(PerDof<Option<Force>>),
+    /// Another IP address (manual 2.6, 1700 to 1703); two pairs, as the field writes it.
+    IpAddress(Ipv4Addr),
+}
+
+/// One write to the hand's memory. Only [`HandCommand::writes`] makes one, so none can leave the manual's ranges.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RegisterWrite {
+    span: Span,
+    bytes: ArrayVec<u8, WRITE_LEN_MAX>,
+}
+
+impl RegisterWrite {
+    /// Where it goes.
+    #[must_use]
+    pub const fn span(&self) -> Span {
+        self.span
+    }
+
+    /// First byte's address.
+    #[must_use]
+    pub const fn address(&self) -> u16 {
+        self.span.address
+    }
+
+    /// The bytes in memory order, 1..=12.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// True if the hand moves because of it.
+    #[must_use]
+    pub const fn is_motion(&self) -> bool {
+        matches!(self.span.address, 1486..=1497 | 1008 | 2320 | 2322)
+    }
+
+    fn byte(row: &Register, value: u8) -> Self {
+        Self::run(row.address, [value])
+    }
+
+    fn run(address: u16, bytes: impl IntoIterator<Item = u8>) -> Self {
+        let bytes: ArrayVec<u8, WRITE_LEN_MAX> = bytes.into_iter().take(WRITE_LEN_MAX).collect();
+        let len = u16::try_from(bytes.len()).unwrap_or_default();
+        Self {
+            span: Span::new(address, len),
+            bytes,
+        }
+    }
+}
+
+/// The writes of one command, in the order they must be sent.
+pub type Writes = ArrayVec<RegisterWrite, WRITES_MAX>;
+
+impl HandCommand {
+    /// Hold: every joint stays where it was last seen.
+    #[must_use]
+    pub const fn hold(targets: PerDof<Target>) -> Self {
+        Self::Angles(targets)
+    }
+
+    /// True if the hand moves because of it.
+    #[must_use]
+    pub const fn is_motion(&self) -> bool {
+        matches!(self, Self::Angles(_) | Self::Gesture(..))
+    }
+
+    /// The register writes, in order. Joints that are not given are not written.
+    #[must_use]
+    pub fn writes(&self) -> Writes {
+        let mut out = Writes::new();
+        match self {
+            Self::Angles(targets) => out.push(angles(targets)),
+            Self::Forces(values) => runs(
+                &register::FORCE_SET,
+                values.map(|v| v.map(Force::get)),
+                &mut out,
+            ),
+            Self::Speeds(values) => runs(
+                &register::SPEED_SET,
+                values.map(|v| v.map(Speed::get)),
+                &mut out,
+            ),
+            Self::DefaultSpeeds(values) => {
+                runs(
+                    &register::DEFAULT_SPEED_SET,
+                    values.map(|v| v.map(Speed::get)),
+                    &mut out,
+                );
+            }
+            Self::DefaultForces(values) => {
+                runs(
+                    &register::DEFAULT_FORCE_SET,
+                    values.map(|v| v.map(Force::get)),
+                    &mut out,
+                );
+            }
+            Self::Gesture(number, GestureRoute::Register1008) => {
+                out.push(RegisterWrite::byte(&register::GESTURE_NO_SET, number.get()));
+            }
+            Self::Gesture(number, GestureRoute::ActionLibrary) => {
+                out.push(RegisterWrite::byte(
+                    &register::ACTION_SEQ_INDEX,
+                    number.get(),
+                ));
+                out.push(RegisterWrite::byte(&register::ACTION_SEQ_RUN, 1));
+            }
+            Self::Gesture(_, GestureRoute::Off) => {}
+            Self::ClearErrors => out.push(RegisterWrite::byte(&register::CLEAR_ERROR, 1)),
+            Self::Save => out.push(RegisterWrite::byte(&register::SAVE, 1)),
+            Self::ResetParameters => out.push(RegisterWrite::byte(&register::RESET_PARA, 1)),
+            Self::CalibrateForce => out.push(RegisterWrite::byte(&register::GESTURE_FORCE_CLB, 1)),
+            Self::Id(id) => out.push(RegisterWrite::byte(&register::HAND_ID, id.get())),
+            Self::SerialSpeed(speed) => {
+                out.push(RegisterWrite::byte(&register::REDU_RATIO, speed.code()))
+            }
+            Self::IpAddress(address) => out.push(RegisterWrite::run(1700, address.octets())),
+        }
+        out
+    }
+}
+
+fn angles(targets: &PerDof<Target>) -> RegisterWrite {
+    let bytes = targets
+        .iter()
+        .flat_map(|(_, target)| target.raw().to_le_bytes());
+    RegisterWrite::run(register::ANGLE_SET.address, bytes)
+}
+
+/// One write for each run of neighbouring joints that have a value: there is no "leave alone" in these groups.
+fn runs(row: &Register, values: PerDof<Option<i16>>, out: &mut Writes) {
+    let mut run: Option<(Dof, ArrayVec<u8, WRITE_LEN_MAX>)> = None;
+    let flush = |run: &mut Option<(Dof, ArrayVec<u8, WRITE_LEN_MAX>)>, out: &mut Writes| {
+        if let Some((first, bytes)) = run.take() {
+            out.push(RegisterWrite::run(row.address + 2 * first as u16, bytes));
+        }
+    };
+    for (dof, value) in values.iter() {
+        match value {
+            Some(value) => {
+                let (_, bytes) = run.get_or_insert_with(|| (dof, ArrayVec::new()));
+                bytes.extend(value.to_le_bytes());
+            }
+            None => flush(&mut run, out),
+        }
+    }
+    flush(&mut run, out);
+}
+
+/// Six angles from plain numbers, for tables of poses.
+///
+/// # Errors
+/// The first number outside 0..=1000.
+pub fn angles_from(raw: [i16; 6]) -> Result<PerDof<Angle>, crate::hand::units::OutOfRange> {
+    let mut out = PerDof::splat(Angle::MAX);
+    for ((_, angle), raw) in out.iter_mut().zip(raw) {
+        *angle = Angle::new(raw)?;
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::register::{Access, Element, by_address};
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_manuals_write_example_is_refused_where_it_leaves_the_range() {
+        // Manual 2.2.2 writes 2000 to ANGLE_SET(4) although 2.6.11 allows -1 and 0 to 1000.
+        assert!(angles_from([100, 100, 100, 100, 2000, 0]).is_err());
+        let angles = angles_from([100, 100, 100, 100, 1000, 0]).unwrap();
+        let writes = HandCommand::Angles(angles.map(Target::Go)).writes();
+        assert_eq!(writes[0].address(), 1486);
+        assert_eq!(
+            writes[0].bytes(),
+            [0x64, 0, 0x64, 0, 0x64, 0, 0x64, 0, 0xE8, 0x03, 0, 0]
+        );
+    }
+
+    #[test]
+    fn leave_alone_is_minus_one() {
+        let writes = HandCommand::Angles(PerDof::splat(Target::Leave)).writes();
+        assert_eq!(writes[0].bytes(), [0xFF; 12]);
+    }
+
+    #[test]
+    fn only_joints_with_a_value_are_written() {
+        let mut forces = PerDof::splat(None);
+        forces[Dof::Ring] = Some(Force::GENTLE);
+        forces[Dof::Middle] = Some(Force::RATED);
+        forces[Dof::ThumbRotate] = Some(Force::MIN);
+        let writes = HandCommand::Forces(forces).writes();
+        let spans: Vec<_> = writes.iter().map(RegisterWrite::span).collect();
+        assert_eq!(spans, [Span::new(1500, 4), Span::new(1508, 2)]);
+        assert_eq!(writes[0].bytes(), [0xF4, 0x01, 0xD0, 0x07]);
+        assert!(HandCommand::Forces(PerDof::splat(None)).writes().is_empty());
+    }
+
+    #[test]
+    fn an_off_route_writes_nothing() {
+        let gesture = HandCommand::Gesture(Gesture::MIN, GestureRoute::Off);
+        assert!(gesture.writes().is_empty());
+    }
+
+    fn target() -> impl Strategy<Value = Target> {
+        prop_oneof![
+            Just(Target::Leave),
+            any::<i16>().prop_map(|raw| Target::Go(Angle::nearest(raw))),
+        ]
+    }
+
+    fn some_command() -> impl Strategy<Value = HandCommand> {
+        let six = || prop::array::uniform6(prop::option::of(any::<i16>()));
+        let speeds = move || six().prop_map(|v| PerDof::new(v).map(|v| v.map(Speed::nearest)));
+        let forces = move || six().prop_map(|v| PerDof::new(v).map(|v| v.map(Force::nearest)));
+        prop_oneof![
+            prop::array::uniform6(target()).prop_map(|t| HandCommand::Angles(PerDof::new(t))),
+            forces().prop_map(HandCommand::Forces),
+            speeds().prop_map(HandCommand::Speeds),
+            forces().prop_map(HandCommand::DefaultForces),
+            speeds().prop_map(HandCommand::DefaultSpeeds),
+            (any::<u8>(), 0..3usize).prop_map(|(n, route)| HandCommand::Gesture(
+                Gesture::nearest(n),
+                [
+                    GestureRoute::Register1008,
+                    GestureRoute::ActionLibrary,
+                    GestureRoute::Off
+                ][route]
+            )),
+            Just(HandCommand::ClearErrors),
+            Just(HandCommand::Save),
+            Just(HandCommand::ResetParameters),
+            Just(HandCommand::CalibrateForce),
+            any::<u8>().prop_map(|id| HandCommand::Id(HandId::nearest(id))),
+            (0..4usize).prop_map(|i| HandCommand::SerialSpeed(SerialSpeed::ALL[i])),
+            any::<[u8; 4]>().prop_map(|ip| HandCommand::IpAddress(ip.into())),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        #[test]
+        fn no_write_leaves_the_manuals_addresses_or_ranges(command in some_command()) {
+            for write in command.writes() {
+                let mut at = write.address();
+                let mut rest = write.bytes();
+                while !rest.is_empty() {
+                    let row = by_address(at).expect("a listed address");
+                    prop_assert_eq!(row.access, Access::ReadWrite);
+                    let value = match row.element {
+                        Element::Byte => i32::from(rest[0]),
+                        Element::Short => i32::from(i16::from_le_bytes([rest[0], rest[1]])),
+                        Element::Tactile => panic!("fingertips are read-only"),
+                    };
+                    prop_assert!(row.allows(value), "{row}: {value}");
+                    let step = row.element_len();
+                    rest = &rest[usize::from(step)..];
+                    at += step;
+                }
+            }
+        }
+    }
+}

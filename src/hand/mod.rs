@@ -1,0 +1,28 @@
+//! What the device is: registers, values, samples, commands. No bytes on a wire, no clock, no egui.
+//!
+//! Everything that reaches a hand passes [`command::HandCommand`]; everything that comes back
+//! passes [`sample::HandSample`]. Both are built from the one table in [`register`].
+
+pub mod command;
+pub mod dof;
+pub mod fault;
+pub mod moment;
+pub mod reading;
+pub mod register;
+pub mod sample;
+pub mod status;
+pub mod tactile;
+pub mod units;
+
+pub use command::{GestureRoute, HandCommand, RegisterWrite, Writes};
+pub use dof::{Dof, Finger, PerDof, PerFinger};
+pub use fault::{Fault, Faults};
+pub use moment::{Moment, Timed};
+pub use reading::{
+    AngleReading, CurrentReading, ForceReading, PositionReading, TemperatureReading,
+};
+pub use register::{REGISTERS, Register, Span};
+pub use sample::{Group, Groups, HandSample, Reply};
+pub use status::{Status, Words};
+pub use tactile::TactileBlock;
+pub use units::{Angle, Force, Gesture, HandId, OutOfRange, SerialSpeed, Speed, Target};

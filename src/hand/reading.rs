@@ -1,0 +1,97 @@
+//! What the hand says of itself: measured numbers, kept raw, with the manual's range beside them.
+
+use crate::hand::dof::Dof;
+use crate::hand::units::Angle;
+
+macro_rules! reading {
+    ($(#[$doc:meta])* $name:ident($inner:ty), $min:literal ..= $max:literal, $unit:literal) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name($inner);
+
+        impl $name {
+            /// The documented range.
+            pub const RANGE: std::ops::RangeInclusive<$inner> = $min..=$max;
+            /// The unit, empty if the manual gives none.
+            pub const UNIT: &'static str = $unit;
+
+            /// Keeps the number as the hand sent it.
+            #[must_use]
+            pub const fn new(raw: $inner) -> Self {
+                Self(raw)
+            }
+
+            /// The number as the hand sent it, also when it is out of range.
+            #[must_use]
+            pub const fn raw(self) -> $inner {
+                self.0
+            }
+
+            /// The number if the manual knows it. Only this may feed logic.
+            #[must_use]
+            pub fn documented(self) -> Option<$inner> {
+                Self::RANGE.contains(&self.0).then_some(self.0)
+            }
+        }
+    };
+}
+
+reading!(
+    /// ANGLE_ACT: 0 = bent, 1000 = open (manual 2.6.15).
+    AngleReading(i16), 0..=1000, ""
+);
+reading!(
+    /// POS_ACT: 0 = open, 2000 = bent (manual 2.6.14). Real hands leave the range a little.
+    PositionReading(i16), 0..=2000, ""
+);
+reading!(
+    /// FORCE_ACT in grams (manual 2.6.16).
+    ForceReading(i16), -4000..=4000, "g"
+);
+reading!(
+    /// CURRENT in milliamperes (manual 2.6.17).
+    CurrentReading(i16), 0..=2000, "mA"
+);
+reading!(
+    /// TEMP in degrees Celsius (manual 2.6.20). 255 means that the hand does not know.
+    TemperatureReading(u8), 0..=100, "°C"
+);
+
+impl AngleReading {
+    /// How far past 0..=1000 a real hand may report and still mean its end stop.
+    const END_STOP_SLACK: i16 = 50;
+
+    /// The target that keeps the joint where it is; none if the reading makes no sense.
+    #[must_use]
+    pub fn hold(self) -> Option<Angle> {
+        (-Self::END_STOP_SLACK..=1000 + Self::END_STOP_SLACK)
+            .contains(&self.0)
+            .then(|| Angle::nearest(self.0))
+    }
+
+    /// Degrees of this joint, if the reading is in range.
+    #[must_use]
+    pub fn degrees(self, dof: Dof) -> Option<f32> {
+        let angle = Angle::new(self.documented()?).ok()?;
+        Some(angle.degrees(dof))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn out_of_range_is_kept_raw_but_not_documented() {
+        for raw in i16::MIN..=i16::MAX {
+            let reading = AngleReading::new(raw);
+            assert_eq!(reading.raw(), raw);
+            assert_eq!(reading.documented().is_some(), (0..=1000).contains(&raw));
+            if let Some(hold) = reading.hold() {
+                assert!((i32::from(hold.get()) - i32::from(raw)).abs() <= 50);
+            }
+        }
+        assert_eq!(TemperatureReading::new(255).documented(), None);
+        assert_eq!(ForceReading::new(-33).documented(), Some(-33));
+    }
+}

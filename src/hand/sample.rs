@@ -1,0 +1,372 @@
+//! The newest of everything that a hand has told us, each group with its own times. Decoding from memory bytes; no history.
+
+use crate::hand::dof::{Finger, PerDof, PerFinger};
+use crate::hand::fault::Faults;
+use crate::hand::moment::{Moment, Timed};
+use crate::hand::reading::{
+    AngleReading, CurrentReading, ForceReading, PositionReading, TemperatureReading,
+};
+use crate::hand::register::{self, Register, Span};
+use crate::hand::status::Status;
+use crate::hand::tactile::TactileBlock;
+use crate::hand::units::{Angle, Force, Speed, Target};
+
+/// The groups of a sample, as a set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub struct Groups(u16);
+
+/// One group of registers that is read as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Group {
+    /// ANGLE_SET.
+    AngleSet,
+    /// FORCE_SET.
+    ForceSet,
+    /// SPEED_SET.
+    SpeedSet,
+    /// POS_ACT.
+    Position,
+    /// ANGLE_ACT.
+    Angle,
+    /// FORCE_ACT.
+    Force,
+    /// CURRENT.
+    Current,
+    /// ERROR.
+    Faults,
+    /// STATUS.
+    Status,
+    /// TEMP.
+    Temperature,
+    /// One fingertip.
+    Tactile(Finger),
+}
+
+impl Group {
+    const fn bit(self) -> u16 {
+        match self {
+            Self::AngleSet => 1,
+            Self::ForceSet => 1 << 1,
+            Self::SpeedSet => 1 << 2,
+            Self::Position => 1 << 3,
+            Self::Angle => 1 << 4,
+            Self::Force => 1 << 5,
+            Self::Current => 1 << 6,
+            Self::Faults => 1 << 7,
+            Self::Status => 1 << 8,
+            Self::Temperature => 1 << 9,
+            Self::Tactile(finger) => 1 << (10 + finger as u16),
+        }
+    }
+}
+
+impl Groups {
+    /// No group.
+    pub const NONE: Self = Self(0);
+
+    /// Adds a group.
+    pub const fn insert(&mut self, group: Group) {
+        self.0 |= group.bit();
+    }
+
+    /// True if the group is in the set.
+    #[must_use]
+    pub const fn contains(self, group: Group) -> bool {
+        self.0 & group.bit() != 0
+    }
+
+    /// True if no group is in the set.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// True if any fingertip is in the set.
+    #[must_use]
+    pub const fn has_tactile(self) -> bool {
+        self.0 >> 10 != 0
+    }
+}
+
+/// The newest of everything the hand has told us. `None` = never read on this connection.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HandSample {
+    /// ANGLE_SET as the hand holds it; an element outside the manual's range is `None`.
+    pub angle_set: Option<Timed<PerDof<Option<Target>>>>,
+    /// FORCE_SET as the hand holds it.
+    pub force_set: Option<Timed<PerDof<Option<Force>>>>,
+    /// SPEED_SET as the hand holds it.
+    pub speed_set: Option<Timed<PerDof<Option<Speed>>>>,
+    /// POS_ACT.
+    pub position: Option<Timed<PerDof<PositionReading>>>,
+    /// ANGLE_ACT.
+    pub angle: Option<Timed<PerDof<AngleReading>>>,
+    /// FORCE_ACT.
+    pub force: Option<Timed<PerDof<ForceReading>>>,
+    /// CURRENT.
+    pub current: Option<Timed<PerDof<CurrentReading>>>,
+    /// ERROR.
+    pub faults: Option<Timed<PerDof<Faults>>>,
+    /// STATUS.
+    pub status: Option<Timed<PerDof<Status>>>,
+    /// TEMP.
+    pub temperature: Option<Timed<PerDof<TemperatureReading>>>,
+    /// The fingertip blocks; two reads fill them, so their times differ.
+    pub tactile: PerFinger<Option<Timed<TactileBlock>>>,
+}
+
+/// A piece of the hand's memory as it was read.
+#[derive(Debug, Clone, Copy)]
+pub struct Reply<'a> {
+    /// The bytes' place.
+    pub span: Span,
+    /// The bytes, `span.len` of them.
+    pub bytes: &'a [u8],
+    /// When the request left.
+    pub asked: Moment,
+    /// When the whole reply was there.
+    pub received: Moment,
+}
+
+impl HandSample {
+    /// Takes every group that the reply covers whole, and says which. Groups covered in part are left as they were.
+    pub fn take(&mut self, reply: &Reply<'_>) -> Groups {
+        let mut fresh = Groups::NONE;
+        let mut put = |group: Group, there: bool| {
+            if there {
+                fresh.insert(group);
+            }
+        };
+        put(
+            Group::AngleSet,
+            shorts(reply, &register::ANGLE_SET, &mut self.angle_set, target),
+        );
+        put(
+            Group::ForceSet,
+            shorts(reply, &register::FORCE_SET, &mut self.force_set, |raw| {
+                Force::new(raw).ok()
+            }),
+        );
+        put(
+            Group::SpeedSet,
+            shorts(reply, &register::SPEED_SET, &mut self.speed_set, |raw| {
+                Speed::new(raw).ok()
+            }),
+        );
+        put(
+            Group::Position,
+            shorts(
+                reply,
+                &register::POS_ACT,
+                &mut self.position,
+                PositionReading::new,
+            ),
+        );
+        put(
+            Group::Angle,
+            shorts(
+                reply,
+                &register::ANGLE_ACT,
+                &mut self.angle,
+                AngleReading::new,
+            ),
+        );
+        put(
+            Group::Force,
+            shorts(
+                reply,
+                &register::FORCE_ACT,
+                &mut self.force,
+                ForceReading::new,
+            ),
+        );
+        put(
+            Group::Current,
+            shorts(
+                reply,
+                &register::CURRENT,
+                &mut self.current,
+                CurrentReading::new,
+            ),
+        );
+        put(
+            Group::Faults,
+            bytes(reply, &register::ERROR, &mut self.faults, Faults::from_raw),
+        );
+        put(
+            Group::Status,
+            bytes(reply, &register::STATUS, &mut self.status, Status::from_raw),
+        );
+        put(
+            Group::Temperature,
+            bytes(
+                reply,
+                &register::TEMP,
+                &mut self.temperature,
+                TemperatureReading::new,
+            ),
+        );
+        for finger in Finger::ALL {
+            let block = part(reply, touch_span(finger)).and_then(TactileBlock::decode);
+            put(Group::Tactile(finger), block.is_some());
+            if let Some(value) = block {
+                self.tactile[finger] = Some(timed(reply, value));
+            }
+        }
+        fresh
+    }
+
+    /// True if every joint's angle is known and no older than `limit` at `now`.
+    #[must_use]
+    pub fn angles_fresh(&self, now: Moment, limit: std::time::Duration) -> bool {
+        self.angle.is_some_and(|angle| angle.age(now) <= limit)
+    }
+
+    /// The targets that keep every joint where it was last seen; joints without a sensible reading are left alone.
+    #[must_use]
+    pub fn hold_targets(&self) -> PerDof<Target> {
+        PerDof::from_fn(|dof| {
+            self.angle
+                .and_then(|angle| angle.value[dof].hold())
+                .map_or(Target::Leave, Target::Go)
+        })
+    }
+
+    /// True if any drive reports a fault.
+    #[must_use]
+    pub fn has_fault(&self) -> bool {
+        self.faults
+            .is_some_and(|faults| faults.value.iter().any(|(_, faults)| !faults.is_empty()))
+    }
+}
+
+/// Where a finger's block lies (manual 2.6).
+#[must_use]
+pub const fn touch_span(finger: Finger) -> Span {
+    Span::new(register::TOUCH.address + 58 * finger as u16, 58)
+}
+
+fn target(raw: i16) -> Option<Target> {
+    match raw {
+        -1 => Some(Target::Leave),
+        raw => Angle::new(raw).ok().map(Target::Go),
+    }
+}
+
+fn part<'a>(reply: &Reply<'a>, inner: Span) -> Option<&'a [u8]> {
+    reply.span.slice(reply.bytes, inner)
+}
+
+const fn timed<T>(reply: &Reply<'_>, value: T) -> Timed<T> {
+    Timed {
+        value,
+        asked: reply.asked,
+        received: reply.received,
+    }
+}
+
+fn shorts<T>(
+    reply: &Reply<'_>,
+    row: &Register,
+    into: &mut Option<Timed<PerDof<T>>>,
+    decode: impl Fn(i16) -> T,
+) -> bool {
+    let Some(raw) = part(reply, row.span()) else {
+        return false;
+    };
+    let (pairs, _) = raw.as_chunks::<2>();
+    let Ok(pairs) = <[[u8; 2]; 6]>::try_from(pairs) else {
+        return false;
+    };
+    *into = Some(timed(
+        reply,
+        PerDof::new(pairs.map(|pair| decode(i16::from_le_bytes(pair)))),
+    ));
+    true
+}
+
+fn bytes<T>(
+    reply: &Reply<'_>,
+    row: &Register,
+    into: &mut Option<Timed<PerDof<T>>>,
+    decode: impl Fn(u8) -> T,
+) -> bool {
+    let Some(raw) = part(reply, row.span()) else {
+        return false;
+    };
+    let Ok(raw) = <[u8; 6]>::try_from(raw) else {
+        return false;
+    };
+    *into = Some(timed(reply, PerDof::new(raw.map(decode))));
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::dof::Dof;
+
+    fn reply(span: Span, bytes: &[u8]) -> Reply<'_> {
+        Reply {
+            span,
+            bytes,
+            asked: Moment::from_micros(1000),
+            received: Moment::from_micros(2000),
+        }
+    }
+
+    #[test]
+    fn the_manuals_angle_reply_decodes_to_its_numbers() {
+        // Manual 2.2.1: 100, 100, 100, 100, 2000, 0. The fifth is outside ANGLE_ACT's own range.
+        let data = [0x64, 0, 0x64, 0, 0x64, 0, 0x64, 0, 0xD0, 0x07, 0, 0];
+        let mut sample = HandSample::default();
+        let fresh = sample.take(&reply(register::ANGLE_ACT.span(), &data));
+        assert!(fresh.contains(Group::Angle) && !fresh.contains(Group::Force));
+        let angle = sample.angle.unwrap();
+        assert_eq!(
+            angle.value.map(AngleReading::raw),
+            PerDof::new([100, 100, 100, 100, 2000, 0])
+        );
+        assert_eq!(angle.value[Dof::ThumbBend].documented(), None);
+        assert_eq!(sample.hold_targets()[Dof::ThumbBend], Target::Leave);
+        assert_eq!(
+            sample.hold_targets()[Dof::ThumbRotate],
+            Target::Go(Angle::MIN)
+        );
+    }
+
+    #[test]
+    fn a_group_covered_in_part_is_left_as_it_was() {
+        let span = Span::new(1546, 77);
+        let mut sample = HandSample::default();
+        let fresh = sample.take(&reply(span, &[0; 77]));
+        assert!(fresh.contains(Group::Status) && !fresh.contains(Group::Temperature));
+        assert!(sample.temperature.is_none() && sample.position.is_none());
+    }
+
+    #[test]
+    fn a_reply_shorter_than_its_span_gives_nothing_that_is_not_there() {
+        for len in 0..78 {
+            let mut sample = HandSample::default();
+            let bytes = vec![0; len];
+            let fresh = sample.take(&reply(register::STATE, &bytes));
+            assert_eq!(fresh.contains(Group::Angle), len >= 12);
+            assert!(!fresh.contains(Group::Temperature));
+        }
+    }
+
+    #[test]
+    fn each_finger_has_its_own_block() {
+        let mut memory = [0u8; 290];
+        for finger in 0..5u8 {
+            memory[usize::from(finger) * 58] = finger + 1;
+        }
+        let mut sample = HandSample::default();
+        sample.take(&reply(Span::new(3000, 232), &memory[..232]));
+        assert!(sample.tactile[Finger::Thumb].is_none());
+        sample.take(&reply(Span::new(3232, 58), &memory[232..]));
+        for (finger, block) in sample.tactile.iter() {
+            assert_eq!(block.unwrap().value.raw[0], finger as u32 + 1);
+        }
+    }
+}

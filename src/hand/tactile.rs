@@ -1,0 +1,174 @@
+//! The 58-byte block of one capacitive fingertip (manual 2.6.21). Decoding only; no view, no filter.
+
+/// Bytes of one fingertip block.
+pub const BLOCK_LEN: usize = 58;
+/// Bytes that the check covers.
+const CHECKED_LEN: usize = 54;
+
+/// One fingertip's block, decoded (manual 2.6.21, table).
+///
+/// Manual: the last bytes and the signs are not explained. Raw values are unsigned counts; the
+/// deltas and the proximity are signed counts; forces are newtons; see each field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TactileBlock {
+    /// Capacitance counts of the eight channels.
+    pub raw: [u32; 8],
+    /// Normal force in newtons as sent: may be NaN, infinite or absurd.
+    pub normal_n: f32,
+    /// Change of the normal capacitance, counts.
+    pub normal_delta: i32,
+    /// Tangential force in newtons as sent.
+    pub tangential_n: f32,
+    /// Change of the tangential capacitance, counts.
+    pub tangential_delta: i32,
+    /// Direction word as sent: 0..=359 degrees, 65535 = no contact.
+    pub direction_raw: u16,
+    /// Proximity change, counts, 0 to about 16 million.
+    pub proximity: i32,
+    /// The check word as sent, low byte first.
+    pub check: u16,
+    /// 16-bit sum of the first 54 bytes, to compare with [`Self::check`].
+    pub sum: u16,
+    /// The two reserved bytes.
+    pub reserved: [u8; 2],
+}
+
+impl TactileBlock {
+    /// Decodes a block of exactly 58 bytes in memory order; `None` for any other length.
+    #[must_use]
+    pub fn decode(bytes: &[u8]) -> Option<Self> {
+        let bytes: &[u8; BLOCK_LEN] = bytes.try_into().ok()?;
+        let mut at = Cursor(bytes.as_slice());
+        let mut raw = [0; 8];
+        for channel in &mut raw {
+            *channel = u32::from_le_bytes(at.take()?);
+        }
+        Some(Self {
+            raw,
+            normal_n: f32::from_le_bytes(at.take()?),
+            normal_delta: i32::from_le_bytes(at.take()?),
+            tangential_n: f32::from_le_bytes(at.take()?),
+            tangential_delta: i32::from_le_bytes(at.take()?),
+            direction_raw: u16::from_le_bytes(at.take()?),
+            proximity: i32::from_le_bytes(at.take()?),
+            check: u16::from_le_bytes(at.take()?),
+            reserved: at.take()?,
+            sum: sum16(bytes.get(..CHECKED_LEN)?),
+        })
+    }
+
+    /// Encodes the block in memory order with a right check; for the simulated hand.
+    #[must_use]
+    pub fn encode(&self) -> [u8; BLOCK_LEN] {
+        let mut bytes = arrayvec::ArrayVec::<u8, BLOCK_LEN>::new();
+        for channel in self.raw {
+            bytes.extend(channel.to_le_bytes());
+        }
+        bytes.extend(self.normal_n.to_le_bytes());
+        bytes.extend(self.normal_delta.to_le_bytes());
+        bytes.extend(self.tangential_n.to_le_bytes());
+        bytes.extend(self.tangential_delta.to_le_bytes());
+        bytes.extend(self.direction_raw.to_le_bytes());
+        bytes.extend(self.proximity.to_le_bytes());
+        let sum = sum16(&bytes);
+        bytes.extend(sum.to_le_bytes());
+        bytes.extend(self.reserved);
+        bytes.into_inner().unwrap_or([0; BLOCK_LEN])
+    }
+
+    /// Direction of the tangential force in degrees, 0 towards the tip; `None` without contact
+    /// and for words that mean no angle.
+    #[must_use]
+    pub fn direction_deg(&self) -> Option<u16> {
+        (self.direction_raw < 360).then_some(self.direction_raw)
+    }
+
+    /// Normal force if it is a finite number.
+    #[must_use]
+    pub fn normal(&self) -> Option<f32> {
+        self.normal_n.is_finite().then_some(self.normal_n)
+    }
+
+    /// Tangential force if it is a finite number.
+    #[must_use]
+    pub fn tangential(&self) -> Option<f32> {
+        self.tangential_n.is_finite().then_some(self.tangential_n)
+    }
+
+    /// Whether the check word equals the 16-bit sum of the first 54 bytes. Shown, never a reason to drop data.
+    #[must_use]
+    pub const fn check_ok(&self) -> bool {
+        self.check == self.sum
+    }
+}
+
+fn sum16(bytes: &[u8]) -> u16 {
+    bytes
+        .iter()
+        .fold(0, |sum, byte| sum.wrapping_add(u16::from(*byte)))
+}
+
+/// Reads fixed-size pieces from the front.
+struct Cursor<'a>(&'a [u8]);
+
+impl Cursor<'_> {
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (head, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*head)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn fields_stand_where_the_manuals_table_puts_them() {
+        let mut bytes = [0u8; BLOCK_LEN];
+        for (i, byte) in bytes.iter_mut().enumerate() {
+            *byte = u8::try_from(i).unwrap();
+        }
+        bytes[32..36].copy_from_slice(&1.5f32.to_le_bytes());
+        bytes[40..44].copy_from_slice(&(-0.25f32).to_le_bytes());
+        let block = TactileBlock::decode(&bytes).unwrap();
+        assert_eq!(block.raw[0], 0x0302_0100);
+        assert_eq!(block.raw[7], 0x1F1E_1D1C);
+        assert_eq!((block.normal_n, block.tangential_n), (1.5, -0.25));
+        assert_eq!(block.normal_delta, 0x2726_2524);
+        assert_eq!(block.tangential_delta, 0x2F2E_2D2C);
+        assert_eq!(block.direction_raw, 0x3130);
+        assert_eq!(block.proximity, 0x3534_3332);
+        assert_eq!(block.check, 0x3736);
+        assert_eq!(block.reserved, [56, 57]);
+    }
+
+    #[test]
+    fn direction_65535_means_no_contact() {
+        let mut bytes = [0u8; BLOCK_LEN];
+        bytes[48..50].copy_from_slice(&[0xFF, 0xFF]);
+        let block = TactileBlock::decode(&bytes).unwrap();
+        assert_eq!(block.direction_deg(), None);
+        assert!(!block.check_ok());
+    }
+
+    #[test]
+    fn other_lengths_are_refused() {
+        for len in (0..BLOCK_LEN).chain(BLOCK_LEN + 1..200) {
+            assert_eq!(TactileBlock::decode(&vec![0; len]), None);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_decode_and_encode_to_themselves(bytes in prop::collection::vec(any::<u8>(), BLOCK_LEN)) {
+            let block = TactileBlock::decode(&bytes).unwrap();
+            let back = block.encode();
+            prop_assert_eq!(&back[..CHECKED_LEN], &bytes[..CHECKED_LEN]);
+            prop_assert_eq!(&back[56..], &bytes[56..]);
+            prop_assert!(TactileBlock::decode(&back).unwrap().check_ok());
+            prop_assert!(block.normal().is_none_or(f32::is_finite));
+        }
+    }
+}

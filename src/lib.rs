@@ -1,0 +1,4 @@
+//! Handscope watches, drives and tunes the FTP series tactile hand.
+
+pub mod hand;
+pub mod transport;
