@@ -1,0 +1,52 @@
+//! Everything a person can ask for, as one closed list. Says nothing about how it is done.
+
+use crate::app::settings::{Language, PlotWindow, Theme};
+use crate::hand::{Angle, Dof, Force, Gesture, GestureRoute, Speed};
+use crate::transport::Endpoint;
+
+/// One thing a person asked for. Returned by the views, carried out by `App::act`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Action {
+    /// Hold now, from anywhere, armed or not.
+    Stop,
+    /// Let setpoints pass.
+    Arm,
+    /// Let none pass any more; the hand keeps what it was told.
+    Disarm,
+    /// Where a joint should go. Ignored unless armed and the joint is not locked.
+    Target(Dof, Angle),
+    /// Force threshold of a joint: sent when armed, kept for arming otherwise.
+    Force(Dof, Force),
+    /// Speed of a joint: sent when armed, kept for arming otherwise.
+    Speed(Dof, Speed),
+    /// Leave a joint alone, or not.
+    Lock(Dof, bool),
+    /// All joints that are not locked to fully open. Needs arming.
+    Open,
+    /// Take a stored pose. Needs arming.
+    Gesture(Gesture),
+    /// Give a gesture a name; empty takes it away.
+    NameGesture(Gesture, String),
+    /// How gestures are started.
+    GestureRoute(GestureRoute),
+    /// Clear what can be cleared; the pose is held first.
+    ClearErrors,
+    /// Talk to this hand from now on.
+    Connect(Endpoint),
+    /// Talk to no hand.
+    Disconnect,
+    /// Look for serial ports again.
+    FindPorts,
+    /// Forget faults that are over.
+    ForgetFaults,
+    /// A notice was read.
+    Dismiss(u64),
+    /// Dark or light.
+    Theme(Theme),
+    /// English or Chinese.
+    Language(Language),
+    /// Seconds that the plots show.
+    PlotWindow(PlotWindow),
+    /// Let the plots stand still; nothing is lost meanwhile.
+    PausePlots(bool),
+}

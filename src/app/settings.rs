@@ -1,0 +1,85 @@
+//! What is kept from one start to the next. Never a setpoint.
+
+use crate::hand::GestureRoute;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Dark or light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Theme {
+    /// Light on dark.
+    #[default]
+    Dark,
+    /// Dark on light.
+    Light,
+}
+
+/// The language of the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Language {
+    /// English.
+    #[default]
+    En,
+    /// 中文.
+    Zh,
+}
+
+/// How much time the plots show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PlotWindow {
+    /// Five seconds.
+    S5,
+    /// Ten seconds.
+    #[default]
+    S10,
+    /// Thirty seconds.
+    S30,
+    /// One minute.
+    M1,
+    /// Five minutes.
+    M5,
+    /// Ten minutes: all that is held.
+    M10,
+}
+
+impl PlotWindow {
+    /// All, shortest first.
+    pub const ALL: [Self; 6] = [Self::S5, Self::S10, Self::S30, Self::M1, Self::M5, Self::M10];
+
+    /// Seconds shown.
+    #[must_use]
+    pub const fn seconds(self) -> f64 {
+        match self {
+            Self::S5 => 5.0,
+            Self::S10 => 10.0,
+            Self::S30 => 30.0,
+            Self::M1 => 60.0,
+            Self::M5 => 300.0,
+            Self::M10 => 600.0,
+        }
+    }
+}
+
+/// What is kept from one start to the next. Unknown keys of the file survive in [`Self::others`].
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// The hand of last time, in the spelling of endpoints.
+    pub endpoint: Option<String>,
+    /// Dark or light.
+    pub theme: Theme,
+    /// Language of the window.
+    pub language: Language,
+    /// Seconds that the plots show.
+    pub plot_window: PlotWindow,
+    /// How gestures are started.
+    pub gesture_route: GestureRoute,
+    /// Names that a person gave to gestures, by number.
+    pub gesture_names: BTreeMap<String, String>,
+    /// Keys of a newer version, kept as they are.
+    #[serde(flatten)]
+    pub others: toml::Table,
+}

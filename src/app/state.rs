@@ -1,0 +1,118 @@
+//! Everything the window shows, as plain values. Changed only by `update`; draws nothing, opens nothing.
+
+use crate::app::faults::FaultBook;
+use crate::app::gestures::GestureBook;
+use crate::app::history::History;
+use crate::app::notices::Notices;
+use crate::app::settings::Settings;
+use crate::hand::{Angle, Dof, Force, HandSample, Moment, PerDof, Speed};
+use crate::link::{ArmRefusal, LinkState, LinkStats, LinkStatus};
+use crate::transport::Endpoint;
+use std::time::Duration;
+
+/// A value older than this is shown as old: two poll periods, and never less than a quarter second.
+pub const STALE_AFTER: Duration = Duration::from_millis(250);
+
+/// Everything the window shows.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// The time of this frame.
+    pub now: Moment,
+    /// The hand that is wanted; `None` after a disconnect.
+    pub endpoint: Option<Endpoint>,
+    /// Where the link stands.
+    pub link: LinkStatus,
+    /// What the link measured of itself.
+    pub stats: LinkStats,
+    /// The newest of everything the hand said, with its times. Kept when the link is lost, and then old.
+    pub sample: HandSample,
+    /// The six joints as a person sets them.
+    pub joints: PerDof<Joint>,
+    /// What was measured over the last minutes.
+    pub history: History,
+    /// Faults now and before.
+    pub faults: FaultBook,
+    /// What a person should read.
+    pub notices: Notices,
+    /// Gestures and their names.
+    pub gestures: GestureBook,
+    /// Serial ports found when last looked.
+    pub ports: Vec<PortChoice>,
+    /// What is kept from one start to the next.
+    pub settings: Settings,
+}
+
+/// One joint as a person sets it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Joint {
+    /// Where the slider stands: the actual angle while not armed, the person's wish while armed. `None` = not known.
+    pub target: Option<Angle>,
+    /// Force threshold; sent at arming and when changed while armed.
+    pub force: Force,
+    /// Speed; sent at arming and when changed while armed.
+    pub speed: Speed,
+    /// Leave this joint alone.
+    pub locked: bool,
+}
+
+/// One serial port that was found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PortChoice {
+    /// Path or name to open.
+    pub path: String,
+    /// Maker, product and serial number, if it is a USB adapter.
+    pub about: Option<String>,
+}
+
+/// How much a shown value can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Freshness {
+    /// Never read on this connection: shown as "-".
+    Unknown,
+    /// From a live link and young.
+    Live,
+    /// Older than [`STALE_AFTER`], or the link is gone: greyed out, with its age.
+    Stale,
+}
+
+impl State {
+    /// Whether the built-in hand is shown.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        self.endpoint.as_ref().is_some_and(Endpoint::is_sim)
+    }
+
+    /// How fresh a value asked for at `asked` is now.
+    #[must_use]
+    pub fn freshness(&self, asked: Option<Moment>) -> Freshness {
+        match asked {
+            None => Freshness::Unknown,
+            Some(_) if !self.link.state.is_live() => Freshness::Stale,
+            Some(at) if self.now.since(at) > STALE_AFTER => Freshness::Stale,
+            Some(_) => Freshness::Live,
+        }
+    }
+
+    /// True while setpoints pass.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        self.link.state == LinkState::Armed
+    }
+
+    /// Why the hand cannot be armed now; `None` if it can or already is.
+    #[must_use]
+    pub fn arm_refusal(&self) -> Option<ArmRefusal> {
+        match self.link.state {
+            LinkState::Offline | LinkState::Identifying => return Some(ArmRefusal::Offline),
+            LinkState::Holding => return Some(ArmRefusal::Holding),
+            LinkState::Fault => return Some(ArmRefusal::Fault),
+            LinkState::Armed => return None,
+            LinkState::Monitoring => {}
+        }
+        let angle = self.sample.angle.filter(|angle| angle.age(self.now) <= STALE_AFTER);
+        Dof::ALL
+            .into_iter()
+            .find(|dof| angle.is_none_or(|angle| angle.value[*dof].hold().is_none()))
+            .map(|dof| ArmRefusal::UnknownPose { dof })
+    }
+}
