@@ -1,4 +1,5 @@
 //! Handscope watches, drives and tunes the FTP series tactile hand.
 
+pub mod codec;
 pub mod hand;
 pub mod transport;
