@@ -133,7 +133,7 @@ impl FaultSwitch {
 }
 
 /// Both ends of a wire with faults, and its switch. A delayed chunk delays what is behind it: a line never reorders.
-/// When one end is dropped, what it wrote still arrives, then the other end reads zero bytes.
+/// When one end is dropped, the other end reads zero bytes after what was still carried to it.
 /// Must be called within a tokio runtime; one task each way drives it.
 #[must_use]
 pub fn faulty_pair(plan: FaultPlan) -> (Pipe, Pipe, FaultSwitch) {
@@ -275,6 +275,7 @@ fn flip_bits(chunk: &mut [u8], rng: &mut Rng) {
 mod tests {
     #![allow(
         clippy::unwrap_used,
+        clippy::indexing_slicing,
         clippy::cast_possible_truncation,
         reason = "a test may"
     )]

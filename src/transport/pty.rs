@@ -44,8 +44,13 @@ impl PtyLink {
             remove_link(&slave_path, link_path);
             failed(error)
         };
+        #[expect(
+            deprecated,
+            reason = "its successor is unsafe, for types whose descriptor may change; that of a File does not"
+        )]
+        let master = AsyncFd::new(File::from(master)).map_err(undo)?;
         Ok(Self {
-            master: AsyncFd::new(File::from(master)).map_err(undo)?,
+            master,
             slave,
             slave_path: slave_path.clone(),
             link_path: link_path.to_path_buf(),
@@ -115,8 +120,9 @@ fn replace_link(slave_path: &Path, link_path: &Path) -> Result<(), TransportErro
 /// Removes the link unless someone else put another one there.
 fn remove_link(slave_path: &Path, link_path: &Path) {
     let ours = fs::read_link(link_path).is_ok_and(|target| target == slave_path);
-    if ours && fs::remove_file(link_path).is_err() {
-        // It dangles; the next start replaces it.
+    if ours {
+        // A link that cannot be removed dangles; the next start replaces it.
+        drop(fs::remove_file(link_path));
     }
 }
 

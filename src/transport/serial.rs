@@ -113,8 +113,9 @@ fn refuse_what_is_no_port(_place: &str) -> Result<(), TransportError> {
 #[cfg(unix)]
 fn free_for_reopening(stream: &mut SerialStream, place: &str) {
     let real = std::fs::canonicalize(place);
-    if real.is_ok_and(|path| path.starts_with("/dev/pts")) && stream.set_exclusive(false).is_err() {
-        // The port works all the same; only a second opening may be refused.
+    if real.is_ok_and(|path| path.starts_with("/dev/pts")) {
+        // The port works all the same if this fails; only a second opening may be refused.
+        drop(stream.set_exclusive(false));
     }
 }
 
