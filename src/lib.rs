@@ -1,5 +1,6 @@
 //! Handscope watches, drives and tunes the FTP series tactile hand.
 
+pub mod codec;
 pub mod hand;
 pub mod sim;
 pub mod transport;

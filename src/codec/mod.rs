@@ -1,0 +1,3 @@
+//! Bytes on a wire to register operations and back, for both sides of the conversation. No IO, no clock.
+
+pub mod rs485;
