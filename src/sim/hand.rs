@@ -62,6 +62,8 @@ pub struct WriteEffect {
     pub ack_id: u8,
     /// Elements that the hand took; the others were dropped without a word.
     pub taken: usize,
+    /// A late result was put in line ([`SimHand::late_save_result`]).
+    pub result_follows: bool,
 }
 
 /// The second frame after a SAVE on a serial line.
@@ -162,6 +164,7 @@ impl SimHand {
     ) -> Result<WriteEffect, Refusal> {
         self.advance_to(now);
         self.record(now, address, bytes);
+        let in_line = self.saves.len();
         let changes = self
             .memory
             .write(address, bytes, self.config.personality.out_of_range)?;
@@ -173,6 +176,7 @@ impl SimHand {
         Ok(WriteEffect {
             ack_id: self.id(),
             taken: changes.len(),
+            result_follows: self.saves.len() > in_line,
         })
     }
 
@@ -182,6 +186,11 @@ impl SimHand {
             return None;
         }
         self.saves.pop_front().map(|(_, frame)| frame)
+    }
+
+    /// Takes back the result of the newest SAVE: only serial lines have such a frame.
+    pub fn cancel_newest_save_result(&mut self) {
+        self.saves.pop_back();
     }
 
     /// When the next result of a SAVE is due.

@@ -10,6 +10,7 @@ pub mod memory;
 mod number;
 pub mod personality;
 pub mod scenario;
+pub mod serve;
 pub mod touch;
 
 pub use body::{Body, Object};
@@ -18,3 +19,4 @@ pub use hand::{JournalEntry, SaveFrame, SimConfig, SimHand, WriteEffect};
 pub use memory::Refusal;
 pub use personality::{MinusOne, OutOfRangeWrite, Personality, SaveAnswer, SpeedZero};
 pub use scenario::{Scenario, UnknownScenario};
+pub use serve::SharedHand;
