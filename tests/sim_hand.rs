@@ -160,7 +160,6 @@ fn clear_error_clears_all_but_over_temperature_which_ends_by_itself() {
     ]) {
         hand.inject_fault(dof, fault);
     }
-    hand.warm(Dof::Ring, 88.0);
     assert_eq!(bytes(&mut hand, &ERROR, 10), [1, 2, 4, 8, 16, 1]);
     hand.write(1004, &[1], at(20)).unwrap();
     assert_eq!(bytes(&mut hand, &ERROR, 30), [0, 2, 0, 0, 0, 0]);
@@ -429,4 +428,31 @@ fn the_journal_keeps_every_write_with_its_time_and_stays_bounded() {
         hand.write(1486, &[0xFF, 0xFF], at(6)).unwrap();
     }
     assert!(hand.journal().len() <= 2 * handscope::sim::hand::JOURNAL_KEEPS);
+}
+
+#[test]
+fn gestures_run_from_both_addresses() {
+    let mut hand = idle();
+    hand.set_object(&Object::none());
+    hand.write(1008, &[2], at(0)).unwrap();
+    assert_eq!(shorts(&mut hand, &ANGLE_ACT, 1000), [0, 0, 0, 0, 300, 300]);
+    hand.write(2320, &[1], at(1000)).unwrap();
+    assert_eq!(shorts(&mut hand, &ANGLE_ACT, 2000)[0], 0);
+    hand.write(2322, &[1], at(2000)).unwrap();
+    assert_eq!(shorts(&mut hand, &ANGLE_ACT, 3000), [1000; 6]);
+    assert_eq!(hand.read(Span::new(2322, 1), at(3000)).unwrap(), [0]);
+    hand.write(1008, &[14], at(3000)).unwrap();
+    assert_eq!(shorts(&mut hand, &ANGLE_ACT, 4000), [1000; 6]);
+}
+
+#[test]
+fn a_jammed_joint_stalls_alone() {
+    let mut hand = idle();
+    hand.set_jam(Dof::Middle, Some(700.0));
+    put(&mut hand, 1486, &[500; 6], 0);
+    assert_eq!(bytes(&mut hand, &STATUS, 900), [2, 2, 1, 2, 2, 2]);
+    assert!(shorts(&mut hand, &CURRENT, 900)[2] > 900);
+    assert_eq!(bytes(&mut hand, &STATUS, 2000), [2, 2, 6, 2, 2, 2]);
+    assert_eq!(bytes(&mut hand, &ERROR, 2000), [0, 0, 1, 0, 0, 0]);
+    assert_eq!(shorts(&mut hand, &ANGLE_ACT, 2000)[2], 700);
 }

@@ -43,7 +43,7 @@ async fn hear(wire: &mut DuplexStream, len: usize) -> Vec<u8> {
     let mut reply = vec![0; len];
     timeout(Duration::from_secs(5), wire.read_exact(&mut reply))
         .await
-        .expect("a reply")
+        .unwrap()
         .unwrap();
     reply
 }

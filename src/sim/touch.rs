@@ -151,6 +151,7 @@ fn nearness(pad: (f64, f64), spot: (f64, f64)) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
 
     fn block(force_g: f64, gap: Option<f64>) -> TactileBlock {
@@ -158,7 +159,7 @@ mod tests {
         let mut touch = Touch::new(&mut rng);
         touch.measure(&mut rng);
         let block = touch.block(Finger::Index, Press { force_g, gap }, Slip::default(), 1.0);
-        TactileBlock::decode(&block.encode()).expect("a whole block")
+        TactileBlock::decode(&block.encode()).unwrap()
     }
 
     #[test]
