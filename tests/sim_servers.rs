@@ -7,6 +7,8 @@
 )]
 
 use handscope::hand::Dof;
+#[cfg(unix)]
+use handscope::sim::serve::pty;
 use handscope::sim::serve::{modbus_tcp, rs485};
 use handscope::sim::{Object, Personality, SharedHand, SimConfig, SimHand};
 use std::time::Duration;
@@ -314,4 +316,38 @@ async fn several_clients_share_one_hand() {
     exchange(&mut first, "00 01 00 00 00 06 FF 06 05 DA 00 7B").await;
     let seen = exchange(&mut second, "00 02 00 00 00 06 FF 03 05 DA 00 01").await;
     assert_eq!(seen, bytes("00 02 00 00 00 05 FF 03 02 00 7B"));
+}
+
+#[cfg(unix)]
+#[tokio::test]
+async fn one_program_after_another_opens_the_pseudo_terminal() {
+    use handscope::transport::{SerialLine, serial};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hand");
+    let hand = shared(Personality::default());
+    let served = tokio::spawn(pty::serve_rs485(hand, &path).unwrap());
+    let place = SerialLine {
+        port: path.to_str().unwrap().into(),
+        baud: 115_200,
+        id: 1,
+    };
+    for _ in 0..3 {
+        let mut port = serial::open(&place).unwrap();
+        port.write_all(&bytes("EB 90 01 04 11 0A 06 0C 32"))
+            .await
+            .unwrap();
+        let mut reply = [0; 20];
+        timeout(Duration::from_secs(5), port.read_exact(&mut reply))
+            .await
+            .unwrap()
+            .unwrap();
+        assert_eq!(reply[..7], bytes("90 EB 01 0F 11 0A 06")[..]);
+        // The program goes in the middle of a request; the next one must not suffer from it.
+        port.write_all(&bytes("EB 90 01 FF 12")).await.unwrap();
+        drop(port);
+        tokio::time::sleep(Duration::from_millis(120)).await;
+    }
+    served.abort();
+    assert!(served.await.is_err());
+    assert!(std::fs::symlink_metadata(&path).is_err());
 }
