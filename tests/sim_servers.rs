@@ -318,6 +318,27 @@ async fn several_clients_share_one_hand() {
     assert_eq!(seen, bytes("00 02 00 00 00 05 FF 03 02 00 7B"));
 }
 
+#[tokio::test]
+async fn a_client_that_talks_nonsense_loses_only_its_own_connection() {
+    let hand = shared(Personality::default());
+    let (first, _served) = listen(&hand).await;
+    let address = first.peer_addr().unwrap();
+    for nonsense in [
+        "FF FF FF FF FF FF FF FF FF FF",
+        "00 01 00 00 00 07 FF 10 05 DA 80 00 00",
+        "00 01 00 00 00 02 FF 10",
+    ] {
+        let mut rude = TcpStream::connect(address).await.unwrap();
+        rude.write_all(&bytes(nonsense)).await.unwrap();
+        let mut end = [0; 64];
+        let heard = timeout(Duration::from_millis(300), rude.read(&mut end)).await;
+        assert!(!matches!(heard, Ok(Ok(64..))), "{nonsense}");
+    }
+    let mut polite = TcpStream::connect(address).await.unwrap();
+    let seen = exchange(&mut polite, "00 02 00 00 00 06 FF 03 06 0A 00 01").await;
+    assert_eq!(seen, bytes("00 02 00 00 00 05 FF 03 02 03 E8"));
+}
+
 #[cfg(unix)]
 #[tokio::test]
 async fn one_program_after_another_opens_the_pseudo_terminal() {

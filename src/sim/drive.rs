@@ -143,8 +143,12 @@ impl Drive {
     /// Force on the fingertip, g, without any sensor's error.
     #[must_use]
     pub fn load_g(&self) -> f64 {
+        self.load_at(self.position)
+    }
+
+    fn load_at(&self, position: f64) -> f64 {
         self.contact.map_or(0.0, |contact| {
-            (self.position - contact.position()).max(0.0) * contact.stiffness * self.grip
+            (position - contact.position()).max(0.0) * contact.stiffness * self.grip
         })
     }
 
@@ -314,12 +318,14 @@ impl Drive {
             Status::Releasing
         };
         let load = self.load_g();
-        if way > 0.0 && load > 0.0 && load >= setting.threshold_g {
+        self.current_ma = FREE_MA + MA_PER_G * load;
+        let step = self.velocity * STEP_S;
+        // A fast drive passes its threshold within one step, so the step is looked at before it is made.
+        let met = self.load_at(self.position + step);
+        if way > 0.0 && met > 0.0 && met >= setting.threshold_g {
             self.force_stop(setting.threshold_g);
             return;
         }
-        self.current_ma = FREE_MA + MA_PER_G * load;
-        let step = self.velocity * STEP_S;
         if way.abs() < 0.5 || (step.abs() >= way.abs() && step * way > 0.0) {
             self.position = to;
             self.stop_moving(Status::PositionReached);

@@ -1,7 +1,7 @@
 //! The simulated hand: memory, body, fingertips and script put together. It is given the time; it owns no clock and no wire.
 
 use crate::hand::register::{
-    self, ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, CLEAR_ERROR, FORCE_SET, GESTURE_FORCE_CLB,
+    ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, CLEAR_ERROR, FORCE_SET, GESTURE_FORCE_CLB,
     GESTURE_NO_SET, HAND_ID, POS_SET, REDU_RATIO, RESET_PARA, SAVE, SPEED_SET, Span,
 };
 use crate::hand::sample::touch_span;
@@ -10,11 +10,12 @@ use crate::sim::body::{Body, Object};
 use crate::sim::drive::{Goal, Setting, position_of};
 use crate::sim::extremes;
 use crate::sim::gesture;
+use crate::sim::live::{self, element};
 use crate::sim::memory::{Change, GAP, Memory, Refusal};
 use crate::sim::number;
 use crate::sim::personality::{MinusOne, Personality, SaveAnswer, SpeedZero};
 use crate::sim::scenario::{self, Ailment, Order, Scenario};
-use crate::sim::touch::{Press, SENSOR_MS, Touch};
+use crate::sim::touch::{SENSOR_MS, Touch};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -423,44 +424,20 @@ impl SimHand {
             return;
         }
         self.published_ms = Some(self.now_ms);
-        for (dof, drive) in self.body.drives().iter() {
-            let at = element(dof);
-            let memory = &mut self.memory;
-            memory.put_short(&register::POS_ACT, at, number::short(drive.position()));
-            memory.put_short(&register::ANGLE_ACT, at, number::short(drive.angle()));
-            let force = self.body.force_g(dof).clamp(-4000.0, 4000.0);
-            memory.put_short(&register::FORCE_ACT, at, number::short(force));
-            memory.put_short(&register::CURRENT, at, number::short(drive.current_ma()));
-            memory.put_byte(register::ERROR.address + at, drive.faults().raw());
-            memory.put_byte(register::STATUS.address + at, drive.status().raw());
-            let temperature = drive.temperature();
-            memory.put_byte(register::TEMP.address + at, number::byte(temperature));
-        }
-        self.publish_touch();
-        if self.config.scenario == Scenario::Extremes {
-            extremes::overlay(&mut self.memory, self.now_ms);
-        }
-    }
-
-    fn publish_touch(&mut self) {
+        live::publish_drives(&mut self.memory, &self.body);
         let measured_ms = self.now_ms - self.now_ms % SENSOR_MS;
         let slip = scenario::slip(self.config.scenario, measured_ms);
         for finger in Finger::ALL {
-            let press = Press {
-                force_g: self.body.fingertip_g(finger),
-                gap: self.body.drives()[finger.bend()].gap(),
-            };
+            let press = live::press(&self.body, finger);
             let block = self
                 .touch
                 .block(finger, press, slip, number::seconds(measured_ms));
             self.memory.put(touch_span(finger).address, &block.encode());
         }
+        if self.config.scenario == Scenario::Extremes {
+            extremes::overlay(&mut self.memory, self.now_ms);
+        }
     }
-}
-
-/// The joint's place in a register group.
-fn element(dof: Dof) -> u16 {
-    u16::try_from(dof.index()).unwrap_or_default()
 }
 
 const fn overlaps(a: Span, b: Span) -> bool {

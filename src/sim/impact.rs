@@ -26,8 +26,7 @@ const ROWS: [(f64, f64); 5] = [
 /// Peak above the threshold in g, on a rigid block, for a contact at `speed` (units of SPEED_SET).
 #[must_use]
 pub fn overshoot_g(speed: f64, threshold_g: f64) -> f64 {
-    let columns = THRESHOLDS.map(|t| t);
-    let at_row = |row: &[f64; 5]| interpolate(columns.iter().copied().zip(*row), threshold_g);
+    let at_row = |row: &[f64; 5]| interpolate(THRESHOLDS.into_iter().zip(*row), threshold_g);
     let [slow, middle, fast] = &PEAKS;
     let rows = [
         (0.0, at_row(slow)),

@@ -6,6 +6,7 @@ mod extremes;
 pub mod gesture;
 pub mod hand;
 pub mod impact;
+mod live;
 pub mod memory;
 mod number;
 pub mod personality;
