@@ -4,4 +4,5 @@ pub mod app;
 pub mod codec;
 pub mod hand;
 pub mod link;
+pub mod sim;
 pub mod transport;
