@@ -7,6 +7,10 @@ use crate::hand::Span;
 use crate::hand::register::SAVE;
 
 /// What a hand is asked.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "the buffer stands inside on purpose: no allocation per frame"
+)]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Request {
     /// Give these bytes (manual 2.2.1). The length is as received: 0 and 253 to 255 cannot be answered.
