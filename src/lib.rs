@@ -3,4 +3,5 @@
 pub mod codec;
 pub mod hand;
 pub mod link;
+pub mod sim;
 pub mod transport;
