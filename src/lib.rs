@@ -1,4 +1,5 @@
 //! Handscope watches, drives and tunes the FTP series tactile hand.
 
 pub mod hand;
+pub mod headless;
 pub mod transport;
