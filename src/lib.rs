@@ -2,6 +2,7 @@
 
 pub mod codec;
 pub mod hand;
+pub mod headless;
 pub mod link;
 pub mod sim;
 pub mod transport;
