@@ -3,6 +3,7 @@
 pub mod app;
 pub mod codec;
 pub mod hand;
+pub mod headless;
 pub mod link;
 pub mod sim;
 pub mod transport;

@@ -65,9 +65,13 @@ impl Bus {
         match endpoint {
             Endpoint::Sim { .. } => Ok(Self::Rs485(Rs485::new(wire, endpoint, late, clock))),
             Endpoint::Rs485(_) => Ok(Self::Rs485(Rs485::new(wire, endpoint, late, clock))),
-            Endpoint::Tcp { unit, .. } => Ok(Self::ModbusTcp(ModbusTcp::new(wire, *unit, endpoint))),
+            Endpoint::Tcp { unit, .. } => {
+                Ok(Self::ModbusTcp(ModbusTcp::new(wire, *unit, endpoint)))
+            }
             Endpoint::Rtu(_) | Endpoint::Can { .. } | Endpoint::Slcan { .. } => {
-                Err(TransportError::Unsupported { kind: endpoint.kind().into() })
+                Err(TransportError::Unsupported {
+                    kind: endpoint.kind().into(),
+                })
             }
         }
     }
@@ -81,7 +85,11 @@ impl Bus {
     }
 
     /// Writes, and waits for the acknowledgement.
-    pub(crate) async fn write(&mut self, write: &RegisterWrite, limit: Duration) -> Result<(), BusError> {
+    pub(crate) async fn write(
+        &mut self,
+        write: &RegisterWrite,
+        limit: Duration,
+    ) -> Result<(), BusError> {
         match self {
             Self::Rs485(bus) => bus.write(write, limit).await,
             Self::ModbusTcp(bus) => bus.write(write, limit).await,
@@ -101,7 +109,10 @@ impl Bus {
         match self {
             Self::Rs485(bus) => bus.choose(shapes),
             // Transaction ids tell replies apart, so the widest shape serves always.
-            Self::ModbusTcp(_) => shapes.iter().copied().max_by_key(|shape| (shape.address, shape.len)),
+            Self::ModbusTcp(_) => shapes
+                .iter()
+                .copied()
+                .max_by_key(|shape| (shape.address, shape.len)),
         }
     }
 

@@ -17,7 +17,9 @@ impl Clock {
     /// Starts counting now. Inside a paused tokio runtime this is virtual time.
     #[must_use]
     pub fn start() -> Self {
-        Self { start: Instant::now() }
+        Self {
+            start: Instant::now(),
+        }
     }
 
     /// The present moment.
@@ -42,7 +44,10 @@ pub(crate) struct SleepWatch {
 
 impl SleepWatch {
     pub(crate) fn new(now: Moment) -> Self {
-        Self { wall: SystemTime::now(), at: now }
+        Self {
+            wall: SystemTime::now(),
+            at: now,
+        }
     }
 
     /// How long the computer slept since the last call, if it did. A clock that was set back says nothing.
@@ -65,7 +70,10 @@ mod tests {
     #[test]
     fn only_a_wall_clock_that_runs_ahead_means_sleep() {
         let wall = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000);
-        let mut watch = SleepWatch { wall, at: Moment::ZERO };
+        let mut watch = SleepWatch {
+            wall,
+            at: Moment::ZERO,
+        };
         let step = Duration::from_millis(20);
         let now = Moment::ZERO.plus(step);
         assert_eq!(watch.slept_at(wall + step, now), None);

@@ -42,11 +42,6 @@ impl Counters {
         self.tactile.hit(now);
     }
 
-    /// The longest of the last round trips that is no outlier, for setting time limits.
-    pub(crate) const fn typical_worst(&self) -> Option<Duration> {
-        self.stats.rtt_p99
-    }
-
     /// Brings rates and percentiles up to date, not more often than needed.
     pub(crate) fn digest(&mut self, now: Moment) {
         if now.since(self.digested) < DIGEST_EACH && self.stats.rtt_p50.is_some() {
@@ -93,7 +88,11 @@ impl Rate {
     }
 
     fn forget(&mut self, now: Moment) {
-        while self.hits.front().is_some_and(|hit| now.since(*hit) > RATE_OVER) {
+        while self
+            .hits
+            .front()
+            .is_some_and(|hit| now.since(*hit) > RATE_OVER)
+        {
             self.hits.pop_front();
         }
     }
@@ -101,8 +100,13 @@ impl Rate {
     /// Events a second between the oldest and the newest of the last second.
     fn hz(&mut self, now: Moment) -> f64 {
         self.forget(now);
-        let (Some(first), Some(last)) = (self.hits.front(), self.hits.back()) else { return 0.0 };
-        let (span, steps) = (last.since(*first).as_secs_f64(), self.hits.len().saturating_sub(1));
+        let (Some(first), Some(last)) = (self.hits.front(), self.hits.back()) else {
+            return 0.0;
+        };
+        let (span, steps) = (
+            last.since(*first).as_secs_f64(),
+            self.hits.len().saturating_sub(1),
+        );
         let steps = f64::from(u32::try_from(steps).unwrap_or(u32::MAX));
         if span > 0.0 { steps / span } else { 0.0 }
     }
@@ -126,7 +130,10 @@ mod tests {
         assert_eq!(counters.stats.rtt_p50, Some(Duration::from_millis(5)));
         assert_eq!(counters.stats.rtt_p99, Some(Duration::from_millis(30)));
         counters.lost();
-        assert_eq!((counters.stats.state_hz, counters.stats.rtt_p50), (0.0, None));
+        assert_eq!(
+            (counters.stats.state_hz, counters.stats.rtt_p50),
+            (0.0, None)
+        );
         assert_eq!(counters.stats.state_reads, 200);
     }
 }

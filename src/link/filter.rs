@@ -82,7 +82,11 @@ impl ReplyFilter {
 }
 
 impl AsyncRead for ReplyFilter {
-    fn poll_read(self: Pin<&mut Self>, cx: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+    fn poll_read(
+        self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        into: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
         let this = self.get_mut();
         while this.passed.is_empty() {
             let mut chunk = [0; CHUNK];
@@ -95,7 +99,9 @@ impl AsyncRead for ReplyFilter {
             this.sort(buffer.filled())?;
         }
         while into.remaining() > 0 {
-            let Some(byte) = this.passed.pop_front() else { break };
+            let Some(byte) = this.passed.pop_front() else {
+                break;
+            };
             into.put_slice(&[byte]);
         }
         Poll::Ready(Ok(()))
@@ -103,7 +109,11 @@ impl AsyncRead for ReplyFilter {
 }
 
 impl AsyncWrite for ReplyFilter {
-    fn poll_write(self: Pin<&mut Self>, cx: &mut Context<'_>, request: &[u8]) -> Poll<io::Result<usize>> {
+    fn poll_write(
+        self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        request: &[u8],
+    ) -> Poll<io::Result<usize>> {
         let this = self.get_mut();
         let written = ready!(Pin::new(&mut this.wire).poll_write(cx, request))?;
         this.note(request, written);
@@ -121,7 +131,9 @@ impl AsyncWrite for ReplyFilter {
 
 impl std::fmt::Debug for ReplyFilter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ReplyFilter").field("open", &self.open).finish_non_exhaustive()
+        f.debug_struct("ReplyFilter")
+            .field("open", &self.open)
+            .finish_non_exhaustive()
     }
 }
 
@@ -147,10 +159,20 @@ mod tests {
         let (near, mut far) = tokio::io::duplex(4096);
         let counts = Arc::new(FilterCounts::default());
         let mut filter = ReplyFilter::new(Box::new(near), Arc::clone(&counts));
-        filter.write_all(&adu(6, 255, &[3, 0, 1, 0, 1])).await.unwrap();
-        filter.write_all(&adu(7, 255, &[3, 0, 1, 0, 1])).await.unwrap();
+        filter
+            .write_all(&adu(6, 255, &[3, 0, 1, 0, 1]))
+            .await
+            .unwrap();
+        filter
+            .write_all(&adu(7, 255, &[3, 0, 1, 0, 1]))
+            .await
+            .unwrap();
         let right = adu(7, 255, &[3, 2, 0xAB, 0xCD]);
-        for wrong in [adu(6, 255, &[3, 2, 1, 1]), adu(7, 1, &[3, 2, 2, 2]), adu(8, 255, &[3, 2, 3, 3])] {
+        for wrong in [
+            adu(6, 255, &[3, 2, 1, 1]),
+            adu(7, 1, &[3, 2, 2, 2]),
+            adu(8, 255, &[3, 2, 3, 3]),
+        ] {
             far.write_all(&wrong).await.unwrap();
         }
         // Split in the middle of the header, and doubled.
@@ -170,8 +192,13 @@ mod tests {
     async fn a_stream_that_is_no_modbus_is_an_error() {
         let (near, mut far) = tokio::io::duplex(4096);
         let mut filter = ReplyFilter::new(Box::new(near), Arc::default());
-        filter.write_all(&adu(1, 255, &[3, 0, 1, 0, 1])).await.unwrap();
-        far.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n").await.unwrap();
+        filter
+            .write_all(&adu(1, 255, &[3, 0, 1, 0, 1]))
+            .await
+            .unwrap();
+        far.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+            .await
+            .unwrap();
         let mut got = [0; 16];
         assert!(filter.read(&mut got).await.is_err());
     }

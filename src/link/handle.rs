@@ -52,7 +52,12 @@ impl Setpoints {
     /// Nothing new, for one arming.
     #[must_use]
     pub const fn none(epoch: ArmEpoch) -> Self {
-        Self { epoch, angle: PerDof::splat(None), force: PerDof::splat(None), speed: PerDof::splat(None) }
+        Self {
+            epoch,
+            angle: PerDof::splat(None),
+            force: PerDof::splat(None),
+            speed: PerDof::splat(None),
+        }
     }
 
     /// True if there is nothing to send.
@@ -135,7 +140,14 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> LinkHandle 
         stats: stats_in,
     };
     runtime.spawn(Session::new(config, ends).run());
-    LinkHandle { wanted, requests, events, status, stats, tickets: AtomicU64::new(0) }
+    LinkHandle {
+        wanted,
+        requests,
+        events,
+        status,
+        stats,
+        tickets: AtomicU64::new(0),
+    }
 }
 
 impl LinkHandle {
@@ -178,10 +190,11 @@ impl LinkHandle {
     ///
     /// [`SETPOINT_HZ_MAX`]: crate::link::motion::SETPOINT_HZ_MAX
     pub fn set(&self, setpoints: &Setpoints) {
-        self.wanted.send_modify(|wanted| match &mut wanted.setpoints {
-            Some(older) => older.merge(setpoints),
-            none => *none = Some(*setpoints),
-        });
+        self.wanted
+            .send_modify(|wanted| match &mut wanted.setpoints {
+                Some(older) => older.merge(setpoints),
+                none => *none = Some(*setpoints),
+            });
     }
 
     /// Asks for one thing. The answer is an event with the ticket.
@@ -195,7 +208,9 @@ impl LinkHandle {
         let ticket = Ticket(self.tickets.fetch_add(1, Ordering::Relaxed));
         match self.requests.try_send((ticket, request)) {
             Ok(()) => Ok(ticket),
-            Err(mpsc::error::TrySendError::Full(_)) => Err(RequestError::Full { limit: REQUESTS_MAX }),
+            Err(mpsc::error::TrySendError::Full(_)) => Err(RequestError::Full {
+                limit: REQUESTS_MAX,
+            }),
             Err(mpsc::error::TrySendError::Closed(_)) => Err(RequestError::NotConnected),
         }
     }

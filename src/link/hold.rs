@@ -25,7 +25,14 @@ pub(crate) struct HoldWatch {
 
 impl HoldWatch {
     pub(crate) const fn new(at: Moment) -> Self {
-        Self { at, sent: 0, alarmed: false, first_sent: None, last_sent: None, still_since: None }
+        Self {
+            at,
+            sent: 0,
+            alarmed: false,
+            first_sent: None,
+            last_sent: None,
+            still_since: None,
+        }
     }
 
     /// When the next hold frame is due.
@@ -48,16 +55,23 @@ impl HoldWatch {
     /// Takes a sample; true if it shows that all six joints rest. Only angles that were asked for
     /// after the first hold frame count, and an angle that makes no sense is not at rest.
     pub(crate) fn rests(&mut self, sample: &HandSample, fresh: Groups) -> bool {
-        let (Some(first_sent), Some(angle)) = (self.first_sent, sample.angle) else { return false };
+        let (Some(first_sent), Some(angle)) = (self.first_sent, sample.angle) else {
+            return false;
+        };
         if !fresh.contains(Group::Angle) || angle.asked < first_sent {
             return false;
         }
-        if Dof::ALL.iter().any(|dof| angle.value[*dof].hold().is_none()) {
+        if Dof::ALL
+            .iter()
+            .any(|dof| angle.value[*dof].hold().is_none())
+        {
             self.still_since = None;
             return false;
         }
         match self.still_since {
-            Some((since, from)) if near(&from, &angle.value) => angle.asked.since(since) >= REST_OVER,
+            Some((since, from)) if near(&from, &angle.value) => {
+                angle.asked.since(since) >= REST_OVER
+            }
             _ => {
                 self.still_since = Some((angle.received, angle.value));
                 false
@@ -83,10 +97,20 @@ mod tests {
 
     fn sample(asked: Moment, angle: i16) -> (HandSample, Groups) {
         let value = PerDof::splat(AngleReading::new(angle));
-        let angle = Some(Timed { value, asked, received: asked.plus(Duration::from_millis(5)) });
+        let angle = Some(Timed {
+            value,
+            asked,
+            received: asked.plus(Duration::from_millis(5)),
+        });
         let mut fresh = Groups::NONE;
         fresh.insert(Group::Angle);
-        (HandSample { angle, ..HandSample::default() }, fresh)
+        (
+            HandSample {
+                angle,
+                ..HandSample::default()
+            },
+            fresh,
+        )
     }
 
     /// Feeds an angle each 10 ms and gives the time at which rest was seen.
@@ -111,7 +135,10 @@ mod tests {
     #[test]
     fn a_slow_creep_is_not_rest() {
         // Three counts each 100 ms.
-        assert_eq!(rest_at(|t| 500 + i16::try_from(t * 3 / 100).unwrap(), 0), None);
+        assert_eq!(
+            rest_at(|t| 500 + i16::try_from(t * 3 / 100).unwrap(), 0),
+            None
+        );
     }
 
     #[test]

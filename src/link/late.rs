@@ -62,6 +62,9 @@ mod tests {
         assert_eq!(late.first_clear(&[a, b], Moment::ZERO), None);
         late.arrived(a);
         assert_eq!(late.first_clear(&[b, a], Moment::ZERO), Some(a));
-        assert_eq!(late.first_clear(&[b], Moment::ZERO.plus(LATE_HORIZON)), Some(b));
+        assert_eq!(
+            late.first_clear(&[b], Moment::ZERO.plus(LATE_HORIZON)),
+            Some(b)
+        );
     }
 }

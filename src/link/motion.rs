@@ -29,6 +29,14 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
+    /// A fresh start that still counts armings on from `last_epoch`.
+    pub(crate) fn after(last_epoch: ArmEpoch) -> Self {
+        Self {
+            last_epoch,
+            ..Self::default()
+        }
+    }
+
     /// Nothing is wanted any more.
     pub(crate) fn forget(&mut self) {
         self.hold = None;
@@ -60,7 +68,9 @@ impl Motion {
             return Some(now);
         }
         self.setpoints.as_ref()?;
-        Some(self.round_began.map_or(now, |began| began.plus(Duration::from_secs(1) / SETPOINT_HZ_MAX)))
+        Some(self.round_began.map_or(now, |began| {
+            began.plus(Duration::from_secs(1) / SETPOINT_HZ_MAX)
+        }))
     }
 
     /// The next setpoint write, if one is due: speed before force before angle, so that no motion
@@ -91,7 +101,9 @@ fn round(setpoints: &Setpoints) -> ArrayVec<RegisterWrite, ROUND_MAX> {
     commands.push(HandCommand::Speeds(setpoints.speed));
     commands.push(HandCommand::Forces(setpoints.force));
     if setpoints.angle.iter().any(|(_, angle)| angle.is_some()) {
-        commands.push(HandCommand::Angles(setpoints.angle.map(|angle| angle.unwrap_or(Target::Leave))));
+        commands.push(HandCommand::Angles(
+            setpoints.angle.map(|angle| angle.unwrap_or(Target::Leave)),
+        ));
     }
     for write in commands.iter().flat_map(HandCommand::writes) {
         let _full = round.try_push(write);
@@ -110,7 +122,11 @@ pub(crate) fn hold_command(sample: &HandSample, now: Moment) -> HandCommand {
 }
 
 /// Why a hand in this state and with these readings must not be armed.
-pub(crate) fn arm_refusal(state: LinkState, sample: &HandSample, now: Moment) -> Option<ArmRefusal> {
+pub(crate) fn arm_refusal(
+    state: LinkState,
+    sample: &HandSample,
+    now: Moment,
+) -> Option<ArmRefusal> {
     match state {
         LinkState::Offline | LinkState::Identifying => return Some(ArmRefusal::Offline),
         LinkState::Holding => return Some(ArmRefusal::Holding),
@@ -120,7 +136,9 @@ pub(crate) fn arm_refusal(state: LinkState, sample: &HandSample, now: Moment) ->
     if sample.faults.is_none() {
         return Some(ArmRefusal::UnknownPose { dof: Dof::Little });
     }
-    let angle = sample.angle.filter(|angle: &Timed<_>| angle.age(now) <= ANGLE_FRESH);
+    let angle = sample
+        .angle
+        .filter(|angle: &Timed<_>| angle.age(now) <= ANGLE_FRESH);
     Dof::ALL
         .into_iter()
         .find(|dof| angle.is_none_or(|angle| angle.value[*dof].hold().is_none()))
@@ -135,8 +153,16 @@ mod tests {
 
     fn sample(angle: i16, at: Moment) -> HandSample {
         HandSample {
-            angle: Some(Timed { value: PerDof::splat(AngleReading::new(angle)), asked: at, received: at }),
-            faults: Some(Timed { value: PerDof::splat(Faults::default()), asked: at, received: at }),
+            angle: Some(Timed {
+                value: PerDof::splat(AngleReading::new(angle)),
+                asked: at,
+                received: at,
+            }),
+            faults: Some(Timed {
+                value: PerDof::splat(Faults::default()),
+                asked: at,
+                received: at,
+            }),
             ..HandSample::default()
         }
     }
@@ -150,17 +176,32 @@ mod tests {
         let unknown = Some(ArmRefusal::UnknownPose { dof: Dof::Little });
         assert_eq!(check(LinkState::Monitoring, sample(500, at), late), unknown);
         assert_eq!(check(LinkState::Monitoring, sample(-200, at), at), unknown);
-        assert_eq!(check(LinkState::Monitoring, HandSample::default(), at), unknown);
-        assert_eq!(check(LinkState::Fault, sample(500, at), at), Some(ArmRefusal::Fault));
-        assert_eq!(check(LinkState::Holding, sample(500, at), at), Some(ArmRefusal::Holding));
-        assert_eq!(check(LinkState::Offline, sample(500, at), at), Some(ArmRefusal::Offline));
+        assert_eq!(
+            check(LinkState::Monitoring, HandSample::default(), at),
+            unknown
+        );
+        assert_eq!(
+            check(LinkState::Fault, sample(500, at), at),
+            Some(ArmRefusal::Fault)
+        );
+        assert_eq!(
+            check(LinkState::Holding, sample(500, at), at),
+            Some(ArmRefusal::Holding)
+        );
+        assert_eq!(
+            check(LinkState::Offline, sample(500, at), at),
+            Some(ArmRefusal::Offline)
+        );
     }
 
     #[test]
     fn an_old_pose_is_never_held_to() {
         let at = Moment::from_micros(1_000_000);
         let fresh = hold_command(&sample(420, at), at);
-        assert_eq!(fresh, HandCommand::Angles(PerDof::splat(Target::Go(Angle::nearest(420)))));
+        assert_eq!(
+            fresh,
+            HandCommand::Angles(PerDof::splat(Target::Go(Angle::nearest(420))))
+        );
         let old = hold_command(&sample(420, at), at.plus(Duration::from_secs(1)));
         assert_eq!(old, HandCommand::Angles(PerDof::splat(Target::Leave)));
     }
@@ -175,11 +216,17 @@ mod tests {
         wish.speed[Dof::Index] = Some(Speed::GENTLE);
         motion.want(&wish, Some(epoch));
         let now = Moment::from_micros(10);
-        let sent: Vec<_> = std::iter::from_fn(|| motion.next_write(now)).map(|write| write.address()).collect();
+        let sent: Vec<_> = std::iter::from_fn(|| motion.next_write(now))
+            .map(|write| write.address())
+            .collect();
         assert_eq!(sent, [1528, 1504, 1486]);
         motion.want(&wish, Some(epoch));
         assert_eq!(motion.next_write(now.plus(Duration::from_millis(19))), None);
-        assert!(motion.next_write(now.plus(Duration::from_millis(20))).is_some());
+        assert!(
+            motion
+                .next_write(now.plus(Duration::from_millis(20)))
+                .is_some()
+        );
     }
 
     #[test]

@@ -31,13 +31,21 @@ pub struct PollRates {
 
 impl Default for PollRates {
     fn default() -> Self {
-        Self { state_hz: 100.0, tactile_hz: 30.0, settings_hz: 2.0 }
+        Self {
+            state_hz: 100.0,
+            tactile_hz: 30.0,
+            settings_hz: 2.0,
+        }
     }
 }
 
 impl PollRates {
     /// As fast as the wire goes, states and fingertips in turn.
-    pub const FULL: Self = Self { state_hz: f64::INFINITY, tactile_hz: f64::INFINITY, settings_hz: 2.0 };
+    pub const FULL: Self = Self {
+        state_hz: f64::INFINITY,
+        tactile_hz: f64::INFINITY,
+        settings_hz: 2.0,
+    };
 }
 
 /// One group of reads.
@@ -67,7 +75,11 @@ pub(crate) struct PollPlan {
 
 impl PollPlan {
     pub(crate) fn new(rates: PollRates, now: Moment) -> Self {
-        let due = |poll, hz: f64| Due { poll, period: period(hz), next: now };
+        let due = |poll, hz: f64| Due {
+            poll,
+            period: period(hz),
+            next: now,
+        };
         Self {
             groups: [
                 due(Poll::State, rates.state_hz),
@@ -92,7 +104,11 @@ impl PollPlan {
 
     /// When the next group is due.
     pub(crate) fn next_due(&self) -> Moment {
-        self.groups.iter().map(|group| group.next).min().unwrap_or(Moment::ZERO)
+        self.groups
+            .iter()
+            .map(|group| group.next)
+            .min()
+            .unwrap_or(Moment::ZERO)
     }
 
     /// The group was asked at `now`: its next time is one period on, without catching up. A sweep of
@@ -128,7 +144,9 @@ impl PollPlan {
 
     /// True if this group is due.
     pub(crate) fn is_due(&self, poll: Poll, now: Moment) -> bool {
-        self.groups.iter().any(|group| group.poll == poll && group.next <= now)
+        self.groups
+            .iter()
+            .any(|group| group.poll == poll && group.next <= now)
     }
 
     /// The span to read for a group, in the order of preference; the caller takes the first that no
@@ -137,7 +155,9 @@ impl PollPlan {
         match poll {
             Poll::State => self.state_shapes(),
             Poll::Tactile => self.tactile_shapes(),
-            Poll::Settings => (0..POSITIONS).map(|n| Span::new(SETPOINTS.address, SETPOINTS.len + 2 * n)).collect(),
+            Poll::Settings => (0..POSITIONS)
+                .map(|n| Span::new(SETPOINTS.address, SETPOINTS.len + 2 * n))
+                .collect(),
         }
     }
 
@@ -149,7 +169,11 @@ impl PollPlan {
     fn state_shapes(&self) -> ArrayVec<Span, 16> {
         let mut shapes = ArrayVec::new();
         let lens = [STATE.len, STATE_SHORT_LEN];
-        let ordered = if self.turn.is_multiple_of(2) { lens } else { [lens[1], lens[0]] };
+        let ordered = if self.turn.is_multiple_of(2) {
+            lens
+        } else {
+            [lens[1], lens[0]]
+        };
         for joints in 0..=POSITIONS {
             for len in ordered {
                 let ahead = 2 * joints;
@@ -230,7 +254,8 @@ mod tests {
 
     #[test]
     fn rates_are_kept_where_the_line_allows() {
-        let (_, [state, tactile, settings]) = run(PollRates::default(), EXCHANGE, Duration::from_secs(10));
+        let (_, [state, tactile, settings]) =
+            run(PollRates::default(), EXCHANGE, Duration::from_secs(10));
         assert!((990..=1001).contains(&state), "{state}");
         assert!((290..=301).contains(&tactile), "{tactile}");
         assert!((19..=21).contains(&settings), "{settings}");
@@ -238,16 +263,30 @@ mod tests {
 
     #[test]
     fn nothing_starves_on_a_line_that_is_too_slow() {
-        let (_, [state, tactile, settings]) = run(PollRates::default(), Duration::from_millis(15), Duration::from_secs(10));
-        assert!(state > 200 && tactile > 60 && settings >= 10, "{state} {tactile} {settings}");
+        let (_, [state, tactile, settings]) = run(
+            PollRates::default(),
+            Duration::from_millis(15),
+            Duration::from_secs(10),
+        );
+        assert!(
+            state > 200 && tactile > 60 && settings >= 10,
+            "{state} {tactile} {settings}"
+        );
     }
 
     #[test]
     fn at_full_rate_states_and_sweeps_take_turns() {
-        let (order, [state, tactile, settings]) = run(PollRates::FULL, EXCHANGE, Duration::from_secs(2));
+        let (order, [state, tactile, settings]) =
+            run(PollRates::FULL, EXCHANGE, Duration::from_secs(2));
         assert!(state.abs_diff(tactile) <= 1 + settings, "{state} {tactile}");
         assert!((3..=5).contains(&settings));
-        assert_eq!(order[..4].iter().filter(|poll| **poll == Poll::State).count(), 1);
+        assert_eq!(
+            order[..4]
+                .iter()
+                .filter(|poll| **poll == Poll::State)
+                .count(),
+            1
+        );
     }
 
     #[test]

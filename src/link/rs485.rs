@@ -49,7 +49,12 @@ enum Fit {
 }
 
 impl Rs485 {
-    pub(crate) fn new(wire: BoxedWire, endpoint: &Endpoint, late: LateReplies, clock: Clock) -> Self {
+    pub(crate) fn new(
+        wire: BoxedWire,
+        endpoint: &Endpoint,
+        late: LateReplies,
+        clock: Clock,
+    ) -> Self {
         let baud = match endpoint {
             Endpoint::Rs485(line) => Some(line.baud),
             _ => None,
@@ -74,13 +79,21 @@ impl Rs485 {
         }
         match result? {
             Fit::Bytes(bytes) => Ok(bytes),
-            Fit::Ack | Fit::No => Err(BusError::WrongLength { got: 0, want: usize::from(span.len) }),
+            Fit::Ack | Fit::No => Err(BusError::WrongLength {
+                got: 0,
+                want: usize::from(span.len),
+            }),
         }
     }
 
-    pub(crate) async fn write(&mut self, write: &RegisterWrite, limit: Duration) -> Result<(), BusError> {
+    pub(crate) async fn write(
+        &mut self,
+        write: &RegisterWrite,
+        limit: Duration,
+    ) -> Result<(), BusError> {
         let frame = encode_write(self.id, write);
-        self.exchange(&frame, &Expected::Ack(write.address()), limit).await?;
+        self.exchange(&frame, &Expected::Ack(write.address()), limit)
+            .await?;
         Ok(())
     }
 
@@ -103,8 +116,9 @@ impl Rs485 {
 
     pub(crate) fn wire_time(&self, bytes: u16) -> Duration {
         let bits = (u64::from(bytes) + FRAMING) * BITS;
-        self.baud
-            .map_or(Duration::ZERO, |baud| Duration::from_micros(bits * 1_000_000 / u64::from(baud.max(1))))
+        self.baud.map_or(Duration::ZERO, |baud| {
+            Duration::from_micros(bits * 1_000_000 / u64::from(baud.max(1)))
+        })
     }
 
     pub(crate) fn counts(&self) -> BusCounts {
@@ -120,7 +134,12 @@ impl Rs485 {
         self.late
     }
 
-    async fn exchange(&mut self, frame: &Frame, expected: &Expected, limit: Duration) -> Result<Fit, BusError> {
+    async fn exchange(
+        &mut self,
+        frame: &Frame,
+        expected: &Expected,
+        limit: Duration,
+    ) -> Result<Fit, BusError> {
         self.take_waiting()?;
         let deadline = Instant::now() + limit;
         let timed_out = BusError::Timeout { after: limit };
@@ -173,15 +192,20 @@ impl Rs485 {
     fn fit(&self, reply: &Reply, expected: &Expected) -> Fit {
         match (reply, expected) {
             (Reply::Read { id, address, bytes }, Expected::Bytes(span))
-                if *id == self.id.get() && *address == span.address && bytes.len() == usize::from(span.len) =>
+                if *id == self.id.get()
+                    && *address == span.address
+                    && bytes.len() == usize::from(span.len) =>
             {
                 Fit::Bytes(bytes.clone())
             }
-            (Reply::WriteAck { id, address, value: 1 }, Expected::Ack(wanted))
-                if *id == self.id.get() && address == wanted =>
-            {
-                Fit::Ack
-            }
+            (
+                Reply::WriteAck {
+                    id,
+                    address,
+                    value: 1,
+                },
+                Expected::Ack(wanted),
+            ) if *id == self.id.get() && address == wanted => Fit::Ack,
             _ => Fit::No,
         }
     }
@@ -200,9 +224,15 @@ impl Rs485 {
         let mut chunk = [0; CHUNK];
         let room = CHUNK.saturating_sub(self.decoder.buffered()).max(1);
         let into = chunk.get_mut(..room).unwrap_or_default();
-        let got = self.wire.read(into).await.map_err(|error| self.lost(&error))?;
+        let got = self
+            .wire
+            .read(into)
+            .await
+            .map_err(|error| self.lost(&error))?;
         if got == 0 {
-            return Err(BusError::Lost(TransportError::HungUp { place: self.place.clone() }));
+            return Err(BusError::Lost(TransportError::HungUp {
+                place: self.place.clone(),
+            }));
         }
         let bytes = into.get(..got).unwrap_or_default();
         let taken = self.decoder.push(bytes);
@@ -213,12 +243,19 @@ impl Rs485 {
     fn lost(&self, error: &io::Error) -> BusError {
         let place = self.place.clone();
         // A pseudo-terminal says EIO and a USB adapter ENXIO or EPIPE when the other side goes.
-        let hung_up = matches!(error.kind(), io::ErrorKind::BrokenPipe | io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset)
-            || matches!(error.raw_os_error(), Some(5 | 6));
+        let hung_up = matches!(
+            error.kind(),
+            io::ErrorKind::BrokenPipe
+                | io::ErrorKind::UnexpectedEof
+                | io::ErrorKind::ConnectionReset
+        ) || matches!(error.raw_os_error(), Some(5 | 6));
         BusError::Lost(if hung_up {
             TransportError::HungUp { place }
         } else {
-            TransportError::Io { place, message: error.to_string() }
+            TransportError::Io {
+                place,
+                message: error.to_string(),
+            }
         })
     }
 }

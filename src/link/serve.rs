@@ -10,7 +10,9 @@ use crate::link::late::LATE_HORIZON;
 use crate::link::motion::{ANGLE_LOST, arm_refusal, hold_command};
 use crate::link::plan::Poll;
 use crate::link::session::{End, Session};
-use crate::link::status::{ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkState, LinkTrouble};
+use crate::link::status::{
+    ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkState, LinkTrouble,
+};
 use arrayvec::ArrayVec;
 use tokio::time::sleep_until;
 
@@ -34,7 +36,9 @@ impl Session {
             let now = self.now();
             if let Some(slept) = self.sleep.slept(now) {
                 self.disarm(Disarmed::Resume);
-                return End::Lost(LinkTrouble::Suspended { slept_s: slept.as_secs() });
+                return End::Lost(LinkTrouble::Suspended {
+                    slept_s: slept.as_secs(),
+                });
             }
             match self.step(bus).await {
                 Ok(true) => self.count(bus),
@@ -49,7 +53,11 @@ impl Session {
         self.take_wishes(bus).await?;
         self.watch_age();
         let now = self.now();
-        if self.motion.hold.is_some_and(|hold| hold.next_frame(now) <= now) {
+        if self
+            .motion
+            .hold
+            .is_some_and(|hold| hold.next_frame(now) <= now)
+        {
             self.send_hold(bus).await?;
         } else if let Some(write) = self.motion.next_write(now) {
             self.send_setpoint(bus, write).await?;
@@ -66,7 +74,10 @@ impl Session {
     /// Waits until something is due or the window wants something.
     async fn idle(&mut self) {
         let now = self.now();
-        let due = self.motion.next_send(now).map_or(self.plan.next_due(), |send| send.min(self.plan.next_due()));
+        let due = self
+            .motion
+            .next_send(now)
+            .map_or(self.plan.next_due(), |send| send.min(self.plan.next_due()));
         let due = self.config.clock.instant(due);
         let mut wanted = self.ends.wanted.subscribe();
         tokio::select! {
@@ -198,7 +209,10 @@ impl Session {
         if let Some(hold) = &mut self.motion.hold {
             hold.frame_sent(now);
             if !hold.alarmed {
-                self.status.hold = Hold::Asked { at: hold.at, sent: hold.sent };
+                self.status.hold = Hold::Asked {
+                    at: hold.at,
+                    sent: hold.sent,
+                };
             }
         }
         for write in command.writes() {
@@ -211,9 +225,18 @@ impl Session {
     }
 
     fn hold_confirmed(&mut self) {
-        let Some(hold) = self.motion.hold.take() else { return };
-        self.status.hold = Hold::Confirmed { at: hold.at, rest: self.now() };
-        self.go(if self.sample.has_fault() { LinkState::Fault } else { LinkState::Monitoring });
+        let Some(hold) = self.motion.hold.take() else {
+            return;
+        };
+        self.status.hold = Hold::Confirmed {
+            at: hold.at,
+            rest: self.now(),
+        };
+        self.go(if self.sample.has_fault() {
+            LinkState::Fault
+        } else {
+            LinkState::Monitoring
+        });
     }
 
     // --- writes -------------------------------------------------------------------------------
@@ -251,7 +274,12 @@ impl Session {
     }
 
     fn take_job(&mut self, ticket: Ticket, request: Request) {
-        let mut job = Job { ticket, writes: ArrayVec::new(), read: None, is_motion: false };
+        let mut job = Job {
+            ticket,
+            writes: ArrayVec::new(),
+            read: None,
+            is_motion: false,
+        };
         match request {
             Request::Read(span) => job.read = Some(span),
             Request::Command(command) => {
@@ -262,7 +290,10 @@ impl Session {
                 }
                 // A cleared fault may set free a move to an old target: the pose is made the target first.
                 if command == HandCommand::ClearErrors {
-                    extend(&mut job.writes, hold_command(&self.sample, self.now()).writes());
+                    extend(
+                        &mut job.writes,
+                        hold_command(&self.sample, self.now()).writes(),
+                    );
                 }
                 extend(&mut job.writes, command.writes());
             }
@@ -272,7 +303,9 @@ impl Session {
 
     /// Sends the next write of the request under way, or its read, and answers when all is done.
     async fn work(&mut self, bus: &mut Bus) -> Result<(), End> {
-        let Some(mut job) = self.job.take() else { return Ok(()) };
+        let Some(mut job) = self.job.take() else {
+            return Ok(());
+        };
         if let Some(span) = job.read {
             return self.read_for(bus, job.ticket, span).await;
         }
@@ -304,7 +337,13 @@ impl Session {
             Ok(bytes) => {
                 let took = self.now().since(asked);
                 self.answered(took);
-                self.answer(ticket, Ok(Outcome::Memory { span, bytes: bytes.to_vec() }));
+                self.answer(
+                    ticket,
+                    Ok(Outcome::Memory {
+                        span,
+                        bytes: bytes.to_vec(),
+                    }),
+                );
             }
             Err(error) => {
                 self.answer(ticket, Err(request_error(&error, span)));
@@ -335,7 +374,15 @@ impl Session {
             Ok(bytes) => {
                 let received = self.now();
                 self.answered(received.since(asked));
-                self.take(poll, &Reply { span, bytes: &bytes, asked, received });
+                self.take(
+                    poll,
+                    &Reply {
+                        span,
+                        bytes: &bytes,
+                        asked,
+                        received,
+                    },
+                );
                 Ok(())
             }
             Err(error) => {
@@ -361,7 +408,12 @@ impl Session {
         if fresh.contains(Group::Faults) {
             self.watch_faults();
         }
-        if self.motion.hold.as_mut().is_some_and(|hold| hold.rests(&self.sample, fresh)) {
+        if self
+            .motion
+            .hold
+            .as_mut()
+            .is_some_and(|hold| hold.rests(&self.sample, fresh))
+        {
             self.hold_confirmed();
         }
     }
@@ -409,9 +461,19 @@ fn request_error(error: &BusError, span: Span) -> RequestError {
             let after_ms = u64::try_from(after.as_millis()).unwrap_or(u64::MAX);
             RequestError::Timeout { address, after_ms }
         }
-        BusError::Refused { reason } => RequestError::Refused { address, reason: reason.clone() },
-        BusError::WrongLength { got, want } => RequestError::WrongLength { address, got: *got, want: *want },
-        BusError::TooLong => RequestError::TooLong { address, len: span.len },
+        BusError::Refused { reason } => RequestError::Refused {
+            address,
+            reason: reason.clone(),
+        },
+        BusError::WrongLength { got, want } => RequestError::WrongLength {
+            address,
+            got: *got,
+            want: *want,
+        },
+        BusError::TooLong => RequestError::TooLong {
+            address,
+            len: span.len,
+        },
         BusError::Lost(_) => RequestError::LinkLost,
     }
 }

@@ -110,7 +110,8 @@ impl Session {
             dialled = dialled => dialled,
         };
         let late = std::mem::take(&mut self.late);
-        let bus = dialled.and_then(|wire| Bus::new(&self.config.endpoint, wire, late, self.config.clock));
+        let bus =
+            dialled.and_then(|wire| Bus::new(&self.config.endpoint, wire, late, self.config.clock));
         let mut bus = match bus {
             Ok(bus) => bus,
             Err(error) => return (End::Lost(error.into()), false),
@@ -154,7 +155,9 @@ impl Session {
                 }
             }
         }
-        Err(End::Lost(LinkTrouble::NoAnswer { id: id_of(&self.config.endpoint) }))
+        Err(End::Lost(LinkTrouble::NoAnswer {
+            id: id_of(&self.config.endpoint),
+        }))
     }
 
     /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
@@ -165,7 +168,7 @@ impl Session {
         }
         self.sample = HandSample::default();
         self.plan = PollPlan::new(self.config.rates, self.now());
-        self.motion = Motion { last_epoch: self.motion.last_epoch, ..Motion::default() };
+        self.motion = Motion::after(self.motion.last_epoch);
         self.status.dialling = Dialling::Idle;
         self.status.trouble = None;
         self.status.hold = Hold::None;
@@ -192,7 +195,10 @@ impl Session {
     /// Empties the slot of wishes, but not the wish to close.
     fn forget_wishes(&self) {
         self.ends.wanted.send_if_modified(|wanted| {
-            *wanted = Wanted { closed: wanted.closed, ..Wanted::default() };
+            *wanted = Wanted {
+                closed: wanted.closed,
+                ..Wanted::default()
+            };
             false
         });
     }
@@ -238,7 +244,9 @@ impl Session {
         }
         self.silent += 1;
         if self.silent >= SILENT_MAX {
-            return Err(End::Lost(LinkTrouble::Silent { silent: self.silent }));
+            return Err(End::Lost(LinkTrouble::Silent {
+                silent: self.silent,
+            }));
         }
         if self.motion.hold.is_some() {
             return Ok(());
@@ -307,10 +315,12 @@ impl Session {
 
 /// Resolves when the handle is gone.
 async fn closed(wanted: Arc<watch::Sender<Wanted>>) {
-    let _gone = wanted.subscribe().wait_for(|wanted| wanted.closed).await;
+    let mut wanted = wanted.subscribe();
+    let _gone = wanted.wait_for(|wanted| wanted.closed).await;
 }
 
 /// Resolves when a stop is wanted, or the handle is gone.
 async fn stopped(wanted: Arc<watch::Sender<Wanted>>) {
-    let _asked = wanted.subscribe().wait_for(|wanted| wanted.stop || wanted.closed).await;
+    let mut wanted = wanted.subscribe();
+    let _asked = wanted.wait_for(|wanted| wanted.stop || wanted.closed).await;
 }
