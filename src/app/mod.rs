@@ -14,6 +14,8 @@ mod seam;
 pub mod settings;
 pub mod state;
 #[cfg(test)]
+mod live_tests;
+#[cfg(test)]
 mod tests;
 
 pub use action::Action;
