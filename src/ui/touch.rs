@@ -1,0 +1,275 @@
+//! The five fingertips: pictures over a table of numbers, small in the overview and large in their own view.
+
+use crate::app::state::Freshness;
+use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::ui::controls::{self, Label, take_left};
+use crate::ui::fingertip::{self, Tip};
+use crate::ui::look::{Look, Pane};
+use crate::ui::text::{Text, main, panels, words};
+use crate::ui::{format, theme};
+use egui::{CornerRadius, Rect, Ui, pos2, vec2};
+
+/// Counts above rest at which a pad is hottest, at least: below this, noise would look like touch.
+const HEAT_FLOOR: f32 = 20_000.0;
+/// Width of the captions beside the numbers.
+const CAPTION: f32 = 52.0;
+/// Height of a row of numbers.
+const ROW: f32 = 17.0;
+
+/// What the fingertips need between frames.
+#[derive(Debug, Default)]
+pub(crate) struct TouchView {
+    /// The first reading of each channel since the hand was connected.
+    rest: PerFinger<Option<[u32; 8]>>,
+}
+
+/// One row of numbers under the pictures.
+struct Line {
+    caption: Text,
+    name: Text,
+    value: fn(&TactileBlock, Look) -> String,
+}
+
+const LINES: [Line; 5] = [
+    Line {
+        caption: panels::TOUCH_NORMAL,
+        name: panels::TOUCH_NORMAL_NAME,
+        value: |block, _| format::newtons(Some(block.normal_n)),
+    },
+    Line {
+        caption: panels::TOUCH_SHEAR,
+        name: panels::TOUCH_SHEAR_NAME,
+        value: |block, _| format::newtons(Some(block.tangential_n)),
+    },
+    Line {
+        caption: panels::TOUCH_DIRECTION,
+        name: panels::TOUCH_DIRECTION_NAME,
+        value: direction,
+    },
+    Line {
+        caption: panels::TOUCH_PROXIMITY,
+        name: panels::TOUCH_PROXIMITY_NAME,
+        value: |block, _| format::counts(Some(block.proximity.into())),
+    },
+    Line {
+        caption: panels::TOUCH_CHECK,
+        name: panels::TOUCH_CHECK_NAME,
+        value: |block, look| {
+            let word = if block.check_ok() { panels::TOUCH_OK } else { panels::TOUCH_DIFFERS };
+            look.say(word).into()
+        },
+    },
+];
+
+fn direction(block: &TactileBlock, look: Look) -> String {
+    match (block.direction_deg(), block.direction_raw) {
+        (Some(degrees), _) => format!("{degrees}°"),
+        (None, u16::MAX) => look.say(panels::TOUCH_NO_CONTACT).into(),
+        (None, raw) => format!("?{raw}"),
+    }
+}
+
+impl TouchView {
+    /// Keeps the first reading of each finger, and forgets all when there is no hand.
+    pub(crate) fn note_rest(&mut self, pane: &Pane<'_>) {
+        for (finger, block) in pane.state.sample.tactile.iter() {
+            let rest = &mut self.rest[finger];
+            *rest = block.map(|block| rest.unwrap_or(block.value.raw));
+        }
+    }
+
+    /// The card of the overview.
+    pub(crate) fn small_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let (head, body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
+        scale_ui(ui, head, look);
+        let table = 5.0 * ROW;
+        let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - table);
+        let full = self.hottest(pane);
+        self.pictures_ui(ui, pictures.with_max_y(pictures.bottom() - theme::STEP), pane, full);
+        table_ui(ui, table, pane, &LINES);
+    }
+
+    /// The view of its own: larger pictures, and every channel as a number.
+    pub(crate) fn large_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let (head, body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
+        scale_ui(ui, head, look);
+        let rows = 5.0 + 2.0 + 8.0;
+        let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - rows * ROW - theme::GAP);
+        let full = self.hottest(pane);
+        self.pictures_ui(ui, pictures.with_max_y(pictures.bottom() - theme::GAP), pane, full);
+        let mut table = table;
+        let forces = controls::take_top(&mut table, 5.0 * ROW);
+        table_ui(ui, forces, pane, &LINES);
+        deltas_ui(ui, controls::take_top(&mut table, 2.0 * ROW), pane);
+        self.channels_ui(ui, table, pane);
+    }
+
+    fn pictures_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, full: f32) {
+        let look = pane.look;
+        for (finger, mut column) in columns(rect) {
+            let name = look.say(words::finger(finger));
+            let title = controls::take_top(&mut column, 16.0);
+            let color = look.palette.dof[finger.bend()];
+            Label::new(name, color).small().center().put(ui, title);
+            let block = pane.state.sample.tactile[finger];
+            let freshness = pane.freshness(block.map(|block| block.asked));
+            let tip = block.map_or_else(Tip::default, |block| self.tip(finger, &block.value, full));
+            let tip = Tip { stale: freshness != Freshness::Live, ..tip };
+            let place = column.with_min_y(column.top() - theme::STEP).shrink2(vec2(2.0, 2.0));
+            fingertip::paint(ui.painter(), look, place, &tip);
+            let response = ui.allocate_rect(place, egui::Sense::hover());
+            response.on_hover_text(look.say(panels::TOUCH_TIP));
+            if block.is_none() {
+                Label::new(format::UNKNOWN, look.palette.faint)
+                    .center()
+                    .put(ui, place);
+            }
+        }
+    }
+
+    fn tip(&self, finger: Finger, block: &TactileBlock, full: f32) -> Tip {
+        let rest = self.rest[finger].unwrap_or(block.raw);
+        let mut heat = [None; 8];
+        for ((heat, raw), rest) in heat.iter_mut().zip(block.raw).zip(rest) {
+            *heat = Some(above(raw, rest) / full);
+        }
+        Tip {
+            heat,
+            normal_n: block.normal(),
+            shear: block.tangential().zip(block.direction_deg().map(f32::from)),
+            proximity: Some(small_float(i64::from(block.proximity))),
+            stale: false,
+        }
+    }
+
+    /// The one end of the scale for all fingers.
+    fn hottest(&self, pane: &Pane<'_>) -> f32 {
+        let mut full = HEAT_FLOOR;
+        for (finger, block) in pane.state.sample.tactile.iter() {
+            let (Some(block), Some(rest)) = (block, self.rest[finger]) else { continue };
+            for (raw, rest) in block.value.raw.into_iter().zip(rest) {
+                full = full.max(above(raw, rest));
+            }
+        }
+        // Steps of a fifth, so that the colours do not breathe with every reading.
+        let step = 10.0_f32.powf((full.log10() * 5.0).ceil() / 5.0);
+        step.max(HEAT_FLOOR)
+    }
+
+    fn channels_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let mut top = rect.top();
+        for channel in 0..8usize {
+            let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), ROW));
+            let caption = format!("{} {}", look.say(panels::TOUCH_CHANNEL), channel + 1);
+            row_ui(ui, row, pane, &caption, &caption, &|finger, block, _| {
+                let raw = block.raw.get(channel).copied().map(i64::from);
+                let rest = self.rest[finger].and_then(|rest| rest.get(channel).copied());
+                let change = raw.zip(rest).map(|(raw, rest)| raw - i64::from(rest));
+                format!("{:>7} {:>+7}", format::counts(raw), Signed(change))
+            });
+            top += ROW;
+        }
+    }
+}
+
+/// A change with its sign, shortened like counts.
+struct Signed(Option<i64>);
+
+impl std::fmt::Display for Signed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let text = match self.0 {
+            Some(value) if value > 0 => format!("+{}", format::counts(Some(value))),
+            other => format::counts(other),
+        };
+        f.pad(&text)
+    }
+}
+
+fn above(raw: u32, rest: u32) -> f32 {
+    small_float(i64::from(raw) - i64::from(rest)).max(0.0)
+}
+
+fn small_float(value: i64) -> f32 {
+    #[expect(clippy::cast_precision_loss, reason = "only its place on a colour scale matters")]
+    let float = value as f32;
+    float
+}
+
+/// The five columns right of the captions.
+fn columns(rect: Rect) -> impl Iterator<Item = (Finger, Rect)> {
+    let left = rect.left() + CAPTION;
+    let width = (rect.right() - left) / 5.0;
+    Finger::ALL.into_iter().scan(left, move |x, finger| {
+        let column = Rect::from_min_max(pos2(*x, rect.top()), pos2(*x + width, rect.bottom()));
+        *x += width;
+        Some((finger, column))
+    })
+}
+
+fn table_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, lines: &[Line]) {
+    let look = pane.look;
+    let mut top = rect.top();
+    for line in lines {
+        let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), ROW));
+        let (caption, name) = (look.say(line.caption), look.say(line.name));
+        row_ui(ui, row, pane, caption, name, &|_, block, look| (line.value)(block, look));
+        top += ROW;
+    }
+}
+
+fn deltas_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    let look = pane.look;
+    let (first, second) = rect.split_top_bottom_at_fraction(0.5);
+    let caption = look.say(panels::TOUCH_DELTA_N);
+    row_ui(ui, first, pane, caption, caption, &|_, block, _| {
+        format::counts(Some(block.normal_delta.into()))
+    });
+    let caption = look.say(panels::TOUCH_DELTA_T);
+    row_ui(ui, second, pane, caption, caption, &|_, block, _| {
+        format::counts(Some(block.tangential_delta.into()))
+    });
+}
+
+type Reading<'a> = &'a dyn Fn(Finger, &TactileBlock, Look) -> String;
+
+fn row_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>, caption: &str, name: &str, reading: Reading<'_>) {
+    let look = pane.look;
+    let mut place = row;
+    let left = take_left(&mut place, CAPTION - theme::GAP);
+    Label::new(caption, look.palette.muted).small().put(ui, left);
+    for (finger, column) in columns(row) {
+        let block = pane.state.sample.tactile[finger];
+        let freshness = pane.freshness(block.map(|block| block.asked));
+        let text = block.map_or_else(
+            || format::UNKNOWN.to_owned(),
+            |block| reading(finger, &block.value, look),
+        );
+        let name = format!("{} {name}", look.say(words::finger(finger)));
+        Label::new(&text, look.value(freshness, look.palette.text))
+            .font(theme::number_small())
+            .center()
+            .named(&name)
+            .put(ui, column);
+    }
+}
+
+/// The heat scale, at the right of the title.
+fn scale_ui(ui: &mut Ui, head: Rect, look: Look) {
+    let mut rest = head;
+    let bar = controls::middle(controls::take_right(&mut rest, 64.0), 8.0);
+    let steps = 16u8;
+    let width = bar.width() / f32::from(steps);
+    for step in 0..steps {
+        let left = bar.left() + width * f32::from(step);
+        let piece = Rect::from_min_size(pos2(left, bar.top()), vec2(width + 0.5, bar.height()));
+        let color = look.palette.heat(f32::from(step) / f32::from(steps - 1));
+        ui.painter().rect_filled(piece, CornerRadius::ZERO, color);
+    }
+    Label::new(look.say(panels::TOUCH_SCALE), look.palette.faint)
+        .small()
+        .right()
+        .put(ui, rest);
+}
