@@ -1,5 +1,8 @@
 //! Handscope watches, drives and tunes the FTP series tactile hand.
 
+pub mod app;
 pub mod hand;
+pub mod headless;
 pub mod link;
 pub mod transport;
+pub mod ui;
