@@ -47,7 +47,14 @@ pub enum PlotWindow {
 
 impl PlotWindow {
     /// All, shortest first.
-    pub const ALL: [Self; 6] = [Self::S5, Self::S10, Self::S30, Self::M1, Self::M5, Self::M10];
+    pub const ALL: [Self; 6] = [
+        Self::S5,
+        Self::S10,
+        Self::S30,
+        Self::M1,
+        Self::M5,
+        Self::M10,
+    ];
 
     /// Seconds shown.
     #[must_use]

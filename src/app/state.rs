@@ -109,7 +109,10 @@ impl State {
             LinkState::Armed => return None,
             LinkState::Monitoring => {}
         }
-        let angle = self.sample.angle.filter(|angle| angle.age(self.now) <= STALE_AFTER);
+        let angle = self
+            .sample
+            .angle
+            .filter(|angle| angle.age(self.now) <= STALE_AFTER);
         Dof::ALL
             .into_iter()
             .find(|dof| angle.is_none_or(|angle| angle.value[*dof].hold().is_none()))

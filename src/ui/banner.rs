@@ -55,7 +55,13 @@ fn lost(pane: &Pane<'_>) -> Option<Banner> {
     } else {
         cause
     };
-    Some(Banner { title, body, aside: retry(pane), color, shows_faults: false })
+    Some(Banner {
+        title,
+        body,
+        aside: retry(pane),
+        color,
+        shows_faults: false,
+    })
 }
 
 fn retry(pane: &Pane<'_>) -> String {
@@ -72,7 +78,11 @@ fn retry(pane: &Pane<'_>) -> String {
 }
 
 fn faults(pane: &Pane<'_>) -> Option<Banner> {
-    let faults = pane.state.sample.faults.filter(|_| pane.state.sample.has_fault())?;
+    let faults = pane
+        .state
+        .sample
+        .faults
+        .filter(|_| pane.state.sample.has_fault())?;
     let look = pane.look;
     let list: Vec<String> = Dof::ALL
         .into_iter()
@@ -111,7 +121,9 @@ impl Banner {
     /// Draws it. True if the fault list was asked for.
     pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, look: Look) -> bool {
         let palette = look.palette;
-        let ground = rect.shrink2(vec2(theme::GAP, 0.0)).with_min_y(rect.top() + theme::GAP);
+        let ground = rect
+            .shrink2(vec2(theme::GAP, 0.0))
+            .with_min_y(rect.top() + theme::GAP);
         ui.painter().rect(
             ground,
             CornerRadius::same(theme::ROUND),
@@ -120,10 +132,8 @@ impl Banner {
             StrokeKind::Inside,
         );
         let mut rest = ground.shrink2(vec2(theme::PAD, 0.0));
-        let sign = Rect::from_center_size(
-            pos2(rest.left() + 8.0, rest.center().y),
-            vec2(16.0, 14.0),
-        );
+        let sign =
+            Rect::from_center_size(pos2(rest.left() + 8.0, rest.center().y), vec2(16.0, 14.0));
         controls::warning_sign(ui, sign, self.color);
         rest.min.x += 26.0;
         let title = look.say(self.title);
@@ -138,12 +148,18 @@ impl Banner {
             let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
             let place = controls::middle(take_right(&mut rest, width), theme::CONTROL);
             let button = Button::new(text, look.say(main::FAULT_SHOW_TIP));
-            asked = button.put(ui, look, place, Id::new("show faults")).clicked();
+            asked = button
+                .put(ui, look, place, Id::unique("show faults"))
+                .clicked();
         }
         if !self.aside.is_empty() {
-            let width = controls::text_width(ui, &self.aside, theme::number()) + 1.0;
-            let place = take_right(&mut rest, width.min(rest.width() * 0.4));
-            Label::new(&self.aside, palette.muted).number().right().put(ui, place);
+            let wanted = controls::text_width(ui, &self.aside, theme::number()) + 1.0;
+            let width = wanted.min(rest.width() * 0.4);
+            let place = take_right(&mut rest, width);
+            Label::new(&self.aside, palette.muted)
+                .number()
+                .right()
+                .put(ui, place);
         }
         Label::new(&self.body, palette.text).put(ui, rest);
         asked

@@ -31,7 +31,14 @@ enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 6] = [Self::Sim, Self::Rs485, Self::Tcp, Self::Rtu, Self::Can, Self::Slcan];
+    const ALL: [Self; 6] = [
+        Self::Sim,
+        Self::Rs485,
+        Self::Tcp,
+        Self::Rtu,
+        Self::Can,
+        Self::Slcan,
+    ];
 
     const fn text(self) -> Text {
         match self {
@@ -132,7 +139,11 @@ impl ConnectionForm {
     fn spelled(&self) -> String {
         let trimmed = |text: &String| text.trim().to_owned();
         match self.kind {
-            Kind::Sim => format!("sim:?seed={}&scenario={}", trimmed(&self.seed), trimmed(&self.scenario)),
+            Kind::Sim => format!(
+                "sim:?seed={}&scenario={}",
+                trimmed(&self.seed),
+                trimmed(&self.scenario)
+            ),
             Kind::Rs485 | Kind::Rtu | Kind::Can | Kind::Slcan => format!(
                 "rs485:{}?baud={}&id={}",
                 trimmed(&self.port),
@@ -141,8 +152,16 @@ impl ConnectionForm {
             ),
             Kind::Tcp => {
                 let host = trimmed(&self.host);
-                let host = if host.contains(':') && !host.starts_with('[') { format!("[{host}]") } else { host };
-                format!("tcp:{host}:{}?unit={}", trimmed(&self.tcp_port), trimmed(&self.unit))
+                let host = if host.contains(':') && !host.starts_with('[') {
+                    format!("[{host}]")
+                } else {
+                    host
+                };
+                format!(
+                    "tcp:{host}:{}?unit={}",
+                    trimmed(&self.tcp_port),
+                    trimmed(&self.unit)
+                )
             }
         }
     }
@@ -155,7 +174,14 @@ impl ConnectionForm {
         take_top(&mut body, theme::STEP);
         match self.kind {
             Kind::Sim => {
-                field_ui(ui, &mut body, pane, panels::SCENARIO, "", &mut self.scenario);
+                field_ui(
+                    ui,
+                    &mut body,
+                    pane,
+                    panels::SCENARIO,
+                    "",
+                    &mut self.scenario,
+                );
                 field_ui(ui, &mut body, pane, panels::SEED, "", &mut self.seed);
             }
             Kind::Rs485 | Kind::Rtu | Kind::Can | Kind::Slcan => {
@@ -167,7 +193,14 @@ impl ConnectionForm {
             }
             Kind::Tcp => {
                 field_ui(ui, &mut body, pane, panels::HOST, "", &mut self.host);
-                field_ui(ui, &mut body, pane, panels::TCP_PORT, "", &mut self.tcp_port);
+                field_ui(
+                    ui,
+                    &mut body,
+                    pane,
+                    panels::TCP_PORT,
+                    "",
+                    &mut self.tcp_port,
+                );
                 field_ui(ui, &mut body, pane, panels::UNIT, "", &mut self.unit);
             }
         }
@@ -180,9 +213,19 @@ impl ConnectionForm {
             paragraph_ui(ui, &mut body, &text, look.palette.warn);
         }
         take_top(&mut body, theme::STEP);
-        connect_ui(ui, take_top(&mut body, theme::CONTROL_LARGE), pane, parsed.ok());
+        connect_ui(
+            ui,
+            take_top(&mut body, theme::CONTROL_LARGE),
+            pane,
+            parsed.ok(),
+        );
         take_top(&mut body, theme::STEP);
-        paragraph_ui(ui, &mut body, look.say(self.kind.hint()), look.palette.muted);
+        paragraph_ui(
+            ui,
+            &mut body,
+            look.say(self.kind.hint()),
+            look.palette.muted,
+        );
     }
 
     fn kinds_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
@@ -202,9 +245,16 @@ impl ConnectionForm {
             let mut button = Button::new(text, look.say(panels::KIND_TIP))
                 .named(&name)
                 .disabled(later)
-                .weight(if chosen { Weight::Strong } else { Weight::Normal });
+                .weight(if chosen {
+                    Weight::Strong
+                } else {
+                    Weight::Normal
+                });
             button.selected = Some(chosen);
-            if button.put(ui, look, place, Id::new(("kind", kind.text().en))).clicked() {
+            if button
+                .put(ui, look, place, Id::unique(("kind", kind.text().en)))
+                .clicked()
+            {
                 self.kind = kind;
             }
         }
@@ -218,7 +268,10 @@ impl ConnectionForm {
         let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
         let place = take_right(&mut row, width);
         let button = Button::new(text, look.say(panels::PORTS_REFRESH_TIP));
-        if button.put(ui, look, place, Id::new("find ports")).clicked() {
+        if button
+            .put(ui, look, place, Id::unique("find ports"))
+            .clicked()
+        {
             pane.actions.push(Action::FindPorts);
         }
         if pane.state.ports.is_empty() {
@@ -236,7 +289,7 @@ impl ConnectionForm {
             let text = format!("{}  {about}", port.path);
             let button = Button::new(text.trim(), look.say(panels::PORT_PICK_TIP))
                 .choice(port.path == self.port);
-            if button.put(ui, look, row, Id::new(("port", n))).clicked() {
+            if button.put(ui, look, row, Id::unique(("port", n))).clicked() {
                 self.port.clone_from(&port.path);
             }
         }
@@ -257,10 +310,10 @@ fn field_ui(
     let left = take_left(&mut row, CAPTION - theme::GAP);
     Label::new(name, look.palette.muted).put(ui, left);
     let edit = TextEdit::singleline(text)
-        .id(Id::new(("connection", caption.en)))
+        .id(Id::unique(("connection", caption.en)))
         .hint_text(hint.to_owned())
         .char_limit(128)
-        .vertical_align(egui::Align::Center)
+        .align(egui::Align2::LEFT_CENTER)
         .margin(egui::Margin::symmetric(8, 2))
         .min_size(row.size())
         .desired_width(row.width() - 16.0);
@@ -303,15 +356,25 @@ fn connect_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, endpoint: Option<End
     let connect = Button::new(look.say(panels::CONNECT), look.say(panels::CONNECT_TIP))
         .weight(Weight::Strong)
         .disabled(wrong);
-    if connect.put(ui, look, left, Id::new("connect")).clicked()
+    if connect.put(ui, look, left, Id::unique("connect")).clicked()
         && let Some(endpoint) = endpoint
     {
         pane.actions.push(Action::Connect(endpoint));
     }
-    let nothing = pane.state.endpoint.is_none().then(|| look.say(panels::DISCONNECT_NONE));
-    let disconnect = Button::new(look.say(panels::DISCONNECT), look.say(panels::DISCONNECT_TIP))
-        .disabled(nothing);
-    if disconnect.put(ui, look, row, Id::new("disconnect")).clicked() {
+    let nothing = pane
+        .state
+        .endpoint
+        .is_none()
+        .then(|| look.say(panels::DISCONNECT_NONE));
+    let disconnect = Button::new(
+        look.say(panels::DISCONNECT),
+        look.say(panels::DISCONNECT_TIP),
+    )
+    .disabled(nothing);
+    if disconnect
+        .put(ui, look, row, Id::unique("disconnect"))
+        .clicked()
+    {
         pane.actions.push(Action::Disconnect);
     }
 }
@@ -329,7 +392,9 @@ fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
     Label::new(&text, look.palette.text).put(ui, row);
     if let Some(endpoint) = &pane.state.endpoint {
         let row = take_top(&mut body, 16.0);
-        Label::new(&endpoint.to_string(), look.palette.muted).number().put(ui, row);
+        Label::new(&endpoint.to_string(), look.palette.muted)
+            .number()
+            .put(ui, row);
     }
     if let Some(trouble) = &pane.state.link.trouble {
         let text = format::sentence(&LinkTrouble::to_string(trouble));
@@ -346,7 +411,11 @@ fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
             let caption = look.say(caption);
             let right = take_right(&mut row, 96.0);
             Label::new(caption, look.palette.muted).put(ui, row);
-            Label::new(&value, color).number().right().named(caption).put(ui, right);
+            Label::new(&value, color)
+                .number()
+                .right()
+                .named(caption)
+                .put(ui, right);
         }
         body.min.y += theme::STEP;
         let stroke = egui::Stroke::new(1.0, look.palette.grid);
@@ -366,7 +435,15 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     let trip = |value| format!("{} ms", format::millis(value));
     let count = |text, value: u64| (text, value.to_string(), palette.text);
     let bad = |text, value: u64| {
-        (text, value.to_string(), if value > 0 { palette.warn } else { palette.text })
+        (
+            text,
+            value.to_string(),
+            if value > 0 {
+                palette.warn
+            } else {
+                palette.text
+            },
+        )
     };
     [
         vec![

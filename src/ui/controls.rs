@@ -172,7 +172,11 @@ impl<'a> Button<'a> {
     /// One of a row of which one is chosen.
     pub(crate) const fn choice(mut self, selected: bool) -> Self {
         self.selected = Some(selected);
-        self.weight = if selected { Weight::Strong } else { Weight::Quiet };
+        self.weight = if selected {
+            Weight::Strong
+        } else {
+            Weight::Quiet
+        };
         self
     }
 
@@ -192,7 +196,11 @@ impl<'a> Button<'a> {
     /// The button without its text, for those that paint their own.
     pub(crate) fn ground(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
         let enabled = self.disabled.is_none();
-        let sense = if enabled { Sense::click() } else { Sense::hover() };
+        let sense = if enabled {
+            Sense::click()
+        } else {
+            Sense::hover()
+        };
         let response = ui.interact(rect, id, sense);
         let name = self.name.unwrap_or(self.text);
         response.widget_info(|| match self.selected {
@@ -200,7 +208,11 @@ impl<'a> Button<'a> {
             None => WidgetInfo::labeled(Role::Button, enabled, name),
         });
         let (fill, edge) = self.colors(look, &response);
-        let round = if self.weight == Weight::Stop { theme::ROUND } else { theme::ROUND_SMALL };
+        let round = if self.weight == Weight::Stop {
+            theme::ROUND
+        } else {
+            theme::ROUND_SMALL
+        };
         ui.painter().rect(
             rect,
             CornerRadius::same(round),
@@ -300,7 +312,10 @@ pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
     let points = vec![top, pos2(rect.right(), bottom), pos2(rect.left(), bottom)];
     painter.add(egui::Shape::closed_line(points, Stroke::new(1.4, color)));
     let x = rect.center().x;
-    let (from, to) = (rect.top() + rect.height() * 0.38, rect.top() + rect.height() * 0.66);
+    let (from, to) = (
+        rect.top() + rect.height() * 0.38,
+        rect.top() + rect.height() * 0.66,
+    );
     painter.line_segment([pos2(x, from), pos2(x, to)], Stroke::new(1.4, color));
     painter.circle_filled(pos2(x, rect.top() + rect.height() * 0.84), 0.9, color);
 }

@@ -46,7 +46,12 @@ pub(crate) fn faults_view_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
             any = true;
         }
         if !any {
-            line_ui(ui, width, look.say(panels::MESSAGES_NONE), look.palette.muted);
+            line_ui(
+                ui,
+                width,
+                look.say(panels::MESSAGES_NONE),
+                look.palette.muted,
+            );
         }
     });
     let (_, body) = controls::titled_card(ui, look, right, look.say(panels::STATUS_LIST));
@@ -78,7 +83,10 @@ fn clear_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
     let live = pane.state.link.state.is_live();
     let button = Button::new(text, look.say(panels::CLEAR_TIP))
         .disabled((!live).then(|| look.say(panels::NOT_LIVE)));
-    if button.put(ui, look, place, Id::new("clear errors")).clicked() {
+    if button
+        .put(ui, look, place, Id::unique("clear errors"))
+        .clicked()
+    {
         pane.actions.push(Action::ClearErrors);
     }
 }
@@ -92,7 +100,10 @@ fn forget_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
     let button = Button::new(text, look.say(panels::FORGET_TIP))
         .weight(Weight::Quiet)
         .disabled((!any).then(|| look.say(panels::FORGET_NONE)));
-    if button.put(ui, look, place, Id::new("forget faults")).clicked() {
+    if button
+        .put(ui, look, place, Id::unique("forget faults"))
+        .clicked()
+    {
         pane.actions.push(Action::ForgetFaults);
     }
 }
@@ -126,14 +137,28 @@ fn fault_list_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>) {
     entries.sort_by_key(|entry| (entry.until.is_some(), std::cmp::Reverse(entry.since)));
     if entries.is_empty() {
         let known = pane.state.sample.faults.is_some();
-        let text = if known { panels::FAULTS_NONE } else { panels::FAULTS_UNKNOWN };
+        let text = if known {
+            panels::FAULTS_NONE
+        } else {
+            panels::FAULTS_UNKNOWN
+        };
         let place = piece(ui, width, LINE + 3.0);
         if known {
-            controls::lamp(ui, pos2(place.left() + 6.0, place.center().y), look.palette.ok);
+            controls::lamp(
+                ui,
+                pos2(place.left() + 6.0, place.center().y),
+                look.palette.ok,
+            );
         }
         let place = place.with_min_x(place.left() + 17.0);
         Label::new(look.say(text), look.palette.muted).put(ui, place);
-        wrapped_ui(ui, width, 17.0, look.say(panels::FAULTS_NONE_HINT), look.palette.faint);
+        wrapped_ui(
+            ui,
+            width,
+            17.0,
+            look.say(panels::FAULTS_NONE_HINT),
+            look.palette.faint,
+        );
         piece(ui, width, theme::GAP);
     }
     for entry in &entries {
@@ -156,12 +181,19 @@ fn fault_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, entry: &FaultEntry) {
         }
         Some(until) => {
             let ago = format::age(pane.state.now.since(until));
-            format!("{}, {ago} {}", look.say(panels::FAULT_OVER), look.say(panels::FAULT_AGO))
+            format!(
+                "{}, {ago} {}",
+                look.say(panels::FAULT_OVER),
+                look.say(panels::FAULT_AGO)
+            )
         }
     };
     let when_width = controls::text_width(ui, &when, theme::small()) + 1.0;
     let place = take_right(&mut row, when_width);
-    Label::new(&when, palette.muted).small().right().put(ui, place);
+    Label::new(&when, palette.muted)
+        .small()
+        .right()
+        .put(ui, place);
     let words = words::fault(entry.what, look.language);
     let title = format!("{}: {}", look.say(words::dof(entry.dof)), words.title);
     let title_color = if now { palette.text } else { palette.muted };
@@ -190,7 +222,11 @@ fn status_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, dof: Dof) {
         return;
     };
     let words = words::status(status, look.language);
-    let live = if status.is_protective() { palette.bad } else { palette.text };
+    let live = if status.is_protective() {
+        palette.bad
+    } else {
+        palette.text
+    };
     let code = take_right(&mut row, 32.0);
     Label::new(&status.raw().to_string(), palette.faint)
         .number()
@@ -227,11 +263,17 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
     let button = Button::new("×", look.say(main::DISMISS_TIP))
         .named(&name)
         .weight(Weight::Quiet);
-    if button.put(ui, look, close, Id::new(("dismiss", notice.id))).clicked() {
+    if button
+        .put(ui, look, close, Id::unique(("dismiss", notice.id)))
+        .clicked()
+    {
         pane.actions.push(Action::Dismiss(notice.id));
     }
     let age = format::age(pane.state.now.since(notice.at));
     let place = take_right(&mut row, 48.0);
-    Label::new(&age, palette.faint).small().right().put(ui, place);
+    Label::new(&age, palette.faint)
+        .small()
+        .right()
+        .put(ui, place);
     Label::new(&text, palette.text).small().put(ui, row);
 }

@@ -1,7 +1,9 @@
 //! One fingertip as a picture: skin, seven pads and the eighth channel as heat, force circle, shear arrow, proximity halo.
 
 use crate::ui::look::Look;
-use egui::{Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2};
+use egui::{
+    Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2,
+};
 
 /// Half the sensing area's width in millimetres, with the skin around it (protocol §5.2).
 const HALF_WIDTH_MM: f32 = 7.6;
@@ -41,11 +43,17 @@ impl Scale {
     fn fit(rect: Rect) -> Self {
         let per_mm = (rect.width() / (2.0 * HALF_WIDTH_MM)).min(rect.height() / (TIP_MM - BASE_MM));
         let lift = (TIP_MM + BASE_MM) / 2.0 * per_mm;
-        Self { center: rect.center() + vec2(0.0, lift), per_mm }
+        Self {
+            center: rect.center() + vec2(0.0, lift),
+            per_mm,
+        }
     }
 
     fn at(&self, x: f32, y: f32) -> Pos2 {
-        pos2(self.center.x + x * self.per_mm, self.center.y - y * self.per_mm)
+        pos2(
+            self.center.x + x * self.per_mm,
+            self.center.y - y * self.per_mm,
+        )
     }
 
     fn shape(&self, points: &[(f32, f32)]) -> Vec<Pos2> {
@@ -59,9 +67,31 @@ const PADS: [&[(f32, f32)]; 7] = [
     &[(-5.0, 6.7), (5.0, 6.7), (0.0, 1.0)],
     &[(5.6, 6.2), (5.6, -5.2), (0.7, 0.6)],
     &[(-5.0, -5.7), (0.0, 0.1), (5.0, -5.7)],
-    &[(-5.6, -6.6), (-0.4, -6.6), (-0.4, -11.2), (-4.4, -11.2), (-5.6, -10.0)],
-    &[(0.4, -6.6), (5.6, -6.6), (5.6, -10.0), (4.4, -11.2), (0.4, -11.2)],
-    &[(-5.4, 7.6), (5.4, 7.6), (4.9, 9.4), (3.6, 10.9), (1.9, 11.7), (0.0, 12.0), (-1.9, 11.7), (-3.6, 10.9), (-4.9, 9.4)],
+    &[
+        (-5.6, -6.6),
+        (-0.4, -6.6),
+        (-0.4, -11.2),
+        (-4.4, -11.2),
+        (-5.6, -10.0),
+    ],
+    &[
+        (0.4, -6.6),
+        (5.6, -6.6),
+        (5.6, -10.0),
+        (4.4, -11.2),
+        (0.4, -11.2),
+    ],
+    &[
+        (-5.4, 7.6),
+        (5.4, 7.6),
+        (4.9, 9.4),
+        (3.6, 10.9),
+        (1.9, 11.7),
+        (0.0, 12.0),
+        (-1.9, 11.7),
+        (-3.6, 10.9),
+        (-4.9, 9.4),
+    ],
 ];
 
 /// Draws a fingertip into a rectangle, tip up.
@@ -90,11 +120,21 @@ fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
         points
     };
     let (tip, base) = (round(half * 0.94), round(2.0 + grow_mm));
-    (rect, CornerRadius { nw: tip, ne: tip, sw: base, se: base })
+    (
+        rect,
+        CornerRadius {
+            nw: tip,
+            ne: tip,
+            sw: base,
+            se: base,
+        },
+    )
 }
 
 fn halo(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
-    let Some(proximity) = tip.proximity else { return };
+    let Some(proximity) = tip.proximity else {
+        return;
+    };
     let level = (proximity / FULL_PROXIMITY).clamp(0.0, 1.0) * fade;
     for (grow, part) in [(2.2, 0.10), (1.4, 0.16), (0.7, 0.24)] {
         let (rect, round) = outline(scale, grow);
@@ -112,12 +152,18 @@ fn skin(painter: &Painter, look: Look, scale: &Scale) {
 fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
     let palette = look.palette;
     let color = |heat: Option<f32>| {
-        heat.map_or(Color32::TRANSPARENT, |heat| palette.heat(heat).gamma_multiply(fade))
+        heat.map_or(Color32::TRANSPARENT, |heat| {
+            palette.heat(heat).gamma_multiply(fade)
+        })
     };
     let (channels, last) = tip.heat.split_at(7);
     for (pad, heat) in PADS.iter().zip(channels) {
         let stroke = Stroke::new(1.0, palette.edge);
-        painter.add(Shape::convex_polygon(scale.shape(pad), color(*heat), stroke));
+        painter.add(Shape::convex_polygon(
+            scale.shape(pad),
+            color(*heat),
+            stroke,
+        ));
     }
     // The eighth channel belongs to no pad: a bar beside them.
     let bar = Rect::from_two_pos(scale.at(6.1, 4.6), scale.at(6.8, -4.6));
@@ -138,7 +184,12 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
         // Area grows with force, so that twice the force looks twice as much.
         let part = (normal / FULL_NORMAL_N).clamp(0.0, 1.0).sqrt();
         let radius = part * (HALF_WIDTH_MM - 1.0) * scale.per_mm;
-        painter.circle(middle, radius, arrow.gamma_multiply(0.14), Stroke::new(1.5, arrow));
+        painter.circle(
+            middle,
+            radius,
+            arrow.gamma_multiply(0.14),
+            Stroke::new(1.5, arrow),
+        );
     }
     if let Some((shear, direction)) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
         let length = (shear / FULL_SHEAR_N).clamp(0.12, 1.0) * 9.0 * scale.per_mm;

@@ -7,7 +7,10 @@ pub(crate) const UNKNOWN: &str = "-";
 
 /// A whole number, right-aligned in `width`, or "-".
 pub(crate) fn whole(value: Option<i64>, width: usize) -> String {
-    value.map_or_else(|| format!("{UNKNOWN:>width$}"), |value| format!("{value:>width$}"))
+    value.map_or_else(
+        || format!("{UNKNOWN:>width$}"),
+        |value| format!("{value:>width$}"),
+    )
 }
 
 /// A whole number with its unit, or "-" with it.
@@ -42,7 +45,11 @@ pub(crate) fn counts(value: Option<i64>) -> String {
     match size {
         0..10_000 => format!("{sign}{size}"),
         10_000..1_000_000 => format!("{sign}{}.{}k", size / 1000, size % 1000 / 100),
-        _ => format!("{sign}{}.{:02}M", size / 1_000_000, size % 1_000_000 / 10_000),
+        _ => format!(
+            "{sign}{}.{:02}M",
+            size / 1_000_000,
+            size % 1_000_000 / 10_000
+        ),
     }
 }
 
@@ -75,7 +82,11 @@ pub(crate) fn age(value: Duration) -> String {
 /// An error's text as a sentence: capital letter first, a full stop last.
 pub(crate) fn sentence(text: &str) -> String {
     let mut signs = text.chars();
-    let mut out: String = signs.next().into_iter().flat_map(char::to_uppercase).collect();
+    let mut out: String = signs
+        .next()
+        .into_iter()
+        .flat_map(char::to_uppercase)
+        .collect();
     out.push_str(signs.as_str());
     if !out.ends_with(['.', '!', '?', '。']) {
         out.push('.');

@@ -82,15 +82,27 @@ impl GestureView {
     fn head_ui(&mut self, ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
         route_ui(ui, take_right(head, 148.0), pane);
-        let text = if self.naming { panels::GESTURE_NAME_DONE } else { panels::GESTURE_NAME_EDIT };
+        let text = if self.naming {
+            panels::GESTURE_NAME_DONE
+        } else {
+            panels::GESTURE_NAME_EDIT
+        };
         let text = look.say(text);
         let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-        let mut button = Button::new(text, look.say(panels::GESTURE_NAME_EDIT_TIP)).weight(
-            if self.naming { Weight::Strong } else { Weight::Quiet },
-        );
+        let mut button =
+            Button::new(text, look.say(panels::GESTURE_NAME_EDIT_TIP)).weight(if self.naming {
+                Weight::Strong
+            } else {
+                Weight::Quiet
+            });
         button.selected = Some(self.naming);
         if button
-            .put(ui, look, take_right(head, width), Id::new("name gestures"))
+            .put(
+                ui,
+                look,
+                take_right(head, width),
+                Id::unique("name gestures"),
+            )
             .clicked()
         {
             self.naming = !self.naming;
@@ -113,13 +125,20 @@ impl GestureView {
             return self.name_ui(ui, rect, pane, gesture);
         }
         let look = pane.look;
-        let name = pane.state.gestures.name(gesture).unwrap_or_default().to_owned();
+        let name = pane
+            .state
+            .gestures
+            .name(gesture)
+            .unwrap_or_default()
+            .to_owned();
         let number = gesture.get().to_string();
         let label = format!("{} {number} {name}", look.say(panels::GESTURE));
         let tip = format!("{}\n{}", label.trim(), look.say(panels::GESTURE_RUN_TIP));
         let reason = refusal(pane);
-        let button = Button::new(&number, &tip).named(label.trim()).disabled(reason);
-        let response = button.ground(ui, look, rect, Id::new(("gesture", gesture)));
+        let button = Button::new(&number, &tip)
+            .named(label.trim())
+            .disabled(reason);
+        let response = button.ground(ui, look, rect, Id::unique(("gesture", gesture)));
         let color = button.text_color(look);
         tile_text(ui, look, rect, &number, &name, color, gesture);
         if response.clicked() {
@@ -135,12 +154,12 @@ impl GestureView {
             _ => known.to_owned(),
         };
         let edit = TextEdit::singleline(&mut text)
-            .id(Id::new(("gesture name", gesture)))
+            .id(Id::unique(("gesture name", gesture)))
             .font(theme::small())
             .hint_text(gesture.get().to_string())
             .char_limit(NAME_MAX)
             .clip_text(true)
-            .vertical_align(egui::Align::Center)
+            .align(egui::Align2::LEFT_CENTER)
             .margin(egui::Margin::symmetric(4, 0))
             .min_size(rect.size())
             .desired_width(rect.width() - 8.0);
@@ -175,7 +194,11 @@ fn tile_text(
     gesture: Gesture,
 ) {
     let inner = rect.shrink2(vec2(theme::STEP + 1.0, 0.0));
-    let number_color = if gesture.get() <= LAST_FIXED { color } else { color.gamma_multiply(0.8) };
+    let number_color = if gesture.get() <= LAST_FIXED {
+        color
+    } else {
+        color.gamma_multiply(0.8)
+    };
     if name.is_empty() || rect.width() < 48.0 {
         let center = egui::Align2::CENTER_CENTER;
         controls::paint_text(ui, inner, center, number, theme::number(), number_color);
@@ -183,17 +206,31 @@ fn tile_text(
     }
     let left = egui::Align2::LEFT_CENTER;
     if rect.height() >= 40.0 {
-        let (upper, lower) = inner.shrink2(vec2(4.0, 6.0)).split_top_bottom_at_fraction(0.45);
+        let (upper, lower) = inner
+            .shrink2(vec2(4.0, 6.0))
+            .split_top_bottom_at_fraction(0.45);
         controls::paint_text(ui, upper, left, number, theme::number(), look.palette.muted);
         controls::paint_text(ui, lower, left, name, theme::body(), color);
         return;
     }
     let (narrow, rest) = inner.split_left_right_at_x(inner.left() + 17.0);
-    controls::paint_text(ui, narrow, left, number, theme::number_small(), look.palette.muted);
+    controls::paint_text(
+        ui,
+        narrow,
+        left,
+        number,
+        theme::number_small(),
+        look.palette.muted,
+    );
     controls::paint_text(ui, rest, left, name, theme::small(), color);
 }
 
-fn grid(body: Rect, size: egui::Vec2, gap: f32, columns: u8) -> impl Iterator<Item = (Gesture, Rect)> {
+fn grid(
+    body: Rect,
+    size: egui::Vec2,
+    gap: f32,
+    columns: u8,
+) -> impl Iterator<Item = (Gesture, Rect)> {
     all().map(move |gesture| {
         let n = gesture.get() - 1;
         let (row, column) = (f32::from(n / columns), f32::from(n % columns));
@@ -209,26 +246,29 @@ fn route_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let now = pane.state.settings.gesture_route;
     let mut chosen = now;
-    ui.scope_builder(UiBuilder::new().max_rect(controls::middle(rect, theme::CONTROL)), |ui| {
-        let name = look.say(panels::GESTURE_ROUTE);
-        let shown = egui::ComboBox::from_id_salt("gesture route")
-            .width(rect.width())
-            .selected_text(look.say(route_text(now)))
-            .truncate()
-            .show_ui(ui, |ui| {
-                for route in [
-                    GestureRoute::Register1008,
-                    GestureRoute::ActionLibrary,
-                    GestureRoute::Off,
-                ] {
-                    ui.selectable_value(&mut chosen, route, look.say(route_text(route)));
-                }
-            });
-        shown
-            .response
-            .on_hover_text(look.say(panels::GESTURE_ROUTE_TIP))
-            .accessible_name(name);
-    });
+    ui.scope_builder(
+        UiBuilder::new().max_rect(controls::middle(rect, theme::CONTROL)),
+        |ui| {
+            let name = look.say(panels::GESTURE_ROUTE);
+            let shown = egui::ComboBox::from_id_salt("gesture route")
+                .width(rect.width())
+                .selected_text(look.say(route_text(now)))
+                .truncate()
+                .show_ui(ui, |ui| {
+                    for route in [
+                        GestureRoute::Register1008,
+                        GestureRoute::ActionLibrary,
+                        GestureRoute::Off,
+                    ] {
+                        ui.selectable_value(&mut chosen, route, look.say(route_text(route)));
+                    }
+                });
+            shown
+                .response
+                .on_hover_text(look.say(panels::GESTURE_ROUTE_TIP))
+                .accessible_name(name);
+        },
+    );
     if chosen != now {
         pane.actions.push(Action::GestureRoute(chosen));
     }

@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::state::Freshness;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed, Status, Timed};
-use crate::ui::controls::{self, Button, Label, Lock, Weight, take_left, take_right};
+use crate::ui::controls::{self, Button, Label, Lock, take_left, take_right};
 use crate::ui::look::Pane;
 use crate::ui::number::NumberField;
 use crate::ui::text::{Text, main, words};
@@ -43,10 +43,13 @@ pub(crate) fn joints_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         rows_ui(ui, list, row_height, pane);
     } else {
         ui.scope_builder(egui::UiBuilder::new().max_rect(list), |ui| {
-            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                let whole = Rect::from_min_size(ui.cursor().min, vec2(list.width(), row_height * 6.0));
-                rows_ui(ui, whole, row_height, pane);
-            });
+            egui::ScrollArea::vertical()
+                .auto_shrink(false)
+                .show(ui, |ui| {
+                    let whole =
+                        Rect::from_min_size(ui.cursor().min, vec2(list.width(), row_height * 6.0));
+                    rows_ui(ui, whole, row_height, pane);
+                });
         });
     }
     buttons_ui(ui, rest.with_max_y(rest.top() + theme::CONTROL_LARGE), pane);
@@ -59,7 +62,9 @@ fn age_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
         Freshness::Live => return,
         Freshness::Unknown => look.say(main::NEVER_READ).to_owned(),
         Freshness::Stale => {
-            let age = asked.map(|asked| pane.state.now.since(asked)).unwrap_or_default();
+            let age = asked
+                .map(|asked| pane.state.now.since(asked))
+                .unwrap_or_default();
             format!("{} {}", look.say(main::AGE), format::age(age))
         }
     };
@@ -88,12 +93,12 @@ fn buttons_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     left.max.y = rect.bottom();
     let open = Button::new(look.say(main::OPEN), look.say(main::OPEN_TIP))
         .disabled((!pane.state.is_armed()).then(|| look.say(main::NOT_ARMED)));
-    if open.put(ui, look, left, Id::new("open all")).clicked() {
+    if open.put(ui, look, left, Id::unique("open all")).clicked() {
         pane.actions.push(Action::Open);
     }
     let right = right.with_min_x(right.left() + theme::GAP);
     let hold = Button::new(look.say(main::HOLD), look.say(main::HOLD_TIP));
-    if hold.put(ui, look, right, Id::new("hold")).clicked() {
+    if hold.put(ui, look, right, Id::unique("hold")).clicked() {
         pane.actions.push(Action::Stop);
     }
 }
@@ -129,7 +134,7 @@ impl Row {
     }
 
     fn id(&self, part: &'static str) -> Id {
-        Id::new(("joint", self.dof, part))
+        Id::unique(("joint", self.dof, part))
     }
 
     fn ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
@@ -139,11 +144,15 @@ impl Row {
             pos2(rect.left(), rect.top() + theme::STEP),
             pos2(rect.left() + 3.0, rect.bottom() - theme::STEP),
         );
-        ui.painter().rect_filled(bar, CornerRadius::same(2), self.color);
-        let inner = rect.with_min_x(rect.left() + 12.0).shrink2(vec2(0.0, theme::STEP));
+        ui.painter()
+            .rect_filled(bar, CornerRadius::same(2), self.color);
+        let inner = rect
+            .with_min_x(rect.left() + 12.0)
+            .shrink2(vec2(0.0, theme::STEP));
         if self.dof != Dof::Little {
             let stroke = egui::Stroke::new(1.0, palette.grid);
-            ui.painter().hline(rect.left()..=rect.right(), rect.top(), stroke);
+            ui.painter()
+                .hline(rect.left()..=rect.right(), rect.top(), stroke);
         }
         let lines = if roomy { 4.0 } else { 3.0 };
         let height = inner.height() / lines;
@@ -209,9 +218,16 @@ impl Row {
         controls::lamp(ui, pos2(rect.left() + 6.0, rect.center().y), color);
         let place = rect.with_min_x(rect.left() + 17.0);
         let title = words.map_or(format::UNKNOWN, |words| words.title);
-        let text_color = if live == palette.bad { color } else { look.value(freshness, palette.muted) };
+        let text_color = if live == palette.bad {
+            color
+        } else {
+            look.value(freshness, palette.muted)
+        };
         let name = self.named(pane, main::STATUS);
-        let label = Label::new(title, text_color).small().named(&name).put(ui, place);
+        let label = Label::new(title, text_color)
+            .small()
+            .named(&name)
+            .put(ui, place);
         if let Some(words) = words {
             label.on_hover_text(format!("{}\n{}", words.cause, words.advice));
         }
@@ -237,9 +253,7 @@ impl Row {
         let place = controls::middle(rect, 20.0);
         let response = ui.interact(place, self.id("lock"), Sense::click());
         let name = self.named(pane, main::NAME_LOCK);
-        response.widget_info(|| {
-            WidgetInfo::selected(egui::Role::CheckBox, true, locked, &name)
-        });
+        response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, locked, &name));
         let (kind, color) = match (locked, response.hovered()) {
             (true, _) => (Lock::Closed, look.palette.warn),
             (false, true) => (Lock::Open, look.palette.text),
@@ -297,7 +311,8 @@ impl Row {
         };
         let typed = field_ui.put(ui, look, pane.typing, field, self.id("angle number"));
         if let Some(value) = typed.or(moved) {
-            pane.actions.push(Action::Target(self.dof, Angle::nearest(value)));
+            pane.actions
+                .push(Action::Target(self.dof, Angle::nearest(value)));
         }
     }
 
@@ -306,7 +321,11 @@ impl Row {
         let raw = format::whole(angle.map(|angle| i64::from(angle.raw())), 4);
         let degrees = format::degrees(angle.and_then(|angle| angle.degrees(self.dof)));
         let odd = angle.is_some_and(|angle| angle.documented().is_none());
-        let live = if odd { pane.look.palette.warn } else { pane.look.palette.text };
+        let live = if odd {
+            pane.look.palette.warn
+        } else {
+            pane.look.palette.text
+        };
         let text = format!("{raw} {degrees}");
         let name = self.named(pane, main::NAME_ANGLE_ACTUAL);
         Label::new(&text, pane.look.value(freshness, live))
@@ -347,17 +366,24 @@ impl Row {
         };
         let typed = field_ui.put(ui, look, pane.typing, field, self.id("force number"));
         if let Some(value) = typed.or(moved) {
-            pane.actions.push(Action::Force(self.dof, Force::nearest(value)));
+            pane.actions
+                .push(Action::Force(self.dof, Force::nearest(value)));
         }
     }
 
     fn force_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (force, freshness) = newest(pane, self.dof, pane.state.sample.force);
         let odd = force.is_some_and(|force| force.documented().is_none());
-        let live = if odd { pane.look.palette.warn } else { pane.look.palette.text };
+        let live = if odd {
+            pane.look.palette.warn
+        } else {
+            pane.look.palette.text
+        };
         let text = format::with_unit(force.map(|force| i64::from(force.raw())), 4, "g");
         let name = self.named(pane, main::NAME_FORCE_ACTUAL);
-        let label = Label::new(&text, pane.look.value(freshness, live)).number().right();
+        let label = Label::new(&text, pane.look.value(freshness, live))
+            .number()
+            .right();
         label.font(reading_font(rect)).named(&name).put(ui, rect);
     }
 
@@ -366,13 +392,23 @@ impl Row {
         let (heat, heat_freshness) = newest(pane, self.dof, pane.state.sample.temperature);
         let odd = current.is_some_and(|current| current.documented().is_none())
             || heat.is_some_and(|heat| heat.documented().is_none());
-        let live = if odd { pane.look.palette.warn } else { pane.look.palette.text };
-        let both = if heat_freshness == Freshness::Live { freshness } else { heat_freshness };
+        let live = if odd {
+            pane.look.palette.warn
+        } else {
+            pane.look.palette.text
+        };
+        let both = if heat_freshness == Freshness::Live {
+            freshness
+        } else {
+            heat_freshness
+        };
         let current = format::with_unit(current.map(|value| i64::from(value.raw())), 4, "mA");
         let heat = format::whole(heat.map(|heat| i64::from(heat.raw())), 3);
         let text = format!("{current} {heat}°");
         let name = self.named(pane, main::NAME_DRIVE);
-        let label = Label::new(&text, pane.look.value(both, live)).number().right();
+        let label = Label::new(&text, pane.look.value(both, live))
+            .number()
+            .right();
         label.font(reading_font(rect)).named(&name).put(ui, rect);
     }
 
@@ -403,7 +439,8 @@ impl Row {
         };
         let typed = field_ui.put(ui, look, pane.typing, field, self.id("speed number"));
         if let Some(value) = typed.or(moved) {
-            pane.actions.push(Action::Speed(self.dof, Speed::nearest(value)));
+            pane.actions
+                .push(Action::Speed(self.dof, Speed::nearest(value)));
         }
     }
 
@@ -417,5 +454,9 @@ impl Row {
 }
 
 fn reading_font(rect: Rect) -> egui::FontId {
-    if rect.width() < READING { theme::number_small() } else { theme::number() }
+    if rect.width() < READING {
+        theme::number_small()
+    } else {
+        theme::number()
+    }
 }

@@ -3,7 +3,7 @@
 use crate::ui::format::UNKNOWN;
 use crate::ui::look::{Look, Typing};
 use crate::ui::theme;
-use egui::{Align, Id, Key, Margin, Rect, Role, Stroke, TextEdit, Ui, WidgetInfo, vec2};
+use egui::{Align2, Id, Key, Margin, Rect, Role, Stroke, TextEdit, Ui, WidgetInfo, vec2};
 use std::ops::RangeInclusive;
 
 /// Characters that fit in a field.
@@ -34,15 +34,25 @@ impl NumberField<'_> {
         rect: Rect,
         id: Id,
     ) -> Option<i16> {
-        let shown = self.value.map_or_else(|| UNKNOWN.to_owned(), |value| value.to_string());
+        let shown = self
+            .value
+            .map_or_else(|| UNKNOWN.to_owned(), |value| value.to_string());
         if ui.memory(|memory| memory.has_focus(id)) && self.disabled.is_none() {
             if typing.field != Some(id) {
-                *typing = Typing { field: Some(id), text: shown.clone(), refused: None };
+                *typing = Typing {
+                    field: Some(id),
+                    text: shown.clone(),
+                    refused: None,
+                };
             }
         } else if typing.field == Some(id) && typing.refused != Some(id) {
             *typing = Typing::default();
         }
-        let mut text = if typing.field == Some(id) { typing.text.clone() } else { shown };
+        let mut text = if typing.field == Some(id) {
+            typing.text.clone()
+        } else {
+            shown
+        };
         let response = self.edit(ui, look, typing, &mut text, rect, id);
         if typing.field == Some(id) {
             typing.text.clone_from(&text);
@@ -85,7 +95,11 @@ impl NumberField<'_> {
             palette.edge
         };
         let frame = egui::Frame::new()
-            .fill(if enabled { palette.sunken } else { palette.card })
+            .fill(if enabled {
+                palette.sunken
+            } else {
+                palette.card
+            })
             .stroke(Stroke::new(1.0, edge))
             .corner_radius(theme::ROUND_SMALL)
             .inner_margin(Margin::symmetric(6, 0));
@@ -93,8 +107,7 @@ impl NumberField<'_> {
             .id(id)
             .font(theme::number())
             .text_color(if enabled { palette.text } else { palette.faint })
-            .horizontal_align(Align::Max)
-            .vertical_align(Align::Center)
+            .align(Align2::RIGHT_CENTER)
             .char_limit(TYPED_MAX)
             .interactive(enabled)
             .frame(frame)

@@ -35,7 +35,11 @@ pub(crate) struct Band {
 impl Band {
     /// From what is always shown and what the numbers span.
     pub(crate) fn of(least: (f64, f64), extent: &Extent) -> Self {
-        let mut band = Self { low: least.0, high: least.1, step: 1.0 };
+        let mut band = Self {
+            low: least.0,
+            high: least.1,
+            step: 1.0,
+        };
         if let Some((low, high)) = extent.0 {
             band.include(low);
             band.include(high);
@@ -61,7 +65,11 @@ impl Band {
         } else {
             (self.low / step).floor() * step
         };
-        Self { low, high: (self.high / step).ceil() * step, step }
+        Self {
+            low,
+            high: (self.high / step).ceil() * step,
+            step,
+        }
     }
 
     /// The values with a line.
@@ -77,7 +85,10 @@ impl Band {
 /// Where a value stands between the ends of a rectangle.
 fn y_of(rect: Rect, band: &Band, value: f64) -> f32 {
     let part = (value - band.low) / (band.high - band.low);
-    #[expect(clippy::cast_possible_truncation, reason = "0..=1 of a height in pixels")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "0..=1 of a height in pixels"
+    )]
     let part = part as f32;
     rect.bottom() - rect.height() * part
 }
@@ -116,7 +127,10 @@ fn time_lines(rect: Rect, window_s: f64) -> impl Iterator<Item = (f64, f32)> {
         .map(move |n| f64::from(n) * step)
         .take_while(move |ago| *ago <= window_s)
         .map(move |ago| {
-            #[expect(clippy::cast_possible_truncation, reason = "0..=1 of a width in pixels")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "0..=1 of a width in pixels"
+            )]
             let part = (ago / window_s) as f32;
             (ago, rect.right() - rect.width() * part)
         })
@@ -128,8 +142,16 @@ pub(crate) fn grid(ui: &Ui, rect: Rect, look: Look, band: &Band, window_s: f64) 
     let stroke = Stroke::new(1.0, look.palette.grid);
     for value in band.lines() {
         let strong = value.abs() < band.step * 1e-6 && band.low < 0.0;
-        let color = if strong { look.palette.edge } else { look.palette.grid };
-        painter.hline(rect.x_range(), y_of(rect, band, value), Stroke::new(1.0, color));
+        let color = if strong {
+            look.palette.edge
+        } else {
+            look.palette.grid
+        };
+        painter.hline(
+            rect.x_range(),
+            y_of(rect, band, value),
+            Stroke::new(1.0, color),
+        );
     }
     for (_, x) in time_lines(rect, window_s) {
         painter.vline(x, rect.y_range(), stroke);
@@ -147,13 +169,20 @@ pub(crate) fn time_axis_ui(ui: &mut Ui, rect: Rect, look: Look, window_s: f64) {
         };
         let place = Rect::from_center_size(pos2(x, rect.center().y), vec2(56.0, 14.0));
         let place = place.translate(vec2((rect.right() - place.right()).min(0.0), 0.0));
-        let align = if ago == 0.0 { Align2::RIGHT_CENTER } else { Align2::CENTER_CENTER };
+        let align = if ago == 0.0 {
+            Align2::RIGHT_CENTER
+        } else {
+            Align2::CENTER_CENTER
+        };
         let room = x - rect.left() > 20.0 || ago == 0.0;
         if room {
             paint_text(ui, place, align, &text, font.clone(), color);
         }
     }
-    let caption = Rect::from_min_size(pos2(rect.left() - AXIS, rect.top()), vec2(AXIS, rect.height()));
+    let caption = Rect::from_min_size(
+        pos2(rect.left() - AXIS, rect.top()),
+        vec2(AXIS, rect.height()),
+    );
     Label::new(look.say(panels::SECONDS_AGO), color)
         .small()
         .put(ui, caption);
@@ -167,7 +196,12 @@ mod tests {
 
     #[test]
     fn a_scale_always_holds_its_numbers_and_has_few_lines() {
-        for (low, high) in [(0.0, 3.0), (-33.0, 812.0), (-4000.0, 4000.0), (0.0, 32_767.0)] {
+        for (low, high) in [
+            (0.0, 3.0),
+            (-33.0, 812.0),
+            (-4000.0, 4000.0),
+            (0.0, 32_767.0),
+        ] {
             let mut extent = Extent::default();
             extent.include(low);
             extent.include(high);

@@ -65,7 +65,9 @@ const PANELS: [Panel; 4] = [
         quantity: Quantity::Angle,
         title: panels::PLOT_ANGLE,
         least: (0.0, 1000.0),
-        steps: [250.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0, 50_000.0],
+        steps: [
+            250.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0, 50_000.0,
+        ],
     },
 ];
 
@@ -109,11 +111,15 @@ impl PlotView {
         let thresholds = look.say(panels::THRESHOLDS);
         let width = controls::text_width(ui, thresholds, theme::small()) + 26.0;
         let place = take_right(&mut rest, width);
-        let mut button = Button::new(thresholds, look.say(panels::THRESHOLDS_TIP))
-            .weight(Weight::Quiet);
+        let mut button =
+            Button::new(thresholds, look.say(panels::THRESHOLDS_TIP)).weight(Weight::Quiet);
         button.selected = Some(self.thresholds);
-        let response = button.ground(ui, look, place, Id::new("thresholds"));
-        let color = if self.thresholds { look.palette.text } else { look.palette.faint };
+        let response = button.ground(ui, look, place, Id::unique("thresholds"));
+        let color = if self.thresholds {
+            look.palette.text
+        } else {
+            look.palette.faint
+        };
         dashes(ui, place, color);
         legend_text(ui, place, 20.0, thresholds, color);
         if response.clicked() {
@@ -121,21 +127,32 @@ impl PlotView {
         }
         for dof in Dof::ALL {
             let name = look.say(words::dof(dof));
-            let width = controls::text_width(ui, name, theme::small()) + 21.0;
-            let place = take_left(&mut rest, width.min(rest.width()));
+            let wanted = controls::text_width(ui, name, theme::small()) + 21.0;
+            let width = wanted.min(rest.width());
+            let place = take_left(&mut rest, width);
             rest.min.x -= theme::STEP;
             let mut button = Button::new(name, look.say(panels::SHOW_CURVE)).weight(Weight::Quiet);
             let named = format!("{}: {name}", look.say(panels::HISTORY));
             button.selected = Some(!self.hidden[dof]);
-            let response = button.named(&named).ground(ui, look, place, Id::new(("legend", dof)));
+            let response =
+                button
+                    .named(&named)
+                    .ground(ui, look, place, Id::unique(("legend", dof)));
             let shown = !self.hidden[dof];
-            let swatch = Rect::from_center_size(
-                pos2(place.left() + 9.0, place.center().y),
-                vec2(10.0, 3.0),
-            );
-            let line = if shown { look.palette.dof[dof] } else { look.palette.edge };
-            ui.painter().rect_filled(swatch, CornerRadius::same(1), line);
-            let color = if shown { look.palette.text } else { look.palette.faint };
+            let swatch =
+                Rect::from_center_size(pos2(place.left() + 9.0, place.center().y), vec2(10.0, 3.0));
+            let line = if shown {
+                look.palette.dof[dof]
+            } else {
+                look.palette.edge
+            };
+            ui.painter()
+                .rect_filled(swatch, CornerRadius::same(1), line);
+            let color = if shown {
+                look.palette.text
+            } else {
+                look.palette.faint
+            };
             legend_text(ui, place, 17.0, name, color);
             if response.clicked() {
                 self.hidden[dof] = shown;
@@ -168,7 +185,8 @@ impl PlotView {
         }
         let band = band.rounded(panel.steps);
         plot_axes::value_axis_ui(ui, ground, look, &band);
-        ui.painter().rect_filled(plot_rect, CornerRadius::same(3), look.palette.sunken);
+        ui.painter()
+            .rect_filled(plot_rect, CornerRadius::same(3), look.palette.sunken);
         plot_axes::grid(ui, plot_rect, look, &band, span.1 - span.0);
         let empty = lines.curves.is_empty();
         self.plot_ui(ui, plot_rect, pane, panel, (span, band), lines, marks);
@@ -181,7 +199,13 @@ impl PlotView {
     }
 
     /// The curves of one quantity, as many points as the plot is wide, and what they span.
-    fn lines(&mut self, pane: &Pane<'_>, quantity: Quantity, span: (f64, f64), width: f32) -> Curves {
+    fn lines(
+        &mut self,
+        pane: &Pane<'_>,
+        quantity: Quantity,
+        span: (f64, f64),
+        width: f32,
+    ) -> Curves {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -291,7 +315,10 @@ fn mark_labels(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, marks: &[Mark], span: (
     let mut free_from = rect.left();
     for mark in marks {
         let part = (mark.at_s - span.0) / (span.1 - span.0);
-        #[expect(clippy::cast_possible_truncation, reason = "0..=1 of a width in pixels")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "0..=1 of a width in pixels"
+        )]
         let x = rect.left() + rect.width() * part as f32;
         let (text, color) = mark_look(pane, mark.kind);
         let mut text = pane.look.say(text).to_owned();
@@ -299,7 +326,11 @@ fn mark_labels(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, marks: &[Mark], span: (
             text = format!("{text} {}", gesture.get());
         }
         let width = controls::text_width(ui, &text, theme::small()) + 1.0;
-        let left = if x + width + 6.0 > rect.right() { x - width - 4.0 } else { x + 4.0 };
+        let left = if x + width + 6.0 > rect.right() {
+            x - width - 4.0
+        } else {
+            x + 4.0
+        };
         if left < free_from {
             continue;
         }
@@ -313,7 +344,8 @@ fn dashes(ui: &Ui, place: Rect, color: Color32) {
     let y = place.center().y;
     for (from, to) in [(4.0, 8.0), (11.0, 15.0)] {
         let line = [pos2(place.left() + from, y), pos2(place.left() + to, y)];
-        ui.painter().line_segment(line, egui::Stroke::new(1.5, color));
+        ui.painter()
+            .line_segment(line, egui::Stroke::new(1.5, color));
     }
 }
 
@@ -326,13 +358,24 @@ fn legend_text(ui: &Ui, place: Rect, indent: f32, text: &str, color: Color32) {
 fn pause_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let paused = pane.state.history.is_paused();
-    let text = look.say(if paused { panels::PAUSED } else { panels::PAUSE });
+    let text = look.say(if paused {
+        panels::PAUSED
+    } else {
+        panels::PAUSE
+    });
     let place = take_right(head, 68.0);
     let mut button = Button::new(text, look.say(panels::PAUSE_TIP))
         .named(look.say(panels::PAUSE_NAME))
-        .weight(if paused { Weight::Armed } else { Weight::Normal });
+        .weight(if paused {
+            Weight::Armed
+        } else {
+            Weight::Normal
+        });
     button.selected = Some(paused);
-    if button.put(ui, look, place, Id::new("pause plots")).clicked() {
+    if button
+        .put(ui, look, place, Id::unique("pause plots"))
+        .clicked()
+    {
         pane.actions.push(Action::PausePlots(!paused));
     }
 }
@@ -342,17 +385,28 @@ fn window_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
     let now = pane.state.settings.plot_window;
     let each = ((head.width() - theme::GAP) / 6.0).min(52.0);
     let mut row = take_right(head, each * 6.0);
-    ui.painter().rect_filled(row, CornerRadius::same(theme::ROUND_SMALL), look.palette.sunken);
+    ui.painter().rect_filled(
+        row,
+        CornerRadius::same(theme::ROUND_SMALL),
+        look.palette.sunken,
+    );
     for window in PlotWindow::ALL {
         let (place, rest) = row.split_left_right_at_x(row.left() + each);
         row = rest;
         let text = window_text(window);
         let name = format!("{}: {text}", look.say(panels::WINDOW_NAME));
-        let short = if each < 44.0 { text.replace(' ', "") } else { text.to_owned() };
+        let short = if each < 44.0 {
+            text.replace(' ', "")
+        } else {
+            text.to_owned()
+        };
         let button = Button::new(&short, look.say(panels::WINDOW_TIP))
             .choice(window == now)
             .named(&name);
-        if button.put(ui, look, place, Id::new(("plot window", text))).clicked() {
+        if button
+            .put(ui, look, place, Id::unique(("plot window", text)))
+            .clicked()
+        {
             pane.actions.push(Action::PlotWindow(window));
         }
     }

@@ -181,7 +181,11 @@ impl Palette {
     pub(crate) fn heat(&self, level: f32) -> Color32 {
         let level = f64::from(level.clamp(0.0, 1.0));
         // The dark end of the scale would vanish in the dark skin, the light end in the light one.
-        let at = if self.dark { 0.12 + 0.88 * level } else { 0.94 * (1.0 - level) };
+        let at = if self.dark {
+            0.12 + 0.88 * level
+        } else {
+            0.94 * (1.0 - level)
+        };
         let color = colorous::INFERNO.eval_continuous(at);
         Color32::from_rgb(color.r, color.g, color.b)
     }
@@ -217,15 +221,15 @@ pub(crate) const fn number_small() -> FontId {
     FontId::monospace(10.5)
 }
 
-/// egui's own widgets in this theme. Keeps how fast the context animates.
-pub(crate) fn style(theme: Theme, animation_time: f32) -> Style {
+/// egui's own widgets in this theme. Keeps what moves by itself as it was `before`.
+pub(crate) fn style(theme: Theme, before: &Style) -> Style {
     let palette = Palette::of(theme);
     let mut style = Style {
         visuals: match theme {
             Theme::Dark => egui::Visuals::dark(),
             Theme::Light => egui::Visuals::light(),
         },
-        animation_time,
+        animation_time: before.animation_time,
         ..Style::default()
     };
     style.text_styles = [
@@ -238,6 +242,7 @@ pub(crate) fn style(theme: Theme, animation_time: f32) -> Style {
     .into();
     spacing(&mut style);
     visuals(&mut style, palette);
+    style.visuals.text_cursor.blink = before.visuals.text_cursor.blink;
     style
 }
 

@@ -18,9 +18,11 @@ const ARM_WIDTH: f32 = 96.0;
 /// Draws the bar. True if the connection was asked for.
 pub(crate) fn top_bar_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
     let palette = pane.look.palette;
-    ui.painter().rect_filled(rect, CornerRadius::ZERO, palette.card);
+    ui.painter()
+        .rect_filled(rect, CornerRadius::ZERO, palette.card);
     let edge = Stroke::new(1.0, palette.edge);
-    ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, edge);
+    ui.painter()
+        .hline(rect.x_range(), rect.bottom() - 0.5, edge);
     let mut rest = rect.shrink2(vec2(theme::PAD, theme::GAP));
     stop_ui(ui, take_right(&mut rest, STOP_WIDTH), pane);
     rest.max.x -= theme::STEP;
@@ -33,9 +35,12 @@ pub(crate) fn top_bar_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
 }
 
 fn stop_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-    let button = Button::new(pane.look.say(main::STOP), pane.look.say(main::STOP_TIP))
-        .weight(Weight::Stop);
-    if button.put(ui, pane.look, rect, Id::new("stop")).clicked() {
+    let button =
+        Button::new(pane.look.say(main::STOP), pane.look.say(main::STOP_TIP)).weight(Weight::Stop);
+    if button
+        .put(ui, pane.look, rect, Id::unique("stop"))
+        .clicked()
+    {
         pane.actions.push(Action::Stop);
     }
 }
@@ -43,7 +48,10 @@ fn stop_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
 fn arm_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let armed = pane.state.is_armed();
-    let refusal = pane.state.arm_refusal().map(|reason| words::refusal(look, reason));
+    let refusal = pane
+        .state
+        .arm_refusal()
+        .map(|reason| words::refusal(look, reason));
     let (text, name, tip) = if armed {
         (main::DISARM, main::DISARM_NAME, main::DISARM_TIP)
     } else {
@@ -55,8 +63,9 @@ fn arm_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         .weight(if armed { Weight::Armed } else { Weight::Normal });
     button.selected = Some(armed);
     let place = controls::middle(rect, theme::CONTROL_LARGE);
-    if button.put(ui, look, place, Id::new("arm")).clicked() {
-        pane.actions.push(if armed { Action::Disarm } else { Action::Arm });
+    if button.put(ui, look, place, Id::unique("arm")).clicked() {
+        pane.actions
+            .push(if armed { Action::Disarm } else { Action::Arm });
     }
 }
 
@@ -73,7 +82,8 @@ fn badge_ui(ui: &mut Ui, rest: &mut Rect, pane: &Pane<'_>) {
     let text = look.say(text);
     let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let place = controls::middle(take_left(rest, width), theme::CONTROL);
-    ui.painter().rect_filled(place, CornerRadius::same(12), fill);
+    ui.painter()
+        .rect_filled(place, CornerRadius::same(12), fill);
     let label = Label::new(text, color).center().put(ui, place);
     if simulated {
         label.on_hover_text(look.say(main::SIMULATED_TIP));
@@ -123,7 +133,7 @@ fn link_ui(ui: &mut Ui, rest: &mut Rect, pane: &Pane<'_>) -> bool {
     let button = Button::new(word, look.say(main::LINK_TIP))
         .named(&name)
         .weight(Weight::Quiet);
-    let response = button.ground(ui, look, place, Id::new("link"));
+    let response = button.ground(ui, look, place, Id::unique("link"));
     controls::lamp(ui, pos2(place.left() + 16.0, place.center().y), color);
     let text = place.with_min_x(place.left() + 29.0);
     let (text_color, align) = (look.palette.text, egui::Align2::LEFT_CENTER);
@@ -218,15 +228,27 @@ pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut V
         rest.min.x -= theme::STEP;
         let mut button = Button::new(text, look.say(main::TAB_TIP)).weight(Weight::Quiet);
         button.selected = Some(tab == *view);
-        let response = button.ground(ui, look, place, Id::new(("tab", tab.name())));
-        let color = if tab == *view { look.palette.text } else { look.palette.muted };
-        controls::paint_text(ui, place, egui::Align2::CENTER_CENTER, text, theme::body(), color);
+        let response = button.ground(ui, look, place, Id::unique(("tab", tab.name())));
+        let color = if tab == *view {
+            look.palette.text
+        } else {
+            look.palette.muted
+        };
+        controls::paint_text(
+            ui,
+            place,
+            egui::Align2::CENTER_CENTER,
+            text,
+            theme::body(),
+            color,
+        );
         if tab == *view {
             let under = Rect::from_min_max(
                 pos2(place.left() + theme::PAD, rect.bottom() - 4.0),
                 pos2(place.right() - theme::PAD, rect.bottom() - 2.0),
             );
-            ui.painter().rect_filled(under, CornerRadius::same(1), look.palette.accent);
+            ui.painter()
+                .rect_filled(under, CornerRadius::same(1), look.palette.accent);
         }
         if tab == View::Faults {
             fault_dot(ui, place, pane);
@@ -253,7 +275,10 @@ fn theme_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         .named(pane.look.say(main::THEME_NAME))
         .weight(Weight::Quiet);
     let place = controls::middle(rect, theme::CONTROL);
-    if button.put(ui, pane.look, place, Id::new("theme")).clicked() {
+    if button
+        .put(ui, pane.look, place, Id::unique("theme"))
+        .clicked()
+    {
         pane.actions.push(Action::Theme(other));
     }
 }
@@ -267,7 +292,10 @@ fn language_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         .named(pane.look.say(main::LANGUAGE_NAME))
         .weight(Weight::Quiet);
     let place = controls::middle(rect, theme::CONTROL);
-    if button.put(ui, pane.look, place, Id::new("language")).clicked() {
+    if button
+        .put(ui, pane.look, place, Id::unique("language"))
+        .clicked()
+    {
         pane.actions.push(Action::Language(other));
     }
 }

@@ -5,7 +5,7 @@ use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::ui::controls::{self, Label, take_left};
 use crate::ui::fingertip::{self, Tip};
 use crate::ui::look::{Look, Pane};
-use crate::ui::text::{Text, main, panels, words};
+use crate::ui::text::{Text, panels, words};
 use crate::ui::{format, theme};
 use egui::{CornerRadius, Rect, Ui, pos2, vec2};
 
@@ -55,7 +55,11 @@ const LINES: [Line; 5] = [
         caption: panels::TOUCH_CHECK,
         name: panels::TOUCH_CHECK_NAME,
         value: |block, look| {
-            let word = if block.check_ok() { panels::TOUCH_OK } else { panels::TOUCH_DIFFERS };
+            let word = if block.check_ok() {
+                panels::TOUCH_OK
+            } else {
+                panels::TOUCH_DIFFERS
+            };
             look.say(word).into()
         },
     },
@@ -86,7 +90,12 @@ impl TouchView {
         let table = 5.0 * ROW;
         let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - table);
         let full = self.hottest(pane);
-        self.pictures_ui(ui, pictures.with_max_y(pictures.bottom() - theme::STEP), pane, full);
+        self.pictures_ui(
+            ui,
+            pictures.with_max_y(pictures.bottom() - theme::STEP),
+            pane,
+            full,
+        );
         table_ui(ui, table, pane, &LINES);
     }
 
@@ -98,7 +107,12 @@ impl TouchView {
         let rows = 5.0 + 2.0 + 8.0;
         let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - rows * ROW - theme::GAP);
         let full = self.hottest(pane);
-        self.pictures_ui(ui, pictures.with_max_y(pictures.bottom() - theme::GAP), pane, full);
+        self.pictures_ui(
+            ui,
+            pictures.with_max_y(pictures.bottom() - theme::GAP),
+            pane,
+            full,
+        );
         let mut table = table;
         let forces = controls::take_top(&mut table, 5.0 * ROW);
         table_ui(ui, forces, pane, &LINES);
@@ -116,8 +130,13 @@ impl TouchView {
             let block = pane.state.sample.tactile[finger];
             let freshness = pane.freshness(block.map(|block| block.asked));
             let tip = block.map_or_else(Tip::default, |block| self.tip(finger, &block.value, full));
-            let tip = Tip { stale: freshness != Freshness::Live, ..tip };
-            let place = column.with_min_y(column.top() - theme::STEP).shrink2(vec2(2.0, 2.0));
+            let tip = Tip {
+                stale: freshness != Freshness::Live,
+                ..tip
+            };
+            let place = column
+                .with_min_y(column.top() - theme::STEP)
+                .shrink2(vec2(2.0, 2.0));
             fingertip::paint(ui.painter(), look, place, &tip);
             let response = ui.allocate_rect(place, egui::Sense::hover());
             response.on_hover_text(look.say(panels::TOUCH_TIP));
@@ -148,7 +167,9 @@ impl TouchView {
     fn hottest(&self, pane: &Pane<'_>) -> f32 {
         let mut full = HEAT_FLOOR;
         for (finger, block) in pane.state.sample.tactile.iter() {
-            let (Some(block), Some(rest)) = (block, self.rest[finger]) else { continue };
+            let (Some(block), Some(rest)) = (block, self.rest[finger]) else {
+                continue;
+            };
             for (raw, rest) in block.value.raw.into_iter().zip(rest) {
                 full = full.max(above(raw, rest));
             }
@@ -193,7 +214,10 @@ fn above(raw: u32, rest: u32) -> f32 {
 }
 
 fn small_float(value: i64) -> f32 {
-    #[expect(clippy::cast_precision_loss, reason = "only its place on a colour scale matters")]
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "only its place on a colour scale matters"
+    )]
     let float = value as f32;
     float
 }
@@ -215,7 +239,9 @@ fn table_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, lines: &[Line]) {
     for line in lines {
         let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), ROW));
         let (caption, name) = (look.say(line.caption), look.say(line.name));
-        row_ui(ui, row, pane, caption, name, &|_, block, look| (line.value)(block, look));
+        row_ui(ui, row, pane, caption, name, &|_, block, look| {
+            (line.value)(block, look)
+        });
         top += ROW;
     }
 }
@@ -235,11 +261,20 @@ fn deltas_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
 
 type Reading<'a> = &'a dyn Fn(Finger, &TactileBlock, Look) -> String;
 
-fn row_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>, caption: &str, name: &str, reading: Reading<'_>) {
+fn row_ui(
+    ui: &mut Ui,
+    row: Rect,
+    pane: &Pane<'_>,
+    caption: &str,
+    name: &str,
+    reading: Reading<'_>,
+) {
     let look = pane.look;
     let mut place = row;
     let left = take_left(&mut place, CAPTION - theme::GAP);
-    Label::new(caption, look.palette.muted).small().put(ui, left);
+    Label::new(caption, look.palette.muted)
+        .small()
+        .put(ui, left);
     for (finger, column) in columns(row) {
         let block = pane.state.sample.tactile[finger];
         let freshness = pane.freshness(block.map(|block| block.asked));

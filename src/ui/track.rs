@@ -2,7 +2,6 @@
 
 use crate::ui::controls::focus_ring;
 use crate::ui::look::Look;
-use crate::ui::theme;
 use egui::{
     Color32, CornerRadius, EventFilter, Id, Key, Rect, Response, Sense, Stroke, StrokeKind, Ui,
     WidgetInfo, accesskit, pos2, vec2,
@@ -51,13 +50,21 @@ impl Track<'_> {
     /// Draws the track. The value that the person moved it to, if they did in this frame.
     pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Option<i16> {
         let enabled = self.disabled.is_none();
-        let sense = if enabled { Sense::click_and_drag() } else { Sense::hover() };
+        let sense = if enabled {
+            Sense::click_and_drag()
+        } else {
+            Sense::hover()
+        };
         let response = ui.interact(rect, id, sense);
         let rail = Rect::from_center_size(
             rect.center(),
             vec2((rect.width() - 2.0 * HANDLE).max(1.0), RAIL),
         );
-        let moved = if enabled { self.moved(ui, &response, rail) } else { None };
+        let moved = if enabled {
+            self.moved(ui, &response, rail)
+        } else {
+            None
+        };
         let shown = moved.or(self.target);
         self.name_it(ui, &response, shown);
         if ui.is_rect_visible(rect) {
@@ -124,9 +131,8 @@ impl Track<'_> {
     }
 
     fn key_steps(&self, ui: &Ui, response: &Response) -> i16 {
-        let by_reader = |action| {
-            ui.input(|input| input.num_accesskit_action_requests(response.id, action))
-        };
+        let by_reader =
+            |action| ui.input(|input| input.num_accesskit_action_requests(response.id, action));
         let mut steps = clip(by_reader(accesskit::Action::Increment))
             - clip(by_reader(accesskit::Action::Decrement));
         if !response.has_focus() {
@@ -139,9 +145,13 @@ impl Track<'_> {
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
         ui.input(|input| {
-            let by_key = clip(input.num_presses(Key::ArrowRight))
-                - clip(input.num_presses(Key::ArrowLeft));
-            steps += if input.modifiers.shift { by_key.saturating_mul(10) } else { by_key };
+            let by_key =
+                clip(input.num_presses(Key::ArrowRight)) - clip(input.num_presses(Key::ArrowLeft));
+            steps += if input.modifiers.shift {
+                by_key.saturating_mul(10)
+            } else {
+                by_key
+            };
         });
         steps
     }
@@ -157,7 +167,11 @@ impl Track<'_> {
             clippy::cast_possible_truncation,
             reason = "clamped to 0..=max; a NaN becomes 0 in the cast and is refused before"
         )]
-        let whole = if value.is_nan() { self.target.unwrap_or(self.max) } else { value as i16 };
+        let whole = if value.is_nan() {
+            self.target.unwrap_or(self.max)
+        } else {
+            value as i16
+        };
         whole
     }
 
@@ -226,7 +240,12 @@ impl Track<'_> {
         let painter = ui.painter();
         let center = pos2(x, rail.center().y);
         if self.disabled.is_some() {
-            painter.circle(center, HANDLE - 1.5, palette.card, Stroke::new(1.2, palette.faint));
+            painter.circle(
+                center,
+                HANDLE - 1.5,
+                palette.card,
+                Stroke::new(1.2, palette.faint),
+            );
             if self.draws == Actual::Marker && self.actual.is_some() {
                 painter.circle_filled(center, 2.0, self.color);
             }

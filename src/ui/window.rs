@@ -90,7 +90,7 @@ pub fn install(ctx: &egui::Context, theme: Theme, _language: Language) {
 }
 
 fn restyle(ctx: &egui::Context, theme: Theme) {
-    ctx.all_styles_mut(|style| *style = theme::style(theme, style.animation_time));
+    ctx.all_styles_mut(|style| *style = theme::style(theme, style));
 }
 
 impl Window {
@@ -135,13 +135,14 @@ impl Window {
             Some((theme, _)) if theme != wanted.0 => restyle(ui.ctx(), wanted.0),
             Some(_) => return,
         }
-        let style = theme::style(wanted.0, ui.style().animation_time);
+        let style = theme::style(wanted.0, ui.style());
         ui.set_style(style);
     }
 
     fn parts_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let whole = ui.max_rect();
-        ui.painter().rect_filled(whole, 0.0, pane.look.palette.window);
+        ui.painter()
+            .rect_filled(whole, 0.0, pane.look.palette.window);
         let (bar, mut body) = whole.split_top_bottom_at_y(whole.top() + theme::TOP_BAR);
         if top_bar::top_bar_ui(ui, bar, pane) {
             self.view = View::Connection;
@@ -196,15 +197,33 @@ impl Window {
 fn take_stop_keys(ui: &Ui) -> bool {
     let typing = ui.ctx().text_edit_focused();
     let is_stop = |event: &Event| match event {
-        Event::Key { key: Key::Escape, .. } => true,
-        Event::Key { key: Key::Space, .. } => !typing,
+        Event::Key {
+            key: Key::Escape, ..
+        } => true,
+        Event::Key {
+            key: Key::Space, ..
+        } => !typing,
         _ => false,
     };
     ui.input_mut(|input| {
-        let pressed = |event: &Event| matches!(event, Event::Key { pressed: true, repeat: false, .. });
-        let stop = input.events.iter().any(|event| is_stop(event) && pressed(event));
+        let pressed = |event: &Event| {
+            matches!(
+                event,
+                Event::Key {
+                    pressed: true,
+                    repeat: false,
+                    ..
+                }
+            )
+        };
+        let stop = input
+            .events
+            .iter()
+            .any(|event| is_stop(event) && pressed(event));
         input.events.retain(|event| match event {
-            Event::Key { key: Key::Space, .. } => typing,
+            Event::Key {
+                key: Key::Space, ..
+            } => typing,
             _ => true,
         });
         stop

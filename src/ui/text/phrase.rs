@@ -42,7 +42,10 @@ mod tests {
     fn no_sentence_lacks_a_language() {
         for text in main::ALL.iter().chain(panels::ALL) {
             assert!(!text.en.is_empty() && !text.zh.is_empty(), "{text:?}");
-            assert!(text.en.is_ascii() || text.en.contains(['°', '±']), "{text:?}");
+            assert!(
+                text.en.is_ascii() || text.en.contains(['°', '±']),
+                "{text:?}"
+            );
         }
     }
 
@@ -51,7 +54,11 @@ mod tests {
         let known = include_str!("../../../assets/fonts/characters.txt");
         let all = main::ALL.iter().chain(panels::ALL);
         for text in all {
-            for sign in text.zh.chars().filter(|sign| !sign.is_ascii() && *sign != '°') {
+            for sign in text
+                .zh
+                .chars()
+                .filter(|sign| !sign.is_ascii() && *sign != '°')
+            {
                 assert!(known.contains(sign), "{sign} in {}", text.zh);
             }
         }

@@ -89,7 +89,9 @@ const fn status_zh(status: Status) -> Words {
             "驱动器用力但没有移动。",
             "张开该自由度或移除阻挡物，然后清除错误。",
         ),
-        Status::DriveFault => Words::new("故障停止", "驱动器因故障停止。", "请查看故障列表中的原因。"),
+        Status::DriveFault => {
+            Words::new("故障停止", "驱动器因故障停止。", "请查看故障列表中的原因。")
+        }
         Status::Unknown(255) => Words::new(
             "未报告",
             "代码 255，手册没有说明。常见于上电后尚未控制过的自由度。",
@@ -150,7 +152,9 @@ mod tests {
         for words in statuses.chain(faults) {
             for text in [words.title, words.cause, words.advice] {
                 assert!(!text.is_empty());
-                let missing = text.chars().find(|sign| !sign.is_ascii() && !known.contains(*sign));
+                let missing = text
+                    .chars()
+                    .find(|sign| !sign.is_ascii() && !known.contains(*sign));
                 assert_eq!(missing, None, "{text}");
             }
         }
