@@ -1,39 +1,263 @@
-//! Stand-in.
-use crate::hand::Moment;
-/// Level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+//! What a person should read, as typed causes. The words, in every language, are the views'.
+
+use crate::app::faults::FaultKind;
+use crate::hand::{Dof, Gesture, Moment};
+use crate::link::{ArmRefusal, Disarmed, LinkTrouble, RequestError};
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Notices that are kept: more than a person reads. The oldest go first.
+pub const NOTICES_MAX: usize = 64;
+
+/// How much it matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Level {
-    /// i
+    /// Good to know.
     Info,
-    /// w
-    Warning,
-    /// e
-    Error,
+    /// Something did not go as wished.
+    Warn,
+    /// The hand may do something that nobody wants.
+    Alarm,
 }
-/// Kind.
+
+/// What was asked of the hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Asked {
+    /// A stored pose.
+    Gesture(Gesture),
+    /// To clear errors.
+    ClearErrors,
+}
+
+/// What happened.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoticeKind {
-    /// x
-    Text(String),
+    /// The hand was live and is not any more.
+    LinkLost(LinkTrouble),
+    /// The hand could not be reached so far.
+    NoLink(LinkTrouble),
+    /// The hand answers again. It is not armed.
+    Reconnected,
+    /// Feedback shows that the hand rests.
+    HoldConfirmed {
+        /// From the press to rest.
+        after: Duration,
+    },
+    /// Feedback does not show rest: the hand may still move.
+    HoldAlarm,
+    /// The hand is not armed any more, and no person asked for it.
+    Disarmed(Disarmed),
+    /// The hand cannot be armed.
+    ArmRefused(ArmRefusal),
+    /// A joint is not well.
+    Fault {
+        /// The joint.
+        dof: Dof,
+        /// What.
+        what: FaultKind,
+    },
+    /// Something was asked and did not work.
+    RequestFailed {
+        /// What was asked.
+        what: Asked,
+        /// Why.
+        error: RequestError,
+    },
+    /// Something was asked and the hand acknowledged it. It does not say that it is done.
+    Acknowledged {
+        /// What was asked.
+        what: Asked,
+    },
+    /// A gesture moves all joints, and this one is locked. Nothing was sent.
+    GestureWouldMoveLocked {
+        /// The first locked joint.
+        dof: Dof,
+    },
+    /// Gestures are switched off. Nothing was sent.
+    GesturesOff,
+    /// Settings could not be written.
+    SettingsNotSaved {
+        /// The system's words.
+        message: String,
+    },
+    /// The settings file could not be read; it is left as it was, under another name.
+    SettingsIgnored {
+        /// Why.
+        message: String,
+        /// Where it lies now; `None` if it could not be moved.
+        kept_as: Option<PathBuf>,
+    },
+    /// The remembered hand's spelling means nothing.
+    EndpointIgnored {
+        /// What the file says.
+        text: String,
+    },
+    /// Serial ports could not be listed.
+    PortsNotFound {
+        /// The system's words.
+        message: String,
+    },
 }
-/// Notice.
+
+impl NoticeKind {
+    /// How much it matters.
+    #[must_use]
+    pub const fn level(&self) -> Level {
+        match self {
+            Self::LinkLost(_) | Self::HoldAlarm => Level::Alarm,
+            Self::Reconnected | Self::HoldConfirmed { .. } | Self::Acknowledged { .. } => {
+                Level::Info
+            }
+            Self::NoLink(_)
+            | Self::Disarmed(_)
+            | Self::ArmRefused(_)
+            | Self::Fault { .. }
+            | Self::RequestFailed { .. }
+            | Self::GestureWouldMoveLocked { .. }
+            | Self::GesturesOff
+            | Self::SettingsNotSaved { .. }
+            | Self::SettingsIgnored { .. }
+            | Self::EndpointIgnored { .. }
+            | Self::PortsNotFound { .. } => Level::Warn,
+        }
+    }
+
+    /// Kinds that differ only in a measured figure are one notice, with the newest figure.
+    fn is_same(&self, other: &Self) -> bool {
+        let confirmed = |kind: &Self| matches!(kind, Self::HoldConfirmed { .. });
+        self == other || confirmed(self) && confirmed(other)
+    }
+}
+
+/// One thing to read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Notice {
-    /// id
+    /// To dismiss it.
     pub id: u64,
-    /// at
+    /// When it happened last.
     pub at: Moment,
-    /// level
+    /// How much it matters.
     pub level: Level,
-    /// what
+    /// What happened.
     pub what: NoticeKind,
+    /// Times it happened since it was dismissed last.
+    pub count: u32,
 }
-/// All.
+
+/// What a person should read, bounded.
 #[derive(Debug, Clone, Default)]
-pub struct Notices(pub Vec<Notice>);
+pub struct Notices {
+    kept: VecDeque<Notice>,
+    next: u64,
+    dropped: u64,
+}
+
 impl Notices {
-    /// All.
+    /// Adds one. The same cause again is counted, not added, and counts as the newest.
+    pub fn push(&mut self, at: Moment, what: NoticeKind) {
+        let known = self
+            .kept
+            .iter()
+            .position(|notice| notice.what.is_same(&what));
+        if let Some(mut notice) = known.and_then(|index| self.kept.remove(index)) {
+            notice.at = at;
+            notice.count = notice.count.saturating_add(1);
+            notice.what = what;
+            self.kept.push_back(notice);
+            return;
+        }
+        if self.kept.len() >= NOTICES_MAX {
+            self.kept.pop_front();
+            self.dropped += 1;
+        }
+        self.kept.push_back(Notice {
+            id: self.next,
+            at,
+            level: what.level(),
+            what,
+            count: 1,
+        });
+        self.next += 1;
+    }
+
+    /// It was read.
+    pub fn dismiss(&mut self, id: u64) {
+        self.kept.retain(|notice| notice.id != id);
+    }
+
+    /// Takes away those that are no longer so.
+    pub(crate) fn withdraw(&mut self, over: impl Fn(&NoticeKind) -> bool) {
+        self.kept.retain(|notice| !over(&notice.what));
+    }
+
+    /// Newest first.
     pub fn iter(&self) -> impl Iterator<Item = &Notice> {
-        self.0.iter()
+        self.kept.iter().rev()
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// True if there is nothing to read.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.kept.is_empty()
+    }
+
+    /// Notices that went unread because there were too many.
+    #[must_use]
+    pub const fn dropped(&self) -> u64 {
+        self.dropped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_cause_is_counted_and_not_repeated() {
+        let mut notices = Notices::default();
+        for second in 0..5 {
+            let at = Moment::from_micros(second * 1_000_000);
+            notices.push(
+                at,
+                NoticeKind::HoldConfirmed {
+                    after: Duration::from_millis(second),
+                },
+            );
+            notices.push(at, NoticeKind::HoldAlarm);
+        }
+        let counts: Vec<_> = notices
+            .iter()
+            .map(|notice| (notice.level, notice.count))
+            .collect();
+        assert_eq!(counts, [(Level::Alarm, 5), (Level::Info, 5)]);
+    }
+
+    #[test]
+    fn notices_are_bounded_and_the_loss_is_counted() {
+        let mut notices = Notices::default();
+        for number in 0..100 {
+            notices.push(
+                Moment::ZERO,
+                NoticeKind::EndpointIgnored {
+                    text: number.to_string(),
+                },
+            );
+        }
+        assert_eq!((notices.len(), notices.dropped()), (NOTICES_MAX, 36));
+        let newest = notices
+            .iter()
+            .next()
+            .map(|notice| notice.id)
+            .unwrap_or_default();
+        notices.dismiss(newest);
+        assert_eq!(notices.len(), NOTICES_MAX - 1);
+        assert!(notices.iter().all(|notice| notice.id != newest));
     }
 }

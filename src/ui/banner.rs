@@ -5,7 +5,7 @@ use crate::hand::Dof;
 use crate::link::{Dialling, Hold, LinkState};
 use crate::ui::controls::{self, Button, Label, take_left, take_right};
 use crate::ui::look::{Look, Pane};
-use crate::ui::text::{Text, main, words};
+use crate::ui::text::{Text, main, notices, words};
 use crate::ui::{format, theme};
 use egui::{Color32, CornerRadius, Id, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -49,7 +49,7 @@ fn lost(pane: &Pane<'_>) -> Option<Banner> {
     } else {
         (main::UNREACHABLE_TITLE, pane.look.palette.warn)
     };
-    let cause = format::sentence(&trouble.to_string());
+    let cause = notices::trouble(pane.look, trouble);
     let body = if known {
         format!("{} {cause}", pane.look.say(main::LOST_BODY))
     } else {
@@ -94,7 +94,12 @@ fn faults(pane: &Pane<'_>) -> Option<Banner> {
         .collect();
     Some(Banner {
         title: main::FAULT_TITLE,
-        body: format!("{} {}", list.join(" · "), look.say(main::FAULT_BODY)),
+        body: format!(
+            "{}{}{}",
+            list.join(" · "),
+            look.say(main::LIST_END),
+            look.say(main::FAULT_BODY)
+        ),
         aside: String::new(),
         color: look.value(pane.freshness(Some(faults.asked)), look.palette.bad),
         shows_faults: true,

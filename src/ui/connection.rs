@@ -1,14 +1,13 @@
 //! The connection: which hand, over what, and how well it goes. Asks to connect; opens nothing.
 
 use crate::app::action::Action;
-use crate::link::LinkTrouble;
 use crate::transport::Endpoint;
 use crate::transport::endpoint::{
     DEFAULT_BAUD, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
 };
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::look::Pane;
-use crate::ui::text::{Text, panels};
+use crate::ui::text::{Text, notices, panels};
 use crate::ui::top_bar::link_words;
 use crate::ui::{format, theme};
 use egui::{Id, Rect, TextEdit, Ui, pos2, vec2};
@@ -246,7 +245,7 @@ impl ConnectionForm {
                 .named(&name)
                 .disabled(later)
                 .weight(if chosen {
-                    Weight::Strong
+                    Weight::Chosen
                 } else {
                     Weight::Normal
                 });
@@ -397,7 +396,7 @@ fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
             .put(ui, row);
     }
     if let Some(trouble) = &pane.state.link.trouble {
-        let text = format::sentence(&LinkTrouble::to_string(trouble));
+        let text = notices::trouble(look, trouble);
         paragraph_ui(ui, &mut body, &text, look.palette.bad);
     }
     take_top(&mut body, 0.0);
@@ -432,7 +431,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     let live = pane.state.link.state.is_live();
     let plain = if live { palette.text } else { palette.faint };
     let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
-    let trip = |value| format!("{} ms", format::millis(value));
+    let trip = |value: Option<_>| format!("{} ms", format::millis(value.filter(|_| live)));
     let count = |text, value: u64| (text, value.to_string(), palette.text);
     let bad = |text, value: u64| {
         (

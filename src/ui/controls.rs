@@ -111,7 +111,9 @@ pub(crate) fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
 pub(crate) enum Weight {
     /// One of many.
     Normal,
-    /// Chosen, or the main thing to do.
+    /// The one that is chosen of several.
+    Chosen,
+    /// The main thing to do.
     Strong,
     /// No ground until the pointer is there.
     Quiet,
@@ -173,7 +175,7 @@ impl<'a> Button<'a> {
     pub(crate) const fn choice(mut self, selected: bool) -> Self {
         self.selected = Some(selected);
         self.weight = if selected {
-            Weight::Strong
+            Weight::Chosen
         } else {
             Weight::Quiet
         };
@@ -234,7 +236,7 @@ impl<'a> Button<'a> {
         let palette = look.palette;
         match (self.disabled, self.weight) {
             (Some(_), _) => palette.faint,
-            (None, Weight::Normal) => palette.text,
+            (None, Weight::Normal | Weight::Chosen) => palette.text,
             (None, Weight::Quiet) => palette.muted,
             (None, Weight::Strong | Weight::Stop) => palette.on_strong,
             (None, Weight::Armed) => palette.on_armed,
@@ -255,6 +257,7 @@ impl<'a> Button<'a> {
             Weight::Normal => (palette.control, palette.edge),
             Weight::Quiet if hot => (palette.control, Color32::TRANSPARENT),
             Weight::Quiet => (Color32::TRANSPARENT, Color32::TRANSPARENT),
+            Weight::Chosen => (palette.wash(palette.accent), palette.accent),
             Weight::Strong => (palette.accent, palette.accent),
             Weight::Armed => (palette.armed, palette.armed),
             Weight::Stop if hot => (palette.stop_hover, palette.stop_edge),

@@ -1,13 +1,13 @@
 //! Faults with words, cause and advice, what each drive says, and messages. Clears nothing by itself.
 
 use crate::app::action::Action;
-use crate::app::faults::FaultEntry;
+use crate::app::faults::{FaultEntry, FaultKind};
 use crate::app::notices::{Level, Notice};
-use crate::hand::{Dof, Fault};
+use crate::app::state::Freshness;
+use crate::hand::{Dof, Fault, Status};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right};
 use crate::ui::look::Pane;
-use crate::ui::notice_words;
-use crate::ui::text::{main, panels, words};
+use crate::ui::text::{main, notices, panels, words};
 use crate::ui::{format, theme};
 use egui::{Color32, Id, Rect, Ui, UiBuilder, pos2, vec2};
 
@@ -21,7 +21,7 @@ pub(crate) fn faults_card_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     clear_ui(ui, &mut head, pane);
     list_ui(ui, body, pane, "faults card", &mut |ui, width, pane| {
         fault_list_ui(ui, width, pane);
-        for notice in newest_notices(pane) {
+        for notice in pane.state.notices.iter() {
             notice_ui(ui, width, pane, notice);
         }
     });
@@ -41,7 +41,7 @@ pub(crate) fn faults_view_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let (_, body) = controls::titled_card(ui, look, lower, look.say(panels::MESSAGES));
     list_ui(ui, body, pane, "messages", &mut |ui, width, pane| {
         let mut any = false;
-        for notice in newest_notices(pane) {
+        for notice in pane.state.notices.iter() {
             notice_ui(ui, width, pane, notice);
             any = true;
         }
@@ -132,24 +132,16 @@ fn wrapped_ui(ui: &mut Ui, width: f32, indent: f32, text: &str, color: Color32) 
 
 fn fault_list_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let mut entries: Vec<FaultEntry> = pane.state.faults.iter().copied().collect();
-    // Those of now first; of each kind the newest first.
-    entries.sort_by_key(|entry| (entry.until.is_some(), std::cmp::Reverse(entry.since)));
+    let entries: Vec<FaultEntry> = pane.state.faults.iter().copied().collect();
     if entries.is_empty() {
-        let known = pane.state.sample.faults.is_some();
-        let text = if known {
-            panels::FAULTS_NONE
-        } else {
-            panels::FAULTS_UNKNOWN
+        let asked = pane.state.sample.faults.map(|faults| faults.asked);
+        let (text, color) = match pane.freshness(asked) {
+            Freshness::Live => (panels::FAULTS_NONE, look.palette.ok),
+            Freshness::Stale => (panels::FAULTS_NONE_OLD, look.palette.faint),
+            Freshness::Unknown => (panels::FAULTS_UNKNOWN, look.palette.faint),
         };
         let place = piece(ui, width, LINE + 3.0);
-        if known {
-            controls::lamp(
-                ui,
-                pos2(place.left() + 6.0, place.center().y),
-                look.palette.ok,
-            );
-        }
+        controls::lamp(ui, pos2(place.left() + 6.0, place.center().y), color);
         let place = place.with_min_x(place.left() + 17.0);
         Label::new(look.say(text), look.palette.muted).put(ui, place);
         wrapped_ui(
@@ -194,14 +186,14 @@ fn fault_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, entry: &FaultEntry) {
         .small()
         .right()
         .put(ui, place);
-    let words = words::fault(entry.what, look.language);
+    let words = notices::fault_kind(entry.what, look.language);
     let title = format!("{}: {}", look.say(words::dof(entry.dof)), words.title);
     let title_color = if now { palette.text } else { palette.muted };
     Label::new(&title, title_color).put(ui, row);
     if now {
         let text = format!("{} {}", words.cause, words.advice);
         wrapped_ui(ui, width, 17.0, &text, palette.muted);
-        if entry.what == Fault::OverTemperature {
+        if entry.what == FaultKind::Fault(Fault::OverTemperature) {
             let text = look.say(panels::OVER_TEMPERATURE_STAYS);
             wrapped_ui(ui, width, 17.0, text, palette.warn);
         }
@@ -234,16 +226,14 @@ fn status_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, dof: Dof) {
         .put(ui, code);
     Label::new(words.title, look.value(freshness, live)).put(ui, row);
     wrapped_ui(ui, width, 96.0 + theme::GAP, words.cause, palette.muted);
-    if words.advice.len() > 16 {
+    let well = matches!(
+        status,
+        Status::Releasing | Status::Grasping | Status::PositionReached
+    );
+    if !well {
         wrapped_ui(ui, width, 96.0 + theme::GAP, words.advice, palette.muted);
     }
     piece(ui, width, theme::PAD);
-}
-
-fn newest_notices<'a>(pane: &Pane<'a>) -> Vec<&'a Notice> {
-    let mut notices: Vec<&Notice> = pane.state.notices.iter().collect();
-    notices.sort_by_key(|notice| std::cmp::Reverse(notice.id));
-    notices
 }
 
 fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
@@ -251,10 +241,10 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
     let palette = look.palette;
     let color = match notice.level {
         Level::Info => palette.accent,
-        Level::Warning => palette.warn,
-        Level::Error => palette.bad,
+        Level::Warn => palette.warn,
+        Level::Alarm => palette.bad,
     };
-    let text = notice_words::notice(&notice.what, look);
+    let text = notices::notice(look, &notice.what);
     let mut row = piece(ui, width, LINE + 5.0);
     controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
     row.min.x += 17.0;

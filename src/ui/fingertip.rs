@@ -6,17 +6,23 @@ use egui::{
 };
 
 /// Half the sensing area's width in millimetres, with the skin around it (protocol §5.2).
-const HALF_WIDTH_MM: f32 = 7.6;
+const HALF_WIDTH_MM: f32 = 8.0;
 /// The skin's ends in millimetres, tip first.
 const TIP_MM: f32 = 13.4;
 /// The skin's lower end.
 const BASE_MM: f32 = -12.6;
+/// Room around the skin for the halo.
+const MARGIN_MM: f32 = 1.0;
 /// Normal force that fills the finger's width (manual 1.2: 20 N grip).
 const FULL_NORMAL_N: f32 = 20.0;
 /// Tangential force of the longest arrow.
 const FULL_SHEAR_N: f32 = 5.0;
 /// Proximity at which the halo is strongest. The scale ends near 16 million; contact begins far below.
 const FULL_PROXIMITY: f32 = 2_000_000.0;
+
+/// Height of a fingertip with its halo, in widths.
+pub(crate) const HEIGHT_TO_WIDTH: f32 =
+    (TIP_MM - BASE_MM + 2.0 * MARGIN_MM) / (2.0 * (HALF_WIDTH_MM + MARGIN_MM));
 
 /// What is drawn of one fingertip. Everything that is `None` is not drawn.
 #[derive(Debug, Clone, Copy, Default)]
@@ -41,7 +47,11 @@ struct Scale {
 
 impl Scale {
     fn fit(rect: Rect) -> Self {
-        let per_mm = (rect.width() / (2.0 * HALF_WIDTH_MM)).min(rect.height() / (TIP_MM - BASE_MM));
+        let (width, height) = (
+            HALF_WIDTH_MM + MARGIN_MM,
+            TIP_MM - BASE_MM + 2.0 * MARGIN_MM,
+        );
+        let per_mm = (rect.width() / (2.0 * width)).min(rect.height() / height);
         let lift = (TIP_MM + BASE_MM) / 2.0 * per_mm;
         Self {
             center: rect.center() + vec2(0.0, lift),
@@ -136,7 +146,7 @@ fn halo(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
         return;
     };
     let level = (proximity / FULL_PROXIMITY).clamp(0.0, 1.0) * fade;
-    for (grow, part) in [(2.2, 0.10), (1.4, 0.16), (0.7, 0.24)] {
+    for (grow, part) in [(1.4, 0.10), (0.9, 0.16), (0.4, 0.26)] {
         let (rect, round) = outline(scale, grow);
         let color = look.palette.accent.gamma_multiply(part * level);
         painter.rect_filled(rect, round, color);
@@ -166,7 +176,7 @@ fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
         ));
     }
     // The eighth channel belongs to no pad: a bar beside them.
-    let bar = Rect::from_two_pos(scale.at(6.1, 4.6), scale.at(6.8, -4.6));
+    let bar = Rect::from_two_pos(scale.at(6.0, 4.6), scale.at(6.8, -4.6));
     let heat = last.first().copied().flatten();
     painter.rect(
         bar,

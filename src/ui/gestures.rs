@@ -10,8 +10,8 @@ use egui::{Id, Rect, TextEdit, Ui, UiBuilder, pos2, vec2};
 
 /// The last of the gestures that cannot be changed (manual 2.6.7).
 const LAST_FIXED: u8 = 13;
-/// Tiles in a row of the overview.
-const COLUMNS: u8 = 20;
+/// Height of the overview from which its tiles are large enough for names.
+const ROOMY: f32 = 640.0;
 /// Characters that a name may have.
 const NAME_MAX: usize = 24;
 
@@ -46,18 +46,28 @@ const fn route_text(route: GestureRoute) -> Text {
 }
 
 impl GestureView {
-    /// The strip of the overview: two rows of tiles.
+    /// Height of the strip in an overview of this height.
+    pub(crate) fn strip_height(height: f32) -> f32 {
+        if height < ROOMY { 96.0 } else { 160.0 }
+    }
+
+    /// The strip of the overview: two rows of numbers, or four rows with names.
+
     pub(crate) fn strip_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
         let (mut head, body) = controls::titled_card(ui, look, rect, look.say(panels::GESTURES));
         self.head_ui(ui, &mut head, pane);
         let gap = theme::STEP;
-        let columns = f32::from(COLUMNS);
+        let count: u8 = if rect.height() < 120.0 { 20 } else { 10 };
+        let (columns, rows) = (
+            f32::from(count),
+            f32::from(Gesture::MAX.get().div_ceil(count)),
+        );
         let size = vec2(
             (body.width() - gap * (columns - 1.0)) / columns,
-            (body.height() - gap) / 2.0,
+            (body.height() - gap * (rows - 1.0)) / rows,
         );
-        for (gesture, place) in grid(body, size, gap, COLUMNS) {
+        for (gesture, place) in grid(body, size, gap, count) {
             self.tile_ui(ui, place, pane, gesture);
         }
     }

@@ -20,7 +20,7 @@ const LINE_MIN: f32 = 22.0;
 /// Width of a number field.
 const FIELD: f32 = 52.0;
 /// Width of the readings at the right.
-const READING: f32 = 104.0;
+const READING: f32 = 112.0;
 /// Speed and threshold from which impacts were measured far above the threshold (protocol, choices).
 const IMPACT_SPEED: i16 = 250;
 /// See [`IMPACT_SPEED`].
@@ -182,14 +182,17 @@ impl Row {
     fn head_ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, roomy: bool) {
         let palette = pane.look.palette;
         let mut rest = rect;
-        let name = take_left(&mut rest, 88.0);
+        let name = take_left(&mut rest, 84.0);
         Label::new(self.name, palette.text).put(ui, name);
         self.lock_ui(ui, take_right(&mut rest, 20.0), pane);
         if !roomy {
-            let drive = take_right(&mut rest, 80.0);
+            rest.max.x += theme::STEP;
+            let drive = take_right(&mut rest, 78.0);
             self.drive_reading_ui(ui, drive, pane);
+            rest.max.x += theme::STEP;
             let force = take_right(&mut rest, 40.0);
             self.force_reading_ui(ui, force, pane);
+            rest.max.x += theme::STEP;
         }
         self.impact_ui(ui, &mut rest, pane);
         self.status_ui(ui, rest, pane);
@@ -326,13 +329,22 @@ impl Row {
         } else {
             pane.look.palette.text
         };
-        let text = format!("{raw} {degrees}");
         let name = self.named(pane, main::NAME_ANGLE_ACTUAL);
-        Label::new(&text, pane.look.value(freshness, live))
+        let (left, right) = rect.split_left_right_at_x(rect.right() - 52.0);
+        Label::new(&raw, pane.look.value(freshness, live))
             .number()
             .right()
             .named(&name)
-            .put(ui, rect);
+            .put(ui, left);
+        let degrees_name = format!("{name} °");
+        Label::new(
+            &degrees,
+            pane.look.value(freshness, pane.look.palette.muted),
+        )
+        .number()
+        .right()
+        .named(&degrees_name)
+        .put(ui, right);
     }
 
     fn force_ui(&self, ui: &mut Ui, mut line: Rect, pane: &mut Pane<'_>) {
@@ -404,7 +416,8 @@ impl Row {
         };
         let current = format::with_unit(current.map(|value| i64::from(value.raw())), 4, "mA");
         let heat = format::whole(heat.map(|heat| i64::from(heat.raw())), 3);
-        let text = format!("{current} {heat}°");
+        let unit = if rect.width() < READING { "°" } else { " °C" };
+        let text = format!("{current} {heat}{unit}");
         let name = self.named(pane, main::NAME_DRIVE);
         let label = Label::new(&text, pane.look.value(both, live))
             .number()

@@ -1,6 +1,6 @@
 //! Scales and grids of the plots: rounded ends, few lines, numbers beside them. Knows no hand.
 
-use crate::ui::controls::{Label, paint_text};
+use crate::ui::controls::paint_text;
 use crate::ui::look::Look;
 use crate::ui::plots::AXIS;
 use crate::ui::text::panels;
@@ -53,10 +53,11 @@ impl Band {
         self.high = self.high.max(value);
     }
 
-    /// Rounded outwards to a step that gives two to four lines.
-    pub(crate) fn rounded(self, steps: [f64; 8]) -> Self {
+    /// Rounded outwards to a step that gives no more lines than there is room for, and no more than five.
+    pub(crate) fn rounded(self, steps: [f64; 8], room: f32) -> Self {
+        let most = f64::from(room.clamp(2.0, 5.0) - 1.0);
         let span = self.high - self.low;
-        let fits = |step: &f64| span / step <= 4.0;
+        let fits = |step: &f64| span / step <= most;
         let last = steps.last().copied().unwrap_or(1.0);
         let step = steps.into_iter().find(fits).unwrap_or(last);
         // A value a hair below zero must not take a quarter of the plot.
@@ -91,6 +92,17 @@ fn y_of(rect: Rect, band: &Band, value: f64) -> f32 {
     )]
     let part = part as f32;
     rect.bottom() - rect.height() * part
+}
+
+/// Where a time stands between the ends of a rectangle.
+pub(crate) fn x_of(rect: Rect, span: (f64, f64), time_s: f64) -> f32 {
+    let part = (time_s - span.0) / (span.1 - span.0);
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "0..=1 of a width in pixels"
+    )]
+    let part = part as f32;
+    rect.left() + rect.width() * part
 }
 
 /// The numbers left of a plot.
@@ -159,11 +171,11 @@ pub(crate) fn grid(ui: &Ui, rect: Rect, look: Look, band: &Band, window_s: f64) 
 }
 
 /// The numbers under the lowest plot.
-pub(crate) fn time_axis_ui(ui: &mut Ui, rect: Rect, look: Look, window_s: f64) {
+pub(crate) fn time_axis_ui(ui: &Ui, rect: Rect, look: Look, window_s: f64) {
     let (font, color) = (theme::number_small(), look.palette.faint);
     for (ago, x) in time_lines(rect, window_s) {
         let text = match ago {
-            0.0 => "0 s".to_owned(),
+            0.0 => look.say(panels::NOW).to_owned(),
             ago if window_s > 60.0 => format!("-{:.0} min", ago / 60.0),
             ago => format!("-{ago:.0} s"),
         };
@@ -179,13 +191,6 @@ pub(crate) fn time_axis_ui(ui: &mut Ui, rect: Rect, look: Look, window_s: f64) {
             paint_text(ui, place, align, &text, font.clone(), color);
         }
     }
-    let caption = Rect::from_min_size(
-        pos2(rect.left() - AXIS, rect.top()),
-        vec2(AXIS, rect.height()),
-    );
-    Label::new(look.say(panels::SECONDS_AGO), color)
-        .small()
-        .put(ui, caption);
 }
 
 #[cfg(test)]
@@ -205,7 +210,7 @@ mod tests {
             let mut extent = Extent::default();
             extent.include(low);
             extent.include(high);
-            let band = Band::of((0.0, 200.0), &extent).rounded(STEPS);
+            let band = Band::of((0.0, 200.0), &extent).rounded(STEPS, 5.0);
             assert!(band.low <= low.min(0.0) && band.high >= high, "{band:?}");
             assert!((2..=10).contains(&band.lines().count()), "{band:?}");
         }
@@ -216,7 +221,7 @@ mod tests {
         let mut extent = Extent::default();
         extent.include(f64::NAN);
         extent.include(f64::INFINITY);
-        let band = Band::of((0.0, 200.0), &extent).rounded(STEPS);
+        let band = Band::of((0.0, 200.0), &extent).rounded(STEPS, 5.0);
         assert_eq!((band.low, band.high), (0.0, 200.0));
     }
 }

@@ -79,6 +79,10 @@ pub(crate) struct Palette {
     pub(crate) stop_hover: Color32,
     /// The stop button's edge.
     pub(crate) stop_edge: Color32,
+    /// The handle of a track.
+    pub(crate) handle: Color32,
+    /// The dot in a handle.
+    pub(crate) handle_dot: Color32,
     /// The skin of a drawn fingertip.
     pub(crate) skin: Color32,
     /// The shear arrow over the heat.
@@ -113,6 +117,8 @@ static DARK: Palette = Palette {
     stop: Color32::from_rgb(0xD6, 0x2D, 0x3A),
     stop_hover: Color32::from_rgb(0xEA, 0x3F, 0x4B),
     stop_edge: Color32::from_rgb(0xFF, 0x7A, 0x80),
+    handle: Color32::from_rgb(0xE8, 0xEC, 0xF2),
+    handle_dot: Color32::from_rgb(0x16, 0x1A, 0x20),
     skin: Color32::from_rgb(0x1E, 0x24, 0x2D),
     arrow: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     dof: PerDof::new([
@@ -150,6 +156,8 @@ static LIGHT: Palette = Palette {
     stop: Color32::from_rgb(0xD0, 0x22, 0x30),
     stop_hover: Color32::from_rgb(0xB6, 0x18, 0x26),
     stop_edge: Color32::from_rgb(0x96, 0x10, 0x1C),
+    handle: Color32::from_rgb(0xFF, 0xFF, 0xFF),
+    handle_dot: Color32::from_rgb(0x4E, 0x5A, 0x69),
     skin: Color32::from_rgb(0xE4, 0xE9, 0xEF),
     arrow: Color32::from_rgb(0x10, 0x14, 0x1A),
     dof: PerDof::new([
@@ -180,13 +188,12 @@ impl Palette {
     /// A colour of the heat scale; `level` is 0..=1 and is cut to it.
     pub(crate) fn heat(&self, level: f32) -> Color32 {
         let level = f64::from(level.clamp(0.0, 1.0));
-        // The dark end of the scale would vanish in the dark skin, the light end in the light one.
-        let at = if self.dark {
-            0.12 + 0.88 * level
+        // Rest must look calm on both grounds: dark on the dark skin, pale on the light one.
+        let color = if self.dark {
+            colorous::INFERNO.eval_continuous(0.12 + 0.88 * level)
         } else {
-            0.94 * (1.0 - level)
+            colorous::YELLOW_ORANGE_RED.eval_continuous(level)
         };
-        let color = colorous::INFERNO.eval_continuous(at);
         Color32::from_rgb(color.r, color.g, color.b)
     }
 }

@@ -160,7 +160,10 @@ fn figures_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         + stats.resyncs
         + stats.foreign_replies
         + stats.refusals;
-    let (p50, p99) = (format::millis(stats.rtt_p50), format::millis(stats.rtt_p99));
+    let (p50, p99) = (
+        format::millis(stats.rtt_p50.filter(|_| live)),
+        format::millis(stats.rtt_p99.filter(|_| live)),
+    );
     let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
     let figures = [
         Figure {

@@ -2,7 +2,7 @@
 
 use crate::app::state::Freshness;
 use crate::hand::{Finger, PerFinger, TactileBlock};
-use crate::ui::controls::{self, Label, take_left};
+use crate::ui::controls::{self, Label};
 use crate::ui::fingertip::{self, Tip};
 use crate::ui::look::{Look, Pane};
 use crate::ui::text::{Text, panels, words};
@@ -11,10 +11,47 @@ use egui::{CornerRadius, Rect, Ui, pos2, vec2};
 
 /// Counts above rest at which a pad is hottest, at least: below this, noise would look like touch.
 const HEAT_FLOOR: f32 = 20_000.0;
-/// Width of the captions beside the numbers.
-const CAPTION: f32 = 52.0;
-/// Height of a row of numbers.
-const ROW: f32 = 17.0;
+/// How the numbers under the pictures are set.
+#[derive(Debug, Clone, Copy)]
+struct Sheet {
+    /// Width of the captions.
+    caption: f32,
+    /// Height of a row.
+    row: f32,
+    /// Large digits.
+    large: bool,
+}
+
+impl Sheet {
+    fn new(ui: &Ui, look: Look, captions: &[Text], row: f32, large: bool) -> Self {
+        let width = |text: &Text| controls::text_width(ui, look.say(*text), theme::small());
+        let widest = captions.iter().map(width).fold(0.0, f32::max);
+        Self {
+            caption: widest + theme::STEP,
+            row,
+            large,
+        }
+    }
+
+    fn font(self) -> egui::FontId {
+        if self.large {
+            theme::number()
+        } else {
+            theme::number_small()
+        }
+    }
+
+    /// The five columns right of the captions.
+    fn columns(self, rect: Rect) -> impl Iterator<Item = (Finger, Rect)> {
+        let left = rect.left() + self.caption;
+        let width = (rect.right() - left) / 5.0;
+        Finger::ALL.into_iter().scan(left, move |x, finger| {
+            let column = Rect::from_min_max(pos2(*x, rect.top()), pos2(*x + width, rect.bottom()));
+            *x += width;
+            Some((finger, column))
+        })
+    }
+}
 
 /// What the fingertips need between frames.
 #[derive(Debug, Default)]
@@ -82,21 +119,23 @@ impl TouchView {
         }
     }
 
+    /// Height of the overview's card at this width: as much as the pictures can fill.
+    pub(crate) fn small_height(width: f32) -> f32 {
+        let picture = (width - 2.0 * theme::PAD - 44.0) / 5.0 * fingertip::HEIGHT_TO_WIDTH;
+        2.0 * theme::PAD + theme::CONTROL + theme::GAP + 20.0 + picture + theme::STEP + 5.0 * 17.0
+    }
+
     /// The card of the overview.
     pub(crate) fn small_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let look = pane.look;
         let (head, body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
         scale_ui(ui, head, look);
-        let table = 5.0 * ROW;
-        let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - table);
-        let full = self.hottest(pane);
-        self.pictures_ui(
-            ui,
-            pictures.with_max_y(pictures.bottom() - theme::STEP),
-            pane,
-            full,
-        );
-        table_ui(ui, table, pane, &LINES);
+        let captions = LINES.each_ref().map(|line| line.caption);
+        let sheet = Sheet::new(ui, look, &captions, 17.0, false);
+        let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - 5.0 * sheet.row);
+        let pictures = pictures.with_max_y(pictures.bottom() - theme::STEP);
+        self.pictures_ui(ui, pictures, pane, sheet);
+        table_ui(ui, table, pane, sheet);
     }
 
     /// The view of its own: larger pictures, and every channel as a number.
@@ -104,25 +143,25 @@ impl TouchView {
         let look = pane.look;
         let (head, body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
         scale_ui(ui, head, look);
-        let rows = 5.0 + 2.0 + 8.0;
-        let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - rows * ROW - theme::GAP);
-        let full = self.hottest(pane);
-        self.pictures_ui(
-            ui,
-            pictures.with_max_y(pictures.bottom() - theme::GAP),
-            pane,
-            full,
-        );
-        let mut table = table;
-        let forces = controls::take_top(&mut table, 5.0 * ROW);
-        table_ui(ui, forces, pane, &LINES);
-        deltas_ui(ui, controls::take_top(&mut table, 2.0 * ROW), pane);
-        self.channels_ui(ui, table, pane);
+        let captions = [panels::TOUCH_DELTA_N, panels::TOUCH_DELTA_T];
+        let wide = body.width() > 760.0;
+        let row = if body.height() > 600.0 { 20.0 } else { 16.0 };
+        let sheet = Sheet::new(ui, look, &captions, row, wide);
+        let height = 15.0 * sheet.row + 2.0 * theme::GAP;
+        let (pictures, mut table) = body.split_top_bottom_at_y(body.bottom() - height);
+        let pictures = pictures.with_max_y(pictures.bottom() - theme::GAP);
+        self.pictures_ui(ui, pictures, pane, sheet);
+        let forces = controls::take_top(&mut table, 5.0 * sheet.row);
+        table_ui(ui, forces, pane, sheet);
+        let deltas = controls::take_top(&mut table, 2.0 * sheet.row);
+        deltas_ui(ui, deltas, pane, sheet);
+        self.channels_ui(ui, table, pane, sheet);
     }
 
-    fn pictures_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, full: f32) {
+    fn pictures_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
         let look = pane.look;
-        for (finger, mut column) in columns(rect) {
+        let full = self.hottest(pane);
+        for (finger, mut column) in sheet.columns(rect) {
             let name = look.say(words::finger(finger));
             let title = controls::take_top(&mut column, 16.0);
             let color = look.palette.dof[finger.bend()];
@@ -134,9 +173,7 @@ impl TouchView {
                 stale: freshness != Freshness::Live,
                 ..tip
             };
-            let place = column
-                .with_min_y(column.top() - theme::STEP)
-                .shrink2(vec2(2.0, 2.0));
+            let place = column.with_min_y(column.top() - theme::STEP);
             fingertip::paint(ui.painter(), look, place, &tip);
             let response = ui.allocate_rect(place, egui::Sense::hover());
             response.on_hover_text(look.say(panels::TOUCH_TIP));
@@ -179,19 +216,26 @@ impl TouchView {
         step.max(HEAT_FLOOR)
     }
 
-    fn channels_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    fn channels_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
         let look = pane.look;
         let mut top = rect.top();
         for channel in 0..8usize {
-            let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), ROW));
+            let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), sheet.row));
             let caption = format!("{} {}", look.say(panels::TOUCH_CHANNEL), channel + 1);
-            row_ui(ui, row, pane, &caption, &caption, &|finger, block, _| {
-                let raw = block.raw.get(channel).copied().map(i64::from);
-                let rest = self.rest[finger].and_then(|rest| rest.get(channel).copied());
-                let change = raw.zip(rest).map(|(raw, rest)| raw - i64::from(rest));
-                format!("{:>7} {:>+7}", format::counts(raw), Signed(change))
-            });
-            top += ROW;
+            row_ui(
+                ui,
+                row,
+                pane,
+                sheet,
+                [&caption, &caption],
+                &|finger, block, _| {
+                    let raw = block.raw.get(channel).copied().map(i64::from);
+                    let rest = self.rest[finger].and_then(|rest| rest.get(channel).copied());
+                    let change = raw.zip(rest).map(|(raw, rest)| raw - i64::from(rest));
+                    format!("{:>6} {:>7}", format::counts(raw), Signed(change))
+                },
+            );
+            top += sheet.row;
         }
     }
 }
@@ -222,60 +266,49 @@ fn small_float(value: i64) -> f32 {
     float
 }
 
-/// The five columns right of the captions.
-fn columns(rect: Rect) -> impl Iterator<Item = (Finger, Rect)> {
-    let left = rect.left() + CAPTION;
-    let width = (rect.right() - left) / 5.0;
-    Finger::ALL.into_iter().scan(left, move |x, finger| {
-        let column = Rect::from_min_max(pos2(*x, rect.top()), pos2(*x + width, rect.bottom()));
-        *x += width;
-        Some((finger, column))
-    })
-}
-
-fn table_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, lines: &[Line]) {
+fn table_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
     let look = pane.look;
     let mut top = rect.top();
-    for line in lines {
-        let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), ROW));
-        let (caption, name) = (look.say(line.caption), look.say(line.name));
-        row_ui(ui, row, pane, caption, name, &|_, block, look| {
+    for line in &LINES {
+        let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), sheet.row));
+        let texts = [look.say(line.caption), look.say(line.name)];
+        row_ui(ui, row, pane, sheet, texts, &|_, block, look| {
             (line.value)(block, look)
         });
-        top += ROW;
+        top += sheet.row;
     }
 }
 
-fn deltas_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+fn deltas_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
     let look = pane.look;
     let (first, second) = rect.split_top_bottom_at_fraction(0.5);
-    let caption = look.say(panels::TOUCH_DELTA_N);
-    row_ui(ui, first, pane, caption, caption, &|_, block, _| {
+    let text = look.say(panels::TOUCH_DELTA_N);
+    row_ui(ui, first, pane, sheet, [text, text], &|_, block, _| {
         format::counts(Some(block.normal_delta.into()))
     });
-    let caption = look.say(panels::TOUCH_DELTA_T);
-    row_ui(ui, second, pane, caption, caption, &|_, block, _| {
+    let text = look.say(panels::TOUCH_DELTA_T);
+    row_ui(ui, second, pane, sheet, [text, text], &|_, block, _| {
         format::counts(Some(block.tangential_delta.into()))
     });
 }
 
 type Reading<'a> = &'a dyn Fn(Finger, &TactileBlock, Look) -> String;
 
+/// One row: a caption, its longer name for accessibility, and a number for each finger.
 fn row_ui(
     ui: &mut Ui,
     row: Rect,
     pane: &Pane<'_>,
-    caption: &str,
-    name: &str,
+    sheet: Sheet,
+    [caption, name]: [&str; 2],
     reading: Reading<'_>,
 ) {
     let look = pane.look;
-    let mut place = row;
-    let left = take_left(&mut place, CAPTION - theme::GAP);
+    let left = row.with_max_x(row.left() + sheet.caption);
     Label::new(caption, look.palette.muted)
         .small()
         .put(ui, left);
-    for (finger, column) in columns(row) {
+    for (finger, column) in sheet.columns(row) {
         let block = pane.state.sample.tactile[finger];
         let freshness = pane.freshness(block.map(|block| block.asked));
         let text = block.map_or_else(
@@ -284,7 +317,7 @@ fn row_ui(
         );
         let name = format!("{} {name}", look.say(words::finger(finger)));
         Label::new(&text, look.value(freshness, look.palette.text))
-            .font(theme::number_small())
+            .font(sheet.font())
             .center()
             .named(&name)
             .put(ui, column);

@@ -253,8 +253,8 @@ impl Track<'_> {
         }
         let hot = response.hovered() || response.dragged() || response.has_focus();
         let edge = if hot { palette.accent } else { palette.muted };
-        painter.circle(center, HANDLE, palette.text, Stroke::new(2.0, edge));
-        painter.circle_filled(center, 2.5, palette.card);
+        painter.circle(center, HANDLE, palette.handle, Stroke::new(2.0, edge));
+        painter.circle_filled(center, 2.5, palette.handle_dot);
     }
 }
 

@@ -158,7 +158,7 @@ impl Window {
         top_bar::tabs_ui(ui, tabs, pane, &mut self.view);
         let body = Rect::from_min_max(body.min, body.max - egui::vec2(theme::GAP, theme::GAP));
         let body = body.with_min_x(body.left() + theme::GAP);
-        let joints_width = (whole.width() * 0.3).clamp(384.0, 560.0);
+        let joints_width = (whole.width() * 0.29).clamp(384.0, 560.0).round();
         let (left, right) = body.split_left_right_at_x(body.left() + joints_width);
         joints::joints_ui(ui, left, pane);
         self.view_ui(ui, right.with_min_x(right.left() + theme::GAP), pane);
@@ -177,15 +177,16 @@ impl Window {
     }
 
     fn live_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        let strip_height = if rect.height() < 640.0 { 96.0 } else { 112.0 };
+        let strip_height = GestureView::strip_height(rect.height());
         let (upper, strip) = rect.split_top_bottom_at_y(rect.bottom() - strip_height);
         self.gestures.strip_ui(ui, strip, pane);
         let upper = upper.with_max_y(upper.bottom() - theme::GAP);
-        let right_width = (rect.width() * 0.36).clamp(288.0, 560.0);
+        let right_width = (rect.width() * 0.4).clamp(288.0, 560.0).round();
         let (center, right) = upper.split_left_right_at_x(upper.right() - right_width);
         let center = center.with_max_x(center.right() - theme::GAP);
         self.plots.ui(ui, center, pane);
-        let touch_height = (right.height() * 0.6).clamp(232.0, 460.0);
+        let most = (right.height() * 0.68).max(200.0);
+        let touch_height = TouchView::small_height(right.width()).min(most).round();
         let (touch, list) = right.split_top_bottom_at_y(right.top() + touch_height);
         self.touch.small_ui(ui, touch, pane);
         faults::faults_card_ui(ui, list.with_min_y(list.top() + theme::GAP), pane);

@@ -55,6 +55,7 @@ texts! {
     FAULT_BODY: "A drive reports a fault. Setpoints do not pass until it is cleared.", "驱动器报告故障。清除之前不会发送设置值。";
     FAULT_SHOW: "Show faults", "查看故障";
     FAULT_SHOW_TIP: "Opens the list of faults with causes and advice.", "打开故障列表，查看原因与建议。";
+    LIST_END: ". ", "。";
     STALE_TITLE: "OLD VALUES", "数据过时";
     STALE_BODY: "No fresh feedback for", "没有新反馈已有";
 

@@ -18,13 +18,14 @@ texts! {
     PLOT_TEMPERATURE: "Temperature, °C", "温度 °C";
     PLOT_ANGLE: "Angle, 0 bent to 1000 open", "角度 0 弯曲 1000 张开";
     PLOT_EMPTY: "Nothing measured in this time", "此时间段内没有数据";
-    SECONDS_AGO: "seconds ago", "秒前";
-    DECIMATED: "Each column shows the lowest and highest value.", "每个像素列显示最小值与最大值。";
+    NOW: "now", "现在";
     MARK_STOP: "Stop", "停止";
     MARK_FAULT: "Fault", "故障";
     MARK_RECONNECT: "Reconnected", "重新连接";
     MARK_GESTURE: "Gesture", "手势";
-    MARK_OTHER: "Mark", "标记";
+    MARK_LOST: "Link lost", "断开";
+    MARK_ARMED: "Armed", "使能";
+    MARK_HELD: "At rest", "静止";
 
     TOUCH: "Fingertips", "指尖触觉";
     TOUCH_SCALE: "Heat: counts above first reading", "热度：相对首次读数的增量";
@@ -50,6 +51,7 @@ texts! {
     FAULTS: "Faults", "故障";
     FAULTS_NONE: "No faults", "没有故障";
     FAULTS_NONE_HINT: "Faults appear here with their cause and what to do.", "出现故障时，这里会列出原因与处理建议。";
+    FAULTS_NONE_OLD: "No faults when last read", "上次读取时没有故障";
     FAULTS_UNKNOWN: "Faults not read yet", "尚未读取故障";
     FAULT_NOW: "now", "当前";
     FAULT_OVER: "over", "已结束";
@@ -64,6 +66,23 @@ texts! {
     OVER_TEMPERATURE_STAYS: "Over-temperature cannot be cleared.", "过温故障不可清除。";
     MESSAGES: "Messages", "消息";
     MESSAGES_NONE: "No messages", "没有消息";
+    NOTICE_LOST: "Link lost.", "连接断开。";
+    NOTICE_NO_LINK: "No hand reached.", "未连接到灵巧手。";
+    NOTICE_RECONNECTED: "The hand answers again. It is not armed.", "灵巧手重新应答，尚未使能。";
+    NOTICE_HELD: "Feedback shows rest. From stop to rest:", "反馈显示已静止。从停止到静止：";
+    NOTICE_ARM: "Not armed.", "未能使能。";
+    NOTICE_ACKNOWLEDGED: "acknowledged by the hand.", "灵巧手已确认。";
+    NOTICE_LOCKED: "Nothing was sent: a gesture moves all joints, and this one is locked:", "未发送：手势会移动所有自由度，而以下自由度已锁定：";
+    NOTICE_NOT_SAVED: "Settings could not be written.", "设置无法写入。";
+    NOTICE_SETTINGS: "The settings file could not be read and was put aside.", "设置文件无法读取，已另存。";
+    NOTICE_ENDPOINT: "The remembered hand means nothing:", "无法识别上次的连接地址：";
+    NOTICE_PORTS: "Serial ports could not be listed.", "无法列出串口。";
+    DISARMED_STOP: "Not armed any more: stop was pressed.", "已取消使能：按下了停止。";
+    DISARMED_PERSON: "Not armed any more.", "已取消使能。";
+    DISARMED_FAULT: "Not armed any more: a drive reports a fault.", "已取消使能：驱动器报告故障。";
+    DISARMED_LOST: "Not armed any more: the link was lost.", "已取消使能：连接断开。";
+    DISARMED_STALE: "Not armed any more: feedback grew old.", "已取消使能：反馈过时。";
+    DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
     STATUS_LIST: "Status of the drives", "驱动器状态";
 
     GESTURES: "Gestures", "手势";

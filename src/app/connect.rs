@@ -1,0 +1,87 @@
+//! The built-in hand behind its wire, beside all other wires. The only place that knows that it is built in.
+
+use crate::link::Clock;
+use crate::sim::serve::{SharedHand, rs485};
+use crate::sim::{Scenario, SimConfig, SimHand};
+use crate::transport::{BoxedWire, Dial, Endpoint, SystemDial, TransportError, pair};
+use futures::future::BoxFuture;
+use std::sync::{Mutex, PoisonError};
+
+/// One built-in hand: it lives on between connections, as a real one does.
+struct Built {
+    seed: u64,
+    scenario: Scenario,
+    hand: SharedHand,
+}
+
+/// Dials everything: `sim:` to the built-in hand over a wire in memory, anything else to the system.
+pub struct SimDial {
+    clock: Clock,
+    system: SystemDial,
+    built: Mutex<Option<Built>>,
+}
+
+impl SimDial {
+    /// No hand is built before it is dialled.
+    #[must_use]
+    pub const fn new(clock: Clock) -> Self {
+        Self { clock, system: SystemDial, built: Mutex::new(None) }
+    }
+
+    /// The hand of this seed and scenario: the one of last time, or a new one that begins now.
+    fn hand(&self, seed: u64, scenario: &str) -> Result<SharedHand, TransportError> {
+        let scenario: Scenario = scenario.parse().map_err(|error: crate::sim::UnknownScenario| TransportError::Io {
+            place: "sim:".into(),
+            message: error.to_string(),
+        })?;
+        let mut built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(built) = built.as_ref().filter(|built| built.seed == seed && built.scenario == scenario) {
+            return Ok(built.hand.clone());
+        }
+        let config = SimConfig { seed, scenario, ..SimConfig::default() };
+        let hand = SharedHand::new(SimHand::new(config), self.clock.instant(self.clock.now()));
+        *built = Some(Built { seed, scenario, hand: hand.clone() });
+        Ok(hand)
+    }
+}
+
+impl Dial for SimDial {
+    fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
+        let Endpoint::Sim { seed, scenario } = endpoint else {
+            return self.system.dial(endpoint);
+        };
+        let hand = self.hand(*seed, scenario);
+        Box::pin(async move {
+            let hand = hand?;
+            let (ours, its) = pair();
+            // Ends by itself when our end is dropped.
+            tokio::spawn(rs485::serve(hand, its));
+            let wire: BoxedWire = Box::new(ours);
+            Ok(wire)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::hand::register;
+
+    #[tokio::test(start_paused = true)]
+    async fn the_same_hand_is_there_after_a_reconnect() {
+        let dial = SimDial::new(Clock::start());
+        let first = dial.hand(1, "idle").unwrap();
+        drop(dial.dial(&Endpoint::sim()).await.unwrap());
+        first.with(|hand, now| hand.write(register::HAND_ID.address, &[9], now)).unwrap();
+        assert_eq!(dial.hand(1, "idle").unwrap().with(|hand, _| hand.id()), 9);
+        assert_eq!(dial.hand(2, "idle").unwrap().with(|hand, _| hand.id()), 1);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn an_unknown_scenario_is_said_in_words() {
+        let endpoint = Endpoint::Sim { seed: 1, scenario: "party".into() };
+        let error = SimDial::new(Clock::start()).dial(&endpoint).await.err().unwrap();
+        assert!(error.to_string().contains("party"), "{error}");
+    }
+}
