@@ -37,20 +37,30 @@ pub fn load(path: &Path) -> Loaded {
     let message = match read(path) {
         Ok(None) => return Loaded::default(),
         Ok(Some(text)) => match toml::from_str(&text) {
-            Ok(settings) => return Loaded { settings, notice: None },
+            Ok(settings) => {
+                return Loaded {
+                    settings,
+                    notice: None,
+                };
+            }
             Err(error) => error.to_string(),
         },
         Err(error) => error.to_string(),
     };
     let kept_as = set_aside(path);
-    Loaded { settings: Settings::default(), notice: Some(NoticeKind::SettingsIgnored { message, kept_as }) }
+    Loaded {
+        settings: Settings::default(),
+        notice: Some(NoticeKind::SettingsIgnored { message, kept_as }),
+    }
 }
 
 fn read(path: &Path) -> std::io::Result<Option<String>> {
     match std::fs::metadata(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(error),
-        Ok(about) if about.len() > FILE_LEN_MAX => Err(std::io::Error::other("the file is too long for settings")),
+        Ok(about) if about.len() > FILE_LEN_MAX => {
+            Err(std::io::Error::other("the file is too long for settings"))
+        }
         Ok(_) => std::fs::read_to_string(path).map(Some),
     }
 }
@@ -94,14 +104,26 @@ pub(crate) struct Saver {
 }
 
 impl Saver {
-    pub(crate) const fn new(path: Option<PathBuf>, runtime: tokio::runtime::Handle, kept: Settings) -> Self {
-        Self { path, runtime, kept, begun: None, under_way: None }
+    pub(crate) const fn new(
+        path: Option<PathBuf>,
+        runtime: tokio::runtime::Handle,
+        kept: Settings,
+    ) -> Self {
+        Self {
+            path,
+            runtime,
+            kept,
+            begun: None,
+            under_way: None,
+        }
     }
 
     /// Writes if needed. What went wrong with an earlier write comes back.
     pub(crate) fn tick(&mut self, settings: &Settings, now: Moment) -> Option<NoticeKind> {
         let failed = self.finished();
-        let waits = self.begun.is_some_and(|begun| now.since(begun) < SAVE_EVERY);
+        let waits = self
+            .begun
+            .is_some_and(|begun| now.since(begun) < SAVE_EVERY);
         if !waits {
             self.begin(settings, now);
         }
@@ -116,7 +138,9 @@ impl Saver {
     }
 
     fn begin(&mut self, settings: &Settings, now: Moment) {
-        let Some(path) = self.path.clone() else { return };
+        let Some(path) = self.path.clone() else {
+            return;
+        };
         if self.under_way.is_some() || *settings == self.kept {
             return;
         }
@@ -169,14 +193,24 @@ mod tests {
         let path = folder.path().join("deep/settings.toml");
         assert_eq!(load(&path), Loaded::default());
         save(&path, &some()).unwrap();
-        assert_eq!(load(&path), Loaded { settings: some(), notice: None });
+        assert_eq!(
+            load(&path),
+            Loaded {
+                settings: some(),
+                notice: None
+            }
+        );
     }
 
     #[test]
     fn keys_of_a_newer_version_survive_load_and_save() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("settings.toml");
-        std::fs::write(&path, "theme = \"light\"\nwarp = 9\n[crew]\nnames = [\"a\", \"b\"]\n").unwrap();
+        std::fs::write(
+            &path,
+            "theme = \"light\"\nwarp = 9\n[crew]\nnames = [\"a\", \"b\"]\n",
+        )
+        .unwrap();
         let loaded = load(&path);
         assert_eq!((loaded.notice, loaded.settings.theme), (None, Theme::Light));
         save(&path, &loaded.settings).unwrap();
@@ -194,7 +228,11 @@ mod tests {
             std::fs::write(&path, bad).unwrap();
             let loaded = load(&path);
             assert_eq!(loaded.settings, Settings::default());
-            let Some(NoticeKind::SettingsIgnored { kept_as: Some(aside), .. }) = loaded.notice else {
+            let Some(NoticeKind::SettingsIgnored {
+                kept_as: Some(aside),
+                ..
+            }) = loaded.notice
+            else {
                 unreachable!("a notice must say so");
             };
             assert_eq!(std::fs::read_to_string(aside).unwrap(), bad);
@@ -215,7 +253,11 @@ mod tests {
     async fn only_changes_are_written_and_a_failure_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("settings.toml");
-        let mut saver = Saver::new(Some(path.clone()), tokio::runtime::Handle::current(), Settings::default());
+        let mut saver = Saver::new(
+            Some(path.clone()),
+            tokio::runtime::Handle::current(),
+            Settings::default(),
+        );
         assert_eq!(saver.tick(&Settings::default(), Moment::ZERO), None);
         assert!(saver.under_way.is_none(), "nothing changed");
         assert!(!saver.flush(&some(), Moment::ZERO));
@@ -223,7 +265,11 @@ mod tests {
             tokio::task::yield_now().await;
         }
         assert_eq!(load(&path).settings, some());
-        let mut saver = Saver::new(Some(path.join("below/a/file")), tokio::runtime::Handle::current(), some());
+        let mut saver = Saver::new(
+            Some(path.join("below/a/file")),
+            tokio::runtime::Handle::current(),
+            some(),
+        );
         let told = loop {
             if let Some(told) = saver.tick(&Settings::default(), Moment::ZERO) {
                 break told;

@@ -25,22 +25,40 @@ impl SimDial {
     /// No hand is built before it is dialled.
     #[must_use]
     pub const fn new(clock: Clock) -> Self {
-        Self { clock, system: SystemDial, built: Mutex::new(None) }
+        Self {
+            clock,
+            system: SystemDial,
+            built: Mutex::new(None),
+        }
     }
 
     /// The hand of this seed and scenario: the one of last time, or a new one that begins now.
     fn hand(&self, seed: u64, scenario: &str) -> Result<SharedHand, TransportError> {
-        let scenario: Scenario = scenario.parse().map_err(|error: crate::sim::UnknownScenario| TransportError::Io {
-            place: "sim:".into(),
-            message: error.to_string(),
-        })?;
+        let scenario: Scenario =
+            scenario
+                .parse()
+                .map_err(|error: crate::sim::UnknownScenario| TransportError::Io {
+                    place: "sim:".into(),
+                    message: error.to_string(),
+                })?;
         let mut built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(built) = built.as_ref().filter(|built| built.seed == seed && built.scenario == scenario) {
+        if let Some(built) = built
+            .as_ref()
+            .filter(|built| built.seed == seed && built.scenario == scenario)
+        {
             return Ok(built.hand.clone());
         }
-        let config = SimConfig { seed, scenario, ..SimConfig::default() };
+        let config = SimConfig {
+            seed,
+            scenario,
+            ..SimConfig::default()
+        };
         let hand = SharedHand::new(SimHand::new(config), self.clock.instant(self.clock.now()));
-        *built = Some(Built { seed, scenario, hand: hand.clone() });
+        *built = Some(Built {
+            seed,
+            scenario,
+            hand: hand.clone(),
+        });
         Ok(hand)
     }
 }
@@ -73,15 +91,24 @@ mod tests {
         let dial = SimDial::new(Clock::start());
         let first = dial.hand(1, "idle").unwrap();
         drop(dial.dial(&Endpoint::sim()).await.unwrap());
-        first.with(|hand, now| hand.write(register::HAND_ID.address, &[9], now)).unwrap();
+        first
+            .with(|hand, now| hand.write(register::HAND_ID.address, &[9], now))
+            .unwrap();
         assert_eq!(dial.hand(1, "idle").unwrap().with(|hand, _| hand.id()), 9);
         assert_eq!(dial.hand(2, "idle").unwrap().with(|hand, _| hand.id()), 1);
     }
 
     #[tokio::test(start_paused = true)]
     async fn an_unknown_scenario_is_said_in_words() {
-        let endpoint = Endpoint::Sim { seed: 1, scenario: "party".into() };
-        let error = SimDial::new(Clock::start()).dial(&endpoint).await.err().unwrap();
+        let endpoint = Endpoint::Sim {
+            seed: 1,
+            scenario: "party".into(),
+        };
+        let error = SimDial::new(Clock::start())
+            .dial(&endpoint)
+            .await
+            .err()
+            .unwrap();
         assert!(error.to_string().contains("party"), "{error}");
     }
 }

@@ -1,17 +1,27 @@
 //! Everything the program knows, without drawing: state, actions, history, faults, notices, settings.
 
+mod act;
 pub mod action;
+pub mod config;
+pub mod connect;
+mod desk;
 pub mod faults;
 pub mod gestures;
 pub mod history;
 pub mod notices;
+pub mod program;
+mod seam;
 pub mod settings;
 pub mod state;
+#[cfg(test)]
+mod tests;
 
 pub use action::Action;
+pub use connect::SimDial;
 pub use faults::{FaultBook, FaultEntry, FaultKind};
 pub use gestures::GestureBook;
 pub use history::{History, Mark, MarkKind, Quantity, Series, Touch, Trace};
 pub use notices::{Asked, Level, Notice, NoticeKind, Notices};
+pub use program::{App, Env};
 pub use settings::Settings;
 pub use state::State;

@@ -93,11 +93,6 @@ pub enum NoticeKind {
         /// What the file says.
         text: String,
     },
-    /// Serial ports could not be listed.
-    PortsNotFound {
-        /// The system's words.
-        message: String,
-    },
 }
 
 impl NoticeKind {
@@ -118,8 +113,7 @@ impl NoticeKind {
             | Self::GesturesOff
             | Self::SettingsNotSaved { .. }
             | Self::SettingsIgnored { .. }
-            | Self::EndpointIgnored { .. }
-            | Self::PortsNotFound { .. } => Level::Warn,
+            | Self::EndpointIgnored { .. } => Level::Warn,
         }
     }
 

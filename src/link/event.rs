@@ -114,6 +114,14 @@ pub enum RequestError {
         /// What was asked.
         want: usize,
     },
+    /// An earlier, unanswered request for the same address may still be answered, and the two could not be told apart.
+    #[error("a late answer for address {address} may still come: ask again in {wait_s} s")]
+    Ambiguous {
+        /// First byte.
+        address: u16,
+        /// Seconds to wait.
+        wait_s: u64,
+    },
     /// The wire broke while it was under way.
     #[error("the link was lost: whether the hand acted is not known")]
     LinkLost,

@@ -1,10 +1,30 @@
 //! One conversation with one hand: the wire's owner, the poll plan, arming and hold, reconnecting, statistics.
+//!
+//! [`handle::open`] starts a session and gives the window's end of it. The session ([`session`], [`serve`])
+//! owns the wire, asks one thing at a time ([`bus`]) and decides by priority what comes next: stop, hold,
+//! setpoints, requests, reads ([`plan`]).
 
+mod bus;
+pub mod clock;
+mod counters;
 pub mod event;
+mod filter;
+pub mod handle;
+mod hold;
+mod late;
+mod modbus_tcp;
+pub mod motion;
+pub mod plan;
+mod rs485;
+mod serve;
+mod session;
 pub mod stats;
 pub mod status;
 
+pub use clock::Clock;
 pub use event::{LinkEvent, Outcome, Request, RequestError, Ticket};
+pub use handle::{LinkConfig, LinkHandle, Setpoints, Wake, open};
+pub use plan::PollRates;
 pub use stats::LinkStats;
 pub use status::{
     ArmEpoch, ArmRefusal, ArmRequest, Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble,

@@ -158,6 +158,9 @@ pub enum ArmRefusal {
     /// A drive reports a fault.
     #[error("a drive reports a fault: clear it first")]
     Fault,
+    /// The hand did not acknowledge its speed and force limits.
+    #[error("the hand did not acknowledge its speed and force limits")]
+    NoAnswer,
     /// A joint without a fresh, sensible angle.
     #[error("the angle of a joint is unknown or old")]
     UnknownPose {

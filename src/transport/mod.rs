@@ -1,7 +1,20 @@
 //! Wires: endpoints, serial ports, sockets, in-memory pipes. Knows no hand.
 
+pub mod dial;
 pub mod endpoint;
+pub mod faulty;
+pub mod pipe;
+#[cfg(unix)]
+pub mod pty;
+pub mod serial;
+pub mod tcp;
 pub mod wire;
 
+pub use dial::SystemDial;
 pub use endpoint::{Endpoint, EndpointError, SerialLine};
+pub use faulty::{FaultCounts, FaultOdds, FaultPlan, FaultSwitch, Pace, faulty_pair};
+pub use pipe::{Pipe, pair};
+#[cfg(unix)]
+pub use pty::PtyLink;
+pub use serial::{PortFound, UsbFound, ports};
 pub use wire::{BoxedWire, Dial, TransportError, Wire};

@@ -42,10 +42,15 @@ pub enum TransportError {
         place: String,
     },
     /// Another program holds it.
-    #[error("{place} is in use by another program: close that program, then connect again")]
+    #[error(
+        "{place} is in use by {}: close that program, then connect again",
+        .holder.as_deref().unwrap_or("another program")
+    )]
     Busy {
         /// Port.
         place: String,
+        /// Name and process id of that program, where the system tells.
+        holder: Option<String>,
     },
     /// A host that answers "nobody listens here".
     #[error(

@@ -5,13 +5,17 @@
     clippy::indexing_slicing,
     clippy::panic,
     clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_possible_wrap,
+    unreachable_pub,
     reason = "a test may"
 )]
 
-use handscope::app::faults::{FaultBook, FaultEntry};
+use handscope::app::faults::FaultBook;
 use handscope::app::gestures::GestureBook;
-use handscope::app::history::{History, Mark, MarkKind};
-use handscope::app::notices::{Level, Notice, NoticeKind, Notices};
+use handscope::app::history::{History, MarkKind};
+use handscope::app::notices::{NoticeKind, Notices};
 use handscope::app::settings::Settings;
 use handscope::app::state::{Joint, PortChoice, State};
 use handscope::hand::*;
@@ -109,21 +113,68 @@ pub fn live() -> State {
         joint.target = Some(Angle::nearest(angle[dof.index()]));
     }
 
-    state.history.marks = vec![
-        Mark {
-            at_s: 53.0,
-            kind: MarkKind::Gesture(Gesture::nearest(9u8)),
-        },
-        Mark {
-            at_s: 57.5,
-            kind: MarkKind::Stop,
-        },
-    ];
-    state.gestures.0.insert(1, "open".into());
-    state.gestures.0.insert(2, "two-finger pinch".into());
-    state.gestures.0.insert(3, "fist".into());
-    state.gestures.0.insert(14, "cup".into());
+    fill(&mut state.history);
+    for (number, name) in [
+        (1, "open"),
+        (2, "two-finger pinch"),
+        (3, "fist"),
+        (14, "cup"),
+    ] {
+        state
+            .gestures
+            .set_name(Gesture::nearest(i64::from(number)), name);
+    }
     state
+}
+
+fn fill(history: &mut History) {
+    let mut fresh = Groups::NONE;
+    for group in [
+        Group::Angle,
+        Group::Force,
+        Group::Current,
+        Group::Temperature,
+    ] {
+        fresh.insert(group);
+    }
+    for tick in 0..3000u32 {
+        let t = 30.0 + f64::from(tick) * 0.01;
+        if (54.2..55.1).contains(&t) {
+            continue;
+        }
+        let at = Moment::from_micros((t * 1e6) as u64);
+        let wave = |dof: Dof| (((t * 0.8 + dof.index() as f64 * 0.4).sin() + 1.0) / 2.0).powi(2);
+        let noise = |dof: Dof| (t * 37.0 + dof.index() as f64 * 2.0).sin();
+        let whole = |value: f64| value as i16;
+        let sample = HandSample {
+            angle: timed(
+                PerDof::from_fn(|dof| AngleReading::new(whole(1000.0 - 700.0 * wave(dof)))),
+                at,
+            ),
+            force: timed(
+                PerDof::from_fn(|dof| {
+                    ForceReading::new(whole(wave(dof).powi(2) * 600.0 - 8.0 + 5.0 * noise(dof)))
+                }),
+                at,
+            ),
+            current: timed(
+                PerDof::from_fn(|dof| {
+                    CurrentReading::new(whole(wave(dof) * (280.0 + 30.0 * noise(dof))))
+                }),
+                at,
+            ),
+            temperature: timed(
+                PerDof::from_fn(|dof| {
+                    TemperatureReading::new(31 + dof.index() as u8 + (tick / 2000) as u8)
+                }),
+                at,
+            ),
+            ..HandSample::default()
+        };
+        history.push(&sample, fresh);
+    }
+    history.mark(Moment::from_micros(53_000_000), MarkKind::Gesture(9));
+    history.mark(Moment::from_micros(57_500_000), MarkKind::Stop);
 }
 
 pub fn armed() -> State {
@@ -149,40 +200,27 @@ pub fn faulted() -> State {
     faults[Dof::ThumbBend] = Faults::from_raw(2);
     state.sample.faults = timed(faults, Moment::from_micros(59_990_000));
     let at = |s: u64| Moment::from_micros(s * 1_000_000);
-    state.faults.0 = vec![
-        FaultEntry {
-            dof: Dof::Index,
-            what: Fault::Stall,
-            since: at(56),
-            until: None,
+    let mut fresh = Groups::NONE;
+    fresh.insert(Group::Faults);
+    let mut earlier = state.sample;
+    let mut one = PerDof::splat(Faults::from_raw(0));
+    one[Dof::Ring] = Faults::from_raw(4);
+    earlier.faults = timed(one, at(12));
+    state.faults.update(&earlier, fresh, at(12));
+    let mut two = PerDof::splat(Faults::from_raw(0));
+    two[Dof::ThumbBend] = Faults::from_raw(2);
+    earlier.faults = timed(two, at(51));
+    state.faults.update(&earlier, fresh, at(51));
+    state.faults.update(&state.sample, fresh, at(56));
+    state
+        .notices
+        .push(at(50), NoticeKind::Disarmed(Disarmed::Fault));
+    state.notices.push(
+        at(55),
+        NoticeKind::HoldConfirmed {
+            after: Duration::from_millis(180),
         },
-        FaultEntry {
-            dof: Dof::ThumbBend,
-            what: Fault::OverTemperature,
-            since: at(51),
-            until: None,
-        },
-        FaultEntry {
-            dof: Dof::Ring,
-            what: Fault::OverCurrent,
-            since: at(12),
-            until: Some(at(20)),
-        },
-    ];
-    state.notices.0 = vec![
-        Notice {
-            id: 1,
-            at: at(50),
-            level: Level::Warning,
-            what: NoticeKind::Text("Not armed: a drive reports a fault.".into()),
-        },
-        Notice {
-            id: 2,
-            at: at(55),
-            level: Level::Info,
-            what: NoticeKind::Text("Errors were cleared.".into()),
-        },
-    ];
+    );
     state
 }
 

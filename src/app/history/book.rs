@@ -235,6 +235,7 @@ fn target_angle(target: Target) -> Option<f32> {
 mod tests {
     #![allow(clippy::indexing_slicing, reason = "a test may")]
     use super::*;
+    use crate::app::history::mark::MARKS_MAX;
     use crate::hand::{AngleReading, ForceReading, TactileBlock};
 
     const FORCE: Series = Series::Joint(Quantity::Force, Dof::Index);

@@ -40,6 +40,7 @@ texts! {
     REFUSED_OFFLINE: "There is no live hand.", "没有在线的灵巧手。";
     REFUSED_HOLDING: "A stop is still being confirmed.", "正在确认停止。";
     REFUSED_FAULT: "A drive reports a fault: clear it first.", "驱动器报告故障，请先清除。";
+    REFUSED_NO_ANSWER: "The hand did not acknowledge its speed and force limits.", "灵巧手没有确认速度与力控设置。";
     REFUSED_POSE: "The angle of a joint is unknown or old:", "有自由度的角度未知或已过时：";
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";
     LOCKED: "This joint is locked.", "该自由度已锁定。";
@@ -85,8 +86,6 @@ texts! {
     ANGLE: "Angle", "角度";
     FORCE: "Force", "力控";
     SPEED: "Speed", "速度";
-    CURRENT: "Current", "电流";
-    TEMPERATURE: "Temperature", "温度";
     STATUS: "status", "状态";
     NAME_ANGLE_TARGET: "angle target", "角度目标";
     NAME_ANGLE_NUMBER: "angle number", "角度数值";
@@ -104,8 +103,6 @@ texts! {
     SPEED_TIP: "1000 runs the whole stroke in 600 ms without load.", "1000 表示空载时 600 ms 走完全程。";
     STAGED: "Not armed: applies on arming.", "未使能：使能后生效。";
     NUMBER_TIP: "Type a number and press Enter. Nothing is sent before.", "输入数字后按回车。回车之前不会发送。";
-    NUMBER_REFUSED: "Not a whole number in the range.", "不是范围内的整数。";
-    RANGE: "Range", "范围";
     LOCK_TIP: "Locked: this joint is left alone by Open and by its slider.", "锁定后，“张开”与滑块都不会移动该自由度。";
     IMPACT_TIP: "Impact zone. The threshold is not a limit at this speed: on a rigid object the peak force was measured\nabove the threshold by 336 g (speed 250, 250 g), 637 g (250, 500 g), 1640 g (250, 1000 g) and about 3000 g at speed 1000.\nSlow down to 25 before contact to stay within 100 g.", "冲击区。此速度下阈值并非上限：抓取刚性物体时实测峰值超出阈值\n336 g（速度 250，阈值 250 g）、637 g（250，500 g）、1640 g（250，1000 g），速度 1000 时约 3000 g。\n接触前降到速度 25，可控制在 100 g 以内。";
     OPEN: "Open all", "全部张开";

@@ -58,6 +58,9 @@ fn request_error(look: Look, error: &RequestError) -> String {
         RequestError::WrongLength { address, got, want } => {
             format!("地址 {address} 应答了 {got} 字节，应为 {want} 字节。")
         }
+        RequestError::Ambiguous { address, wait_s } => {
+            format!("地址 {address} 可能还有迟到的应答：请在 {wait_s} 秒后重试。")
+        }
         RequestError::LinkLost => "连接断开：不确定灵巧手是否已执行。".into(),
         RequestError::OutOfRange(error) => format!("超出手册范围：{error}。"),
     }
@@ -136,9 +139,6 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::EndpointIgnored { text } => {
             format!("{} {text}", said(panels::NOTICE_ENDPOINT))
-        }
-        NoticeKind::PortsNotFound { message } => {
-            format!("{} {message}", said(panels::NOTICE_PORTS))
         }
     }
 }

@@ -39,7 +39,6 @@ texts! {
     TOUCH_DIRECTION_NAME: "direction", "切向力方向";
     TOUCH_PROXIMITY_NAME: "proximity", "接近值";
     TOUCH_CHECK_NAME: "check", "校验";
-    TOUCH_RAW_NAME: "raw channels", "原始通道";
     TOUCH_OK: "ok", "正常";
     TOUCH_DIFFERS: "differs", "不符";
     TOUCH_NO_CONTACT: "none", "无";
@@ -53,7 +52,6 @@ texts! {
     FAULTS_NONE_HINT: "Faults appear here with their cause and what to do.", "出现故障时，这里会列出原因与处理建议。";
     FAULTS_NONE_OLD: "No faults when last read", "上次读取时没有故障";
     FAULTS_UNKNOWN: "Faults not read yet", "尚未读取故障";
-    FAULT_NOW: "now", "当前";
     FAULT_OVER: "over", "已结束";
     FAULT_AGO: "ago", "前";
     FAULT_FOR: "for", "持续";
@@ -76,7 +74,6 @@ texts! {
     NOTICE_NOT_SAVED: "Settings could not be written.", "设置无法写入。";
     NOTICE_SETTINGS: "The settings file could not be read and was put aside.", "设置文件无法读取，已另存。";
     NOTICE_ENDPOINT: "The remembered hand means nothing:", "无法识别上次的连接地址：";
-    NOTICE_PORTS: "Serial ports could not be listed.", "无法列出串口。";
     DISARMED_STOP: "Not armed any more: stop was pressed.", "已取消使能：按下了停止。";
     DISARMED_PERSON: "Not armed any more.", "已取消使能。";
     DISARMED_FAULT: "Not armed any more: a drive reports a fault.", "已取消使能：驱动器报告故障。";

@@ -1,0 +1,261 @@
+//! The program: opens and leaves hands, carries out actions, keeps settings. The rules of motion are in `act`.
+
+use crate::app::action::Action;
+use crate::app::config::Saver;
+use crate::app::desk::Desk;
+use crate::app::notices::NoticeKind;
+use crate::app::settings::Settings;
+use crate::app::state::{PortChoice, State};
+use crate::hand::Moment;
+use crate::link::{self, Clock, LinkConfig, PollRates, Wake};
+use crate::transport::{Dial, Endpoint, PortFound, ports};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::oneshot;
+
+/// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the
+/// time after which the link itself gives the alarm, and a little.
+const REST_WITHIN: Duration = Duration::from_millis(600);
+
+/// What the program stands on.
+#[derive(Clone)]
+pub struct Env {
+    /// Where links live and files are written.
+    pub runtime: tokio::runtime::Handle,
+    /// The program's clock.
+    pub clock: Clock,
+    /// How wires are opened.
+    pub dial: Arc<dyn Dial>,
+    /// Called when something new is there.
+    pub wake: Wake,
+    /// Where settings are kept; `None` = nowhere.
+    pub settings_path: Option<PathBuf>,
+}
+
+/// A hand that is being left: it was told to hold.
+struct Leaving {
+    /// Where to go then; `None` = nowhere.
+    to: Option<Endpoint>,
+    told: Moment,
+}
+
+/// The window is closing.
+#[derive(Clone, Copy)]
+struct Closing {
+    since: Moment,
+    /// The hand was told to hold, and that is waited for.
+    held: bool,
+}
+
+/// The whole program without its window.
+pub struct App {
+    env: Env,
+    desk: Desk,
+    saver: Saver,
+    leaving: Option<Leaving>,
+    closing: Option<Closing>,
+    ports: Option<oneshot::Receiver<Vec<PortFound>>>,
+}
+
+impl App {
+    /// Connects to nothing by itself.
+    #[must_use]
+    pub fn new(env: Env, settings: Settings) -> Self {
+        let saver = Saver::new(
+            env.settings_path.clone(),
+            env.runtime.clone(),
+            settings.clone(),
+        );
+        Self {
+            env,
+            desk: Desk::new(settings),
+            saver,
+            leaving: None,
+            closing: None,
+            ports: None,
+        }
+    }
+
+    /// At start: the given hand, else the remembered one, else the built-in one. Remembers nothing.
+    pub fn open(&mut self, endpoint: Option<Endpoint>, now: Moment) {
+        let endpoint = endpoint
+            .or_else(|| self.remembered(now))
+            .unwrap_or_else(Endpoint::sim);
+        self.go(Some(endpoint), now);
+    }
+
+    fn remembered(&mut self, now: Moment) -> Option<Endpoint> {
+        let text = self.desk.state.settings.endpoint.clone()?;
+        match text.parse() {
+            Ok(endpoint) => Some(endpoint),
+            Err(_) => {
+                self.tell(NoticeKind::EndpointIgnored { text }, now);
+                None
+            }
+        }
+    }
+
+    /// Tells the person something that was found elsewhere, such as an unreadable settings file.
+    pub fn tell(&mut self, what: NoticeKind, now: Moment) {
+        self.desk.state.notices.push(now, what);
+    }
+
+    /// Everything the window shows.
+    #[must_use]
+    pub const fn state(&self) -> &State {
+        &self.desk.state
+    }
+
+    /// Takes in what happened since the last call. Runs also while the window is hidden.
+    pub fn logic(&mut self, now: Moment) {
+        self.desk.drain(now);
+        if let Some(leaving) = self.leaving.take_if(|leaving| {
+            now.since(leaving.told) >= REST_WITHIN || self.desk.is_at_rest(leaving.told)
+        }) {
+            self.go(leaving.to, now);
+        }
+        self.take_ports();
+        if let Some(failed) = self.saver.tick(&self.desk.state.settings, now) {
+            self.tell(failed, now);
+        }
+    }
+
+    /// Carries out one thing that a person asked for.
+    pub fn act(&mut self, action: Action, now: Moment) {
+        self.desk.state.now = now;
+        let desk = &mut self.desk;
+        match action {
+            Action::Stop => desk.stop(now),
+            // A hand that is being left is not set in motion again.
+            Action::Arm if self.leaving.is_some() || self.closing.is_some() => {}
+            Action::Arm => desk.arm(now),
+            Action::Disarm => desk.disarm(now),
+            Action::Target(dof, angle) => desk.target(dof, angle),
+            Action::Force(dof, force) => desk.force(dof, force),
+            Action::Speed(dof, speed) => desk.speed(dof, speed),
+            Action::Lock(dof, locked) => desk.lock(dof, locked),
+            Action::Open => desk.open_hand(),
+            Action::Gesture(gesture) => desk.gesture(gesture, now),
+            Action::ClearErrors => desk.clear_errors(now),
+            Action::Connect(endpoint) => self.connect(endpoint, now),
+            Action::Disconnect => self.leave(None, now),
+            Action::FindPorts => self.find_ports(),
+            Action::ForgetFaults => desk.state.faults.forget(),
+            Action::Dismiss(id) => desk.state.notices.dismiss(id),
+            kept => self.keep(kept),
+        }
+    }
+
+    /// What is kept from one start to the next.
+    fn keep(&mut self, action: Action) {
+        let State {
+            settings, gestures, ..
+        } = &mut self.desk.state;
+        match action {
+            Action::NameGesture(gesture, name) => {
+                gestures.set_name(gesture, &name);
+                settings.gesture_names = gestures.kept_names();
+            }
+            Action::GestureRoute(route) => {
+                gestures.route = route;
+                settings.gesture_route = route;
+            }
+            Action::Theme(theme) => settings.theme = theme,
+            Action::Language(language) => settings.language = language,
+            Action::PlotWindow(window) => settings.plot_window = window,
+            // Standing plots are the view's own matter, and all others were carried out before.
+            _ => {}
+        }
+    }
+
+    fn connect(&mut self, endpoint: Endpoint, now: Moment) {
+        self.desk.state.settings.endpoint = Some(endpoint.to_string());
+        self.leave(Some(endpoint), now);
+    }
+
+    /// Leaves the hand of now. One that may be moving is told to hold first and gets time to.
+    fn leave(&mut self, to: Option<Endpoint>, now: Moment) {
+        if let Some(leaving) = &mut self.leaving {
+            leaving.to = to;
+        } else if self.desk.may_move() {
+            self.desk.stop(now);
+            self.leaving = Some(Leaving { to, told: now });
+        } else {
+            self.go(to, now);
+        }
+    }
+
+    fn go(&mut self, to: Option<Endpoint>, now: Moment) {
+        // The old link goes first: a serial port has room for one.
+        self.desk.replace(None, None, now);
+        let Some(endpoint) = to else { return };
+        let config = LinkConfig {
+            endpoint: endpoint.clone(),
+            rates: PollRates::default(),
+            clock: self.env.clock,
+            dial: Arc::clone(&self.env.dial),
+            wake: Arc::clone(&self.env.wake),
+        };
+        let link = link::open(config, &self.env.runtime);
+        self.desk.replace(Some(endpoint), Some(Box::new(link)), now);
+    }
+
+    fn find_ports(&mut self) {
+        if self.ports.is_some() {
+            return;
+        }
+        let (found, asked) = oneshot::channel();
+        let wake = Arc::clone(&self.env.wake);
+        self.env.runtime.spawn_blocking(move || {
+            // A receiver that is gone means that the window is gone: no one is left to tell.
+            let _told = found.send(ports());
+            wake();
+        });
+        self.ports = Some(asked);
+    }
+
+    fn take_ports(&mut self) {
+        let Some(asked) = &mut self.ports else { return };
+        match asked.try_recv() {
+            Ok(found) => self.desk.state.ports = found.into_iter().map(choice).collect(),
+            Err(oneshot::error::TryRecvError::Empty) => return,
+            Err(oneshot::error::TryRecvError::Closed) => {}
+        }
+        self.ports = None;
+    }
+
+    /// The window wants to close. A hand that is armed or that this program set in motion is told to hold first.
+    /// True once the window may go: the hand rests, or 600 ms have passed. Call it each frame until then.
+    pub fn close(&mut self, now: Moment) -> bool {
+        let closing = *self.closing.get_or_insert_with(|| {
+            let held = self.desk.may_move();
+            if held {
+                self.desk.stop(now);
+            }
+            Closing { since: now, held }
+        });
+        let saved = self.saver.flush(&self.desk.state.settings, now);
+        let rests = !closing.held || self.desk.is_at_rest(closing.since);
+        saved && rests || now.since(closing.since) >= REST_WITHIN
+    }
+}
+
+fn choice(found: PortFound) -> PortChoice {
+    let about = found.usb.map(|usb| {
+        let words = [usb.maker, usb.product, usb.serial]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(" ");
+        if words.is_empty() {
+            format!("USB {:04x}:{:04x}", usb.vendor_id, usb.product_id)
+        } else {
+            words
+        }
+    });
+    PortChoice {
+        path: found.path,
+        about,
+    }
+}

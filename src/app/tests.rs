@@ -1,0 +1,540 @@
+//! Proves the rules of motion against a link that only notes what it is told.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+
+use crate::app::desk::Desk;
+use crate::app::gestures::GestureProgress;
+use crate::app::notices::{Asked, Level, NoticeKind};
+use crate::app::seam::Link;
+use crate::app::settings::Settings;
+use crate::hand::{
+    Angle, AngleReading, Dof, Faults, Force, Gesture, GestureRoute, Group, Groups, HandCommand,
+    HandSample, Moment, PerDof, Speed, Target, Timed,
+};
+use crate::link::{
+    ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus,
+    LinkTrouble, Outcome, Request, RequestError, Setpoints, Ticket,
+};
+use crate::transport::Endpoint;
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+/// What the link was told.
+#[derive(Debug, Clone, PartialEq)]
+enum Told {
+    Stop,
+    Arm(ArmRequest),
+    Disarm,
+    Set(Setpoints),
+    Ask(Request),
+}
+
+#[derive(Default)]
+struct Wire {
+    status: LinkStatus,
+    told: Vec<Told>,
+    events: VecDeque<LinkEvent>,
+    refuse: Option<RequestError>,
+}
+
+struct FakeLink(Rc<RefCell<Wire>>);
+
+impl FakeLink {
+    fn note(&self, told: Told) {
+        self.0.borrow_mut().told.push(told);
+    }
+}
+
+impl Link for FakeLink {
+    fn status(&self) -> LinkStatus {
+        self.0.borrow().status.clone()
+    }
+    fn stats(&self) -> LinkStats {
+        LinkStats::default()
+    }
+    fn stop(&self) {
+        self.note(Told::Stop);
+    }
+    fn arm(&self, request: ArmRequest) {
+        self.note(Told::Arm(request));
+    }
+    fn disarm(&self) {
+        self.note(Told::Disarm);
+    }
+    fn set(&self, setpoints: &Setpoints) {
+        self.note(Told::Set(*setpoints));
+    }
+    fn ask(&self, request: Request) -> Result<Ticket, RequestError> {
+        self.note(Told::Ask(request));
+        self.0.borrow().refuse.clone().map_or(Ok(Ticket(7)), Err)
+    }
+    fn try_event(&mut self) -> Option<LinkEvent> {
+        self.0.borrow_mut().events.pop_front()
+    }
+}
+
+struct Bench {
+    desk: Desk,
+    wire: Rc<RefCell<Wire>>,
+    millis: u64,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let wire = Rc::new(RefCell::new(Wire::default()));
+        let mut desk = Desk::new(Settings::default());
+        desk.replace(
+            Some(Endpoint::sim()),
+            Some(Box::new(FakeLink(Rc::clone(&wire)))),
+            Moment::ZERO,
+        );
+        Self {
+            desk,
+            wire,
+            millis: 1,
+        }
+    }
+
+    fn monitoring(angle: i16) -> Self {
+        let mut bench = Self::new();
+        bench.state(LinkState::Monitoring);
+        bench.angles(angle);
+        bench.step();
+        bench
+    }
+
+    fn armed(angle: i16) -> Self {
+        let mut bench = Self::monitoring(angle);
+        bench.desk.arm(bench.now());
+        bench.epoch(1);
+        bench.step();
+        bench.told();
+        bench
+    }
+
+    fn now(&self) -> Moment {
+        Moment::from_micros(self.millis * 1000)
+    }
+
+    fn step(&mut self) {
+        self.millis += 10;
+        let now = self.now();
+        self.desk.drain(now);
+    }
+
+    fn state(&self, state: LinkState) {
+        let status = LinkStatus {
+            state,
+            since: self.now(),
+            ..LinkStatus::default()
+        };
+        self.wire.borrow_mut().status = status;
+    }
+
+    fn epoch(&mut self, epoch: u64) {
+        self.millis += 1;
+        self.state(LinkState::Armed);
+        self.wire.borrow_mut().status.armed = Some(ArmEpoch(epoch));
+    }
+
+    fn angles(&mut self, angle: i16) {
+        self.millis += 1;
+        let at = self.now();
+        let angles = PerDof::splat(AngleReading::new(angle));
+        let sample = HandSample {
+            angle: Some(Timed {
+                value: angles,
+                asked: at,
+                received: at,
+            }),
+            ..HandSample::default()
+        };
+        let mut fresh = Groups::NONE;
+        fresh.insert(Group::Angle);
+        self.wire.borrow_mut().events.push_back(LinkEvent::Sample {
+            sample: Box::new(sample),
+            fresh,
+        });
+    }
+
+    fn told(&self) -> Vec<Told> {
+        std::mem::take(&mut self.wire.borrow_mut().told)
+    }
+
+    fn target(&self, dof: Dof) -> Option<i16> {
+        self.desk.state.joints[dof].target.map(Angle::get)
+    }
+
+    fn notices(&self) -> Vec<NoticeKind> {
+        self.desk
+            .state
+            .notices
+            .iter()
+            .map(|notice| notice.what.clone())
+            .collect()
+    }
+}
+
+fn set(epoch: u64, fill: impl FnOnce(&mut Setpoints)) -> Told {
+    let mut setpoints = Setpoints::none(ArmEpoch(epoch));
+    fill(&mut setpoints);
+    Told::Set(setpoints)
+}
+
+#[test]
+fn nothing_is_told_by_starting_connecting_or_dragging_while_not_armed() {
+    let mut bench = Bench::monitoring(400);
+    for dof in Dof::ALL {
+        bench.desk.target(dof, Angle::MIN);
+        bench.desk.force(dof, Force::RATED);
+        bench.desk.speed(dof, Speed::MAX);
+        bench.desk.lock(dof, true);
+        bench.desk.lock(dof, false);
+    }
+    bench.desk.open_hand();
+    bench.desk.gesture(Gesture::MIN, bench.now());
+    bench.step();
+    assert_eq!(bench.told(), []);
+    assert_eq!(
+        bench.target(Dof::Index),
+        Some(400),
+        "the slider shows where the joint is"
+    );
+    assert_eq!(
+        bench.desk.state.joints[Dof::Index].force,
+        Force::RATED,
+        "kept for arming"
+    );
+}
+
+#[test]
+fn sliders_follow_the_hand_until_it_is_armed() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.target(Dof::Little), None);
+    bench.state(LinkState::Monitoring);
+    for angle in [400, 650] {
+        bench.angles(angle);
+        bench.step();
+        assert_eq!(bench.target(Dof::Little), Some(angle));
+    }
+    bench.angles(-999);
+    bench.step();
+    assert_eq!(
+        bench.target(Dof::Little),
+        None,
+        "a value far outside the manual is no pose"
+    );
+}
+
+#[test]
+fn arming_sends_the_staged_limits_and_no_angle() {
+    let mut bench = Bench::monitoring(400);
+    bench.desk.speed(Dof::Ring, Speed::MIN);
+    bench.desk.arm(bench.now());
+    let mut speed = PerDof::splat(Speed::GENTLE);
+    speed[Dof::Ring] = Speed::MIN;
+    assert_eq!(
+        bench.told(),
+        [Told::Arm(ArmRequest {
+            speed,
+            force: PerDof::splat(Force::GENTLE)
+        })]
+    );
+    bench.epoch(1);
+    bench.step();
+    assert_eq!(bench.told(), []);
+    assert_eq!(bench.target(Dof::Ring), Some(400));
+}
+
+#[test]
+fn an_old_or_unknown_pose_cannot_be_armed() {
+    let mut bench = Bench::monitoring(400);
+    bench.millis += 300;
+    bench.step();
+    bench.desk.arm(bench.now());
+    assert_eq!(bench.told(), []);
+    assert_eq!(
+        bench.notices(),
+        [NoticeKind::ArmRefused(ArmRefusal::UnknownPose {
+            dof: Dof::Little
+        })]
+    );
+    let mut nowhere = Bench::new();
+    nowhere.desk.arm(nowhere.now());
+    assert_eq!(
+        nowhere.notices(),
+        [NoticeKind::ArmRefused(ArmRefusal::Offline)]
+    );
+}
+
+#[test]
+fn an_armed_joint_goes_where_it_is_told_and_a_locked_one_never() {
+    let mut bench = Bench::armed(400);
+    bench.desk.target(Dof::Index, Angle::MAX);
+    assert_eq!(
+        bench.told(),
+        [set(1, |all| all.angle[Dof::Index] =
+            Some(Target::Go(Angle::MAX)))]
+    );
+    bench.desk.lock(Dof::Ring, true);
+    bench.desk.target(Dof::Ring, Angle::MIN);
+    bench.desk.force(Dof::Ring, Force::MIN);
+    bench.desk.speed(Dof::Ring, Speed::MAX);
+    assert_eq!(bench.told(), []);
+    bench.angles(500);
+    bench.step();
+    assert_eq!(
+        (bench.target(Dof::Index), bench.target(Dof::Ring)),
+        (Some(1000), Some(500))
+    );
+    bench.desk.open_hand();
+    let [Told::Set(all)] = bench.told()[..] else {
+        panic!("one write")
+    };
+    assert_eq!(all.angle[Dof::Ring], None);
+    assert_eq!(
+        all.angle
+            .iter()
+            .filter(|(_, angle)| angle.is_some())
+            .count(),
+        5
+    );
+}
+
+#[test]
+fn stop_works_in_every_state_and_disarms_at_once() {
+    for state in [
+        LinkState::Offline,
+        LinkState::Identifying,
+        LinkState::Monitoring,
+        LinkState::Holding,
+        LinkState::Fault,
+    ] {
+        let mut bench = Bench::monitoring(400);
+        bench.state(state);
+        bench.step();
+        bench.desk.stop(bench.now());
+        assert_eq!(bench.told(), [Told::Stop], "{state:?}");
+    }
+    let mut bench = Bench::armed(400);
+    bench.desk.target(Dof::Index, Angle::MIN);
+    bench.desk.stop(bench.now());
+    bench.told();
+    assert!(!bench.desk.state.is_armed());
+    assert_eq!(
+        bench.target(Dof::Index),
+        Some(400),
+        "the slider is back at the hand"
+    );
+    bench.desk.target(Dof::Index, Angle::MIN);
+    // The link's own word comes later: until then it still says armed.
+    bench.step();
+    bench.desk.target(Dof::Index, Angle::MIN);
+    assert!(!bench.desk.state.is_armed());
+    assert_eq!(bench.told(), [], "nothing passes after stop");
+    bench.epoch(2);
+    bench.step();
+    assert!(bench.desk.state.is_armed(), "a later arming counts");
+}
+
+#[test]
+fn after_disarming_the_sliders_follow_again() {
+    let mut bench = Bench::armed(400);
+    bench.desk.target(Dof::Index, Angle::MAX);
+    bench.desk.disarm(bench.now());
+    bench.state(LinkState::Monitoring);
+    bench.angles(450);
+    bench.step();
+    assert_eq!(bench.target(Dof::Index), Some(450));
+    assert_eq!(bench.told().last(), Some(&Told::Disarm));
+}
+
+#[test]
+fn a_lost_link_forgets_targets_and_a_found_one_is_not_armed() {
+    let mut bench = Bench::armed(400);
+    bench.desk.target(Dof::Index, Angle::MIN);
+    bench.told();
+    bench.state(LinkState::Offline);
+    let trouble = LinkTrouble::Silent { silent: 5 };
+    bench.wire.borrow_mut().status.trouble = Some(trouble.clone());
+    bench.wire.borrow_mut().status.disarmed = Some(Disarmed::LinkLost);
+    bench.step();
+    assert_eq!(bench.target(Dof::Index), None);
+    assert!(
+        bench.desk.state.sample.angle.is_some(),
+        "kept, and shown as old"
+    );
+    assert!(bench.notices().contains(&NoticeKind::LinkLost(trouble)));
+    assert!(
+        bench
+            .notices()
+            .contains(&NoticeKind::Disarmed(Disarmed::LinkLost))
+    );
+    bench.state(LinkState::Monitoring);
+    bench.step();
+    assert_eq!(
+        bench.target(Dof::Index),
+        None,
+        "not before the hand was read again"
+    );
+    bench.angles(700);
+    bench.step();
+    assert_eq!(bench.target(Dof::Index), Some(700));
+    assert!(!bench.desk.state.is_armed());
+    assert_eq!(bench.told(), []);
+    assert!(bench.notices().contains(&NoticeKind::Reconnected));
+}
+
+#[test]
+fn another_hand_inherits_nothing() {
+    let mut bench = Bench::armed(400);
+    let now = bench.now();
+    bench.desk.replace(Some(Endpoint::sim()), None, now);
+    assert_eq!(bench.desk.state.sample, HandSample::default());
+    assert_eq!(bench.target(Dof::Index), None);
+    assert!(!bench.desk.state.is_armed());
+}
+
+#[test]
+fn a_hand_that_was_never_reached_is_not_called_lost() {
+    let mut bench = Bench::new();
+    let trouble = LinkTrouble::NoAnswer { id: 1 };
+    bench.wire.borrow_mut().status.trouble = Some(trouble.clone());
+    bench.step();
+    assert_eq!(bench.notices(), [NoticeKind::NoLink(trouble)]);
+    bench.state(LinkState::Monitoring);
+    bench.step();
+    assert_eq!(bench.notices(), [], "it is reached now, for the first time");
+}
+
+#[test]
+fn holds_and_faults_are_told() {
+    let mut bench = Bench::monitoring(400);
+    let at = bench.now();
+    bench.wire.borrow_mut().status.hold = Hold::Alarm { at };
+    bench.step();
+    assert_eq!(
+        bench
+            .desk
+            .state
+            .notices
+            .iter()
+            .next()
+            .map(|notice| notice.level),
+        Some(Level::Alarm)
+    );
+    let rest = bench.now();
+    bench.wire.borrow_mut().status.hold = Hold::Confirmed { at, rest };
+    bench.step();
+    assert_eq!(
+        bench.notices(),
+        [NoticeKind::HoldConfirmed {
+            after: rest.since(at)
+        }]
+    );
+    let faults = Timed {
+        value: PerDof::splat(Faults::from_raw(1)),
+        asked: rest,
+        received: rest,
+    };
+    let mut fresh = Groups::NONE;
+    fresh.insert(Group::Faults);
+    let sample = Box::new(HandSample {
+        faults: Some(faults),
+        ..HandSample::default()
+    });
+    for _ in 0..3 {
+        bench.wire.borrow_mut().events.push_back(LinkEvent::Sample {
+            sample: sample.clone(),
+            fresh,
+        });
+    }
+    bench.step();
+    let told = bench
+        .notices()
+        .iter()
+        .filter(|what| matches!(what, NoticeKind::Fault { .. }))
+        .count();
+    assert_eq!(told, 6, "once a joint");
+}
+
+#[test]
+fn gestures_need_arming_a_route_and_free_joints() {
+    let mut bench = Bench::armed(400);
+    let what = Asked::Gesture(Gesture::MIN);
+    bench.desk.state.gestures.route = GestureRoute::Off;
+    bench.desk.gesture(Gesture::MIN, bench.now());
+    bench.desk.state.gestures.route = GestureRoute::Register1008;
+    bench.desk.lock(Dof::Ring, true);
+    bench.desk.gesture(Gesture::MIN, bench.now());
+    assert_eq!(bench.told(), []);
+    bench.desk.lock(Dof::Ring, false);
+    bench.told();
+    bench.desk.gesture(Gesture::MIN, bench.now());
+    let command = HandCommand::Gesture(Gesture::MIN, GestureRoute::Register1008);
+    assert_eq!(bench.told(), [Told::Ask(Request::Command(command))]);
+    bench.angles(900);
+    bench.wire.borrow_mut().events.push_back(LinkEvent::Done {
+        ticket: Ticket(7),
+        result: Ok(Outcome::Acknowledged),
+    });
+    bench.step();
+    assert_eq!(
+        bench.desk.state.gestures.last.map(|last| last.progress),
+        Some(GestureProgress::Acknowledged)
+    );
+    assert_eq!(bench.target(Dof::Index), Some(900), "the sliders go along");
+    assert!(bench.notices().contains(&NoticeKind::Acknowledged { what }));
+}
+
+#[test]
+fn what_could_not_be_asked_is_told() {
+    let mut bench = Bench::monitoring(400);
+    bench.wire.borrow_mut().refuse = Some(RequestError::Full { limit: 16 });
+    bench.desk.clear_errors(bench.now());
+    assert_eq!(
+        bench.told(),
+        [Told::Ask(Request::Command(HandCommand::ClearErrors))]
+    );
+    let error = RequestError::Full { limit: 16 };
+    assert_eq!(
+        bench.notices(),
+        [NoticeKind::RequestFailed {
+            what: Asked::ClearErrors,
+            error
+        }]
+    );
+}
+
+#[test]
+fn a_flood_of_events_is_taken_a_frame_at_a_time_and_nothing_is_lost() {
+    let mut bench = Bench::monitoring(400);
+    for angle in 0..600 {
+        bench.angles(angle);
+    }
+    bench.step();
+    assert_eq!(bench.wire.borrow().events.len(), 600 - 256);
+    bench.step();
+    bench.step();
+    assert_eq!(bench.target(Dof::Index), Some(599));
+}
+
+#[test]
+fn a_hand_at_rest_that_was_only_watched_needs_no_stop_to_leave() {
+    let mut bench = Bench::monitoring(400);
+    assert!(!bench.desk.may_move());
+    bench.epoch(1);
+    bench.step();
+    assert!(bench.desk.may_move());
+    let told = bench.now();
+    bench.desk.stop(told);
+    assert!(!bench.desk.is_at_rest(told));
+    bench.state(LinkState::Monitoring);
+    bench.wire.borrow_mut().status.hold = Hold::Confirmed {
+        at: told,
+        rest: bench.now(),
+    };
+    bench.step();
+    assert!(bench.desk.is_at_rest(told));
+}

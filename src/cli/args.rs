@@ -1,0 +1,239 @@
+//! The command line as clap sees it: names, defaults, help. Does nothing.
+
+use crate::app::settings::{Language, Theme};
+use crate::hand::HandId;
+use crate::transport::Endpoint;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Watch, drive and tune the FTP series tactile hand.
+///
+/// Without a command the window opens, on the hand of last time or on the built-in simulated one.
+#[derive(Debug, Parser)]
+#[command(name = "handscope", version, args_conflicts_with_subcommands = true, after_help = ENDPOINTS)]
+pub(crate) struct Cli {
+    /// The hand to open in the window, for example tcp:192.168.11.210:6000
+    #[arg(long, value_name = "URL")]
+    pub(crate) hand: Option<Endpoint>,
+
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+/// What to do instead of opening the window.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Draw the window to PNG files, without display, GPU or driver
+    #[command(after_help = "Examples:\n  handscope snapshot --scenario grasp --at 3 --view all --out pictures\n  handscope snapshot --view live --size 1024x640 --theme light --lang zh --out pictures\n\nNext to each PNG stands a JSON file that lists what is visible: role, name, value, place.")]
+    Snapshot(SnapshotArgs),
+    /// Print what the hand says, as it says it
+    #[command(after_help = "Examples:\n  handscope watch --hand sim: --for 5\n  handscope watch --hand rs485:/dev/ttyUSB0 --for 5 --json\n\nOnly reads are sent. With --json each line is one object; the last holds the statistics.")]
+    Watch(WatchArgs),
+    /// Read registers by the manual's names
+    #[command(after_help = "Examples:\n  handscope read ANGLE_ACT TEMP --hand rs485:/dev/ttyUSB0\n  handscope read HAND_ID --hand tcp:192.168.11.210 --json\n\n'handscope registers' lists the names.")]
+    Read(ReadArgs),
+    /// Be a hand for other programs: on a pseudo-terminal, on TCP, or both
+    #[command(after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n\nIt runs until Ctrl-C. All wires lead to one hand.")]
+    Sim(SimArgs),
+    /// Print the register map
+    Registers(RegistersArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SnapshotArgs {
+    /// The hand to show [default: the built-in one]
+    #[arg(long, value_name = "URL")]
+    pub(crate) hand: Option<Endpoint>,
+    /// What the built-in hand does: idle, grasp, faults, extremes
+    #[arg(long, value_name = "NAME", conflicts_with = "hand")]
+    pub(crate) scenario: Option<String>,
+    /// Seed of the built-in hand
+    #[arg(long, default_value_t = 1, conflicts_with = "hand")]
+    pub(crate) seed: u64,
+    /// Seconds after connecting
+    #[arg(long, value_name = "SECONDS", default_value = "3", value_parser = seconds)]
+    pub(crate) at: Duration,
+    /// One view, or all of them and the whole window
+    #[arg(long, value_name = "NAME", default_value = "window")]
+    pub(crate) view: String,
+    /// Width x height in points
+    #[arg(long, value_name = "WxH", default_value = "1440x900", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    /// Pixels a point
+    #[arg(long, default_value = "1", value_parser = scale)]
+    pub(crate) scale: f32,
+    /// Dark or light
+    #[arg(long, default_value = "dark")]
+    pub(crate) theme: ThemeArg,
+    /// Language of the window
+    #[arg(long, default_value = "en")]
+    pub(crate) lang: LanguageArg,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct WatchArgs {
+    /// The hand to watch
+    #[arg(long, value_name = "URL")]
+    pub(crate) hand: Endpoint,
+    /// Seconds to watch [default: until Ctrl-C]
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) length: Option<Duration>,
+    /// One JSON object a line
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Read as fast as the wire goes, not 100 states and 30 touch sweeps a second
+    #[arg(long)]
+    pub(crate) full_rate: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReadArgs {
+    /// Registers by name, in any letter case
+    #[arg(required = true, value_name = "NAME")]
+    pub(crate) names: Vec<String>,
+    /// The hand to read
+    #[arg(long, value_name = "URL")]
+    pub(crate) hand: Endpoint,
+    /// One JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("wire").required(true).multiple(true).args(["tcp", "rs485"]))]
+pub(crate) struct SimArgs {
+    /// Serve Modbus TCP here, for example 127.0.0.1:6000
+    #[arg(long, value_name = "ADDR:PORT")]
+    pub(crate) tcp: Option<String>,
+    /// Make a pseudo-terminal and link it here; serve RS485 private framing on it
+    #[arg(long, value_name = "LINK")]
+    pub(crate) rs485: Option<PathBuf>,
+    /// Id of the hand, 1 to 254
+    #[arg(long, default_value = "1", value_parser = hand_id)]
+    pub(crate) id: HandId,
+    /// Seed of everything random in it
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// What it does: idle, grasp, faults, extremes
+    #[arg(long, value_name = "NAME", default_value = "idle")]
+    pub(crate) scenario: String,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RegistersArgs {
+    /// One JSON list
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The window's colours.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum ThemeArg {
+    Dark,
+    Light,
+}
+
+impl From<ThemeArg> for Theme {
+    fn from(theme: ThemeArg) -> Self {
+        match theme {
+            ThemeArg::Dark => Self::Dark,
+            ThemeArg::Light => Self::Light,
+        }
+    }
+}
+
+/// The window's language.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum LanguageArg {
+    En,
+    Zh,
+}
+
+impl From<LanguageArg> for Language {
+    fn from(language: LanguageArg) -> Self {
+        match language {
+            LanguageArg::En => Self::En,
+            LanguageArg::Zh => Self::Zh,
+        }
+    }
+}
+
+const ENDPOINTS: &str = "\
+Hands are named by URL:
+  sim:                                     the built-in simulated hand
+  sim:?seed=7&scenario=grasp               the same, playing a scenario
+  rs485:/dev/ttyUSB0?baud=115200&id=1      RS485, the maker's own framing
+  tcp:192.168.11.210:6000?unit=255         Modbus TCP
+
+Exit status: 0 done, 1 could not, 2 wrong usage.";
+
+/// The longest time that can be asked for: a day.
+const SECONDS_MAX: f64 = 86_400.0;
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.parse().map_err(|_| format!("'{text}' is no number of seconds"))?;
+    if !(0.0..=SECONDS_MAX).contains(&seconds) {
+        return Err(format!("{text} is not between 0 and {SECONDS_MAX} seconds"));
+    }
+    Ok(Duration::from_secs_f64(seconds))
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let wrong = || format!("'{text}' is no size: write WIDTHxHEIGHT, from 640x400 to 7680x4320");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let (width, height) = (width.parse().map_err(|_| wrong())?, height.parse().map_err(|_| wrong())?);
+    if (640..=7680).contains(&width) && (400..=4320).contains(&height) {
+        return Ok((width, height));
+    }
+    Err(wrong())
+}
+
+fn scale(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(scale) if (0.5..=4.0).contains(&scale) => Ok(scale),
+        _ => Err(format!("'{text}' is no scale: write a number from 0.5 to 4")),
+    }
+}
+
+fn hand_id(text: &str) -> Result<HandId, String> {
+    let id: i64 = text.parse().map_err(|_| format!("'{text}' is no whole number"))?;
+    HandId::new(id).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn wrong_usage_is_refused() {
+        for line in [
+            "handscope watch",
+            "handscope watch --hand nonsense",
+            "handscope watch --hand sim: --for -1",
+            "handscope watch --hand sim: --for NaN",
+            "handscope read --hand sim:",
+            "handscope sim",
+            "handscope sim --tcp 127.0.0.1:6000 --id 0",
+            "handscope sim --tcp 127.0.0.1:6000 --id 255",
+            "handscope snapshot",
+            "handscope snapshot --out x --size 10x10",
+            "handscope snapshot --out x --scale 0",
+            "handscope snapshot --out x --hand sim: --scenario grasp",
+            "handscope --hand sim: watch --hand sim:",
+        ] {
+            let error = Cli::try_parse_from(line.split(' ')).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{line}");
+        }
+    }
+}

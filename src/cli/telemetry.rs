@@ -1,0 +1,186 @@
+//! Samples and statistics as the JSON lines and the text of `watch`. Pure; a contract with scripts.
+
+use crate::hand::{Faults, Finger, HandSample, Moment, PerDof, Status, TactileBlock, Timed};
+use crate::link::LinkStats;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::time::Duration;
+
+/// One sample as one JSON object. What was not read is null.
+pub(crate) fn sample_json(sample: &HandSample, at: Moment) -> Value {
+    let tactile: Vec<Value> = sample
+        .tactile
+        .iter()
+        .map(|(finger, block)| tactile_json(finger, block.as_ref().map(|block| &block.value)))
+        .collect();
+    json!({
+        "t_s": at.secs(),
+        "angle": six(sample.angle, |angle| json!(angle.raw())),
+        "position": six(sample.position, |position| json!(position.raw())),
+        "force_g": six(sample.force, |force| json!(force.raw())),
+        "current_ma": six(sample.current, |current| json!(current.raw())),
+        "temp_c": six(sample.temperature, |temperature| json!(temperature.raw())),
+        "status": six(sample.status, |status| json!(status.name())),
+        "status_raw": six(sample.status, |status| json!(status.raw())),
+        "faults": six(sample.faults, |faults| json!(faults.iter().map(crate::hand::Fault::name).collect::<Vec<_>>())),
+        "error_raw": six(sample.faults, |faults| json!(faults.raw())),
+        "tactile": tactile,
+    })
+}
+
+/// The last line: what the link measured of itself.
+pub(crate) fn stats_json(stats: &LinkStats, elapsed: Duration) -> Value {
+    json!({"stats": {
+        "elapsed_s": elapsed.as_secs_f64(),
+        "state_reads": stats.state_reads,
+        "tactile_reads": stats.tactile_reads,
+        "state_hz": rounded(stats.state_hz),
+        "tactile_hz": rounded(stats.tactile_hz),
+        "rtt_ms": {"p50": millis(stats.rtt_p50), "p99": millis(stats.rtt_p99)},
+        "timeouts": stats.timeouts,
+        "checksum_errors": stats.checksum_errors,
+        "resyncs": stats.resyncs,
+        "foreign_replies": stats.foreign_replies,
+        "refusals": stats.refusals,
+        "reconnects": stats.reconnects,
+        "writes": stats.writes,
+        "dropped_samples": stats.dropped_events,
+    }})
+}
+
+/// One sample as one line for a person.
+pub(crate) fn sample_text(sample: &HandSample, at: Moment) -> String {
+    let mut line = format!("{:9.3} s", at.secs());
+    let mut part = |name: &str, unit: &str, values: Option<[String; 6]>| {
+        let values = values.map_or_else(|| "-".into(), |values| values.join(" "));
+        let _infallible = write!(line, "  {name} {values}{unit}");
+    };
+    part("angle", "", words(sample.angle, |angle| format!("{:4}", angle.raw())));
+    part("force", " g", words(sample.force, |force| format!("{:5}", force.raw())));
+    part("current", " mA", words(sample.current, |current| format!("{:4}", current.raw())));
+    part("temp", " C", words(sample.temperature, |temperature| format!("{:3}", temperature.raw())));
+    part("status", "", words(sample.status, |status| state_word(*status)));
+    if sample.has_fault() {
+        part("faults", "", words(sample.faults, fault_words));
+    }
+    line
+}
+
+/// The statistics as lines for a person.
+pub(crate) fn stats_text(stats: &LinkStats, elapsed: Duration) -> String {
+    let rtt = |value: Option<Duration>| millis(value).map_or_else(|| "-".into(), |ms| format!("{ms:.2} ms"));
+    format!(
+        "{:.1} s: {} states ({:.1} a second), {} touch sweeps ({:.1} a second), round trip {} (99 %: {})\n\
+         {} timeouts, {} checksum errors, {} resyncs, {} foreign replies, {} refusals, {} reconnects",
+        elapsed.as_secs_f64(),
+        stats.state_reads,
+        stats.state_hz,
+        stats.tactile_reads,
+        stats.tactile_hz,
+        rtt(stats.rtt_p50),
+        rtt(stats.rtt_p99),
+        stats.timeouts,
+        stats.checksum_errors,
+        stats.resyncs,
+        stats.foreign_replies,
+        stats.refusals,
+        stats.reconnects,
+    )
+}
+
+/// One fingertip as JSON; all null if it was not read.
+pub(crate) fn tactile_json(finger: Finger, block: Option<&TactileBlock>) -> Value {
+    json!({
+        "finger": finger.name(),
+        "raw": block.map(|block| block.raw),
+        "normal_n": block.and_then(TactileBlock::normal),
+        "normal_delta": block.map(|block| block.normal_delta),
+        "tangential_n": block.and_then(TactileBlock::tangential),
+        "tangential_delta": block.map(|block| block.tangential_delta),
+        "direction_deg": block.and_then(TactileBlock::direction_deg),
+        "proximity": block.map(|block| block.proximity),
+        "check_ok": block.map(TactileBlock::check_ok),
+    })
+}
+
+fn six<T>(group: Option<Timed<PerDof<T>>>, value: impl Fn(&T) -> Value) -> Option<Vec<Value>> {
+    group.map(|group| group.value.iter().map(|(_, item)| value(item)).collect())
+}
+
+fn words<T>(group: Option<Timed<PerDof<T>>>, word: impl Fn(&T) -> String) -> Option<[String; 6]> {
+    group.map(|group| group.value.as_array().each_ref().map(word))
+}
+
+fn state_word(status: Status) -> String {
+    match status {
+        Status::Unknown(raw) => format!("unknown({raw})"),
+        known => known.name().into(),
+    }
+}
+
+fn fault_words(faults: &Faults) -> String {
+    let names: Vec<_> = faults.iter().map(crate::hand::Fault::name).collect();
+    if names.is_empty() { "none".into() } else { names.join("+") }
+}
+
+
+fn millis(value: Option<Duration>) -> Option<f64> {
+    value.map(|value| rounded(value.as_secs_f64() * 1000.0))
+}
+
+/// Three digits after the point: more is noise.
+fn rounded(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+    use super::*;
+    use crate::hand::{Reply, register};
+
+    #[test]
+    fn what_was_not_read_is_null() {
+        let json = sample_json(&HandSample::default(), Moment::from_micros(1_500_000));
+        assert_eq!(json["t_s"], 1.5);
+        for key in ["angle", "position", "force_g", "current_ma", "temp_c", "status", "status_raw", "faults", "error_raw"] {
+            assert!(json[key].is_null(), "{key}");
+        }
+        assert_eq!(json["tactile"].as_array().unwrap().len(), 5);
+        assert_eq!(json["tactile"][0]["finger"], "little");
+        assert!(json["tactile"][4]["raw"].is_null());
+    }
+
+    #[test]
+    fn six_values_stand_in_register_order_with_names_and_raw_codes() {
+        let mut bytes = [0u8; 78];
+        bytes[0..2].copy_from_slice(&1000i16.to_le_bytes());
+        bytes[10..12].copy_from_slice(&7i16.to_le_bytes());
+        bytes[60] = 0x06;
+        bytes[66] = 3;
+        bytes[67] = 4;
+        bytes[77] = 255;
+        let mut sample = HandSample::default();
+        let at = Moment::ZERO;
+        sample.take(&Reply { span: register::STATE, bytes: &bytes, asked: at, received: at });
+        let json = sample_json(&sample, at);
+        assert_eq!(json["angle"], json!([1000, 0, 0, 0, 0, 7]));
+        assert_eq!(json["faults"][0], json!(["over_temperature", "over_current"]));
+        assert_eq!(json["error_raw"][0], 6);
+        assert_eq!(json["status"][0], "force_reached");
+        assert_eq!(json["status"][1], "unknown");
+        assert_eq!(json["status_raw"][1], 4);
+        assert_eq!(json["temp_c"][5], 255);
+        assert!(json["position"].is_null());
+        assert!(sample_text(&sample, at).contains("over_temperature+over_current"));
+    }
+
+    #[test]
+    fn the_statistics_have_the_documented_keys() {
+        let json = stats_json(&LinkStats::default(), Duration::from_secs(5));
+        for key in ["elapsed_s", "state_reads", "tactile_reads", "state_hz", "tactile_hz", "rtt_ms", "timeouts", "checksum_errors", "resyncs", "reconnects"] {
+            assert!(!json["stats"][key].is_null(), "{key}");
+        }
+        assert!(json["stats"]["rtt_ms"]["p50"].is_null());
+    }
+}

@@ -1,0 +1,5 @@
+//! Bytes on a wire to register operations and back, for both sides of the conversation. No IO, no clock.
+
+pub mod mbap;
+pub mod modbus;
+pub mod rs485;

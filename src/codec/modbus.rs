@@ -1,0 +1,236 @@
+//! Between bytes in the hand's memory and Modbus' 16-bit words (manual 2.5). No framing, no sending.
+
+use crate::hand::{RegisterWrite, Span};
+use arrayvec::ArrayVec;
+
+/// Most words that one read can ask for (manual 2.5.1).
+pub const READ_WORDS_MAX: u16 = 125;
+/// Joints, and so elements of the one-byte groups.
+const GROUP_LEN: usize = 6;
+
+/// The bytes of one read.
+pub type WordBytes = ArrayVec<u8, 250>;
+
+/// A run of 16-bit words as Modbus asks for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WordSpan {
+    /// The manual's byte address of the first word.
+    pub address: u16,
+    /// Number of words.
+    pub count: u16,
+}
+
+/// The words that hold these bytes; an odd length takes one byte more.
+#[must_use]
+pub const fn words_for(span: Span) -> WordSpan {
+    // Manual: 2.5 does not say what an address counts; drivers of real hands agree on bytes, two a word.
+    WordSpan {
+        address: span.address,
+        count: span.len.div_ceil(2),
+    }
+}
+
+/// Memory bytes of these words, low byte first; words past [`READ_WORDS_MAX`] cannot come and are left out.
+#[must_use]
+pub fn bytes_from_words(words: &[u16]) -> WordBytes {
+    words
+        .iter()
+        .take(usize::from(READ_WORDS_MAX))
+        .flat_map(|word| word.to_le_bytes())
+        .collect()
+}
+
+/// A write as Modbus says it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ModbusWrite {
+    /// Function 6 (manual 2.5.2), for one-byte registers: the value as a number at the byte address.
+    Single {
+        /// Byte address.
+        address: u16,
+        /// The byte, 0..=255.
+        value: u16,
+    },
+    /// Function 16 (manual 2.5.3).
+    Multiple {
+        /// Byte address of the first word.
+        address: u16,
+        /// One to six words.
+        words: ArrayVec<u16, 6>,
+    },
+}
+
+/// The Modbus form of a write: one byte by function 6, words by function 16.
+#[must_use]
+pub fn words_from_write(write: &RegisterWrite) -> ModbusWrite {
+    let address = write.address();
+    match write.bytes() {
+        [value] => ModbusWrite::Single {
+            address,
+            value: u16::from(*value),
+        },
+        bytes => {
+            let (pairs, odd) = bytes.as_chunks::<2>();
+            debug_assert!(odd.is_empty(), "longer writes are whole words");
+            ModbusWrite::Multiple {
+                address,
+                words: pairs
+                    .iter()
+                    .map(|pair| u16::from_le_bytes(*pair))
+                    .take(GROUP_LEN)
+                    .collect(),
+            }
+        }
+    }
+}
+
+/// How a hand puts its one-byte groups (ERROR, STATUS, TEMP) into words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum BytePacking {
+    /// Two a word, the low byte is the lower address.
+    // Manual: silent; most drivers of real hands read it so.
+    #[default]
+    LowFirst,
+    /// Two a word, the high byte is the lower address.
+    HighFirst,
+    /// One a word, in six words.
+    OnePerWord,
+}
+
+impl BytePacking {
+    /// Judges by six words read at TEMP. Cannot tell [`Self::HighFirst`], which is only a person's choice.
+    #[must_use]
+    pub fn detect(words_at_temp: &[u16; 6]) -> Self {
+        let [_, _, _, behind @ ..] = words_at_temp;
+        let small = words_at_temp.iter().all(|word| *word <= 0xFF);
+        if small && behind.iter().all(|word| *word != 0) {
+            Self::OnePerWord
+        } else {
+            Self::LowFirst
+        }
+    }
+
+    /// Words that hold one group of six.
+    #[must_use]
+    pub const fn words_per_group(self) -> u16 {
+        match self {
+            Self::LowFirst | Self::HighFirst => 3,
+            Self::OnePerWord => 6,
+        }
+    }
+
+    /// The six bytes of a group from the words that begin at its address; `None` if there are too few words,
+    /// or a word of [`Self::OnePerWord`] holds no byte.
+    #[must_use]
+    pub fn group(self, words: &[u16]) -> Option<[u8; GROUP_LEN]> {
+        let words = words.get(..usize::from(self.words_per_group()))?;
+        let bytes: ArrayVec<u8, GROUP_LEN> = match self {
+            Self::LowFirst => words.iter().flat_map(|word| word.to_le_bytes()).collect(),
+            Self::HighFirst => words.iter().flat_map(|word| word.to_be_bytes()).collect(),
+            Self::OnePerWord => words
+                .iter()
+                .map(|word| u8::try_from(*word).ok())
+                .collect::<Option<_>>()?,
+        };
+        bytes.into_inner().ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+    use super::*;
+    use crate::hand::register::{STATE, TEMP};
+    use crate::hand::{Angle, HandCommand, HandId, PerDof, Target};
+
+    #[test]
+    fn spans_become_words_at_the_byte_address() {
+        for (span, address, count) in [
+            (STATE, 1546, 39),
+            (TEMP.span(), 1618, 3),
+            (Span::new(1005, 1), 1005, 1),
+            (Span::new(3000, 58), 3000, 29),
+            (Span::new(1000, 0), 1000, 0),
+            (Span::new(0, u16::MAX), 0, 32_768),
+        ] {
+            assert_eq!(words_for(span), WordSpan { address, count });
+        }
+    }
+
+    #[test]
+    fn words_of_the_manuals_read_become_memory_bytes() {
+        // Manual 2.5.1: 02 2B, 00 00, 00 64 on the wire are 555, 0, 100.
+        let bytes = bytes_from_words(&[555, 0, 100]);
+        assert_eq!(bytes.as_slice(), [0x2B, 0x02, 0x00, 0x00, 0x64, 0x00]);
+        assert_eq!(bytes_from_words(&[1; 126]).len(), 250);
+    }
+
+    #[test]
+    fn one_byte_registers_are_written_by_function_6() {
+        let id = HandCommand::Id(HandId::new(254).unwrap()).writes();
+        for (writes, address, value) in [
+            (HandCommand::Save.writes(), 1005, 1),
+            (HandCommand::ClearErrors.writes(), 1004, 1),
+            (id, 1000, 254),
+        ] {
+            assert_eq!(
+                words_from_write(&writes[0]),
+                ModbusWrite::Single { address, value }
+            );
+        }
+    }
+
+    #[test]
+    fn the_ip_address_is_two_words_low_byte_first() {
+        let writes = HandCommand::IpAddress([192, 168, 11, 210].into()).writes();
+        let words = ArrayVec::from_iter([0xA8C0, 0xD20B]);
+        let address = 1700;
+        assert_eq!(
+            words_from_write(&writes[0]),
+            ModbusWrite::Multiple { address, words }
+        );
+    }
+
+    #[test]
+    fn six_angles_are_six_words() {
+        let mut targets = PerDof::splat(Target::Go(Angle::MAX));
+        targets[crate::hand::Dof::Little] = Target::Leave;
+        let writes = HandCommand::Angles(targets).writes();
+        let words = ArrayVec::from([0xFFFF, 1000, 1000, 1000, 1000, 1000]);
+        assert_eq!(
+            words_from_write(&writes[0]),
+            ModbusWrite::Multiple {
+                address: 1486,
+                words
+            }
+        );
+    }
+
+    #[test]
+    fn packing_is_detected_by_temperatures() {
+        // One row is a record of a real hand: 40, 42, 40, 38, 40, 40, one a word.
+        for (words, packing) in [
+            ([40, 42, 40, 38, 40, 40], BytePacking::OnePerWord),
+            ([0x2A28, 0x2628, 0x2828, 0, 0, 0], BytePacking::LowFirst),
+            ([40, 42, 40, 0, 0, 0], BytePacking::LowFirst),
+            ([40, 42, 40, 38, 0, 40], BytePacking::LowFirst),
+            ([40, 42, 40, 38, 40, 256], BytePacking::LowFirst),
+            ([0; 6], BytePacking::LowFirst),
+        ] {
+            assert_eq!(BytePacking::detect(&words), packing, "{words:?}");
+        }
+    }
+
+    #[test]
+    fn each_packing_gives_the_same_six_bytes() {
+        let six = [30, 31, 32, 33, 34, 35];
+        for (packing, words) in [
+            (BytePacking::LowFirst, &[0x1F1E, 0x2120, 0x2322][..]),
+            (BytePacking::HighFirst, &[0x1E1F, 0x2021, 0x2223]),
+            (BytePacking::OnePerWord, &[30, 31, 32, 33, 34, 35]),
+        ] {
+            assert_eq!(packing.group(words), Some(six));
+            assert_eq!(packing.group(&words[1..]), None);
+        }
+        assert_eq!(BytePacking::OnePerWord.group(&[1, 2, 3, 4, 5, 256]), None);
+    }
+}

@@ -1,0 +1,134 @@
+//! The asking half of the framing: requests out, replies in. The device half is in `device`.
+
+use crate::codec::rs485::framing::{
+    self, Frame, Framer, NoiseCounts, Parts, Payload, READ_LEN_MAX, WRITE, Way,
+};
+use crate::hand::register::SAVE;
+use crate::hand::{HandId, RegisterWrite, Span};
+
+/// The request that reads these bytes (manual 2.2.1); `None` if there are none or more than [`READ_LEN_MAX`].
+#[must_use]
+pub fn encode_read(id: HandId, span: Span) -> Option<Frame> {
+    if span.len == 0 || span.len > READ_LEN_MAX {
+        return None;
+    }
+    let len = u8::try_from(span.len).ok()?;
+    let frame = framing::build_short(Way::Request, id.get(), framing::READ, span.address, len);
+    Some(frame)
+}
+
+/// The request that writes these bytes (manual 2.2.2).
+#[must_use]
+pub fn encode_write(id: HandId, write: &RegisterWrite) -> Frame {
+    let frame = framing::build(
+        Way::Request,
+        id.get(),
+        WRITE,
+        write.address(),
+        write.bytes(),
+    );
+    debug_assert!(frame.is_some(), "a write has 1 to 12 bytes");
+    frame.unwrap_or_default()
+}
+
+/// What a hand answers. The id is as received: after a change of HAND_ID the acknowledgement may carry the new one.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "the buffer stands inside on purpose: no allocation per frame"
+)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Reply {
+    /// Bytes that were read (manual 2.2.1).
+    Read {
+        /// The hand that answers.
+        id: u8,
+        /// First byte's address.
+        address: u16,
+        /// 1 to 252 bytes in memory order.
+        bytes: Payload,
+    },
+    /// A write was taken (manual 2.2.2), or the late result of SAVE.
+    WriteAck {
+        /// The hand that answers.
+        id: u8,
+        /// First byte's address.
+        address: u16,
+        /// 1 by the manual.
+        value: u8,
+    },
+}
+
+/// How a SAVE ended (manual 2.2.2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SaveResult {
+    /// 0x00: written to flash.
+    Ok,
+    /// 0xFF: not written.
+    Failed,
+    /// A value that the manual does not name.
+    Other(u8),
+}
+
+impl Reply {
+    fn from_parts(parts: Parts) -> Self {
+        let Parts {
+            id,
+            command,
+            address,
+            data: bytes,
+        } = parts;
+        match bytes.first() {
+            Some(&value) if command == WRITE => Self::WriteAck { id, address, value },
+            _ => Self::Read { id, address, bytes },
+        }
+    }
+
+    /// The hand that answers.
+    #[must_use]
+    pub const fn id(&self) -> u8 {
+        match self {
+            Self::Read { id, .. } | Self::WriteAck { id, .. } => *id,
+        }
+    }
+
+    /// First byte's address.
+    #[must_use]
+    pub const fn address(&self) -> u16 {
+        match self {
+            Self::Read { address, .. } | Self::WriteAck { address, .. } => *address,
+        }
+    }
+
+    /// The result of a SAVE, if this can be the late frame that carries it.
+    ///
+    /// Only meaningful while a SAVE is awaited: a plain read of the SAVE register looks the same.
+    /// The first acknowledgement (command 0x12, value 1) is no result.
+    #[must_use]
+    pub fn save_result(&self) -> Option<SaveResult> {
+        if self.address() != SAVE.address {
+            return None;
+        }
+        // Manual: the table of 2.2.2 prints command 0x12 for this frame, older manuals show 0x11: both are taken.
+        let value = match self {
+            Self::WriteAck { value: 1, .. } => return None,
+            Self::WriteAck { value, .. } => *value,
+            Self::Read { bytes, .. } => match bytes.as_slice() {
+                [value] => *value,
+                _ => return None,
+            },
+        };
+        Some(match value {
+            0x00 => SaveResult::Ok,
+            0xFF => SaveResult::Failed,
+            other => SaveResult::Other(other),
+        })
+    }
+}
+
+framing::decoder!(
+    /// Finds replies in what comes from the wire. Whole requests (echoes) are skipped and counted.
+    ReplyDecoder,
+    Way::Reply,
+    Reply,
+    Reply::from_parts
+);

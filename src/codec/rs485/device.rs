@@ -1,0 +1,77 @@
+//! The answering half of the framing, for the simulated hand: requests in, replies out. The asking half is in `client`.
+
+use crate::codec::rs485::framing::{
+    self, Frame, Framer, NoiseCounts, Parts, Payload, READ, WRITE, Way,
+};
+use crate::hand::Span;
+use crate::hand::register::SAVE;
+
+/// What a hand is asked.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "the buffer stands inside on purpose: no allocation per frame"
+)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Request {
+    /// Give these bytes (manual 2.2.1). The length is as received: 0 and 253 to 255 cannot be answered.
+    Read {
+        /// The hand that is meant.
+        id: u8,
+        /// The bytes wanted.
+        span: Span,
+    },
+    /// Take these bytes (manual 2.2.2).
+    Write {
+        /// The hand that is meant.
+        id: u8,
+        /// First byte's address.
+        address: u16,
+        /// 1 to 252 bytes in memory order.
+        bytes: Payload,
+    },
+}
+
+impl Request {
+    fn from_parts(parts: Parts) -> Self {
+        let Parts {
+            id,
+            command,
+            address,
+            data: bytes,
+        } = parts;
+        match bytes.first() {
+            Some(&len) if command == READ => Self::Read {
+                id,
+                span: Span::new(address, u16::from(len)),
+            },
+            _ => Self::Write { id, address, bytes },
+        }
+    }
+}
+
+framing::decoder!(
+    /// Finds requests in what comes from the wire. Whole replies (of other hands on the bus) are skipped and counted.
+    RequestDecoder,
+    Way::Request,
+    Request,
+    Request::from_parts
+);
+
+/// The reply to a read (manual 2.2.1); `None` unless there are 1 to 252 bytes.
+#[must_use]
+pub fn encode_read_reply(id: u8, address: u16, bytes: &[u8]) -> Option<Frame> {
+    framing::build(Way::Reply, id, READ, address, bytes)
+}
+
+/// The acknowledgement of a write (manual 2.2.2); the manual's value is 1.
+#[must_use]
+pub fn encode_write_ack(id: u8, address: u16, value: u8) -> Frame {
+    framing::build_short(Way::Reply, id, WRITE, address, value)
+}
+
+/// The late frame that tells how a SAVE ended (manual 2.2.2), with command byte 0x11 or 0x12.
+#[must_use]
+pub fn encode_save_result(id: u8, command: u8, ok: bool) -> Frame {
+    let value = if ok { 0x00 } else { 0xFF };
+    framing::build_short(Way::Reply, id, command, SAVE.address, value)
+}

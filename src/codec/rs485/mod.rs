@@ -1,0 +1,14 @@
+//! The private RS485 framing of manual 2.2: requests `EB 90 …`, replies `90 EB …`. Modbus lives elsewhere.
+
+pub mod client;
+pub mod device;
+pub mod framing;
+
+pub use client::{Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
+pub use device::{
+    Request, RequestDecoder, encode_read_reply, encode_save_result, encode_write_ack,
+};
+pub use framing::{BUFFER_LEN, Frame, NoiseCounts, Payload, READ_LEN_MAX};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,151 @@
+//! One request and its reply, over whichever protocol the endpoint speaks. No plan, no retry.
+
+use crate::hand::{RegisterWrite, Span};
+use crate::link::clock::Clock;
+use crate::link::late::LateReplies;
+use crate::link::modbus_tcp::ModbusTcp;
+use crate::link::rs485::Rs485;
+use crate::transport::{BoxedWire, Endpoint, TransportError};
+use arrayvec::ArrayVec;
+use std::time::Duration;
+
+/// Most bytes that one read can carry over any protocol.
+pub(crate) const READ_MAX: usize = 252;
+
+/// The memory bytes of one reply.
+pub(crate) type Bytes = ArrayVec<u8, READ_MAX>;
+
+/// Why a request has no good end. Only `Lost` ends the session.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum BusError {
+    /// No reply in time.
+    Timeout { after: Duration },
+    /// The hand said no.
+    Refused { reason: String },
+    /// A reply of another length than was asked for.
+    WrongLength { got: usize, want: usize },
+    /// This protocol cannot carry so much.
+    TooLong,
+    /// The wire is gone.
+    Lost(TransportError),
+}
+
+/// What a bus counted since it was opened.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct BusCounts {
+    pub(crate) checksum_errors: u64,
+    pub(crate) resyncs: u64,
+    pub(crate) foreign_replies: u64,
+}
+
+impl BusCounts {
+    pub(crate) const fn plus(self, more: Self) -> Self {
+        Self {
+            checksum_errors: self.checksum_errors + more.checksum_errors,
+            resyncs: self.resyncs + more.resyncs,
+            foreign_replies: self.foreign_replies + more.foreign_replies,
+        }
+    }
+}
+
+/// The protocols this version speaks.
+pub(crate) enum Bus {
+    Rs485(Rs485),
+    ModbusTcp(ModbusTcp),
+}
+
+impl Bus {
+    /// Puts the endpoint's protocol on an open wire. `late` is what earlier wires to this hand left unanswered.
+    pub(crate) fn new(
+        endpoint: &Endpoint,
+        wire: BoxedWire,
+        late: LateReplies,
+        clock: Clock,
+    ) -> Result<Self, TransportError> {
+        match endpoint {
+            Endpoint::Sim { .. } => Ok(Self::Rs485(Rs485::new(wire, endpoint, late, clock))),
+            Endpoint::Rs485(_) => Ok(Self::Rs485(Rs485::new(wire, endpoint, late, clock))),
+            Endpoint::Tcp { unit, .. } => {
+                Ok(Self::ModbusTcp(ModbusTcp::new(wire, *unit, endpoint)))
+            }
+            Endpoint::Rtu(_) | Endpoint::Can { .. } | Endpoint::Slcan { .. } => {
+                Err(TransportError::Unsupported {
+                    kind: endpoint.kind().into(),
+                })
+            }
+        }
+    }
+
+    /// Reads a span of memory.
+    pub(crate) async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
+        match self {
+            Self::Rs485(bus) => bus.read(span, limit).await,
+            Self::ModbusTcp(bus) => bus.read(span, limit).await,
+        }
+    }
+
+    /// Writes, and waits for the acknowledgement.
+    pub(crate) async fn write(
+        &mut self,
+        write: &RegisterWrite,
+        limit: Duration,
+    ) -> Result<(), BusError> {
+        match self {
+            Self::Rs485(bus) => bus.write(write, limit).await,
+            Self::ModbusTcp(bus) => bus.write(write, limit).await,
+        }
+    }
+
+    /// After a reply that did not come: listens until the line is quiet, so that nothing is talked over.
+    pub(crate) async fn settle(&mut self) -> Result<(), BusError> {
+        match self {
+            Self::Rs485(bus) => bus.settle().await,
+            Self::ModbusTcp(_) => Ok(()),
+        }
+    }
+
+    /// The first of these spans whose reply cannot be mistaken for a late one; none if all could.
+    pub(crate) fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
+        match self {
+            Self::Rs485(bus) => bus.choose(shapes),
+            // Transaction ids tell replies apart, so the widest shape serves always.
+            Self::ModbusTcp(_) => shapes
+                .iter()
+                .copied()
+                .max_by_key(|shape| (shape.address, shape.len)),
+        }
+    }
+
+    /// Time that the reply to a read of so many bytes takes on the wire, with its request.
+    pub(crate) fn wire_time(&self, bytes: u16) -> Duration {
+        match self {
+            Self::Rs485(bus) => bus.wire_time(bytes),
+            Self::ModbusTcp(_) => Duration::ZERO,
+        }
+    }
+
+    pub(crate) fn counts(&self) -> BusCounts {
+        match self {
+            Self::Rs485(bus) => bus.counts(),
+            Self::ModbusTcp(bus) => bus.counts(),
+        }
+    }
+
+    /// Closes the wire; what is still unanswered goes to the next one.
+    pub(crate) fn close(self) -> LateReplies {
+        match self {
+            Self::Rs485(bus) => bus.close(),
+            Self::ModbusTcp(_) => LateReplies::default(),
+        }
+    }
+}
+
+/// The id or unit that an endpoint asks for, for messages.
+pub(crate) fn id_of(endpoint: &Endpoint) -> u16 {
+    match endpoint {
+        Endpoint::Sim { .. } => 1,
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) => u16::from(line.id),
+        Endpoint::Tcp { unit, .. } => u16::from(*unit),
+        Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } => *id,
+    }
+}

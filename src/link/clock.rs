@@ -1,0 +1,85 @@
+//! The program's one clock. Sessions and shells read it; everything else is given moments.
+
+use crate::hand::Moment;
+use std::time::{Duration, SystemTime};
+use tokio::time::Instant;
+
+/// A wall clock that runs this much ahead of the monotonic one means that the computer slept.
+const SLEPT_AFTER: Duration = Duration::from_secs(1);
+
+/// A clock that never goes back, counted from its start. Copies count from the same start.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock {
+    start: Instant,
+}
+
+impl Clock {
+    /// Starts counting now. Inside a paused tokio runtime this is virtual time.
+    #[must_use]
+    pub fn start() -> Self {
+        Self {
+            start: Instant::now(),
+        }
+    }
+
+    /// The present moment.
+    #[must_use]
+    pub fn now(&self) -> Moment {
+        Moment::from_duration(self.start.elapsed())
+    }
+
+    /// The runtime's instant of a moment, for timers.
+    #[must_use]
+    pub fn instant(&self, at: Moment) -> Instant {
+        self.start + Duration::from_micros(at.micros())
+    }
+}
+
+/// Notices that the computer slept: the monotonic clock may stand still then, the wall clock does not.
+#[derive(Debug)]
+pub(crate) struct SleepWatch {
+    wall: SystemTime,
+    at: Moment,
+}
+
+impl SleepWatch {
+    pub(crate) fn new(now: Moment) -> Self {
+        Self {
+            wall: SystemTime::now(),
+            at: now,
+        }
+    }
+
+    /// How long the computer slept since the last call, if it did. A clock that was set back says nothing.
+    pub(crate) fn slept(&mut self, now: Moment) -> Option<Duration> {
+        self.slept_at(SystemTime::now(), now)
+    }
+
+    fn slept_at(&mut self, wall: SystemTime, now: Moment) -> Option<Duration> {
+        let by_wall = wall.duration_since(self.wall).unwrap_or_default();
+        let slept = by_wall.saturating_sub(now.since(self.at));
+        *self = Self { wall, at: now };
+        (slept > SLEPT_AFTER).then_some(slept)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_wall_clock_that_runs_ahead_means_sleep() {
+        let wall = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000);
+        let mut watch = SleepWatch {
+            wall,
+            at: Moment::ZERO,
+        };
+        let step = Duration::from_millis(20);
+        let now = Moment::ZERO.plus(step);
+        assert_eq!(watch.slept_at(wall + step, now), None);
+        let week = Duration::from_secs(7 * 86_400);
+        let woken = wall + step + week;
+        assert_eq!(watch.slept_at(woken, now.plus(step)), Some(week - step));
+        assert_eq!(watch.slept_at(woken - week, now.plus(step * 2)), None);
+    }
+}

@@ -1,0 +1,70 @@
+//! Requests that were given up and may still be answered. On lines without sequence numbers such an
+//! answer cannot be told from a fresh one, so the same question is not asked again for a while.
+
+use crate::hand::{Moment, Span};
+use arrayvec::ArrayVec;
+use std::time::Duration;
+
+/// How long a hand may answer late: the slowest known is half a second in flash writing; doubled twice.
+pub(crate) const LATE_HORIZON: Duration = Duration::from_secs(2);
+/// More open questions than there are shapes to ask; the oldest is forgotten then, and the link is reopened before.
+const QUESTIONS_MAX: usize = 32;
+
+/// The spans that a late reply may still answer.
+#[derive(Debug, Default)]
+pub(crate) struct LateReplies {
+    asked: ArrayVec<(Span, Moment), QUESTIONS_MAX>,
+}
+
+impl LateReplies {
+    /// A read of this span was given up at `now`.
+    pub(crate) fn gave_up(&mut self, span: Span, now: Moment) {
+        self.forget(now);
+        if self.asked.is_full() {
+            self.asked.remove(0);
+        }
+        self.asked.push((span, now));
+    }
+
+    /// The late reply to this span has come: one question less is open.
+    pub(crate) fn arrived(&mut self, span: Span) {
+        if let Some(at) = self.asked.iter().position(|(asked, _)| *asked == span) {
+            self.asked.remove(at);
+        }
+    }
+
+    /// The first of these spans that no late reply can answer.
+    pub(crate) fn first_clear(&mut self, shapes: &[Span], now: Moment) -> Option<Span> {
+        self.forget(now);
+        shapes
+            .iter()
+            .copied()
+            .find(|shape| self.asked.iter().all(|(asked, _)| asked != shape))
+    }
+
+    fn forget(&mut self, now: Moment) {
+        self.asked.retain(|(_, at)| now.since(*at) < LATE_HORIZON);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_question_given_up_is_not_asked_again_within_the_horizon() {
+        let (a, b) = (Span::new(1546, 78), Span::new(1546, 72));
+        let mut late = LateReplies::default();
+        assert_eq!(late.first_clear(&[a, b], Moment::ZERO), Some(a));
+        late.gave_up(a, Moment::ZERO);
+        assert_eq!(late.first_clear(&[a, b], Moment::ZERO), Some(b));
+        late.gave_up(b, Moment::ZERO);
+        assert_eq!(late.first_clear(&[a, b], Moment::ZERO), None);
+        late.arrived(a);
+        assert_eq!(late.first_clear(&[b, a], Moment::ZERO), Some(a));
+        assert_eq!(
+            late.first_clear(&[b], Moment::ZERO.plus(LATE_HORIZON)),
+            Some(b)
+        );
+    }
+}

@@ -1,0 +1,261 @@
+//! Requests over the private RS485 framing (manual 2.2). One is open at a time; replies have no number.
+
+use crate::codec::rs485::{Frame, Reply, ReplyDecoder, encode_read, encode_write};
+use crate::hand::{HandId, RegisterWrite, Span};
+use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
+use crate::link::clock::Clock;
+use crate::link::late::LateReplies;
+use crate::transport::{BoxedWire, Endpoint, TransportError};
+use futures::FutureExt as _;
+use std::io;
+use std::time::Duration;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::time::{Instant, timeout, timeout_at};
+
+/// The line counts as quiet after this long without a byte: longer than any gap inside a frame.
+const QUIET: Duration = Duration::from_millis(8);
+/// A line that is never quiet is not waited for longer than this.
+const SETTLE_MAX: Duration = Duration::from_millis(60);
+/// Bytes taken from the wire at once: the longest reply and some noise.
+const CHUNK: usize = 512;
+/// Bits of a byte on the line: start, eight, stop.
+const BITS: u64 = 10;
+/// Bytes of a read request and of a reply's frame around its data.
+const FRAMING: u64 = 9 + 8;
+
+/// The client side of one RS485 line.
+pub(crate) struct Rs485 {
+    wire: BoxedWire,
+    place: String,
+    id: HandId,
+    baud: Option<u32>,
+    decoder: ReplyDecoder,
+    late: LateReplies,
+    clock: Clock,
+    foreign: u64,
+}
+
+/// What an open request waits for.
+enum Expected {
+    Bytes(Span),
+    Ack(u16),
+}
+
+/// How a reply fits the open request.
+enum Fit {
+    Bytes(Bytes),
+    Ack,
+    No,
+}
+
+impl Rs485 {
+    pub(crate) fn new(
+        wire: BoxedWire,
+        endpoint: &Endpoint,
+        late: LateReplies,
+        clock: Clock,
+    ) -> Self {
+        let baud = match endpoint {
+            Endpoint::Rs485(line) => Some(line.baud),
+            _ => None,
+        };
+        Self {
+            wire,
+            place: endpoint.to_string(),
+            id: HandId::nearest(id_of(endpoint)),
+            baud,
+            decoder: ReplyDecoder::default(),
+            late,
+            clock,
+            foreign: 0,
+        }
+    }
+
+    pub(crate) async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
+        let frame = encode_read(self.id, span).ok_or(BusError::TooLong)?;
+        let result = self.exchange(&frame, &Expected::Bytes(span), limit).await;
+        if result.is_err() {
+            self.late.gave_up(span, self.clock.now());
+        }
+        match result? {
+            Fit::Bytes(bytes) => Ok(bytes),
+            Fit::Ack | Fit::No => Err(BusError::WrongLength {
+                got: 0,
+                want: usize::from(span.len),
+            }),
+        }
+    }
+
+    pub(crate) async fn write(
+        &mut self,
+        write: &RegisterWrite,
+        limit: Duration,
+    ) -> Result<(), BusError> {
+        let frame = encode_write(self.id, write);
+        self.exchange(&frame, &Expected::Ack(write.address()), limit)
+            .await?;
+        Ok(())
+    }
+
+    pub(crate) async fn settle(&mut self) -> Result<(), BusError> {
+        let end = Instant::now() + SETTLE_MAX;
+        while Instant::now() < end {
+            match timeout(QUIET, self.receive()).await {
+                Ok(received) => received?,
+                Err(_) => break,
+            }
+        }
+        self.decoder.flush_pending();
+        self.drop_foreign();
+        Ok(())
+    }
+
+    pub(crate) fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
+        self.late.first_clear(shapes, self.clock.now())
+    }
+
+    pub(crate) fn wire_time(&self, bytes: u16) -> Duration {
+        let bits = (u64::from(bytes) + FRAMING) * BITS;
+        self.baud.map_or(Duration::ZERO, |baud| {
+            Duration::from_micros(bits * 1_000_000 / u64::from(baud.max(1)))
+        })
+    }
+
+    pub(crate) fn counts(&self) -> BusCounts {
+        let noise = self.decoder.counts();
+        BusCounts {
+            checksum_errors: noise.checksum_errors,
+            resyncs: noise.resyncs,
+            foreign_replies: self.foreign,
+        }
+    }
+
+    pub(crate) fn close(self) -> LateReplies {
+        self.late
+    }
+
+    async fn exchange(
+        &mut self,
+        frame: &Frame,
+        expected: &Expected,
+        limit: Duration,
+    ) -> Result<Fit, BusError> {
+        self.take_waiting()?;
+        let deadline = Instant::now() + limit;
+        let timed_out = BusError::Timeout { after: limit };
+        match timeout_at(deadline, self.wire.write_all(frame)).await {
+            Ok(written) => written.map_err(|error| self.lost(&error))?,
+            Err(_) => return Err(timed_out),
+        }
+        loop {
+            if let Some(fit) = self.fitting(expected) {
+                return Ok(fit);
+            }
+            match timeout_at(deadline, self.receive()).await {
+                Ok(received) => received?,
+                Err(_) => break,
+            }
+        }
+        // Noise that looks like the head of a long frame may hide the reply.
+        self.decoder.flush_pending();
+        self.fitting(expected).ok_or(timed_out)
+    }
+
+    /// Takes what came while nobody asked, without waiting: none of it can answer the next request.
+    fn take_waiting(&mut self) -> Result<(), BusError> {
+        while let Some(received) = self.receive().now_or_never() {
+            received?;
+            self.drop_foreign();
+        }
+        self.decoder.flush_pending();
+        self.drop_foreign();
+        Ok(())
+    }
+
+    fn drop_foreign(&mut self) {
+        while let Some(reply) = self.decoder.next() {
+            self.foreign_reply(&reply);
+        }
+    }
+
+    /// The reply to the open request, if it is there; others are counted and dropped.
+    fn fitting(&mut self, expected: &Expected) -> Option<Fit> {
+        while let Some(reply) = self.decoder.next() {
+            match self.fit(&reply, expected) {
+                Fit::No => self.foreign_reply(&reply),
+                fit => return Some(fit),
+            }
+        }
+        None
+    }
+
+    fn fit(&self, reply: &Reply, expected: &Expected) -> Fit {
+        match (reply, expected) {
+            (Reply::Read { id, address, bytes }, Expected::Bytes(span))
+                if *id == self.id.get()
+                    && *address == span.address
+                    && bytes.len() == usize::from(span.len) =>
+            {
+                Fit::Bytes(bytes.clone())
+            }
+            (
+                Reply::WriteAck {
+                    id,
+                    address,
+                    value: 1,
+                },
+                Expected::Ack(wanted),
+            ) if *id == self.id.get() && address == wanted => Fit::Ack,
+            _ => Fit::No,
+        }
+    }
+
+    fn foreign_reply(&mut self, reply: &Reply) {
+        self.foreign += 1;
+        if let Reply::Read { address, bytes, .. } = reply
+            && let Ok(len) = u16::try_from(bytes.len())
+        {
+            self.late.arrived(Span::new(*address, len));
+        }
+    }
+
+    /// Waits for bytes and gives them to the decoder. Safe to cancel: bytes are taken only when they are there.
+    async fn receive(&mut self) -> Result<(), BusError> {
+        let mut chunk = [0; CHUNK];
+        let room = CHUNK.saturating_sub(self.decoder.buffered()).max(1);
+        let into = chunk.get_mut(..room).unwrap_or_default();
+        let got = self
+            .wire
+            .read(into)
+            .await
+            .map_err(|error| self.lost(&error))?;
+        if got == 0 {
+            return Err(BusError::Lost(TransportError::HungUp {
+                place: self.place.clone(),
+            }));
+        }
+        let bytes = into.get(..got).unwrap_or_default();
+        let taken = self.decoder.push(bytes);
+        debug_assert_eq!(taken, got, "the decoder has room for what was asked for");
+        Ok(())
+    }
+
+    fn lost(&self, error: &io::Error) -> BusError {
+        let place = self.place.clone();
+        // A pseudo-terminal says EIO and a USB adapter ENXIO or EPIPE when the other side goes.
+        let hung_up = matches!(
+            error.kind(),
+            io::ErrorKind::BrokenPipe
+                | io::ErrorKind::UnexpectedEof
+                | io::ErrorKind::ConnectionReset
+        ) || matches!(error.raw_os_error(), Some(5 | 6));
+        BusError::Lost(if hung_up {
+            TransportError::HungUp { place }
+        } else {
+            TransportError::Io {
+                place,
+                message: error.to_string(),
+            }
+        })
+    }
+}

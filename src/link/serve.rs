@@ -1,0 +1,479 @@
+//! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
+//! requests at once, and the wishes of the window are looked at before each.
+
+use crate::hand::{Group, HandCommand, RegisterWrite, Reply, Span, Writes};
+use crate::link::bus::{Bus, BusError};
+use crate::link::event::{LinkEvent, Outcome, Request, RequestError, Ticket};
+use crate::link::handle::Wanted;
+use crate::link::hold::HoldWatch;
+use crate::link::late::LATE_HORIZON;
+use crate::link::motion::{ANGLE_LOST, arm_refusal, hold_command};
+use crate::link::plan::Poll;
+use crate::link::session::{End, Session};
+use crate::link::status::{
+    ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkState, LinkTrouble,
+};
+use arrayvec::ArrayVec;
+use tokio::time::sleep_until;
+
+/// Bytes of an acknowledgement's data.
+const ACK_LEN: u16 = 1;
+/// Writes of one job: those of the longest command, and the hold before clearing errors.
+const JOB_MAX: usize = 7;
+
+/// A request that is under way: its writes go out one a step.
+pub(crate) struct Job {
+    pub(crate) ticket: Ticket,
+    writes: ArrayVec<RegisterWrite, JOB_MAX>,
+    read: Option<Span>,
+    is_motion: bool,
+}
+
+impl Session {
+    /// Serves the wire until it is lost or the handle is gone.
+    pub(crate) async fn serve(&mut self, bus: &mut Bus) -> End {
+        loop {
+            let now = self.now();
+            if let Some(slept) = self.sleep.slept(now) {
+                self.disarm(Disarmed::Resume);
+                return End::Lost(LinkTrouble::Suspended {
+                    slept_s: slept.as_secs(),
+                });
+            }
+            match self.step(bus).await {
+                Ok(true) => self.count(bus),
+                Ok(false) => self.idle().await,
+                Err(end) => return end,
+            }
+        }
+    }
+
+    /// Does the most urgent thing; false if nothing is due.
+    async fn step(&mut self, bus: &mut Bus) -> Result<bool, End> {
+        self.take_wishes(bus).await?;
+        self.watch_age();
+        let now = self.now();
+        if self
+            .motion
+            .hold
+            .is_some_and(|hold| hold.next_frame(now) <= now)
+        {
+            self.send_hold(bus).await?;
+        } else if let Some(write) = self.motion.next_write(now) {
+            self.send_setpoint(bus, write).await?;
+        } else if self.motion.hold.is_none() && self.next_job() {
+            self.work(bus).await?;
+        } else if let Some(poll) = self.next_poll() {
+            self.poll(bus, poll).await?;
+        } else {
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    /// Waits until something is due or the window wants something.
+    async fn idle(&mut self) {
+        let now = self.now();
+        let due = self
+            .motion
+            .next_send(now)
+            .map_or(self.plan.next_due(), |send| send.min(self.plan.next_due()));
+        let due = self.config.clock.instant(due);
+        let mut wanted = self.ends.wanted.subscribe();
+        tokio::select! {
+            biased;
+            _ = wanted.wait_for(Wanted::is_any) => {}
+            Some((ticket, request)) = self.ends.requests.recv(), if self.job.is_none() => self.take_job(ticket, request),
+            () = sleep_until(due) => {}
+        }
+    }
+
+    async fn take_wishes(&mut self, bus: &mut Bus) -> Result<(), End> {
+        let mut wishes = Wanted::default();
+        self.ends.wanted.send_if_modified(|wanted| {
+            wishes = std::mem::take(wanted);
+            wanted.closed = wishes.closed;
+            false
+        });
+        if wishes.stop {
+            self.begin_hold();
+        }
+        if wishes.closed {
+            return Err(End::Closed);
+        }
+        if wishes.disarm {
+            self.disarm(Disarmed::Person);
+        }
+        if let Some(request) = wishes.arm {
+            self.arm(bus, &request).await?;
+        }
+        if let Some(setpoints) = wishes.setpoints {
+            self.motion.want(&setpoints, self.status.armed);
+        }
+        Ok(())
+    }
+
+    fn stop_wanted(&self) -> bool {
+        let wanted = self.ends.wanted.borrow();
+        wanted.stop || wanted.disarm || wanted.closed
+    }
+
+    // --- arming -------------------------------------------------------------------------------
+
+    /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
+    async fn arm(&mut self, bus: &mut Bus, request: &ArmRequest) -> Result<(), End> {
+        if let Some(reason) = arm_refusal(self.status.state, &self.sample, self.now()) {
+            self.refuse_arm(reason);
+            return Ok(());
+        }
+        let limits = [
+            HandCommand::Speeds(request.speed.map(Some)),
+            HandCommand::Forces(request.force.map(Some)),
+        ];
+        for write in limits.iter().flat_map(HandCommand::writes) {
+            if self.stop_wanted() {
+                return Ok(());
+            }
+            if let Err(error) = self.write(bus, &write).await {
+                self.failed(bus, &error).await?;
+                self.refuse_arm(ArmRefusal::NoAnswer);
+                return Ok(());
+            }
+        }
+        // A stop that came meanwhile wins: it is taken in the next step, and arming has to be asked for anew.
+        if self.stop_wanted() {
+            return Ok(());
+        }
+        let epoch = ArmEpoch(self.motion.last_epoch.0 + 1);
+        self.motion.last_epoch = epoch;
+        self.status.armed = Some(epoch);
+        self.status.disarmed = None;
+        self.status.hold = Hold::None;
+        let now = self.now();
+        self.plan.hasten(Poll::Settings, now);
+        self.go(LinkState::Armed);
+        Ok(())
+    }
+
+    fn refuse_arm(&mut self, reason: ArmRefusal) {
+        let at = self.now();
+        self.tell(LinkEvent::ArmRefused { at, reason });
+    }
+
+    /// Lets no setpoint pass any more and forgets those on their way.
+    pub(crate) fn disarm(&mut self, why: Disarmed) {
+        self.motion.forget_setpoints();
+        if self.status.armed.take().is_none() {
+            return;
+        }
+        self.status.disarmed = Some(why);
+        if self.status.state == LinkState::Armed {
+            self.go(LinkState::Monitoring);
+        }
+        self.publish();
+    }
+
+    /// An armed hand whose pose is not known any more is not armed.
+    fn watch_age(&mut self) {
+        if self.status.armed.is_some() && !self.sample.angles_fresh(self.now(), ANGLE_LOST) {
+            self.disarm(Disarmed::Stale);
+        }
+        let now = self.now();
+        if let Some(hold) = &mut self.motion.hold
+            && hold.alarm_due(now)
+        {
+            hold.alarmed = true;
+            self.status.hold = Hold::Alarm { at: hold.at };
+            self.publish();
+        }
+    }
+
+    // --- stop ---------------------------------------------------------------------------------
+
+    fn begin_hold(&mut self) {
+        let now = self.now();
+        self.disarm(Disarmed::Stop);
+        if let Some(job) = self.job.take_if(|job| job.is_motion) {
+            self.answer(job.ticket, Err(RequestError::NotArmed));
+        }
+        if self.motion.hold.is_none_or(|hold| hold.alarmed) {
+            self.motion.hold = Some(HoldWatch::new(now));
+            self.status.hold = Hold::Asked { at: now, sent: 0 };
+        }
+        self.go(LinkState::Holding);
+    }
+
+    async fn send_hold(&mut self, bus: &mut Bus) -> Result<(), End> {
+        let now = self.now();
+        let command = hold_command(&self.sample, now);
+        if let Some(hold) = &mut self.motion.hold {
+            hold.frame_sent(now);
+            if !hold.alarmed {
+                self.status.hold = Hold::Asked {
+                    at: hold.at,
+                    sent: hold.sent,
+                };
+            }
+        }
+        for write in command.writes() {
+            if let Err(error) = self.write(bus, &write).await {
+                self.failed(bus, &error).await?;
+            }
+        }
+        self.publish();
+        Ok(())
+    }
+
+    fn hold_confirmed(&mut self) {
+        let Some(hold) = self.motion.hold.take() else {
+            return;
+        };
+        self.status.hold = Hold::Confirmed {
+            at: hold.at,
+            rest: self.now(),
+        };
+        self.go(if self.sample.has_fault() {
+            LinkState::Fault
+        } else {
+            LinkState::Monitoring
+        });
+    }
+
+    // --- writes -------------------------------------------------------------------------------
+
+    async fn write(&mut self, bus: &mut Bus, write: &RegisterWrite) -> Result<(), BusError> {
+        let limit = self.reply_limit(bus, ACK_LEN);
+        let asked = self.now();
+        self.counters.stats.writes += 1;
+        bus.write(write, limit).await?;
+        let took = self.now().since(asked);
+        self.answered(took);
+        Ok(())
+    }
+
+    async fn send_setpoint(&mut self, bus: &mut Bus, write: RegisterWrite) -> Result<(), End> {
+        if let Err(error) = self.write(bus, &write).await {
+            if matches!(error, BusError::Timeout { .. }) {
+                self.motion.again(write);
+            }
+            self.failed(bus, &error).await?;
+        }
+        Ok(())
+    }
+
+    // --- requests -----------------------------------------------------------------------------
+
+    /// True if a request is under way or one was waiting.
+    fn next_job(&mut self) -> bool {
+        if self.job.is_none()
+            && let Ok((ticket, request)) = self.ends.requests.try_recv()
+        {
+            self.take_job(ticket, request);
+        }
+        self.job.is_some()
+    }
+
+    fn take_job(&mut self, ticket: Ticket, request: Request) {
+        let mut job = Job {
+            ticket,
+            writes: ArrayVec::new(),
+            read: None,
+            is_motion: false,
+        };
+        match request {
+            Request::Read(span) => job.read = Some(span),
+            Request::Command(command) => {
+                job.is_motion = command.is_motion();
+                if job.is_motion && self.status.state != LinkState::Armed {
+                    self.answer(ticket, Err(RequestError::NotArmed));
+                    return;
+                }
+                // A cleared fault may set free a move to an old target: the pose is made the target first.
+                if command == HandCommand::ClearErrors {
+                    extend(
+                        &mut job.writes,
+                        hold_command(&self.sample, self.now()).writes(),
+                    );
+                }
+                extend(&mut job.writes, command.writes());
+            }
+        }
+        self.job = Some(job);
+    }
+
+    /// Sends the next write of the request under way, or its read, and answers when all is done.
+    async fn work(&mut self, bus: &mut Bus) -> Result<(), End> {
+        let Some(mut job) = self.job.take() else {
+            return Ok(());
+        };
+        if let Some(span) = job.read {
+            return self.read_for(bus, job.ticket, span).await;
+        }
+        let Some(write) = job.writes.pop_at(0) else {
+            self.answer(job.ticket, Ok(Outcome::Acknowledged));
+            return Ok(());
+        };
+        let result = self.write(bus, &write).await;
+        match result {
+            Ok(()) if job.writes.is_empty() => self.answer(job.ticket, Ok(Outcome::Acknowledged)),
+            Ok(()) => self.job = Some(job),
+            Err(error) => {
+                self.answer(job.ticket, Err(request_error(&error, write.span())));
+                self.failed(bus, &error).await?;
+            }
+        }
+        Ok(())
+    }
+
+    async fn read_for(&mut self, bus: &mut Bus, ticket: Ticket, span: Span) -> Result<(), End> {
+        if bus.choose(&[span]).is_none() {
+            let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
+            self.answer(ticket, Err(RequestError::Ambiguous { address, wait_s }));
+            return Ok(());
+        }
+        let limit = self.reply_limit(bus, span.len);
+        let asked = self.now();
+        match bus.read(span, limit).await {
+            Ok(bytes) => {
+                let took = self.now().since(asked);
+                self.answered(took);
+                self.answer(
+                    ticket,
+                    Ok(Outcome::Memory {
+                        span,
+                        bytes: bytes.to_vec(),
+                    }),
+                );
+            }
+            Err(error) => {
+                self.answer(ticket, Err(request_error(&error, span)));
+                self.failed(bus, &error).await?;
+            }
+        }
+        Ok(())
+    }
+
+    // --- reads --------------------------------------------------------------------------------
+
+    /// The group to read now. While a stop is being confirmed only the motion state counts.
+    fn next_poll(&self) -> Option<Poll> {
+        let now = self.now();
+        if self.motion.hold.is_some() {
+            return self.plan.is_due(Poll::State, now).then_some(Poll::State);
+        }
+        self.plan.due(now)
+    }
+
+    async fn poll(&mut self, bus: &mut Bus, poll: Poll) -> Result<(), End> {
+        let asked = self.now();
+        let Some(span) = bus.choose(&self.plan.shapes(poll)) else {
+            return self.ambiguous(poll);
+        };
+        let limit = self.reply_limit(bus, span.len);
+        match bus.read(span, limit).await {
+            Ok(bytes) => {
+                let received = self.now();
+                self.answered(received.since(asked));
+                self.take(
+                    poll,
+                    &Reply {
+                        span,
+                        bytes: &bytes,
+                        asked,
+                        received,
+                    },
+                );
+                Ok(())
+            }
+            Err(error) => {
+                self.give_up(poll);
+                self.failed(bus, &error).await
+            }
+        }
+    }
+
+    fn take(&mut self, poll: Poll, reply: &Reply<'_>) {
+        let (asked, now) = (reply.asked, reply.received);
+        match poll {
+            Poll::State => self.counters.state_read(now),
+            Poll::Tactile if self.plan.in_second_half() => self.counters.tactile_read(now),
+            Poll::Tactile => self.plan.split_at(reply.span),
+            Poll::Settings => {}
+        }
+        // Counted from the asking, so that the rate is kept whatever the reply takes.
+        self.plan.done(poll, asked);
+        let fresh = self.sample.take(reply);
+        let sample = Box::new(self.sample);
+        self.tell(LinkEvent::Sample { sample, fresh });
+        if fresh.contains(Group::Faults) {
+            self.watch_faults();
+        }
+        if self
+            .motion
+            .hold
+            .as_mut()
+            .is_some_and(|hold| hold.rests(&self.sample, fresh))
+        {
+            self.hold_confirmed();
+        }
+    }
+
+    fn give_up(&mut self, poll: Poll) {
+        let now = self.now();
+        match poll {
+            Poll::Tactile => self.plan.drop_sweep(now),
+            Poll::State | Poll::Settings => self.plan.done(poll, now),
+        }
+    }
+
+    /// Every way to ask could be answered by a late reply. The motion state is worth a new wire; the rest waits.
+    fn ambiguous(&mut self, poll: Poll) -> Result<(), End> {
+        self.give_up(poll);
+        match poll {
+            Poll::State => Err(End::Lost(LinkTrouble::Ambiguous)),
+            Poll::Tactile | Poll::Settings => Ok(()),
+        }
+    }
+
+    fn watch_faults(&mut self) {
+        match (self.sample.has_fault(), self.status.state) {
+            (true, LinkState::Armed | LinkState::Monitoring) => {
+                self.disarm(Disarmed::Fault);
+                self.go(LinkState::Fault);
+            }
+            (false, LinkState::Fault) => self.go(LinkState::Monitoring),
+            _ => {}
+        }
+    }
+}
+
+fn extend(into: &mut ArrayVec<RegisterWrite, JOB_MAX>, writes: Writes) {
+    for write in writes {
+        let full = into.try_push(write).is_err();
+        debug_assert!(!full, "a job holds the longest command and a hold");
+    }
+}
+
+fn request_error(error: &BusError, span: Span) -> RequestError {
+    let address = span.address;
+    match error {
+        BusError::Timeout { after } => {
+            let after_ms = u64::try_from(after.as_millis()).unwrap_or(u64::MAX);
+            RequestError::Timeout { address, after_ms }
+        }
+        BusError::Refused { reason } => RequestError::Refused {
+            address,
+            reason: reason.clone(),
+        },
+        BusError::WrongLength { got, want } => RequestError::WrongLength {
+            address,
+            got: *got,
+            want: *want,
+        },
+        BusError::TooLong => RequestError::TooLong {
+            address,
+            len: span.len,
+        },
+        BusError::Lost(_) => RequestError::LinkLost,
+    }
+}

@@ -1,0 +1,326 @@
+//! The task that owns one wire: dials, identifies, serves, and comes back after a loss. It decides what goes
+//! on the wire next: stop, then hold, setpoints, requests, reads. Nothing that was asked survives a lost link.
+
+use crate::hand::{HandSample, Moment, register};
+use crate::link::bus::{Bus, BusCounts, BusError, id_of};
+use crate::link::clock::SleepWatch;
+use crate::link::counters::Counters;
+use crate::link::event::{LinkEvent, Outcome, RequestError, Ticket};
+use crate::link::handle::{Ends, LinkConfig, Wanted};
+use crate::link::late::LateReplies;
+use crate::link::motion::Motion;
+use crate::link::plan::PollPlan;
+use crate::link::serve::Job;
+use crate::link::status::{Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::watch;
+use tokio::time::sleep_until;
+
+/// First wait before another try; some hands need 300 ms between close and connect.
+const RETRY_FIRST: Duration = Duration::from_millis(300);
+/// Longest wait: a hand that is back is seen again within two seconds.
+const RETRY_LONGEST: Duration = Duration::from_secs(1);
+/// Tries to get a first answer on a fresh wire.
+const IDENTIFY_TRIES: u32 = 3;
+/// Requests in a row without reply after which the link counts as lost.
+pub(crate) const SILENT_MAX: u32 = 4;
+/// Shortest wait for a reply: a hand takes up to 15 ms, a USB adapter up to 16 more.
+const REPLY_LIMIT_MIN: Duration = Duration::from_millis(50);
+/// Longest wait for a reply: part of the time in which a stop gets through.
+const REPLY_LIMIT_MAX: Duration = Duration::from_millis(300);
+/// Places in the event queue that samples leave to states and answers.
+const EVENTS_RESERVED: usize = 64;
+
+/// How serving a wire ended.
+pub(crate) enum End {
+    /// The handle is gone.
+    Closed,
+    /// The link was lost.
+    Lost(LinkTrouble),
+}
+
+/// One conversation with one hand.
+pub(crate) struct Session {
+    pub(crate) config: LinkConfig,
+    pub(crate) ends: Ends,
+    pub(crate) status: LinkStatus,
+    pub(crate) counters: Counters,
+    pub(crate) sample: HandSample,
+    pub(crate) plan: PollPlan,
+    pub(crate) motion: Motion,
+    pub(crate) job: Option<Job>,
+    pub(crate) sleep: SleepWatch,
+    silent: u32,
+    late: LateReplies,
+    closed_wires: BusCounts,
+}
+
+impl Session {
+    pub(crate) fn new(config: LinkConfig, ends: Ends) -> Self {
+        let now = config.clock.now();
+        Self {
+            plan: PollPlan::new(config.rates, now),
+            sleep: SleepWatch::new(now),
+            config,
+            ends,
+            status: LinkStatus::default(),
+            counters: Counters::default(),
+            sample: HandSample::default(),
+            motion: Motion::default(),
+            job: None,
+            silent: 0,
+            late: LateReplies::default(),
+            closed_wires: BusCounts::default(),
+        }
+    }
+
+    /// Runs until the handle is dropped.
+    pub(crate) async fn run(mut self) {
+        let mut attempt = 0;
+        loop {
+            attempt += 1;
+            let (end, answered) = self.conversation(attempt).await;
+            match end {
+                End::Closed => return,
+                End::Lost(trouble) => self.lost(trouble),
+            }
+            if answered {
+                attempt = 0;
+            }
+            if self.wait_for_retry(attempt).await {
+                return;
+            }
+        }
+    }
+
+    pub(crate) fn now(&self) -> Moment {
+        self.config.clock.now()
+    }
+
+    /// One wire, from dialling to its end; and whether the hand answered on it.
+    async fn conversation(&mut self, attempt: u32) -> (End, bool) {
+        self.status.dialling = Dialling::Trying { attempt };
+        self.publish();
+        let dialled = self.config.dial.dial(&self.config.endpoint);
+        let closed = closed(Arc::clone(&self.ends.wanted));
+        let dialled = tokio::select! {
+            biased;
+            () = closed => return (End::Closed, false),
+            dialled = dialled => dialled,
+        };
+        let late = std::mem::take(&mut self.late);
+        let bus =
+            dialled.and_then(|wire| Bus::new(&self.config.endpoint, wire, late, self.config.clock));
+        let mut bus = match bus {
+            Ok(bus) => bus,
+            Err(error) => return (End::Lost(error.into()), false),
+        };
+        self.silent = 0;
+        self.sleep = SleepWatch::new(self.now());
+        self.go(LinkState::Identifying);
+        let (end, answered) = match self.identify(&mut bus).await {
+            Err(end) => (end, false),
+            Ok(()) => (self.serve(&mut bus).await, true),
+        };
+        self.count(&bus);
+        self.closed_wires = self.closed_wires.plus(bus.counts());
+        self.late = bus.close();
+        (end, answered)
+    }
+
+    /// Asks for the id, read-only, until the hand answers.
+    async fn identify(&mut self, bus: &mut Bus) -> Result<(), End> {
+        for _ in 0..IDENTIFY_TRIES {
+            let limit = self.reply_limit(bus, 1) * 2;
+            let asked = bus.read(register::HAND_ID.span(), limit);
+            let closed = closed(Arc::clone(&self.ends.wanted));
+            let answer = tokio::select! {
+                biased;
+                () = closed => return Err(End::Closed),
+                answer = asked => answer,
+            };
+            match answer {
+                // A refusal is an answer too.
+                Ok(_) | Err(BusError::Refused { .. } | BusError::WrongLength { .. }) => {
+                    self.begin();
+                    return Ok(());
+                }
+                Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
+                Err(BusError::Timeout { .. } | BusError::TooLong) => {
+                    self.counters.stats.timeouts += 1;
+                    if let Err(BusError::Lost(error)) = bus.settle().await {
+                        return Err(End::Lost(error.into()));
+                    }
+                }
+            }
+        }
+        Err(End::Lost(LinkTrouble::NoAnswer {
+            id: id_of(&self.config.endpoint),
+        }))
+    }
+
+    /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
+    fn begin(&mut self) {
+        self.forget_wishes();
+        if self.sample != HandSample::default() {
+            self.counters.stats.reconnects += 1;
+        }
+        self.sample = HandSample::default();
+        self.plan = PollPlan::new(self.config.rates, self.now());
+        self.motion = Motion::after(self.motion.last_epoch);
+        self.status.dialling = Dialling::Idle;
+        self.status.trouble = None;
+        self.status.hold = Hold::None;
+        self.go(LinkState::Monitoring);
+    }
+
+    /// The link is gone: nothing stays armed, nothing stays queued.
+    fn lost(&mut self, trouble: LinkTrouble) {
+        self.disarm(Disarmed::LinkLost);
+        self.motion.forget();
+        self.status.trouble = Some(trouble);
+        self.counters.lost();
+        self.forget_wishes();
+        if let Some(job) = self.job.take() {
+            self.answer(job.ticket, Err(RequestError::LinkLost));
+        }
+        self.go(LinkState::Offline);
+        while let Ok((ticket, _)) = self.ends.requests.try_recv() {
+            self.answer(ticket, Err(RequestError::NotConnected));
+        }
+        self.ends.stats.send_replace(self.counters.stats);
+    }
+
+    /// Empties the slot of wishes, but not the wish to close.
+    fn forget_wishes(&self) {
+        self.ends.wanted.send_if_modified(|wanted| {
+            *wanted = Wanted {
+                closed: wanted.closed,
+                ..Wanted::default()
+            };
+            false
+        });
+    }
+
+    /// Waits before the next try; true if the handle is gone meanwhile.
+    async fn wait_for_retry(&mut self, attempt: u32) -> bool {
+        let doublings = attempt.saturating_sub(1).min(8);
+        let wait = (RETRY_FIRST * 2u32.pow(doublings)).min(RETRY_LONGEST);
+        let until = self.now().plus(wait);
+        self.status.dialling = Dialling::Waiting { attempt, until };
+        self.publish();
+        let closed = closed(Arc::clone(&self.ends.wanted));
+        tokio::select! {
+            biased;
+            () = closed => true,
+            () = sleep_until(self.config.clock.instant(until)) => false,
+        }
+    }
+
+    /// How long a reply of so many bytes may take on this link.
+    pub(crate) fn reply_limit(&self, bus: &Bus, bytes: u16) -> Duration {
+        let usual = self.counters.stats.rtt_p99.unwrap_or_default() * 2;
+        bus.wire_time(bytes) + usual.clamp(REPLY_LIMIT_MIN, REPLY_LIMIT_MAX)
+    }
+
+    /// A request was answered after `took`.
+    pub(crate) fn answered(&mut self, took: Duration) {
+        self.silent = 0;
+        self.counters.round_trip(took);
+    }
+
+    /// A request failed. Only a lost wire, or too many failures in a row, end the conversation.
+    pub(crate) async fn failed(&mut self, bus: &mut Bus, error: &BusError) -> Result<(), End> {
+        match error {
+            BusError::Lost(error) => return Err(End::Lost(error.clone().into())),
+            BusError::Refused { .. } => {
+                self.silent = 0;
+                self.counters.stats.refusals += 1;
+                return Ok(());
+            }
+            BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
+            BusError::Timeout { .. } => self.counters.stats.timeouts += 1,
+        }
+        self.silent += 1;
+        if self.silent >= SILENT_MAX {
+            return Err(End::Lost(LinkTrouble::Silent {
+                silent: self.silent,
+            }));
+        }
+        if self.motion.hold.is_some() {
+            return Ok(());
+        }
+        // A stop does not wait for the line to settle.
+        let stop = stopped(Arc::clone(&self.ends.wanted));
+        tokio::select! {
+            biased;
+            () = stop => Ok(()),
+            settled = bus.settle() => match settled {
+                Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+                _ => Ok(()),
+            },
+        }
+    }
+
+    /// Goes to a state and tells the window.
+    pub(crate) fn go(&mut self, state: LinkState) {
+        let now = self.now();
+        if self.status.state != state {
+            self.status.state = state;
+            self.status.since = now;
+            self.publish();
+            self.tell(LinkEvent::State { at: now, state });
+        }
+        self.publish();
+    }
+
+    pub(crate) fn publish(&self) {
+        let changed = self.ends.status.send_if_modified(|shown| {
+            let changed = *shown != self.status;
+            if changed {
+                shown.clone_from(&self.status);
+            }
+            changed
+        });
+        if changed {
+            (self.config.wake)();
+        }
+    }
+
+    /// Puts an event in the queue. Samples leave places to the others; what finds none is counted.
+    pub(crate) fn tell(&mut self, event: LinkEvent) {
+        let is_sample = matches!(event, LinkEvent::Sample { .. });
+        let room = self.ends.events.capacity() > if is_sample { EVENTS_RESERVED } else { 0 };
+        if !room || self.ends.events.try_send(event).is_err() {
+            self.counters.stats.dropped_events += 1;
+        }
+        (self.config.wake)();
+    }
+
+    pub(crate) fn answer(&mut self, ticket: Ticket, result: Result<Outcome, RequestError>) {
+        self.tell(LinkEvent::Done { ticket, result });
+    }
+
+    /// Brings the statistics up to date.
+    pub(crate) fn count(&mut self, bus: &Bus) {
+        let all = self.closed_wires.plus(bus.counts());
+        self.counters.stats.checksum_errors = all.checksum_errors;
+        self.counters.stats.resyncs = all.resyncs;
+        self.counters.stats.foreign_replies = all.foreign_replies;
+        self.counters.digest(self.now());
+        self.ends.stats.send_replace(self.counters.stats);
+    }
+}
+
+/// Resolves when the handle is gone.
+async fn closed(wanted: Arc<watch::Sender<Wanted>>) {
+    let mut wanted = wanted.subscribe();
+    let _gone = wanted.wait_for(|wanted| wanted.closed).await;
+}
+
+/// Resolves when a stop is wanted, or the handle is gone.
+async fn stopped(wanted: Arc<watch::Sender<Wanted>>) {
+    let mut wanted = wanted.subscribe();
+    let _asked = wanted.wait_for(|wanted| wanted.stop || wanted.closed).await;
+}

@@ -1,0 +1,431 @@
+//! One drive: motion, contact, current, heat, faults, in steps of one millisecond. Knows no registers.
+
+use crate::hand::{Fault, Faults, Status};
+use crate::sim::impact::{RIGID_G_PER_COUNT, overshoot_g};
+use arrayvec::ArrayVec;
+
+/// Length of a step, s.
+pub const STEP_S: f64 = 0.001;
+/// Position when fully bent, counts.
+pub const STROKE: f64 = 2000.0;
+/// Position counts a second for each unit of SPEED_SET.
+// Manual: 2.6.13 says 600 ms for the full stroke at 1000; 3.04 was measured on a sister hand.
+pub const COUNTS_PER_SPEED: f64 = STROKE / 0.6 / 1000.0;
+/// From a command to the motion, ms (measured: 64 +- 8).
+pub const DEAD_TIME_MS: u64 = 64;
+/// How fast a drive gains and loses speed, counts/s²: a short ramp of 10 ms to full speed.
+const RAMP: f64 = 330_000.0;
+/// Commands under way within the dead time: one a millisecond is more than any wire can carry.
+const PENDING_MAX: usize = 64;
+/// Current of a drive that moves without load, mA.
+const FREE_MA: f64 = 120.0;
+/// Current for each gram of load, mA.
+const MA_PER_G: f64 = 0.75;
+/// Current of a drive that pushes and cannot move, mA.
+const STALL_MA: f64 = 950.0;
+/// Current at which a drive protects itself, and the largest that its register shows, mA.
+const LIMIT_MA: f64 = 2000.0;
+/// How long the current must stay at its limit, ms; an impact is shorter.
+const OVER_CURRENT_MS: u32 = 50;
+/// How long a drive pushes before it calls itself stalled, ms.
+const STALL_MS: u32 = 800;
+/// Heating, °C/s for each A².
+const HEATING: f64 = 0.44;
+/// Time constant of cooling, s.
+const COOLING_S: f64 = 60.0;
+/// Temperature that stops a drive, °C.
+const HOT: f64 = 85.0;
+/// Temperature at which the fault ends by itself, °C.
+const COOL: f64 = 70.0;
+/// Time constant of a grip's relaxing after the stop, s.
+const RELAX_S: f64 = 0.15;
+
+/// What a joint meets while it bends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Angle at which the fingertip touches, 0..=1000.
+    pub angle: f64,
+    /// Stiffness, g for each position count.
+    pub stiffness: f64,
+}
+
+impl Contact {
+    fn position(self) -> f64 {
+        position_of(self.angle)
+    }
+}
+
+/// What a joint is told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Goal {
+    /// Go to this position, counts.
+    Position(f64),
+    /// Stop where it is.
+    Freeze,
+}
+
+/// The settings that act at once.
+#[derive(Debug, Clone, Copy)]
+pub struct Setting {
+    /// Units of SPEED_SET.
+    pub speed: f64,
+    /// Force threshold, g.
+    pub threshold_g: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    Rest,
+    Moving { to: f64 },
+    Coasting { to: f64, relax_to: f64 },
+    Relaxing { to: f64 },
+}
+
+/// One drive and what is in its way.
+#[derive(Debug, Clone)]
+pub struct Drive {
+    position: f64,
+    velocity: f64,
+    phase: Phase,
+    pending: ArrayVec<(u64, Goal), PENDING_MAX>,
+    status: Status,
+    faults: Faults,
+    current_ma: f64,
+    temperature: f64,
+    ambient: f64,
+    pushing_ms: u32,
+    over_current_ms: u32,
+    contact: Option<Contact>,
+    jam: Option<f64>,
+    grip: f64,
+}
+
+/// Position counts at an angle: the register pairs run against each other (manual 2.6.10, 2.6.11).
+#[must_use]
+pub fn position_of(angle: f64) -> f64 {
+    (1000.0 - angle) * 2.0
+}
+
+impl Drive {
+    /// An open drive in a room of `ambient` °C.
+    #[must_use]
+    pub fn new(ambient: f64) -> Self {
+        Self {
+            position: 0.0,
+            velocity: 0.0,
+            phase: Phase::Rest,
+            pending: ArrayVec::new(),
+            status: Status::PositionReached,
+            faults: Faults::default(),
+            current_ma: 0.0,
+            temperature: ambient,
+            ambient,
+            pushing_ms: 0,
+            over_current_ms: 0,
+            contact: None,
+            jam: None,
+            grip: 1.0,
+        }
+    }
+
+    /// Counts, 0 open to 2000 bent.
+    #[must_use]
+    pub const fn position(&self) -> f64 {
+        self.position
+    }
+
+    /// Angle, 1000 open to 0 bent.
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        1000.0 - self.position / 2.0
+    }
+
+    /// Force on the fingertip, g, without any sensor's error.
+    #[must_use]
+    pub fn load_g(&self) -> f64 {
+        self.load_at(self.position)
+    }
+
+    fn load_at(&self, position: f64) -> f64 {
+        self.contact.map_or(0.0, |contact| {
+            (position - contact.position()).max(0.0) * contact.stiffness * self.grip
+        })
+    }
+
+    /// Counts between fingertip and object; `None` if nothing is in the way.
+    #[must_use]
+    pub fn gap(&self) -> Option<f64> {
+        self.contact
+            .map(|contact| (contact.position() - self.position).max(0.0))
+    }
+
+    /// mA.
+    #[must_use]
+    pub const fn current_ma(&self) -> f64 {
+        self.current_ma.min(LIMIT_MA)
+    }
+
+    /// °C.
+    #[must_use]
+    pub const fn temperature(&self) -> f64 {
+        self.temperature
+    }
+
+    /// What it says it does.
+    #[must_use]
+    pub const fn status(&self) -> Status {
+        self.status
+    }
+
+    /// Its faults.
+    #[must_use]
+    pub const fn faults(&self) -> Faults {
+        self.faults
+    }
+
+    /// Puts something in its way, or takes it away.
+    pub const fn set_contact(&mut self, contact: Option<Contact>) {
+        self.contact = contact;
+    }
+
+    /// Blocks the linkage at an angle; the fingertip's sensor feels nothing of it.
+    pub const fn set_jam(&mut self, angle: Option<f64>) {
+        self.jam = angle;
+    }
+
+    /// How much of the contact force is there, 1 = all; a slip takes some away.
+    pub const fn set_grip(&mut self, grip: f64) {
+        self.grip = grip;
+    }
+
+    /// Makes it this warm, °C.
+    pub const fn warm(&mut self, celsius: f64) {
+        self.temperature = celsius;
+    }
+
+    /// Shows a status until the next motion; for scripts.
+    pub const fn pretend(&mut self, status: Status) {
+        self.status = status;
+    }
+
+    /// Switches a fault on.
+    pub fn inject(&mut self, fault: Fault) {
+        if fault == Fault::OverTemperature {
+            // Without the heat it would end at once.
+            self.temperature = self.temperature.max(HOT);
+        }
+        self.raise(fault);
+        let status = match fault {
+            Fault::Stall => Status::Stalled,
+            Fault::OverCurrent => Status::CurrentProtection,
+            _ => Status::DriveFault,
+        };
+        self.stop(status);
+    }
+
+    /// Clears what can be cleared (manual 2.6.3). The drive stays where it is.
+    pub fn clear_errors(&mut self) {
+        if self.faults.is_empty() {
+            return;
+        }
+        self.faults = Faults::from_raw(self.faults.raw() & (1 << Fault::OverTemperature.bit()));
+        let status = if self.faults.is_empty() {
+            Status::PositionReached
+        } else {
+            Status::DriveFault
+        };
+        self.stop(status);
+    }
+
+    /// Loses its commands and faults, as without power. Position and heat remain.
+    pub fn power_cycle(&mut self) {
+        self.faults = Faults::default();
+        self.stop(Status::PositionReached);
+    }
+
+    /// Takes a command that acts after the dead time.
+    pub fn command(&mut self, goal: Goal, now_ms: u64) {
+        let due = now_ms + DEAD_TIME_MS;
+        if self.pending.is_full() {
+            self.pending.pop();
+        }
+        self.pending.push((due, goal));
+    }
+
+    /// One millisecond.
+    pub fn step(&mut self, now_ms: u64, setting: Setting) {
+        while let Some((due, goal)) = self.pending.first().copied() {
+            if due > now_ms {
+                break;
+            }
+            self.pending.remove(0);
+            self.begin(goal);
+        }
+        self.current_ma = 0.0;
+        match self.phase {
+            Phase::Rest => {}
+            Phase::Moving { to } => self.move_on(to, setting),
+            Phase::Coasting { to, relax_to } => self.coast(to, relax_to),
+            Phase::Relaxing { to } => {
+                self.position += (to - self.position) * STEP_S / RELAX_S;
+                if (self.position - to).abs() < 0.02 {
+                    self.phase = Phase::Rest;
+                }
+            }
+        }
+        self.heat();
+    }
+
+    fn begin(&mut self, goal: Goal) {
+        match goal {
+            Goal::Freeze => {
+                if matches!(self.phase, Phase::Moving { .. }) {
+                    self.stop_moving(Status::PositionReached);
+                }
+            }
+            Goal::Position(to) => {
+                let to = to.clamp(0.0, STROKE);
+                if self.may_move(to) {
+                    self.pushing_ms = 0;
+                    self.over_current_ms = 0;
+                    self.phase = Phase::Moving { to };
+                }
+            }
+        }
+    }
+
+    /// A drive that stalled or drew too much may still open; any other fault keeps it still.
+    // Manual: not said. The manual's advice to free the finger needs a way to open it.
+    fn may_move(&self, to: f64) -> bool {
+        let only_opens =
+            self.faults.contains(Fault::Stall) || self.faults.contains(Fault::OverCurrent);
+        let dead = self.faults.contains(Fault::OverTemperature)
+            || self.faults.contains(Fault::Motor)
+            || self.faults.contains(Fault::Communication);
+        !dead && (!only_opens || to < self.position)
+    }
+
+    fn move_on(&mut self, to: f64, setting: Setting) {
+        let way = to - self.position;
+        let top = setting.speed * COUNTS_PER_SPEED;
+        // The last counts are taken slowly enough to end on the target.
+        let wanted = way.signum() * top.min((2.0 * RAMP * way.abs()).sqrt());
+        let change = (wanted - self.velocity).clamp(-RAMP * STEP_S, RAMP * STEP_S);
+        self.velocity += change;
+        self.status = if way > 0.0 {
+            Status::Grasping
+        } else {
+            Status::Releasing
+        };
+        let load = self.load_g();
+        self.current_ma = FREE_MA + MA_PER_G * load;
+        let step = self.velocity * STEP_S;
+        // A fast drive passes its threshold within one step, so the step is looked at before it is made.
+        let met = self.load_at(self.position + step);
+        if way > 0.0 && met > 0.0 && met >= setting.threshold_g {
+            self.force_stop(setting.threshold_g);
+            return;
+        }
+        if way.abs() < 0.5 || (step.abs() >= way.abs() && step * way > 0.0) {
+            self.position = to;
+            self.stop_moving(Status::PositionReached);
+            return;
+        }
+        match self.jam.map(position_of) {
+            Some(end) if way > 0.0 && self.position + step >= end && self.position <= end => {
+                self.push(end)
+            }
+            _ => {
+                self.position = (self.position + step).clamp(0.0, STROKE);
+                self.pushing_ms = 0;
+            }
+        }
+        self.watch_current();
+    }
+
+    fn push(&mut self, end: f64) {
+        self.position = end;
+        self.velocity = 0.0;
+        self.pushing_ms += 1;
+        self.current_ma = STALL_MA;
+        if self.pushing_ms > STALL_MS {
+            self.raise(Fault::Stall);
+            self.stop_moving(Status::Stalled);
+        }
+    }
+
+    fn watch_current(&mut self) {
+        if self.current_ma < LIMIT_MA {
+            self.over_current_ms = 0;
+            return;
+        }
+        self.over_current_ms += 1;
+        if self.over_current_ms > OVER_CURRENT_MS {
+            self.raise(Fault::OverCurrent);
+            self.stop_moving(Status::CurrentProtection);
+        }
+    }
+
+    /// The force met its threshold. The drive runs on by the distance that the table gives.
+    fn force_stop(&mut self, threshold_g: f64) {
+        let Some(contact) = self.contact else {
+            return;
+        };
+        let stiffness = (contact.stiffness * self.grip).max(0.01);
+        let over = overshoot_g(self.velocity / COUNTS_PER_SPEED, threshold_g);
+        let met = contact.position() + threshold_g / stiffness;
+        let rest_g = 0.92 * threshold_g + 0.05 * over * stiffness / RIGID_G_PER_COUNT;
+        self.status = Status::ForceReached;
+        self.phase = Phase::Coasting {
+            to: (met + over / RIGID_G_PER_COUNT).min(STROKE),
+            relax_to: (contact.position() + rest_g / stiffness).min(STROKE),
+        };
+    }
+
+    fn coast(&mut self, to: f64, relax_to: f64) {
+        self.current_ma = MA_PER_G * self.load_g();
+        let left = to - self.position;
+        let step = (self.velocity * STEP_S).min(left * 0.5);
+        if left <= 0.05 || step <= 0.001 {
+            if left > 0.0 && self.velocity > 0.0 {
+                self.position = to;
+            }
+            self.velocity = 0.0;
+            self.phase = Phase::Relaxing { to: relax_to };
+            return;
+        }
+        self.position += step;
+    }
+
+    fn heat(&mut self) {
+        let amps = self.current_ma / 1000.0;
+        let cooling = (self.temperature - self.ambient) / COOLING_S;
+        self.temperature += (HEATING * amps * amps - cooling) * STEP_S;
+        if self.temperature >= HOT && !self.faults.contains(Fault::OverTemperature) {
+            self.inject(Fault::OverTemperature);
+        }
+        if self.temperature < COOL && self.faults.contains(Fault::OverTemperature) {
+            self.faults =
+                Faults::from_raw(self.faults.raw() & !(1 << Fault::OverTemperature.bit()));
+            if self.faults.is_empty() {
+                self.stop(Status::PositionReached);
+            }
+        }
+    }
+
+    fn raise(&mut self, fault: Fault) {
+        self.faults = Faults::from_raw(self.faults.raw() | 1 << (fault.bit() & 7));
+    }
+
+    fn stop_moving(&mut self, status: Status) {
+        self.velocity = 0.0;
+        self.phase = Phase::Rest;
+        self.status = status;
+    }
+
+    /// Stops and forgets what it was told.
+    fn stop(&mut self, status: Status) {
+        self.pending.clear();
+        self.stop_moving(status);
+    }
+}

@@ -1,0 +1,445 @@
+//! The simulated hand: memory, body, fingertips and script put together. It is given the time; it owns no clock and no wire.
+
+use crate::hand::register::{
+    ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, CLEAR_ERROR, FORCE_SET, GESTURE_FORCE_CLB,
+    GESTURE_NO_SET, HAND_ID, POS_SET, REDU_RATIO, RESET_PARA, SAVE, SPEED_SET, Span,
+};
+use crate::hand::sample::touch_span;
+use crate::hand::{Dof, Fault, Finger, Moment, PerDof};
+use crate::sim::body::{Body, Object};
+use crate::sim::drive::{Goal, Setting, position_of};
+use crate::sim::extremes;
+use crate::sim::gesture;
+use crate::sim::live::{self, element};
+use crate::sim::memory::{Change, GAP, Memory, Refusal};
+use crate::sim::number;
+use crate::sim::personality::{MinusOne, Personality, SaveAnswer, SpeedZero};
+use crate::sim::scenario::{self, Ailment, Order, Scenario};
+use crate::sim::touch::{SENSOR_MS, Touch};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// From SAVE to its result (manual 2.2.2: about one second).
+pub const SAVE_TAKES: Duration = Duration::from_secs(1);
+/// From GESTURE_FORCE_CLB to the new zero (manual 2.6.6: about six seconds).
+const CALIBRATION_MS: u64 = 6000;
+/// Speed that a creeping hand takes SPEED_SET 0 for.
+const CREEP: f64 = 5.0;
+/// SAVE results under way: one second holds no more of them on any wire we have.
+const SAVES_MAX: usize = 64;
+/// Writes that the journal keeps; twice as many are held before the older half goes.
+pub const JOURNAL_KEEPS: usize = 8192;
+/// Where the time of a read stands when the personality stamps it.
+const STAMP: Span = Span::new(GAP.address, 8);
+
+/// What a simulated hand is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SimConfig {
+    /// Seed of everything random in it.
+    pub seed: u64,
+    /// Id on the bus, 1..=254.
+    pub id: u8,
+    /// What it does by itself.
+    pub scenario: Scenario,
+    /// How it reads the manual's gaps.
+    pub personality: Personality,
+}
+
+impl Default for SimConfig {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            id: 1,
+            scenario: Scenario::Idle,
+            personality: Personality::default(),
+        }
+    }
+}
+
+/// What a write did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WriteEffect {
+    /// The id in the acknowledgement: the new one, if the write changed it.
+    pub ack_id: u8,
+    /// Elements that the hand took; the others were dropped without a word.
+    pub taken: usize,
+    /// A late result was put in line ([`SimHand::late_save_result`]).
+    pub result_follows: bool,
+}
+
+/// The second frame after a SAVE on a serial line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SaveFrame {
+    /// Command byte, 0x11 or 0x12.
+    pub command: u8,
+    /// Whether the parameters are in flash.
+    pub ok: bool,
+}
+
+/// One write that reached the hand, taken or not.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct JournalEntry {
+    /// When.
+    pub at: Moment,
+    /// First byte's address.
+    pub address: u16,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// A hand that answers bytes.
+#[derive(Debug, Clone)]
+pub struct SimHand {
+    config: SimConfig,
+    memory: Memory,
+    body: Body,
+    touch: Touch,
+    rng: fastrand::Rng,
+    now_ms: u64,
+    published_ms: Option<u64>,
+    calibration_due_ms: Option<u64>,
+    saves: VecDeque<(Moment, SaveFrame)>,
+    baud_code: u8,
+    journal: Vec<JournalEntry>,
+}
+
+impl SimHand {
+    /// A hand that was switched on at [`Moment::ZERO`], open.
+    #[must_use]
+    pub fn new(config: SimConfig) -> Self {
+        let mut rng = fastrand::Rng::with_seed(config.seed);
+        let body = Body::new(&Object::soft_ball(), &mut rng);
+        let mut touch = Touch::new(&mut rng);
+        touch.measure(&mut rng);
+        let mut hand = Self {
+            config,
+            memory: Memory::new(config.id),
+            body,
+            touch,
+            rng,
+            now_ms: 0,
+            published_ms: None,
+            calibration_due_ms: None,
+            saves: VecDeque::new(),
+            baud_code: 0,
+            journal: Vec::new(),
+        };
+        hand.target_actual();
+        hand
+    }
+
+    /// Lives on until `now`, in steps of one millisecond, so that the result does not depend on who asks how often.
+    pub fn advance_to(&mut self, now: Moment) {
+        let end = now.micros() / 1000;
+        while self.now_ms < end {
+            self.now_ms += 1;
+            self.tick();
+        }
+    }
+
+    /// The bytes of a run as they are at `now`.
+    ///
+    /// # Errors
+    /// [`Refusal`] for runs that leave the memory, or cross the gap on a hand that does not answer there.
+    pub fn read(&mut self, span: Span, now: Moment) -> Result<Vec<u8>, Refusal> {
+        self.advance_to(now);
+        if !self.config.personality.gap_readable && overlaps(span, GAP) {
+            return Err(Refusal::Gap);
+        }
+        self.publish();
+        if self.config.personality.stamp_gap {
+            self.memory.put(STAMP.address, &now.micros().to_le_bytes());
+        }
+        self.memory.read(span).map(<[u8]>::to_vec)
+    }
+
+    /// A write from outside.
+    ///
+    /// # Errors
+    /// [`Refusal`] for runs that leave the memory. A value that the hand does not take is no error: it is dropped.
+    pub fn write(
+        &mut self,
+        address: u16,
+        bytes: &[u8],
+        now: Moment,
+    ) -> Result<WriteEffect, Refusal> {
+        self.advance_to(now);
+        self.record(now, address, bytes);
+        let in_line = self.saves.len();
+        let changes = self
+            .memory
+            .write(address, bytes, self.config.personality.out_of_range)?;
+        for change in &changes {
+            self.apply(change, now);
+        }
+        self.memory.rearm_triggers();
+        self.published_ms = None;
+        Ok(WriteEffect {
+            ack_id: self.id(),
+            taken: changes.len(),
+            result_follows: self.saves.len() > in_line,
+        })
+    }
+
+    /// The result of a SAVE, if one is due. Each is given once.
+    pub fn late_save_result(&mut self, now: Moment) -> Option<SaveFrame> {
+        if self.next_save_result()? > now {
+            return None;
+        }
+        self.saves.pop_front().map(|(_, frame)| frame)
+    }
+
+    /// Takes back the result of the newest SAVE: only serial lines have such a frame.
+    pub fn cancel_newest_save_result(&mut self) {
+        self.saves.pop_back();
+    }
+
+    /// When the next result of a SAVE is due.
+    #[must_use]
+    pub fn next_save_result(&self) -> Option<Moment> {
+        self.saves.front().map(|(due, _)| *due)
+    }
+
+    /// Switches the hand off and on. The joints stay where they are.
+    pub fn power_cycle(&mut self, now: Moment) {
+        self.advance_to(now);
+        self.memory.power_cycle();
+        self.saves.clear();
+        self.calibration_due_ms = None;
+        self.baud_code = self.memory.byte(REDU_RATIO.address);
+        for dof in Dof::ALL {
+            self.body.drive_mut(dof).power_cycle();
+        }
+        self.target_actual();
+    }
+
+    /// The id that the hand answers to.
+    #[must_use]
+    pub fn id(&self) -> u8 {
+        self.memory.byte(HAND_ID.address)
+    }
+
+    /// The serial speed's code in effect, which is that of the last power-up.
+    #[must_use]
+    pub const fn baud_code(&self) -> u8 {
+        self.baud_code
+    }
+
+    /// How this hand reads the manual's gaps.
+    #[must_use]
+    pub const fn personality(&self) -> &Personality {
+        &self.config.personality
+    }
+
+    /// The newest writes, oldest first; never more than twice [`JOURNAL_KEEPS`].
+    #[must_use]
+    pub fn journal(&self) -> &[JournalEntry] {
+        &self.journal
+    }
+
+    /// Puts another object between the fingers.
+    pub fn set_object(&mut self, object: &Object) {
+        self.body.set_object(object);
+        self.published_ms = None;
+    }
+
+    /// Switches a fault on.
+    pub fn inject_fault(&mut self, dof: Dof, fault: Fault) {
+        self.body.drive_mut(dof).inject(fault);
+        self.published_ms = None;
+    }
+
+    /// Makes a drive this warm, °C.
+    pub fn warm(&mut self, dof: Dof, celsius: f64) {
+        self.body.drive_mut(dof).warm(celsius);
+        self.published_ms = None;
+    }
+
+    /// Blocks a joint's linkage at an angle, or frees it.
+    pub fn set_jam(&mut self, dof: Dof, angle: Option<f64>) {
+        self.body.drive_mut(dof).set_jam(angle);
+    }
+
+    fn record(&mut self, at: Moment, address: u16, bytes: &[u8]) {
+        if self.journal.len() >= 2 * JOURNAL_KEEPS {
+            self.journal.drain(..JOURNAL_KEEPS);
+        }
+        self.journal.push(JournalEntry {
+            at,
+            address,
+            bytes: bytes.to_vec(),
+        });
+    }
+
+    fn tick(&mut self) {
+        match self.config.scenario {
+            Scenario::Grasp => self.script_grasp(),
+            Scenario::Faults => self.script_faults(),
+            Scenario::Idle | Scenario::Extremes => {}
+        }
+        let settings = PerDof::from_fn(|dof| self.setting(dof));
+        self.body.step(self.now_ms, &settings, &mut self.rng);
+        if self.now_ms.is_multiple_of(SENSOR_MS) {
+            self.touch.measure(&mut self.rng);
+        }
+        if self.calibration_due_ms == Some(self.now_ms) {
+            self.calibration_due_ms = None;
+            self.body.calibrate_force();
+        }
+    }
+
+    fn setting(&self, dof: Dof) -> Setting {
+        let speed = f64::from(self.memory.short(&SPEED_SET, element(dof)));
+        Setting {
+            speed: match self.config.personality.speed_zero {
+                SpeedZero::Slowest => speed.max(CREEP),
+                SpeedZero::Freeze => speed,
+            },
+            threshold_g: f64::from(self.memory.short(&FORCE_SET, element(dof))),
+        }
+    }
+
+    fn script_grasp(&mut self) {
+        if let Some(order) = scenario::grasp_order(self.now_ms) {
+            self.obey(&order);
+        }
+        let slip = scenario::slip(Scenario::Grasp, self.now_ms);
+        for dof in Dof::ALL {
+            self.body.drive_mut(dof).set_grip(slip.grip);
+        }
+    }
+
+    fn script_faults(&mut self) {
+        let Some(picture) = scenario::fault_phase(self.now_ms) else {
+            return;
+        };
+        for dof in Dof::ALL {
+            let drive = self.body.drive_mut(dof);
+            drive.warm(35.0);
+            drive.power_cycle();
+        }
+        for (dof, ailment) in picture {
+            let drive = self.body.drive_mut(*dof);
+            match ailment {
+                Ailment::Says(status) => drive.pretend(*status),
+                Ailment::Has(fault) => drive.inject(*fault),
+            }
+            if *ailment == Ailment::Has(Fault::OverTemperature) {
+                drive.warm(92.0);
+            }
+        }
+    }
+
+    fn obey(&mut self, order: &Order) {
+        for dof in Dof::ALL {
+            let at = element(dof);
+            self.memory.put_short(&SPEED_SET, at, order.speeds[dof]);
+            self.memory.put_short(&FORCE_SET, at, order.forces[dof]);
+            self.memory.put_angle_set(at, order.angles[dof]);
+            self.go_to_angle(dof, order.angles[dof]);
+        }
+    }
+
+    fn go_to_angle(&mut self, dof: Dof, angle: i16) {
+        let goal = Goal::Position(position_of(f64::from(angle)));
+        self.body.drive_mut(dof).command(goal, self.now_ms);
+    }
+
+    fn apply(&mut self, change: &Change, now: Moment) {
+        let on = change.value == 1;
+        match change.register.address {
+            a if a == ANGLE_SET.address || a == POS_SET.address => self.apply_target(change),
+            a if a == CLEAR_ERROR.address && on => {
+                for dof in Dof::ALL {
+                    self.body.drive_mut(dof).clear_errors();
+                }
+            }
+            a if a == SAVE.address && on => self.save(now),
+            a if a == RESET_PARA.address && on => self.memory.reset_parameters(),
+            a if a == GESTURE_FORCE_CLB.address && on => {
+                self.calibration_due_ms = Some(self.now_ms + CALIBRATION_MS);
+            }
+            a if a == GESTURE_NO_SET.address => self.take_pose(change.value),
+            a if a == ACTION_SEQ_RUN.address && on => {
+                self.take_pose(i32::from(self.memory.byte(ACTION_SEQ_INDEX.address)));
+            }
+            _ => {}
+        }
+    }
+
+    fn apply_target(&mut self, change: &Change) {
+        let Some(dof) = Dof::ALL.get(usize::from(change.element)).copied() else {
+            return;
+        };
+        let goal = match (change.value, self.config.personality.minus_one_mid_move) {
+            (-1, MinusOne::Ignore) => return,
+            (-1, MinusOne::Freeze) => Goal::Freeze,
+            (value, _) if change.register.address == ANGLE_SET.address => {
+                Goal::Position(position_of(f64::from(value)))
+            }
+            (value, _) => Goal::Position(f64::from(value)),
+        };
+        self.body.drive_mut(dof).command(goal, self.now_ms);
+    }
+
+    fn take_pose(&mut self, number: i32) {
+        let pose = u8::try_from(number).ok().and_then(gesture::pose);
+        for (dof, angle) in pose.iter().flat_map(PerDof::iter) {
+            self.memory.put_angle_set(element(dof), *angle);
+            self.go_to_angle(dof, *angle);
+        }
+    }
+
+    fn save(&mut self, now: Moment) {
+        let (command, ok) = match self.config.personality.save_frame {
+            SaveAnswer::Command11 => (0x11, true),
+            SaveAnswer::Command12 => (0x12, true),
+            SaveAnswer::Failed => (0x12, false),
+            SaveAnswer::Never => {
+                self.memory.save();
+                return;
+            }
+        };
+        if ok {
+            self.memory.save();
+        }
+        if self.saves.len() < SAVES_MAX {
+            self.saves
+                .push_back((now.plus(SAVE_TAKES), SaveFrame { command, ok }));
+        }
+    }
+
+    /// ANGLE_SET says where the joints are; nothing is to be moved.
+    fn target_actual(&mut self) {
+        for (dof, drive) in self.body.drives().iter() {
+            self.memory
+                .put_angle_set(element(dof), number::short(drive.angle()));
+        }
+        self.published_ms = None;
+    }
+
+    /// Puts the live values of this millisecond into the memory.
+    fn publish(&mut self) {
+        if self.published_ms == Some(self.now_ms) {
+            return;
+        }
+        self.published_ms = Some(self.now_ms);
+        live::publish_drives(&mut self.memory, &self.body);
+        let measured_ms = self.now_ms - self.now_ms % SENSOR_MS;
+        let slip = scenario::slip(self.config.scenario, measured_ms);
+        for finger in Finger::ALL {
+            let press = live::press(&self.body, finger);
+            let block = self
+                .touch
+                .block(finger, press, slip, number::seconds(measured_ms));
+            self.memory.put(touch_span(finger).address, &block.encode());
+        }
+        if self.config.scenario == Scenario::Extremes {
+            extremes::overlay(&mut self.memory, self.now_ms);
+        }
+    }
+}
+
+const fn overlaps(a: Span, b: Span) -> bool {
+    (a.address as u32) < b.end() && (b.address as u32) < a.end()
+}

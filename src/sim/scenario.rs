@@ -1,0 +1,218 @@
+//! Scripts: what the simulated hand does by itself. Only decides; the hand carries out.
+
+use crate::hand::{Dof, Fault, PerDof, Status};
+use crate::sim::number;
+use std::str::FromStr;
+
+/// What the hand does by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Scenario {
+    /// Nothing; a soft ball waits between the fingers.
+    #[default]
+    Idle,
+    /// As if another controller grasped the ball again and again.
+    Grasp,
+    /// Every status code and every fault bit, in turn.
+    Faults,
+    /// Values that the manual does not allow.
+    Extremes,
+}
+
+/// A scenario's name that does not exist.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("'{got}' is no scenario: choose idle, grasp, faults or extremes")]
+pub struct UnknownScenario {
+    /// What was given.
+    pub got: String,
+}
+
+impl Scenario {
+    /// All, with the quiet one first.
+    pub const ALL: [Self; 4] = [Self::Idle, Self::Grasp, Self::Faults, Self::Extremes];
+
+    /// Stable lower-case name, as in endpoints.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Idle => "idle",
+            Self::Grasp => "grasp",
+            Self::Faults => "faults",
+            Self::Extremes => "extremes",
+        }
+    }
+}
+
+impl FromStr for Scenario {
+    type Err = UnknownScenario;
+
+    fn from_str(text: &str) -> Result<Self, UnknownScenario> {
+        Self::ALL
+            .into_iter()
+            .find(|scenario| scenario.name() == text)
+            .ok_or_else(|| UnknownScenario { got: text.into() })
+    }
+}
+
+/// Six settings as another controller would write them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Order {
+    /// ANGLE_SET.
+    pub angles: PerDof<i16>,
+    /// FORCE_SET, g.
+    pub forces: PerDof<i16>,
+    /// SPEED_SET.
+    pub speeds: PerDof<i16>,
+}
+
+/// Length of one grasp, ms.
+const GRASP_MS: u64 = 8000;
+/// Force thresholds of the grasp: each finger its own, so that they can be told apart.
+const GRASP_FORCES: PerDof<i16> = PerDof::new([330, 470, 600, 560, 640, 500]);
+/// When the object slips, s into the grasp, and for how long.
+const SLIP_AT_S: f64 = 2.5;
+const SLIP_LASTS_S: f64 = 0.4;
+/// When the hand opens, s into the grasp.
+const RELEASE_AT_S: f64 = 5.0;
+
+/// What the grasp's controller orders in this millisecond.
+#[must_use]
+pub fn grasp_order(now_ms: u64) -> Option<Order> {
+    let (angles, more, speed) = match now_ms % GRASP_MS {
+        // The dead time makes it move at 0.4 s.
+        336 => ([120, 120, 120, 120, 200, 320], 0, 400),
+        // It tightens slowly, as a controller does that felt the slip.
+        2760 => ([100, 100, 100, 100, 180, 320], 260, 5),
+        5000 => ([1000; 6], 0, 400),
+        _ => return None,
+    };
+    Some(Order {
+        angles: PerDof::new(angles),
+        forces: GRASP_FORCES.map(|force| force + more),
+        speeds: PerDof::splat(speed),
+    })
+}
+
+/// How the object slides on the fingertips.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slip {
+    /// Share of the contact force that remains, 1 = all.
+    pub grip: f64,
+    /// Added to the friction share.
+    pub friction: f64,
+    /// Turn of the tangential force, degrees.
+    pub turn_deg: f64,
+    /// Way of the contact on the fingertip, mm.
+    pub slide_mm: f64,
+}
+
+impl Default for Slip {
+    fn default() -> Self {
+        Self {
+            grip: 1.0,
+            friction: 0.0,
+            turn_deg: 0.0,
+            slide_mm: 0.0,
+        }
+    }
+}
+
+/// The slip at this moment; none outside the grasp.
+#[must_use]
+pub fn slip(scenario: Scenario, now_ms: u64) -> Slip {
+    if scenario != Scenario::Grasp {
+        return Slip::default();
+    }
+    let t = number::seconds(now_ms % GRASP_MS);
+    let way = ((t - SLIP_AT_S) / SLIP_LASTS_S).clamp(0.0, 1.0);
+    if way <= 0.0 || t > RELEASE_AT_S + 2.0 {
+        return Slip::default();
+    }
+    let bump = (way * std::f64::consts::PI).sin();
+    let smooth = way * way * (3.0 - 2.0 * way);
+    Slip {
+        grip: 1.0 - 0.14 * bump,
+        friction: 0.38 * bump + 0.06 * smooth,
+        turn_deg: 85.0 * smooth,
+        slide_mm: 2.6 * smooth,
+    }
+}
+
+/// How long each picture of `faults` stays, ms.
+pub const FAULT_PHASE_MS: u64 = 1500;
+
+/// What one drive of the `faults` script shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ailment {
+    /// A status without a fault.
+    Says(Status),
+    /// A fault; over-temperature comes with the heat.
+    Has(Fault),
+}
+
+/// The pictures of `faults`, one after another.
+const FAULT_PHASES: [&[(Dof, Ailment)]; 8] = [
+    &[],
+    &[
+        (Dof::Little, Ailment::Says(Status::Releasing)),
+        (Dof::Ring, Ailment::Says(Status::Grasping)),
+        (Dof::Middle, Ailment::Says(Status::PositionReached)),
+        (Dof::Index, Ailment::Says(Status::ForceReached)),
+        (Dof::ThumbBend, Ailment::Says(Status::CurrentProtection)),
+        (Dof::ThumbRotate, Ailment::Says(Status::Stalled)),
+    ],
+    &[(Dof::Index, Ailment::Has(Fault::Stall))],
+    &[(Dof::Middle, Ailment::Has(Fault::OverTemperature))],
+    &[(Dof::ThumbBend, Ailment::Has(Fault::OverCurrent))],
+    &[(Dof::Ring, Ailment::Has(Fault::Motor))],
+    &[(Dof::ThumbRotate, Ailment::Has(Fault::Communication))],
+    &[
+        (Dof::Little, Ailment::Has(Fault::Stall)),
+        (Dof::Little, Ailment::Has(Fault::OverTemperature)),
+        (Dof::Middle, Ailment::Has(Fault::OverCurrent)),
+        (Dof::Index, Ailment::Has(Fault::Motor)),
+        (Dof::Index, Ailment::Has(Fault::Communication)),
+        (Dof::ThumbBend, Ailment::Has(Fault::Stall)),
+    ],
+];
+
+/// The picture that begins in this millisecond.
+#[must_use]
+pub fn fault_phase(now_ms: u64) -> Option<&'static [(Dof, Ailment)]> {
+    if !now_ms.is_multiple_of(FAULT_PHASE_MS) {
+        return None;
+    }
+    let phases = u64::try_from(FAULT_PHASES.len()).unwrap_or(1);
+    let index = usize::try_from(now_ms / FAULT_PHASE_MS % phases).unwrap_or_default();
+    FAULT_PHASES.get(index).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+
+    #[test]
+    fn names_read_back_and_a_wrong_one_names_the_right_ones() {
+        for scenario in Scenario::ALL {
+            assert_eq!(scenario.name().parse::<Scenario>(), Ok(scenario));
+        }
+        let error = "grip".parse::<Scenario>().unwrap_err().to_string();
+        for scenario in Scenario::ALL {
+            assert!(error.contains(scenario.name()));
+        }
+    }
+
+    #[test]
+    fn the_fault_pictures_hold_every_status_and_every_bit() {
+        let shown: Vec<Ailment> = FAULT_PHASES
+            .iter()
+            .flat_map(|phase| phase.iter().map(|(_, ailment)| *ailment))
+            .collect();
+        for bit in 0..5 {
+            assert!(shown.contains(&Ailment::Has(Fault::from_bit(bit))));
+        }
+        for code in [0, 1, 2, 3, 5, 6] {
+            assert!(shown.contains(&Ailment::Says(Status::from_raw(code))));
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! The simulated hand behind a pseudo-terminal, where other programs open it like a serial port. Unix only.
+
+use crate::sim::serve::rs485;
+use crate::sim::serve::shared::SharedHand;
+use crate::transport::{PtyLink, TransportError};
+use std::future::Future;
+use std::path::Path;
+
+/// Makes the link at `path` at once, and answers there while the returned future lives. Clients may come and go;
+/// dropping the future removes the link.
+///
+/// # Errors
+/// As [`PtyLink::create`]: something that is no link stands there, no permission, no such folder. Must be called
+/// within a tokio runtime.
+pub fn serve_rs485(
+    hand: SharedHand,
+    path: &Path,
+) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
+    let link = PtyLink::create(path)?;
+    Ok(rs485::serve(hand, link))
+}

@@ -1,0 +1,111 @@
+//! The simulated hand on a serial wire, private framing (manual 2.2). Opens no port.
+
+use crate::codec::rs485::{
+    Frame, READ_LEN_MAX, Request, RequestDecoder, encode_read_reply, encode_save_result,
+    encode_write_ack,
+};
+use crate::sim::serve::shared::SharedHand;
+use crate::transport::Wire;
+use std::io;
+use std::time::Duration;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::time::{Instant, sleep, sleep_until};
+
+/// The value in an acknowledgement (manual 2.2.2).
+const ACK: u8 = 1;
+/// Bytes taken at once: more than the longest request.
+const CHUNK: usize = 512;
+/// Silence after which an unfinished request is given up: far longer than any gap between two bytes of one.
+const SILENCE: Duration = Duration::from_millis(50);
+
+/// Answers on `wire` until the other side hangs up. Silent for other ids, bad frames and runs it refuses.
+pub async fn serve(hand: SharedHand, wire: impl Wire) {
+    let mut line = Line {
+        hand,
+        wire,
+        decoder: RequestDecoder::default(),
+    };
+    // The end of the wire is the only end there is, and the only error.
+    let _hung_up = line.run().await;
+}
+
+struct Line<W> {
+    hand: SharedHand,
+    wire: W,
+    decoder: RequestDecoder,
+}
+
+impl<W: Wire> Line<W> {
+    async fn run(&mut self) -> io::Result<()> {
+        let mut chunk = [0; CHUNK];
+        loop {
+            let due = self.hand.with(|hand, _| hand.next_save_result());
+            let due = due.map(|due| self.hand.instant(due));
+            tokio::select! {
+                biased;
+                () = sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => {
+                    self.send_save_result().await?;
+                }
+                read = self.wire.read(&mut chunk) => match read? {
+                    0 => return Ok(()),
+                    len => self.take(chunk.get(..len).unwrap_or_default()).await?,
+                },
+                () = sleep(SILENCE), if self.decoder.buffered() > 0 => {
+                    self.decoder.flush_pending();
+                    self.answer_all().await?;
+                }
+            }
+        }
+    }
+
+    async fn take(&mut self, mut bytes: &[u8]) -> io::Result<()> {
+        while !bytes.is_empty() {
+            let taken = self.decoder.push(bytes);
+            bytes = bytes.get(taken..).unwrap_or_default();
+            self.answer_all().await?;
+        }
+        Ok(())
+    }
+
+    async fn answer_all(&mut self) -> io::Result<()> {
+        while let Some(request) = self.decoder.next() {
+            if let Some(frame) = answer(&self.hand, &request) {
+                let turnaround = self.hand.with(|hand, _| hand.personality().turnaround);
+                if !turnaround.is_zero() {
+                    sleep(turnaround).await;
+                }
+                self.wire.write_all(&frame).await?;
+                self.wire.flush().await?;
+            }
+        }
+        Ok(())
+    }
+
+    async fn send_save_result(&mut self) -> io::Result<()> {
+        let frame = self.hand.with(|hand, now| {
+            let result = hand.late_save_result(now)?;
+            Some(encode_save_result(hand.id(), result.command, result.ok))
+        });
+        match frame {
+            Some(frame) => {
+                self.wire.write_all(&frame).await?;
+                self.wire.flush().await
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
+    hand.with(|hand, now| match request {
+        Request::Read { id, span } if *id == hand.id() && span.len <= READ_LEN_MAX => {
+            let bytes = hand.read(*span, now).ok()?;
+            encode_read_reply(*id, span.address, &bytes)
+        }
+        Request::Write { id, address, bytes } if *id == hand.id() => {
+            let effect = hand.write(*address, bytes, now).ok()?;
+            Some(encode_write_ack(effect.ack_id, *address, ACK))
+        }
+        _ => None,
+    })
+}

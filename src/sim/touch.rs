@@ -1,0 +1,187 @@
+//! Fingertip blocks: what eight channels, force and proximity say about a contact (manual 2.6.21). Moves nothing.
+
+use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::sim::number;
+use crate::sim::scenario::Slip;
+
+/// Newtons for each gram.
+const N_PER_G: f64 = 0.0098;
+/// Force from which the sensor calls it a contact, N.
+const CONTACT_N: f64 = 0.05;
+/// Noise of a channel, counts either way.
+const CHANNEL_NOISE: f64 = 350.0;
+/// Counts that one newton adds to a channel right under the contact.
+const COUNTS_PER_N: f64 = 42_000.0;
+/// Width of the pressed spot, mm.
+const SPOT_MM: f64 = 4.2;
+/// Proximity counts when the fingertip is about to touch.
+const PROXIMITY_NEAR: f64 = 240_000.0;
+/// Position counts over which proximity falls to a third.
+const PROXIMITY_RANGE: f64 = 130.0;
+/// Noise of the proximity, counts either way.
+const PROXIMITY_NOISE: f64 = 120.0;
+/// How often the sensor board measures, ms: 50 Hz.
+pub const SENSOR_MS: u64 = 20;
+/// Pad centres in mm, x right, y to the tip. The eighth channel has no place: it is taken as the reference.
+// Manual: 2.6.21 gives no layout; these come from the sensor maker's model, pad i = channel i - 1.
+const PADS: [(f64, f64); 7] = [
+    (-4.6, 1.2),
+    (0.0, 4.0),
+    (4.5, 0.8),
+    (0.0, -3.2),
+    (-3.5, -9.1),
+    (3.5, -9.1),
+    (0.1, 9.1),
+];
+
+/// What one fingertip meets at this moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Press {
+    /// Force, g.
+    pub force_g: f64,
+    /// Position counts to the object; `None` = nothing there.
+    pub gap: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Tip {
+    rest: [f64; 8],
+    noise: [f64; 8],
+    proximity_noise: f64,
+    phase: f64,
+    heading: f64,
+    friction: f64,
+}
+
+/// The five fingertip sensors.
+#[derive(Debug, Clone)]
+pub struct Touch {
+    tips: PerFinger<Tip>,
+}
+
+impl Touch {
+    /// Sensors with their own rest counts, drawn from `rng`.
+    #[must_use]
+    pub fn new(rng: &mut fastrand::Rng) -> Self {
+        let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
+        Self {
+            tips: PerFinger::from_fn(|_| Tip {
+                rest: [(); 8].map(|()| between(2_800_000.0, 3_000_000.0)),
+                noise: [0.0; 8],
+                proximity_noise: 0.0,
+                phase: between(0.0, std::f64::consts::TAU),
+                heading: between(0.0, 360.0),
+                friction: between(0.14, 0.3),
+            }),
+        }
+    }
+
+    /// Draws the noise of the next measurement; call it each [`SENSOR_MS`].
+    pub fn measure(&mut self, rng: &mut fastrand::Rng) {
+        let mut around = |width: f64| (2.0 * rng.f64() - 1.0) * width;
+        for (_, tip) in self.tips.iter_mut() {
+            tip.noise = [(); 8].map(|()| around(CHANNEL_NOISE));
+            tip.proximity_noise = around(PROXIMITY_NOISE);
+        }
+    }
+
+    /// The block of one fingertip at `t_s` seconds.
+    #[must_use]
+    pub fn block(&self, finger: Finger, press: Press, slip: Slip, t_s: f64) -> TactileBlock {
+        let tip = &self.tips[finger];
+        let newtons = press.force_g * N_PER_G;
+        let touches = newtons > CONTACT_N;
+        let normal = if touches { newtons } else { 0.0 };
+        let spot = tip.spot(slip, t_s);
+        let gains = PADS.map(|pad| normal * COUNTS_PER_N * nearness(pad, spot));
+        let mut raw = [0; 8];
+        let whole = gains.iter().chain([&0.0]);
+        for (((raw, rest), noise), gain) in raw.iter_mut().zip(tip.rest).zip(tip.noise).zip(whole) {
+            *raw = number::counts(rest + noise + gain).unsigned_abs();
+        }
+        let tangential =
+            normal * (tip.friction + 0.02 * (1.3 * t_s + tip.phase).sin() + slip.friction);
+        let [first_noise, second_noise, ..] = tip.noise;
+        TactileBlock {
+            raw,
+            normal_n: number::single(normal),
+            normal_delta: number::counts(gains.iter().sum::<f64>() + first_noise),
+            tangential_n: number::single(tangential),
+            tangential_delta: number::counts(tangential * COUNTS_PER_N + second_noise),
+            direction_raw: if touches {
+                tip.direction(slip, t_s)
+            } else {
+                u16::MAX
+            },
+            proximity: number::counts(tip.proximity(press)),
+            check: 0,
+            sum: 0,
+            reserved: [0; 2],
+        }
+    }
+}
+
+impl Tip {
+    /// Where the object presses, mm: it wanders a little, and slides in a slip.
+    fn spot(&self, slip: Slip, t_s: f64) -> (f64, f64) {
+        let x = 1.6 * (0.31 * t_s + self.phase).sin();
+        let y = 0.5 + 2.0 * (0.23 * t_s + 2.0 * self.phase).cos() - slip.slide_mm;
+        (x, y)
+    }
+
+    fn direction(&self, slip: Slip, t_s: f64) -> u16 {
+        let wander = 6.0 * (0.7 * t_s + self.phase).sin();
+        let degrees = (self.heading + wander + slip.turn_deg).rem_euclid(360.0);
+        number::word(degrees) % 360
+    }
+
+    /// Rises before the contact, because the field reaches into the air.
+    fn proximity(&self, press: Press) -> f64 {
+        let near = press
+            .gap
+            .map_or(0.0, |gap| (-gap / PROXIMITY_RANGE).exp() * PROXIMITY_NEAR);
+        near + press.force_g * 60.0 + self.proximity_noise
+    }
+}
+
+fn nearness(pad: (f64, f64), spot: (f64, f64)) -> f64 {
+    let (dx, dy) = (pad.0 - spot.0, pad.1 - spot.1);
+    (-(dx * dx + dy * dy) / (2.0 * SPOT_MM * SPOT_MM)).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+
+    fn block(force_g: f64, gap: Option<f64>) -> TactileBlock {
+        let mut rng = fastrand::Rng::with_seed(3);
+        let mut touch = Touch::new(&mut rng);
+        touch.measure(&mut rng);
+        let block = touch.block(Finger::Index, Press { force_g, gap }, Slip::default(), 1.0);
+        TactileBlock::decode(&block.encode()).unwrap()
+    }
+
+    #[test]
+    fn proximity_rises_before_contact_and_forces_come_with_it() {
+        let (far, near) = (block(0.0, Some(1200.0)), block(0.0, Some(40.0)));
+        assert!(far.proximity.abs() < 400, "{far:?}");
+        assert!(near.proximity > 100_000, "{near:?}");
+        for free in [far, near, block(0.0, None)] {
+            assert_eq!((free.normal_n, free.tangential_n), (0.0, 0.0));
+            assert_eq!(free.direction_raw, 65535);
+            assert!(free.check_ok());
+        }
+        let held = block(500.0, Some(0.0));
+        assert!((held.normal_n - 4.9).abs() < 0.01);
+        assert!(held.tangential_n > 0.4 && held.tangential_n < 2.0);
+        assert!(held.direction_deg().is_some() && held.check_ok());
+        assert!(held.normal_delta > 100_000);
+        assert!(held.raw.iter().zip(far.raw).any(|(a, b)| *a > b + 50_000));
+        assert!(
+            far.raw
+                .iter()
+                .all(|raw| (2_799_000..3_001_000).contains(raw))
+        );
+    }
+}

@@ -1,0 +1,161 @@
+//! One drive of the simulated hand: motion, impact, protection, heat. Registers are tested elsewhere.
+
+use handscope::hand::{Fault, Status};
+use handscope::sim::drive::{Contact, DEAD_TIME_MS, Drive, Goal, STROKE, Setting};
+use handscope::sim::impact::RIGID_G_PER_COUNT;
+
+const FAST: Setting = Setting {
+    speed: 1000.0,
+    threshold_g: 3000.0,
+};
+
+fn run(drive: &mut Drive, from: u64, ms: u64, setting: Setting) -> f64 {
+    let mut peak: f64 = 0.0;
+    for now in from..from + ms {
+        drive.step(now, setting);
+        peak = peak.max(drive.load_g());
+    }
+    peak
+}
+
+fn rigid() -> Drive {
+    let mut drive = Drive::new(25.0);
+    drive.set_contact(Some(Contact {
+        angle: 500.0,
+        stiffness: RIGID_G_PER_COUNT,
+    }));
+    drive.command(Goal::Position(STROKE), 0);
+    drive
+}
+
+#[test]
+fn full_stroke_at_1000_takes_600_ms_after_the_dead_time() {
+    let mut drive = Drive::new(25.0);
+    drive.command(Goal::Position(STROKE), 0);
+    run(&mut drive, 0, DEAD_TIME_MS, FAST);
+    assert!(drive.position() < 1e-9);
+    let mut ms = 0;
+    while drive.position() < STROKE {
+        drive.step(DEAD_TIME_MS + ms, FAST);
+        ms += 1;
+        assert!(ms < 2000);
+    }
+    assert!((540..=660).contains(&ms), "{ms}");
+    assert!(drive.angle().abs() < 1e-9);
+    assert_eq!(drive.status(), Status::PositionReached);
+}
+
+#[test]
+fn the_peak_above_the_threshold_is_that_of_the_table() {
+    for (speed, threshold, peak) in [
+        (25.0, 100.0, 7.0),
+        (25.0, 250.0, 29.0),
+        (25.0, 500.0, 64.0),
+        (25.0, 750.0, 73.0),
+        (25.0, 1000.0, 69.0),
+        (250.0, 100.0, 36.0),
+        (250.0, 250.0, 336.0),
+        (250.0, 500.0, 637.0),
+        (250.0, 750.0, 1108.0),
+        (250.0, 1000.0, 1640.0),
+        (1000.0, 100.0, 36.0),
+        (1000.0, 250.0, 3263.0),
+        (1000.0, 500.0, 2917.0),
+        (1000.0, 750.0, 2865.0),
+        (1000.0, 1000.0, 2502.0),
+    ] {
+        let mut drive = rigid();
+        let setting = Setting {
+            speed,
+            threshold_g: threshold,
+        };
+        let over = run(&mut drive, 0, 20_000, setting) - threshold;
+        assert!(
+            (over - peak).abs() <= 0.15 * peak,
+            "{speed} {threshold}: {over}"
+        );
+        assert_eq!(drive.status(), Status::ForceReached);
+        assert!(drive.load_g() < threshold + 0.2 * peak);
+        assert!(drive.current_ma() < 1e-9);
+    }
+}
+
+#[test]
+fn a_fast_approach_with_a_slow_contact_hits_softly() {
+    let mut drive = rigid();
+    let slow = Setting {
+        speed: 25.0,
+        threshold_g: 500.0,
+    };
+    while drive.position() < 900.0 {
+        drive.step(100, FAST);
+    }
+    let peak = run(&mut drive, 100, 5000, slow);
+    assert!(peak < 580.0, "{peak}");
+}
+
+#[test]
+fn a_jam_below_the_threshold_is_a_stall() {
+    let mut drive = Drive::new(25.0);
+    drive.set_jam(Some(600.0));
+    drive.command(Goal::Position(STROKE), 0);
+    run(&mut drive, 0, 900, FAST);
+    assert_eq!(drive.status(), Status::Grasping);
+    assert!(drive.current_ma() > 900.0);
+    run(&mut drive, 900, 400, FAST);
+    assert_eq!(drive.status(), Status::Stalled);
+    assert!(drive.faults().contains(Fault::Stall));
+    drive.command(Goal::Position(STROKE), 1300);
+    run(&mut drive, 1300, 200, FAST);
+    assert_eq!(drive.status(), Status::Stalled);
+    drive.command(Goal::Position(0.0), 1500);
+    run(&mut drive, 1500, 1000, FAST);
+    assert!(drive.position() < 1e-9);
+    assert!(drive.faults().contains(Fault::Stall));
+    drive.clear_errors();
+    assert!(drive.faults().is_empty());
+}
+
+#[test]
+fn a_slow_hard_squeeze_ends_in_current_protection() {
+    let mut drive = rigid();
+    let setting = Setting {
+        speed: 25.0,
+        threshold_g: 3000.0,
+    };
+    run(&mut drive, 0, 14_000, setting);
+    assert_eq!(drive.status(), Status::CurrentProtection);
+    assert!(drive.faults().contains(Fault::OverCurrent));
+}
+
+#[test]
+fn over_temperature_cannot_be_cleared_and_ends_by_itself_without_motion() {
+    let mut drive = Drive::new(25.0);
+    drive.command(Goal::Position(STROKE), 0);
+    run(&mut drive, 0, 200, FAST);
+    drive.warm(90.0);
+    run(&mut drive, 200, 10, FAST);
+    let position = drive.position();
+    assert_eq!(drive.status(), Status::DriveFault);
+    drive.clear_errors();
+    assert!(drive.faults().contains(Fault::OverTemperature));
+    drive.command(Goal::Position(STROKE), 210);
+    run(&mut drive, 210, 10_000, FAST);
+    assert!(drive.faults().contains(Fault::OverTemperature));
+    run(&mut drive, 10_210, 20_000, FAST);
+    assert!(drive.faults().is_empty());
+    assert!((drive.position() - position).abs() < 1e-9);
+}
+
+#[test]
+fn freeze_stops_after_the_dead_time() {
+    let mut drive = Drive::new(25.0);
+    drive.command(Goal::Position(STROKE), 0);
+    run(&mut drive, 0, 200, FAST);
+    drive.command(Goal::Freeze, 200);
+    run(&mut drive, 200, 100, FAST);
+    let position = drive.position();
+    run(&mut drive, 300, 300, FAST);
+    assert!((drive.position() - position).abs() < 1e-9);
+    assert!(position > 300.0 && position < 1000.0);
+}
