@@ -17,8 +17,6 @@ pub(crate) const TOP_BAR: f32 = 56.0;
 pub(crate) const TABS: f32 = 36.0;
 /// Height of a banner.
 pub(crate) const BANNER: f32 = 44.0;
-/// Height of a card's title row.
-pub(crate) const TITLE: f32 = 28.0;
 /// Height of a button or field.
 pub(crate) const CONTROL: f32 = 24.0;
 /// Height of a button that matters.
@@ -201,6 +199,11 @@ impl Palette {
 /// Labels, hints.
 pub(crate) const fn small() -> FontId {
     FontId::proportional(11.5)
+}
+
+/// Hints inside a button.
+pub(crate) const fn tiny() -> FontId {
+    FontId::proportional(10.5)
 }
 
 /// Running text and buttons.

@@ -149,8 +149,8 @@ impl Window {
         }
         for banner in banner::banners(pane) {
             let (place, rest) = body.split_top_bottom_at_y(body.top() + theme::BANNER);
-            if banner.ui(ui, place, pane.look) {
-                self.view = View::Faults;
+            if let Some(view) = banner.ui(ui, place, pane.look) {
+                self.view = view;
             }
             body = rest;
         }

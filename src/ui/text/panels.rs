@@ -29,9 +29,9 @@ texts! {
 
     TOUCH: "Fingertips", "指尖触觉";
     TOUCH_SCALE: "Heat: counts above first reading", "热度：相对首次读数的增量";
-    TOUCH_NORMAL: "Normal", "法向";
-    TOUCH_SHEAR: "Shear", "切向";
-    TOUCH_DIRECTION: "Dir.", "方向";
+    TOUCH_NORMAL: "Normal N", "法向 N";
+    TOUCH_SHEAR: "Shear N", "切向 N";
+    TOUCH_DIRECTION: "Direction", "方向";
     TOUCH_PROXIMITY: "Near", "接近";
     TOUCH_CHECK: "Check", "校验";
     TOUCH_NORMAL_NAME: "normal force", "法向力";
@@ -97,7 +97,6 @@ texts! {
     GESTURES_OFF: "The gesture route is off.", "手势方式已关闭。";
     GESTURE_NAME_EDIT: "Name gestures", "命名手势";
     GESTURE_NAME_EDIT_TIP: "Type names for the numbers. The hand does not tell what its gestures are.", "为编号输入名称。灵巧手不会给出手势名称。";
-    GESTURE_NAME_HINT: "name", "名称";
     GESTURE_NAME_DONE: "Done", "完成";
     GESTURE_NAME: "Name of gesture", "手势名称";
 
@@ -134,9 +133,7 @@ texts! {
     HINT_TCP: "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "地址";
-    STATE: "State", "状态";
     SINCE: "for", "已持续";
-    TROUBLE: "Trouble", "问题";
     STATE_RATE: "Motion state", "运动状态";
     TACTILE_RATE: "Fingertips", "指尖";
     RTT_P50: "Round trip, median", "往返时间，中位数";
