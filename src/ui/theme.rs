@@ -308,10 +308,12 @@ pub(crate) fn fonts() -> egui::FontDefinitions {
     const CHINESE: &str = "NotoSansSC";
     let mut fonts = egui::FontDefinitions::default();
     let bytes: &'static [u8] = include_bytes!("../../assets/fonts/NotoSansSC-subset.otf");
-    fonts.font_data.insert(
-        CHINESE.into(),
-        std::sync::Arc::new(egui::FontData::from_static(bytes)),
-    );
+    let mut chinese = egui::FontData::from_static(bytes);
+    // Han signs hang lower than the Latin letters they stand beside.
+    chinese.tweak.y_offset_factor = -0.06;
+    fonts
+        .font_data
+        .insert(CHINESE.into(), std::sync::Arc::new(chinese));
     for (family, extra) in [
         (FontFamily::Proportional, &["Hack", CHINESE][..]),
         (FontFamily::Monospace, &[CHINESE][..]),

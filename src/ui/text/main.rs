@@ -46,7 +46,7 @@ texts! {
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";
     LOCKED: "This joint is locked.", "该自由度已锁定。";
 
-    EMPTY_TITLE: "NO HAND", "未连接";
+    EMPTY_TITLE: "NOT CONNECTED", "未连接";
     EMPTY_BODY: "Choose the hand to talk to, or the built-in simulated one.", "请选择要连接的灵巧手，或内置的仿真手。";
     EMPTY_OPEN: "Connection", "连接设置";
     EMPTY_OPEN_TIP: "Opens the connection.", "打开连接设置。";
@@ -76,7 +76,7 @@ texts! {
     THEME_NAME: "Theme", "主题";
     THEME_TIP: "Switches between light on dark and dark on light.", "切换深色与浅色主题。";
     LANGUAGE_NAME: "Language", "语言";
-    LANGUAGE_TIP: "切换为中文界面。", "Switch the window to English.";
+    LANGUAGE_TIP: "Switches the window to Chinese.", "切换为英文界面。";
     DISMISS: "Close", "关闭";
     DISMISS_TIP: "Takes this message away.", "移除这条消息。";
 

@@ -40,7 +40,7 @@ texts! {
     TOUCH_PROXIMITY_NAME: "proximity", "接近值";
     TOUCH_CHECK_NAME: "check", "校验";
     TOUCH_OK: "ok", "正常";
-    TOUCH_DIFFERS: "differs", "不符";
+    TOUCH_DIFFERS: "diff", "不符";
     TOUCH_NO_CONTACT: "none", "无";
     TOUCH_TIP: "Pads show capacitance above the first reading, all fingers on one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对首次读数的电容增量，所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
     TOUCH_CHANNEL: "Channel", "通道";
