@@ -7,3 +7,4 @@ pub mod headless;
 pub mod link;
 pub mod sim;
 pub mod transport;
+pub mod ui;

@@ -1,0 +1,191 @@
+//! Full-width warnings under the top bar: link lost, stop not confirmed, faults. Decides what to warn of; sends nothing.
+
+use crate::app::state::Freshness;
+use crate::hand::Dof;
+use crate::link::{Dialling, Hold, LinkState};
+use crate::ui::controls::{self, Button, Label, take_left, take_right};
+use crate::ui::look::{Look, Pane};
+use crate::ui::text::{Text, main, notices, words};
+use crate::ui::window::View;
+use crate::ui::{format, theme};
+use egui::{Color32, CornerRadius, Id, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
+
+/// One warning.
+pub(crate) struct Banner {
+    title: Text,
+    body: String,
+    aside: String,
+    color: Color32,
+    /// The view that helps, with the button's text and what it does.
+    opens: Option<(View, Text, Text)>,
+}
+
+/// The warnings of now, worst first.
+pub(crate) fn banners(pane: &Pane<'_>) -> Vec<Banner> {
+    [
+        alarm(pane),
+        lost(pane),
+        faults(pane),
+        stale(pane),
+        empty(pane),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn alarm(pane: &Pane<'_>) -> Option<Banner> {
+    matches!(pane.state.link.hold, Hold::Alarm { .. }).then(|| Banner {
+        title: main::ALARM_TITLE,
+        body: pane.look.say(main::ALARM_BODY).into(),
+        aside: String::new(),
+        color: pane.look.palette.bad,
+        opens: None,
+    })
+}
+
+fn lost(pane: &Pane<'_>) -> Option<Banner> {
+    let link = &pane.state.link;
+    if link.state != LinkState::Offline && link.state != LinkState::Identifying {
+        return None;
+    }
+    let trouble = link.trouble.as_ref()?;
+    // A hand that has answered may be moving; one that never did is only not reached.
+    let known = pane.state.sample.angle.is_some();
+    let (title, color) = if known {
+        (main::LOST_TITLE, pane.look.palette.bad)
+    } else {
+        (main::UNREACHABLE_TITLE, pane.look.palette.warn)
+    };
+    let cause = notices::trouble(pane.look, trouble);
+    let body = if known {
+        format!("{} {cause}", pane.look.say(main::LOST_BODY))
+    } else {
+        cause
+    };
+    Some(Banner {
+        title,
+        body,
+        aside: retry(pane),
+        color,
+        opens: None,
+    })
+}
+
+fn retry(pane: &Pane<'_>) -> String {
+    match pane.state.link.dialling {
+        Dialling::Idle => String::new(),
+        Dialling::Trying { attempt } => {
+            format!("{} {attempt}", pane.look.say(main::LOST_TRYING))
+        }
+        Dialling::Waiting { until, .. } => {
+            let left = until.since(pane.state.now).as_secs_f64();
+            format!("{} {left:.1} s", pane.look.say(main::LOST_RETRY_IN))
+        }
+    }
+}
+
+fn faults(pane: &Pane<'_>) -> Option<Banner> {
+    let faults = pane
+        .state
+        .sample
+        .faults
+        .filter(|_| pane.state.sample.has_fault())?;
+    let look = pane.look;
+    let list: Vec<String> = Dof::ALL
+        .into_iter()
+        .flat_map(|dof| faults.value[dof].iter().map(move |fault| (dof, fault)))
+        .map(|(dof, fault)| {
+            let title = words::fault(fault, look.language).title;
+            format!("{}: {title}", look.say(words::dof(dof)))
+        })
+        .collect();
+    Some(Banner {
+        title: main::FAULT_TITLE,
+        body: format!(
+            "{}{}{}",
+            list.join(" · "),
+            look.say(main::LIST_END),
+            look.say(main::FAULT_BODY)
+        ),
+        aside: String::new(),
+        color: look.value(pane.freshness(Some(faults.asked)), look.palette.bad),
+        opens: Some((View::Faults, main::FAULT_SHOW, main::FAULT_SHOW_TIP)),
+    })
+}
+
+fn stale(pane: &Pane<'_>) -> Option<Banner> {
+    let asked = pane.state.sample.angle?.asked;
+    let live = pane.state.link.state.is_live();
+    (live && pane.freshness(Some(asked)) == Freshness::Stale).then(|| Banner {
+        title: main::STALE_TITLE,
+        body: format!(
+            "{} {}",
+            pane.look.say(main::STALE_BODY),
+            format::age(pane.state.now.since(asked))
+        ),
+        aside: String::new(),
+        color: pane.look.palette.warn,
+        opens: None,
+    })
+}
+
+fn empty(pane: &Pane<'_>) -> Option<Banner> {
+    pane.state.endpoint.is_none().then(|| Banner {
+        title: main::EMPTY_TITLE,
+        body: pane.look.say(main::EMPTY_BODY).into(),
+        aside: String::new(),
+        color: pane.look.palette.accent,
+        opens: Some((View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP)),
+    })
+}
+
+impl Banner {
+    /// Draws it. The view that was asked for.
+    pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, look: Look) -> Option<View> {
+        let palette = look.palette;
+        let ground = rect
+            .shrink2(vec2(theme::GAP, 0.0))
+            .with_min_y(rect.top() + theme::GAP);
+        ui.painter().rect(
+            ground,
+            CornerRadius::same(theme::ROUND),
+            palette.wash(self.color),
+            Stroke::new(1.0, self.color),
+            StrokeKind::Inside,
+        );
+        let mut rest = ground.shrink2(vec2(theme::PAD, 0.0));
+        let sign =
+            Rect::from_center_size(pos2(rest.left() + 8.0, rest.center().y), vec2(16.0, 14.0));
+        controls::warning_sign(ui, sign, self.color);
+        rest.min.x += 26.0;
+        let title = look.say(self.title);
+        let width = controls::text_width(ui, title, theme::title()) + 1.0;
+        Label::new(title, self.color)
+            .font(theme::title())
+            .put(ui, take_left(&mut rest, width));
+        rest.min.x += theme::STEP;
+        let mut asked = None;
+        if let Some((view, text, tip)) = self.opens {
+            let text = look.say(text);
+            let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+            let place = controls::middle(take_right(&mut rest, width), theme::CONTROL);
+            let button = Button::new(text, look.say(tip));
+            let id = Id::unique(("banner", view.name()));
+            if button.put(ui, look, place, id).clicked() {
+                asked = Some(view);
+            }
+        }
+        if !self.aside.is_empty() {
+            let wanted = controls::text_width(ui, &self.aside, theme::number()) + 1.0;
+            let width = wanted.min(rest.width() * 0.4);
+            let place = take_right(&mut rest, width);
+            Label::new(&self.aside, palette.muted)
+                .number()
+                .right()
+                .put(ui, place);
+        }
+        Label::new(&self.body, palette.text).put(ui, rest);
+        asked
+    }
+}

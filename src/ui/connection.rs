@@ -1,0 +1,468 @@
+//! The connection: which hand, over what, and how well it goes. Asks to connect; opens nothing.
+
+use crate::app::action::Action;
+use crate::transport::Endpoint;
+use crate::transport::endpoint::{
+    DEFAULT_BAUD, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
+};
+use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
+use crate::ui::look::Pane;
+use crate::ui::text::{Text, notices, panels};
+use crate::ui::top_bar::link_words;
+use crate::ui::{format, theme};
+use egui::{Id, Rect, TextEdit, Ui, pos2, vec2};
+
+/// Width of the captions of the form.
+const CAPTION: f32 = 112.0;
+/// Rows of ports shown at once.
+const PORTS_MAX: usize = 4;
+
+/// One kind of link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Kind {
+    #[default]
+    Sim,
+    Rs485,
+    Tcp,
+    Rtu,
+    Can,
+    Slcan,
+}
+
+impl Kind {
+    const ALL: [Self; 6] = [
+        Self::Sim,
+        Self::Rs485,
+        Self::Tcp,
+        Self::Rtu,
+        Self::Can,
+        Self::Slcan,
+    ];
+
+    const fn text(self) -> Text {
+        match self {
+            Self::Sim => panels::KIND_SIM,
+            Self::Rs485 => panels::KIND_RS485,
+            Self::Rtu => panels::KIND_RTU,
+            Self::Tcp => panels::KIND_TCP,
+            Self::Can => panels::KIND_CAN,
+            Self::Slcan => panels::KIND_SLCAN,
+        }
+    }
+
+    const fn is_there(self) -> bool {
+        matches!(self, Self::Sim | Self::Rs485 | Self::Tcp)
+    }
+
+    const fn hint(self) -> Text {
+        match self {
+            Self::Sim => panels::HINT_SIM,
+            Self::Rs485 => panels::HINT_SERIAL,
+            Self::Tcp => panels::HINT_TCP,
+            Self::Rtu | Self::Can | Self::Slcan => panels::KIND_LATER,
+        }
+    }
+}
+
+/// The form's fields as they are typed.
+#[derive(Debug)]
+pub(crate) struct ConnectionForm {
+    kind: Kind,
+    seed: String,
+    scenario: String,
+    port: String,
+    baud: String,
+    id: String,
+    host: String,
+    tcp_port: String,
+    unit: String,
+    /// The endpoint that the fields were filled from, so that a new one fills them again.
+    filled_from: Option<Endpoint>,
+}
+
+impl Default for ConnectionForm {
+    fn default() -> Self {
+        Self {
+            kind: Kind::Sim,
+            seed: "1".into(),
+            scenario: DEFAULT_SCENARIO.into(),
+            port: String::new(),
+            baud: DEFAULT_BAUD.to_string(),
+            id: DEFAULT_ID.to_string(),
+            host: "192.168.11.210".into(),
+            tcp_port: DEFAULT_TCP_PORT.to_string(),
+            unit: DEFAULT_UNIT.to_string(),
+            filled_from: None,
+        }
+    }
+}
+
+impl ConnectionForm {
+    /// Draws the form and, beside it, how the link goes.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        self.fill(pane.state.endpoint.as_ref());
+        let (left, right) = rect.split_left_right_at_x(rect.left() + rect.width() * 0.56);
+        let left = left.with_max_x(left.right() - theme::GAP);
+        self.form_ui(ui, left, pane);
+        link_ui(ui, right, pane);
+    }
+
+    fn fill(&mut self, endpoint: Option<&Endpoint>) {
+        if endpoint.is_none() || endpoint == self.filled_from.as_ref() {
+            return;
+        }
+        self.filled_from = endpoint.cloned();
+        match endpoint {
+            Some(Endpoint::Sim { seed, scenario }) => {
+                self.kind = Kind::Sim;
+                self.seed = seed.to_string();
+                self.scenario.clone_from(scenario);
+            }
+            Some(Endpoint::Rs485(line)) => {
+                self.kind = Kind::Rs485;
+                self.port.clone_from(&line.port);
+                self.baud = line.baud.to_string();
+                self.id = line.id.to_string();
+            }
+            Some(Endpoint::Tcp { host, port, unit }) => {
+                self.kind = Kind::Tcp;
+                self.host.clone_from(host);
+                self.tcp_port = port.to_string();
+                self.unit = unit.to_string();
+            }
+            _ => {}
+        }
+    }
+
+    /// The endpoint in the one spelling that is used everywhere.
+    fn spelled(&self) -> String {
+        let trimmed = |text: &String| text.trim().to_owned();
+        match self.kind {
+            Kind::Sim => format!(
+                "sim:?seed={}&scenario={}",
+                trimmed(&self.seed),
+                trimmed(&self.scenario)
+            ),
+            Kind::Rs485 | Kind::Rtu | Kind::Can | Kind::Slcan => format!(
+                "rs485:{}?baud={}&id={}",
+                trimmed(&self.port),
+                trimmed(&self.baud),
+                trimmed(&self.id)
+            ),
+            Kind::Tcp => {
+                let host = trimmed(&self.host);
+                let host = if host.contains(':') && !host.starts_with('[') {
+                    format!("[{host}]")
+                } else {
+                    host
+                };
+                format!(
+                    "tcp:{host}:{}?unit={}",
+                    trimmed(&self.tcp_port),
+                    trimmed(&self.unit)
+                )
+            }
+        }
+    }
+
+    fn form_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let (_, mut body) = controls::titled_card(ui, look, rect, look.say(panels::CONNECTION));
+        let kinds = take_top(&mut body, 2.0 * theme::CONTROL_LARGE + theme::GAP);
+        self.kinds_ui(ui, kinds, pane);
+        take_top(&mut body, theme::STEP);
+        match self.kind {
+            Kind::Sim => {
+                field_ui(
+                    ui,
+                    &mut body,
+                    pane,
+                    panels::SCENARIO,
+                    "",
+                    &mut self.scenario,
+                );
+                field_ui(ui, &mut body, pane, panels::SEED, "", &mut self.seed);
+            }
+            Kind::Rs485 | Kind::Rtu | Kind::Can | Kind::Slcan => {
+                let hint = look.say(panels::PORT_HINT);
+                field_ui(ui, &mut body, pane, panels::PORT, hint, &mut self.port);
+                self.ports_ui(ui, &mut body, pane);
+                field_ui(ui, &mut body, pane, panels::BAUD, "", &mut self.baud);
+                field_ui(ui, &mut body, pane, panels::HAND_ID, "", &mut self.id);
+            }
+            Kind::Tcp => {
+                field_ui(ui, &mut body, pane, panels::HOST, "", &mut self.host);
+                field_ui(
+                    ui,
+                    &mut body,
+                    pane,
+                    panels::TCP_PORT,
+                    "",
+                    &mut self.tcp_port,
+                );
+                field_ui(ui, &mut body, pane, panels::UNIT, "", &mut self.unit);
+            }
+        }
+        take_top(&mut body, theme::STEP);
+        let spelled = self.spelled();
+        let parsed: Result<Endpoint, _> = spelled.parse();
+        caption_value_ui(ui, &mut body, pane, panels::ENDPOINT, &spelled);
+        if let Err(error) = &parsed {
+            let text = format!("{} {error}.", look.say(panels::FORM_WRONG));
+            paragraph_ui(ui, &mut body, &text, look.palette.warn);
+        }
+        take_top(&mut body, theme::STEP);
+        connect_ui(
+            ui,
+            take_top(&mut body, theme::CONTROL_LARGE),
+            pane,
+            parsed.ok(),
+        );
+        take_top(&mut body, theme::STEP);
+        paragraph_ui(
+            ui,
+            &mut body,
+            look.say(self.kind.hint()),
+            look.palette.muted,
+        );
+    }
+
+    fn kinds_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let width = (rect.width() - 2.0 * theme::GAP) / 3.0;
+        let mut at = rect.min;
+        for (n, kind) in Kind::ALL.into_iter().enumerate() {
+            let place = Rect::from_min_size(at, vec2(width, theme::CONTROL_LARGE));
+            at.x += width + theme::GAP;
+            if n == 2 {
+                at = pos2(rect.left(), at.y + theme::CONTROL_LARGE + theme::GAP);
+            }
+            let later = (!kind.is_there()).then(|| look.say(panels::KIND_LATER));
+            let chosen = kind == self.kind;
+            let text = look.say(kind.text());
+            let name = format!("{}: {text}", look.say(panels::CONNECTION_KIND));
+            let mut button = Button::new(text, look.say(panels::KIND_TIP))
+                .named(&name)
+                .disabled(later)
+                .weight(if chosen {
+                    Weight::Chosen
+                } else {
+                    Weight::Normal
+                });
+            button.selected = Some(chosen);
+            if button
+                .put(ui, look, place, Id::unique(("kind", kind.text().en)))
+                .clicked()
+            {
+                self.kind = kind;
+            }
+        }
+    }
+
+    fn ports_ui(&mut self, ui: &mut Ui, body: &mut Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let text = look.say(panels::PORTS_REFRESH);
+        let mut row = take_top(body, theme::CONTROL);
+        row.min.x += CAPTION;
+        let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+        let place = take_right(&mut row, width);
+        let button = Button::new(text, look.say(panels::PORTS_REFRESH_TIP));
+        if button
+            .put(ui, look, place, Id::unique("find ports"))
+            .clicked()
+        {
+            pane.actions.push(Action::FindPorts);
+        }
+        if pane.state.ports.is_empty() {
+            Label::new(look.say(panels::PORTS_NONE), look.palette.muted)
+                .small()
+                .put(ui, row);
+            return;
+        }
+        for (n, port) in pane.state.ports.iter().take(PORTS_MAX).enumerate() {
+            if n > 0 {
+                row = take_top(body, theme::CONTROL);
+                row.min.x += CAPTION;
+            }
+            let about = port.about.as_deref().unwrap_or_default();
+            let text = format!("{}  {about}", port.path);
+            let button = Button::new(text.trim(), look.say(panels::PORT_PICK_TIP))
+                .choice(port.path == self.port);
+            if button.put(ui, look, row, Id::unique(("port", n))).clicked() {
+                self.port.clone_from(&port.path);
+            }
+        }
+    }
+}
+
+fn field_ui(
+    ui: &mut Ui,
+    body: &mut Rect,
+    pane: &Pane<'_>,
+    caption: Text,
+    hint: &str,
+    text: &mut String,
+) {
+    let look = pane.look;
+    let mut row = take_top(body, 28.0);
+    let name = look.say(caption);
+    let left = take_left(&mut row, CAPTION - theme::GAP);
+    Label::new(name, look.palette.muted).put(ui, left);
+    let edit = TextEdit::singleline(text)
+        .id(Id::unique(("connection", caption.en)))
+        .hint_text(hint.to_owned())
+        .char_limit(128)
+        .align(egui::Align2::LEFT_CENTER)
+        .margin(egui::Margin::symmetric(8, 2))
+        .min_size(row.size())
+        .desired_width(row.width() - 16.0);
+    let response = ui.put(row, edit);
+    let value = text.clone();
+    response.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, name);
+        info.current_text_value = Some(value.clone());
+        info
+    });
+}
+
+fn caption_value_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, caption: Text, value: &str) {
+    let mut row = take_top(body, 18.0);
+    let left = take_left(&mut row, CAPTION - theme::GAP);
+    let caption = pane.look.say(caption);
+    Label::new(caption, pane.look.palette.muted).put(ui, left);
+    Label::new(value, pane.look.palette.text)
+        .number()
+        .named(caption)
+        .put(ui, row);
+}
+
+fn paragraph_ui(ui: &mut Ui, body: &mut Rect, text: &str, color: egui::Color32) {
+    let galley = ui
+        .painter()
+        .layout(text.to_owned(), theme::body(), color, body.width());
+    let place = take_top(body, galley.size().y);
+    let response = ui.allocate_rect(place, egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
+    ui.painter().galley(place.min, galley, color);
+}
+
+fn connect_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, endpoint: Option<Endpoint>) {
+    let look = pane.look;
+    let mut row = rect.with_min_x(rect.left() + CAPTION);
+    let width = (row.width() - theme::GAP) / 2.0;
+    let left = take_left(&mut row, width);
+    let wrong = endpoint.is_none().then(|| look.say(panels::FORM_WRONG));
+    let connect = Button::new(look.say(panels::CONNECT), look.say(panels::CONNECT_TIP))
+        .weight(Weight::Strong)
+        .disabled(wrong);
+    if connect.put(ui, look, left, Id::unique("connect")).clicked()
+        && let Some(endpoint) = endpoint
+    {
+        pane.actions.push(Action::Connect(endpoint));
+    }
+    let nothing = pane
+        .state
+        .endpoint
+        .is_none()
+        .then(|| look.say(panels::DISCONNECT_NONE));
+    let disconnect = Button::new(
+        look.say(panels::DISCONNECT),
+        look.say(panels::DISCONNECT_TIP),
+    )
+    .disabled(nothing);
+    if disconnect
+        .put(ui, look, row, Id::unique("disconnect"))
+        .clicked()
+    {
+        pane.actions.push(Action::Disconnect);
+    }
+}
+
+/// How the link goes: state, rates, round trips, counts.
+fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    let look = pane.look;
+    let (_, mut body) = controls::titled_card(ui, look, rect, look.say(panels::LINK_NOW));
+    let (word, color) = link_words(pane);
+    let mut row = take_top(&mut body, 20.0);
+    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
+    row.min.x += 17.0;
+    let since = format::age(pane.state.now.since(pane.state.link.since));
+    let text = format!("{}, {} {since}", look.say(word), look.say(panels::SINCE));
+    Label::new(&text, look.palette.text).put(ui, row);
+    if let Some(endpoint) = &pane.state.endpoint {
+        let row = take_top(&mut body, 16.0);
+        Label::new(&endpoint.to_string(), look.palette.muted)
+            .number()
+            .put(ui, row);
+    }
+    if let Some(trouble) = &pane.state.link.trouble {
+        let text = notices::trouble(look, trouble);
+        paragraph_ui(ui, &mut body, &text, look.palette.bad);
+    }
+    take_top(&mut body, 0.0);
+    for group in figures(pane) {
+        for (caption, value, color) in group {
+            if body.height() < 18.0 {
+                return;
+            }
+            let mut row = take_top(&mut body, 18.0);
+            body.min.y -= theme::GAP - 2.0;
+            let caption = look.say(caption);
+            let right = take_right(&mut row, 96.0);
+            Label::new(caption, look.palette.muted).put(ui, row);
+            Label::new(&value, color)
+                .number()
+                .right()
+                .named(caption)
+                .put(ui, right);
+        }
+        body.min.y += theme::STEP;
+        let stroke = egui::Stroke::new(1.0, look.palette.grid);
+        ui.painter().hline(body.x_range(), body.top(), stroke);
+        body.min.y += theme::STEP + 2.0;
+    }
+}
+
+type Figures = Vec<(Text, String, egui::Color32)>;
+
+fn figures(pane: &Pane<'_>) -> [Figures; 3] {
+    let palette = pane.look.palette;
+    let stats = &pane.state.stats;
+    let live = pane.state.link.state.is_live();
+    let plain = if live { palette.text } else { palette.faint };
+    let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
+    let trip = |value: Option<_>| format!("{} ms", format::millis(value.filter(|_| live)));
+    let count = |text, value: u64| (text, value.to_string(), palette.text);
+    let bad = |text, value: u64| {
+        (
+            text,
+            value.to_string(),
+            if value > 0 {
+                palette.warn
+            } else {
+                palette.text
+            },
+        )
+    };
+    [
+        vec![
+            (panels::STATE_RATE, rate(stats.state_hz), plain),
+            (panels::TACTILE_RATE, rate(stats.tactile_hz), plain),
+            (panels::RTT_P50, trip(stats.rtt_p50), plain),
+            (panels::RTT_P99, trip(stats.rtt_p99), plain),
+        ],
+        vec![
+            count(panels::READS, stats.state_reads + stats.tactile_reads),
+            count(panels::WRITES, stats.writes),
+            count(panels::RECONNECTS, stats.reconnects),
+        ],
+        vec![
+            bad(panels::TIMEOUTS, stats.timeouts),
+            bad(panels::CHECKSUMS, stats.checksum_errors),
+            bad(panels::RESYNCS, stats.resyncs),
+            bad(panels::FOREIGN, stats.foreign_replies),
+            bad(panels::REFUSALS, stats.refusals),
+            bad(panels::DROPPED, stats.dropped_events),
+        ],
+    ]
+}

@@ -1,0 +1,220 @@
+//! One fingertip as a picture: skin, seven pads and the eighth channel as heat, force circle, shear arrow, proximity halo.
+
+use crate::ui::look::Look;
+use egui::{
+    Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2,
+};
+
+/// Half the sensing area's width in millimetres, with the skin around it (protocol §5.2).
+const HALF_WIDTH_MM: f32 = 8.0;
+/// The skin's ends in millimetres, tip first.
+const TIP_MM: f32 = 13.4;
+/// The skin's lower end.
+const BASE_MM: f32 = -12.6;
+/// Room around the skin for the halo.
+const MARGIN_MM: f32 = 1.0;
+/// Normal force that fills the finger's width (manual 1.2: 20 N grip).
+const FULL_NORMAL_N: f32 = 20.0;
+/// Tangential force of the longest arrow.
+const FULL_SHEAR_N: f32 = 5.0;
+/// Proximity at which the halo is strongest. The scale ends near 16 million; contact begins far below.
+const FULL_PROXIMITY: f32 = 2_000_000.0;
+
+/// Height of a fingertip with its halo, in widths.
+pub(crate) const HEIGHT_TO_WIDTH: f32 =
+    (TIP_MM - BASE_MM + 2.0 * MARGIN_MM) / (2.0 * (HALF_WIDTH_MM + MARGIN_MM));
+
+/// What is drawn of one fingertip. Everything that is `None` is not drawn.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Tip {
+    /// Heat of the eight channels, 0..=1.
+    pub(crate) heat: [Option<f32>; 8],
+    /// Normal force in newtons.
+    pub(crate) normal_n: Option<f32>,
+    /// Tangential force in newtons and its direction in degrees, 0 towards the tip, clockwise.
+    pub(crate) shear: Option<(f32, f32)>,
+    /// Proximity counts.
+    pub(crate) proximity: Option<f32>,
+    /// Draw pale: the values are old.
+    pub(crate) stale: bool,
+}
+
+/// Millimetres of the sensor to points on the screen.
+struct Scale {
+    center: Pos2,
+    per_mm: f32,
+}
+
+impl Scale {
+    fn fit(rect: Rect) -> Self {
+        let (width, height) = (
+            HALF_WIDTH_MM + MARGIN_MM,
+            TIP_MM - BASE_MM + 2.0 * MARGIN_MM,
+        );
+        let per_mm = (rect.width() / (2.0 * width)).min(rect.height() / height);
+        let lift = (TIP_MM + BASE_MM) / 2.0 * per_mm;
+        Self {
+            center: rect.center() + vec2(0.0, lift),
+            per_mm,
+        }
+    }
+
+    fn at(&self, x: f32, y: f32) -> Pos2 {
+        pos2(
+            self.center.x + x * self.per_mm,
+            self.center.y - y * self.per_mm,
+        )
+    }
+
+    fn shape(&self, points: &[(f32, f32)]) -> Vec<Pos2> {
+        points.iter().map(|(x, y)| self.at(*x, *y)).collect()
+    }
+}
+
+/// The pads 1 to 7 as polygons in millimetres. Centres as in protocol §5.2; the outlines fill the area between them.
+const PADS: [&[(f32, f32)]; 7] = [
+    &[(-5.6, 6.2), (-0.7, 0.6), (-5.6, -5.2)],
+    &[(-5.0, 6.7), (5.0, 6.7), (0.0, 1.0)],
+    &[(5.6, 6.2), (5.6, -5.2), (0.7, 0.6)],
+    &[(-5.0, -5.7), (0.0, 0.1), (5.0, -5.7)],
+    &[
+        (-5.6, -6.6),
+        (-0.4, -6.6),
+        (-0.4, -11.2),
+        (-4.4, -11.2),
+        (-5.6, -10.0),
+    ],
+    &[
+        (0.4, -6.6),
+        (5.6, -6.6),
+        (5.6, -10.0),
+        (4.4, -11.2),
+        (0.4, -11.2),
+    ],
+    &[
+        (-5.4, 7.6),
+        (5.4, 7.6),
+        (4.9, 9.4),
+        (3.6, 10.9),
+        (1.9, 11.7),
+        (0.0, 12.0),
+        (-1.9, 11.7),
+        (-3.6, 10.9),
+        (-4.9, 9.4),
+    ],
+];
+
+/// Draws a fingertip into a rectangle, tip up.
+pub(crate) fn paint(painter: &Painter, look: Look, rect: Rect, tip: &Tip) {
+    let scale = Scale::fit(rect);
+    let fade = if tip.stale { 0.35 } else { 1.0 };
+    halo(painter, look, &scale, tip, fade);
+    skin(painter, look, &scale);
+    pads(painter, look, &scale, tip, fade);
+    forces(painter, look, &scale, tip, fade);
+}
+
+fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
+    let half = HALF_WIDTH_MM - 0.6 + grow_mm;
+    let rect = Rect::from_two_pos(
+        scale.at(-half, TIP_MM - 0.4 + grow_mm),
+        scale.at(half, BASE_MM - grow_mm),
+    );
+    let round = |mm: f32| {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped to a byte"
+        )]
+        let points = (mm * scale.per_mm).clamp(0.0, 255.0) as u8;
+        points
+    };
+    let (tip, base) = (round(half * 0.94), round(2.0 + grow_mm));
+    (
+        rect,
+        CornerRadius {
+            nw: tip,
+            ne: tip,
+            sw: base,
+            se: base,
+        },
+    )
+}
+
+fn halo(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
+    let Some(proximity) = tip.proximity else {
+        return;
+    };
+    let level = (proximity / FULL_PROXIMITY).clamp(0.0, 1.0) * fade;
+    for (grow, part) in [(1.4, 0.10), (0.9, 0.16), (0.4, 0.26)] {
+        let (rect, round) = outline(scale, grow);
+        let color = look.palette.accent.gamma_multiply(part * level);
+        painter.rect_filled(rect, round, color);
+    }
+}
+
+fn skin(painter: &Painter, look: Look, scale: &Scale) {
+    let (rect, round) = outline(scale, 0.0);
+    let edge = Stroke::new(1.0, look.palette.edge);
+    painter.rect(rect, round, look.palette.skin, edge, StrokeKind::Inside);
+}
+
+fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
+    let palette = look.palette;
+    let color = |heat: Option<f32>| {
+        heat.map_or(Color32::TRANSPARENT, |heat| {
+            palette.heat(heat).gamma_multiply(fade)
+        })
+    };
+    let (channels, last) = tip.heat.split_at(7);
+    for (pad, heat) in PADS.iter().zip(channels) {
+        let stroke = Stroke::new(1.0, palette.edge);
+        painter.add(Shape::convex_polygon(
+            scale.shape(pad),
+            color(*heat),
+            stroke,
+        ));
+    }
+    // The eighth channel belongs to no pad: a bar beside them.
+    let bar = Rect::from_two_pos(scale.at(6.0, 4.6), scale.at(6.8, -4.6));
+    let heat = last.first().copied().flatten();
+    painter.rect(
+        bar,
+        CornerRadius::same(1),
+        color(heat),
+        Stroke::new(1.0, palette.edge),
+        StrokeKind::Inside,
+    );
+}
+
+fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
+    let arrow = look.palette.arrow.gamma_multiply(fade);
+    let middle = scale.at(0.0, 0.6);
+    if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
+        // Area grows with force, so that twice the force looks twice as much.
+        let part = (normal / FULL_NORMAL_N).clamp(0.0, 1.0).sqrt();
+        let radius = part * (HALF_WIDTH_MM - 1.0) * scale.per_mm;
+        painter.circle(
+            middle,
+            radius,
+            arrow.gamma_multiply(0.14),
+            Stroke::new(1.5, arrow),
+        );
+    }
+    if let Some((shear, direction)) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
+        let length = (shear / FULL_SHEAR_N).clamp(0.12, 1.0) * 9.0 * scale.per_mm;
+        // 0 is up and clockwise; the screen's y grows downwards.
+        let turn = direction.to_radians();
+        let along = vec2(turn.sin(), -turn.cos());
+        arrow_shape(painter, middle, along, length, Stroke::new(2.0, arrow));
+    }
+}
+
+fn arrow_shape(painter: &Painter, from: Pos2, along: Vec2, length: f32, stroke: Stroke) {
+    let head = (length * 0.4).clamp(3.0, 8.0);
+    let to = from + along * length;
+    let side = along.rot90() * head * 0.5;
+    painter.line_segment([from, to - along * head * 0.7], stroke);
+    let points = vec![to, to - along * head + side, to - along * head - side];
+    painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
+}

@@ -1,0 +1,139 @@
+//! Numbers as people read them: fixed width, units, and "-" for what is not known. No colours.
+
+use std::time::Duration;
+
+/// What is shown for a value that is not known.
+pub(crate) const UNKNOWN: &str = "-";
+
+/// A whole number, right-aligned in `width`, or "-".
+pub(crate) fn whole(value: Option<i64>, width: usize) -> String {
+    value.map_or_else(
+        || format!("{UNKNOWN:>width$}"),
+        |value| format!("{value:>width$}"),
+    )
+}
+
+/// A whole number with its unit, or "-" with it.
+pub(crate) fn with_unit(value: Option<i64>, width: usize, unit: &str) -> String {
+    format!("{} {unit}", whole(value, width))
+}
+
+/// Degrees with one digit, or "-".
+pub(crate) fn degrees(value: Option<f32>) -> String {
+    value.map_or_else(|| format!("{UNKNOWN:>6}"), |value| format!("{value:>5.1}°"))
+}
+
+/// A number of newtons as the hand sent it: also "NaN", "inf" and numbers that are too long.
+pub(crate) fn newtons(value: Option<f32>) -> String {
+    match value {
+        None => UNKNOWN.into(),
+        Some(value) if value.is_nan() => "NaN".into(),
+        Some(value) if value.is_infinite() => if value > 0.0 { "+inf" } else { "-inf" }.into(),
+        Some(value) if value.abs() >= 1000.0 => format!("{value:.0e}"),
+        Some(value) if value.abs() >= 100.0 => format!("{value:.0}"),
+        Some(value) => format!("{value:.2}"),
+    }
+}
+
+/// Counts, shortened: 1 234, 56.7k, 8.90M.
+pub(crate) fn counts(value: Option<i64>) -> String {
+    let Some(value) = value else {
+        return UNKNOWN.into();
+    };
+    let size = value.unsigned_abs();
+    let sign = if value < 0 { "-" } else { "" };
+    match size {
+        0..10_000 => format!("{sign}{size}"),
+        10_000..1_000_000 => format!("{sign}{}.{}k", size / 1000, size % 1000 / 100),
+        _ => format!(
+            "{sign}{}.{:02}M",
+            size / 1_000_000,
+            size % 1_000_000 / 10_000
+        ),
+    }
+}
+
+/// A rate in hertz, or "-" while there is none.
+pub(crate) fn hertz(value: f64) -> String {
+    if value.is_finite() && value > 0.0 {
+        return format!("{value:.0} Hz");
+    }
+    format!("{UNKNOWN} Hz")
+}
+
+/// A round trip in milliseconds.
+pub(crate) fn millis(value: Option<Duration>) -> String {
+    value.map_or_else(
+        || UNKNOWN.into(),
+        |value| format!("{:.1}", value.as_secs_f64() * 1000.0),
+    )
+}
+
+/// How old something is: 350 ms, 2.4 s, 3 min.
+pub(crate) fn age(value: Duration) -> String {
+    match value.as_secs() {
+        0 => format!("{} ms", value.as_millis()),
+        1..60 => format!("{:.1} s", value.as_secs_f64()),
+        60..3600 => format!("{} min", value.as_secs() / 60),
+        _ => format!("{} h", value.as_secs() / 3600),
+    }
+}
+
+/// An error's text as a sentence: capital letter first, a full stop last.
+pub(crate) fn sentence(text: &str) -> String {
+    let mut signs = text.chars();
+    let mut out: String = signs
+        .next()
+        .into_iter()
+        .flat_map(char::to_uppercase)
+        .collect();
+    out.push_str(signs.as_str());
+    if !out.ends_with(['.', '!', '?', '。']) {
+        out.push('.');
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_is_a_dash_and_never_a_zero() {
+        assert_eq!(whole(None, 4), "   -");
+        assert_eq!(with_unit(None, 4, "g"), "   - g");
+        assert_eq!(degrees(None).trim(), "-");
+        assert_eq!(newtons(None), "-");
+        assert_eq!(counts(None), "-");
+        assert_eq!(hertz(0.0), "- Hz");
+        assert_eq!(millis(None), "-");
+    }
+
+    #[test]
+    fn strange_numbers_are_shown_as_they_are() {
+        assert_eq!(newtons(Some(f32::NAN)), "NaN");
+        assert_eq!(newtons(Some(f32::NEG_INFINITY)), "-inf");
+        assert_eq!(newtons(Some(3.0e38)), "3e38");
+        assert_eq!(newtons(Some(-0.5)), "-0.50");
+    }
+
+    #[test]
+    fn counts_are_shortened_without_changing_their_sign() {
+        for (value, text) in [
+            (0, "0"),
+            (-9_999, "-9999"),
+            (12_345, "12.3k"),
+            (8_901_234, "8.90M"),
+            (-16_000_000, "-16.00M"),
+        ] {
+            assert_eq!(counts(Some(value)), text);
+        }
+    }
+
+    #[test]
+    fn ages_grow_in_units() {
+        for (millis, text) in [(350, "350 ms"), (2400, "2.4 s"), (181_000, "3 min")] {
+            assert_eq!(age(Duration::from_millis(millis)), text);
+        }
+    }
+}

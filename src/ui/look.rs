@@ -1,0 +1,71 @@
+//! What every part of the window is given: the state, the colours, the language, and where to put actions.
+
+use crate::app::action::Action;
+use crate::app::settings::Language;
+use crate::app::state::{Freshness, State};
+use crate::hand::Moment;
+use crate::ui::text::Text;
+use crate::ui::theme::Palette;
+use egui::{Color32, Id};
+
+/// Colours and language of this frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Look {
+    /// Colours.
+    pub(crate) palette: &'static Palette,
+    /// Language.
+    pub(crate) language: Language,
+}
+
+impl Look {
+    /// As the settings say.
+    pub(crate) fn of(state: &State) -> Self {
+        Self {
+            palette: Palette::of(state.settings.theme),
+            language: state.settings.language,
+        }
+    }
+
+    /// A text in the window's language.
+    pub(crate) const fn say(self, text: Text) -> &'static str {
+        text.of(self.language)
+    }
+
+    /// The colour of a value of this freshness that would be `live`.
+    pub(crate) fn value(self, freshness: Freshness, live: Color32) -> Color32 {
+        match freshness {
+            Freshness::Live => live,
+            Freshness::Stale | Freshness::Unknown => self.palette.faint,
+        }
+    }
+}
+
+/// One pass over one part of the window.
+pub(crate) struct Pane<'a> {
+    /// What is shown.
+    pub(crate) state: &'a State,
+    /// How it looks.
+    pub(crate) look: Look,
+    /// What the person asked for.
+    pub(crate) actions: &'a mut Vec<Action>,
+    /// The field being typed into.
+    pub(crate) typing: &'a mut Typing,
+}
+
+impl Pane<'_> {
+    /// How fresh something asked for at `asked` is.
+    pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
+        self.state.freshness(asked)
+    }
+}
+
+/// The one field that is being typed into. Nothing in it counts before Enter.
+#[derive(Debug, Default)]
+pub(crate) struct Typing {
+    /// Which field.
+    pub(crate) field: Option<Id>,
+    /// What was typed so far.
+    pub(crate) text: String,
+    /// The field whose text was refused at the last Enter.
+    pub(crate) refused: Option<Id>,
+}

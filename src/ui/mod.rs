@@ -1,0 +1,23 @@
+//! The window: reads [`crate::app::state::State`], draws it with egui, returns actions. No clock, file, thread or wire.
+
+mod banner;
+mod connection;
+mod controls;
+mod faults;
+mod fingertip;
+mod format;
+mod gestures;
+mod joints;
+mod look;
+mod number;
+mod plot_axes;
+mod plot_head;
+mod plots;
+mod text;
+mod theme;
+mod top_bar;
+mod touch;
+mod track;
+mod window;
+
+pub use window::{View, Window, install};

@@ -1,0 +1,164 @@
+//! The number field: nothing that is typed counts before Enter. Knows no joint.
+
+use crate::ui::format::UNKNOWN;
+use crate::ui::look::{Look, Typing};
+use crate::ui::theme;
+use egui::{
+    Align2, Id, Key, Margin, Rect, Role, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, vec2,
+};
+use std::ops::RangeInclusive;
+
+/// Characters that fit in a field.
+const TYPED_MAX: usize = 8;
+
+/// A number field at a place.
+#[derive(Debug, Clone)]
+pub(crate) struct NumberField<'a> {
+    /// What a screen reader says.
+    pub(crate) name: &'a str,
+    /// What it does, in a sentence.
+    pub(crate) tip: &'a str,
+    /// Why nothing can be typed now.
+    pub(crate) disabled: Option<&'a str>,
+    /// What is in force; none is shown as "-".
+    pub(crate) value: Option<i16>,
+    /// What may be typed.
+    pub(crate) range: RangeInclusive<i16>,
+}
+
+impl NumberField<'_> {
+    /// Draws the field. The number that was typed and confirmed with Enter in this frame.
+    pub(crate) fn put(
+        self,
+        ui: &mut Ui,
+        look: Look,
+        typing: &mut Typing,
+        rect: Rect,
+        id: Id,
+    ) -> Option<i16> {
+        let shown = self
+            .value
+            .map_or_else(|| UNKNOWN.to_owned(), |value| value.to_string());
+        if ui.memory(|memory| memory.has_focus(id)) && self.disabled.is_none() {
+            if typing.field != Some(id) {
+                *typing = Typing {
+                    field: Some(id),
+                    text: shown.clone(),
+                    refused: None,
+                };
+            }
+        } else if typing.field == Some(id) && typing.refused != Some(id) {
+            *typing = Typing::default();
+        }
+        let mut text = if typing.field == Some(id) {
+            typing.text.clone()
+        } else {
+            shown
+        };
+        let response = self.edit(ui, look, typing, &mut text, rect, id);
+        if typing.field == Some(id) {
+            typing.text.clone_from(&text);
+            typing.refused = typing.refused.filter(|_| !response.changed());
+        }
+        let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let parsed = strict(&text).filter(|value| self.range.contains(value));
+        let (from, to) = (self.range.start(), self.range.end());
+        response.on_hover_text(match self.disabled {
+            Some(reason) => reason.to_owned(),
+            None => format!("{} {from}..{to}", self.tip),
+        });
+        if !entered || typing.field != Some(id) {
+            return None;
+        }
+        if parsed.is_none() {
+            typing.refused = Some(id);
+            return None;
+        }
+        *typing = Typing::default();
+        parsed
+    }
+
+    fn edit(
+        &self,
+        ui: &mut Ui,
+        look: Look,
+        typing: &Typing,
+        text: &mut String,
+        rect: Rect,
+        id: Id,
+    ) -> egui::Response {
+        let palette = look.palette;
+        let enabled = self.disabled.is_none();
+        let edge = if typing.refused == Some(id) {
+            palette.bad
+        } else if typing.field == Some(id) {
+            palette.accent
+        } else {
+            palette.edge
+        };
+        let frame = egui::Frame::new()
+            .fill(if enabled {
+                palette.sunken
+            } else {
+                palette.card
+            })
+            .stroke(Stroke::new(1.0, edge))
+            .corner_radius(theme::ROUND_SMALL)
+            .inner_margin(Margin::symmetric(6, 0));
+        let edit = TextEdit::singleline(text)
+            .id(id)
+            .font(theme::number())
+            .text_color(if enabled { palette.text } else { palette.faint })
+            .align(Align2::RIGHT_CENTER)
+            .char_limit(TYPED_MAX)
+            .interactive(enabled)
+            .frame(frame)
+            .clip_text(true)
+            .min_size(vec2(rect.width(), rect.height()))
+            .desired_width(rect.width() - 14.0);
+        let place = UiBuilder::new().max_rect(rect);
+        let response = ui
+            .scope_builder(place, |ui| {
+                // A field is as high as its place, not as high as a button.
+                ui.spacing_mut().interact_size.y = rect.height();
+                ui.add(edit)
+            })
+            .inner;
+        let value = text.clone();
+        response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::TextInput, enabled, self.name);
+            info.current_text_value = Some(value.clone());
+            info
+        });
+        response
+    }
+}
+
+/// A whole number written with plain digits and nothing else: no comma, no point, no full-width digit.
+fn strict(text: &str) -> Option<i16> {
+    let text = text.trim();
+    let plain = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    plain.then(|| text.parse().ok()).flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_plain_digits_are_a_number() {
+        for (text, value) in [
+            ("500", Some(500)),
+            (" 7 ", Some(7)),
+            ("-1", None),
+            ("1,000", None),
+            ("1.5", None),
+            ("５００", None),
+            ("1e3", None),
+            ("", None),
+            ("99999", None),
+        ] {
+            assert_eq!(strict(text), value, "{text}");
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Every sentence of the window, in English and Chinese. No layout, no numbers.
+
+pub(crate) mod main;
+pub(crate) mod notices;
+pub(crate) mod panels;
+pub(crate) mod words;
+
+pub(crate) use phrase::{Text, texts};
+
+mod phrase;

@@ -1,0 +1,144 @@
+//! Messages, troubles of the link and failed requests as sentences in the window's language. Decides nothing.
+
+use crate::app::faults::FaultKind;
+use crate::app::notices::{Asked, NoticeKind};
+use crate::app::settings::Language;
+use crate::hand::Words;
+use crate::link::{Disarmed, LinkTrouble, RequestError};
+use crate::ui::format;
+use crate::ui::look::Look;
+use crate::ui::text::{main, panels, words};
+
+/// Title, cause and advice of what is wrong with a drive.
+pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
+    match what {
+        FaultKind::Fault(fault) => words::fault(fault, language),
+        FaultKind::Status(status) => words::status(status, language),
+    }
+}
+
+/// Why there is no live hand.
+pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
+    if look.language == Language::En {
+        return format::sentence(&trouble.to_string());
+    }
+    match trouble {
+        LinkTrouble::Transport(error) => format!("线路问题：{error}。"),
+        LinkTrouble::NoAnswer { id } => {
+            format!("ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议。")
+        }
+        LinkTrouble::Silent { silent } => {
+            format!("灵巧手停止应答：连续 {silent} 次请求没有应答。")
+        }
+        LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。".into(),
+        LinkTrouble::Suspended { slept_s } => {
+            format!("本机休眠了 {slept_s} 秒：之前显示的数据已过时。")
+        }
+    }
+}
+
+/// How a request failed.
+fn request_error(look: Look, error: &RequestError) -> String {
+    if look.language == Language::En {
+        return format::sentence(&error.to_string());
+    }
+    match error {
+        RequestError::NotConnected => "没有连接：未发送任何内容。".into(),
+        RequestError::NotArmed => "未使能：未发送任何内容。".into(),
+        RequestError::Full { limit } => format!("已有 {limit} 个请求在等待：未发送。"),
+        RequestError::TooLong { address, len } => {
+            format!("此线路无法一次读写地址 {address} 起的 {len} 字节。")
+        }
+        RequestError::Timeout { address, after_ms } => {
+            format!("地址 {address} 在 {after_ms} ms 内没有应答：不确定灵巧手是否已执行。")
+        }
+        RequestError::Refused { address, reason } => {
+            format!("灵巧手拒绝了地址 {address}：{reason}。")
+        }
+        RequestError::WrongLength { address, got, want } => {
+            format!("地址 {address} 应答了 {got} 字节，应为 {want} 字节。")
+        }
+        RequestError::Ambiguous { address, wait_s } => {
+            format!("地址 {address} 可能还有迟到的应答：请在 {wait_s} 秒后重试。")
+        }
+        RequestError::LinkLost => "连接断开：不确定灵巧手是否已执行。".into(),
+        RequestError::OutOfRange(error) => format!("超出手册范围：{error}。"),
+    }
+}
+
+fn asked(look: Look, what: Asked) -> String {
+    match what {
+        Asked::Gesture(gesture) => format!("{} {}", look.say(panels::GESTURE), gesture.get()),
+        Asked::ClearErrors => look.say(panels::CLEAR).into(),
+    }
+}
+
+fn disarmed(look: Look, why: Disarmed) -> &'static str {
+    look.say(match why {
+        Disarmed::Stop => panels::DISARMED_STOP,
+        Disarmed::Person => panels::DISARMED_PERSON,
+        Disarmed::Fault => panels::DISARMED_FAULT,
+        Disarmed::LinkLost => panels::DISARMED_LOST,
+        Disarmed::Stale => panels::DISARMED_STALE,
+        Disarmed::Resume => panels::DISARMED_RESUME,
+    })
+}
+
+/// A message as one or two sentences.
+pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
+    let said = |text| look.say(text).to_owned();
+    match what {
+        NoticeKind::LinkLost(why) => {
+            format!("{} {}", said(panels::NOTICE_LOST), trouble(look, why))
+        }
+        NoticeKind::NoLink(why) => {
+            format!("{} {}", said(panels::NOTICE_NO_LINK), trouble(look, why))
+        }
+        NoticeKind::Reconnected => said(panels::NOTICE_RECONNECTED),
+        NoticeKind::HoldConfirmed { after } => {
+            format!("{} {}", said(panels::NOTICE_HELD), format::age(*after))
+        }
+        NoticeKind::HoldAlarm => said(main::ALARM_BODY),
+        NoticeKind::Disarmed(why) => disarmed(look, *why).into(),
+        NoticeKind::ArmRefused(why) => {
+            format!(
+                "{} {}",
+                said(panels::NOTICE_ARM),
+                words::refusal(look, *why)
+            )
+        }
+        NoticeKind::Fault { dof, what } => {
+            let title = fault_kind(*what, look.language).title;
+            format!("{}: {title}", look.say(words::dof(*dof)))
+        }
+        NoticeKind::RequestFailed { what, error } => {
+            format!("{}: {}", asked(look, *what), request_error(look, error))
+        }
+        NoticeKind::Acknowledged { what } => {
+            format!(
+                "{}: {}",
+                asked(look, *what),
+                said(panels::NOTICE_ACKNOWLEDGED)
+            )
+        }
+        NoticeKind::GestureWouldMoveLocked { dof } => {
+            format!(
+                "{} {}",
+                said(panels::NOTICE_LOCKED),
+                look.say(words::dof(*dof))
+            )
+        }
+        NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
+        NoticeKind::SettingsNotSaved { message } => {
+            format!("{} {message}", said(panels::NOTICE_NOT_SAVED))
+        }
+        NoticeKind::SettingsIgnored { message, kept_as } => {
+            let kept = kept_as.as_ref().map(|path| path.display().to_string());
+            let kept = kept.unwrap_or_default();
+            format!("{} {message} {kept}", said(panels::NOTICE_SETTINGS))
+        }
+        NoticeKind::EndpointIgnored { text } => {
+            format!("{} {text}", said(panels::NOTICE_ENDPOINT))
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! One sentence in all languages of the window. The sentences themselves live beside it.
+
+use crate::app::settings::Language;
+
+/// One sentence in all languages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Text {
+    /// English.
+    pub(crate) en: &'static str,
+    /// 中文.
+    pub(crate) zh: &'static str,
+}
+
+impl Text {
+    /// The sentence in one language.
+    pub(crate) const fn of(self, language: Language) -> &'static str {
+        match language {
+            Language::En => self.en,
+            Language::Zh => self.zh,
+        }
+    }
+}
+
+/// Writes a table of sentences as constants, and a list of them all for the tests.
+macro_rules! texts {
+    ($($name:ident: $en:literal, $zh:literal;)*) => {
+        $(
+            #[doc = $en]
+            pub(crate) const $name: $crate::ui::text::Text = $crate::ui::text::Text { en: $en, zh: $zh };
+        )*
+        #[cfg(test)]
+        pub(crate) const ALL: &[$crate::ui::text::Text] = &[$($name),*];
+    };
+}
+pub(crate) use texts;
+
+#[cfg(test)]
+mod tests {
+    use crate::ui::text::{main, panels};
+
+    #[test]
+    fn no_sentence_lacks_a_language() {
+        for text in main::ALL.iter().chain(panels::ALL) {
+            assert!(!text.en.is_empty() && !text.zh.is_empty(), "{text:?}");
+            assert!(
+                text.en.is_ascii() || text.en.contains(['°', '±']),
+                "{text:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn every_chinese_character_is_in_the_font() {
+        let known = include_str!("../../../assets/fonts/characters.txt");
+        let all = main::ALL.iter().chain(panels::ALL);
+        for text in all {
+            for sign in text
+                .zh
+                .chars()
+                .filter(|sign| !sign.is_ascii() && *sign != '°')
+            {
+                assert!(known.contains(sign), "{sign} in {}", text.zh);
+            }
+        }
+    }
+}

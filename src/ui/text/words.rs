@@ -1,0 +1,163 @@
+//! Names of joints, fingers, states, faults and reasons in the window's language. Decides nothing.
+
+use crate::app::settings::Language;
+use crate::hand::{Dof, Fault, Finger, Status, Words};
+use crate::link::{ArmRefusal, LinkState};
+use crate::ui::look::Look;
+use crate::ui::text::{Text, main};
+
+/// The name of a joint.
+pub(crate) const fn dof(dof: Dof) -> Text {
+    match dof {
+        Dof::Little => main::LITTLE,
+        Dof::Ring => main::RING,
+        Dof::Middle => main::MIDDLE,
+        Dof::Index => main::INDEX,
+        Dof::ThumbBend => main::THUMB_BEND,
+        Dof::ThumbRotate => main::THUMB_ROTATE,
+    }
+}
+
+/// The name of a finger.
+pub(crate) const fn finger(finger: Finger) -> Text {
+    match finger {
+        Finger::Little => main::LITTLE,
+        Finger::Ring => main::RING,
+        Finger::Middle => main::MIDDLE,
+        Finger::Index => main::INDEX,
+        Finger::Thumb => main::THUMB,
+    }
+}
+
+/// The word for a state of the link.
+pub(crate) const fn link_state(state: LinkState) -> Text {
+    match state {
+        LinkState::Offline => main::STATE_OFFLINE,
+        LinkState::Identifying => main::STATE_IDENTIFYING,
+        LinkState::Monitoring => main::STATE_MONITORING,
+        LinkState::Armed => main::STATE_ARMED,
+        LinkState::Holding => main::STATE_HOLDING,
+        LinkState::Fault => main::STATE_FAULT,
+    }
+}
+
+/// Why arming is refused, as a sentence.
+pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
+    match reason {
+        ArmRefusal::Offline => look.say(main::REFUSED_OFFLINE).into(),
+        ArmRefusal::Holding => look.say(main::REFUSED_HOLDING).into(),
+        ArmRefusal::Fault => look.say(main::REFUSED_FAULT).into(),
+        ArmRefusal::NoAnswer => look.say(main::REFUSED_NO_ANSWER).into(),
+        ArmRefusal::UnknownPose { dof: joint } => {
+            format!("{} {}", look.say(main::REFUSED_POSE), look.say(dof(joint)))
+        }
+    }
+}
+
+/// Title, cause and advice of a status code.
+pub(crate) const fn status(status: Status, language: Language) -> Words {
+    match language {
+        Language::En => status.words(),
+        Language::Zh => status_zh(status),
+    }
+}
+
+/// Title, cause and advice of a fault.
+pub(crate) const fn fault(fault: Fault, language: Language) -> Words {
+    match language {
+        Language::En => fault.words(),
+        Language::Zh => fault_zh(fault),
+    }
+}
+
+const fn status_zh(status: Status) -> Words {
+    match status {
+        Status::Releasing => Words::new("正在松开", "该自由度正向张开方向运动。", "无需处理。"),
+        Status::Grasping => Words::new("正在抓取", "该自由度正向弯曲方向运动。", "无需处理。"),
+        Status::PositionReached => Words::new("位置到位", "该自由度已到达目标角度。", "无需处理。"),
+        Status::ForceReached => Words::new(
+            "力控到位",
+            "受力到达阈值，驱动器已停止。",
+            "无需处理。若抓握太弱，可提高阈值。",
+        ),
+        Status::CurrentProtection => Words::new(
+            "电流保护",
+            "驱动器电流过大，已停止。",
+            "移除负载或张开该自由度，再以较慢速度重新控制。",
+        ),
+        Status::Stalled => Words::new(
+            "堵转停止",
+            "驱动器用力但没有移动。",
+            "张开该自由度或移除阻挡物，然后清除错误。",
+        ),
+        Status::DriveFault => {
+            Words::new("故障停止", "驱动器因故障停止。", "请查看故障列表中的原因。")
+        }
+        Status::Unknown(255) => Words::new(
+            "未报告",
+            "代码 255，手册没有说明。常见于上电后尚未控制过的自由度。",
+            "让该自由度运动一次。若仍然如此，请记录代码并联系厂家。",
+        ),
+        Status::Unknown(_) => Words::new(
+            "未知代码",
+            "手册没有列出此代码。",
+            "请当作该自由度未就绪，并记录代码联系厂家。",
+        ),
+    }
+}
+
+const fn fault_zh(fault: Fault) -> Words {
+    match fault {
+        Fault::Stall => Words::new(
+            "堵转故障",
+            "驱动器用力但无法移动。",
+            "松开手指或移除阻挡物，然后清除错误。",
+        ),
+        Fault::OverTemperature => Words::new(
+            "过温故障",
+            "驱动器温度过高。",
+            "请等待冷却：此故障不可清除，温度回落后自动清除。",
+        ),
+        Fault::OverCurrent => Words::new(
+            "过流故障",
+            "驱动器电流过大。",
+            "减小负载、速度或力控阈值，然后清除错误。",
+        ),
+        Fault::Motor => Words::new(
+            "电机异常",
+            "驱动器报告电机异常。",
+            "清除错误。若再次出现，请断电重启，仍无效则联系厂家。",
+        ),
+        Fault::Communication => Words::new(
+            "通讯故障",
+            "主控板与驱动器失去通讯。",
+            "清除错误。若再次出现，请检查电源与线缆，仍无效则联系厂家。",
+        ),
+        Fault::Unknown(_) => Words::new(
+            "未知故障位",
+            "手册没有列出此故障位。",
+            "请停止使用，并记录代码联系厂家。",
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chinese_words_stand_for_every_code_and_are_in_the_font() {
+        let known = include_str!("../../../assets/fonts/characters.txt");
+        let statuses = (0..=255).map(|raw| status(Status::from_raw(raw), Language::Zh));
+        let faults = (0..8).map(|bit| fault(Fault::from_bit(bit), Language::Zh));
+        for words in statuses.chain(faults) {
+            for text in [words.title, words.cause, words.advice] {
+                assert!(!text.is_empty());
+                let missing = text
+                    .chars()
+                    .find(|sign| !sign.is_ascii() && !known.contains(*sign));
+                assert_eq!(missing, None, "{text}");
+            }
+        }
+    }
+}

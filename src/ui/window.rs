@@ -1,0 +1,280 @@
+//! The whole window: where each part stands, which keys act everywhere. Holds view state only, no hand.
+
+use crate::app::action::Action;
+use crate::app::settings::{Language, Theme};
+use crate::app::state::State;
+use crate::ui::banner;
+use crate::ui::connection::ConnectionForm;
+use crate::ui::faults;
+use crate::ui::gestures::GestureView;
+use crate::ui::joints;
+use crate::ui::look::{Look, Pane, Typing};
+use crate::ui::plots::PlotView;
+use crate::ui::text::{Text, main};
+use crate::ui::theme;
+use crate::ui::top_bar;
+use crate::ui::touch::TouchView;
+use egui::{Event, Key, Rect, Ui};
+
+/// The parts of the window that can be looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum View {
+    /// Plots, fingertips, faults and gestures together.
+    #[default]
+    Live,
+    /// The fingertips, large.
+    Touch,
+    /// Faults, statuses and messages.
+    Faults,
+    /// All forty gestures with their names.
+    Gestures,
+    /// The link and its settings.
+    Connection,
+}
+
+impl View {
+    /// All, in the order of the tabs.
+    pub const ALL: [Self; 5] = [
+        Self::Live,
+        Self::Touch,
+        Self::Faults,
+        Self::Gestures,
+        Self::Connection,
+    ];
+
+    /// Stable lower-case name for the command line and files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Live => "live",
+            Self::Touch => "touch",
+            Self::Faults => "faults",
+            Self::Gestures => "gestures",
+            Self::Connection => "connection",
+        }
+    }
+
+    /// The view with this name.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|view| view.name() == name)
+    }
+
+    pub(crate) const fn title(self) -> Text {
+        match self {
+            Self::Live => main::TAB_LIVE,
+            Self::Touch => main::TAB_TOUCH,
+            Self::Faults => main::TAB_FAULTS,
+            Self::Gestures => main::TAB_GESTURES,
+            Self::Connection => main::TAB_CONNECTION,
+        }
+    }
+}
+
+/// What the window remembers between frames: the open tab, text in progress, what is hidden.
+#[derive(Debug, Default)]
+pub struct Window {
+    view: View,
+    installed: Option<(Theme, Language)>,
+    typing: Typing,
+    plots: PlotView,
+    touch: TouchView,
+    gestures: GestureView,
+    connection: ConnectionForm,
+}
+
+/// Puts fonts and style into a context. The window does it itself when the settings change.
+pub fn install(ctx: &egui::Context, theme: Theme, _language: Language) {
+    ctx.set_fonts(theme::fonts());
+    restyle(ctx, theme);
+}
+
+fn restyle(ctx: &egui::Context, theme: Theme) {
+    ctx.all_styles_mut(|style| *style = theme::style(theme, style));
+}
+
+impl Window {
+    /// A window on its first view.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Opens a view.
+    pub fn set_view(&mut self, view: View) {
+        self.view = view;
+    }
+
+    /// The open view.
+    #[must_use]
+    pub const fn view(&self) -> View {
+        self.view
+    }
+
+    /// Draws the window over all of `ui` and returns what the person asked for, stop first.
+    pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
+        self.install_if_changed(ui, state);
+        let mut actions = Vec::new();
+        let stopped = take_stop_keys(ui);
+        let mut typing = std::mem::take(&mut self.typing);
+        let mut pane = Pane {
+            state,
+            look: Look::of(state),
+            actions: &mut actions,
+            typing: &mut typing,
+        };
+        self.parts_ui(ui, &mut pane);
+        self.typing = typing;
+        stop_first(actions, stopped)
+    }
+
+    fn install_if_changed(&mut self, ui: &mut Ui, state: &State) {
+        let wanted = (state.settings.theme, state.settings.language);
+        match self.installed.replace(wanted) {
+            None => install(ui.ctx(), wanted.0, wanted.1),
+            Some((theme, _)) if theme != wanted.0 => restyle(ui.ctx(), wanted.0),
+            Some(_) => return,
+        }
+        let style = theme::style(wanted.0, ui.style());
+        ui.set_style(style);
+    }
+
+    fn parts_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let whole = ui.max_rect();
+        ui.painter()
+            .rect_filled(whole, 0.0, pane.look.palette.window);
+        let (bar, mut body) = whole.split_top_bottom_at_y(whole.top() + theme::TOP_BAR);
+        if top_bar::top_bar_ui(ui, bar, pane) {
+            self.view = View::Connection;
+        }
+        for banner in banner::banners(pane) {
+            let (place, rest) = body.split_top_bottom_at_y(body.top() + theme::BANNER);
+            if let Some(view) = banner.ui(ui, place, pane.look) {
+                self.view = view;
+            }
+            body = rest;
+        }
+        let (tabs, body) = body.split_top_bottom_at_y(body.top() + theme::TABS);
+        top_bar::tabs_ui(ui, tabs, pane, &mut self.view);
+        let body = Rect::from_min_max(body.min, body.max - egui::vec2(theme::GAP, theme::GAP));
+        let body = body.with_min_x(body.left() + theme::GAP);
+        let joints_width = (whole.width() * 0.29).clamp(384.0, 560.0).round();
+        let (left, right) = body.split_left_right_at_x(body.left() + joints_width);
+        joints::joints_ui(ui, left, pane);
+        self.view_ui(ui, right.with_min_x(right.left() + theme::GAP), pane);
+    }
+
+    fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        // First readings are noted in every view, so that a finger that is touched later has its rest to compare with.
+        self.touch.note_rest(pane);
+        match self.view {
+            View::Live => self.live_ui(ui, rect, pane),
+            View::Touch => self.touch.large_ui(ui, rect, pane),
+            View::Faults => faults::faults_view_ui(ui, rect, pane),
+            View::Gestures => self.gestures.large_ui(ui, rect, pane),
+            View::Connection => self.connection.ui(ui, rect, pane),
+        }
+    }
+
+    fn live_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        let strip_height = GestureView::strip_height(rect.height());
+        let (upper, strip) = rect.split_top_bottom_at_y(rect.bottom() - strip_height);
+        self.gestures.strip_ui(ui, strip, pane);
+        let upper = upper.with_max_y(upper.bottom() - theme::GAP);
+        let right_width = (rect.width() * 0.4).clamp(288.0, 560.0).round();
+        let (center, right) = upper.split_left_right_at_x(upper.right() - right_width);
+        let center = center.with_max_x(center.right() - theme::GAP);
+        self.plots.ui(ui, center, pane);
+        let most = (right.height() * 0.68).max(200.0);
+        let touch_height = TouchView::small_height(right.width()).min(most).round();
+        let (touch, list) = right.split_top_bottom_at_y(right.top() + touch_height);
+        self.touch.small_ui(ui, touch, pane);
+        faults::faults_card_ui(ui, list.with_min_y(list.top() + theme::GAP), pane);
+    }
+}
+
+/// Takes Space and Esc out of the input before any widget sees them, and says whether one was pressed.
+/// Space belongs to a text field that has the keyboard; Esc never does.
+fn take_stop_keys(ui: &Ui) -> bool {
+    let typing = ui.ctx().text_edit_focused();
+    let is_stop = |event: &Event| match event {
+        Event::Key {
+            key: Key::Escape, ..
+        } => true,
+        Event::Key {
+            key: Key::Space, ..
+        } => !typing,
+        _ => false,
+    };
+    ui.input_mut(|input| {
+        let pressed = |event: &Event| {
+            matches!(
+                event,
+                Event::Key {
+                    pressed: true,
+                    repeat: false,
+                    ..
+                }
+            )
+        };
+        let stop = input
+            .events
+            .iter()
+            .any(|event| is_stop(event) && pressed(event));
+        input.events.retain(|event| match event {
+            Event::Key {
+                key: Key::Space, ..
+            } => typing,
+            _ => true,
+        });
+        stop
+    })
+}
+
+/// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.
+fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
+    if !stopped && !actions.contains(&Action::Stop) {
+        return actions;
+    }
+    actions.retain(|action| {
+        !matches!(
+            action,
+            Action::Stop | Action::Arm | Action::Target(..) | Action::Open | Action::Gesture(_)
+        )
+    });
+    actions.insert(0, Action::Stop);
+    actions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{Angle, Dof, Gesture};
+
+    #[test]
+    fn a_stop_goes_first_and_nothing_moves_in_the_same_frame() {
+        let moves = || {
+            vec![
+                Action::Arm,
+                Action::Target(Dof::Index, Angle::MAX),
+                Action::Open,
+                Action::Gesture(Gesture::MIN),
+                Action::FindPorts,
+            ]
+        };
+        let stopped = [Action::Stop, Action::FindPorts];
+        assert_eq!(stop_first(moves(), true), stopped);
+        let mut with_button = moves();
+        with_button.push(Action::Stop);
+        assert_eq!(stop_first(with_button, false), stopped);
+        assert_eq!(stop_first(moves(), false), moves());
+    }
+
+    #[test]
+    fn every_view_is_found_by_its_name() {
+        for view in View::ALL {
+            assert_eq!(View::by_name(view.name()), Some(view));
+        }
+        assert_eq!(View::by_name("LIVE"), None);
+    }
+}
