@@ -1,5 +1,5 @@
-//! Requests that were given up and may still be answered. On lines without sequence numbers such an
-//! answer cannot be told from a fresh one, so the same question is not asked again for a while.
+//! Questions that may still be answered: given up, or answered once and perhaps once more. On lines without
+//! sequence numbers such an answer cannot be told from a fresh one, so the question is not asked again for a while.
 
 use crate::hand::{Moment, Span};
 use arrayvec::ArrayVec;
@@ -14,6 +14,8 @@ const QUESTIONS_MAX: usize = 32;
 #[derive(Debug, Default)]
 pub(crate) struct LateReplies {
     asked: ArrayVec<(Span, Moment), QUESTIONS_MAX>,
+    /// What was answered last: a doubled reply to it comes before the reply to anything asked later.
+    last: Option<Span>,
 }
 
 impl LateReplies {
@@ -24,6 +26,11 @@ impl LateReplies {
             self.asked.remove(0);
         }
         self.asked.push((span, now));
+    }
+
+    /// A request was answered; the span if it was a read.
+    pub(crate) const fn answered(&mut self, span: Option<Span>) {
+        self.last = span;
     }
 
     /// The late reply to this span has come: one question less is open.
@@ -39,6 +46,7 @@ impl LateReplies {
         shapes
             .iter()
             .copied()
+            .filter(|shape| self.last != Some(*shape))
             .find(|shape| self.asked.iter().all(|(asked, _)| asked != shape))
     }
 
@@ -50,6 +58,17 @@ impl LateReplies {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_last_question_answered_is_not_asked_again_at_once() {
+        let (a, b) = (Span::new(1546, 78), Span::new(1546, 72));
+        let mut late = LateReplies::default();
+        late.answered(Some(a));
+        assert_eq!(late.first_clear(&[a], Moment::ZERO), None);
+        assert_eq!(late.first_clear(&[a, b], Moment::ZERO), Some(b));
+        late.answered(None);
+        assert_eq!(late.first_clear(&[a], Moment::ZERO), Some(a));
+    }
 
     #[test]
     fn a_question_given_up_is_not_asked_again_within_the_horizon() {
