@@ -218,7 +218,8 @@ impl Rs485 {
         if let Reply::Read { address, bytes, .. } = reply
             && let Ok(len) = u16::try_from(bytes.len())
         {
-            self.late.arrived(Span::new(*address, len));
+            self.late
+                .arrived(Span::new(*address, len), self.clock.now());
         }
     }
 

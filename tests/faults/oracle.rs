@@ -132,6 +132,11 @@ impl Witness {
     fn check_stamp<T>(&self, value: &Timed<T>, stamp: u32) {
         let made = stamped(stamp);
         let fresh = made.plus(STAMP_STEP) >= value.asked && made <= value.received;
+        if !fresh {
+            let sent = self.log.sent();
+            let last = sent.get(sent.len().saturating_sub(12)..);
+            println!("last requests: {last:#?}");
+        }
         assert!(
             fresh,
             "seed {}: asked {:?}, received {:?}, but made {made:?}",

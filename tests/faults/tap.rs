@@ -14,6 +14,8 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 pub struct Sent {
     pub at: Moment,
     pub address: u16,
+    /// Bytes or words asked for; 0 for a write.
+    pub len: u16,
     /// The bytes written, in memory order; `None` for a read.
     pub written: Option<Vec<u8>>,
 }
@@ -45,16 +47,17 @@ impl Log {
 
     fn note(&self, frame: &[u8], is_tcp: bool) {
         let at = self.clock.now();
-        let (address, written) = if is_tcp { modbus(frame) } else { rs485(frame) };
+        let (address, len, written) = if is_tcp { modbus(frame) } else { rs485(frame) };
         self.sent.lock().unwrap().push(Sent {
             at,
             address,
+            len,
             written,
         });
     }
 }
 
-fn rs485(frame: &[u8]) -> (u16, Option<Vec<u8>>) {
+fn rs485(frame: &[u8]) -> (u16, u16, Option<Vec<u8>>) {
     let [0xEB, 0x90, 1, len, command, low, high, data @ .., _sum] = frame else {
         panic!("not one whole request: {frame:02X?}")
     };
@@ -64,10 +67,15 @@ fn rs485(frame: &[u8]) -> (u16, Option<Vec<u8>>) {
         0x12 => Some(data.to_vec()),
         other => panic!("command {other:#X}"),
     };
-    (u16::from_le_bytes([*low, *high]), written)
+    let asked = written.is_none().then(|| u16::from(data[0]));
+    (
+        u16::from_le_bytes([*low, *high]),
+        asked.unwrap_or(0),
+        written,
+    )
 }
 
-fn modbus(frame: &[u8]) -> (u16, Option<Vec<u8>>) {
+fn modbus(frame: &[u8]) -> (u16, u16, Option<Vec<u8>>) {
     let [_, _, 0, 0, _, _, 255, function, high, low, rest @ ..] = frame else {
         panic!("not one whole request: {frame:02X?}")
     };
@@ -82,7 +90,14 @@ fn modbus(frame: &[u8]) -> (u16, Option<Vec<u8>>) {
         ),
         other => panic!("function {other}"),
     };
-    (u16::from_be_bytes([*high, *low]), written)
+    let asked = written
+        .is_none()
+        .then(|| u16::from_be_bytes([rest[0], rest[1]]));
+    (
+        u16::from_be_bytes([*high, *low]),
+        asked.unwrap_or(0),
+        written,
+    )
 }
 
 /// A wire that notes what is written to it.
