@@ -8,13 +8,13 @@ mod desk;
 pub mod faults;
 pub mod gestures;
 pub mod history;
+#[cfg(test)]
+mod live_tests;
 pub mod notices;
 pub mod program;
 mod seam;
 pub mod settings;
 pub mod state;
-#[cfg(test)]
-mod live_tests;
 #[cfg(test)]
 mod tests;
 
