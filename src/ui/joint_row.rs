@@ -141,14 +141,19 @@ impl Row {
         let color = look.value(freshness, live);
         controls::lamp(ui, pos2(rect.left() + 6.0, rect.center().y), color);
         let place = rect.with_min_x(rect.left() + 17.0);
-        let title = words.map_or(format::UNKNOWN, |words| words.title);
+        let mut title = words
+            .map_or(format::UNKNOWN, |words| words.title)
+            .to_owned();
+        if let (None, Some(Status::Unknown(code))) = (fault, status) {
+            title = format!("{title} ({code})");
+        }
         let text_color = if live == palette.bad {
             color
         } else {
             look.value(freshness, palette.muted)
         };
         let name = self.named(pane, main::STATUS);
-        let label = Label::new(title, text_color)
+        let label = Label::new(&title, text_color)
             .small()
             .named(&name)
             .put(ui, place);

@@ -13,7 +13,7 @@ use egui::{Id, Rect, Ui, pos2, vec2};
 /// No line of a row grows higher than this.
 const LINE_MAX: f32 = 28.0;
 /// No line of a row is lower than this; the list scrolls instead.
-const LINE_MIN: f32 = 22.0;
+const LINE_MIN: f32 = 19.0;
 /// Draws the column of joints.
 pub(crate) fn joints_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
