@@ -33,13 +33,17 @@ pub struct DesktopStart {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DesktopError {
     /// Neither X11 nor Wayland.
-    #[error("the window cannot open: there is no display here ({cause}); start it in a desktop session, or use 'handscope snapshot' for pictures and 'handscope watch' for values")]
+    #[error(
+        "the window cannot open: there is no display here ({cause}); start it in a desktop session, or use 'handscope snapshot' for pictures and 'handscope watch' for values"
+    )]
     NoDisplay {
         /// The system's words.
         cause: String,
     },
     /// A library that windows need is not installed.
-    #[error("the window cannot open: {cause}; on Debian and Ubuntu run 'sudo apt install libxcursor1 libxi6 libxkbcommon-x11-0 libgl1', or use 'handscope snapshot' for pictures")]
+    #[error(
+        "the window cannot open: {cause}; on Debian and Ubuntu run 'sudo apt install libxcursor1 libxi6 libxkbcommon-x11-0 libgl1', or use 'handscope snapshot' for pictures"
+    )]
     MissingLibrary {
         /// The system's words.
         cause: String,
@@ -62,7 +66,9 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
         .thread_name("links")
         .enable_all()
         .build()
-        .map_err(|error| DesktopError::Runtime { cause: error.to_string() })?;
+        .map_err(|error| DesktopError::Runtime {
+            cause: error.to_string(),
+        })?;
     let clock = Clock::start();
     let handle = runtime.handle().clone();
     let options = eframe::NativeOptions {
@@ -92,7 +98,15 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
 fn failure(cause: &str) -> DesktopError {
     let cause = cause.trim().to_owned();
     let words = cause.to_lowercase();
-    if ["wayland_display", "display is set", "xopendisplay", "could not connect"].iter().any(|part| words.contains(part)) {
+    if [
+        "wayland_display",
+        "display is set",
+        "xopendisplay",
+        "could not connect",
+    ]
+    .iter()
+    .any(|part| words.contains(part))
+    {
         return DesktopError::NoDisplay { cause };
     }
     DesktopError::MissingLibrary { cause }
@@ -112,7 +126,12 @@ struct Desktop {
 }
 
 impl Desktop {
-    fn new(ctx: &egui::Context, start: DesktopStart, clock: Clock, runtime: tokio::runtime::Handle) -> Self {
+    fn new(
+        ctx: &egui::Context,
+        start: DesktopStart,
+        clock: Clock,
+        runtime: tokio::runtime::Handle,
+    ) -> Self {
         let repaint = ctx.clone();
         let wake: Wake = Arc::new(move || repaint.request_repaint_after(REPAINT_WITHIN));
         let env = Env {
@@ -124,7 +143,12 @@ impl Desktop {
         };
         let mut cockpit = Cockpit::new(crate::app::App::new(env, start.settings));
         cockpit.app().open(start.endpoint, clock.now());
-        Self { cockpit, clock, titled: None, closing: false }
+        Self {
+            cockpit,
+            clock,
+            titled: None,
+            closing: false,
+        }
     }
 
     /// Names the hand in the window's title, so that a simulated one is told apart in the task bar too.

@@ -2,9 +2,12 @@
 
 pub mod app;
 pub mod codec;
+#[cfg(feature = "desktop")]
+pub mod desktop;
 pub mod hand;
 pub mod headless;
 pub mod link;
+pub mod shell;
 pub mod sim;
 pub mod transport;
 pub mod ui;
