@@ -4,7 +4,6 @@
 
 use crate::app::gestures::GestureProgress;
 use crate::app::notices::{Asked, Level, NoticeKind};
-use crate::app::seam::Link;
 use crate::hand::{
     Angle, Dof, Faults, Force, Gesture, GestureRoute, Group, Groups, HandCommand, HandSample,
     PerDof, Speed, Target, Timed,
