@@ -1,6 +1,7 @@
 //! The real window: eframe around the cockpit, and the one thread that all links run on. Draws nothing itself.
 
-use crate::app::{Env, Settings, SimDial};
+use crate::app::config::Loaded;
+use crate::app::{App, Env, SimDial};
 use crate::hand::Moment;
 use crate::link::{Clock, Wake};
 use crate::shell::Cockpit;
@@ -23,8 +24,8 @@ const SMALLEST_SIZE: [f32; 2] = [1024.0, 640.0];
 pub struct DesktopStart {
     /// The hand named on the command line.
     pub endpoint: Option<Endpoint>,
-    /// What was kept from last time.
-    pub settings: Settings,
+    /// What was kept from last time, and what is to be said about it.
+    pub loaded: Loaded,
     /// Where it is kept.
     pub settings_path: Option<PathBuf>,
 }
@@ -33,13 +34,17 @@ pub struct DesktopStart {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DesktopError {
     /// Neither X11 nor Wayland.
-    #[error("the window cannot open: there is no display here ({cause}); start it in a desktop session, or use 'handscope snapshot' for pictures and 'handscope watch' for values")]
+    #[error(
+        "the window cannot open: there is no display here ({cause}); start it in a desktop session, or use 'handscope snapshot' for pictures and 'handscope watch' for values"
+    )]
     NoDisplay {
         /// The system's words.
         cause: String,
     },
     /// A library that windows need is not installed.
-    #[error("the window cannot open: {cause}; on Debian and Ubuntu run 'sudo apt install libxcursor1 libxi6 libxkbcommon-x11-0 libgl1', or use 'handscope snapshot' for pictures")]
+    #[error(
+        "the window cannot open: {cause}; on Debian and Ubuntu run 'sudo apt install libxcursor1 libxi6 libxkbcommon-x11-0 libgl1', or use 'handscope snapshot' for pictures"
+    )]
     MissingLibrary {
         /// The system's words.
         cause: String,
@@ -62,7 +67,9 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
         .thread_name("links")
         .enable_all()
         .build()
-        .map_err(|error| DesktopError::Runtime { cause: error.to_string() })?;
+        .map_err(|error| DesktopError::Runtime {
+            cause: error.to_string(),
+        })?;
     let clock = Clock::start();
     let handle = runtime.handle().clone();
     let options = eframe::NativeOptions {
@@ -92,7 +99,15 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
 fn failure(cause: &str) -> DesktopError {
     let cause = cause.trim().to_owned();
     let words = cause.to_lowercase();
-    if ["wayland_display", "display is set", "xopendisplay", "could not connect"].iter().any(|part| words.contains(part)) {
+    if [
+        "wayland_display",
+        "display is set",
+        "xopendisplay",
+        "could not connect",
+    ]
+    .iter()
+    .any(|part| words.contains(part))
+    {
         return DesktopError::NoDisplay { cause };
     }
     DesktopError::MissingLibrary { cause }
@@ -112,7 +127,12 @@ struct Desktop {
 }
 
 impl Desktop {
-    fn new(ctx: &egui::Context, start: DesktopStart, clock: Clock, runtime: tokio::runtime::Handle) -> Self {
+    fn new(
+        ctx: &egui::Context,
+        start: DesktopStart,
+        clock: Clock,
+        runtime: tokio::runtime::Handle,
+    ) -> Self {
         let repaint = ctx.clone();
         let wake: Wake = Arc::new(move || repaint.request_repaint_after(REPAINT_WITHIN));
         let env = Env {
@@ -122,9 +142,18 @@ impl Desktop {
             wake,
             settings_path: start.settings_path,
         };
-        let mut cockpit = Cockpit::new(crate::app::App::new(env, start.settings));
-        cockpit.app().open(start.endpoint, clock.now());
-        Self { cockpit, clock, titled: None, closing: false }
+        let mut app = App::new(env, start.loaded.settings);
+        if let Some(notice) = start.loaded.notice {
+            app.tell(notice, clock.now());
+        }
+        app.open(start.endpoint, clock.now());
+        let cockpit = Cockpit::new(app);
+        Self {
+            cockpit,
+            clock,
+            titled: None,
+            closing: false,
+        }
     }
 
     /// Names the hand in the window's title, so that a simulated one is told apart in the task bar too.

@@ -15,7 +15,10 @@ impl Cockpit {
     /// Puts a window in front of a program.
     #[must_use]
     pub fn new(app: App) -> Self {
-        Self { app, window: Window::new() }
+        Self {
+            app,
+            window: Window::new(),
+        }
     }
 
     /// Takes in what happened since the last call. Runs also while the window is hidden.
