@@ -97,7 +97,12 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
 }
 
 fn failure(cause: &str) -> DesktopError {
-    let cause = cause.trim().to_owned();
+    // The libraries put the place in their own source before what went wrong.
+    let words = cause
+        .rsplit_once(".rs:")
+        .and_then(|(_, rest)| rest.split_once(": "));
+    let cause = words.map_or(cause, |(_, words)| words);
+    let cause = cause.trim().trim_end_matches('.').to_owned();
     let words = cause.to_lowercase();
     if [
         "wayland_display",
@@ -205,8 +210,11 @@ mod tests {
 
     #[test]
     fn no_display_is_told_from_a_missing_library() {
-        let none = failure("neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set.");
-        assert!(matches!(none, DesktopError::NoDisplay { .. }));
+        let none = failure(
+            "winit EventLoopError: os error at /root/winit-0.30.13/src/mod.rs:765: neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set.",
+        );
+        let cause = "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set".to_owned();
+        assert_eq!(none, DesktopError::NoDisplay { cause });
         assert!(none.to_string().contains("snapshot"));
         let missing = failure("libXcursor.so.1: cannot open shared object file");
         assert!(matches!(missing, DesktopError::MissingLibrary { .. }));

@@ -117,9 +117,9 @@ pub(crate) fn tactile_json(finger: Finger, block: Option<&TactileBlock>) -> Valu
     json!({
         "finger": finger.name(),
         "raw": block.map(|block| block.raw),
-        "normal_n": block.and_then(TactileBlock::normal),
+        "normal_n": block.and_then(TactileBlock::normal).and_then(plain),
         "normal_delta": block.map(|block| block.normal_delta),
-        "tangential_n": block.and_then(TactileBlock::tangential),
+        "tangential_n": block.and_then(TactileBlock::tangential).and_then(plain),
         "tangential_delta": block.map(|block| block.tangential_delta),
         "direction_deg": block.and_then(TactileBlock::direction_deg),
         "proximity": block.map(|block| block.proximity),
@@ -155,6 +155,11 @@ fn fault_words(faults: &Faults) -> String {
     } else {
         names.join("+")
     }
+}
+
+/// The shortest number that means this float: 0.3, not 0.30000001192092896.
+fn plain(newtons: f32) -> Option<f64> {
+    newtons.to_string().parse().ok()
 }
 
 fn millis(value: Option<Duration>) -> Option<f64> {

@@ -51,13 +51,30 @@ pub(crate) fn value_text(row: &Register, bytes: &[u8]) -> String {
     line.trim_end().to_owned()
 }
 
+/// The fields of a fingertip in the order in which a person wants them.
+const FIELDS: [&str; 9] = [
+    "finger",
+    "normal_n",
+    "tangential_n",
+    "direction_deg",
+    "proximity",
+    "normal_delta",
+    "tangential_delta",
+    "raw",
+    "check_ok",
+];
+
 /// Elements stand apart; the faults of one joint stand together.
 fn words(value: &Value) -> String {
     match value {
         Value::Array(all) => all.iter().map(element_words).collect::<Vec<_>>().join(" "),
         Value::Object(fields) => {
-            let field = |(name, value): (&String, &Value)| format!("{name} {}", words(value));
-            fields.iter().map(field).collect::<Vec<_>>().join(", ")
+            let field = |name: &&str| Some(format!("{name} {}", words(fields.get(*name)?)));
+            FIELDS
+                .iter()
+                .filter_map(field)
+                .collect::<Vec<_>>()
+                .join(", ")
         }
         one => element_words(one),
     }
@@ -145,7 +162,10 @@ mod tests {
         assert_eq!(value["finger"], "thumb");
         assert_eq!(value["raw"][0], 9);
         assert_eq!(value["check_ok"], false);
-        assert!(value_text(row, &bytes).contains("proximity 0"));
+        let text = value_text(row, &bytes);
+        for name in value.as_object().unwrap().keys() {
+            assert!(text.contains(name), "{name} in {text}");
+        }
     }
 
     #[test]

@@ -135,7 +135,9 @@ impl Driver {
 
     /// Lets one [`STEP`] pass, or what is left if that is less.
     fn step(&mut self, left: Duration) {
-        self.runtime.block_on(tokio::time::sleep(left.min(STEP)));
+        // A timer can be made only inside the runtime.
+        self.runtime
+            .block_on(async { tokio::time::sleep(left.min(STEP)).await });
         let now = self.now();
         let _inside = self.runtime.enter();
         self.cockpit.logic(now);
