@@ -14,14 +14,12 @@ pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
 /// How often the wait looks.
 const LOOK_EACH: Duration = Duration::from_millis(10);
 
-/// A runtime whose one worker serves the link, so that a slow terminal does not hold up the wire.
+/// A runtime of one thread: a reader of our output that is slow slows the reads down, and no sample is lost.
 pub(crate) fn runtime() -> anyhow::Result<Runtime> {
-    Builder::new_multi_thread()
-        .worker_threads(1)
-        .thread_name("link")
+    Builder::new_current_thread()
         .enable_all()
         .build()
-        .context("cannot start the thread for the link")
+        .context("cannot start the link")
 }
 
 /// Opens a link. Must be called within a tokio runtime; reads only.

@@ -16,7 +16,7 @@ use tokio::net::TcpListener;
 use tokio::time::{Instant, interval};
 
 /// The hand lives on when nobody asks, so that its first answer after an hour does not have to catch up on it.
-const LIVE_EACH: Duration = Duration::from_millis(50);
+const LIVE_EACH: Duration = Duration::from_millis(10);
 
 /// A wire being served; it resolves only if it fails.
 type Served = BoxFuture<'static, anyhow::Error>;

@@ -8,7 +8,9 @@ use crate::cli::telemetry::{sample_json, sample_text, stats_json, stats_text};
 use crate::hand::{Group, Groups, HandSample, Moment};
 use crate::link::{Clock, LinkEvent, LinkHandle, LinkTrouble, PollRates};
 use anyhow::bail;
+use std::pin::pin;
 use std::time::Duration;
+use tokio::task::yield_now;
 use tokio::time::{MissedTickBehavior, interval};
 
 /// Lines show after this at the latest; gathering them lets a full-rate stream keep up.
@@ -66,18 +68,21 @@ impl<'a> Watch<'a> {
     async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
         let mut tick = interval(FLUSH_EACH);
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
-        let end = self.args.length;
+        let mut end = pin!(over(self.args.length));
         loop {
-            let left = end.map(|end| end.saturating_sub(self.elapsed()));
             let step = tokio::select! {
                 biased;
                 () = interrupt.wished() => Step::End,
-                () = over(left) => Step::End,
+                () = &mut end => Step::End,
                 _ = tick.tick() => Step::Tick,
                 event = self.link.event() => event.map_or(Step::End, Step::Event),
             };
             match step {
-                Step::Event(event) => self.take(event)?,
+                Step::Event(event) => {
+                    self.take(event)?;
+                    // The link goes on before the next sample is written, so that it measures the hand and not us.
+                    yield_now().await;
+                }
                 Step::Tick => self.tick()?,
                 Step::End => break,
             }
@@ -185,7 +190,7 @@ impl<'a> Watch<'a> {
         {
             self.take(event)?;
         }
-        // A sample may be here before it is counted there.
+        // A sample is told before it is counted.
         stats.state_reads = stats.state_reads.max(self.taken);
         let line = if self.args.json {
             stats_json(&stats, elapsed).to_string()
@@ -198,9 +203,9 @@ impl<'a> Watch<'a> {
 }
 
 /// Resolves when the time is over; never if there is no end.
-async fn over(left: Option<Duration>) {
-    match left {
-        Some(left) => tokio::time::sleep(left).await,
+async fn over(length: Option<Duration>) {
+    match length {
+        Some(length) => tokio::time::sleep(length).await,
         None => std::future::pending().await,
     }
 }
