@@ -200,7 +200,7 @@ const SECONDS_MAX: f64 = 86_400.0;
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text
         .parse()
-        .map_err(|_| format!("'{text}' is no number of seconds"))?;
+        .map_err(|_not_one| format!("'{text}' is no number of seconds"))?;
     if !(0.0..=SECONDS_MAX).contains(&seconds) {
         return Err(format!("{text} is not between 0 and {SECONDS_MAX} seconds"));
     }
@@ -219,7 +219,7 @@ fn views(text: &str) -> Result<Views, String> {
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {
-    text.parse().map_err(|_| {
+    text.parse().map_err(|_not_one| {
         "write an address in numbers and a port, for example 127.0.0.1:6000".to_owned()
     })
 }
@@ -228,8 +228,8 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     let wrong = || format!("'{text}' is no size: write WIDTHxHEIGHT, from 640x400 to 7680x4320");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
     let (width, height) = (
-        width.parse().map_err(|_| wrong())?,
-        height.parse().map_err(|_| wrong())?,
+        width.parse().map_err(|_not_one| wrong())?,
+        height.parse().map_err(|_not_one| wrong())?,
     );
     if (640..=7680).contains(&width) && (400..=4320).contains(&height) {
         return Ok((width, height));
@@ -249,7 +249,7 @@ fn scale(text: &str) -> Result<f32, String> {
 fn hand_id(text: &str) -> Result<HandId, String> {
     let id: i64 = text
         .parse()
-        .map_err(|_| format!("'{text}' is no whole number"))?;
+        .map_err(|_not_one| format!("'{text}' is no whole number"))?;
     HandId::new(id).map_err(|error| error.to_string())
 }
 
