@@ -229,7 +229,6 @@ impl Desk {
         self.was_live = true;
         self.seen_from = Some(now);
         self.commanded = false;
-        self.asked.clear();
         self.state.history.gap(now);
         self.state.history.mark(now, MarkKind::LinkLost);
         if let Some(trouble) = trouble {

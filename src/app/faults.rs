@@ -160,7 +160,7 @@ impl FaultBook {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::indexing_slicing, reason = "a test may")]
+    #![allow(clippy::expect_used, reason = "a test may")]
     use super::*;
     use crate::hand::{Faults, PerDof, Timed};
 

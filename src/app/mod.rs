@@ -8,6 +8,8 @@ mod desk;
 pub mod faults;
 pub mod gestures;
 pub mod history;
+#[cfg(test)]
+mod live_tests;
 pub mod notices;
 pub mod program;
 mod seam;

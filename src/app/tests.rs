@@ -538,3 +538,19 @@ fn a_hand_at_rest_that_was_only_watched_needs_no_stop_to_leave() {
     bench.step();
     assert!(bench.desk.is_at_rest(told));
 }
+
+#[test]
+fn a_request_that_the_lost_link_took_along_is_told() {
+    let mut bench = Bench::monitoring(400);
+    bench.desk.clear_errors(bench.now());
+    bench.state(LinkState::Offline);
+    bench.step();
+    let result = Err(RequestError::LinkLost);
+    bench.wire.borrow_mut().events.push_back(LinkEvent::Done {
+        ticket: Ticket(7),
+        result,
+    });
+    bench.step();
+    let (what, error) = (Asked::ClearErrors, RequestError::LinkLost);
+    assert_eq!(bench.notices(), [NoticeKind::RequestFailed { what, error }]);
+}

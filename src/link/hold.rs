@@ -1,10 +1,13 @@
 //! When a stopped hand may be called at rest. Pure: samples and time come in, a verdict goes out.
 
-use crate::hand::{AngleReading, Dof, Group, Groups, HandSample, Moment, PerDof};
+use crate::hand::{AngleReading, Dof, Group, Groups, HandSample, Moment, PerDof, Target};
 use std::time::Duration;
 
 /// Hold frames are at most this far apart until rest is seen.
 pub(crate) const HOLD_REPEAT: Duration = Duration::from_millis(40);
+/// Hold follows the newest pose for this long after the press, then keeps the pose: a hand acts about 64 ms late, and
+/// a target that follows it for ever makes it swing for ever.
+const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
 /// Without rest by then, the alarm is raised.
 pub(crate) const HOLD_ALARM_AFTER: Duration = Duration::from_millis(500);
 /// A joint rests if it moves no more than this many counts …
@@ -18,6 +21,7 @@ pub(crate) struct HoldWatch {
     pub(crate) at: Moment,
     pub(crate) sent: u32,
     pub(crate) alarmed: bool,
+    pose: PerDof<Target>,
     first_sent: Option<Moment>,
     last_sent: Option<Moment>,
     still_since: Option<(Moment, PerDof<AngleReading>)>,
@@ -29,6 +33,7 @@ impl HoldWatch {
             at,
             sent: 0,
             alarmed: false,
+            pose: PerDof::splat(Target::Leave),
             first_sent: None,
             last_sent: None,
             still_since: None,
@@ -40,11 +45,18 @@ impl HoldWatch {
         self.last_sent.map_or(now, |sent| sent.plus(HOLD_REPEAT))
     }
 
-    /// A hold frame left at `now`.
-    pub(crate) fn frame_sent(&mut self, now: Moment) {
+    /// The targets of the hold frame that leaves at `now`, given where the joints were seen last.
+    pub(crate) fn frame(&mut self, newest: &PerDof<Target>, now: Moment) -> PerDof<Target> {
+        let follows = now.since(self.at) <= HOLD_FOLLOWS;
+        for (dof, target) in self.pose.iter_mut() {
+            if follows || *target == Target::Leave {
+                *target = newest[dof];
+            }
+        }
         self.sent = self.sent.saturating_add(1);
         self.first_sent.get_or_insert(now);
         self.last_sent = Some(now);
+        self.pose
     }
 
     /// True if the alarm is to be raised now.
@@ -89,7 +101,7 @@ fn near(a: &PerDof<AngleReading>, b: &PerDof<AngleReading>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::Timed;
+    use crate::hand::{Angle, Timed};
 
     fn ms(ms: u64) -> Moment {
         Moment::from_micros(ms * 1000)
@@ -118,7 +130,7 @@ mod tests {
         let mut watch = HoldWatch::new(ms(0));
         (0..200).map(|n| n * 10).find(|t| {
             if *t == sent {
-                watch.frame_sent(ms(*t));
+                watch.frame(&PerDof::splat(Target::Leave), ms(*t));
             }
             let (sample, fresh) = sample(ms(*t), angle_at(*t));
             watch.rests(&sample, fresh)
@@ -157,7 +169,20 @@ mod tests {
     fn frames_are_due_at_once_and_then_each_forty_milliseconds() {
         let mut watch = HoldWatch::new(ms(7));
         assert_eq!(watch.next_frame(ms(7)), ms(7));
-        watch.frame_sent(ms(9));
+        watch.frame(&PerDof::splat(Target::Leave), ms(9));
         assert_eq!(watch.next_frame(ms(10)), ms(49));
+    }
+
+    #[test]
+    fn hold_follows_the_hand_first_and_then_keeps_its_pose() {
+        let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
+        let mut watch = HoldWatch::new(ms(0));
+        assert_eq!(watch.frame(&pose(500), ms(0)), pose(500));
+        assert_eq!(watch.frame(&pose(480), ms(40)), pose(480));
+        assert_eq!(watch.frame(&pose(470), ms(160)), pose(480));
+        let mut blind = HoldWatch::new(ms(0));
+        let unknown = PerDof::splat(Target::Leave);
+        assert_eq!(blind.frame(&unknown, ms(0)), unknown);
+        assert_eq!(blind.frame(&pose(300), ms(200)), pose(300));
     }
 }

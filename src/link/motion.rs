@@ -111,13 +111,13 @@ fn round(setpoints: &Setpoints) -> ArrayVec<RegisterWrite, ROUND_MAX> {
     round
 }
 
-/// The hold command for what is known of the pose now: the actual angles if they are fresh, and
+/// The targets that hold what is known of the pose now: the actual angles if they are fresh, and
 /// "no action" for all joints if not, because an old pose would be a move.
-pub(crate) fn hold_command(sample: &HandSample, now: Moment) -> HandCommand {
+pub(crate) fn hold_targets(sample: &HandSample, now: Moment) -> PerDof<Target> {
     if sample.angles_fresh(now, ANGLE_FRESH) {
-        HandCommand::Angles(sample.hold_targets())
+        sample.hold_targets()
     } else {
-        HandCommand::Angles(PerDof::splat(Target::Leave))
+        PerDof::splat(Target::Leave)
     }
 }
 
@@ -197,13 +197,10 @@ mod tests {
     #[test]
     fn an_old_pose_is_never_held_to() {
         let at = Moment::from_micros(1_000_000);
-        let fresh = hold_command(&sample(420, at), at);
-        assert_eq!(
-            fresh,
-            HandCommand::Angles(PerDof::splat(Target::Go(Angle::nearest(420))))
-        );
-        let old = hold_command(&sample(420, at), at.plus(Duration::from_secs(1)));
-        assert_eq!(old, HandCommand::Angles(PerDof::splat(Target::Leave)));
+        let go = PerDof::splat(Target::Go(Angle::nearest(420)));
+        assert_eq!(hold_targets(&sample(420, at), at), go);
+        let old = hold_targets(&sample(420, at), at.plus(Duration::from_secs(1)));
+        assert_eq!(old, PerDof::splat(Target::Leave));
     }
 
     #[test]

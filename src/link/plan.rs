@@ -142,11 +142,19 @@ impl PollPlan {
         }
     }
 
-    /// True if this group is due.
-    pub(crate) fn is_due(&self, poll: Poll, now: Moment) -> bool {
-        self.groups
-            .iter()
-            .any(|group| group.poll == poll && group.next <= now)
+    /// Does not read a group before `until`.
+    pub(crate) fn postpone(&mut self, poll: Poll, until: Moment) {
+        for group in &mut self.groups {
+            if group.poll == poll {
+                group.next = group.next.max(until);
+            }
+        }
+    }
+
+    /// When this group is due.
+    pub(crate) fn next_due_of(&self, poll: Poll) -> Moment {
+        let due = self.groups.iter().find(|group| group.poll == poll);
+        due.map_or(Moment::ZERO, |group| group.next)
     }
 
     /// The span to read for a group, in the order of preference; the caller takes the first that no

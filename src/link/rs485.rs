@@ -74,8 +74,9 @@ impl Rs485 {
     pub(crate) async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
         let frame = encode_read(self.id, span).ok_or(BusError::TooLong)?;
         let result = self.exchange(&frame, &Expected::Bytes(span), limit).await;
-        if result.is_err() {
-            self.late.gave_up(span, self.clock.now());
+        match result {
+            Ok(_) => self.late.answered(Some(span)),
+            Err(_) => self.late.gave_up(span, self.clock.now()),
         }
         match result? {
             Fit::Bytes(bytes) => Ok(bytes),
@@ -94,6 +95,7 @@ impl Rs485 {
         let frame = encode_write(self.id, write);
         self.exchange(&frame, &Expected::Ack(write.address()), limit)
             .await?;
+        self.late.answered(None);
         Ok(())
     }
 
@@ -104,6 +106,7 @@ impl Rs485 {
                 Ok(received) => received?,
                 Err(_) => break,
             }
+            self.drop_foreign();
         }
         self.decoder.flush_pending();
         self.drop_foreign();
@@ -215,7 +218,8 @@ impl Rs485 {
         if let Reply::Read { address, bytes, .. } = reply
             && let Ok(len) = u16::try_from(bytes.len())
         {
-            self.late.arrived(Span::new(*address, len));
+            self.late
+                .arrived(Span::new(*address, len), self.clock.now());
         }
     }
 

@@ -1,23 +1,26 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{Group, HandCommand, RegisterWrite, Reply, Span, Writes};
+use crate::hand::{Group, HandCommand, Moment, RegisterWrite, Reply, Span, Writes};
 use crate::link::bus::{Bus, BusError};
 use crate::link::event::{LinkEvent, Outcome, Request, RequestError, Ticket};
 use crate::link::handle::Wanted;
 use crate::link::hold::HoldWatch;
 use crate::link::late::LATE_HORIZON;
-use crate::link::motion::{ANGLE_LOST, arm_refusal, hold_command};
+use crate::link::motion::{ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::plan::Poll;
 use crate::link::session::{End, Session};
 use crate::link::status::{
     ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkState, LinkTrouble,
 };
 use arrayvec::ArrayVec;
+use std::time::Duration;
 use tokio::time::sleep_until;
 
 /// Bytes of an acknowledgement's data.
 const ACK_LEN: u16 = 1;
+/// A group whose every question is open is looked at again after this: often enough, and not in a busy loop.
+const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
 /// Writes of one job: those of the longest command, and the hold before clearing errors.
 const JOB_MAX: usize = 7;
 
@@ -50,7 +53,10 @@ impl Session {
 
     /// Does the most urgent thing; false if nothing is due.
     async fn step(&mut self, bus: &mut Bus) -> Result<bool, End> {
-        self.take_wishes(bus).await?;
+        if let Some(request) = self.take_wishes()? {
+            self.arm(bus, &request).await?;
+            return Ok(true);
+        }
         self.watch_age();
         let now = self.now();
         if self
@@ -74,10 +80,11 @@ impl Session {
     /// Waits until something is due or the window wants something.
     async fn idle(&mut self) {
         let now = self.now();
+        let read = self.next_read();
         let due = self
             .motion
             .next_send(now)
-            .map_or(self.plan.next_due(), |send| send.min(self.plan.next_due()));
+            .map_or(read, |send| send.min(read));
         let due = self.config.clock.instant(due);
         let mut wanted = self.ends.wanted.subscribe();
         tokio::select! {
@@ -88,7 +95,8 @@ impl Session {
         }
     }
 
-    async fn take_wishes(&mut self, bus: &mut Bus) -> Result<(), End> {
+    /// Takes what the window wants; gives back the wish to arm, which takes exchanges of its own.
+    fn take_wishes(&mut self) -> Result<Option<ArmRequest>, End> {
         let mut wishes = Wanted::default();
         self.ends.wanted.send_if_modified(|wanted| {
             wishes = std::mem::take(wanted);
@@ -104,13 +112,10 @@ impl Session {
         if wishes.disarm {
             self.disarm(Disarmed::Person);
         }
-        if let Some(request) = wishes.arm {
-            self.arm(bus, &request).await?;
-        }
         if let Some(setpoints) = wishes.setpoints {
             self.motion.want(&setpoints, self.status.armed);
         }
-        Ok(())
+        Ok(wishes.arm)
     }
 
     fn stop_wanted(&self) -> bool {
@@ -205,15 +210,16 @@ impl Session {
 
     async fn send_hold(&mut self, bus: &mut Bus) -> Result<(), End> {
         let now = self.now();
-        let command = hold_command(&self.sample, now);
-        if let Some(hold) = &mut self.motion.hold {
-            hold.frame_sent(now);
-            if !hold.alarmed {
-                self.status.hold = Hold::Asked {
-                    at: hold.at,
-                    sent: hold.sent,
-                };
-            }
+        let newest = hold_targets(&self.sample, now);
+        let Some(hold) = &mut self.motion.hold else {
+            return Ok(());
+        };
+        let command = HandCommand::Angles(hold.frame(&newest, now));
+        if !hold.alarmed {
+            self.status.hold = Hold::Asked {
+                at: hold.at,
+                sent: hold.sent,
+            };
         }
         for write in command.writes() {
             if let Err(error) = self.write(bus, &write).await {
@@ -292,7 +298,7 @@ impl Session {
                 if command == HandCommand::ClearErrors {
                     extend(
                         &mut job.writes,
-                        hold_command(&self.sample, self.now()).writes(),
+                        HandCommand::Angles(hold_targets(&self.sample, self.now())).writes(),
                     );
                 }
                 extend(&mut job.writes, command.writes());
@@ -327,6 +333,10 @@ impl Session {
 
     async fn read_for(&mut self, bus: &mut Bus, ticket: Ticket, span: Span) -> Result<(), End> {
         if bus.choose(&[span]).is_none() {
+            // The same question was answered just now; any other answer clears the line of doubles.
+            self.poll(bus, Poll::State).await?;
+        }
+        if bus.choose(&[span]).is_none() {
             let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
             self.answer(ticket, Err(RequestError::Ambiguous { address, wait_s }));
             return Ok(());
@@ -359,9 +369,17 @@ impl Session {
     fn next_poll(&self) -> Option<Poll> {
         let now = self.now();
         if self.motion.hold.is_some() {
-            return self.plan.is_due(Poll::State, now).then_some(Poll::State);
+            return (self.next_read() <= now).then_some(Poll::State);
         }
         self.plan.due(now)
+    }
+
+    /// When the next read is due.
+    fn next_read(&self) -> Moment {
+        if self.motion.hold.is_some() {
+            return self.plan.next_due_of(Poll::State);
+        }
+        self.plan.next_due()
     }
 
     async fn poll(&mut self, bus: &mut Bus, poll: Poll) -> Result<(), End> {
@@ -428,7 +446,9 @@ impl Session {
 
     /// Every way to ask could be answered by a late reply. The motion state is worth a new wire; the rest waits.
     fn ambiguous(&mut self, poll: Poll) -> Result<(), End> {
+        let now = self.now();
         self.give_up(poll);
+        self.plan.postpone(poll, now.plus(AMBIGUOUS_WAIT));
         match poll {
             Poll::State => Err(End::Lost(LinkTrouble::Ambiguous)),
             Poll::Tactile | Poll::Settings => Ok(()),

@@ -23,7 +23,7 @@ pub struct FaultOdds {
     pub drop: f64,
     /// It and all behind it come later, by up to [`FaultPlan::delay_max`].
     pub delay: f64,
-    /// One to three bits are flipped.
+    /// One to [`FaultPlan::flips_max`] bits are flipped.
     pub corrupt: f64,
     /// Its end is lost.
     pub truncate: f64,
@@ -60,6 +60,8 @@ pub struct FaultPlan {
     pub back: FaultOdds,
     /// Longest delay.
     pub delay_max: Duration,
+    /// Most bits that are flipped in one chunk, at least 1.
+    pub flips_max: u8,
     /// Speed of the line; `None` = no time at all.
     pub pace: Option<Pace>,
 }
@@ -73,6 +75,7 @@ impl FaultPlan {
             out: FaultOdds::default(),
             back: FaultOdds::default(),
             delay_max: Duration::from_millis(50),
+            flips_max: 3,
             pace: None,
         }
     }
@@ -232,7 +235,7 @@ impl Lane {
         let hang_up = roll(odds.hang_up);
         let mut inner = self.rng.fork();
         if corrupt {
-            flip_bits(chunk, &mut inner);
+            flip_bits(chunk, self.plan.flips_max, &mut inner);
         }
         if truncate {
             chunk.truncate(inner.usize(..chunk.len().max(1)));
@@ -259,11 +262,11 @@ impl Lane {
     }
 }
 
-/// Flips one to three different bits.
-fn flip_bits(chunk: &mut [u8], rng: &mut Rng) {
+/// Flips one to `most` different bits.
+fn flip_bits(chunk: &mut [u8], most: u8, rng: &mut Rng) {
     let bits = chunk.len() * 8;
     let first = rng.usize(..bits.max(1));
-    for step in 0..rng.usize(1..=3) {
+    for step in 0..rng.usize(1..=usize::from(most.max(1))) {
         let bit = (first + step * 3) % bits.max(1);
         if let Some(byte) = chunk.get_mut(bit / 8) {
             *byte ^= 1 << (bit % 8);

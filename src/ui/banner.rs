@@ -6,6 +6,7 @@ use crate::link::{Dialling, Hold, LinkState};
 use crate::ui::controls::{self, Button, Label, take_left, take_right};
 use crate::ui::look::{Look, Pane};
 use crate::ui::text::{Text, main, notices, words};
+use crate::ui::window::View;
 use crate::ui::{format, theme};
 use egui::{Color32, CornerRadius, Id, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -15,15 +16,22 @@ pub(crate) struct Banner {
     body: String,
     aside: String,
     color: Color32,
-    shows_faults: bool,
+    /// The view that helps, with the button's text and what it does.
+    opens: Option<(View, Text, Text)>,
 }
 
 /// The warnings of now, worst first.
 pub(crate) fn banners(pane: &Pane<'_>) -> Vec<Banner> {
-    [alarm(pane), lost(pane), faults(pane), stale(pane)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        alarm(pane),
+        lost(pane),
+        faults(pane),
+        stale(pane),
+        empty(pane),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 fn alarm(pane: &Pane<'_>) -> Option<Banner> {
@@ -32,7 +40,7 @@ fn alarm(pane: &Pane<'_>) -> Option<Banner> {
         body: pane.look.say(main::ALARM_BODY).into(),
         aside: String::new(),
         color: pane.look.palette.bad,
-        shows_faults: false,
+        opens: None,
     })
 }
 
@@ -60,7 +68,7 @@ fn lost(pane: &Pane<'_>) -> Option<Banner> {
         body,
         aside: retry(pane),
         color,
-        shows_faults: false,
+        opens: None,
     })
 }
 
@@ -102,7 +110,7 @@ fn faults(pane: &Pane<'_>) -> Option<Banner> {
         ),
         aside: String::new(),
         color: look.value(pane.freshness(Some(faults.asked)), look.palette.bad),
-        shows_faults: true,
+        opens: Some((View::Faults, main::FAULT_SHOW, main::FAULT_SHOW_TIP)),
     })
 }
 
@@ -118,13 +126,23 @@ fn stale(pane: &Pane<'_>) -> Option<Banner> {
         ),
         aside: String::new(),
         color: pane.look.palette.warn,
-        shows_faults: false,
+        opens: None,
+    })
+}
+
+fn empty(pane: &Pane<'_>) -> Option<Banner> {
+    pane.state.endpoint.is_none().then(|| Banner {
+        title: main::EMPTY_TITLE,
+        body: pane.look.say(main::EMPTY_BODY).into(),
+        aside: String::new(),
+        color: pane.look.palette.accent,
+        opens: Some((View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP)),
     })
 }
 
 impl Banner {
-    /// Draws it. True if the fault list was asked for.
-    pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, look: Look) -> bool {
+    /// Draws it. The view that was asked for.
+    pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, look: Look) -> Option<View> {
         let palette = look.palette;
         let ground = rect
             .shrink2(vec2(theme::GAP, 0.0))
@@ -147,15 +165,16 @@ impl Banner {
             .font(theme::title())
             .put(ui, take_left(&mut rest, width));
         rest.min.x += theme::STEP;
-        let mut asked = false;
-        if self.shows_faults {
-            let text = look.say(main::FAULT_SHOW);
+        let mut asked = None;
+        if let Some((view, text, tip)) = self.opens {
+            let text = look.say(text);
             let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
             let place = controls::middle(take_right(&mut rest, width), theme::CONTROL);
-            let button = Button::new(text, look.say(main::FAULT_SHOW_TIP));
-            asked = button
-                .put(ui, look, place, Id::unique("show faults"))
-                .clicked();
+            let button = Button::new(text, look.say(tip));
+            let id = Id::unique(("banner", view.name()));
+            if button.put(ui, look, place, id).clicked() {
+                asked = Some(view);
+            }
         }
         if !self.aside.is_empty() {
             let wanted = controls::text_width(ui, &self.aside, theme::number()) + 1.0;

@@ -21,10 +21,26 @@ pub(crate) fn faults_card_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     clear_ui(ui, &mut head, pane);
     list_ui(ui, body, pane, "faults card", &mut |ui, width, pane| {
         fault_list_ui(ui, width, pane);
-        for notice in pane.state.notices.iter() {
-            notice_ui(ui, width, pane, notice);
-        }
+        let rule = piece(ui, width, theme::GAP);
+        let edge = egui::Stroke::new(1.0, look.palette.grid);
+        ui.painter().hline(rule.x_range(), rule.top(), edge);
+        messages_ui(ui, width, pane);
     });
+}
+
+fn messages_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>) {
+    if pane.state.notices.is_empty() {
+        let look = pane.look;
+        line_ui(
+            ui,
+            width,
+            look.say(panels::MESSAGES_NONE),
+            look.palette.faint,
+        );
+    }
+    for notice in pane.state.notices.iter() {
+        notice_ui(ui, width, pane, notice);
+    }
 }
 
 /// The view of its own: faults and messages left, the drives' statuses right.
@@ -39,21 +55,7 @@ pub(crate) fn faults_view_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     forget_ui(ui, &mut head, pane);
     list_ui(ui, body, pane, "faults", &mut fault_list_ui);
     let (_, body) = controls::titled_card(ui, look, lower, look.say(panels::MESSAGES));
-    list_ui(ui, body, pane, "messages", &mut |ui, width, pane| {
-        let mut any = false;
-        for notice in pane.state.notices.iter() {
-            notice_ui(ui, width, pane, notice);
-            any = true;
-        }
-        if !any {
-            line_ui(
-                ui,
-                width,
-                look.say(panels::MESSAGES_NONE),
-                look.palette.muted,
-            );
-        }
-    });
+    list_ui(ui, body, pane, "messages", &mut messages_ui);
     let (_, body) = controls::titled_card(ui, look, right, look.say(panels::STATUS_LIST));
     list_ui(ui, body, pane, "statuses", &mut |ui, width, pane| {
         for dof in Dof::ALL {
@@ -244,7 +246,10 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
         Level::Warn => palette.warn,
         Level::Alarm => palette.bad,
     };
-    let text = notices::notice(look, &notice.what);
+    let mut text = notices::notice(look, &notice.what);
+    if notice.count > 1 {
+        text = format!("{text} ({} ×)", notice.count);
+    }
     let mut row = piece(ui, width, LINE + 5.0);
     controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
     row.min.x += 17.0;

@@ -52,7 +52,6 @@ impl GestureView {
     }
 
     /// The strip of the overview: two rows of numbers, or four rows with names.
-
     pub(crate) fn strip_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
         let (mut head, body) = controls::titled_card(ui, look, rect, look.say(panels::GESTURES));

@@ -58,19 +58,18 @@ pub(crate) fn joints_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
 fn age_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
     let look = pane.look;
     let asked = pane.state.sample.angle.map(|angle| angle.asked);
-    let text = match pane.freshness(asked) {
+    let (text, color) = match pane.freshness(asked) {
         Freshness::Live => return,
-        Freshness::Unknown => look.say(main::NEVER_READ).to_owned(),
+        Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),
         Freshness::Stale => {
-            let age = asked
-                .map(|asked| pane.state.now.since(asked))
-                .unwrap_or_default();
-            format!("{} {}", look.say(main::AGE), format::age(age))
+            let age = asked.map(|asked| pane.state.now.since(asked));
+            let age = format::age(age.unwrap_or_default());
+            (format!("{} {age}", look.say(main::AGE)), look.palette.warn)
         }
     };
     let width = controls::text_width(ui, &text, theme::small()) + 1.0;
     let place = take_right(head, width);
-    Label::new(&text, look.palette.warn)
+    Label::new(&text, color)
         .small()
         .right()
         .put(ui, place)

@@ -3,7 +3,9 @@
 use crate::ui::format::UNKNOWN;
 use crate::ui::look::{Look, Typing};
 use crate::ui::theme;
-use egui::{Align2, Id, Key, Margin, Rect, Role, Stroke, TextEdit, Ui, WidgetInfo, vec2};
+use egui::{
+    Align2, Id, Key, Margin, Rect, Role, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, vec2,
+};
 use std::ops::RangeInclusive;
 
 /// Characters that fit in a field.
@@ -114,7 +116,14 @@ impl NumberField<'_> {
             .clip_text(true)
             .min_size(vec2(rect.width(), rect.height()))
             .desired_width(rect.width() - 14.0);
-        let response = ui.put(rect, edit);
+        let place = UiBuilder::new().max_rect(rect);
+        let response = ui
+            .scope_builder(place, |ui| {
+                // A field is as high as its place, not as high as a button.
+                ui.spacing_mut().interact_size.y = rect.height();
+                ui.add(edit)
+            })
+            .inner;
         let value = text.clone();
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::TextInput, enabled, self.name);

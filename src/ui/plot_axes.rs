@@ -60,15 +60,17 @@ impl Band {
         let fits = |step: &f64| span / step <= most;
         let last = steps.last().copied().unwrap_or(1.0);
         let step = steps.into_iter().find(fits).unwrap_or(last);
+        // Ends at half a step, so that little of the plot stays empty.
+        let half = step / 2.0;
         // A value a hair below zero must not take a quarter of the plot.
         let low = if self.low < 0.0 && self.low > -step * 0.2 {
             -step * 0.2
         } else {
-            (self.low / step).floor() * step
+            (self.low / half).floor() * half
         };
         Self {
             low,
-            high: (self.high / step).ceil() * step,
+            high: (self.high / half).ceil() * half,
             step,
         }
     }

@@ -122,25 +122,22 @@ pub(crate) fn legend_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, view: &mu
     if !one_row {
         body.min.y -= theme::STEP;
     }
+    let columns = [0, 1, 2].map(|n| {
+        let width = |n: usize| widths.get(n).copied().unwrap_or_default();
+        width(n).max(width(n + 3))
+    });
+    let threshold = take_right(&mut row, if one_row { threshold_width } else { 20.0 });
+    threshold_ui(ui, threshold, look, view);
     for (n, (dof, width)) in Dof::ALL.into_iter().zip(widths).enumerate() {
         if n == 3 && !one_row {
             row = take_top(body, ROW);
         }
-        let width = if one_row {
-            width
-        } else {
-            (body.width() - 3.0 * theme::GAP) / 3.6
-        };
+        let column = columns.get(n % 3).copied().unwrap_or(width);
+        let width = if one_row { width } else { column };
         let place = take_left(&mut row, width);
         row.min.x -= theme::STEP;
         item_ui(ui, place, look, dof, view);
     }
-    let width = if one_row {
-        threshold_width
-    } else {
-        row.width().min(threshold_width)
-    };
-    threshold_ui(ui, take_right(&mut row, width), look, view);
 }
 
 fn item_width(ui: &Ui, look: Look, dof: Dof) -> f32 {
@@ -188,7 +185,9 @@ fn threshold_ui(ui: &mut Ui, place: Rect, look: Look, view: &mut PlotView) {
         let line = [pos2(place.left() + from, y), pos2(place.left() + to, y)];
         ui.painter().line_segment(line, Stroke::new(1.5, color));
     }
-    legend_text(ui, place, 20.0, text, color);
+    if place.width() > 24.0 {
+        legend_text(ui, place, 20.0, text, color);
+    }
     if response.clicked() {
         view.thresholds = !view.thresholds;
     }

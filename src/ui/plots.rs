@@ -169,10 +169,14 @@ impl PlotView {
             mark_labels(ui, plot_rect, pane, span);
         }
         if self.curves.used == 0 {
-            Label::new(look.say(panels::PLOT_EMPTY), look.palette.faint)
+            let text = look.say(panels::PLOT_EMPTY);
+            let width = controls::text_width(ui, text, theme::small()) + theme::PAD;
+            let place = Rect::from_center_size(plot_rect.center(), vec2(width, 16.0));
+            ui.painter().rect_filled(place, round, look.palette.sunken);
+            Label::new(text, look.palette.faint)
                 .small()
                 .center()
-                .put(ui, plot_rect);
+                .put(ui, place);
         }
     }
 

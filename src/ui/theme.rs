@@ -17,8 +17,6 @@ pub(crate) const TOP_BAR: f32 = 56.0;
 pub(crate) const TABS: f32 = 36.0;
 /// Height of a banner.
 pub(crate) const BANNER: f32 = 44.0;
-/// Height of a card's title row.
-pub(crate) const TITLE: f32 = 28.0;
 /// Height of a button or field.
 pub(crate) const CONTROL: f32 = 24.0;
 /// Height of a button that matters.
@@ -203,6 +201,11 @@ pub(crate) const fn small() -> FontId {
     FontId::proportional(11.5)
 }
 
+/// Hints inside a button.
+pub(crate) const fn tiny() -> FontId {
+    FontId::proportional(10.5)
+}
+
 /// Running text and buttons.
 pub(crate) const fn body() -> FontId {
     FontId::proportional(13.0)
@@ -305,10 +308,12 @@ pub(crate) fn fonts() -> egui::FontDefinitions {
     const CHINESE: &str = "NotoSansSC";
     let mut fonts = egui::FontDefinitions::default();
     let bytes: &'static [u8] = include_bytes!("../../assets/fonts/NotoSansSC-subset.otf");
-    fonts.font_data.insert(
-        CHINESE.into(),
-        std::sync::Arc::new(egui::FontData::from_static(bytes)),
-    );
+    let mut chinese = egui::FontData::from_static(bytes);
+    // Han signs hang lower than the Latin letters they stand beside.
+    chinese.tweak.y_offset_factor = -0.06;
+    fonts
+        .font_data
+        .insert(CHINESE.into(), std::sync::Arc::new(chinese));
     for (family, extra) in [
         (FontFamily::Proportional, &["Hack", CHINESE][..]),
         (FontFamily::Monospace, &[CHINESE][..]),

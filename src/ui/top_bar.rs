@@ -8,7 +8,7 @@ use crate::ui::look::{Look, Pane};
 use crate::ui::text::{Text, main, words};
 use crate::ui::window::View;
 use crate::ui::{format, theme};
-use egui::{Color32, CornerRadius, Id, Rect, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, CornerRadius, Id, Rect, Stroke, Ui, pos2, vec2};
 
 /// Width of STOP.
 const STOP_WIDTH: f32 = 148.0;
@@ -37,10 +37,15 @@ pub(crate) fn top_bar_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
 fn stop_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let button =
         Button::new(pane.look.say(main::STOP), pane.look.say(main::STOP_TIP)).weight(Weight::Stop);
-    if button
-        .put(ui, pane.look, rect, Id::unique("stop"))
-        .clicked()
-    {
+    let response = button.ground(ui, pane.look, rect, Id::unique("stop"));
+    let (center, strong) = (Align2::CENTER_CENTER, pane.look.palette.on_strong);
+    let (upper, lower) = rect.shrink(3.0).split_top_bottom_at_fraction(0.62);
+    let word = pane.look.say(main::STOP);
+    controls::paint_text(ui, upper, center, word, theme::large(), strong);
+    let keys = pane.look.say(main::STOP_KEYS);
+    let weak = strong.gamma_multiply(0.82);
+    controls::paint_text(ui, lower, center, keys, theme::tiny(), weak);
+    if response.clicked() {
         pane.actions.push(Action::Stop);
     }
 }
@@ -136,7 +141,7 @@ fn link_ui(ui: &mut Ui, rest: &mut Rect, pane: &Pane<'_>) -> bool {
     let response = button.ground(ui, look, place, Id::unique("link"));
     controls::lamp(ui, pos2(place.left() + 16.0, place.center().y), color);
     let text = place.with_min_x(place.left() + 29.0);
-    let (text_color, align) = (look.palette.text, egui::Align2::LEFT_CENTER);
+    let (text_color, align) = (look.palette.text, Align2::LEFT_CENTER);
     controls::paint_text(ui, text, align, word, theme::body(), text_color);
     response.clicked()
 }
@@ -237,14 +242,7 @@ pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut V
         } else {
             look.palette.muted
         };
-        controls::paint_text(
-            ui,
-            place,
-            egui::Align2::CENTER_CENTER,
-            text,
-            theme::body(),
-            color,
-        );
+        controls::paint_text(ui, place, Align2::CENTER_CENTER, text, theme::body(), color);
         if tab == *view {
             let under = Rect::from_min_max(
                 pos2(place.left() + theme::PAD, rect.bottom() - 4.0),

@@ -149,8 +149,8 @@ impl Window {
         }
         for banner in banner::banners(pane) {
             let (place, rest) = body.split_top_bottom_at_y(body.top() + theme::BANNER);
-            if banner.ui(ui, place, pane.look) {
-                self.view = View::Faults;
+            if let Some(view) = banner.ui(ui, place, pane.look) {
+                self.view = view;
             }
             body = rest;
         }
@@ -244,4 +244,37 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
     });
     actions.insert(0, Action::Stop);
     actions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{Angle, Dof, Gesture};
+
+    #[test]
+    fn a_stop_goes_first_and_nothing_moves_in_the_same_frame() {
+        let moves = || {
+            vec![
+                Action::Arm,
+                Action::Target(Dof::Index, Angle::MAX),
+                Action::Open,
+                Action::Gesture(Gesture::MIN),
+                Action::FindPorts,
+            ]
+        };
+        let stopped = [Action::Stop, Action::FindPorts];
+        assert_eq!(stop_first(moves(), true), stopped);
+        let mut with_button = moves();
+        with_button.push(Action::Stop);
+        assert_eq!(stop_first(with_button, false), stopped);
+        assert_eq!(stop_first(moves(), false), moves());
+    }
+
+    #[test]
+    fn every_view_is_found_by_its_name() {
+        for view in View::ALL {
+            assert_eq!(View::by_name(view.name()), Some(view));
+        }
+        assert_eq!(View::by_name("LIVE"), None);
+    }
 }

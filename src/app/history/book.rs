@@ -233,7 +233,7 @@ fn target_angle(target: Target) -> Option<f32> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::indexing_slicing, reason = "a test may")]
+    #![allow(clippy::expect_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
     use crate::app::history::mark::MARKS_MAX;
     use crate::hand::{AngleReading, ForceReading, TactileBlock};

@@ -43,10 +43,12 @@ impl Track {
 
     /// Adds one row; missing values are not known. Time never runs back.
     pub(crate) fn push(&mut self, at_s: f64, values: impl IntoIterator<Item = Option<f32>>) {
-        if let Some(last) = self.times.last() {
-            if at_s - last > self.gap_after_s {
-                self.add(last, std::iter::empty());
-            }
+        if let Some(last) = self
+            .times
+            .last()
+            .filter(|last| at_s - last > self.gap_after_s)
+        {
+            self.add(last, std::iter::empty());
         }
         self.add(at_s, values);
     }

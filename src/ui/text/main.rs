@@ -35,6 +35,7 @@ texts! {
     ARM_TIP: "Lets your angles, forces and speeds pass to the hand. Nothing moves by arming.", "允许角度、力控阈值和速度发送到灵巧手。使能本身不会产生动作。";
     DISARM_TIP: "Setpoints pass. Press to let none pass any more; the hand keeps what it was told.", "设置值正在生效。点击后不再发送，灵巧手保持上一次的设置。";
     STOP: "STOP", "停止";
+    STOP_KEYS: "Space or Esc", "空格键或 Esc";
     STOP_TIP: "Holds the pose: every joint is told to stay where it is. Space or Esc does the same.\nIt is not an emergency stop: in danger cut the 24 V supply.", "保持当前姿态：令所有自由度停在原位。空格键或 Esc 键作用相同。\n这不是急停：遇到危险请切断 24 V 电源。";
 
     REFUSED_OFFLINE: "There is no live hand.", "没有在线的灵巧手。";
@@ -45,6 +46,10 @@ texts! {
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";
     LOCKED: "This joint is locked.", "该自由度已锁定。";
 
+    EMPTY_TITLE: "NOT CONNECTED", "未连接";
+    EMPTY_BODY: "Choose the hand to talk to, or the built-in simulated one.", "请选择要连接的灵巧手，或内置的仿真手。";
+    EMPTY_OPEN: "Connection", "连接设置";
+    EMPTY_OPEN_TIP: "Opens the connection.", "打开连接设置。";
     LOST_TITLE: "LINK LOST", "连接断开";
     LOST_BODY: "The hand may still be moving or gripping. Cut the 24 V supply if needed.", "灵巧手可能仍在运动或抓握。必要时请切断 24 V 电源。";
     LOST_RETRY_IN: "Next try in", "重试倒计时";
@@ -71,7 +76,7 @@ texts! {
     THEME_NAME: "Theme", "主题";
     THEME_TIP: "Switches between light on dark and dark on light.", "切换深色与浅色主题。";
     LANGUAGE_NAME: "Language", "语言";
-    LANGUAGE_TIP: "切换为中文界面。", "Switch the window to English.";
+    LANGUAGE_TIP: "Switches the window to Chinese.", "切换为英文界面。";
     DISMISS: "Close", "关闭";
     DISMISS_TIP: "Takes this message away.", "移除这条消息。";
 

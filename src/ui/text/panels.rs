@@ -29,9 +29,9 @@ texts! {
 
     TOUCH: "Fingertips", "指尖触觉";
     TOUCH_SCALE: "Heat: counts above first reading", "热度：相对首次读数的增量";
-    TOUCH_NORMAL: "Normal", "法向";
-    TOUCH_SHEAR: "Shear", "切向";
-    TOUCH_DIRECTION: "Dir.", "方向";
+    TOUCH_NORMAL: "Normal N", "法向 N";
+    TOUCH_SHEAR: "Shear N", "切向 N";
+    TOUCH_DIRECTION: "Direction", "方向";
     TOUCH_PROXIMITY: "Near", "接近";
     TOUCH_CHECK: "Check", "校验";
     TOUCH_NORMAL_NAME: "normal force", "法向力";
@@ -40,7 +40,7 @@ texts! {
     TOUCH_PROXIMITY_NAME: "proximity", "接近值";
     TOUCH_CHECK_NAME: "check", "校验";
     TOUCH_OK: "ok", "正常";
-    TOUCH_DIFFERS: "differs", "不符";
+    TOUCH_DIFFERS: "diff", "不符";
     TOUCH_NO_CONTACT: "none", "无";
     TOUCH_TIP: "Pads show capacitance above the first reading, all fingers on one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对首次读数的电容增量，所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
     TOUCH_CHANNEL: "Channel", "通道";
@@ -97,7 +97,6 @@ texts! {
     GESTURES_OFF: "The gesture route is off.", "手势方式已关闭。";
     GESTURE_NAME_EDIT: "Name gestures", "命名手势";
     GESTURE_NAME_EDIT_TIP: "Type names for the numbers. The hand does not tell what its gestures are.", "为编号输入名称。灵巧手不会给出手势名称。";
-    GESTURE_NAME_HINT: "name", "名称";
     GESTURE_NAME_DONE: "Done", "完成";
     GESTURE_NAME: "Name of gesture", "手势名称";
 
@@ -134,9 +133,7 @@ texts! {
     HINT_TCP: "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "地址";
-    STATE: "State", "状态";
     SINCE: "for", "已持续";
-    TROUBLE: "Trouble", "问题";
     STATE_RATE: "Motion state", "运动状态";
     TACTILE_RATE: "Fingertips", "指尖";
     RTT_P50: "Round trip, median", "往返时间，中位数";

@@ -1,0 +1,175 @@
+//! A hand behind an in-memory wire: the simulated body, its replies stamped with the time they were made, so
+//! that a test can tell a fresh value from an old one. The protocol is written by hand here, not by our codec.
+
+use handscope::hand::{Moment, Span};
+use handscope::sim::SharedHand;
+use handscope::transport::Wire;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::time::{Duration, sleep};
+
+/// CURRENT, whose bytes carry the stamp: no rule of the link looks at it.
+const STAMP: Span = Span::new(1594, 4);
+const TOUCH: Span = Span::new(3000, 290);
+
+/// What the device does wrong, for protocols whose transport loses nothing.
+#[derive(Debug, Clone, Default)]
+pub struct Quirks {
+    pub turnaround: Duration,
+    /// One reply in so many is answered late, doubled, cut or refused; 0 = none.
+    pub one_in: Arc<AtomicU32>,
+}
+
+pub async fn rs485(hand: SharedHand, mut wire: impl Wire, quirks: Quirks) {
+    let mut held: Vec<u8> = Vec::new();
+    let mut chunk = [0; 512];
+    while let Ok(len @ 1..) = wire.read(&mut chunk).await {
+        held.extend(&chunk[..len]);
+        while let Some((request, used)) = rs485_request(&held) {
+            held.drain(..used);
+            let Some(reply) = rs485_answer(&hand, &request) else {
+                continue;
+            };
+            sleep(quirks.turnaround).await;
+            if wire.write_all(&reply).await.is_err() {
+                return;
+            }
+        }
+        if held.len() > 600 {
+            held.clear();
+        }
+    }
+}
+
+/// The next whole request `id, command, address, data`, and the bytes to drop up to its end.
+fn rs485_request(held: &[u8]) -> Option<(Vec<u8>, usize)> {
+    (0..held.len()).find_map(|at| {
+        let frame = held[at..].strip_prefix(&[0xEB, 0x90])?;
+        let len = usize::from(*frame.get(1)?);
+        let body = frame.get(..len + 2)?;
+        let sum = body.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
+        (len >= 4 && *frame.get(len + 2)? == sum).then(|| (body.to_vec(), at + len + 5))
+    })
+}
+
+fn rs485_answer(hand: &SharedHand, body: &[u8]) -> Option<Vec<u8>> {
+    let (id, command) = (body[0], body[2]);
+    if id != 1 {
+        return None;
+    }
+    let address = u16::from_le_bytes([body[3], body[4]]);
+    let data = match command {
+        0x11 => memory(hand, Span::new(address, u16::from(body[5])))?,
+        0x12 => {
+            hand.with(|hand, now| hand.write(address, &body[5..], now))
+                .ok()?;
+            vec![1]
+        }
+        _ => return None,
+    };
+    let mut reply = vec![
+        id,
+        u8::try_from(data.len() + 3).ok()?,
+        command,
+        body[3],
+        body[4],
+    ];
+    reply.extend(data);
+    reply.push(reply.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)));
+    reply.splice(0..0, [0x90, 0xEB]);
+    Some(reply)
+}
+
+pub async fn modbus_tcp(hand: SharedHand, mut wire: impl Wire, quirks: Quirks, seed: u64) {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    loop {
+        let mut head = [0; 7];
+        if wire.read_exact(&mut head).await.is_err() {
+            return;
+        }
+        let mut pdu = vec![0; usize::from(u16::from_be_bytes([head[4], head[5]])) - 1];
+        if wire.read_exact(&mut pdu).await.is_err() {
+            return;
+        }
+        sleep(quirks.turnaround).await;
+        let mut answer = modbus_answer(&hand, &pdu);
+        let mut copies = 1;
+        let mut number = [head[0], head[1]];
+        let one_in = quirks.one_in.load(Ordering::Relaxed);
+        if one_in > 0 && rng.u32(..one_in) == 0 {
+            match rng.u8(..6) {
+                0 => sleep(Duration::from_millis(rng.u64(60..900))).await,
+                1 => copies = 2,
+                2 => copies = 0,
+                3 => number[1] ^= 0x55,
+                4 if answer[0] == 3 && answer.len() > 6 => {
+                    answer.truncate(answer.len() - 4);
+                    answer[1] -= 4;
+                }
+                _ => answer = vec![pdu[0] | 0x80, 6],
+            }
+        }
+        let mut adu = vec![number[0], number[1], 0, 0];
+        adu.extend(u16::try_from(answer.len() + 1).unwrap().to_be_bytes());
+        adu.push(head[6]);
+        adu.extend(answer);
+        for _ in 0..copies {
+            if wire.write_all(&adu).await.is_err() {
+                return;
+            }
+        }
+    }
+}
+
+fn modbus_answer(hand: &SharedHand, pdu: &[u8]) -> Vec<u8> {
+    let word = |at: usize| u16::from_be_bytes([pdu[at], pdu[at + 1]]);
+    match pdu[0] {
+        3 => {
+            let Some(bytes) = memory(hand, Span::new(word(1), word(3) * 2)) else {
+                return vec![0x83, 2];
+            };
+            let mut answer = vec![3, u8::try_from(bytes.len()).unwrap()];
+            answer.extend(bytes.chunks(2).flat_map(|pair| [pair[1], pair[0]]));
+            answer
+        }
+        6 => {
+            let _taken = hand.with(|hand, now| hand.write(word(1), &[pdu[4]], now));
+            pdu.to_vec()
+        }
+        16 => {
+            let bytes: Vec<u8> = pdu[6..]
+                .chunks(2)
+                .flat_map(|pair| [pair[1], pair[0]])
+                .collect();
+            let _taken = hand.with(|hand, now| hand.write(word(1), &bytes, now));
+            pdu[..5].to_vec()
+        }
+        other => vec![other | 0x80, 1],
+    }
+}
+
+/// The hand's memory, with the stamp in CURRENT and in the first channel of each fingertip.
+fn memory(hand: &SharedHand, span: Span) -> Option<Vec<u8>> {
+    hand.with(|hand, now| {
+        let mut bytes = hand.read(span, now).ok()?;
+        let stamp = u32::try_from(now.micros() / 100).ok()?;
+        put(&mut bytes, span, STAMP.address, stamp);
+        for finger in 0..5 {
+            put(&mut bytes, span, TOUCH.address + 58 * finger, stamp);
+        }
+        Some(bytes)
+    })
+}
+
+fn put(bytes: &mut [u8], span: Span, address: u16, stamp: u32) {
+    if span.covers(Span::new(address, 4)) {
+        let at = usize::from(address - span.address);
+        bytes[at..at + 4].copy_from_slice(&stamp.to_le_bytes());
+    }
+}
+
+/// The moment a stamp was made, to a tenth of a millisecond.
+pub fn stamped(stamp: u32) -> Moment {
+    Moment::from_micros(u64::from(stamp) * 100)
+}
