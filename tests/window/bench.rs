@@ -60,7 +60,7 @@ struct Room {
     clock: Clock,
     cockpit: Cockpit,
     socket: Arc<Socket>,
-    /// Every state of the link that a frame showed, without repetitions.
+    /// Every state of the link there was at a frame's time, without repetitions.
     seen: Vec<LinkState>,
 }
 
@@ -98,18 +98,23 @@ impl Room {
         }
     }
 
-    fn frame(&mut self, ui: &mut egui::Ui) {
+    /// One frame's time goes by, drawn or not.
+    fn tick(&mut self) {
         let step = Duration::from_millis(FRAME_MS);
         self.runtime
             .block_on(async { tokio::time::sleep(step).await });
         let _inside = self.runtime.enter();
-        let now = self.clock.now();
-        self.cockpit.logic(now);
-        self.cockpit.ui(ui, now);
+        self.cockpit.logic(self.clock.now());
         let state = self.cockpit.state().link.state;
         if self.seen.last() != Some(&state) {
             self.seen.push(state);
         }
+    }
+
+    fn frame(&mut self, ui: &mut egui::Ui) {
+        self.tick();
+        let _inside = self.runtime.enter();
+        self.cockpit.ui(ui, self.clock.now());
     }
 }
 
@@ -148,7 +153,7 @@ impl Bench {
     /// The first start, one second later.
     pub fn live() -> Self {
         let mut bench = Self::open(SimConfig::default(), LARGE);
-        bench.run(1000);
+        bench.wait(1000);
         bench
     }
 
@@ -165,6 +170,14 @@ impl Bench {
         for _ in 0..millis.div_ceil(FRAME_MS) {
             self.harness.step();
         }
+    }
+
+    /// As [`Bench::run`], but only the last frames are drawn: as if the window had been hidden.
+    pub fn wait(&mut self, millis: u64) {
+        for _ in 0..millis.saturating_sub(2 * FRAME_MS).div_ceil(FRAME_MS) {
+            self.harness.state_mut().tick();
+        }
+        self.run(2 * FRAME_MS);
     }
 
     /// Frames until something is so; the virtual time that it took.
@@ -310,15 +323,24 @@ impl Bench {
         self.harness.get_by_role_and_label(role, name).rect()
     }
 
-    /// Names and places of everything with this role.
+    /// Names and places of everything with this role, as far as it is not scrolled away: what can be pressed.
     pub fn all(&self, role: Role) -> Vec<(String, Rect)> {
-        self.harness
-            .query_all_by_role(role)
-            .map(|node| {
-                let name = node.accesskit_node().label();
-                (name.unwrap_or_default(), node.rect())
-            })
-            .collect()
+        let nodes = self.harness.query_all_by_role(role);
+        let named = nodes.map(|node| {
+            let name = node.accesskit_node().label().unwrap_or_default();
+            let (id, _) = node.accesskit_node().locate();
+            let pressed = self.harness.ctx.viewport(|viewport| {
+                let mut layers = viewport.prev_pass.widgets.layers();
+                layers.find_map(|(_, widgets)| {
+                    let mut widgets = widgets.iter();
+                    widgets
+                        .find(|widget| widget.id.accesskit_id() == id)
+                        .map(|widget| widget.interact_rect)
+                })
+            });
+            (name, pressed.unwrap_or(node.rect()))
+        });
+        named.filter(|(_, rect)| rect.is_positive()).collect()
     }
 
     /// Colours of the frames that are painted around this place.

@@ -16,7 +16,7 @@ fn index_of(write: &Write) -> i16 {
 fn pose(bench: &mut Bench, angle: i16) {
     let bytes: Vec<u8> = [angle; 6].into_iter().flat_map(i16::to_le_bytes).collect();
     bench.hand(|hand, now| hand.write(ANGLE_SET, &bytes, now).unwrap());
-    bench.run(2500);
+    bench.wait(2500);
     for dof in Dof::ALL {
         assert!((bench.angle(dof) - angle).abs() <= 3, "{dof:?}");
     }
@@ -26,7 +26,7 @@ fn pose(bench: &mut Bench, angle: i16) {
 fn arming_writes_speeds_and_forces_and_no_angle() {
     let mut bench = Bench::live();
     bench.click("Arm the hand");
-    bench.run(500);
+    bench.wait(500);
     assert!(bench.shows("Disarm the hand") && bench.shows("Link state: Armed"));
     let writes = bench.writes();
     let sent: Vec<_> = writes
@@ -36,7 +36,7 @@ fn arming_writes_speeds_and_forces_and_no_angle() {
     assert_eq!(sent, [(SPEED_SET, vec![200; 6]), (FORCE_SET, vec![500; 6])]);
     assert_eq!(bench.angle(Dof::Index), 1000);
     bench.click("Disarm the hand");
-    bench.run(200);
+    bench.wait(200);
     assert!(bench.shows("Link state: Monitoring"));
     assert_eq!(bench.writes().len(), 2, "disarming writes nothing");
 }
@@ -60,26 +60,31 @@ fn a_drag_starts_from_the_actual_angle_and_the_actual_follows() {
     assert!((target - 500.0).abs() < 20.0, "{target}");
     let last = writes.last().map(index_of).unwrap();
     assert!((f64::from(last) - target).abs() < 0.5, "{last} {target}");
-    bench.run(400);
+    bench.wait(400);
     let under_way: i16 = bench.reading("Index actual angle").parse().unwrap();
     assert!(under_way > 600 && under_way < 990, "{under_way}");
     assert_eq!(bench.reading("Index status"), "Closing");
-    bench.run(2500);
+    bench.wait(2500);
     let there: i16 = bench.reading("Index actual angle").parse().unwrap();
     assert!((f64::from(there) - target).abs() <= 5.0, "{there} {target}");
     assert_eq!(bench.reading("Index status"), "In position");
 }
 
 fn stops(stop: impl FnOnce(&mut Bench)) {
+    stops_after(|_| {}, stop);
+}
+
+fn stops_after(prepare: impl FnOnce(&mut Bench), stop: impl FnOnce(&mut Bench)) {
     let mut bench = Bench::armed();
     bench.drag("Index angle target", 1.0, 0.0);
-    bench.run(600);
+    bench.wait(600);
+    prepare(&mut bench);
     let moving = bench.angle(Dof::Index);
     assert!((200..950).contains(&moving), "{moving}");
     let before = bench.writes().len();
     let pressed = bench.now();
     stop(&mut bench);
-    bench.run(1000);
+    bench.wait(1000);
     let held = bench.writes().split_off(before);
     assert!(!held.is_empty());
     assert!(
@@ -98,7 +103,7 @@ fn stops(stop: impl FnOnce(&mut Bench)) {
     assert_eq!(tail, want, "{:?}", bench.seen());
     assert!(bench.shows("Arm the hand") && !bench.shows("Disarm the hand"));
     let rest = bench.angle(Dof::Index);
-    bench.run(1000);
+    bench.wait(1000);
     assert!((bench.angle(Dof::Index) - rest).abs() <= 3, "it stays");
     let shown: f64 = bench.reading("Index actual angle").parse().unwrap();
     let handle = bench.handle("Index angle target").unwrap();
@@ -128,19 +133,21 @@ fn escape_does_the_same() {
 
 #[test]
 fn escape_stops_with_a_number_field_focused() {
-    stops(|bench| {
-        bench.focus("Ring angle number");
-        bench.key(Key::Escape);
-    });
+    stops_after(
+        |bench| bench.focus("Ring angle number"),
+        |bench| bench.key(Key::Escape),
+    );
 }
 
 #[test]
 fn escape_stops_while_a_half_typed_number_stands_and_drops_it() {
-    stops(|bench| {
-        bench.type_into("Index angle number", "0");
-        bench.key(Key::Escape);
-        bench.key(Key::Enter);
-    });
+    stops_after(
+        |bench| bench.type_into("Index angle number", "0"),
+        |bench| {
+            bench.key(Key::Escape);
+            bench.key(Key::Enter);
+        },
+    );
 }
 
 #[test]
@@ -148,7 +155,7 @@ fn a_typed_number_acts_only_on_enter() {
     let mut bench = Bench::armed();
     let armed = bench.writes().len();
     bench.type_into("Index angle number", "400");
-    bench.run(300);
+    bench.wait(300);
     assert_eq!(bench.writes().len(), armed);
     bench.key(Key::Enter);
     bench.run(100);
@@ -174,7 +181,7 @@ fn a_number_out_of_range_is_visibly_refused_and_never_sent() {
         let place = bench.rect(Role::TextInput, field);
         let before = bench.edges(place);
         bench.key(Key::Enter);
-        bench.run(300);
+        bench.wait(300);
         assert_eq!(bench.writes().len(), armed, "{field} {wrong}");
         assert_eq!(bench.typed(field), wrong, "what was typed still stands");
         let after = bench.edges(place);
@@ -189,13 +196,13 @@ fn a_locked_joint_is_left_alone_by_drags_and_by_open_all() {
     pose(&mut bench, 500);
     bench.click("Ring lock");
     bench.click("Arm the hand");
-    bench.run(300);
+    bench.wait(300);
     let armed = bench.writes().len();
     bench.drag("Ring angle target", 0.5, 0.9);
-    bench.run(300);
+    bench.wait(300);
     assert_eq!(bench.writes().len(), armed);
     bench.click("Open all");
-    bench.run(5000);
+    bench.wait(5000);
     let opened = bench.writes().split_off(armed);
     let want = [1000, LEAVE, 1000, 1000, 1000, 1000];
     assert_eq!(opened.len(), 1, "{opened:?}");
@@ -214,13 +221,13 @@ fn a_gesture_needs_arming_and_then_writes_its_number() {
     let mut bench = Bench::live();
     assert!(bench.is_disabled(Role::Button, "Gesture 12"));
     bench.click("Gesture 12");
-    bench.run(200);
+    bench.wait(200);
     assert_eq!(bench.writes(), []);
     bench.click("Arm the hand");
-    bench.run(200);
+    bench.wait(200);
     let armed = bench.writes().len();
     bench.click("Gesture 12");
-    bench.run(3500);
+    bench.wait(3500);
     let writes = bench.writes().split_off(armed);
     assert_eq!(writes.len(), 1, "{writes:?}");
     assert_eq!(

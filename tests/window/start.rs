@@ -22,7 +22,7 @@ fn the_first_start_is_live_within_a_second_badged_disarmed_and_writes_nothing() 
         bench.state().link.state == LinkState::Monitoring
             && bench.reading("Thumb normal force") != "-"
     });
-    bench.run(1000);
+    bench.wait(1000);
     assert!(bench.shows("SIMULATED"));
     assert!(bench.shows("Link state: Monitoring"));
     assert!(!bench.is_disabled(Role::Button, "Arm the hand"));
@@ -66,11 +66,11 @@ fn connecting_and_disconnecting_write_nothing() {
     bench.click_button("Connection");
     bench.run(100);
     bench.click_button("Disconnect");
-    bench.run(200);
+    bench.wait(200);
     assert!(bench.shows("NOT CONNECTED") && !bench.shows("SIMULATED"));
     assert_eq!(bench.reading("Index actual angle"), "-");
     bench.click_button("Connect");
-    bench.run(1000);
+    bench.wait(1000);
     assert!(bench.shows("SIMULATED") && bench.shows("Link state: Monitoring"));
     assert_eq!(bench.reading("Index actual angle"), "1000");
     assert_eq!(bench.writes(), []);
@@ -87,7 +87,7 @@ fn without_arming_no_control_of_the_joints_writes() {
     for name in ["Open all", "Gesture 1", "Index lock"] {
         bench.click(name);
     }
-    bench.run(500);
+    bench.wait(500);
     assert_eq!(bench.writes(), []);
     assert_eq!(bench.angle(Dof::Index), 1000);
     let staged = bench.handle("Index speed").unwrap();
@@ -98,7 +98,7 @@ fn without_arming_no_control_of_the_joints_writes() {
 fn stop_without_arming_holds_the_pose_it_sees() {
     let mut bench = Bench::live();
     bench.click_button("STOP");
-    bench.run(1000);
+    bench.wait(1000);
     let writes = bench.writes();
     assert!(!writes.is_empty());
     for write in &writes {

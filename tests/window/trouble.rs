@@ -16,7 +16,7 @@ fn an_unplugged_hand_is_said_in_words_and_cannot_be_driven() {
     assert_eq!(words.len(), 1, "{words:?}");
     assert!(words[0].contains("hung up"), "{words:?}");
     assert!(bench.shows("Link state: Link lost"));
-    bench.run(700);
+    bench.wait(700);
     assert!(!bench.texts_with("is not there").is_empty());
     assert_eq!(bench.texts_with("Age ").len(), 1);
     for (role, name) in [
@@ -39,12 +39,12 @@ fn a_hand_that_is_plugged_back_is_live_within_two_seconds_disarmed_and_unwritten
     let armed = bench.writes().len();
     bench.unplug();
     bench.until(300, |bench| bench.shows("LINK LOST"));
-    bench.run(3000);
+    bench.wait(3000);
     bench.plug();
     bench.until(2000, |bench| {
         bench.shows("Link state: Monitoring") && bench.handle("Index angle target").is_some()
     });
-    bench.run(1000);
+    bench.wait(1000);
     assert!(!bench.shows("LINK LOST"));
     assert!(bench.texts_with("Age ").is_empty());
     assert!(!bench.is_disabled(Role::Button, "Arm the hand"));
@@ -59,9 +59,9 @@ fn what_was_dragged_while_the_link_was_gone_never_reaches_the_hand() {
     let armed = bench.writes().len();
     bench.unplug();
     bench.drag("Index angle target", 1.0, 0.0);
-    bench.run(500);
+    bench.wait(500);
     bench.plug();
-    bench.run(3000);
+    bench.wait(3000);
     assert!(bench.shows("Link state: Monitoring"));
     assert_eq!(bench.writes().len(), armed);
     assert_eq!(bench.angle(Dof::Index), 1000);
@@ -92,9 +92,9 @@ fn clearing_holds_the_pose_first() {
     bench.hand(|hand, _| {
         hand.inject_fault(Dof::Index, Fault::Stall);
     });
-    bench.run(200);
+    bench.wait(200);
     bench.click("Clear errors");
-    bench.run(500);
+    bench.wait(500);
     assert_eq!(bench.addresses(), [ANGLE_SET, CLEAR_ERROR]);
     let writes = bench.writes();
     assert_eq!(writes[0].shorts(), [1000; 6]);
@@ -111,13 +111,13 @@ fn over_temperature_is_said_to_stay_and_stays() {
         hand.inject_fault(Dof::Middle, Fault::OverTemperature);
         hand.warm(Dof::Middle, 92.0);
     });
-    bench.run(200);
+    bench.wait(200);
     bench.click_button("Faults");
     bench.run(100);
     assert!(bench.shows("Middle: Over-temperature"));
     assert!(bench.shows("Over-temperature cannot be cleared."));
     bench.click("Clear errors");
-    bench.run(500);
+    bench.wait(500);
     assert_eq!(bench.addresses(), [ANGLE_SET, CLEAR_ERROR]);
     assert_eq!(bench.state().link.state, LinkState::Fault);
     assert!(bench.shows("Over-temperature cannot be cleared."));
@@ -130,12 +130,12 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
         ..SimConfig::default()
     };
     let mut bench = Bench::open(config, LARGE);
-    bench.run(1000);
+    bench.wait(1000);
     for view in VIEWS {
         bench.click_button(view);
         // The values go once around the six joints.
         for _ in 0..6 {
-            bench.run(1000);
+            bench.wait(1000);
             assert!(bench.is_disabled(Role::Button, "Arm the hand"), "{view}");
         }
     }
@@ -155,7 +155,7 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
     bench.click("Language");
     for view in ["总览", "触觉", "故障", "手势", "连接"] {
         bench.click_button(view);
-        bench.run(200);
+        bench.wait(200);
     }
     assert_eq!(bench.writes(), []);
 }
@@ -167,7 +167,7 @@ fn impossible_angles_are_shown_raw_and_no_handle_stands_there() {
         ..SimConfig::default()
     };
     let mut bench = Bench::open(config, LARGE);
-    bench.run(500);
+    bench.wait(500);
     let shown: Vec<String> = ["Little", "Ring", "Middle", "Index", "Thumb bend"]
         .iter()
         .map(|joint| bench.reading(&format!("{joint} actual angle")))
