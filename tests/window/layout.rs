@@ -52,6 +52,35 @@ fn check(bench: &Bench, size: Vec2, stop: &str, when: &str) {
     }
 }
 
+/// The state in which most can be pressed, with names being typed and each form of the connection.
+#[test]
+fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
+    for size in SIZES {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.wait(400);
+        bench.click("Arm the hand");
+        bench.wait(200);
+        assert!(bench.state().is_armed());
+        bench.drag("Index angle target", 1.0, 0.6);
+        check(&bench, size, "STOP", &format!("{size} armed"));
+        bench.click("Name gestures");
+        bench.run(60);
+        check(&bench, size, "STOP", &format!("{size} naming in the strip"));
+        bench.click_first_button("Gestures");
+        bench.run(60);
+        assert!(bench.all(Role::TextInput).len() > 40);
+        check(&bench, size, "STOP", &format!("{size} naming"));
+        bench.click_first_button("Connection");
+        bench.run(60);
+        for kind in ["RS485", "Modbus TCP", "Simulated"] {
+            bench.click(&format!("Kind of link: {kind}"));
+            bench.run(60);
+            check(&bench, size, "STOP", &format!("{size} {kind}"));
+        }
+        assert!(bench.state().is_armed(), "looking around disarms nothing");
+    }
+}
+
 fn check_all_views(mut bench: Bench, size: Vec2) {
     for names in [&ENGLISH, &CHINESE] {
         for theme in ["first", "second"] {

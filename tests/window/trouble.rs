@@ -68,6 +68,45 @@ fn what_was_dragged_while_the_link_was_gone_never_reaches_the_hand() {
 }
 
 #[test]
+fn a_hand_that_moved_on_while_the_link_was_gone_can_be_held_when_it_is_back() {
+    let mut bench = Bench::armed();
+    bench.drag("Index angle target", 1.0, 0.0);
+    bench.wait(200);
+    let before = bench.writes().len();
+    bench.unplug();
+    bench.until(300, |bench| bench.shows("LINK LOST"));
+    bench.plug();
+    bench.until(2000, |bench| bench.shows("Link state: Monitoring"));
+    let seen = bench.angle(Dof::Index);
+    assert!(seen > 100, "still under way: {seen}");
+    assert_eq!(bench.writes().len(), before);
+    bench.click_button("STOP");
+    bench.wait(1000);
+    let rest = bench.angle(Dof::Index);
+    assert!(seen - rest < 120, "{seen} {rest}");
+    bench.wait(1000);
+    assert!((bench.angle(Dof::Index) - rest).abs() <= 3);
+    let held = bench.writes().split_off(before);
+    assert!(!held.is_empty() && held.iter().all(|write| write.address == ANGLE_SET));
+    assert!(!bench.is_disabled(Role::Button, "Arm the hand"));
+}
+
+#[test]
+fn a_stop_pressed_while_the_link_is_gone_does_not_write_later() {
+    let mut bench = Bench::armed();
+    let armed = bench.writes().len();
+    bench.unplug();
+    bench.until(300, |bench| bench.shows("LINK LOST"));
+    bench.click_button("STOP");
+    bench.wait(1500);
+    assert!(bench.shows("LINK LOST"));
+    bench.plug();
+    bench.wait(2500);
+    assert!(bench.shows("Link state: Monitoring"));
+    assert_eq!(bench.writes().len(), armed);
+}
+
+#[test]
 fn a_fault_is_said_with_advice_and_disarms() {
     let mut bench = Bench::armed();
     let armed = bench.writes().len();
@@ -131,13 +170,16 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
     };
     let mut bench = Bench::open(config, LARGE);
     bench.wait(1000);
-    for view in VIEWS {
-        bench.click_button(view);
-        // The values go once around the six joints.
-        for _ in 0..6 {
-            bench.wait(1000);
-            assert!(bench.is_disabled(Role::Button, "Arm the hand"), "{view}");
+    for _theme in 0..2 {
+        for view in VIEWS {
+            bench.click_button(view);
+            // The values go once around the six joints.
+            for _ in 0..6 {
+                bench.wait(1000);
+                assert!(bench.is_disabled(Role::Button, "Arm the hand"), "{view}");
+            }
         }
+        bench.click("Theme");
     }
     bench.click_button("Touch");
     bench.run(100);
