@@ -63,13 +63,15 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
         assert!(bench.state().is_armed());
         bench.drag("Index angle target", 1.0, 0.6);
         check(&bench, size, "STOP", &format!("{size} armed"));
-        bench.click("Name gestures");
-        bench.run(60);
-        check(&bench, size, "STOP", &format!("{size} naming in the strip"));
         bench.click_first_button("Gestures");
+        bench.run(60);
+        bench.click("Name gestures");
         bench.run(60);
         assert!(bench.all(Role::TextInput).len() > 40);
         check(&bench, size, "STOP", &format!("{size} naming"));
+        bench.click_first_button("Live");
+        bench.run(60);
+        check(&bench, size, "STOP", &format!("{size} naming in the strip"));
         bench.click_first_button("Connection");
         bench.run(60);
         for kind in ["RS485", "Modbus TCP", "Simulated"] {
