@@ -193,7 +193,10 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
     for code in ["4", "255", "8", "254", "7", "3"] {
         assert!(bench.shows(code), "status {code}: {:?}", bench.texts());
     }
-    assert!(!bench.texts_with("Unknown fault bit").is_empty());
+    for bit in 5..8 {
+        let words = format!("Unknown fault, bit {bit}");
+        assert!(!bench.texts_with(&words).is_empty(), "{words}");
+    }
     bench.click("Language");
     for view in ["总览", "触觉", "故障", "手势", "连接"] {
         bench.click_button(view);
