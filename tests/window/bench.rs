@@ -244,6 +244,8 @@ impl Bench {
             .get_by_role_and_label(Role::TextInput, name)
             .focus();
         self.run(40);
+        let field = self.harness.get_by_role_and_label(Role::TextInput, name);
+        assert!(field.is_focused(), "{name}");
     }
 
     /// Replaces what stands in a text field, without Enter.
