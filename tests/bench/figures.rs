@@ -1,0 +1,2 @@
+//! Figures of speed.
+fn main() {}
