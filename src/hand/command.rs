@@ -215,6 +215,13 @@ pub fn angles_from(raw: [i16; 6]) -> Result<PerDof<Angle>, crate::hand::units::O
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
     use super::*;
     use crate::hand::register::{Access, Element, by_address};
     use proptest::prelude::*;

@@ -9,6 +9,7 @@ pub mod fault;
 pub mod moment;
 pub mod reading;
 pub mod register;
+pub mod row;
 pub mod sample;
 pub mod status;
 pub mod tactile;

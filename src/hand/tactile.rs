@@ -121,6 +121,13 @@ impl Cursor<'_> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
     use super::*;
     use proptest::prelude::*;
 

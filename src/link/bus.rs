@@ -50,8 +50,8 @@ impl BusCounts {
 
 /// The protocols this version speaks.
 pub(crate) enum Bus {
-    Rs485(Rs485),
-    ModbusTcp(ModbusTcp),
+    Rs485(Box<Rs485>),
+    ModbusTcp(Box<ModbusTcp>),
 }
 
 impl Bus {
@@ -63,11 +63,13 @@ impl Bus {
         clock: Clock,
     ) -> Result<Self, TransportError> {
         match endpoint {
-            Endpoint::Sim { .. } => Ok(Self::Rs485(Rs485::new(wire, endpoint, late, clock))),
-            Endpoint::Rs485(_) => Ok(Self::Rs485(Rs485::new(wire, endpoint, late, clock))),
-            Endpoint::Tcp { unit, .. } => {
-                Ok(Self::ModbusTcp(ModbusTcp::new(wire, *unit, endpoint)))
+            Endpoint::Sim { .. } | Endpoint::Rs485(_) => {
+                let bus = Rs485::new(wire, endpoint, late, clock);
+                Ok(Self::Rs485(Box::new(bus)))
             }
+            Endpoint::Tcp { unit, .. } => Ok(Self::ModbusTcp(Box::new(ModbusTcp::new(
+                wire, *unit, endpoint,
+            )))),
             Endpoint::Rtu(_) | Endpoint::Can { .. } | Endpoint::Slcan { .. } => {
                 Err(TransportError::Unsupported {
                     kind: endpoint.kind().into(),

@@ -139,7 +139,13 @@ impl std::fmt::Debug for ReplyFilter {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
+    #![allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
     use super::*;
     use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 

@@ -234,6 +234,13 @@ impl Drop for LinkHandle {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
     use super::*;
     use crate::hand::{Angle, Dof};
 

@@ -100,6 +100,13 @@ fn near(a: &PerDof<AngleReading>, b: &PerDof<AngleReading>) -> bool {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
     use super::*;
     use crate::hand::{Angle, Timed};
 

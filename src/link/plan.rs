@@ -237,6 +237,13 @@ fn period(hz: f64) -> Duration {
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
     use super::*;
 
     const EXCHANGE: Duration = Duration::from_micros(200);

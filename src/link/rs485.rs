@@ -42,6 +42,10 @@ enum Expected {
 }
 
 /// How a reply fits the open request.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "it lives on the stack, for one exchange"
+)]
 enum Fit {
     Bytes(Bytes),
     Ack,

@@ -367,6 +367,13 @@ fn in_range<T: FromStr + PartialOrd>(
 
 #[cfg(test)]
 mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
     use super::*;
 
     #[test]

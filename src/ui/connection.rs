@@ -6,10 +6,10 @@ use crate::transport::endpoint::{
     DEFAULT_BAUD, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
 };
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
+use crate::ui::link_figures;
 use crate::ui::look::Pane;
-use crate::ui::text::{Text, notices, panels};
-use crate::ui::top_bar::link_words;
-use crate::ui::{format, theme};
+use crate::ui::text::{Text, panels};
+use crate::ui::theme;
 use egui::{Id, Rect, TextEdit, Ui, pos2, vec2};
 
 /// Width of the captions of the form.
@@ -104,7 +104,7 @@ impl ConnectionForm {
         let (left, right) = rect.split_left_right_at_x(rect.left() + rect.width() * 0.56);
         let left = left.with_max_x(left.right() - theme::GAP);
         self.form_ui(ui, left, pane);
-        link_ui(ui, right, pane);
+        link_figures::link_ui(ui, right, pane);
     }
 
     fn fill(&mut self, endpoint: Option<&Endpoint>) {
@@ -209,7 +209,7 @@ impl ConnectionForm {
         caption_value_ui(ui, &mut body, pane, panels::ENDPOINT, &spelled);
         if let Err(error) = &parsed {
             let text = format!("{} {error}.", look.say(panels::FORM_WRONG));
-            paragraph_ui(ui, &mut body, &text, look.palette.warn);
+            link_figures::paragraph_ui(ui, &mut body, &text, look.palette.warn);
         }
         take_top(&mut body, theme::STEP);
         connect_ui(
@@ -219,7 +219,7 @@ impl ConnectionForm {
             parsed.ok(),
         );
         take_top(&mut body, theme::STEP);
-        paragraph_ui(
+        link_figures::paragraph_ui(
             ui,
             &mut body,
             look.say(self.kind.hint()),
@@ -336,16 +336,6 @@ fn caption_value_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, caption: Text
         .put(ui, row);
 }
 
-fn paragraph_ui(ui: &mut Ui, body: &mut Rect, text: &str, color: egui::Color32) {
-    let galley = ui
-        .painter()
-        .layout(text.to_owned(), theme::body(), color, body.width());
-    let place = take_top(body, galley.size().y);
-    let response = ui.allocate_rect(place, egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
-    ui.painter().galley(place.min, galley, color);
-}
-
 fn connect_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, endpoint: Option<Endpoint>) {
     let look = pane.look;
     let mut row = rect.with_min_x(rect.left() + CAPTION);
@@ -376,93 +366,4 @@ fn connect_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, endpoint: Option<End
     {
         pane.actions.push(Action::Disconnect);
     }
-}
-
-/// How the link goes: state, rates, round trips, counts.
-fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-    let look = pane.look;
-    let (_, mut body) = controls::titled_card(ui, look, rect, look.say(panels::LINK_NOW));
-    let (word, color) = link_words(pane);
-    let mut row = take_top(&mut body, 20.0);
-    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
-    row.min.x += 17.0;
-    let since = format::age(pane.state.now.since(pane.state.link.since));
-    let text = format!("{}, {} {since}", look.say(word), look.say(panels::SINCE));
-    Label::new(&text, look.palette.text).put(ui, row);
-    if let Some(endpoint) = &pane.state.endpoint {
-        let row = take_top(&mut body, 16.0);
-        Label::new(&endpoint.to_string(), look.palette.muted)
-            .number()
-            .put(ui, row);
-    }
-    if let Some(trouble) = &pane.state.link.trouble {
-        let text = notices::trouble(look, trouble);
-        paragraph_ui(ui, &mut body, &text, look.palette.bad);
-    }
-    take_top(&mut body, 0.0);
-    for group in figures(pane) {
-        for (caption, value, color) in group {
-            if body.height() < 18.0 {
-                return;
-            }
-            let mut row = take_top(&mut body, 18.0);
-            body.min.y -= theme::GAP - 2.0;
-            let caption = look.say(caption);
-            let right = take_right(&mut row, 96.0);
-            Label::new(caption, look.palette.muted).put(ui, row);
-            Label::new(&value, color)
-                .number()
-                .right()
-                .named(caption)
-                .put(ui, right);
-        }
-        body.min.y += theme::STEP;
-        let stroke = egui::Stroke::new(1.0, look.palette.grid);
-        ui.painter().hline(body.x_range(), body.top(), stroke);
-        body.min.y += theme::STEP + 2.0;
-    }
-}
-
-type Figures = Vec<(Text, String, egui::Color32)>;
-
-fn figures(pane: &Pane<'_>) -> [Figures; 3] {
-    let palette = pane.look.palette;
-    let stats = &pane.state.stats;
-    let live = pane.state.link.state.is_live();
-    let plain = if live { palette.text } else { palette.faint };
-    let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
-    let trip = |value: Option<_>| format!("{} ms", format::millis(value.filter(|_| live)));
-    let count = |text, value: u64| (text, value.to_string(), palette.text);
-    let bad = |text, value: u64| {
-        (
-            text,
-            value.to_string(),
-            if value > 0 {
-                palette.warn
-            } else {
-                palette.text
-            },
-        )
-    };
-    [
-        vec![
-            (panels::STATE_RATE, rate(stats.state_hz), plain),
-            (panels::TACTILE_RATE, rate(stats.tactile_hz), plain),
-            (panels::RTT_P50, trip(stats.rtt_p50), plain),
-            (panels::RTT_P99, trip(stats.rtt_p99), plain),
-        ],
-        vec![
-            count(panels::READS, stats.state_reads + stats.tactile_reads),
-            count(panels::WRITES, stats.writes),
-            count(panels::RECONNECTS, stats.reconnects),
-        ],
-        vec![
-            bad(panels::TIMEOUTS, stats.timeouts),
-            bad(panels::CHECKSUMS, stats.checksum_errors),
-            bad(panels::RESYNCS, stats.resyncs),
-            bad(panels::FOREIGN, stats.foreign_replies),
-            bad(panels::REFUSALS, stats.refusals),
-            bad(panels::DROPPED, stats.dropped_events),
-        ],
-    ]
 }

@@ -250,18 +250,35 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
     if notice.count > 1 {
         text = format!("{text} ({} ×)", notice.count);
     }
-    let mut row = piece(ui, width, LINE + 5.0);
+    // Lamp, age and cross stand beside the text, whatever lines it needs.
+    let (indent, aside) = (17.0, 20.0 + 48.0 + 2.0 * theme::GAP);
+    let galley = ui.painter().layout(
+        text.clone(),
+        theme::small(),
+        palette.text,
+        (width - indent - aside).max(40.0),
+    );
+    let place = piece(ui, width, (galley.size().y + 6.0).max(LINE + 5.0));
+    let mut row = place.with_max_y(place.top() + LINE + 5.0);
     controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
-    row.min.x += 17.0;
+    let response = ui.interact(
+        place,
+        Id::unique(("notice", notice.id)),
+        egui::Sense::hover(),
+    );
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
+    ui.painter().galley(
+        pos2(row.left() + indent, row.top() + 3.0),
+        galley,
+        palette.text,
+    );
     let close = controls::middle(take_right(&mut row, 20.0), 20.0);
     let name = format!("{}: {text}", look.say(main::DISMISS));
     let button = Button::new("×", look.say(main::DISMISS_TIP))
         .named(&name)
         .weight(Weight::Quiet);
-    if button
-        .put(ui, look, close, Id::unique(("dismiss", notice.id)))
-        .clicked()
-    {
+    let id = Id::unique(("dismiss", notice.id));
+    if button.put(ui, look, close, id).clicked() {
         pane.actions.push(Action::Dismiss(notice.id));
     }
     let age = format::age(pane.state.now.since(notice.at));
@@ -270,5 +287,4 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
         .small()
         .right()
         .put(ui, place);
-    Label::new(&text, palette.text).small().put(ui, row);
 }

@@ -134,6 +134,8 @@ impl PlotView {
         }
         let axis = Rect::from_min_max(pos2(body.left() + AXIS, top), body.max);
         plot_axes::time_axis_ui(ui, axis, look, window);
+        let ground = Rect::from_min_max(pos2(axis.left(), body.top()), axis.right_top());
+        pointer_ui(ui, ground, pane, window);
     }
 
     fn panel_ui(
@@ -244,6 +246,33 @@ fn still_plot<'a>(name: &str, rect: Rect) -> Plot<'a> {
         .show_crosshair(false)
         .set_margin_fraction(vec2(0.0, 0.0))
         .sense(egui::Sense::hover())
+}
+
+/// A line through all plots where the pointer is, with its time.
+fn pointer_ui(ui: &Ui, ground: Rect, pane: &Pane<'_>, window_s: f64) {
+    let Some(pointer) = ui
+        .ctx()
+        .pointer_hover_pos()
+        .filter(|at| ground.contains(*at))
+    else {
+        return;
+    };
+    let palette = pane.look.palette;
+    let line = egui::Stroke::new(1.0, palette.faint);
+    ui.painter().vline(pointer.x, ground.y_range(), line);
+    let part = f64::from((ground.right() - pointer.x) / ground.width());
+    let text = format!("-{:.2} s", part * window_s);
+    let center = pos2(pointer.x, ground.bottom() + TIME_AXIS / 2.0);
+    let center = pos2(
+        center.x.clamp(ground.left() + 32.0, ground.right() - 32.0),
+        center.y,
+    );
+    let place = Rect::from_center_size(center, vec2(64.0, 16.0));
+    let round = CornerRadius::same(3);
+    ui.painter().rect_filled(place, round, palette.control);
+    let align = egui::Align2::CENTER_CENTER;
+    let font = theme::number_small();
+    controls::paint_text(ui, place, align, &text, font, palette.text);
 }
 
 fn threshold_lines(plot: &mut PlotUi<'_>, pane: &Pane<'_>) {

@@ -111,7 +111,10 @@ pub(crate) fn link_words(pane: &Pane<'_>) -> (Text, Color32) {
     let palette = pane.look.palette;
     let link = &pane.state.link;
     match link.state {
-        LinkState::Offline if link.trouble.is_some() => (main::STATE_LOST, palette.bad),
+        // A hand that never answered is not reached yet; only one that did can be lost.
+        LinkState::Offline if link.trouble.is_some() && pane.state.sample.angle.is_some() => {
+            (main::STATE_LOST, palette.bad)
+        }
         LinkState::Offline if link.dialling != Dialling::Idle => {
             (main::STATE_CONNECTING, palette.warn)
         }

@@ -1,6 +1,6 @@
 //! Sentences of the top bar, the banners, the tabs and the joints.
 
-use crate::ui::text::texts;
+use crate::ui::text::phrase::texts;
 
 texts! {
     SIMULATED: "SIMULATED", "仿真";

@@ -3,8 +3,7 @@
 pub(crate) mod main;
 pub(crate) mod notices;
 pub(crate) mod panels;
+mod phrase;
 pub(crate) mod words;
 
-pub(crate) use phrase::{Text, texts};
-
-mod phrase;
+pub(crate) use phrase::Text;

@@ -1,6 +1,6 @@
 //! Sentences of the plots, the fingertips, the fault list, the gestures and the connection.
 
-use crate::ui::text::texts;
+use crate::ui::text::phrase::texts;
 
 texts! {
     HISTORY: "History", "曲线";

@@ -26,10 +26,10 @@ macro_rules! texts {
     ($($name:ident: $en:literal, $zh:literal;)*) => {
         $(
             #[doc = $en]
-            pub(crate) const $name: $crate::ui::text::Text = $crate::ui::text::Text { en: $en, zh: $zh };
+            pub(crate) const $name: $crate::ui::text::phrase::Text = $crate::ui::text::phrase::Text { en: $en, zh: $zh };
         )*
         #[cfg(test)]
-        pub(crate) const ALL: &[$crate::ui::text::Text] = &[$($name),*];
+        pub(crate) const ALL: &[$crate::ui::text::phrase::Text] = &[$($name),*];
     };
 }
 pub(crate) use texts;

@@ -4,7 +4,8 @@ use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Finger, Status, Words};
 use crate::link::{ArmRefusal, LinkState};
 use crate::ui::look::Look;
-use crate::ui::text::{Text, main};
+use crate::ui::text::main;
+use crate::ui::text::phrase::Text;
 
 /// The name of a joint.
 pub(crate) const fn dof(dof: Dof) -> Text {

@@ -1,0 +1,108 @@
+//! How the link goes: state, rates, round trips, counts. Asks for nothing.
+
+use crate::ui::controls::{self, Label, take_right, take_top};
+use crate::ui::look::Pane;
+use crate::ui::text::{Text, notices, panels};
+use crate::ui::top_bar::link_words;
+use crate::ui::{format, theme};
+use egui::{Color32, Rect, Ui, pos2};
+
+/// Draws the card.
+pub(crate) fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    let look = pane.look;
+    let (_, mut body) = controls::titled_card(ui, look, rect, look.say(panels::LINK_NOW));
+    let (word, color) = link_words(pane);
+    let mut row = take_top(&mut body, 20.0);
+    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
+    row.min.x += 17.0;
+    let since = format::age(pane.state.now.since(pane.state.link.since));
+    let text = format!("{}, {} {since}", look.say(word), look.say(panels::SINCE));
+    Label::new(&text, look.palette.text).put(ui, row);
+    if let Some(endpoint) = &pane.state.endpoint {
+        let row = take_top(&mut body, 16.0);
+        Label::new(&endpoint.to_string(), look.palette.muted)
+            .number()
+            .put(ui, row);
+    }
+    if let Some(trouble) = &pane.state.link.trouble {
+        let text = notices::trouble(look, trouble);
+        paragraph_ui(ui, &mut body, &text, look.palette.bad);
+    }
+    take_top(&mut body, 0.0);
+    for group in figures(pane) {
+        for (caption, value, color) in group {
+            if body.height() < 18.0 {
+                return;
+            }
+            let mut row = take_top(&mut body, 18.0);
+            body.min.y -= theme::GAP - 2.0;
+            let caption = look.say(caption);
+            let right = take_right(&mut row, 96.0);
+            Label::new(caption, look.palette.muted).put(ui, row);
+            Label::new(&value, color)
+                .number()
+                .right()
+                .named(caption)
+                .put(ui, right);
+        }
+        body.min.y += theme::STEP;
+        let stroke = egui::Stroke::new(1.0, look.palette.grid);
+        ui.painter().hline(body.x_range(), body.top(), stroke);
+        body.min.y += theme::STEP + 2.0;
+    }
+}
+
+type Figures = Vec<(Text, String, Color32)>;
+
+fn figures(pane: &Pane<'_>) -> [Figures; 3] {
+    let palette = pane.look.palette;
+    let stats = &pane.state.stats;
+    let live = pane.state.link.state.is_live();
+    let plain = if live { palette.text } else { palette.faint };
+    let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
+    let trip = |value: Option<_>| format!("{} ms", format::millis(value.filter(|_| live)));
+    let count = |text, value: u64| (text, value.to_string(), palette.text);
+    let bad = |text, value: u64| {
+        (
+            text,
+            value.to_string(),
+            if value > 0 {
+                palette.warn
+            } else {
+                palette.text
+            },
+        )
+    };
+    [
+        vec![
+            (panels::STATE_RATE, rate(stats.state_hz), plain),
+            (panels::TACTILE_RATE, rate(stats.tactile_hz), plain),
+            (panels::RTT_P50, trip(stats.rtt_p50), plain),
+            (panels::RTT_P99, trip(stats.rtt_p99), plain),
+        ],
+        vec![
+            count(panels::READS, stats.state_reads + stats.tactile_reads),
+            count(panels::WRITES, stats.writes),
+            count(panels::RECONNECTS, stats.reconnects),
+        ],
+        vec![
+            bad(panels::TIMEOUTS, stats.timeouts),
+            bad(panels::CHECKSUMS, stats.checksum_errors),
+            bad(panels::RESYNCS, stats.resyncs),
+            bad(panels::FOREIGN, stats.foreign_replies),
+            bad(panels::REFUSALS, stats.refusals),
+            bad(panels::DROPPED, stats.dropped_events),
+        ],
+    ]
+}
+
+/// A text over as many lines as it needs, cut from the top of what is left.
+pub(crate) fn paragraph_ui(ui: &mut Ui, body: &mut Rect, text: &str, color: Color32) {
+    let galley = ui
+        .painter()
+        .layout(text.to_owned(), theme::body(), color, body.width());
+    let place = take_top(body, galley.size().y);
+    let response = ui.allocate_rect(place, egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
+    ui.painter().galley(place.min, galley, color);
+}
