@@ -1,6 +1,7 @@
 //! The real window: eframe around the cockpit, and the one thread that all links run on. Draws nothing itself.
 
-use crate::app::{Env, Settings, SimDial};
+use crate::app::config::Loaded;
+use crate::app::{App, Env, SimDial};
 use crate::hand::Moment;
 use crate::link::{Clock, Wake};
 use crate::shell::Cockpit;
@@ -23,8 +24,8 @@ const SMALLEST_SIZE: [f32; 2] = [1024.0, 640.0];
 pub struct DesktopStart {
     /// The hand named on the command line.
     pub endpoint: Option<Endpoint>,
-    /// What was kept from last time.
-    pub settings: Settings,
+    /// What was kept from last time, and what is to be said about it.
+    pub loaded: Loaded,
     /// Where it is kept.
     pub settings_path: Option<PathBuf>,
 }
@@ -96,7 +97,12 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
 }
 
 fn failure(cause: &str) -> DesktopError {
-    let cause = cause.trim().to_owned();
+    // The libraries put the place in their own source before what went wrong.
+    let words = cause
+        .rsplit_once(".rs:")
+        .and_then(|(_, rest)| rest.split_once(": "));
+    let cause = words.map_or(cause, |(_, words)| words);
+    let cause = cause.trim().trim_end_matches('.').to_owned();
     let words = cause.to_lowercase();
     if [
         "wayland_display",
@@ -141,8 +147,12 @@ impl Desktop {
             wake,
             settings_path: start.settings_path,
         };
-        let mut cockpit = Cockpit::new(crate::app::App::new(env, start.settings));
-        cockpit.app().open(start.endpoint, clock.now());
+        let mut app = App::new(env, start.loaded.settings);
+        if let Some(notice) = start.loaded.notice {
+            app.tell(notice, clock.now());
+        }
+        app.open(start.endpoint, clock.now());
+        let cockpit = Cockpit::new(app);
         Self {
             cockpit,
             clock,
@@ -200,8 +210,11 @@ mod tests {
 
     #[test]
     fn no_display_is_told_from_a_missing_library() {
-        let none = failure("neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set.");
-        assert!(matches!(none, DesktopError::NoDisplay { .. }));
+        let none = failure(
+            "winit EventLoopError: os error at /root/winit-0.30.13/src/mod.rs:765: neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set.",
+        );
+        let cause = "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set".to_owned();
+        assert_eq!(none, DesktopError::NoDisplay { cause });
         assert!(none.to_string().contains("snapshot"));
         let missing = failure("libXcursor.so.1: cannot open shared object file");
         assert!(matches!(missing, DesktopError::MissingLibrary { .. }));

@@ -1,6 +1,7 @@
 //! Handscope watches, drives and tunes the FTP series tactile hand.
 
 pub mod app;
+pub mod cli;
 pub mod codec;
 #[cfg(feature = "desktop")]
 pub mod desktop;

@@ -1,9 +1,13 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
 use crate::app::settings::{Language, Theme};
-use crate::hand::HandId;
+use crate::cli::names;
+use crate::hand::{HandId, Register};
+use crate::sim::Scenario;
 use crate::transport::Endpoint;
+use crate::ui::View;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -25,16 +29,24 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Draw the window to PNG files, without display, GPU or driver
-    #[command(after_help = "Examples:\n  handscope snapshot --scenario grasp --at 3 --view all --out pictures\n  handscope snapshot --view live --size 1024x640 --theme light --lang zh --out pictures\n\nNext to each PNG stands a JSON file that lists what is visible: role, name, value, place.")]
+    #[command(
+        after_help = "Examples:\n  handscope snapshot --scenario grasp --at 3 --view all --out pictures\n  handscope snapshot --view live --size 1024x640 --theme light --lang zh --out pictures\n\nNext to each PNG stands a JSON file that lists what is visible: role, name, value, place."
+    )]
     Snapshot(SnapshotArgs),
     /// Print what the hand says, as it says it
-    #[command(after_help = "Examples:\n  handscope watch --hand sim: --for 5\n  handscope watch --hand rs485:/dev/ttyUSB0 --for 5 --json\n\nOnly reads are sent. With --json each line is one object; the last holds the statistics.")]
+    #[command(
+        after_help = "Examples:\n  handscope watch --hand sim: --for 5\n  handscope watch --hand rs485:/dev/ttyUSB0 --for 5 --json\n\nOnly reads are sent. With --json each line is one object; the last holds the statistics."
+    )]
     Watch(WatchArgs),
     /// Read registers by the manual's names
-    #[command(after_help = "Examples:\n  handscope read ANGLE_ACT TEMP --hand rs485:/dev/ttyUSB0\n  handscope read HAND_ID --hand tcp:192.168.11.210 --json\n\n'handscope registers' lists the names.")]
+    #[command(
+        after_help = "Examples:\n  handscope read ANGLE_ACT TEMP --hand rs485:/dev/ttyUSB0\n  handscope read HAND_ID --hand tcp:192.168.11.210 --json\n\n'handscope registers' lists the names."
+    )]
     Read(ReadArgs),
     /// Be a hand for other programs: on a pseudo-terminal, on TCP, or both
-    #[command(after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n\nIt runs until Ctrl-C. All wires lead to one hand.")]
+    #[command(
+        after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n\nIt runs until Ctrl-C. All wires lead to one hand."
+    )]
     Sim(SimArgs),
     /// Print the register map
     Registers(RegistersArgs),
@@ -47,16 +59,16 @@ pub(crate) struct SnapshotArgs {
     pub(crate) hand: Option<Endpoint>,
     /// What the built-in hand does: idle, grasp, faults, extremes
     #[arg(long, value_name = "NAME", conflicts_with = "hand")]
-    pub(crate) scenario: Option<String>,
+    pub(crate) scenario: Option<Scenario>,
     /// Seed of the built-in hand
     #[arg(long, default_value_t = 1, conflicts_with = "hand")]
     pub(crate) seed: u64,
     /// Seconds after connecting
     #[arg(long, value_name = "SECONDS", default_value = "3", value_parser = seconds)]
     pub(crate) at: Duration,
-    /// One view, or all of them and the whole window
-    #[arg(long, value_name = "NAME", default_value = "window")]
-    pub(crate) view: String,
+    /// One view (live, touch, faults, gestures, connection), the window as it opens, or all of them
+    #[arg(long, value_name = "NAME", default_value = "window", value_parser = views)]
+    pub(crate) view: Views,
     /// Width x height in points
     #[arg(long, value_name = "WxH", default_value = "1440x900", value_parser = size)]
     pub(crate) size: (u32, u32),
@@ -93,8 +105,8 @@ pub(crate) struct WatchArgs {
 #[derive(Debug, Args)]
 pub(crate) struct ReadArgs {
     /// Registers by name, in any letter case
-    #[arg(required = true, value_name = "NAME")]
-    pub(crate) names: Vec<String>,
+    #[arg(required = true, value_name = "NAME", value_parser = names::register)]
+    pub(crate) names: Vec<&'static Register>,
     /// The hand to read
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Endpoint,
@@ -107,8 +119,8 @@ pub(crate) struct ReadArgs {
 #[command(group = clap::ArgGroup::new("wire").required(true).multiple(true).args(["tcp", "rs485"]))]
 pub(crate) struct SimArgs {
     /// Serve Modbus TCP here, for example 127.0.0.1:6000
-    #[arg(long, value_name = "ADDR:PORT")]
-    pub(crate) tcp: Option<String>,
+    #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
+    pub(crate) tcp: Option<SocketAddr>,
     /// Make a pseudo-terminal and link it here; serve RS485 private framing on it
     #[arg(long, value_name = "LINK")]
     pub(crate) rs485: Option<PathBuf>,
@@ -120,7 +132,7 @@ pub(crate) struct SimArgs {
     pub(crate) seed: u64,
     /// What it does: idle, grasp, faults, extremes
     #[arg(long, value_name = "NAME", default_value = "idle")]
-    pub(crate) scenario: String,
+    pub(crate) scenario: Scenario,
 }
 
 #[derive(Debug, Args)]
@@ -128,6 +140,17 @@ pub(crate) struct RegistersArgs {
     /// One JSON list
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Which pictures are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Views {
+    /// The window as it opens.
+    Window,
+    /// The window with this view open.
+    One(View),
+    /// Each view, and the window as it opens.
+    All,
 }
 
 /// The window's colours.
@@ -175,17 +198,39 @@ Exit status: 0 done, 1 could not, 2 wrong usage.";
 const SECONDS_MAX: f64 = 86_400.0;
 
 fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds: f64 = text.parse().map_err(|_| format!("'{text}' is no number of seconds"))?;
+    let seconds: f64 = text
+        .parse()
+        .map_err(|_not_one| format!("'{text}' is no number of seconds"))?;
     if !(0.0..=SECONDS_MAX).contains(&seconds) {
         return Err(format!("{text} is not between 0 and {SECONDS_MAX} seconds"));
     }
     Ok(Duration::from_secs_f64(seconds))
 }
 
+fn views(text: &str) -> Result<Views, String> {
+    match text {
+        "window" => Ok(Views::Window),
+        "all" => Ok(Views::All),
+        name => View::by_name(name).map(Views::One).ok_or_else(|| {
+            let known = View::ALL.map(View::name).join(", ");
+            format!("there is no such view: choose {known}, window or all")
+        }),
+    }
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_not_one| {
+        "write an address in numbers and a port, for example 127.0.0.1:6000".to_owned()
+    })
+}
+
 fn size(text: &str) -> Result<(u32, u32), String> {
     let wrong = || format!("'{text}' is no size: write WIDTHxHEIGHT, from 640x400 to 7680x4320");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
-    let (width, height) = (width.parse().map_err(|_| wrong())?, height.parse().map_err(|_| wrong())?);
+    let (width, height) = (
+        width.parse().map_err(|_not_one| wrong())?,
+        height.parse().map_err(|_not_one| wrong())?,
+    );
     if (640..=7680).contains(&width) && (400..=4320).contains(&height) {
         return Ok((width, height));
     }
@@ -195,12 +240,16 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 fn scale(text: &str) -> Result<f32, String> {
     match text.parse() {
         Ok(scale) if (0.5..=4.0).contains(&scale) => Ok(scale),
-        _ => Err(format!("'{text}' is no scale: write a number from 0.5 to 4")),
+        _ => Err(format!(
+            "'{text}' is no scale: write a number from 0.5 to 4"
+        )),
     }
 }
 
 fn hand_id(text: &str) -> Result<HandId, String> {
-    let id: i64 = text.parse().map_err(|_| format!("'{text}' is no whole number"))?;
+    let id: i64 = text
+        .parse()
+        .map_err(|_not_one| format!("'{text}' is no whole number"))?;
     HandId::new(id).map_err(|error| error.to_string())
 }
 
@@ -226,7 +275,13 @@ mod tests {
             "handscope sim",
             "handscope sim --tcp 127.0.0.1:6000 --id 0",
             "handscope sim --tcp 127.0.0.1:6000 --id 255",
+            "handscope read ANGLE_ATC --hand sim:",
+            "handscope sim --tcp 6000",
+            "handscope sim --tcp localhost:6000",
+            "handscope sim --tcp 127.0.0.1:6000 --scenario party",
             "handscope snapshot",
+            "handscope snapshot --out x --view nowhere",
+            "handscope snapshot --out x --scenario party",
             "handscope snapshot --out x --size 10x10",
             "handscope snapshot --out x --scale 0",
             "handscope snapshot --out x --hand sim: --scenario grasp",

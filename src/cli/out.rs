@@ -1,34 +1,104 @@
-//! Standard output, locked once and flushed by line. A reader that went away ends the command quietly.
+//! Standard output, locked once and gathered, and words for a person on standard error. A reader that went away ends
+//! the command quietly.
 
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
-/// Where a command's results go.
+/// Bytes gathered before they go out by themselves: some twenty samples, so that a full-rate stream is not a system
+/// call a line.
+const GATHERED: usize = 64 * 1024;
+
+/// Where a command's results go. What is written shows at [`Out::flush`] at the latest.
 pub(crate) struct Out {
-    to: Box<dyn Write>,
+    to: BufWriter<Box<dyn Write>>,
 }
 
 /// The reader of our output closed it, as `head` does.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the reader of the output went away")]
 pub(crate) struct ReaderGone;
 
 impl Out {
     /// The process's standard output.
     pub(crate) fn stdout() -> Self {
-        Self { to: Box::new(io::stdout().lock()) }
+        Self::to(Box::new(io::stdout().lock()))
+    }
+
+    fn to(to: Box<dyn Write>) -> Self {
+        Self {
+            to: BufWriter::with_capacity(GATHERED, to),
+        }
     }
 
     /// Writes one line.
     pub(crate) fn line(&mut self, line: &str) -> anyhow::Result<()> {
-        let written = writeln!(self.to, "{line}").and_then(|()| self.to.flush());
-        match written {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(ReaderGone.into()),
-            other => Ok(other?),
-        }
+        checked(writeln!(self.to, "{line}"))
+    }
+
+    /// Shows what was written until now.
+    pub(crate) fn flush(&mut self) -> anyhow::Result<()> {
+        checked(self.to.flush())
+    }
+}
+
+fn checked(written: io::Result<()>) -> anyhow::Result<()> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(ReaderGone.into()),
+        Err(error) => Err(anyhow::Error::new(error).context("cannot write to standard output")),
+        Ok(()) => Ok(()),
     }
 }
 
 /// Tells a person on standard error what is going on.
 pub(crate) fn say(words: &str) {
-    let _nobody_reads = writeln!(io::stderr().lock(), "{words}");
+    // Where nobody can read, nobody can be told.
+    let _unread = writeln!(io::stderr().lock(), "handscope: {words}");
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    struct Page(Rc<RefCell<Vec<u8>>>);
+
+    impl Write for Page {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.borrow_mut().extend_from_slice(bytes);
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    struct Closed;
+
+    impl Write for Closed {
+        fn write(&mut self, _bytes: &[u8]) -> io::Result<usize> {
+            Err(io::ErrorKind::BrokenPipe.into())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn lines_are_gathered_until_the_flush() {
+        let page = Rc::new(RefCell::new(Vec::new()));
+        let mut out = Out::to(Box::new(Page(Rc::clone(&page))));
+        out.line("one").unwrap();
+        out.line("two").unwrap();
+        assert!(page.borrow().is_empty());
+        out.flush().unwrap();
+        assert_eq!(*page.borrow(), b"one\ntwo\n");
+    }
+
+    #[test]
+    fn a_closed_reader_is_told_from_other_failures() {
+        let mut out = Out::to(Box::new(Closed));
+        out.line("one").unwrap();
+        assert!(out.flush().unwrap_err().is::<ReaderGone>());
+    }
 }

@@ -12,7 +12,17 @@ pub(crate) fn run(out: &mut Out, as_json: bool) -> anyhow::Result<()> {
     }
     out.line(&format!(
         "{:<20} {:>7} {:>5}  {:<7} {:<3} {:<13} {:>7} {:<4} {:<8} {:<7} {}",
-        "name", "address", "bytes", "element", "rw", "range", "default", "unit", "kept", "manual", "meaning"
+        "name",
+        "address",
+        "bytes",
+        "element",
+        "rw",
+        "range",
+        "default",
+        "unit",
+        "kept",
+        "manual",
+        "meaning"
     ))?;
     for row in &REGISTERS {
         out.line(&row_text(row))?;
@@ -21,12 +31,19 @@ pub(crate) fn run(out: &mut Out, as_json: bool) -> anyhow::Result<()> {
 }
 
 fn row_text(row: &Register) -> String {
-    let range = row.range.map_or_else(|| "-".into(), |(min, max)| {
-        let also = row.also.map_or_else(String::new, |also| format!("{also}, "));
-        format!("{also}{min}..{max}")
-    });
+    let range = row.range.map_or_else(
+        || "-".into(),
+        |(min, max)| {
+            let also = row
+                .also
+                .map_or_else(String::new, |also| format!("{also}, "));
+            format!("{also}{min}..{max}")
+        },
+    );
     let mark = if row.origin == Origin::Field { "*" } else { "" };
-    let default = row.default.map_or_else(|| "-".into(), |default| default.to_string());
+    let default = row
+        .default
+        .map_or_else(|| "-".into(), |default| default.to_string());
     format!(
         "{:<20} {:>7} {:>5}  {:<7} {:<3} {:<13} {:>7} {:<4} {:<8} {:<7} {}",
         format!("{}{mark}", row.name),

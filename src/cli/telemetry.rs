@@ -1,6 +1,6 @@
 //! Samples and statistics as the JSON lines and the text of `watch`. Pure; a contract with scripts.
 
-use crate::hand::{Faults, Finger, HandSample, Moment, PerDof, Status, TactileBlock, Timed};
+use crate::hand::{Fault, Faults, Finger, HandSample, Moment, PerDof, Status, TactileBlock, Timed};
 use crate::link::LinkStats;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -22,7 +22,7 @@ pub(crate) fn sample_json(sample: &HandSample, at: Moment) -> Value {
         "temp_c": six(sample.temperature, |temperature| json!(temperature.raw())),
         "status": six(sample.status, |status| json!(status.name())),
         "status_raw": six(sample.status, |status| json!(status.raw())),
-        "faults": six(sample.faults, |faults| json!(faults.iter().map(crate::hand::Fault::name).collect::<Vec<_>>())),
+        "faults": six(sample.faults, |faults| json!(fault_names(*faults))),
         "error_raw": six(sample.faults, |faults| json!(faults.raw())),
         "tactile": tactile,
     })
@@ -55,11 +55,33 @@ pub(crate) fn sample_text(sample: &HandSample, at: Moment) -> String {
         let values = values.map_or_else(|| "-".into(), |values| values.join(" "));
         let _infallible = write!(line, "  {name} {values}{unit}");
     };
-    part("angle", "", words(sample.angle, |angle| format!("{:4}", angle.raw())));
-    part("force", " g", words(sample.force, |force| format!("{:5}", force.raw())));
-    part("current", " mA", words(sample.current, |current| format!("{:4}", current.raw())));
-    part("temp", " C", words(sample.temperature, |temperature| format!("{:3}", temperature.raw())));
-    part("status", "", words(sample.status, |status| state_word(*status)));
+    part(
+        "angle",
+        "",
+        words(sample.angle, |angle| format!("{:4}", angle.raw())),
+    );
+    part(
+        "force",
+        " g",
+        words(sample.force, |force| format!("{:5}", force.raw())),
+    );
+    part(
+        "current",
+        " mA",
+        words(sample.current, |current| format!("{:4}", current.raw())),
+    );
+    part(
+        "temp",
+        " C",
+        words(sample.temperature, |temperature| {
+            format!("{:3}", temperature.raw())
+        }),
+    );
+    part(
+        "status",
+        "",
+        words(sample.status, |status| status_name(*status)),
+    );
     if sample.has_fault() {
         part("faults", "", words(sample.faults, fault_words));
     }
@@ -68,7 +90,9 @@ pub(crate) fn sample_text(sample: &HandSample, at: Moment) -> String {
 
 /// The statistics as lines for a person.
 pub(crate) fn stats_text(stats: &LinkStats, elapsed: Duration) -> String {
-    let rtt = |value: Option<Duration>| millis(value).map_or_else(|| "-".into(), |ms| format!("{ms:.2} ms"));
+    let rtt = |value: Option<Duration>| {
+        millis(value).map_or_else(|| "-".into(), |ms| format!("{ms:.2} ms"))
+    };
     format!(
         "{:.1} s: {} states ({:.1} a second), {} touch sweeps ({:.1} a second), round trip {} (99 %: {})\n\
          {} timeouts, {} checksum errors, {} resyncs, {} foreign replies, {} refusals, {} reconnects",
@@ -93,9 +117,9 @@ pub(crate) fn tactile_json(finger: Finger, block: Option<&TactileBlock>) -> Valu
     json!({
         "finger": finger.name(),
         "raw": block.map(|block| block.raw),
-        "normal_n": block.and_then(TactileBlock::normal),
+        "normal_n": block.and_then(TactileBlock::normal).and_then(plain),
         "normal_delta": block.map(|block| block.normal_delta),
-        "tangential_n": block.and_then(TactileBlock::tangential),
+        "tangential_n": block.and_then(TactileBlock::tangential).and_then(plain),
         "tangential_delta": block.map(|block| block.tangential_delta),
         "direction_deg": block.and_then(TactileBlock::direction_deg),
         "proximity": block.map(|block| block.proximity),
@@ -111,18 +135,32 @@ fn words<T>(group: Option<Timed<PerDof<T>>>, word: impl Fn(&T) -> String) -> Opt
     group.map(|group| group.value.as_array().each_ref().map(word))
 }
 
-fn state_word(status: Status) -> String {
+/// A status in one word; a code that the manual does not list keeps its number.
+pub(crate) fn status_name(status: Status) -> String {
     match status {
         Status::Unknown(raw) => format!("unknown({raw})"),
         known => known.name().into(),
     }
 }
 
-fn fault_words(faults: &Faults) -> String {
-    let names: Vec<_> = faults.iter().map(crate::hand::Fault::name).collect();
-    if names.is_empty() { "none".into() } else { names.join("+") }
+/// The faults of one joint, lowest bit first.
+pub(crate) fn fault_names(faults: Faults) -> Vec<&'static str> {
+    faults.iter().map(Fault::name).collect()
 }
 
+fn fault_words(faults: &Faults) -> String {
+    let names = fault_names(*faults);
+    if names.is_empty() {
+        "none".into()
+    } else {
+        names.join("+")
+    }
+}
+
+/// The shortest number that means this float: 0.3, not 0.30000001192092896.
+fn plain(newtons: f32) -> Option<f64> {
+    newtons.to_string().parse().ok()
+}
 
 fn millis(value: Option<Duration>) -> Option<f64> {
     value.map(|value| rounded(value.as_secs_f64() * 1000.0))
@@ -143,7 +181,17 @@ mod tests {
     fn what_was_not_read_is_null() {
         let json = sample_json(&HandSample::default(), Moment::from_micros(1_500_000));
         assert_eq!(json["t_s"], 1.5);
-        for key in ["angle", "position", "force_g", "current_ma", "temp_c", "status", "status_raw", "faults", "error_raw"] {
+        for key in [
+            "angle",
+            "position",
+            "force_g",
+            "current_ma",
+            "temp_c",
+            "status",
+            "status_raw",
+            "faults",
+            "error_raw",
+        ] {
             assert!(json[key].is_null(), "{key}");
         }
         assert_eq!(json["tactile"].as_array().unwrap().len(), 5);
@@ -162,10 +210,18 @@ mod tests {
         bytes[77] = 255;
         let mut sample = HandSample::default();
         let at = Moment::ZERO;
-        sample.take(&Reply { span: register::STATE, bytes: &bytes, asked: at, received: at });
+        sample.take(&Reply {
+            span: register::STATE,
+            bytes: &bytes,
+            asked: at,
+            received: at,
+        });
         let json = sample_json(&sample, at);
         assert_eq!(json["angle"], json!([1000, 0, 0, 0, 0, 7]));
-        assert_eq!(json["faults"][0], json!(["over_temperature", "over_current"]));
+        assert_eq!(
+            json["faults"][0],
+            json!(["over_temperature", "over_current"])
+        );
         assert_eq!(json["error_raw"][0], 6);
         assert_eq!(json["status"][0], "force_reached");
         assert_eq!(json["status"][1], "unknown");
@@ -178,7 +234,18 @@ mod tests {
     #[test]
     fn the_statistics_have_the_documented_keys() {
         let json = stats_json(&LinkStats::default(), Duration::from_secs(5));
-        for key in ["elapsed_s", "state_reads", "tactile_reads", "state_hz", "tactile_hz", "rtt_ms", "timeouts", "checksum_errors", "resyncs", "reconnects"] {
+        for key in [
+            "elapsed_s",
+            "state_reads",
+            "tactile_reads",
+            "state_hz",
+            "tactile_hz",
+            "rtt_ms",
+            "timeouts",
+            "checksum_errors",
+            "resyncs",
+            "reconnects",
+        ] {
             assert!(!json["stats"][key].is_null(), "{key}");
         }
         assert!(json["stats"]["rtt_ms"]["p50"].is_null());

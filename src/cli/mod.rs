@@ -1,0 +1,55 @@
+//! The terminal's side of the program: what the command line asks is done here, and how it ended is told. Knows no
+//! protocol and draws nothing.
+
+mod args;
+mod interrupt;
+mod names;
+mod out;
+mod read;
+mod registers;
+mod session;
+mod sim;
+mod snapshot;
+mod telemetry;
+mod value;
+mod watch;
+mod window;
+
+use args::{Cli, Command};
+use clap::Parser as _;
+use out::{Out, ReaderGone};
+use std::process::ExitCode;
+
+/// Does what the command line asks. Errors go to standard error as one sentence each.
+///
+/// The exit status is 0 when done, 1 if it could not be done; wrong usage ends the process with 2.
+#[must_use]
+pub fn run() -> ExitCode {
+    let Cli { hand, command } = Cli::parse();
+    let done = match command {
+        None => window::run(hand),
+        Some(command) => obey(command),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.is::<ReaderGone>() => ExitCode::SUCCESS,
+        Err(error) => {
+            out::say(&format!("{error:#}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn obey(command: Command) -> anyhow::Result<()> {
+    let mut out = Out::stdout();
+    let done = match command {
+        Command::Snapshot(args) => snapshot::run(&mut out, &args),
+        Command::Watch(args) => watch::run(&mut out, args),
+        Command::Read(args) => read::run(&mut out, args),
+        Command::Sim(args) => sim::run(&mut out, &args),
+        Command::Registers(args) => registers::run(&mut out, args.json),
+    };
+    // What was found out before a failure is shown as well.
+    let shown = out.flush();
+    done.and(shown)
+}

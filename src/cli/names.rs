@@ -1,0 +1,98 @@
+//! Names that a person types: registers by the manual's names, and which known one a wrong one was meant to be.
+
+use crate::hand::register::{self, REGISTERS, Register};
+
+/// How many known names are suggested for a wrong one.
+const SUGGESTED: usize = 3;
+
+/// The register of this name, in any letter case. The error names those that look most like it.
+pub(crate) fn register(name: &str) -> Result<&'static Register, String> {
+    let known = || REGISTERS.iter().map(|row| row.name);
+    register::by_name(name).ok_or_else(|| {
+        format!(
+            "the hand has no register of this name; nearest are {}; 'handscope registers' lists all",
+            nearest(name, known()).join(", ")
+        )
+    })
+}
+
+/// The known names that look most like this one, best first.
+fn nearest(name: &str, known: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
+    let name = name.to_uppercase();
+    let mut ranked: Vec<(usize, &str)> = known.map(|one| (unlikeness(&name, one), one)).collect();
+    ranked.sort_by_key(|(unlike, _)| *unlike);
+    ranked
+        .into_iter()
+        .take(SUGGESTED)
+        .map(|(_, one)| one)
+        .collect()
+}
+
+/// Letters to change, with a bonus for names that hold each other.
+fn unlikeness(name: &str, known: &str) -> usize {
+    let holds = name.len() > 2 && (known.contains(name) || name.contains(known));
+    if holds { 1 } else { 2 + distance(name, known) }
+}
+
+/// The edit distance of two texts (Levenshtein), in letters.
+fn distance(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (line, letter) in from.chars().enumerate() {
+        let mut left = line + 1;
+        let mut next = vec![left];
+        for (wanted, above) in to.iter().zip(row.windows(2)) {
+            let (corner, above) = match above {
+                [corner, above] => (*corner, *above),
+                _ => (left, left),
+            };
+            let changed = corner + usize::from(*wanted != letter);
+            left = changed.min(above + 1).min(left + 1);
+            next.push(left);
+        }
+        row = next;
+    }
+    row.last().copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+
+    #[test]
+    fn distances_are_counted_in_letters() {
+        for (from, to, letters) in [
+            ("", "", 0),
+            ("", "TEMP", 4),
+            ("TEMP", "", 4),
+            ("TEMP", "TEMP", 0),
+            ("TMEP", "TEMP", 2),
+            ("TEM", "TEMP", 1),
+            ("STATUT", "STATUS", 1),
+        ] {
+            assert_eq!(distance(from, to), letters, "{from} {to}");
+        }
+    }
+
+    #[test]
+    fn a_mistyped_register_is_met_with_the_right_one() {
+        for (wrong, right) in [
+            ("ANGLE_ATC", "ANGLE_ACT"),
+            ("angle_act(m)", "ANGLE_ACT"),
+            ("TEMPERATURE", "TEMP"),
+            ("hand_ide", "HAND_ID"),
+            ("SPEED", "SPEED_SET"),
+        ] {
+            let words = register(wrong).unwrap_err();
+            assert!(words.contains(right), "{wrong}: {words}");
+        }
+    }
+
+    #[test]
+    fn every_register_is_found_in_any_letter_case() {
+        for row in &REGISTERS {
+            assert_eq!(register(&row.name.to_lowercase()).unwrap(), row);
+        }
+    }
+}

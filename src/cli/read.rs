@@ -1,0 +1,83 @@
+//! `read`: registers by the manual's names, asked one by one and decoded. Writes nothing to the hand.
+
+use crate::cli::args::ReadArgs;
+use crate::cli::out::{Out, say};
+use crate::cli::session::{self, ANSWER_WITHIN};
+use crate::cli::value::{value_json, value_text};
+use crate::hand::Register;
+use crate::link::{
+    Clock, LinkEvent, LinkHandle, Outcome, PollRates, Request, RequestError, Ticket,
+};
+use anyhow::bail;
+use serde_json::{Map, Value};
+use tokio::time::timeout;
+
+/// The link asks for nothing by itself: the line belongs to the registers that were named.
+const ONLY_WHAT_IS_ASKED: PollRates = PollRates {
+    state_hz: 0.0,
+    tactile_hz: 0.0,
+    settings_hz: 0.0,
+};
+
+/// Reads the registers and prints them. Fails if any could not be read.
+pub(crate) fn run(out: &mut Out, args: ReadArgs) -> anyhow::Result<()> {
+    session::runtime()?.block_on(read(out, &args))
+}
+
+async fn read(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
+    let mut link = session::open(&args.hand, ONLY_WHAT_IS_ASKED, Clock::start());
+    session::answered(&link, &args.hand).await?;
+    let mut values = Map::new();
+    let mut failed = 0;
+    for row in &args.names {
+        let bytes = match ask(&mut link, row).await {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                say(&format!("cannot read {}: {error}", row.name));
+                failed += 1;
+                Vec::new()
+            }
+        };
+        if args.json {
+            values.insert(row.name.into(), value_json(row, &bytes));
+        } else if !bytes.is_empty() {
+            out.line(&value_text(row, &bytes))?;
+        }
+    }
+    if args.json {
+        out.line(&Value::Object(values).to_string())?;
+    }
+    if failed > 0 {
+        bail!(
+            "{failed} of {} registers could not be read",
+            args.names.len()
+        );
+    }
+    Ok(())
+}
+
+async fn ask(link: &mut LinkHandle, row: &Register) -> Result<Vec<u8>, RequestError> {
+    let ticket = link.ask(Request::Read(row.span()))?;
+    match timeout(ANSWER_WITHIN, end_of(link, ticket)).await {
+        Ok(end) => end,
+        Err(_elapsed) => Err(RequestError::Timeout {
+            address: row.address,
+            after_ms: u64::try_from(ANSWER_WITHIN.as_millis()).unwrap_or(u64::MAX),
+        }),
+    }
+}
+
+async fn end_of(link: &mut LinkHandle, asked: Ticket) -> Result<Vec<u8>, RequestError> {
+    while let Some(event) = link.event().await {
+        match event {
+            LinkEvent::Done { ticket, result } if ticket == asked => {
+                return match result? {
+                    Outcome::Memory { bytes, .. } => Ok(bytes),
+                    Outcome::Acknowledged => Ok(Vec::new()),
+                };
+            }
+            _ => {}
+        }
+    }
+    Err(RequestError::LinkLost)
+}

@@ -1,0 +1,71 @@
+//! A link for a terminal command: its runtime, its clock, and the wait for a hand that answers. Prints nothing.
+
+use crate::app::SimDial;
+use crate::link::{self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates};
+use crate::transport::Endpoint;
+use anyhow::{Context as _, bail};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::runtime::{Builder, Runtime};
+use tokio::time::{Instant, sleep};
+
+/// A hand that is there answers long before; who waits longer wants to know why nothing comes.
+pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
+/// How often the wait looks.
+const LOOK_EACH: Duration = Duration::from_millis(10);
+
+/// A runtime of one thread: a reader of our output that is slow slows the reads down, and no sample is lost.
+pub(crate) fn runtime() -> anyhow::Result<Runtime> {
+    Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .context("cannot start the link")
+}
+
+/// Opens a link. Must be called within a tokio runtime; reads only.
+pub(crate) fn open(endpoint: &Endpoint, rates: PollRates, clock: Clock) -> LinkHandle {
+    let config = LinkConfig {
+        endpoint: endpoint.clone(),
+        rates,
+        clock,
+        dial: Arc::new(SimDial::new(clock)),
+        wake: Arc::new(|| ()),
+    };
+    link::open(config, &tokio::runtime::Handle::current())
+}
+
+/// Waits until the hand answers. The error says why it does not.
+pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::Result<()> {
+    let until = Instant::now() + ANSWER_WITHIN;
+    loop {
+        let status = link.status();
+        if status.state.is_live() {
+            return Ok(());
+        }
+        if let Some(trouble) = status.trouble {
+            bail!(no_hand(endpoint, &trouble));
+        }
+        if Instant::now() >= until {
+            bail!(unanswered(endpoint));
+        }
+        sleep(LOOK_EACH).await;
+    }
+}
+
+/// Why there is no hand, in one sentence that names it.
+pub(crate) fn no_hand(endpoint: &Endpoint, trouble: &LinkTrouble) -> String {
+    format!("no hand at {endpoint}: {trouble}")
+}
+
+/// That nothing at all was heard in time.
+pub(crate) fn unanswered(endpoint: &Endpoint) -> String {
+    format!(
+        "no hand at {endpoint}: nothing came within {} s; check power, cable, address and id",
+        ANSWER_WITHIN.as_secs()
+    )
+}
+
+/// The trouble of a link that is not live.
+pub(crate) fn trouble(status: &LinkStatus) -> Option<&LinkTrouble> {
+    status.trouble.as_ref().filter(|_| !status.state.is_live())
+}

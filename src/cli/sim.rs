@@ -1,0 +1,147 @@
+//! `sim`: one simulated hand on the wires that other programs can open. Runs until it is ended; the hand's behaviour is
+//! not decided here.
+
+use crate::cli::args::SimArgs;
+use crate::cli::interrupt::Interrupt;
+use crate::cli::out::{Out, say};
+use crate::sim::serve::modbus_tcp;
+use crate::sim::{SharedHand, SimConfig, SimHand};
+use anyhow::{Context as _, anyhow};
+use futures::future::BoxFuture;
+use std::io;
+use std::net::SocketAddr;
+use std::path::Path;
+use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::time::{Instant, interval};
+
+/// The hand lives on when nobody asks, so that its first answer after an hour does not have to catch up on it.
+const LIVE_EACH: Duration = Duration::from_millis(10);
+
+/// A wire being served; it resolves only if it fails.
+type Served = BoxFuture<'static, anyhow::Error>;
+
+/// Serves the hand until the person ends it.
+pub(crate) fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
+    tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .context("cannot start the simulated hand")?
+        .block_on(serve(out, args))
+}
+
+async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
+    let mut interrupt = Interrupt::listen()?;
+    let hand = SimHand::new(SimConfig {
+        seed: args.seed,
+        id: args.id.get(),
+        scenario: args.scenario,
+        ..SimConfig::default()
+    });
+    let hand = SharedHand::new(hand, Instant::now());
+    // Both wires are there before either is announced: who waits for one may use both.
+    let mut ready = Vec::new();
+    let tcp = match args.tcp {
+        Some(address) => {
+            let (served, bound) = serve_tcp(&hand, address).await?;
+            ready.push(format!("ready tcp {bound}"));
+            served
+        }
+        None => Box::pin(std::future::pending()),
+    };
+    let rs485 = match &args.rs485 {
+        Some(link) => {
+            let served = serve_rs485(&hand, link)?;
+            ready.push(format!("ready rs485 {}", link.display()));
+            served
+        }
+        None => Box::pin(std::future::pending()),
+    };
+    for line in &ready {
+        out.line(line)?;
+    }
+    out.flush()?;
+    tokio::select! {
+        biased;
+        () = interrupt.wished() => Ok(()),
+        error = tcp => Err(error),
+        error = rs485 => Err(error),
+        () = live(&hand) => Ok(()),
+    }
+}
+
+async fn live(hand: &SharedHand) {
+    let mut tick = interval(LIVE_EACH);
+    loop {
+        tick.tick().await;
+        hand.with(SimHand::advance_to);
+    }
+}
+
+async fn serve_tcp(hand: &SharedHand, address: SocketAddr) -> anyhow::Result<(Served, SocketAddr)> {
+    let listener = TcpListener::bind(address)
+        .await
+        .map_err(|error| anyhow!("cannot serve on {address}: {}", bind_words(&error)))?;
+    let bound = listener
+        .local_addr()
+        .context("cannot tell the address served on")?;
+    if !bound.ip().is_loopback() {
+        say(&format!(
+            "warning: anyone in the network can reach {bound} and move the simulated hand; 127.0.0.1 keeps it to this computer"
+        ));
+    }
+    let hand = hand.clone();
+    let served = async move {
+        match modbus_tcp::serve(hand, listener).await {
+            Ok(()) => anyhow!("the server on {bound} ended"),
+            Err(error) => anyhow!("the server on {bound} failed: {error}"),
+        }
+    };
+    Ok((Box::pin(served), bound))
+}
+
+fn bind_words(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::AddrInUse => {
+            "another program listens there already; end it or choose another port".into()
+        }
+        io::ErrorKind::AddrNotAvailable => {
+            "this computer does not have that address; 127.0.0.1 is always there".into()
+        }
+        io::ErrorKind::PermissionDenied => {
+            "the system does not allow it; choose a port from 1024 up".into()
+        }
+        _ => error.to_string(),
+    }
+}
+
+#[cfg(unix)]
+fn serve_rs485(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+    use crate::sim::serve::pty;
+    use crate::transport::TransportError;
+    let place = link.display().to_string();
+    let served = pty::serve_rs485(hand.clone(), link).map_err(|error| match error {
+        TransportError::NotAPort { .. } => {
+            anyhow!("cannot make the link {place}: something that is no link stands there; choose another path")
+        }
+        TransportError::Missing { .. } => {
+            anyhow!("cannot make the link {place}: its folder does not exist; make it first")
+        }
+        TransportError::Permission { .. } => {
+            anyhow!("cannot make the link {place}: you may not write to its folder; choose another")
+        }
+        other => anyhow!("cannot make the link {place}: {other}"),
+    })?;
+    Ok(Box::pin(async move {
+        served.await;
+        anyhow!("the pseudo-terminal behind {place} was closed")
+    }))
+}
+
+#[cfg(not(unix))]
+fn serve_rs485(_hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+    Err(anyhow!(
+        "cannot make {}: pseudo-terminals need Linux or macOS; use --tcp here",
+        link.display()
+    ))
+}

@@ -1,0 +1,191 @@
+//! The whole program without a window: lets time pass and takes pictures. A built-in hand is driven in virtual time,
+//! so that seconds take milliseconds and two runs give equal bytes. Writes no file.
+
+use crate::app::settings::{Language, Theme};
+use crate::app::{App, Env, Settings, SimDial};
+use crate::hand::Moment;
+use crate::headless::canvas::{Canvas, Picture};
+use crate::link::{Clock, LinkTrouble};
+use crate::shell::Cockpit;
+use crate::transport::Endpoint;
+use crate::ui::View;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::runtime::{Builder, Runtime};
+
+/// Time between two looks at the link, as the window has between two frames at 50 Hz.
+pub const STEP: Duration = Duration::from_millis(20);
+/// A hand that is there answers long before.
+pub const ANSWER_WITHIN: Duration = Duration::from_secs(3);
+
+/// What is to be shown, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The hand.
+    pub endpoint: Endpoint,
+    /// Width and height in points.
+    pub size: (u32, u32),
+    /// Pixels a point.
+    pub scale: f32,
+    /// Dark or light.
+    pub theme: Theme,
+    /// Language of the window.
+    pub language: Language,
+}
+
+/// Why there is nothing to show.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum DriveError {
+    /// The runtime could not be made.
+    #[error("the program cannot start its runtime: {cause}")]
+    Runtime {
+        /// The system's words.
+        cause: String,
+    },
+    /// The link says why the hand does not answer.
+    #[error("no hand at {endpoint}: {trouble}")]
+    NoHand {
+        /// The hand that was wanted.
+        endpoint: Endpoint,
+        /// Why it is not there.
+        trouble: LinkTrouble,
+    },
+    /// Nothing at all was heard in time.
+    #[error(
+        "no hand at {endpoint}: nothing came within {after_s} s; check power, cable, address and id"
+    )]
+    Unanswered {
+        /// The hand that was wanted.
+        endpoint: Endpoint,
+        /// How long was waited.
+        after_s: u64,
+    },
+}
+
+/// A running program and the screen it is drawn on.
+pub struct Driver {
+    // The cockpit's link lives on the runtime, so it goes first.
+    cockpit: Cockpit,
+    canvas: Canvas,
+    clock: Clock,
+    endpoint: Endpoint,
+    runtime: Runtime,
+}
+
+impl Driver {
+    /// Starts the program and begins to connect. Nothing is written to the hand, and no settings are read or kept.
+    ///
+    /// # Errors
+    /// [`DriveError::Runtime`].
+    pub fn start(scene: &Scene) -> Result<Self, DriveError> {
+        let runtime = Builder::new_current_thread()
+            .enable_all()
+            .start_paused(scene.endpoint.is_sim())
+            .build()
+            .map_err(|error| DriveError::Runtime {
+                cause: error.to_string(),
+            })?;
+        let inside = runtime.enter();
+        let clock = Clock::start();
+        let env = Env {
+            runtime: runtime.handle().clone(),
+            clock,
+            dial: Arc::new(SimDial::new(clock)),
+            wake: Arc::new(|| ()),
+            settings_path: None,
+        };
+        let settings = Settings {
+            theme: scene.theme,
+            language: scene.language,
+            ..Settings::default()
+        };
+        let mut app = App::new(env, settings);
+        app.open(Some(scene.endpoint.clone()), clock.now());
+        drop(inside);
+        let mut driver = Self {
+            cockpit: Cockpit::new(app),
+            canvas: Canvas::new(scene.size, scene.scale),
+            clock,
+            endpoint: scene.endpoint.clone(),
+            runtime,
+        };
+        driver.dress();
+        Ok(driver)
+    }
+
+    /// The first frame puts fonts and style into the screen; they must hold still after that.
+    fn dress(&mut self) {
+        let now = self.now();
+        let cockpit = &mut self.cockpit;
+        self.canvas.frame(now.secs(), |ui| cockpit.ui(ui, now));
+        self.canvas.hold_still();
+    }
+
+    /// The program's time, virtual with a built-in hand.
+    #[must_use]
+    pub fn now(&self) -> Moment {
+        let _inside = self.runtime.enter();
+        self.clock.now()
+    }
+
+    /// The program and its window.
+    pub const fn cockpit(&mut self) -> &mut Cockpit {
+        &mut self.cockpit
+    }
+
+    /// Lets one [`STEP`] pass, or what is left if that is less.
+    fn step(&mut self, left: Duration) {
+        // A timer can be made only inside the runtime.
+        self.runtime
+            .block_on(async { tokio::time::sleep(left.min(STEP)).await });
+        let now = self.now();
+        let _inside = self.runtime.enter();
+        self.cockpit.logic(now);
+    }
+
+    /// Lets time pass until the hand answers.
+    ///
+    /// # Errors
+    /// [`DriveError::NoHand`] with the first trouble, [`DriveError::Unanswered`] after [`ANSWER_WITHIN`].
+    pub fn connect(&mut self) -> Result<(), DriveError> {
+        let begun = self.now();
+        while !self.cockpit.state().link.state.is_live() {
+            if let Some(trouble) = self.cockpit.state().link.trouble.clone() {
+                return Err(DriveError::NoHand {
+                    endpoint: self.endpoint.clone(),
+                    trouble,
+                });
+            }
+            if self.now().since(begun) >= ANSWER_WITHIN {
+                return Err(DriveError::Unanswered {
+                    endpoint: self.endpoint.clone(),
+                    after_s: ANSWER_WITHIN.as_secs(),
+                });
+            }
+            self.step(STEP);
+        }
+        Ok(())
+    }
+
+    /// Lets `time` pass in steps, and calls `passed` after each with the time passed so far.
+    pub fn run_for(&mut self, time: Duration, mut passed: impl FnMut(Duration)) {
+        let begun = self.now();
+        loop {
+            let done = self.now().since(begun);
+            passed(done);
+            if done >= time {
+                return;
+            }
+            self.step(time.saturating_sub(done));
+        }
+    }
+
+    /// The whole window with this view open, as it is now. Time stands still.
+    pub fn picture(&mut self, view: View) -> Picture {
+        let now = self.now();
+        self.cockpit.show(view);
+        let _inside = self.runtime.enter();
+        let cockpit = &mut self.cockpit;
+        self.canvas.picture(now.secs(), |ui| cockpit.ui(ui, now))
+    }
+}

@@ -1,0 +1,16 @@
+//! The command line as scripts meet it: the real program in processes of its own, on loopback and pseudo-terminals only.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    reason = "a test may"
+)]
+
+#[cfg(unix)]
+mod loss;
+mod pictures;
+mod program;
+mod usage;
+#[cfg(unix)]
+mod wires;

@@ -1,0 +1,142 @@
+//! Pictures and label lists as files, made without a display.
+
+use crate::program::run;
+use serde_json::Value;
+use std::fs;
+
+const VIEWS: [&str; 6] = [
+    "live",
+    "touch",
+    "faults",
+    "gestures",
+    "connection",
+    "window",
+];
+
+fn names(list: &str) -> String {
+    let list: Vec<Value> = serde_json::from_str(list).unwrap();
+    list.iter()
+        .map(|entry| format!("{}|", entry["name"]))
+        .collect()
+}
+
+#[test]
+fn two_runs_give_equal_bytes_for_every_view() {
+    let folder = tempfile::tempdir().unwrap();
+    let [one, other] = ["one", "other"].map(|name| {
+        let out = folder.path().join(name);
+        let args = [
+            "snapshot",
+            "--scenario",
+            "grasp",
+            "--at",
+            "1",
+            "--view",
+            "all",
+            "--size",
+            "1024x640",
+            "--out",
+        ];
+        let ended = run(&[&args[..], &[out.to_str().unwrap()]].concat()).ok();
+        assert_eq!(ended.out.lines().count(), 2 * VIEWS.len());
+        assert_eq!(
+            ended.out.lines().next().unwrap(),
+            out.join("live.png").to_str().unwrap()
+        );
+        out
+    });
+    for view in VIEWS {
+        for kind in ["png", "json"] {
+            let file = format!("{view}.{kind}");
+            let (one, other) = (
+                fs::read(one.join(&file)).unwrap(),
+                fs::read(other.join(&file)).unwrap(),
+            );
+            assert!(one == other, "{file}");
+        }
+        let labels = names(&fs::read_to_string(one.join(format!("{view}.json"))).unwrap());
+        assert!(labels.contains("STOP"), "{view}: {labels}");
+        assert!(labels.contains("SIMULATED"), "{view}: {labels}");
+    }
+}
+
+#[test]
+fn size_scale_theme_language_and_seed_are_what_was_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |name: &str, more: &[&str]| {
+        let out = folder.path().join(name);
+        let args = [
+            "snapshot",
+            "--at",
+            "0.2",
+            "--size",
+            "800x500",
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        run(&[&args[..], more].concat()).ok();
+        (
+            fs::read(out.join("window.png")).unwrap(),
+            fs::read_to_string(out.join("window.json")).unwrap(),
+        )
+    };
+    let (plain, english) = draw("plain", &[]);
+    // The header of a PNG file: width and height after sixteen bytes.
+    assert_eq!(plain[16..24], [0, 0, 3, 32, 0, 0, 1, 244]);
+    let (large, _) = draw("large", &["--scale", "2"]);
+    assert_eq!(large[16..24], [0, 0, 6, 64, 0, 0, 3, 232]);
+    let (light, _) = draw("light", &["--theme", "light"]);
+    assert!(light != plain);
+    let (_, chinese) = draw("chinese", &["--lang", "zh"]);
+    assert!(chinese != english);
+    let (seeded, _) = draw("seeded", &["--seed", "2"]);
+    assert!(seeded != plain);
+}
+
+#[test]
+fn a_hand_that_is_not_there_gives_no_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let ended = run(&[
+        "snapshot",
+        "--hand",
+        "rs485:/nowhere/hand",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(ended.code, Some(1));
+    assert!(
+        ended.err.contains("/nowhere/hand is not there"),
+        "{}",
+        ended.err
+    );
+    assert_eq!(ended.out, "");
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "mine").unwrap();
+    let ended = run(&["snapshot", "--at", "0", "--out", file.to_str().unwrap()]);
+    assert_eq!(ended.code, Some(1));
+    assert!(
+        ended.err.contains("cannot make the folder"),
+        "{}",
+        ended.err
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_real_wire_is_drawn_in_real_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_sim, hand) = crate::program::sim_on_tcp(&[]);
+    let out = folder.path().to_str().unwrap();
+    let ended = run(&["snapshot", "--hand", &hand, "--at", "1.3", "--out", out]).ok();
+    assert!(ended.took.as_secs_f64() >= 1.3);
+    assert!(ended.err.contains(" of 1 s"), "{}", ended.err);
+    let labels = names(&fs::read_to_string(folder.path().join("window.json")).unwrap());
+    assert!(!labels.contains("SIMULATED"), "{labels}");
+}

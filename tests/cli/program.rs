@@ -1,0 +1,198 @@
+//! The real program as a process: runs it to its end, or keeps a simulated hand running beside a test. Claims nothing.
+
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Longer than anything here takes on a machine that does other work as well.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// How a run ended.
+pub(crate) struct Ended {
+    pub(crate) code: Option<i32>,
+    pub(crate) out: String,
+    pub(crate) err: String,
+    pub(crate) took: Duration,
+}
+
+impl Ended {
+    /// Every line of standard output as JSON.
+    pub(crate) fn lines(&self) -> Vec<serde_json::Value> {
+        self.out
+            .lines()
+            .map(|line| serde_json::from_str(line).unwrap())
+            .collect()
+    }
+
+    pub(crate) fn ok(self) -> Self {
+        assert_eq!(self.code, Some(0), "{}{}", self.out, self.err);
+        self
+    }
+}
+
+pub(crate) fn handscope() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_handscope"));
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(display);
+    }
+    command.stdin(Stdio::null());
+    command
+}
+
+/// Runs the program to its end.
+pub(crate) fn run(args: &[&str]) -> Ended {
+    start(args).end()
+}
+
+/// Starts the program and listens to both its outputs.
+pub(crate) fn start(args: &[&str]) -> Running {
+    let mut command = handscope();
+    command
+        .args(args)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    listen(command)
+}
+
+/// Starts a command whose outputs are piped.
+pub(crate) fn listen(mut command: Command) -> Running {
+    let begun = Instant::now();
+    let mut child = command.spawn().unwrap();
+    let out = lines_of(child.stdout.take().unwrap());
+    let err = lines_of(child.stderr.take().unwrap());
+    Running {
+        child,
+        out,
+        err,
+        begun,
+        heard: String::new(),
+    }
+}
+
+fn lines_of(from: impl Read + Send + 'static) -> Receiver<String> {
+    let (tell, hear) = channel();
+    thread::spawn(move || {
+        for line in BufReader::new(from).lines() {
+            let Ok(line) = line else { break };
+            if tell.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    hear
+}
+
+/// A program that runs. Dropping it kills it.
+pub(crate) struct Running {
+    child: Child,
+    out: Receiver<String>,
+    err: Receiver<String>,
+    begun: Instant,
+    heard: String,
+}
+
+impl Running {
+    /// The next line of standard output.
+    pub(crate) fn line(&mut self) -> String {
+        let line = self.out.recv_timeout(PATIENCE).expect("a line comes");
+        self.heard.push_str(&line);
+        self.heard.push('\n');
+        line
+    }
+
+    /// The next line of standard error.
+    pub(crate) fn complaint(&mut self) -> String {
+        self.err.recv_timeout(PATIENCE).expect("a complaint comes")
+    }
+
+    /// Reads standard output until a line is as wanted.
+    pub(crate) fn until(&mut self, wanted: impl Fn(&str) -> bool) -> String {
+        loop {
+            let line = self.line();
+            if wanted(&line) {
+                return line;
+            }
+        }
+    }
+
+    #[cfg(unix)]
+    pub(crate) fn signal(&self, name: &str) {
+        let id = self.child.id().to_string();
+        let done = Command::new("kill")
+            .args(["-s", name, &id])
+            .status()
+            .unwrap();
+        assert!(done.success());
+    }
+
+    pub(crate) fn kill(mut self) {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+    }
+
+    /// Waits for the end and takes all that was said.
+    pub(crate) fn end(mut self) -> Ended {
+        let until = Instant::now() + PATIENCE;
+        let status = loop {
+            // The pipes are read by threads, so a program that says much can end.
+            if let Some(status) = self.child.try_wait().unwrap() {
+                break status;
+            }
+            assert!(Instant::now() < until, "the program does not end");
+            thread::sleep(Duration::from_millis(5));
+        };
+        let took = self.begun.elapsed();
+        let mut out = std::mem::take(&mut self.heard);
+        for line in self.out.iter() {
+            out.push_str(&line);
+            out.push('\n');
+        }
+        let err: Vec<String> = self.err.iter().collect();
+        Ended {
+            code: status.code(),
+            out,
+            err: err.join("\n"),
+            took,
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _gone = self.child.kill();
+        let _ended = self.child.wait();
+    }
+}
+
+/// A simulated hand on TCP, with its endpoint.
+pub(crate) fn sim_on_tcp(more: &[&str]) -> (Running, String) {
+    let mut sim = start(&[&["sim", "--tcp", "127.0.0.1:0"], more].concat());
+    let ready = sim.line();
+    let address = ready.strip_prefix("ready tcp ").expect(&ready);
+    let endpoint = format!("tcp:{address}");
+    (sim, endpoint)
+}
+
+/// A simulated hand on a pseudo-terminal linked at `link`, with its endpoint.
+#[cfg(unix)]
+pub(crate) fn sim_on_link(link: &Path, more: &[&str]) -> (Running, String) {
+    let link = link.to_str().unwrap();
+    let mut sim = start(&[&["sim", "--rs485", link], more].concat());
+    assert_eq!(sim.line(), format!("ready rs485 {link}"));
+    (sim, format!("rs485:{link}"))
+}
+
+/// The output pipe, for tests that close it.
+pub(crate) fn take_pipe(args: &[&str]) -> (Child, ChildStdout) {
+    let mut command = handscope();
+    command
+        .args(args)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let out = child.stdout.take().unwrap();
+    (child, out)
+}
