@@ -1,0 +1,69 @@
+//! Processor time of one frame of the whole window: logic, layout and triangles, with one and ten minutes of history.
+
+use crate::clock::{Sorted, cpu_ms};
+use crate::report::{Aim, Failure, Report};
+use crate::scene::{Scene, Time};
+use handscope::app::settings::PlotWindow;
+use std::time::Duration;
+
+/// Frames of one figure.
+const FRAMES: usize = 200;
+/// Frames before, until layout and caches are settled.
+const WARM: usize = 20;
+/// A display of 60 Hz.
+const FRAME_EACH: Duration = Duration::from_millis(16);
+/// What a frame may take.
+const AIM_MS: f64 = 4.0;
+/// Growth that is still none: what one figure differs from the next anyway.
+const SAME: f64 = 1.25;
+
+const WINDOWS: [(PlotWindow, &str); 3] = [
+    (PlotWindow::S10, "10 s"),
+    (PlotWindow::M1, "1 min"),
+    (PlotWindow::M10, "10 min"),
+];
+
+pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
+    let mut scene = Scene::start(Time::Virtual)?;
+    scene.run(Duration::from_secs(60));
+    let young = all(report, &mut scene, "1 min")?;
+    scene.run(Duration::from_secs(545));
+    let held = scene.state().history.last_secs().unwrap_or_default()
+        - scene.state().history.first_secs().unwrap_or_default();
+    report.row("history held by now", held, "s", Aim::AtLeast(600.0))?;
+    let old = all(report, &mut scene, "10 min")?;
+    for (((_, shown), young), old) in WINDOWS.iter().zip(&young).zip(&old) {
+        let what = format!("10 min of history to 1 min, plots of {shown}");
+        report.row(&what, old / young, "times", Aim::AtMost(SAME))?;
+    }
+    let ([_, young, _], [_, _, old]) = (young, old);
+    let what = "10 min held and shown to 1 min held and shown";
+    report.row(what, old / young, "times", Aim::AtMost(SAME))
+}
+
+/// The medians with each time window of the plots.
+fn all(report: &mut Report, scene: &mut Scene, held: &str) -> Result<[f64; 3], Failure> {
+    let mut medians = [f64::NAN; 3];
+    for (median, (window, shown)) in medians.iter_mut().zip(WINDOWS) {
+        scene.plot(window);
+        let figures = measure(scene);
+        *median = figures.median();
+        let what = format!("window frame, {held} of history, plots of {shown}: median");
+        report.row(&what, *median, "ms cpu", Aim::AtMost(AIM_MS))?;
+        report.row("  99 of 100", figures.percentile(99), "ms cpu", Aim::None)?;
+    }
+    Ok(medians)
+}
+
+fn measure(scene: &mut Scene) -> Sorted {
+    let mut figures = Vec::with_capacity(FRAMES);
+    for frame in 0..WARM + FRAMES {
+        scene.pass(FRAME_EACH);
+        let (ms, corners) = cpu_ms(|| scene.frame());
+        std::hint::black_box(corners);
+        if frame >= WARM {
+            figures.push(ms);
+        }
+    }
+    Sorted::new(figures)
+}
