@@ -109,6 +109,7 @@ fn failure(cause: &str) -> DesktopError {
         "display is set",
         "xopendisplay",
         "could not connect",
+        "open connection to x",
     ]
     .iter()
     .any(|part| words.contains(part))
@@ -216,6 +217,8 @@ mod tests {
         let cause = "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set".to_owned();
         assert_eq!(none, DesktopError::NoDisplay { cause });
         assert!(none.to_string().contains("snapshot"));
+        let refused = failure("Failed to open connection to X server");
+        assert!(matches!(refused, DesktopError::NoDisplay { .. }));
         let missing = failure("libXcursor.so.1: cannot open shared object file");
         assert!(matches!(missing, DesktopError::MissingLibrary { .. }));
         assert!(missing.to_string().contains("libxcursor1"));

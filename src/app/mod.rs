@@ -5,6 +5,8 @@ pub mod action;
 pub mod config;
 pub mod connect;
 mod desk;
+#[cfg(test)]
+mod fake_link;
 pub mod faults;
 pub mod gestures;
 pub mod history;

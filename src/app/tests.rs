@@ -2,186 +2,19 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
-use crate::app::desk::Desk;
 use crate::app::gestures::GestureProgress;
 use crate::app::notices::{Asked, Level, NoticeKind};
-use crate::app::seam::Link;
-use crate::app::settings::Settings;
 use crate::hand::{
-    Angle, AngleReading, Dof, Faults, Force, Gesture, GestureRoute, Group, Groups, HandCommand,
-    HandSample, Moment, PerDof, Speed, Target, Timed,
+    Angle, Dof, Faults, Force, Gesture, GestureRoute, Group, Groups, HandCommand, HandSample,
+    PerDof, Speed, Target, Timed,
 };
 use crate::link::{
-    ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus,
-    LinkTrouble, Outcome, Request, RequestError, Setpoints, Ticket,
+    ArmRefusal, ArmRequest, Disarmed, Hold, LinkEvent, LinkState, LinkTrouble, Outcome, Request,
+    RequestError, Ticket,
 };
 use crate::transport::Endpoint;
-use std::cell::RefCell;
-use std::collections::VecDeque;
-use std::rc::Rc;
 
-/// What the link was told.
-#[derive(Debug, Clone, PartialEq)]
-enum Told {
-    Stop,
-    Arm(ArmRequest),
-    Disarm,
-    Set(Setpoints),
-    Ask(Request),
-}
-
-#[derive(Default)]
-struct Wire {
-    status: LinkStatus,
-    told: Vec<Told>,
-    events: VecDeque<LinkEvent>,
-    refuse: Option<RequestError>,
-}
-
-struct FakeLink(Rc<RefCell<Wire>>);
-
-impl FakeLink {
-    fn note(&self, told: Told) {
-        self.0.borrow_mut().told.push(told);
-    }
-}
-
-impl Link for FakeLink {
-    fn status(&self) -> LinkStatus {
-        self.0.borrow().status.clone()
-    }
-    fn stats(&self) -> LinkStats {
-        LinkStats::default()
-    }
-    fn stop(&self) {
-        self.note(Told::Stop);
-    }
-    fn arm(&self, request: ArmRequest) {
-        self.note(Told::Arm(request));
-    }
-    fn disarm(&self) {
-        self.note(Told::Disarm);
-    }
-    fn set(&self, setpoints: &Setpoints) {
-        self.note(Told::Set(*setpoints));
-    }
-    fn ask(&self, request: Request) -> Result<Ticket, RequestError> {
-        self.note(Told::Ask(request));
-        self.0.borrow().refuse.clone().map_or(Ok(Ticket(7)), Err)
-    }
-    fn try_event(&mut self) -> Option<LinkEvent> {
-        self.0.borrow_mut().events.pop_front()
-    }
-}
-
-struct Bench {
-    desk: Desk,
-    wire: Rc<RefCell<Wire>>,
-    millis: u64,
-}
-
-impl Bench {
-    fn new() -> Self {
-        let wire = Rc::new(RefCell::new(Wire::default()));
-        let mut desk = Desk::new(Settings::default());
-        desk.replace(
-            Some(Endpoint::sim()),
-            Some(Box::new(FakeLink(Rc::clone(&wire)))),
-            Moment::ZERO,
-        );
-        Self {
-            desk,
-            wire,
-            millis: 1,
-        }
-    }
-
-    fn monitoring(angle: i16) -> Self {
-        let mut bench = Self::new();
-        bench.state(LinkState::Monitoring);
-        bench.angles(angle);
-        bench.step();
-        bench
-    }
-
-    fn armed(angle: i16) -> Self {
-        let mut bench = Self::monitoring(angle);
-        bench.desk.arm(bench.now());
-        bench.epoch(1);
-        bench.step();
-        bench.told();
-        bench
-    }
-
-    fn now(&self) -> Moment {
-        Moment::from_micros(self.millis * 1000)
-    }
-
-    fn step(&mut self) {
-        self.millis += 10;
-        let now = self.now();
-        self.desk.drain(now);
-    }
-
-    fn state(&self, state: LinkState) {
-        let status = LinkStatus {
-            state,
-            since: self.now(),
-            ..LinkStatus::default()
-        };
-        self.wire.borrow_mut().status = status;
-    }
-
-    fn epoch(&mut self, epoch: u64) {
-        self.millis += 1;
-        self.state(LinkState::Armed);
-        self.wire.borrow_mut().status.armed = Some(ArmEpoch(epoch));
-    }
-
-    fn angles(&mut self, angle: i16) {
-        self.millis += 1;
-        let at = self.now();
-        let angles = PerDof::splat(AngleReading::new(angle));
-        let sample = HandSample {
-            angle: Some(Timed {
-                value: angles,
-                asked: at,
-                received: at,
-            }),
-            ..HandSample::default()
-        };
-        let mut fresh = Groups::NONE;
-        fresh.insert(Group::Angle);
-        self.wire.borrow_mut().events.push_back(LinkEvent::Sample {
-            sample: Box::new(sample),
-            fresh,
-        });
-    }
-
-    fn told(&self) -> Vec<Told> {
-        std::mem::take(&mut self.wire.borrow_mut().told)
-    }
-
-    fn target(&self, dof: Dof) -> Option<i16> {
-        self.desk.state.joints[dof].target.map(Angle::get)
-    }
-
-    fn notices(&self) -> Vec<NoticeKind> {
-        self.desk
-            .state
-            .notices
-            .iter()
-            .map(|notice| notice.what.clone())
-            .collect()
-    }
-}
-
-fn set(epoch: u64, fill: impl FnOnce(&mut Setpoints)) -> Told {
-    let mut setpoints = Setpoints::none(ArmEpoch(epoch));
-    fill(&mut setpoints);
-    Told::Set(setpoints)
-}
-
+use crate::app::fake_link::*;
 #[test]
 fn nothing_is_told_by_starting_connecting_or_dragging_while_not_armed() {
     let mut bench = Bench::monitoring(400);

@@ -10,7 +10,6 @@ use crate::link::{Clock, LinkEvent, LinkHandle, LinkTrouble, PollRates};
 use anyhow::bail;
 use std::pin::pin;
 use std::time::Duration;
-use tokio::task::yield_now;
 use tokio::time::{MissedTickBehavior, interval};
 
 /// Lines show after this at the latest; gathering them lets a full-rate stream keep up.
@@ -78,11 +77,7 @@ impl<'a> Watch<'a> {
                 event = self.link.event() => event.map_or(Step::End, Step::Event),
             };
             match step {
-                Step::Event(event) => {
-                    self.take(event)?;
-                    // The link goes on before the next sample is written, so that it measures the hand and not us.
-                    yield_now().await;
-                }
+                Step::Event(event) => self.take(event)?,
                 Step::Tick => self.tick()?,
                 Step::End => break,
             }

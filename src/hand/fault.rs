@@ -100,8 +100,12 @@ impl Fault {
                 "The hand's board lost contact with the drive.",
                 "Clear errors. If it returns, check supply and cable, then ask the maker.",
             ),
-            Self::Unknown(_) => Words::new(
-                "Unknown fault bit",
+            Self::Unknown(bit) => Words::new(
+                match bit {
+                    5 => "Unknown fault, bit 5",
+                    6 => "Unknown fault, bit 6",
+                    _ => "Unknown fault, bit 7",
+                },
                 "The manual does not list this bit.",
                 "Stop and note the code for the maker.",
             ),

@@ -1,7 +1,7 @@
 //! The five fingertips: pictures over a table of numbers, small in the overview and large in their own view.
 
 use crate::app::state::Freshness;
-use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::hand::{Finger, TactileBlock};
 use crate::ui::controls::{self, Label};
 use crate::ui::fingertip::{self, Tip};
 use crate::ui::look::{Look, Pane};
@@ -51,13 +51,6 @@ impl Sheet {
             Some((finger, column))
         })
     }
-}
-
-/// What the fingertips need between frames.
-#[derive(Debug, Default)]
-pub(crate) struct TouchView {
-    /// The first reading of each channel since the hand was connected.
-    rest: PerFinger<Option<[u32; 8]>>,
 }
 
 /// One row of numbers under the pictures.
@@ -110,136 +103,128 @@ fn direction(block: &TactileBlock, look: Look) -> String {
     }
 }
 
-impl TouchView {
-    /// Keeps the first reading of each finger, and forgets all when there is no hand.
-    pub(crate) fn note_rest(&mut self, pane: &Pane<'_>) {
-        for (finger, block) in pane.state.sample.tactile.iter() {
-            let rest = &mut self.rest[finger];
-            *rest = block.map(|block| rest.unwrap_or(block.value.raw));
-        }
-    }
+/// Height of the overview's card at this width: as much as the pictures can fill.
+pub(crate) fn small_height(width: f32) -> f32 {
+    let picture = (width - 2.0 * theme::PAD - 44.0) / 5.0 * fingertip::HEIGHT_TO_WIDTH;
+    2.0 * theme::PAD + theme::CONTROL + theme::GAP + 20.0 + picture + theme::STEP + 5.0 * 17.0
+}
 
-    /// Height of the overview's card at this width: as much as the pictures can fill.
-    pub(crate) fn small_height(width: f32) -> f32 {
-        let picture = (width - 2.0 * theme::PAD - 44.0) / 5.0 * fingertip::HEIGHT_TO_WIDTH;
-        2.0 * theme::PAD + theme::CONTROL + theme::GAP + 20.0 + picture + theme::STEP + 5.0 * 17.0
-    }
+/// The card of the overview.
+pub(crate) fn small_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    let look = pane.look;
+    let (head, body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
+    scale_ui(ui, head, look);
+    let captions = LINES.each_ref().map(|line| line.caption);
+    let sheet = Sheet::new(ui, look, &captions, 17.0, false);
+    let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - 5.0 * sheet.row);
+    let pictures = pictures.with_max_y(pictures.bottom() - theme::STEP);
+    pictures_ui(ui, pictures, pane, sheet);
+    table_ui(ui, table, pane, sheet);
+}
 
-    /// The card of the overview.
-    pub(crate) fn small_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-        let look = pane.look;
-        let (head, body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
-        scale_ui(ui, head, look);
-        let captions = LINES.each_ref().map(|line| line.caption);
-        let sheet = Sheet::new(ui, look, &captions, 17.0, false);
-        let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - 5.0 * sheet.row);
-        let pictures = pictures.with_max_y(pictures.bottom() - theme::STEP);
-        self.pictures_ui(ui, pictures, pane, sheet);
-        table_ui(ui, table, pane, sheet);
-    }
+/// The view of its own: larger pictures, and every channel as a number.
+pub(crate) fn large_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    let look = pane.look;
+    let (head, body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
+    scale_ui(ui, head, look);
+    let captions = [panels::TOUCH_DELTA_N, panels::TOUCH_DELTA_T];
+    let wide = body.width() > 760.0;
+    let row = if body.height() > 600.0 { 20.0 } else { 16.0 };
+    let sheet = Sheet::new(ui, look, &captions, row, wide);
+    let height = 15.0 * sheet.row + 2.0 * theme::GAP;
+    let (pictures, mut table) = body.split_top_bottom_at_y(body.bottom() - height);
+    let pictures = pictures.with_max_y(pictures.bottom() - theme::GAP);
+    pictures_ui(ui, pictures, pane, sheet);
+    let forces = controls::take_top(&mut table, 5.0 * sheet.row);
+    table_ui(ui, forces, pane, sheet);
+    let deltas = controls::take_top(&mut table, 2.0 * sheet.row);
+    deltas_ui(ui, deltas, pane, sheet);
+    channels_ui(ui, table, pane, sheet);
+}
 
-    /// The view of its own: larger pictures, and every channel as a number.
-    pub(crate) fn large_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-        let look = pane.look;
-        let (head, body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
-        scale_ui(ui, head, look);
-        let captions = [panels::TOUCH_DELTA_N, panels::TOUCH_DELTA_T];
-        let wide = body.width() > 760.0;
-        let row = if body.height() > 600.0 { 20.0 } else { 16.0 };
-        let sheet = Sheet::new(ui, look, &captions, row, wide);
-        let height = 15.0 * sheet.row + 2.0 * theme::GAP;
-        let (pictures, mut table) = body.split_top_bottom_at_y(body.bottom() - height);
-        let pictures = pictures.with_max_y(pictures.bottom() - theme::GAP);
-        self.pictures_ui(ui, pictures, pane, sheet);
-        let forces = controls::take_top(&mut table, 5.0 * sheet.row);
-        table_ui(ui, forces, pane, sheet);
-        let deltas = controls::take_top(&mut table, 2.0 * sheet.row);
-        deltas_ui(ui, deltas, pane, sheet);
-        self.channels_ui(ui, table, pane, sheet);
-    }
-
-    fn pictures_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
-        let look = pane.look;
-        let full = self.hottest(pane);
-        for (finger, mut column) in sheet.columns(rect) {
-            let name = look.say(words::finger(finger));
-            let title = controls::take_top(&mut column, 16.0);
-            let color = look.palette.dof[finger.bend()];
-            Label::new(name, color).small().center().put(ui, title);
-            let block = pane.state.sample.tactile[finger];
-            let freshness = pane.freshness(block.map(|block| block.asked));
-            let tip = block.map_or_else(Tip::default, |block| self.tip(finger, &block.value, full));
-            let tip = Tip {
-                stale: freshness != Freshness::Live,
-                ..tip
-            };
-            let place = column.with_min_y(column.top() - theme::STEP);
-            fingertip::paint(ui.painter(), look, place, &tip);
-            let response = ui.allocate_rect(place, egui::Sense::hover());
-            response.on_hover_text(look.say(panels::TOUCH_TIP));
-            if block.is_none() {
-                Label::new(format::UNKNOWN, look.palette.faint)
-                    .center()
-                    .put(ui, place);
-            }
-        }
-    }
-
-    fn tip(&self, finger: Finger, block: &TactileBlock, full: f32) -> Tip {
-        let rest = self.rest[finger].unwrap_or(block.raw);
-        let mut heat = [None; 8];
-        for ((heat, raw), rest) in heat.iter_mut().zip(block.raw).zip(rest) {
-            *heat = Some(above(raw, rest) / full);
-        }
-        Tip {
-            heat,
-            normal_n: block.normal(),
-            shear: block.tangential().zip(block.direction_deg().map(f32::from)),
-            proximity: Some(small_float(i64::from(block.proximity))),
-            stale: false,
-        }
-    }
-
-    /// The one end of the scale for all fingers.
-    fn hottest(&self, pane: &Pane<'_>) -> f32 {
-        let mut full = HEAT_FLOOR;
-        for (finger, block) in pane.state.sample.tactile.iter() {
-            let (Some(block), Some(rest)) = (block, self.rest[finger]) else {
-                continue;
-            };
-            for (raw, rest) in block.value.raw.into_iter().zip(rest) {
-                full = full.max(above(raw, rest));
-            }
-        }
-        // Steps of a fifth, so that the colours do not breathe with every reading.
-        let step = 10.0_f32.powf((full.log10() * 5.0).ceil() / 5.0);
-        step.max(HEAT_FLOOR)
-    }
-
-    fn channels_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
-        let look = pane.look;
-        let mut top = rect.top();
-        for channel in 0..8usize {
-            let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), sheet.row));
-            let caption = format!("{} {}", look.say(panels::TOUCH_CHANNEL), channel + 1);
-            row_ui(
-                ui,
-                row,
-                pane,
-                sheet,
-                [&caption, &caption],
-                &|finger, block, _| {
-                    let raw = block.raw.get(channel).copied().map(i64::from);
-                    let rest = self.rest[finger].and_then(|rest| rest.get(channel).copied());
-                    let change = raw.zip(rest).map(|(raw, rest)| raw - i64::from(rest));
-                    format!("{:>6} {:>7}", format::counts(raw), Signed(change))
-                },
-            );
-            top += sheet.row;
+fn pictures_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
+    let look = pane.look;
+    let full = hottest(pane);
+    for (finger, mut column) in sheet.columns(rect) {
+        let name = look.say(words::finger(finger));
+        let title = controls::take_top(&mut column, 16.0);
+        let color = look.palette.dof[finger.bend()];
+        Label::new(name, color).small().center().put(ui, title);
+        let block = pane.state.sample.tactile[finger];
+        let freshness = pane.freshness(block.map(|block| block.asked));
+        let tip = block.map_or_else(Tip::default, |block| {
+            tip(pane.state.touch_rest[finger], &block.value, full)
+        });
+        let tip = Tip {
+            stale: freshness != Freshness::Live,
+            ..tip
+        };
+        let place = column.with_min_y(column.top() - theme::STEP);
+        fingertip::paint(ui.painter(), look, place, &tip);
+        let response = ui.allocate_rect(place, egui::Sense::hover());
+        response.on_hover_text(look.say(panels::TOUCH_TIP));
+        if block.is_none() {
+            Label::new(format::UNKNOWN, look.palette.faint)
+                .center()
+                .put(ui, place);
         }
     }
 }
 
+fn tip(rest: Option<[u32; 8]>, block: &TactileBlock, full: f32) -> Tip {
+    let rest = rest.unwrap_or(block.raw);
+    let mut heat = [None; 8];
+    for ((heat, raw), rest) in heat.iter_mut().zip(block.raw).zip(rest) {
+        *heat = Some(above(raw, rest) / full);
+    }
+    Tip {
+        heat,
+        normal_n: block.normal(),
+        shear: block.tangential().zip(block.direction_deg().map(f32::from)),
+        proximity: Some(small_float(i64::from(block.proximity))),
+        stale: false,
+    }
+}
+
+/// The one end of the scale for all fingers.
+fn hottest(pane: &Pane<'_>) -> f32 {
+    let mut full = HEAT_FLOOR;
+    for (finger, block) in pane.state.sample.tactile.iter() {
+        let (Some(block), Some(rest)) = (block, pane.state.touch_rest[finger]) else {
+            continue;
+        };
+        for (raw, rest) in block.value.raw.into_iter().zip(rest) {
+            full = full.max(above(raw, rest));
+        }
+    }
+    // Steps of a fifth, so that the colours do not breathe with every reading.
+    let step = 10.0_f32.powf((full.log10() * 5.0).ceil() / 5.0);
+    step.max(HEAT_FLOOR)
+}
+
+fn channels_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
+    let look = pane.look;
+    let mut top = rect.top();
+    for channel in 0..8usize {
+        let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), sheet.row));
+        let caption = format!("{} {}", look.say(panels::TOUCH_CHANNEL), channel + 1);
+        row_ui(
+            ui,
+            row,
+            pane,
+            sheet,
+            [&caption, &caption],
+            &|finger, block, _| {
+                let raw = block.raw.get(channel).copied().map(i64::from);
+                let rest =
+                    pane.state.touch_rest[finger].and_then(|rest| rest.get(channel).copied());
+                let change = raw.zip(rest).map(|(raw, rest)| raw - i64::from(rest));
+                format!("{:>6} {:>7}", format::counts(raw), Signed(change))
+            },
+        );
+        top += sheet.row;
+    }
+}
 /// A change with its sign, shortened like counts.
 struct Signed(Option<i64>);
 

@@ -13,7 +13,7 @@ use crate::ui::plots::PlotView;
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use crate::ui::top_bar;
-use crate::ui::touch::TouchView;
+use crate::ui::touch;
 use egui::{Event, Key, Rect, Ui};
 
 /// The parts of the window that can be looked at.
@@ -78,7 +78,6 @@ pub struct Window {
     installed: Option<(Theme, Language)>,
     typing: Typing,
     plots: PlotView,
-    touch: TouchView,
     gestures: GestureView,
     connection: ConnectionForm,
 }
@@ -165,11 +164,9 @@ impl Window {
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        // First readings are noted in every view, so that a finger that is touched later has its rest to compare with.
-        self.touch.note_rest(pane);
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
-            View::Touch => self.touch.large_ui(ui, rect, pane),
+            View::Touch => touch::large_ui(ui, rect, pane),
             View::Faults => faults::faults_view_ui(ui, rect, pane),
             View::Gestures => self.gestures.large_ui(ui, rect, pane),
             View::Connection => self.connection.ui(ui, rect, pane),
@@ -186,9 +183,9 @@ impl Window {
         let center = center.with_max_x(center.right() - theme::GAP);
         self.plots.ui(ui, center, pane);
         let most = (right.height() * 0.68).max(200.0);
-        let touch_height = TouchView::small_height(right.width()).min(most).round();
-        let (touch, list) = right.split_top_bottom_at_y(right.top() + touch_height);
-        self.touch.small_ui(ui, touch, pane);
+        let touch_height = touch::small_height(right.width()).min(most).round();
+        let (tips, list) = right.split_top_bottom_at_y(right.top() + touch_height);
+        touch::small_ui(ui, tips, pane);
         faults::faults_card_ui(ui, list.with_min_y(list.top() + theme::GAP), pane);
     }
 }

@@ -178,6 +178,32 @@ fn a_reader_that_went_away_ends_it_quietly() {
 }
 
 #[test]
+fn a_slow_reader_slows_the_reads_and_loses_nothing() {
+    let args = [
+        "watch",
+        "--hand",
+        "sim:",
+        "--for",
+        "1",
+        "--json",
+        "--full-rate",
+    ];
+    let (mut child, mut pipe) = take_pipe(&args);
+    std::thread::sleep(Duration::from_millis(700));
+    let mut out = String::new();
+    std::io::Read::read_to_string(&mut pipe, &mut out).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    let lines: Vec<Value> = out
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let stats = &lines[lines.len() - 1]["stats"];
+    assert_eq!(stats["dropped_samples"], 0, "{stats}");
+    assert_eq!(stats["state_reads"], lines.len() - 1, "{stats}");
+    assert!(lines.len() > 50, "{stats}");
+}
+
+#[test]
 fn a_place_that_cannot_be_served_is_told() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap().to_string();

@@ -38,6 +38,7 @@ pub fn empty() -> State {
         link: LinkStatus::default(),
         stats: LinkStats::default(),
         sample: HandSample::default(),
+        touch_rest: handscope::hand::PerFinger::splat(None),
         joints: PerDof::splat(Joint {
             target: None,
             force: Force::GENTLE,
