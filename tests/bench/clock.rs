@@ -1,16 +1,27 @@
-//! Stopwatches: wall time, and the time that this thread had the processor, which other programs do not lengthen.
+//! Stopwatches: wall time, and the time that we had the processor, which other programs do not lengthen.
 
 use std::time::{Duration, Instant};
 
-/// Processor time of the calling thread, where the system tells; wall time elsewhere.
+/// Whose processor time.
+#[derive(Clone, Copy)]
+enum Whose {
+    Thread,
+    Process,
+}
+
+/// Processor time, where the system tells; wall time elsewhere.
 #[cfg(unix)]
-fn cpu() -> Duration {
+fn cpu(whose: Whose) -> Duration {
     use nix::time::{ClockId, clock_gettime};
-    clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).map_or_else(|_| wall(), Duration::from)
+    let clock = match whose {
+        Whose::Thread => ClockId::CLOCK_THREAD_CPUTIME_ID,
+        Whose::Process => ClockId::CLOCK_PROCESS_CPUTIME_ID,
+    };
+    clock_gettime(clock).map_or_else(|_| wall(), Duration::from)
 }
 
 #[cfg(not(unix))]
-fn cpu() -> Duration {
+fn cpu(_whose: Whose) -> Duration {
     wall()
 }
 
@@ -21,9 +32,18 @@ fn wall() -> Duration {
 
 /// Processor milliseconds that `work` takes on this thread, and what it gives.
 pub(crate) fn cpu_ms<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let begun = cpu();
+    let begun = cpu(Whose::Thread);
     let result = work();
-    (millis(cpu().saturating_sub(begun)), result)
+    (millis(cpu(Whose::Thread).saturating_sub(begun)), result)
+}
+
+/// Milliseconds that `work` takes: by the wall, and of the processor in all threads together.
+pub(crate) fn wall_and_cpu_ms<T>(work: impl FnOnce() -> T) -> ([f64; 2], T) {
+    let (begun, cpu_begun) = (wall(), cpu(Whose::Process));
+    let result = work();
+    let took = wall().saturating_sub(begun);
+    let cpu_took = cpu(Whose::Process).saturating_sub(cpu_begun);
+    ([millis(took), millis(cpu_took)], result)
 }
 
 pub(crate) fn millis(time: Duration) -> f64 {

@@ -8,6 +8,7 @@ use handscope::hand::Moment;
 use handscope::link::Clock;
 use handscope::shell::Cockpit;
 use handscope::transport::Endpoint;
+use handscope::ui::View;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
@@ -77,6 +78,10 @@ impl Scene {
         self.cockpit.app().act(Action::PlotWindow(window), now);
     }
 
+    pub(crate) fn show(&mut self, view: View) {
+        self.cockpit.show(view);
+    }
+
     fn now(&self) -> Moment {
         let _inside = self.runtime.enter();
         self.clock.now()
@@ -99,7 +104,7 @@ impl Scene {
         }
     }
 
-    /// One frame, as far as the processor draws it: logic, layout, triangles. Gives the number of triangle corners.
+    /// One frame, as far as the processor draws it: logic, layout, triangles. Gives the number of meshes.
     pub(crate) fn frame(&mut self) -> usize {
         let now = self.now();
         let _inside = self.runtime.enter();

@@ -22,13 +22,13 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         live.push(millis(b));
     }
     report.row(
-        "start to first frame, median",
+        "start to first frame, without the window system, median",
         Sorted::new(first).median(),
         "ms",
         Aim::None,
     )?;
     report.row(
-        "start to first frame with live values, median",
+        "  to the first frame with live values, median",
         Sorted::new(live).median(),
         "ms",
         Aim::AtMost(1000.0),
