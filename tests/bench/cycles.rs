@@ -63,19 +63,19 @@ fn row(report: &mut Report, what: &str, endpoint: &Endpoint, aim: f64) -> Result
     let [median, slow] = measured.round_trip_us;
     report.row("  round trip, median", median, "us", Aim::None)?;
     report.row("  round trip, 99 of 100", slow, "us", Aim::None)?;
-    report.row(
-        "  timeouts, errors, samples dropped",
-        measured.troubles,
-        "",
-        Aim::AtMost(0.0),
-    )
+    let what = "  requests that failed";
+    report.row(what, measured.failed, "", Aim::AtMost(0.0))?;
+    // At many times the rate that a window asks for, and more where other programs hold this one up.
+    let what = "  samples that the looking thread came too late for";
+    report.row(what, measured.dropped, "", Aim::None)
 }
 
 struct Measured {
     cycles: f64,
     /// Median, and 99 of 100.
     round_trip_us: [f64; 2],
-    troubles: f64,
+    failed: f64,
+    dropped: f64,
 }
 
 fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
@@ -105,18 +105,18 @@ fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
         cycles: state.min(tactile) / took.as_secs_f64(),
         round_trip_us: [after.rtt_p50, after.rtt_p99]
             .map(|time| time.unwrap_or_default().as_secs_f64() * 1e6),
-        troubles: count(troubles(&after)),
+        failed: count(failed(&after)),
+        dropped: count(after.dropped_events - before.dropped_events),
     })
 }
 
-const fn troubles(stats: &LinkStats) -> u64 {
+const fn failed(stats: &LinkStats) -> u64 {
     stats.timeouts
         + stats.checksum_errors
         + stats.resyncs
         + stats.foreign_replies
         + stats.refusals
         + stats.reconnects
-        + stats.dropped_events
 }
 
 fn count(many: u64) -> f64 {

@@ -40,6 +40,11 @@ fn main() -> ExitCode {
 }
 
 fn table(wanted: &[&String]) -> Result<(), Failure> {
+    let known = |word: &str| PARTS.iter().any(|(name, _)| name.contains(word));
+    if let Some(word) = wanted.iter().find(|word| !known(word)) {
+        let names = PARTS.map(|(name, _)| name).join(", ");
+        return Err(format!("'{word}' is no part: choose of {names}").into());
+    }
     let mut report = Report::begin()?;
     for (name, measure) in PARTS {
         if wanted.is_empty() || wanted.iter().any(|word| name.contains(word.as_str())) {

@@ -1,5 +1,6 @@
 //! The whole program with a window of 1440x900 that nobody sees, in virtual or in real time.
 
+use crate::clock::cpu_ms;
 use crate::report::Failure;
 use egui::{Context, RawInput, Rect, ViewportId, ViewportInfo, pos2, vec2};
 use handscope::app::settings::PlotWindow;
@@ -104,17 +105,18 @@ impl Scene {
         }
     }
 
-    /// One frame, as far as the processor draws it: logic, layout, triangles. Gives the number of meshes.
-    pub(crate) fn frame(&mut self) -> usize {
+    /// One frame, as far as the processor draws it. Gives processor milliseconds of logic, layout and triangles.
+    pub(crate) fn frame(&mut self) -> [f64; 3] {
         let now = self.now();
         let _inside = self.runtime.enter();
-        self.cockpit.logic(now);
+        let (logic, ()) = cpu_ms(|| self.cockpit.logic(now));
         let cockpit = &mut self.cockpit;
-        let output = self.context.run_ui(screen(now), |ui| cockpit.ui(ui, now));
-        let primitives = self
-            .context
-            .tessellate(output.shapes, output.pixels_per_point);
-        primitives.len()
+        let context = &self.context;
+        let (layout, output) = cpu_ms(|| context.run_ui(screen(now), |ui| cockpit.ui(ui, now)));
+        let (triangles, meshes) =
+            cpu_ms(|| context.tessellate(output.shapes, output.pixels_per_point));
+        std::hint::black_box(meshes);
+        [logic, layout, triangles]
     }
 }
 
