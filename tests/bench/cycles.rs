@@ -16,7 +16,7 @@ use tokio::sync::oneshot;
 const WARM: Duration = Duration::from_millis(500);
 /// How long is counted.
 const COUNTED: Duration = Duration::from_secs(3);
-/// How often the window would look, so that no event is dropped.
+/// How often the events are taken, more often than a window would.
 const LOOK_EACH: Duration = Duration::from_millis(5);
 /// A server that is not there by then will not come.
 const SERVER_WITHIN: Duration = Duration::from_secs(5);
