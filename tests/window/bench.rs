@@ -329,7 +329,9 @@ impl Bench {
     pub fn all(&self, role: Role) -> Vec<(String, Rect)> {
         let nodes = self.harness.query_all_by_role(role);
         let named = nodes.map(|node| {
-            let name = node.accesskit_node().label().unwrap_or_default();
+            // A plain text has its words as value.
+            let words = node.accesskit_node();
+            let name = words.label().or_else(|| words.value()).unwrap_or_default();
             let (id, _) = node.accesskit_node().locate();
             let pressed = self.harness.ctx.viewport(|viewport| {
                 let mut layers = viewport.prev_pass.widgets.layers();

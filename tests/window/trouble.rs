@@ -34,6 +34,24 @@ fn an_unplugged_hand_is_said_in_words_and_cannot_be_driven() {
 }
 
 #[test]
+fn messages_of_several_lines_stand_below_each_other() {
+    let mut bench = Bench::armed();
+    bench.unplug();
+    bench.until(300, |bench| bench.shows("LINK LOST"));
+    bench.wait(1500);
+    let labels = bench.all(Role::Label);
+    let is_lost = |(text, _): &&(String, _)| text.starts_with("Link lost. ");
+    let column = labels.iter().find(is_lost).unwrap().1.left();
+    let listed = labels.iter().map(|(_, place)| place);
+    let mut messages: Vec<_> = listed.filter(|place| place.left() == column).collect();
+    assert!(messages.len() >= 2, "{messages:?}");
+    messages.sort_by(|a, b| a.top().total_cmp(&b.top()));
+    for pair in messages.windows(2) {
+        assert!(pair[0].bottom() <= pair[1].top(), "{messages:?}");
+    }
+}
+
+#[test]
 fn a_hand_that_is_plugged_back_is_live_within_two_seconds_disarmed_and_unwritten() {
     let mut bench = Bench::armed();
     let armed = bench.writes().len();
