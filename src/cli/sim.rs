@@ -155,7 +155,9 @@ fn serve_rtu(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
 fn link_words(place: &str, error: &TransportError) -> anyhow::Error {
     match error {
         TransportError::NotAPort { .. } => {
-            anyhow!("cannot make the link {place}: something that is no link stands there; choose another path")
+            anyhow!(
+                "cannot make the link {place}: something that is no link stands there; choose another path"
+            )
         }
         TransportError::Missing { .. } => {
             anyhow!("cannot make the link {place}: its folder does not exist; make it first")

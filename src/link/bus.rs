@@ -77,11 +77,9 @@ impl Bus {
                 let bus = ModbusRtu::new(wire, line.baud, endpoint, late, clock);
                 Ok(Self::ModbusRtu(Box::new(bus)))
             }
-            Endpoint::Can { .. } | Endpoint::Slcan { .. } => {
-                Err(TransportError::Unsupported {
-                    kind: endpoint.kind().into(),
-                })
-            }
+            Endpoint::Can { .. } | Endpoint::Slcan { .. } => Err(TransportError::Unsupported {
+                kind: endpoint.kind().into(),
+            }),
         }
     }
 
@@ -104,6 +102,15 @@ impl Bus {
             Self::Rs485(bus) => bus.write(write, limit).await,
             Self::ModbusRtu(bus) => bus.write(write, limit).await,
             Self::ModbusTcp(bus) => bus.write(write, limit).await,
+        }
+    }
+
+    /// Waits until the protocol lets the next request go out. To be called before the wishes of the window are looked
+    /// at, so that a stop does not wait behind a request that is not on the wire yet.
+    pub(crate) async fn turn(&mut self) -> Result<(), BusError> {
+        match self {
+            Self::ModbusRtu(bus) => bus.turn().await,
+            Self::Rs485(_) | Self::ModbusTcp(_) => Ok(()),
         }
     }
 

@@ -88,6 +88,21 @@ impl ModbusRtu {
         Ok(())
     }
 
+    /// Waits for the silence that separates frames. A line that babbles on is talked over at last.
+    pub(crate) async fn turn(&mut self) -> Result<(), BusError> {
+        let end = Instant::now() + SETTLE_MAX;
+        loop {
+            self.take_waiting()?;
+            let now = Instant::now();
+            let quiet_at = self.line.heard().map_or(now, |at| at + gap(self.baud));
+            if quiet_at <= now || now >= end {
+                break;
+            }
+            sleep_until(quiet_at).await;
+        }
+        Ok(())
+    }
+
     /// Listens until the line is quiet.
     pub(crate) async fn settle(&mut self) -> Result<(), BusError> {
         self.line.abandon();
@@ -130,7 +145,9 @@ impl ModbusRtu {
 
     async fn call(&mut self, request: Request<'_>, limit: Duration) -> Result<Response, BusError> {
         self.line.abandon();
-        self.wait_for_gap().await?;
+        self.take_waiting()?;
+        self.line.flush_pending();
+        self.note_strays();
         let called = {
             let mut call = self.context.call(request);
             match timeout(limit, &mut call).await {
@@ -149,23 +166,11 @@ impl ModbusRtu {
         modbus::outcome(called, &self.place, self.line.closed())
     }
 
-    /// Takes what came while nobody asked, and leaves the silence that separates frames. A line that babbles on is
-    /// talked over at last.
-    async fn wait_for_gap(&mut self) -> Result<(), BusError> {
-        let end = Instant::now() + SETTLE_MAX;
-        loop {
-            while let Some(heard) = self.line.hear().now_or_never() {
-                heard.map_err(|error| self.lost(&error))?;
-            }
-            let now = Instant::now();
-            let quiet_at = self.line.heard().map_or(now, |at| at + gap(self.baud));
-            if quiet_at <= now || now >= end {
-                break;
-            }
-            sleep_until(quiet_at).await;
+    /// Takes what came while nobody asked, without waiting: none of it can answer the next request.
+    fn take_waiting(&mut self) -> Result<(), BusError> {
+        while let Some(heard) = self.line.hear().now_or_never() {
+            heard.map_err(|error| self.lost(&error))?;
         }
-        self.line.flush_pending();
-        self.note_strays();
         Ok(())
     }
 
@@ -203,5 +208,195 @@ fn gap(baud: u32) -> Duration {
         FIXED_GAP
     } else {
         line_time(7, baud) / 2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
+    use super::*;
+    use crate::codec::modbus_rtu::crc16;
+    use crate::hand::register::STATE;
+    use crate::hand::{Angle, HandCommand, PerDof, Target};
+    use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream};
+
+    const LIMIT: Duration = Duration::from_millis(50);
+
+    fn line() -> (ModbusRtu, DuplexStream) {
+        let (near, far) = tokio::io::duplex(4096);
+        let endpoint = "rtu:test".parse().unwrap();
+        let late = LateReplies::default();
+        let bus = ModbusRtu::new(Box::new(near), 115_200, &endpoint, late, Clock::start());
+        (bus, far)
+    }
+
+    fn bytes(text: &str) -> Vec<u8> {
+        text.split_whitespace()
+            .map(|byte| u8::from_str_radix(byte, 16).unwrap())
+            .collect()
+    }
+
+    /// A reply to a read of so many bytes, all alike.
+    fn reply(len: u8, fill: u8) -> Vec<u8> {
+        let mut reply = vec![1, 3, len];
+        reply.resize(3 + usize::from(len), fill);
+        let check = crc16(&reply);
+        reply.extend(check.to_le_bytes());
+        reply
+    }
+
+    async fn heard(far: &mut DuplexStream) -> Vec<u8> {
+        let mut request = [0; 64];
+        let len = far.read(&mut request).await.unwrap();
+        request[..len].to_vec()
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_read_is_the_manuals_frame_and_its_words_are_low_byte_first() {
+        let (mut bus, mut far) = line();
+        // Manual 2.4.1, whose print swaps the bytes of the address that its text names, 0x006B.
+        let answer = async {
+            assert_eq!(heard(&mut far).await, bytes("01 03 00 6B 00 02 B5 D7"));
+            far.write_all(&bytes("01 03 04 00 01 00 02 2A 32"))
+                .await
+                .unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(Span::new(0x6B, 4), LIMIT), answer);
+        assert_eq!(read.unwrap().as_slice(), [1, 0, 2, 0]);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn writes_are_functions_6_and_16_and_the_printed_zeros_acknowledge() {
+        let (mut bus, mut far) = line();
+        let open = HandCommand::Angles(PerDof::splat(Target::Go(Angle::MAX))).writes();
+        let frame = "01 10 05 CE 00 06 0C 03 E8 03 E8 03 E8 03 E8 03 E8 03 E8";
+        for (write, asked, answered) in [
+            (
+                HandCommand::ClearErrors.writes(),
+                "01 06 03 EC 00 01",
+                "01 06 03 EC 00 01",
+            ),
+            // Manual 2.4.2 as printed.
+            (
+                HandCommand::ClearErrors.writes(),
+                "01 06 03 EC 00 01",
+                "01 06 00 00 00 00",
+            ),
+            (open, frame, "01 10 05 CE 00 06"),
+        ] {
+            let checked = |text: &str| {
+                let mut body = bytes(text);
+                body.extend(crc16(&body).to_le_bytes());
+                body
+            };
+            let answer = async {
+                assert_eq!(heard(&mut far).await, checked(asked));
+                far.write_all(&checked(answered)).await.unwrap();
+            };
+            let (written, ()) = tokio::join!(bus.write(&write[0], LIMIT), answer);
+            assert_eq!(written, Ok(()), "{answered}");
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_reply_of_another_length_is_dropped_counted_and_no_answer() {
+        let (mut bus, mut far) = line();
+        far.write_all(&reply(76, 9)).await.unwrap();
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&reply(76, 9)).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
+        assert_eq!(read, Err(BusError::Timeout { after: LIMIT }));
+        assert_eq!(bus.counts().foreign_replies, 2);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_late_reply_never_answers_a_later_request() {
+        let (mut bus, mut far) = line();
+        let shapes = [STATE, Span::new(STATE.address, 72)];
+        assert_eq!(bus.choose(&shapes), Some(STATE));
+        assert!(bus.read(STATE, LIMIT).await.is_err());
+        bus.settle().await.unwrap();
+        // Another span of the same length would be taken for it too.
+        assert_eq!(bus.choose(&[Span::new(1474, STATE.len)]), None);
+        let next = bus.choose(&shapes).unwrap();
+        assert_eq!(next.len, 72);
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&reply(78, 1)).await.unwrap();
+            far.write_all(&reply(72, 2)).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(next, LIMIT), answer);
+        assert_eq!(read.unwrap().as_slice(), [2; 72]);
+        assert_eq!(bus.choose(&shapes), None, "78 stays open, 72 was just read");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_wrong_check_is_counted_and_the_next_exchange_is_undisturbed() {
+        let (mut bus, mut far) = line();
+        let mut bad = reply(78, 1);
+        bad[20] ^= 4;
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&bad).await.unwrap();
+            far.write_all(&reply(78, 1)[..30]).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
+        assert!(read.is_err());
+        bus.settle().await.unwrap();
+        assert_eq!(bus.counts().checksum_errors, 1);
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&reply(72, 3)).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(Span::new(1546, 72), LIMIT), answer);
+        assert_eq!(read.unwrap().as_slice(), [3; 72]);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_reply_behind_the_head_of_a_longer_one_is_found_at_the_end() {
+        let (mut bus, mut far) = line();
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&[1, 3, 250]).await.unwrap();
+            far.write_all(&reply(78, 5)).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
+        assert_eq!(read.unwrap().as_slice(), [5; 78]);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_refusal_and_a_hang_up_have_their_own_errors() {
+        let (mut bus, mut far) = line();
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&bytes("01 83 02 C0 F1")).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
+        assert!(matches!(read, Err(BusError::Refused { .. })), "{read:?}");
+        drop(far);
+        let read = bus.read(STATE, LIMIT).await;
+        let place = "rtu:test?baud=115200&id=1".into();
+        assert_eq!(read, Err(BusError::Lost(TransportError::HungUp { place })));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn frames_are_three_and_a_half_characters_apart() {
+        assert_eq!(gap(9600), Duration::from_micros(3645));
+        assert_eq!(gap(115_200), FIXED_GAP);
+        let (mut bus, mut far) = line();
+        far.write_all(&[0]).await.unwrap();
+        let before = Instant::now();
+        bus.turn().await.unwrap();
+        assert!(before.elapsed() >= FIXED_GAP);
+        let before = Instant::now();
+        bus.turn().await.unwrap();
+        assert_eq!(before.elapsed(), Duration::ZERO, "the line is quiet");
     }
 }

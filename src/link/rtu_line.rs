@@ -28,9 +28,9 @@ enum Expected {
 impl Expected {
     fn to(request: &[u8]) -> Option<Self> {
         match request {
-            [_, 3, _, _, high, low, ..] => {
-                Some(Self::Bytes(u16::from_be_bytes([*high, *low]).checked_mul(2)?))
-            }
+            [_, 3, _, _, high, low, ..] => Some(Self::Bytes(
+                u16::from_be_bytes([*high, *low]).checked_mul(2)?,
+            )),
             [_, 6, high, low, ..] => Some(Self::Single([*high, *low])),
             [_, 16, a, b, c, d, ..] => Some(Self::Multiple([*a, *b, *c, *d])),
             _ => None,

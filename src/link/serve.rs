@@ -29,6 +29,8 @@ pub(crate) struct Job {
     pub(crate) ticket: Ticket,
     writes: ArrayVec<RegisterWrite, JOB_MAX>,
     read: Option<Span>,
+    /// Another answer was asked for, so that the read cannot be taken for a double of the last.
+    cleared: bool,
     is_motion: bool,
 }
 
@@ -42,6 +44,9 @@ impl Session {
                 return End::Lost(LinkTrouble::Suspended {
                     slept_s: slept.as_secs(),
                 });
+            }
+            if let Err(end) = self.turn(bus).await {
+                return end;
             }
             match self.step(bus).await {
                 Ok(true) => self.count(bus),
@@ -136,6 +141,7 @@ impl Session {
             HandCommand::Forces(request.force.map(Some)),
         ];
         for write in limits.iter().flat_map(HandCommand::writes) {
+            self.turn(bus).await?;
             if self.stop_wanted() {
                 return Ok(());
             }
@@ -267,6 +273,14 @@ impl Session {
         Ok(())
     }
 
+    /// Waits for the line; of all failures it can only be lost.
+    async fn turn(&mut self, bus: &mut Bus) -> Result<(), End> {
+        match bus.turn().await {
+            Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+            _ => Ok(()),
+        }
+    }
+
     // --- requests -----------------------------------------------------------------------------
 
     /// True if a request is under way or one was waiting.
@@ -284,6 +298,7 @@ impl Session {
             ticket,
             writes: ArrayVec::new(),
             read: None,
+            cleared: false,
             is_motion: false,
         };
         match request {
@@ -313,6 +328,12 @@ impl Session {
             return Ok(());
         };
         if let Some(span) = job.read {
+            if !job.cleared && bus.choose(&[span]).is_none() {
+                // The same question was answered just now; any other answer clears the line of doubles.
+                job.cleared = true;
+                self.job = Some(job);
+                return self.poll(bus, Poll::State).await;
+            }
             return self.read_for(bus, job.ticket, span).await;
         }
         let Some(write) = job.writes.pop_at(0) else {
@@ -324,7 +345,7 @@ impl Session {
             Ok(()) if job.writes.is_empty() => self.answer(job.ticket, Ok(Outcome::Acknowledged)),
             Ok(()) => self.job = Some(job),
             Err(error) => {
-                self.answer(job.ticket, Err(request_error(&error, write.span())));
+                self.answer(job.ticket, Err(RequestError::of(&error, write.span())));
                 self.failed(bus, &error).await?;
             }
         }
@@ -332,10 +353,6 @@ impl Session {
     }
 
     async fn read_for(&mut self, bus: &mut Bus, ticket: Ticket, span: Span) -> Result<(), End> {
-        if bus.choose(&[span]).is_none() {
-            // The same question was answered just now; any other answer clears the line of doubles.
-            self.poll(bus, Poll::State).await?;
-        }
         if bus.choose(&[span]).is_none() {
             let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
             self.answer(ticket, Err(RequestError::Ambiguous { address, wait_s }));
@@ -356,7 +373,7 @@ impl Session {
                 );
             }
             Err(error) => {
-                self.answer(ticket, Err(request_error(&error, span)));
+                self.answer(ticket, Err(RequestError::of(&error, span)));
                 self.failed(bus, &error).await?;
             }
         }
@@ -471,29 +488,5 @@ fn extend(into: &mut ArrayVec<RegisterWrite, JOB_MAX>, writes: Writes) {
     for write in writes {
         let full = into.try_push(write).is_err();
         debug_assert!(!full, "a job holds the longest command and a hold");
-    }
-}
-
-fn request_error(error: &BusError, span: Span) -> RequestError {
-    let address = span.address;
-    match error {
-        BusError::Timeout { after } => {
-            let after_ms = u64::try_from(after.as_millis()).unwrap_or(u64::MAX);
-            RequestError::Timeout { address, after_ms }
-        }
-        BusError::Refused { reason } => RequestError::Refused {
-            address,
-            reason: reason.clone(),
-        },
-        BusError::WrongLength { got, want } => RequestError::WrongLength {
-            address,
-            got: *got,
-            want: *want,
-        },
-        BusError::TooLong => RequestError::TooLong {
-            address,
-            len: span.len,
-        },
-        BusError::Lost(_) => RequestError::LinkLost,
     }
 }

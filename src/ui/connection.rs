@@ -149,7 +149,11 @@ impl ConnectionForm {
             ),
             Kind::Rs485 | Kind::Rtu | Kind::Can | Kind::Slcan => format!(
                 "{}:{}?baud={}&id={}",
-                if self.kind == Kind::Rtu { "rtu" } else { "rs485" },
+                if self.kind == Kind::Rtu {
+                    "rtu"
+                } else {
+                    "rs485"
+                },
                 trimmed(&self.port),
                 trimmed(&self.baud),
                 trimmed(&self.id)

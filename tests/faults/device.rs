@@ -102,13 +102,8 @@ pub async fn modbus_tcp(hand: SharedHand, mut wire: impl Wire, quirks: Quirks, s
         }
         sleep(quirks.turnaround).await;
         let mut head = [head[0], head[1], head[6]];
-        let (answer, copies) = quirked(
-            modbus_answer(&hand, &pdu),
-            &quirks,
-            &mut rng,
-            &mut head[1],
-        )
-        .await;
+        let (answer, copies) =
+            quirked(modbus_answer(&hand, &pdu), &quirks, &mut rng, &mut head[1]).await;
         let [high, low, unit] = head;
         let mut adu = vec![high, low, 0, 0];
         adu.extend(u16::try_from(answer.len() + 1).unwrap().to_be_bytes());
