@@ -19,7 +19,7 @@ mod oracle;
 #[path = "faults/tap.rs"]
 mod tap;
 
-use device::Quirks;
+use device::{Protocol, Quirks};
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use handscope::hand::{
@@ -51,7 +51,7 @@ struct FaultyDial {
     log: Log,
     plan: FaultPlan,
     quirks: Quirks,
-    is_tcp: bool,
+    protocol: Protocol,
     state: Mutex<DialState>,
 }
 
@@ -105,25 +105,21 @@ impl Dial for FaultyDial {
             switch.quiet();
         }
         state.switch = Some(switch);
-        if self.is_tcp {
-            tokio::spawn(device::modbus_tcp(
-                self.hand.clone(),
-                far,
-                quirks,
-                plan.seed,
-            ));
-        } else {
-            tokio::spawn(device::rs485(self.hand.clone(), far, quirks));
-        }
-        let wire: BoxedWire = Box::new(Tap::new(near, self.log.clone(), self.is_tcp));
+        let hand = self.hand.clone();
+        match self.protocol {
+            Protocol::Rs485 => tokio::spawn(device::rs485(hand, far, quirks)),
+            Protocol::Rtu => tokio::spawn(device::modbus_rtu(hand, far, quirks, plan.seed)),
+            Protocol::Tcp => tokio::spawn(device::modbus_tcp(hand, far, quirks, plan.seed)),
+        };
+        let wire: BoxedWire = Box::new(Tap::new(near, self.log.clone(), self.protocol));
         futures::future::ready(Ok(wire)).boxed()
     }
 }
 
-fn odds(rng: &mut fastrand::Rng, is_tcp: bool) -> FaultOdds {
+fn odds(rng: &mut fastrand::Rng, protocol: Protocol) -> FaultOdds {
     let mut chance = |most: f64| if rng.bool() { rng.f64() * most } else { 0.0 };
     let (delay, hang_up) = (chance(0.1), chance(0.004));
-    if is_tcp {
+    if protocol == Protocol::Tcp {
         // TCP loses and changes nothing; it delays and breaks.
         return FaultOdds {
             delay,
@@ -162,7 +158,8 @@ impl Schedule {
     fn new(seed: u64) -> Self {
         let mut rng = fastrand::Rng::with_seed(seed);
         let clock = Clock::start();
-        let is_tcp = rng.bool();
+        let protocol = [Protocol::Rs485, Protocol::Rtu, Protocol::Tcp][rng.usize(..3)];
+        let is_tcp = protocol == Protocol::Tcp;
         let config = SimConfig {
             seed,
             id: 1,
@@ -171,7 +168,7 @@ impl Schedule {
         };
         let hand = SharedHand::new(SimHand::new(config), Instant::now());
         let turnaround = Duration::from_micros(rng.u64(1_000..15_000));
-        let one_in = if is_tcp && rng.bool() {
+        let one_in = if protocol != Protocol::Rs485 && rng.bool() {
             rng.u32(4..40)
         } else {
             0
@@ -180,8 +177,8 @@ impl Schedule {
         let pace = if is_tcp { None } else { pace };
         let plan = FaultPlan {
             seed,
-            out: odds(&mut rng, is_tcp),
-            back: odds(&mut rng, is_tcp),
+            out: odds(&mut rng, protocol),
+            back: odds(&mut rng, protocol),
             delay_max: Duration::from_millis(rng.u64(1..900)),
             // The framing's 8-bit sum lets one in 15 double flips pass; what it must catch is a single one.
             flips_max: 1,
@@ -196,13 +193,17 @@ impl Schedule {
                 turnaround,
                 one_in: Arc::new(one_in.into()),
             },
-            is_tcp,
+            protocol,
             state: Mutex::default(),
         });
-        let endpoint: Endpoint = match (is_tcp, pace) {
-            (true, _) => "tcp:test".parse().unwrap(),
-            (false, None) => "sim:".parse().unwrap(),
-            (false, Some(pace)) => format!("rs485:test?baud={}", pace.baud).parse().unwrap(),
+        let endpoint: Endpoint = match (protocol, pace) {
+            (Protocol::Tcp, _) => "tcp:test".parse().unwrap(),
+            (Protocol::Rs485, None) => "sim:".parse().unwrap(),
+            (Protocol::Rtu, None) => "rtu:test".parse().unwrap(),
+            (Protocol::Rs485, Some(pace)) => {
+                format!("rs485:test?baud={}", pace.baud).parse().unwrap()
+            }
+            (Protocol::Rtu, Some(pace)) => format!("rtu:test?baud={}", pace.baud).parse().unwrap(),
         };
         let rates = if rng.u8(..8) == 0 {
             PollRates::FULL
@@ -383,7 +384,7 @@ async fn armed_on(baud: u32, turnaround: Duration) -> (LinkHandle, Log, Clock) {
             turnaround,
             ..Quirks::default()
         },
-        is_tcp: false,
+        protocol: Protocol::Rs485,
         state: Mutex::default(),
     });
     let config = LinkConfig {

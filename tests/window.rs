@@ -415,7 +415,7 @@ fn gestures_start_by_number_and_take_names() {
 #[test]
 fn the_connection_is_spelled_as_everywhere_and_later_kinds_are_off() {
     let mut harness = open_at(common::empty(), View::Connection, LARGE);
-    for kind in ["Modbus RTU", "CAN", "CAN adapter"] {
+    for kind in ["CAN", "CAN adapter"] {
         let name = format!("Kind of link: {kind}");
         let node = harness.get_by_label(&name);
         assert!(node.accesskit_node().is_disabled(), "{kind}");
@@ -436,6 +436,27 @@ fn the_connection_is_spelled_as_everywhere_and_later_kinds_are_off() {
     );
     harness.get_by_label("Refresh").click();
     assert_eq!(actions(&mut harness), [Action::FindPorts]);
+    harness.get_by_label("Kind of link: Modbus RTU").click();
+    harness.run_steps(2);
+    harness
+        .get_by_label("Serial port")
+        .type_text("/dev/ttyUSB3");
+    harness.run_steps(2);
+    harness.get_by_label("Connect").click();
+    let endpoint = "rtu:/dev/ttyUSB3?baud=115200&id=1".parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+}
+
+#[test]
+fn the_form_is_filled_from_an_rtu_endpoint() {
+    let mut state = common::empty();
+    state.endpoint = Some("rtu:/dev/ttyUSB3?baud=57600&id=4".parse().unwrap());
+    let mut harness = open_at(state.clone(), View::Connection, LARGE);
+    harness.get_by_label("Connect").click();
+    assert_eq!(
+        actions(&mut harness),
+        [Action::Connect(state.endpoint.unwrap())]
+    );
 }
 
 #[test]

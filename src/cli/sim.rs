@@ -5,7 +5,11 @@ use crate::cli::args::SimArgs;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::sim::serve::modbus_tcp;
+#[cfg(unix)]
+use crate::sim::serve::pty;
 use crate::sim::{SharedHand, SimConfig, SimHand};
+#[cfg(unix)]
+use crate::transport::TransportError;
 use anyhow::{Context as _, anyhow};
 use futures::future::BoxFuture;
 use std::io;
@@ -39,7 +43,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         ..SimConfig::default()
     });
     let hand = SharedHand::new(hand, Instant::now());
-    // Both wires are there before either is announced: who waits for one may use both.
+    // All wires are there before any is announced: who waits for one may use all.
     let mut ready = Vec::new();
     let tcp = match args.tcp {
         Some(address) => {
@@ -57,6 +61,14 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         }
         None => Box::pin(std::future::pending()),
     };
+    let rtu = match &args.rtu {
+        Some(link) => {
+            let served = serve_rtu(&hand, link)?;
+            ready.push(format!("ready rtu {}", link.display()));
+            served
+        }
+        None => Box::pin(std::future::pending()),
+    };
     for line in &ready {
         out.line(line)?;
     }
@@ -66,6 +78,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         () = interrupt.wished() => Ok(()),
         error = tcp => Err(error),
         error = rs485 => Err(error),
+        error = rtu => Err(error),
         () = live(&hand) => Ok(()),
     }
 }
@@ -117,12 +130,34 @@ fn bind_words(error: &io::Error) -> String {
 
 #[cfg(unix)]
 fn serve_rs485(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
-    use crate::sim::serve::pty;
-    use crate::transport::TransportError;
     let place = link.display().to_string();
-    let served = pty::serve_rs485(hand.clone(), link).map_err(|error| match error {
+    let served =
+        pty::serve_rs485(hand.clone(), link).map_err(|error| link_words(&place, &error))?;
+    Ok(Box::pin(async move {
+        served.await;
+        anyhow!("the pseudo-terminal behind {place} was closed")
+    }))
+}
+
+#[cfg(unix)]
+fn serve_rtu(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+    let place = link.display().to_string();
+    let served = pty::serve_rtu(hand.clone(), link).map_err(|error| link_words(&place, &error))?;
+    Ok(Box::pin(async move {
+        match served.await {
+            Ok(()) => anyhow!("the pseudo-terminal behind {place} was closed"),
+            Err(error) => anyhow!("the server on {place} failed: {error}"),
+        }
+    }))
+}
+
+#[cfg(unix)]
+fn link_words(place: &str, error: &TransportError) -> anyhow::Error {
+    match error {
         TransportError::NotAPort { .. } => {
-            anyhow!("cannot make the link {place}: something that is no link stands there; choose another path")
+            anyhow!(
+                "cannot make the link {place}: something that is no link stands there; choose another path"
+            )
         }
         TransportError::Missing { .. } => {
             anyhow!("cannot make the link {place}: its folder does not exist; make it first")
@@ -131,17 +166,23 @@ fn serve_rs485(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
             anyhow!("cannot make the link {place}: you may not write to its folder; choose another")
         }
         other => anyhow!("cannot make the link {place}: {other}"),
-    })?;
-    Ok(Box::pin(async move {
-        served.await;
-        anyhow!("the pseudo-terminal behind {place} was closed")
-    }))
+    }
 }
 
 #[cfg(not(unix))]
 fn serve_rs485(_hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
-    Err(anyhow!(
+    Err(no_links(link))
+}
+
+#[cfg(not(unix))]
+fn serve_rtu(_hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+    Err(no_links(link))
+}
+
+#[cfg(not(unix))]
+fn no_links(link: &Path) -> anyhow::Error {
+    anyhow!(
         "cannot make {}: pseudo-terminals need Linux or macOS; use --tcp here",
         link.display()
-    ))
+    )
 }

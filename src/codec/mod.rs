@@ -2,4 +2,5 @@
 
 pub mod mbap;
 pub mod modbus;
+pub mod modbus_rtu;
 pub mod rs485;

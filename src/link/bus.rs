@@ -3,10 +3,12 @@
 use crate::hand::{RegisterWrite, Span};
 use crate::link::clock::Clock;
 use crate::link::late::LateReplies;
+use crate::link::modbus_rtu::ModbusRtu;
 use crate::link::modbus_tcp::ModbusTcp;
 use crate::link::rs485::Rs485;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use arrayvec::ArrayVec;
+use std::io;
 use std::time::Duration;
 
 /// Most bytes that one read can carry over any protocol.
@@ -52,6 +54,7 @@ impl BusCounts {
 pub(crate) enum Bus {
     Rs485(Box<Rs485>),
     ModbusTcp(Box<ModbusTcp>),
+    ModbusRtu(Box<ModbusRtu>),
 }
 
 impl Bus {
@@ -70,11 +73,13 @@ impl Bus {
             Endpoint::Tcp { unit, .. } => Ok(Self::ModbusTcp(Box::new(ModbusTcp::new(
                 wire, *unit, endpoint,
             )))),
-            Endpoint::Rtu(_) | Endpoint::Can { .. } | Endpoint::Slcan { .. } => {
-                Err(TransportError::Unsupported {
-                    kind: endpoint.kind().into(),
-                })
+            Endpoint::Rtu(line) => {
+                let bus = ModbusRtu::new(wire, line.baud, endpoint, late, clock);
+                Ok(Self::ModbusRtu(Box::new(bus)))
             }
+            Endpoint::Can { .. } | Endpoint::Slcan { .. } => Err(TransportError::Unsupported {
+                kind: endpoint.kind().into(),
+            }),
         }
     }
 
@@ -82,6 +87,7 @@ impl Bus {
     pub(crate) async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
         match self {
             Self::Rs485(bus) => bus.read(span, limit).await,
+            Self::ModbusRtu(bus) => bus.read(span, limit).await,
             Self::ModbusTcp(bus) => bus.read(span, limit).await,
         }
     }
@@ -94,7 +100,17 @@ impl Bus {
     ) -> Result<(), BusError> {
         match self {
             Self::Rs485(bus) => bus.write(write, limit).await,
+            Self::ModbusRtu(bus) => bus.write(write, limit).await,
             Self::ModbusTcp(bus) => bus.write(write, limit).await,
+        }
+    }
+
+    /// Waits until the protocol lets the next request go out. To be called before the wishes of the window are looked
+    /// at, so that a stop does not wait behind a request that is not on the wire yet.
+    pub(crate) async fn turn(&mut self) -> Result<(), BusError> {
+        match self {
+            Self::ModbusRtu(bus) => bus.turn().await,
+            Self::Rs485(_) | Self::ModbusTcp(_) => Ok(()),
         }
     }
 
@@ -102,6 +118,7 @@ impl Bus {
     pub(crate) async fn settle(&mut self) -> Result<(), BusError> {
         match self {
             Self::Rs485(bus) => bus.settle().await,
+            Self::ModbusRtu(bus) => bus.settle().await,
             Self::ModbusTcp(_) => Ok(()),
         }
     }
@@ -110,6 +127,7 @@ impl Bus {
     pub(crate) fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
         match self {
             Self::Rs485(bus) => bus.choose(shapes),
+            Self::ModbusRtu(bus) => bus.choose(shapes),
             // Transaction ids tell replies apart, so the widest shape serves always.
             Self::ModbusTcp(_) => shapes
                 .iter()
@@ -122,6 +140,7 @@ impl Bus {
     pub(crate) fn wire_time(&self, bytes: u16) -> Duration {
         match self {
             Self::Rs485(bus) => bus.wire_time(bytes),
+            Self::ModbusRtu(bus) => bus.wire_time(bytes),
             Self::ModbusTcp(_) => Duration::ZERO,
         }
     }
@@ -129,6 +148,7 @@ impl Bus {
     pub(crate) fn counts(&self) -> BusCounts {
         match self {
             Self::Rs485(bus) => bus.counts(),
+            Self::ModbusRtu(bus) => bus.counts(),
             Self::ModbusTcp(bus) => bus.counts(),
         }
     }
@@ -137,6 +157,7 @@ impl Bus {
     pub(crate) fn close(self) -> LateReplies {
         match self {
             Self::Rs485(bus) => bus.close(),
+            Self::ModbusRtu(bus) => bus.close(),
             Self::ModbusTcp(_) => LateReplies::default(),
         }
     }
@@ -149,5 +170,21 @@ pub(crate) fn id_of(endpoint: &Endpoint) -> u16 {
         Endpoint::Rs485(line) | Endpoint::Rtu(line) => u16::from(line.id),
         Endpoint::Tcp { unit, .. } => u16::from(*unit),
         Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } => *id,
+    }
+}
+
+/// Why a wire broke, from what the system said.
+pub(crate) fn lost(place: String, error: &io::Error) -> TransportError {
+    // A pseudo-terminal says EIO and a USB adapter ENXIO or EPIPE when the other side goes.
+    let hung_up = matches!(
+        error.kind(),
+        io::ErrorKind::BrokenPipe | io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset
+    ) || matches!(error.raw_os_error(), Some(5 | 6));
+    if hung_up {
+        return TransportError::HungUp { place };
+    }
+    TransportError::Io {
+        place,
+        message: error.to_string(),
     }
 }

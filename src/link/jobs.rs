@@ -19,6 +19,8 @@ pub(crate) struct Job {
     pub(crate) ticket: Ticket,
     writes: ArrayVec<RegisterWrite, JOB_MAX>,
     read: Option<Span>,
+    /// Another answer was asked for, so that the read cannot be taken for a double of the last.
+    cleared: bool,
     pub(crate) is_motion: bool,
 }
 
@@ -38,6 +40,7 @@ impl Session {
             ticket,
             writes: ArrayVec::new(),
             read: None,
+            cleared: false,
             is_motion: false,
         };
         match request {
@@ -67,6 +70,12 @@ impl Session {
             return Ok(());
         };
         if let Some(span) = job.read {
+            if !job.cleared && bus.choose(&[span]).is_none() {
+                // The same question was answered just now; any other answer clears the line of doubles.
+                job.cleared = true;
+                self.job = Some(job);
+                return self.poll(bus, Poll::State).await;
+            }
             return self.read_for(bus, job.ticket, span).await;
         }
         let Some(write) = job.writes.pop_at(0) else {
@@ -86,10 +95,6 @@ impl Session {
     }
 
     async fn read_for(&mut self, bus: &mut Bus, ticket: Ticket, span: Span) -> Result<(), End> {
-        if bus.choose(&[span]).is_none() {
-            // The same question was answered just now; any other answer clears the line of doubles.
-            self.poll(bus, Poll::State).await?;
-        }
         if bus.choose(&[span]).is_none() {
             let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
             self.answer(ticket, Err(RequestError::Ambiguous { address, wait_s }));

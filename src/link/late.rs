@@ -54,6 +54,12 @@ impl LateReplies {
         }
     }
 
+    /// A reply has come that nobody waits for and that does not tell its question: all stay open, and doubles must be
+    /// reckoned with.
+    pub(crate) fn strayed(&mut self, now: Moment) {
+        self.unasked = Some(now);
+    }
+
     /// The first of these spans that no late or doubled reply can answer.
     pub(crate) fn first_clear(&mut self, shapes: &[Span], now: Moment) -> Option<Span> {
         self.forget(now);

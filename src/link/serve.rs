@@ -31,6 +31,9 @@ impl Session {
                     slept_s: slept.as_secs(),
                 });
             }
+            if let Err(end) = self.turn(bus).await {
+                return end;
+            }
             match self.step(bus).await {
                 Ok(true) => self.count(bus),
                 Ok(false) => self.idle().await,
@@ -126,6 +129,7 @@ impl Session {
             HandCommand::Forces(request.force.map(Some)),
         ];
         for write in limits.iter().flat_map(HandCommand::writes) {
+            self.turn(bus).await?;
             if self.stop_wanted() {
                 return Ok(());
             }
@@ -256,6 +260,14 @@ impl Session {
             self.failed(bus, &error).await?;
         }
         Ok(())
+    }
+
+    /// Waits for the line; of all failures it can only be lost.
+    async fn turn(&mut self, bus: &mut Bus) -> Result<(), End> {
+        match bus.turn().await {
+            Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+            _ => Ok(()),
+        }
     }
 
     /// The group to read now. While a stop is being confirmed only the motion state counts.

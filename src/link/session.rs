@@ -133,6 +133,9 @@ impl Session {
     async fn identify(&mut self, bus: &mut Bus) -> Result<(), End> {
         for _ in 0..IDENTIFY_TRIES {
             let limit = self.reply_limit(bus, 1) * 2;
+            if let Err(BusError::Lost(error)) = bus.turn().await {
+                return Err(End::Lost(error.into()));
+            }
             let asked = bus.read(register::HAND_ID.span(), limit);
             let closed = closed(Arc::clone(&self.ends.wanted));
             let answer = tokio::select! {

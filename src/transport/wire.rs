@@ -85,7 +85,7 @@ pub enum TransportError {
         place: String,
     },
     /// This kind of link is not in this version or on this system.
-    #[error("'{kind}:' links are not in this version yet: use rs485: or tcp:")]
+    #[error("'{kind}:' links are not in this version yet: use rs485:, rtu: or tcp:")]
     Unsupported {
         /// The kind of link.
         kind: String,

@@ -51,15 +51,15 @@ impl Kind {
     }
 
     const fn is_there(self) -> bool {
-        matches!(self, Self::Sim | Self::Rs485 | Self::Tcp)
+        matches!(self, Self::Sim | Self::Rs485 | Self::Tcp | Self::Rtu)
     }
 
     const fn hint(self) -> Text {
         match self {
             Self::Sim => panels::HINT_SIM,
-            Self::Rs485 => panels::HINT_SERIAL,
+            Self::Rs485 | Self::Rtu => panels::HINT_SERIAL,
             Self::Tcp => panels::HINT_TCP,
-            Self::Rtu | Self::Can | Self::Slcan => panels::KIND_LATER,
+            Self::Can | Self::Slcan => panels::KIND_LATER,
         }
     }
 }
@@ -118,8 +118,12 @@ impl ConnectionForm {
                 self.seed = seed.to_string();
                 self.scenario.clone_from(scenario);
             }
-            Some(Endpoint::Rs485(line)) => {
-                self.kind = Kind::Rs485;
+            Some(Endpoint::Rs485(line) | Endpoint::Rtu(line)) => {
+                self.kind = if matches!(endpoint, Some(Endpoint::Rtu(_))) {
+                    Kind::Rtu
+                } else {
+                    Kind::Rs485
+                };
                 self.port.clone_from(&line.port);
                 self.baud = line.baud.to_string();
                 self.id = line.id.to_string();
@@ -144,7 +148,12 @@ impl ConnectionForm {
                 trimmed(&self.scenario)
             ),
             Kind::Rs485 | Kind::Rtu | Kind::Can | Kind::Slcan => format!(
-                "rs485:{}?baud={}&id={}",
+                "{}:{}?baud={}&id={}",
+                if self.kind == Kind::Rtu {
+                    "rtu"
+                } else {
+                    "rs485"
+                },
                 trimmed(&self.port),
                 trimmed(&self.baud),
                 trimmed(&self.id)

@@ -179,10 +179,21 @@ pub(crate) fn sim_on_tcp(more: &[&str]) -> (Running, String) {
 /// A simulated hand on a pseudo-terminal linked at `link`, with its endpoint.
 #[cfg(unix)]
 pub(crate) fn sim_on_link(link: &Path, more: &[&str]) -> (Running, String) {
-    let link = link.to_str().unwrap();
-    let mut sim = start(&[&["sim", "--rs485", link], more].concat());
-    assert_eq!(sim.line(), format!("ready rs485 {link}"));
-    (sim, format!("rs485:{link}"))
+    sim_on("rs485", link, more)
+}
+
+/// The same in Modbus RTU.
+#[cfg(unix)]
+pub(crate) fn sim_on_rtu(link: &Path, more: &[&str]) -> (Running, String) {
+    sim_on("rtu", link, more)
+}
+
+#[cfg(unix)]
+fn sim_on(kind: &str, link: &Path, more: &[&str]) -> (Running, String) {
+    let (link, option) = (link.to_str().unwrap(), format!("--{kind}"));
+    let mut sim = start(&[&["sim", &option, link], more].concat());
+    assert_eq!(sim.line(), format!("ready {kind} {link}"));
+    (sim, format!("{kind}:{link}"))
 }
 
 /// The output pipe, for tests that close it.

@@ -1,6 +1,6 @@
 //! The simulated hand on a pseudo-terminal and on TCP, read by the other commands: both wires tell the same.
 
-use crate::program::{Ended, Running, run, sim_on_link, sim_on_tcp, start};
+use crate::program::{Ended, Running, run, sim_on_link, sim_on_rtu, sim_on_tcp, start};
 use serde_json::Value;
 use std::time::Duration;
 
@@ -187,4 +187,67 @@ fn a_wire_open_to_the_network_is_warned_of() {
     let mut sim = start(&["sim", "--tcp", "0.0.0.0:0"]);
     assert!(sim.complaint().contains("anyone in the network"));
     assert!(sim.line().starts_with("ready tcp 0.0.0.0:"));
+}
+
+#[test]
+fn modbus_rtu_tells_the_same_as_the_other_wires() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (rs485, rtu) = (link("hand"), link("hand-rtu"));
+    let mut sim = start(&[
+        "sim",
+        "--tcp",
+        "127.0.0.1:0",
+        "--rs485",
+        &rs485,
+        "--rtu",
+        &rtu,
+    ]);
+    assert!(sim.line().starts_with("ready tcp "));
+    assert_eq!(sim.line(), format!("ready rs485 {rs485}"));
+    assert_eq!(sim.line(), format!("ready rtu {rtu}"));
+    let hands = [format!("rtu:{rtu}"), format!("rs485:{rs485}")];
+    let names = [
+        "HAND_ID",
+        "REDU_RATIO",
+        "ANGLE_SET",
+        "FORCE_SET",
+        "SPEED_SET",
+        "IP_PART4",
+    ];
+    let read = hands.each_ref().map(|hand| {
+        let args = [&["read", "--json", "--hand", hand], &names[..]].concat();
+        run(&args).ok().lines().remove(0)
+    });
+    assert_eq!(read[0], read[1]);
+    for ended in watch_all(&hands, &["--for", "1"]) {
+        let mut lines = ended.lines();
+        let stats = lines.pop().unwrap()["stats"].take();
+        assert!(stats["state_reads"].as_u64().unwrap() > 30, "{stats}");
+        assert!(stats["tactile_reads"].as_u64().unwrap() > 5, "{stats}");
+        assert_eq!(lines.pop().unwrap()["tactile"][4]["check_ok"], true);
+    }
+}
+
+#[test]
+fn an_rtu_line_answers_one_id_and_survives_noise_and_a_foreign_protocol() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("hand");
+    let (_sim, hand) = sim_on_rtu(&link, &["--id", "7"]);
+    // More noise than the server skips, and the head of a frame that never ends.
+    for noise in [&[0x5A; 100][..], &[7, 16, 0, 0, 0, 100, 200]] {
+        std::fs::write(&link, noise).unwrap();
+        std::thread::sleep(Duration::from_millis(200));
+        run(&["read", "HAND_ID", "--hand", &format!("{hand}?id=7")]).ok();
+    }
+    for wrong in [
+        format!("{hand}?id=2"),
+        format!("rs485:{}?id=7", link.display()),
+    ] {
+        let ended = run(&["read", "HAND_ID", "--hand", &wrong]);
+        assert_eq!(ended.code, Some(1));
+        assert!(ended.err.contains("no answer from id"), "{}", ended.err);
+        assert!(ended.took < Duration::from_secs(5), "{:?}", ended.took);
+    }
+    run(&["read", "HAND_ID", "--hand", &format!("{hand}?id=7")]).ok();
 }

@@ -13,7 +13,15 @@ use tokio::time::{Duration, sleep};
 const STAMP: Span = Span::new(1594, 4);
 const TOUCH: Span = Span::new(3000, 290);
 
-/// What the device does wrong, for protocols whose transport loses nothing.
+/// What is spoken on the wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Protocol {
+    Rs485,
+    Rtu,
+    Tcp,
+}
+
+/// What the device does wrong; for TCP it is all there is, as that loses nothing.
 #[derive(Debug, Clone, Default)]
 pub struct Quirks {
     pub turnaround: Duration,
@@ -93,26 +101,13 @@ pub async fn modbus_tcp(hand: SharedHand, mut wire: impl Wire, quirks: Quirks, s
             return;
         }
         sleep(quirks.turnaround).await;
-        let mut answer = modbus_answer(&hand, &pdu);
-        let mut copies = 1;
-        let mut number = [head[0], head[1]];
-        let one_in = quirks.one_in.load(Ordering::Relaxed);
-        if one_in > 0 && rng.u32(..one_in) == 0 {
-            match rng.u8(..6) {
-                0 => sleep(Duration::from_millis(rng.u64(60..900))).await,
-                1 => copies = 2,
-                2 => copies = 0,
-                3 => number[1] ^= 0x55,
-                4 if answer[0] == 3 && answer.len() > 6 => {
-                    answer.truncate(answer.len() - 4);
-                    answer[1] -= 4;
-                }
-                _ => answer = vec![pdu[0] | 0x80, 6],
-            }
-        }
-        let mut adu = vec![number[0], number[1], 0, 0];
+        let mut head = [head[0], head[1], head[6]];
+        let (answer, copies) =
+            quirked(modbus_answer(&hand, &pdu), &quirks, &mut rng, &mut head[1]).await;
+        let [high, low, unit] = head;
+        let mut adu = vec![high, low, 0, 0];
         adu.extend(u16::try_from(answer.len() + 1).unwrap().to_be_bytes());
-        adu.push(head[6]);
+        adu.push(unit);
         adu.extend(answer);
         for _ in 0..copies {
             if wire.write_all(&adu).await.is_err() {
@@ -120,6 +115,88 @@ pub async fn modbus_tcp(hand: SharedHand, mut wire: impl Wire, quirks: Quirks, s
             }
         }
     }
+}
+
+/// Now and then: late, doubled, missing, someone else's, too short, refused. Gives the answer and its copies.
+async fn quirked(
+    mut answer: Vec<u8>,
+    quirks: &Quirks,
+    rng: &mut fastrand::Rng,
+    whose: &mut u8,
+) -> (Vec<u8>, usize) {
+    let one_in = quirks.one_in.load(Ordering::Relaxed);
+    if one_in == 0 || rng.u32(..one_in) != 0 {
+        return (answer, 1);
+    }
+    match rng.u8(..6) {
+        0 => sleep(Duration::from_millis(rng.u64(60..900))).await,
+        1 => return (answer, 2),
+        2 => return (answer, 0),
+        3 => *whose ^= 0x55,
+        4 if answer[0] == 3 && answer.len() > 6 => {
+            answer.truncate(answer.len() - 4);
+            answer[1] -= 4;
+        }
+        _ => answer = vec![answer[0] | 0x80, 6],
+    }
+    (answer, 1)
+}
+
+/// Check of Modbus RTU, bit by bit as the standard describes it.
+pub fn crc(bytes: &[u8]) -> [u8; 2] {
+    let mut register = 0xFFFFu16;
+    for byte in bytes {
+        register ^= u16::from(*byte);
+        for _ in 0..8 {
+            let out = register % 2 == 1;
+            register /= 2;
+            if out {
+                register ^= 0xA001;
+            }
+        }
+    }
+    register.to_le_bytes()
+}
+
+pub async fn modbus_rtu(hand: SharedHand, mut wire: impl Wire, quirks: Quirks, seed: u64) {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut held: Vec<u8> = Vec::new();
+    let mut chunk = [0; 512];
+    while let Ok(len @ 1..) = wire.read(&mut chunk).await {
+        held.extend(&chunk[..len]);
+        while let Some((pdu, used)) = rtu_request(&held) {
+            held.drain(..used);
+            sleep(quirks.turnaround).await;
+            let mut unit = 1;
+            let answer = modbus_answer(&hand, &pdu);
+            let (answer, copies) = quirked(answer, &quirks, &mut rng, &mut unit).await;
+            let mut reply = vec![unit];
+            reply.extend(answer);
+            reply.extend(crc(&reply));
+            for _ in 0..copies {
+                if wire.write_all(&reply).await.is_err() {
+                    return;
+                }
+            }
+        }
+        if held.len() > 600 {
+            held.clear();
+        }
+    }
+}
+
+/// The next whole request to hand 1, and the bytes to drop up to its end.
+fn rtu_request(held: &[u8]) -> Option<(Vec<u8>, usize)> {
+    (0..held.len()).find_map(|at| {
+        let frame = &held[at..];
+        let len = match frame {
+            [1, 3 | 6, ..] => 6,
+            [1, 16, _, _, _, _, count, ..] => 7 + usize::from(*count),
+            _ => return None,
+        };
+        let (body, check) = frame.get(..len + 2)?.split_last_chunk()?;
+        (crc(body) == *check).then(|| (body[1..].to_vec(), at + len + 2))
+    })
 }
 
 fn modbus_answer(hand: &SharedHand, pdu: &[u8]) -> Vec<u8> {

@@ -1,5 +1,6 @@
 //! What the link put on the wire, frame by frame, with the time; taken between the link and the faults.
 
+use crate::device::{Protocol, crc};
 use handscope::hand::Moment;
 use handscope::link::Clock;
 use handscope::transport::Wire;
@@ -45,9 +46,13 @@ impl Log {
         self.sent.lock().unwrap().clone()
     }
 
-    fn note(&self, frame: &[u8], is_tcp: bool) {
+    fn note(&self, frame: &[u8], protocol: Protocol) {
         let at = self.clock.now();
-        let (address, len, written) = if is_tcp { modbus(frame) } else { rs485(frame) };
+        let (address, len, written) = match protocol {
+            Protocol::Rs485 => rs485(frame),
+            Protocol::Tcp => tcp(frame),
+            Protocol::Rtu => rtu(frame),
+        };
         self.sent.lock().unwrap().push(Sent {
             at,
             address,
@@ -75,9 +80,23 @@ fn rs485(frame: &[u8]) -> (u16, u16, Option<Vec<u8>>) {
     )
 }
 
-fn modbus(frame: &[u8]) -> (u16, u16, Option<Vec<u8>>) {
-    let [_, _, 0, 0, _, _, 255, function, high, low, rest @ ..] = frame else {
+fn tcp(frame: &[u8]) -> (u16, u16, Option<Vec<u8>>) {
+    let [_, _, 0, 0, _, _, 255, pdu @ ..] = frame else {
         panic!("not one whole request: {frame:02X?}")
+    };
+    modbus(pdu)
+}
+
+fn rtu(frame: &[u8]) -> (u16, u16, Option<Vec<u8>>) {
+    let (body, check) = frame.split_last_chunk().unwrap();
+    assert_eq!(crc(body), *check, "{frame:02X?}");
+    assert_eq!(body[0], 1, "{frame:02X?}");
+    modbus(&body[1..])
+}
+
+fn modbus(pdu: &[u8]) -> (u16, u16, Option<Vec<u8>>) {
+    let [function, high, low, rest @ ..] = pdu else {
+        panic!("not one whole request: {pdu:02X?}")
     };
     let written = match function {
         3 => None,
@@ -104,12 +123,16 @@ fn modbus(frame: &[u8]) -> (u16, u16, Option<Vec<u8>>) {
 pub struct Tap<W> {
     wire: W,
     log: Log,
-    is_tcp: bool,
+    protocol: Protocol,
 }
 
 impl<W> Tap<W> {
-    pub fn new(wire: W, log: Log, is_tcp: bool) -> Self {
-        Self { wire, log, is_tcp }
+    pub fn new(wire: W, log: Log, protocol: Protocol) -> Self {
+        Self {
+            wire,
+            log,
+            protocol,
+        }
     }
 }
 
@@ -133,7 +156,7 @@ impl<W: Wire> AsyncWrite for Tap<W> {
         let written = Pin::new(&mut this.wire).poll_write(cx, bytes);
         if let Poll::Ready(Ok(len)) = written {
             assert_eq!(len, bytes.len(), "the pipe takes a frame whole");
-            this.log.note(bytes, this.is_tcp);
+            this.log.note(bytes, this.protocol);
         }
         written
     }

@@ -1,5 +1,8 @@
 //! Servers that put the simulated hand on wires and sockets. They own the clock; the hand does not.
 
+mod modbus;
+#[cfg(unix)]
+pub mod modbus_rtu;
 pub mod modbus_tcp;
 #[cfg(unix)]
 pub mod pty;

@@ -1,9 +1,11 @@
 //! The simulated hand behind a pseudo-terminal, where other programs open it like a serial port. Unix only.
 
+use crate::sim::serve::modbus_rtu;
 use crate::sim::serve::rs485;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::{PtyLink, TransportError};
 use std::future::Future;
+use std::io;
 use std::path::Path;
 
 /// Makes the link at `path` at once, and answers there while the returned future lives. Clients may come and go;
@@ -18,4 +20,16 @@ pub fn serve_rs485(
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
     Ok(rs485::serve(hand, link))
+}
+
+/// As [`serve_rs485`], in Modbus RTU. The future ends with an error only if the system has no pseudo-terminals left.
+///
+/// # Errors
+/// As [`serve_rs485`].
+pub fn serve_rtu(
+    hand: SharedHand,
+    path: &Path,
+) -> Result<impl Future<Output = io::Result<()>> + Send + 'static, TransportError> {
+    let link = PtyLink::create(path)?;
+    Ok(modbus_rtu::serve(hand, link))
 }

@@ -1,0 +1,295 @@
+//! Whole Modbus RTU replies out of a stream that may hold noise (manual 2.4). What the registers mean is not known here.
+
+use arrayvec::ArrayVec;
+
+/// The longest frame: unit, 253 bytes of function and data, check.
+pub const FRAME_LEN_MAX: usize = 256;
+/// Bytes that the splitter keeps: one frame and the beginning of the next.
+pub const BUFFER_LEN: usize = 2 * FRAME_LEN_MAX;
+
+/// Bytes of the check at a frame's end.
+const CHECK_LEN: usize = 2;
+/// Unit, function, exception code, check.
+const EXCEPTION_LEN: usize = 5;
+/// Unit, function, address, count or value, check.
+const WRITTEN_LEN: usize = 8;
+/// Unit, function, number of bytes.
+const READ_HEAD_LEN: usize = 3;
+/// Most bytes that a read reply can hold: 125 words (manual 2.5.1).
+const READ_BYTES_MAX: u8 = 250;
+
+/// The check over all bytes before it; on the wire its low byte comes first (manual 2.4: CRC).
+#[must_use]
+pub fn crc16(bytes: &[u8]) -> u16 {
+    bytes.iter().fold(0xFFFF, |mut crc, byte| {
+        crc ^= u16::from(*byte);
+        for _ in 0..8 {
+            crc = (crc >> 1) ^ if crc & 1 == 1 { 0xA001 } else { 0 };
+        }
+        crc
+    })
+}
+
+/// One whole reply whose check is right.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RtuReply {
+    /// Function code; the top bit marks an exception.
+    pub function: u8,
+    /// All bytes, unit and check included.
+    pub bytes: ArrayVec<u8, FRAME_LEN_MAX>,
+}
+
+impl RtuReply {
+    /// Memory bytes in the reply to a read; `None` for all others.
+    #[must_use]
+    pub fn read_len(&self) -> Option<u16> {
+        match self.bytes.as_slice() {
+            [_, 3, len, ..] => Some(u16::from(*len)),
+            _ => None,
+        }
+    }
+}
+
+/// What was on the line beside good replies.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RtuNoise {
+    /// Heads of a possible reply whose check was wrong.
+    pub checksum_errors: u64,
+    /// Runs of bytes that had to be skipped to find the next reply.
+    pub resyncs: u64,
+}
+
+/// Cuts a stream into the replies of one unit. RTU marks no beginning, only a silence that adapters do not keep, so
+/// a reply is where unit, function, length and check agree; bytes that fit none are skipped.
+#[derive(Debug, Clone)]
+pub struct RtuSplitter {
+    unit: u8,
+    buffer: ArrayVec<u8, BUFFER_LEN>,
+    noise: RtuNoise,
+    /// Within a run of skipped bytes, which counts once.
+    skipping: bool,
+}
+
+/// What the bytes at the front can be.
+enum Head {
+    /// A reply of so many bytes, whole and good.
+    Good(usize),
+    /// Looks like a reply, but its check is wrong.
+    Bad,
+    /// Too few bytes to tell.
+    Open,
+    /// No reply begins so.
+    None,
+}
+
+impl RtuSplitter {
+    /// Replies of this unit; those of others are skipped.
+    #[must_use]
+    pub const fn new(unit: u8) -> Self {
+        Self {
+            unit,
+            buffer: ArrayVec::new_const(),
+            noise: RtuNoise {
+                checksum_errors: 0,
+                resyncs: 0,
+            },
+            skipping: false,
+        }
+    }
+
+    /// Takes bytes as they come; returns how many. The rest is given again after [`Self::next`] said `None`.
+    pub fn push(&mut self, bytes: &[u8]) -> usize {
+        let taken = bytes.len().min(self.buffer.remaining_capacity());
+        self.buffer.extend(bytes.iter().take(taken).copied());
+        taken
+    }
+
+    /// The next whole reply; `None` if more bytes are needed.
+    #[expect(
+        clippy::should_implement_trait,
+        reason = "None is not the end: more may come after a push"
+    )]
+    pub fn next(&mut self) -> Option<RtuReply> {
+        loop {
+            match self.head(0) {
+                Head::Good(len) => return Some(self.take(len)),
+                Head::Open => return None,
+                Head::Bad => {
+                    self.noise.checksum_errors += u64::from(!self.skipping);
+                    self.skip(1);
+                }
+                Head::None => self.skip(1),
+            }
+        }
+    }
+
+    /// The line is silent, so nothing unfinished will be finished: skips to the next whole reply, or everything.
+    pub fn flush_pending(&mut self) {
+        let whole = (0..self.buffer.len()).find(|at| matches!(self.head(*at), Head::Good(_)));
+        self.skip(whole.unwrap_or(self.buffer.len()));
+    }
+
+    /// What was skipped so far.
+    #[must_use]
+    pub const fn noise(&self) -> RtuNoise {
+        self.noise
+    }
+
+    /// Bytes kept because their reply is not whole.
+    #[must_use]
+    pub const fn buffered(&self) -> usize {
+        self.buffer.len()
+    }
+
+    fn head(&self, at: usize) -> Head {
+        let bytes = self.buffer.get(at..).unwrap_or_default();
+        if bytes.first().is_some_and(|unit| *unit != self.unit) {
+            return Head::None;
+        }
+        let len = match bytes {
+            [] | [_] | [_, 3] => return Head::Open,
+            [_, 3, count, ..] if count % 2 == 0 && (2..=READ_BYTES_MAX).contains(count) => {
+                READ_HEAD_LEN + usize::from(*count) + CHECK_LEN
+            }
+            [_, 6 | 16, ..] => WRITTEN_LEN,
+            [_, 0x83 | 0x86 | 0x90, ..] => EXCEPTION_LEN,
+            _ => return Head::None,
+        };
+        match bytes.get(..len).and_then(<[u8]>::split_last_chunk) {
+            None => Head::Open,
+            Some((body, check)) if crc16(body) == u16::from_le_bytes(*check) => Head::Good(len),
+            Some(_) => Head::Bad,
+        }
+    }
+
+    fn take(&mut self, len: usize) -> RtuReply {
+        self.skipping = false;
+        let bytes: ArrayVec<u8, FRAME_LEN_MAX> = self.buffer.drain(..len).collect();
+        RtuReply {
+            function: bytes.get(1).copied().unwrap_or_default(),
+            bytes,
+        }
+    }
+
+    fn skip(&mut self, count: usize) {
+        if count == 0 {
+            return;
+        }
+        self.noise.resyncs += u64::from(!self.skipping);
+        self.skipping = true;
+        self.buffer.drain(..count);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        reason = "a test may"
+    )]
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The replies of manual 2.4.1 to 2.4.3, with the check that it leaves open, reckoned by hand.
+    const READ: [u8; 9] = [1, 3, 4, 0, 1, 0, 2, 0x2A, 0x32];
+    const ZEROS: [u8; 8] = [1, 6, 0, 0, 0, 0, 0x89, 0xCA];
+    const WRITTEN: [u8; 8] = [1, 16, 0, 1, 0, 2, 0x10, 0x08];
+
+    fn split(stream: &[u8], piece: usize) -> (Vec<Vec<u8>>, RtuNoise) {
+        let mut splitter = RtuSplitter::new(1);
+        let mut out = Vec::new();
+        for mut chunk in stream.chunks(piece) {
+            while !chunk.is_empty() {
+                chunk = &chunk[splitter.push(chunk)..];
+                while let Some(reply) = splitter.next() {
+                    out.push(reply.bytes.to_vec());
+                }
+                assert!(splitter.buffered() < FRAME_LEN_MAX);
+            }
+        }
+        loop {
+            splitter.flush_pending();
+            let Some(reply) = splitter.next() else { break };
+            out.push(reply.bytes.to_vec());
+        }
+        assert_eq!(splitter.buffered(), 0);
+        (out, splitter.noise())
+    }
+
+    fn checked(body: &[u8]) -> Vec<u8> {
+        [body, &crc16(body).to_le_bytes()].concat()
+    }
+
+    #[test]
+    fn the_check_is_that_of_the_standard() {
+        assert_eq!(crc16(b"123456789"), 0x4B37);
+        // The read of the standard's own example: 11 03 00 6B 00 03 76 87.
+        assert_eq!(crc16(&[0x11, 3, 0, 0x6B, 0, 3]), 0x8776);
+    }
+
+    #[test]
+    fn the_manuals_replies_come_out_whole_however_they_were_cut() {
+        let stream = [READ.as_slice(), &ZEROS, &WRITTEN].concat();
+        let want = vec![READ.to_vec(), ZEROS.to_vec(), WRITTEN.to_vec()];
+        for piece in 1..=stream.len() {
+            assert_eq!(split(&stream, piece), (want.clone(), RtuNoise::default()));
+        }
+    }
+
+    #[test]
+    fn a_wrong_check_is_counted_once_and_the_next_reply_found() {
+        let mut bad = READ;
+        bad[4] ^= 0x10;
+        let (replies, noise) = split(&[bad.as_slice(), &READ].concat(), 5);
+        assert_eq!(replies, [READ.to_vec()]);
+        assert_eq!((noise.checksum_errors, noise.resyncs), (1, 1));
+    }
+
+    #[test]
+    fn a_cut_reply_hides_the_next_only_until_the_line_is_silent() {
+        let long = checked(&[[1, 3, 78].as_slice(), &[7; 78]].concat());
+        let (replies, noise) = split(&[&long[..40], &READ].concat(), 7);
+        assert_eq!(replies, [READ.to_vec()]);
+        assert_eq!((noise.checksum_errors, noise.resyncs), (0, 1));
+    }
+
+    #[test]
+    fn replies_of_other_units_are_skipped() {
+        let other = checked(&[2, 3, 2, 0, 9]);
+        let (replies, noise) = split(&[other.as_slice(), &READ].concat(), 3);
+        assert_eq!(replies, [READ.to_vec()]);
+        assert_eq!(noise.resyncs, 1);
+    }
+
+    #[test]
+    fn exceptions_come_out_too() {
+        let refusal = checked(&[1, 0x83, 2]);
+        assert_eq!(split(&refusal, 1).0, [refusal]);
+    }
+
+    proptest! {
+        #[test]
+        fn random_bytes_never_panic(
+            stream in prop::collection::vec(prop_oneof![Just(1u8), Just(3u8), any::<u8>()], 0..1200),
+            piece in 1..300usize,
+        ) {
+            split(&stream, piece);
+        }
+
+        #[test]
+        fn each_reply_of_a_clean_stream_comes_out(
+            lens in prop::collection::vec(1..=125u8, 1..8), piece in 1..300usize,
+        ) {
+            let replies: Vec<Vec<u8>> = lens
+                .iter()
+                .map(|words| {
+                    let data = (0..words * 2).map(|n| n.wrapping_mul(37));
+                    checked(&[1, 3, words * 2].into_iter().chain(data).collect::<Vec<u8>>())
+                })
+                .collect();
+            prop_assert_eq!(split(&replies.concat(), piece), (replies, RtuNoise::default()));
+        }
+    }
+}

@@ -1,0 +1,402 @@
+//! Requests over Modbus RTU (manual 2.4), through tokio-modbus. Replies have neither number nor address, only a length:
+//! no length is asked for again while a reply of that length may still come.
+
+use crate::codec::modbus::words_for;
+use crate::hand::{HandId, RegisterWrite, Span};
+use crate::link::bus::{BusCounts, BusError, Bytes, id_of, lost};
+use crate::link::clock::Clock;
+use crate::link::late::LateReplies;
+use crate::link::modbus;
+use crate::link::rtu_line::RtuLine;
+use crate::transport::{BoxedWire, Endpoint, TransportError};
+use arrayvec::ArrayVec;
+use futures::FutureExt as _;
+use std::io;
+use std::time::Duration;
+use tokio::time::{Instant, sleep_until, timeout};
+use tokio_modbus::client::{Client as _, Context, rtu};
+use tokio_modbus::{Request, Response, Slave};
+
+/// After a lost reply the line counts as quiet after this long without a byte: longer than any gap inside a frame.
+const QUIET: Duration = Duration::from_millis(8);
+/// A line that is never quiet is not waited for longer than this.
+const SETTLE_MAX: Duration = Duration::from_millis(60);
+/// Bits of a byte on the line: start, eight, stop.
+const BITS: u64 = 10;
+/// Bytes of a read request, and of a reply's frame around its data.
+const FRAMING: u64 = 8 + 5;
+/// Above this baud the silence between frames does not shrink any more (Modbus over serial line 1.02, 2.5.1.1).
+const FIXED_GAP_ABOVE: u32 = 19_200;
+const FIXED_GAP: Duration = Duration::from_micros(1750);
+/// Most shapes that one group is asked in.
+const SHAPES_MAX: usize = 16;
+
+/// The client side of one RTU line.
+pub(crate) struct ModbusRtu {
+    context: Context,
+    line: RtuLine,
+    place: String,
+    baud: u32,
+    late: LateReplies,
+    clock: Clock,
+    /// Foreign replies that `late` knows of.
+    strays: u64,
+}
+
+impl ModbusRtu {
+    pub(crate) fn new(
+        wire: BoxedWire,
+        baud: u32,
+        endpoint: &Endpoint,
+        late: LateReplies,
+        clock: Clock,
+    ) -> Self {
+        let id = HandId::nearest(id_of(endpoint)).get();
+        let line = RtuLine::new(wire, id);
+        Self {
+            context: rtu::attach_slave(line.clone(), Slave(id)),
+            line,
+            place: endpoint.to_string(),
+            baud: baud.max(1),
+            late,
+            clock,
+            strays: 0,
+        }
+    }
+
+    pub(crate) async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
+        let called = self.call(modbus::read_request(span)?, limit).await;
+        let now = self.clock.now();
+        match &called {
+            Ok(_) => self.late.answered(Some(seen(span))),
+            // A refusal may have been late itself, with the reply still to come.
+            Err(_) => self.late.gave_up(seen(span), now),
+        }
+        self.note_strays();
+        modbus::read_response(span, &called?)
+    }
+
+    pub(crate) async fn write(
+        &mut self,
+        write: &RegisterWrite,
+        limit: Duration,
+    ) -> Result<(), BusError> {
+        let response = self.call(modbus::write_request(write), limit).await?;
+        modbus::write_response(write, &response)?;
+        self.late.answered(None);
+        self.note_strays();
+        Ok(())
+    }
+
+    /// Waits for the silence that separates frames. A line that babbles on is talked over at last.
+    pub(crate) async fn turn(&mut self) -> Result<(), BusError> {
+        let end = Instant::now() + SETTLE_MAX;
+        loop {
+            self.take_waiting()?;
+            let now = Instant::now();
+            let quiet_at = self.line.heard().map_or(now, |at| at + gap(self.baud));
+            if quiet_at <= now || now >= end {
+                break;
+            }
+            sleep_until(quiet_at).await;
+        }
+        Ok(())
+    }
+
+    /// Listens until the line is quiet.
+    pub(crate) async fn settle(&mut self) -> Result<(), BusError> {
+        self.line.abandon();
+        let quiet = QUIET.max(gap(self.baud));
+        let end = Instant::now() + SETTLE_MAX;
+        while Instant::now() < end {
+            match timeout(quiet, self.line.hear()).await {
+                Ok(heard) => heard.map_err(|error| self.lost(&error))?,
+                Err(_) => break,
+            }
+        }
+        self.line.flush_pending();
+        self.note_strays();
+        Ok(())
+    }
+
+    pub(crate) fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
+        let as_seen: ArrayVec<Span, SHAPES_MAX> =
+            shapes.iter().copied().map(seen).take(SHAPES_MAX).collect();
+        let clear = self.late.first_clear(&as_seen, self.clock.now())?;
+        shapes.iter().copied().find(|shape| seen(*shape) == clear)
+    }
+
+    pub(crate) fn wire_time(&self, bytes: u16) -> Duration {
+        line_time(u64::from(bytes) + FRAMING, self.baud) + gap(self.baud)
+    }
+
+    pub(crate) fn counts(&self) -> BusCounts {
+        let noise = self.line.noise();
+        BusCounts {
+            checksum_errors: noise.checksum_errors,
+            resyncs: noise.resyncs,
+            foreign_replies: self.line.foreign(),
+        }
+    }
+
+    pub(crate) fn close(self) -> LateReplies {
+        self.late
+    }
+
+    async fn call(&mut self, request: Request<'_>, limit: Duration) -> Result<Response, BusError> {
+        self.line.abandon();
+        self.take_waiting()?;
+        self.line.flush_pending();
+        self.note_strays();
+        let called = {
+            let mut call = self.context.call(request);
+            match timeout(limit, &mut call).await {
+                Ok(called) => Some(called),
+                Err(_) => {
+                    // Noise that looks like the head of a long reply may hide the right one.
+                    self.line.flush_pending();
+                    call.now_or_never()
+                }
+            }
+        };
+        let Some(called) = called else {
+            self.line.abandon();
+            return Err(BusError::Timeout { after: limit });
+        };
+        modbus::outcome(called, &self.place, self.line.closed())
+    }
+
+    /// Takes what came while nobody asked, without waiting: none of it can answer the next request.
+    fn take_waiting(&mut self) -> Result<(), BusError> {
+        while let Some(heard) = self.line.hear().now_or_never() {
+            heard.map_err(|error| self.lost(&error))?;
+        }
+        Ok(())
+    }
+
+    /// A stray reply may belong to any question of its length, or be a double: none is closed by it.
+    fn note_strays(&mut self) {
+        let foreign = self.line.foreign();
+        if foreign > self.strays {
+            self.strays = foreign;
+            self.late.strayed(self.clock.now());
+        }
+    }
+
+    fn lost(&self, error: &io::Error) -> BusError {
+        let place = self.place.clone();
+        BusError::Lost(if self.line.closed() {
+            TransportError::HungUp { place }
+        } else {
+            lost(place, error)
+        })
+    }
+}
+
+/// All that a reply tells about the span it answers: how many words it has.
+const fn seen(span: Span) -> Span {
+    Span::new(0, words_for(span).count.saturating_mul(2))
+}
+
+fn line_time(bytes: u64, baud: u32) -> Duration {
+    Duration::from_micros(bytes * BITS * 1_000_000 / u64::from(baud))
+}
+
+/// Silence between frames: 3.5 characters.
+fn gap(baud: u32) -> Duration {
+    if baud > FIXED_GAP_ABOVE {
+        FIXED_GAP
+    } else {
+        line_time(7, baud) / 2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        reason = "a test may"
+    )]
+    use super::*;
+    use crate::codec::modbus_rtu::crc16;
+    use crate::hand::register::STATE;
+    use crate::hand::{Angle, HandCommand, PerDof, Target};
+    use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream};
+
+    const LIMIT: Duration = Duration::from_millis(50);
+
+    fn line() -> (ModbusRtu, DuplexStream) {
+        let (near, far) = tokio::io::duplex(4096);
+        let endpoint = "rtu:test".parse().unwrap();
+        let late = LateReplies::default();
+        let bus = ModbusRtu::new(Box::new(near), 115_200, &endpoint, late, Clock::start());
+        (bus, far)
+    }
+
+    fn bytes(text: &str) -> Vec<u8> {
+        text.split_whitespace()
+            .map(|byte| u8::from_str_radix(byte, 16).unwrap())
+            .collect()
+    }
+
+    /// A reply to a read of so many bytes, all alike.
+    fn reply(len: u8, fill: u8) -> Vec<u8> {
+        let mut reply = vec![1, 3, len];
+        reply.resize(3 + usize::from(len), fill);
+        let check = crc16(&reply);
+        reply.extend(check.to_le_bytes());
+        reply
+    }
+
+    async fn heard(far: &mut DuplexStream) -> Vec<u8> {
+        let mut request = [0; 64];
+        let len = far.read(&mut request).await.unwrap();
+        request[..len].to_vec()
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_read_is_the_manuals_frame_and_its_words_are_low_byte_first() {
+        let (mut bus, mut far) = line();
+        // Manual 2.4.1, whose print swaps the bytes of the address that its text names, 0x006B.
+        let answer = async {
+            assert_eq!(heard(&mut far).await, bytes("01 03 00 6B 00 02 B5 D7"));
+            far.write_all(&bytes("01 03 04 00 01 00 02 2A 32"))
+                .await
+                .unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(Span::new(0x6B, 4), LIMIT), answer);
+        assert_eq!(read.unwrap().as_slice(), [1, 0, 2, 0]);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn writes_are_functions_6_and_16_and_the_printed_zeros_acknowledge() {
+        let (mut bus, mut far) = line();
+        let open = HandCommand::Angles(PerDof::splat(Target::Go(Angle::MAX))).writes();
+        let frame = "01 10 05 CE 00 06 0C 03 E8 03 E8 03 E8 03 E8 03 E8 03 E8";
+        for (write, asked, answered) in [
+            (
+                HandCommand::ClearErrors.writes(),
+                "01 06 03 EC 00 01",
+                "01 06 03 EC 00 01",
+            ),
+            // Manual 2.4.2 as printed.
+            (
+                HandCommand::ClearErrors.writes(),
+                "01 06 03 EC 00 01",
+                "01 06 00 00 00 00",
+            ),
+            (open, frame, "01 10 05 CE 00 06"),
+        ] {
+            let checked = |text: &str| {
+                let mut body = bytes(text);
+                body.extend(crc16(&body).to_le_bytes());
+                body
+            };
+            let answer = async {
+                assert_eq!(heard(&mut far).await, checked(asked));
+                far.write_all(&checked(answered)).await.unwrap();
+            };
+            let (written, ()) = tokio::join!(bus.write(&write[0], LIMIT), answer);
+            assert_eq!(written, Ok(()), "{answered}");
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_reply_of_another_length_is_dropped_counted_and_no_answer() {
+        let (mut bus, mut far) = line();
+        far.write_all(&reply(76, 9)).await.unwrap();
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&reply(76, 9)).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
+        assert_eq!(read, Err(BusError::Timeout { after: LIMIT }));
+        assert_eq!(bus.counts().foreign_replies, 2);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_late_reply_never_answers_a_later_request() {
+        let (mut bus, mut far) = line();
+        let shapes = [STATE, Span::new(STATE.address, 72)];
+        assert_eq!(bus.choose(&shapes), Some(STATE));
+        assert!(bus.read(STATE, LIMIT).await.is_err());
+        bus.settle().await.unwrap();
+        // Another span of the same length would be taken for it too.
+        assert_eq!(bus.choose(&[Span::new(1474, STATE.len)]), None);
+        let next = bus.choose(&shapes).unwrap();
+        assert_eq!(next.len, 72);
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&reply(78, 1)).await.unwrap();
+            far.write_all(&reply(72, 2)).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(next, LIMIT), answer);
+        assert_eq!(read.unwrap().as_slice(), [2; 72]);
+        assert_eq!(bus.choose(&shapes), None, "78 stays open, 72 was just read");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_wrong_check_is_counted_and_the_next_exchange_is_undisturbed() {
+        let (mut bus, mut far) = line();
+        let mut bad = reply(78, 1);
+        bad[20] ^= 4;
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&bad).await.unwrap();
+            far.write_all(&reply(78, 1)[..30]).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
+        assert!(read.is_err());
+        bus.settle().await.unwrap();
+        assert_eq!(bus.counts().checksum_errors, 1);
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&reply(72, 3)).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(Span::new(1546, 72), LIMIT), answer);
+        assert_eq!(read.unwrap().as_slice(), [3; 72]);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_reply_behind_the_head_of_a_longer_one_is_found_at_the_end() {
+        let (mut bus, mut far) = line();
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&[1, 3, 250]).await.unwrap();
+            far.write_all(&reply(78, 5)).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
+        assert_eq!(read.unwrap().as_slice(), [5; 78]);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_refusal_and_a_hang_up_have_their_own_errors() {
+        let (mut bus, mut far) = line();
+        let answer = async {
+            heard(&mut far).await;
+            far.write_all(&bytes("01 83 02 C0 F1")).await.unwrap();
+        };
+        let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
+        assert!(matches!(read, Err(BusError::Refused { .. })), "{read:?}");
+        drop(far);
+        let read = bus.read(STATE, LIMIT).await;
+        let place = "rtu:test?baud=115200&id=1".into();
+        assert_eq!(read, Err(BusError::Lost(TransportError::HungUp { place })));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn frames_are_three_and_a_half_characters_apart() {
+        assert_eq!(gap(9600), Duration::from_micros(3645));
+        assert_eq!(gap(115_200), FIXED_GAP);
+        let (mut bus, mut far) = line();
+        far.write_all(&[0]).await.unwrap();
+        let before = Instant::now();
+        bus.turn().await.unwrap();
+        assert!(before.elapsed() >= FIXED_GAP);
+        let before = Instant::now();
+        bus.turn().await.unwrap();
+        assert_eq!(before.elapsed(), Duration::ZERO, "the line is quiet");
+    }
+}
