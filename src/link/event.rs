@@ -1,7 +1,6 @@
 //! What comes out of a link and what may be asked of it. Plain values only.
 
 use crate::hand::{Groups, HandCommand, HandSample, Moment, OutOfRange, Span};
-use crate::link::bus::BusError;
 use crate::link::status::{ArmRefusal, LinkState};
 
 /// One thing that happened, in order.
@@ -129,31 +128,4 @@ pub enum RequestError {
     /// A value that the hand must not be given.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-}
-
-impl RequestError {
-    /// What a failed exchange about this span means to who asked for it.
-    pub(crate) fn of(error: &BusError, span: Span) -> Self {
-        let address = span.address;
-        match error {
-            BusError::Timeout { after } => {
-                let after_ms = u64::try_from(after.as_millis()).unwrap_or(u64::MAX);
-                Self::Timeout { address, after_ms }
-            }
-            BusError::Refused { reason } => Self::Refused {
-                address,
-                reason: reason.clone(),
-            },
-            BusError::WrongLength { got, want } => Self::WrongLength {
-                address,
-                got: *got,
-                want: *want,
-            },
-            BusError::TooLong => Self::TooLong {
-                address,
-                len: span.len,
-            },
-            BusError::Lost(_) => Self::LinkLost,
-        }
-    }
 }

@@ -11,6 +11,7 @@ pub mod event;
 mod filter;
 pub mod handle;
 mod hold;
+mod jobs;
 mod late;
 mod modbus;
 mod modbus_rtu;
