@@ -160,6 +160,9 @@ impl Schedule {
         let clock = Clock::start();
         let protocol = [Protocol::Rs485, Protocol::Rtu, Protocol::Tcp][rng.usize(..3)];
         let is_tcp = protocol == Protocol::Tcp;
+        if std::env::var_os("HANDSCOPE_SEED").is_some() {
+            println!("seed {seed}: {protocol:?}");
+        }
         let config = SimConfig {
             seed,
             id: 1,

@@ -436,15 +436,6 @@ fn the_connection_is_spelled_as_everywhere_and_later_kinds_are_off() {
     );
     harness.get_by_label("Refresh").click();
     assert_eq!(actions(&mut harness), [Action::FindPorts]);
-    harness.get_by_label("Kind of link: Modbus RTU").click();
-    harness.run_steps(2);
-    harness
-        .get_by_label("Serial port")
-        .type_text("/dev/ttyUSB3");
-    harness.run_steps(2);
-    harness.get_by_label("Connect").click();
-    let endpoint = "rtu:/dev/ttyUSB3?baud=115200&id=1".parse().unwrap();
-    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
 }
 
 #[test]
