@@ -1,5 +1,7 @@
 //! Bytes on a wire to register operations and back, for both sides of the conversation. No IO, no clock.
 
+pub mod can;
 pub mod mbap;
 pub mod modbus;
 pub mod rs485;
+pub mod slcan;
