@@ -39,7 +39,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         ..SimConfig::default()
     });
     let hand = SharedHand::new(hand, Instant::now());
-    // Both wires are there before either is announced: who waits for one may use both.
+    // All wires are there before any is announced: who waits for one may use all.
     let mut ready = Vec::new();
     let tcp = match args.tcp {
         Some(address) => {
@@ -57,6 +57,22 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         }
         None => Box::pin(std::future::pending()),
     };
+    let slcan = match &args.slcan {
+        Some(link) => {
+            let served = serve_slcan(&hand, link)?;
+            ready.push(format!("ready slcan {}", link.display()));
+            served
+        }
+        None => Box::pin(std::future::pending()),
+    };
+    let can = match &args.can {
+        Some(interface) => {
+            let served = serve_can(&hand, interface)?;
+            ready.push(format!("ready can {interface}"));
+            served
+        }
+        None => Box::pin(std::future::pending()),
+    };
     for line in &ready {
         out.line(line)?;
     }
@@ -66,6 +82,8 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         () = interrupt.wished() => Ok(()),
         error = tcp => Err(error),
         error = rs485 => Err(error),
+        error = slcan => Err(error),
+        error = can => Err(error),
         () = live(&hand) => Ok(()),
     }
 }
@@ -117,12 +135,36 @@ fn bind_words(error: &io::Error) -> String {
 
 #[cfg(unix)]
 fn serve_rs485(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
-    use crate::sim::serve::pty;
-    use crate::transport::TransportError;
+    let served = crate::sim::serve::pty::serve_rs485(hand.clone(), link);
+    let served = served.map_err(|error| link_words(link, &error))?;
+    Ok(until_closed(link, served))
+}
+
+#[cfg(unix)]
+fn serve_slcan(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+    let served = crate::sim::serve::pty::serve_slcan(hand.clone(), link);
+    let served = served.map_err(|error| link_words(link, &error))?;
+    Ok(until_closed(link, served))
+}
+
+#[cfg(unix)]
+fn until_closed(link: &Path, served: impl Future<Output = ()> + Send + 'static) -> Served {
     let place = link.display().to_string();
-    let served = pty::serve_rs485(hand.clone(), link).map_err(|error| match error {
+    Box::pin(async move {
+        served.await;
+        anyhow!("the pseudo-terminal behind {place} was closed")
+    })
+}
+
+#[cfg(unix)]
+fn link_words(link: &Path, error: &crate::transport::TransportError) -> anyhow::Error {
+    use crate::transport::TransportError;
+    let place = link.display();
+    match error {
         TransportError::NotAPort { .. } => {
-            anyhow!("cannot make the link {place}: something that is no link stands there; choose another path")
+            anyhow!(
+                "cannot make the link {place}: something that is no link stands there; choose another path"
+            )
         }
         TransportError::Missing { .. } => {
             anyhow!("cannot make the link {place}: its folder does not exist; make it first")
@@ -131,11 +173,26 @@ fn serve_rs485(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
             anyhow!("cannot make the link {place}: you may not write to its folder; choose another")
         }
         other => anyhow!("cannot make the link {place}: {other}"),
-    })?;
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn serve_can(hand: &SharedHand, interface: &str) -> anyhow::Result<Served> {
+    use crate::sim::serve::can;
+    let wire = crate::transport::can::open(interface, None)
+        .map_err(|error| anyhow!("cannot serve on {interface}: {error}"))?;
+    let (hand, place) = (hand.clone(), interface.to_owned());
     Ok(Box::pin(async move {
-        served.await;
-        anyhow!("the pseudo-terminal behind {place} was closed")
+        match can::serve(hand, wire).await {
+            Ok(()) => anyhow!("the CAN interface {place} was closed"),
+            Err(error) => anyhow!("cannot go on serving on {place}: {error}"),
+        }
     }))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn serve_can(_hand: &SharedHand, _interface: &str) -> anyhow::Result<Served> {
+    Err(anyhow!(crate::transport::TransportError::LinuxOnly))
 }
 
 #[cfg(not(unix))]
@@ -144,4 +201,9 @@ fn serve_rs485(_hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
         "cannot make {}: pseudo-terminals need Linux or macOS; use --tcp here",
         link.display()
     ))
+}
+
+#[cfg(not(unix))]
+fn serve_slcan(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+    serve_rs485(hand, link)
 }

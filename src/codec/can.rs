@@ -151,7 +151,8 @@ pub fn split(span: Span) -> Option<Pieces> {
 }
 
 /// True if no number lies across this address.
-fn may_cut(at: u16) -> bool {
+#[must_use]
+pub fn may_cut(at: u16) -> bool {
     if at <= TOUCH.address || u32::from(at) >= TOUCH.end() {
         return at.is_multiple_of(2);
     }

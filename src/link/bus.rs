@@ -1,6 +1,7 @@
 //! One request and its reply, over whichever protocol the endpoint speaks. No plan, no retry.
 
 use crate::hand::{RegisterWrite, Span};
+use crate::link::can::Can;
 use crate::link::clock::Clock;
 use crate::link::late::LateReplies;
 use crate::link::modbus_tcp::ModbusTcp;
@@ -52,6 +53,7 @@ impl BusCounts {
 pub(crate) enum Bus {
     Rs485(Box<Rs485>),
     ModbusTcp(Box<ModbusTcp>),
+    Can(Box<Can>),
 }
 
 impl Bus {
@@ -70,11 +72,13 @@ impl Bus {
             Endpoint::Tcp { unit, .. } => Ok(Self::ModbusTcp(Box::new(ModbusTcp::new(
                 wire, *unit, endpoint,
             )))),
-            Endpoint::Rtu(_) | Endpoint::Can { .. } | Endpoint::Slcan { .. } => {
-                Err(TransportError::Unsupported {
-                    kind: endpoint.kind().into(),
-                })
+            Endpoint::Can { .. } | Endpoint::Slcan { .. } => {
+                let bus = Can::new(wire, endpoint, late, clock);
+                Ok(Self::Can(Box::new(bus)))
             }
+            Endpoint::Rtu(_) => Err(TransportError::Unsupported {
+                kind: endpoint.kind().into(),
+            }),
         }
     }
 
@@ -83,6 +87,7 @@ impl Bus {
         match self {
             Self::Rs485(bus) => bus.read(span, limit).await,
             Self::ModbusTcp(bus) => bus.read(span, limit).await,
+            Self::Can(bus) => bus.read(span, limit).await,
         }
     }
 
@@ -95,6 +100,7 @@ impl Bus {
         match self {
             Self::Rs485(bus) => bus.write(write, limit).await,
             Self::ModbusTcp(bus) => bus.write(write, limit).await,
+            Self::Can(bus) => bus.write(write, limit).await,
         }
     }
 
@@ -103,6 +109,7 @@ impl Bus {
         match self {
             Self::Rs485(bus) => bus.settle().await,
             Self::ModbusTcp(_) => Ok(()),
+            Self::Can(bus) => bus.settle().await,
         }
     }
 
@@ -115,6 +122,7 @@ impl Bus {
                 .iter()
                 .copied()
                 .max_by_key(|shape| (shape.address, shape.len)),
+            Self::Can(bus) => bus.choose(shapes),
         }
     }
 
@@ -123,6 +131,7 @@ impl Bus {
         match self {
             Self::Rs485(bus) => bus.wire_time(bytes),
             Self::ModbusTcp(_) => Duration::ZERO,
+            Self::Can(bus) => bus.wire_time(bytes),
         }
     }
 
@@ -130,6 +139,7 @@ impl Bus {
         match self {
             Self::Rs485(bus) => bus.counts(),
             Self::ModbusTcp(bus) => bus.counts(),
+            Self::Can(bus) => bus.counts(),
         }
     }
 
@@ -138,6 +148,7 @@ impl Bus {
         match self {
             Self::Rs485(bus) => bus.close(),
             Self::ModbusTcp(_) => LateReplies::default(),
+            Self::Can(bus) => bus.close(),
         }
     }
 }

@@ -5,6 +5,8 @@
 //! setpoints, requests, reads ([`plan`]).
 
 mod bus;
+mod can;
+mod can_port;
 pub mod clock;
 mod counters;
 pub mod event;
@@ -12,6 +14,7 @@ mod filter;
 pub mod handle;
 mod hold;
 mod late;
+mod lost;
 mod modbus_tcp;
 pub mod motion;
 pub mod plan;

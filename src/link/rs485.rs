@@ -5,6 +5,7 @@ use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
 use crate::link::late::LateReplies;
+use crate::link::lost::lost;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use futures::FutureExt as _;
 use std::io;
@@ -249,21 +250,6 @@ impl Rs485 {
     }
 
     fn lost(&self, error: &io::Error) -> BusError {
-        let place = self.place.clone();
-        // A pseudo-terminal says EIO and a USB adapter ENXIO or EPIPE when the other side goes.
-        let hung_up = matches!(
-            error.kind(),
-            io::ErrorKind::BrokenPipe
-                | io::ErrorKind::UnexpectedEof
-                | io::ErrorKind::ConnectionReset
-        ) || matches!(error.raw_os_error(), Some(5 | 6));
-        BusError::Lost(if hung_up {
-            TransportError::HungUp { place }
-        } else {
-            TransportError::Io {
-                place,
-                message: error.to_string(),
-            }
-        })
+        lost(&self.place, error)
     }
 }

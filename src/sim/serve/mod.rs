@@ -1,9 +1,11 @@
 //! Servers that put the simulated hand on wires and sockets. They own the clock; the hand does not.
 
+pub mod can;
 pub mod modbus_tcp;
 #[cfg(unix)]
 pub mod pty;
 pub mod rs485;
 pub mod shared;
+pub mod slcan;
 
 pub use shared::SharedHand;

@@ -2,6 +2,7 @@
 
 use crate::sim::serve::rs485;
 use crate::sim::serve::shared::SharedHand;
+use crate::sim::serve::slcan;
 use crate::transport::{PtyLink, TransportError};
 use std::future::Future;
 use std::path::Path;
@@ -18,4 +19,16 @@ pub fn serve_rs485(
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
     Ok(rs485::serve(hand, link))
+}
+
+/// The same with the hand behind a serial CAN adapter.
+///
+/// # Errors
+/// As [`serve_rs485`].
+pub fn serve_slcan(
+    hand: SharedHand,
+    path: &Path,
+) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
+    let link = PtyLink::create(path)?;
+    Ok(slcan::serve(hand, link))
 }
