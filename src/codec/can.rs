@@ -230,6 +230,7 @@ mod tests {
         clippy::unwrap_used,
         clippy::indexing_slicing,
         clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
         reason = "a test may"
     )]
     use super::*;
