@@ -1,4 +1,35 @@
 //! Handscope watches, drives and tunes the FTP series tactile hand.
+//!
+//! # Map
+//!
+//! A module uses only modules of lower layers; `tests/tidy.rs` fails on any other import.
+//!
+//! | layer | module | what lives there |
+//! |---|---|---|
+//! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
+//! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
+//! | 1 | [`transport`] | endpoints, serial ports, sockets, in-memory wires with faults |
+//! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop |
+//! | 2 | [`sim`] | a hand that answers on the wire |
+//! | 3 | [`app`] | everything the program knows, without drawing |
+//! | 4 | [`ui`] | the window: reads state, returns actions |
+//! | 5 | [`shell`] | program and window as one thing |
+//! | 6 | `desktop`, [`headless`] | the real window; pictures without a display |
+//! | 7 | [`cli`] | the command line |
+//!
+//! # Threads
+//!
+//! The window's thread owns the program's state. One tokio thread runs all links and the built-in hand. Values cross
+//! between them, locks do not: samples and answers come as events, wishes go into one slot that a stop empties.
+//!
+//! # What always holds
+//!
+//! * Only [`hand::HandCommand::writes`] makes register writes, and none leaves the manual's addresses and ranges.
+//! * Connecting, reconnecting and looking write nothing. Motion passes only while a person armed the hand; stop, faults,
+//!   link loss, old feedback and sleep disarm it.
+//! * A stop is the next thing on the wire, goes out again until feedback shows rest, and raises an alarm if it does not.
+//! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
+//! * Nothing that was asked survives a lost link.
 
 pub mod app;
 pub mod cli;

@@ -12,6 +12,7 @@ const PARTS_OF_A_POINT: f64 = 100.0;
 /// `{"role", "name", "value", "rect": [x, y, w, h], "disabled", "toggled"}`.
 ///
 /// `role` is in `lower_snake_case`. `name` is the visible text, or `null`. `value` is a number, a text, or `null`.
+/// A label that shows a reading has the reading's name as `name` and what is written as `value`.
 /// `rect` is in points from the top left, or `null`. `toggled` is `true`, `false`, `"mixed"`, or `null` if it cannot be.
 /// The order is that of drawing, so equal screens give equal lists.
 #[must_use]
@@ -65,10 +66,11 @@ fn entry(node: &Node, names: &HashMap<NodeId, String>) -> Option<Value> {
     }))
 }
 
-/// A node's own visible text. A plain label keeps it where others keep their value.
+/// What a node is called. A plain label keeps its text where others keep their value; one that shows the value of
+/// something has that thing's name too.
 fn own_text(node: &Node) -> Option<&str> {
     let text = match node.role() {
-        Role::Label => node.value().or(node.label()),
+        Role::Label => node.label().or(node.value()),
         _ => node.label(),
     };
     text.filter(|text| !text.is_empty())
@@ -90,7 +92,9 @@ fn value(node: &Node) -> Value {
     match (node.numeric_value(), node.value()) {
         // A number that JSON cannot hold (NaN) becomes null.
         (Some(number), _) => Value::from(number),
-        (None, Some(text)) if node.role() != Role::Label => Value::from(text),
+        (None, Some(text)) if node.role() != Role::Label || node.label().is_some() => {
+            Value::from(text)
+        }
         (None, _) => Value::Null,
     }
 }
@@ -187,6 +191,23 @@ mod tests {
             rect.len() == 4 && rect[2] > 10.0 && rect[3] > 10.0,
             "{rect:?}"
         );
+    }
+
+    #[test]
+    fn a_reading_has_its_name_beside_what_is_written() {
+        let context = Context::default();
+        context.enable_accesskit();
+        let mut output = context.run_ui(RawInput::default(), |ui| {
+            let reading = ui.label("417");
+            ui.ctx()
+                .accesskit_node_builder(reading.id, |node| node.set_label("Ring angle"));
+        });
+        output.textures_delta.clear();
+        let list = labels_json(&output.platform_output.accesskit_update.unwrap());
+        let all = list.as_array().unwrap();
+        let reading = all.iter().find(|entry| entry["role"] == "label").unwrap();
+        assert_eq!(reading["name"], json!("Ring angle"));
+        assert_eq!(reading["value"], json!("417"));
     }
 
     #[test]

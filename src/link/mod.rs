@@ -13,6 +13,7 @@ pub mod event;
 mod filter;
 pub mod handle;
 mod hold;
+mod jobs;
 mod late;
 mod lost;
 mod modbus_tcp;

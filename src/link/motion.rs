@@ -26,6 +26,8 @@ pub(crate) struct Motion {
     /// The round that is being sent, in order.
     round: ArrayVec<RegisterWrite, ROUND_MAX>,
     round_began: Option<Moment>,
+    /// No pose was asked for since the round began: on a slow line writes alone must not fill it.
+    pose_due: bool,
 }
 
 impl Motion {
@@ -80,11 +82,27 @@ impl Motion {
             return None;
         }
         if self.round.is_empty() {
+            if self.pose_due {
+                return None;
+            }
             let setpoints = self.setpoints.take()?;
             self.round_began = Some(now);
+            self.pose_due = true;
             self.round = round(&setpoints);
         }
         self.round.pop_at(0)
+    }
+
+    /// True if the next round waits only for a look at the pose.
+    pub(crate) fn wants_pose(&self, now: Moment) -> bool {
+        self.pose_due
+            && self.round.is_empty()
+            && self.next_send(now).is_some_and(|send| send <= now)
+    }
+
+    /// The pose was asked for, answered or not.
+    pub(crate) const fn pose_asked(&mut self) {
+        self.pose_due = false;
     }
 
     /// The write was not acknowledged: it goes out again, unless something newer replaced it.
@@ -217,6 +235,7 @@ mod tests {
             .map(|write| write.address())
             .collect();
         assert_eq!(sent, [1528, 1504, 1486]);
+        motion.pose_asked();
         motion.want(&wish, Some(epoch));
         assert_eq!(motion.next_write(now.plus(Duration::from_millis(19))), None);
         assert!(
@@ -224,6 +243,21 @@ mod tests {
                 .next_write(now.plus(Duration::from_millis(20)))
                 .is_some()
         );
+    }
+
+    #[test]
+    fn a_round_waits_for_a_look_at_the_pose_after_the_one_before() {
+        let epoch = ArmEpoch(1);
+        let mut motion = Motion::default();
+        let mut wish = Setpoints::none(epoch);
+        wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
+        motion.want(&wish, Some(epoch));
+        assert!(motion.next_write(Moment::ZERO).is_some());
+        motion.want(&wish, Some(epoch));
+        let later = Moment::from_micros(100_000);
+        assert!(motion.wants_pose(later) && motion.next_write(later).is_none());
+        motion.pose_asked();
+        assert!(!motion.wants_pose(later) && motion.next_write(later).is_some());
     }
 
     #[test]

@@ -1,19 +1,17 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{Group, HandCommand, Moment, RegisterWrite, Reply, Span, Writes};
+use crate::hand::{Group, HandCommand, Moment, RegisterWrite, Reply};
 use crate::link::bus::{Bus, BusError};
-use crate::link::event::{LinkEvent, Outcome, Request, RequestError, Ticket};
+use crate::link::event::{LinkEvent, RequestError};
 use crate::link::handle::Wanted;
 use crate::link::hold::HoldWatch;
-use crate::link::late::LATE_HORIZON;
 use crate::link::motion::{ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::plan::Poll;
 use crate::link::session::{End, Session};
 use crate::link::status::{
     ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkState, LinkTrouble,
 };
-use arrayvec::ArrayVec;
 use std::time::Duration;
 use tokio::time::sleep_until;
 
@@ -21,16 +19,6 @@ use tokio::time::sleep_until;
 const ACK_LEN: u16 = 1;
 /// A group whose every question is open is looked at again after this: often enough, and not in a busy loop.
 const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
-/// Writes of one job: those of the longest command, and the hold before clearing errors.
-const JOB_MAX: usize = 7;
-
-/// A request that is under way: its writes go out one a step.
-pub(crate) struct Job {
-    pub(crate) ticket: Ticket,
-    writes: ArrayVec<RegisterWrite, JOB_MAX>,
-    read: Option<Span>,
-    is_motion: bool,
-}
 
 impl Session {
     /// Serves the wire until it is lost or the handle is gone.
@@ -123,10 +111,12 @@ impl Session {
         wanted.stop || wanted.disarm || wanted.closed
     }
 
-    // --- arming -------------------------------------------------------------------------------
-
     /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
+    /// An armed hand stays armed as it is.
     async fn arm(&mut self, bus: &mut Bus, request: &ArmRequest) -> Result<(), End> {
+        if self.status.armed.is_some() {
+            return Ok(());
+        }
         if let Some(reason) = arm_refusal(self.status.state, &self.sample, self.now()) {
             self.refuse_arm(reason);
             return Ok(());
@@ -193,8 +183,6 @@ impl Session {
         }
     }
 
-    // --- stop ---------------------------------------------------------------------------------
-
     fn begin_hold(&mut self) {
         let now = self.now();
         self.disarm(Disarmed::Stop);
@@ -245,9 +233,12 @@ impl Session {
         });
     }
 
-    // --- writes -------------------------------------------------------------------------------
-
-    async fn write(&mut self, bus: &mut Bus, write: &RegisterWrite) -> Result<(), BusError> {
+    /// One write and its acknowledgement, timed and counted.
+    pub(crate) async fn write(
+        &mut self,
+        bus: &mut Bus,
+        write: &RegisterWrite,
+    ) -> Result<(), BusError> {
         let limit = self.reply_limit(bus, ACK_LEN);
         let asked = self.now();
         self.counters.stats.writes += 1;
@@ -267,109 +258,14 @@ impl Session {
         Ok(())
     }
 
-    // --- requests -----------------------------------------------------------------------------
-
-    /// True if a request is under way or one was waiting.
-    fn next_job(&mut self) -> bool {
-        if self.job.is_none()
-            && let Ok((ticket, request)) = self.ends.requests.try_recv()
-        {
-            self.take_job(ticket, request);
-        }
-        self.job.is_some()
-    }
-
-    fn take_job(&mut self, ticket: Ticket, request: Request) {
-        let mut job = Job {
-            ticket,
-            writes: ArrayVec::new(),
-            read: None,
-            is_motion: false,
-        };
-        match request {
-            Request::Read(span) => job.read = Some(span),
-            Request::Command(command) => {
-                job.is_motion = command.is_motion();
-                if job.is_motion && self.status.state != LinkState::Armed {
-                    self.answer(ticket, Err(RequestError::NotArmed));
-                    return;
-                }
-                // A cleared fault may set free a move to an old target: the pose is made the target first.
-                if command == HandCommand::ClearErrors {
-                    extend(
-                        &mut job.writes,
-                        HandCommand::Angles(hold_targets(&self.sample, self.now())).writes(),
-                    );
-                }
-                extend(&mut job.writes, command.writes());
-            }
-        }
-        self.job = Some(job);
-    }
-
-    /// Sends the next write of the request under way, or its read, and answers when all is done.
-    async fn work(&mut self, bus: &mut Bus) -> Result<(), End> {
-        let Some(mut job) = self.job.take() else {
-            return Ok(());
-        };
-        if let Some(span) = job.read {
-            return self.read_for(bus, job.ticket, span).await;
-        }
-        let Some(write) = job.writes.pop_at(0) else {
-            self.answer(job.ticket, Ok(Outcome::Acknowledged));
-            return Ok(());
-        };
-        let result = self.write(bus, &write).await;
-        match result {
-            Ok(()) if job.writes.is_empty() => self.answer(job.ticket, Ok(Outcome::Acknowledged)),
-            Ok(()) => self.job = Some(job),
-            Err(error) => {
-                self.answer(job.ticket, Err(request_error(&error, write.span())));
-                self.failed(bus, &error).await?;
-            }
-        }
-        Ok(())
-    }
-
-    async fn read_for(&mut self, bus: &mut Bus, ticket: Ticket, span: Span) -> Result<(), End> {
-        if bus.choose(&[span]).is_none() {
-            // The same question was answered just now; any other answer clears the line of doubles.
-            self.poll(bus, Poll::State).await?;
-        }
-        if bus.choose(&[span]).is_none() {
-            let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
-            self.answer(ticket, Err(RequestError::Ambiguous { address, wait_s }));
-            return Ok(());
-        }
-        let limit = self.reply_limit(bus, span.len);
-        let asked = self.now();
-        match bus.read(span, limit).await {
-            Ok(bytes) => {
-                let took = self.now().since(asked);
-                self.answered(took);
-                self.answer(
-                    ticket,
-                    Ok(Outcome::Memory {
-                        span,
-                        bytes: bytes.to_vec(),
-                    }),
-                );
-            }
-            Err(error) => {
-                self.answer(ticket, Err(request_error(&error, span)));
-                self.failed(bus, &error).await?;
-            }
-        }
-        Ok(())
-    }
-
-    // --- reads --------------------------------------------------------------------------------
-
     /// The group to read now. While a stop is being confirmed only the motion state counts.
     fn next_poll(&self) -> Option<Poll> {
         let now = self.now();
         if self.motion.hold.is_some() {
             return (self.next_read() <= now).then_some(Poll::State);
+        }
+        if self.motion.wants_pose(now) {
+            return Some(Poll::State);
         }
         self.plan.due(now)
     }
@@ -382,8 +278,12 @@ impl Session {
         self.plan.next_due()
     }
 
-    async fn poll(&mut self, bus: &mut Bus, poll: Poll) -> Result<(), End> {
+    /// One read of a group, and what its answer changes.
+    pub(crate) async fn poll(&mut self, bus: &mut Bus, poll: Poll) -> Result<(), End> {
         let asked = self.now();
+        if poll == Poll::State {
+            self.motion.pose_asked();
+        }
         let Some(span) = bus.choose(&self.plan.shapes(poll)) else {
             return self.ambiguous(poll);
         };
@@ -464,36 +364,5 @@ impl Session {
             (false, LinkState::Fault) => self.go(LinkState::Monitoring),
             _ => {}
         }
-    }
-}
-
-fn extend(into: &mut ArrayVec<RegisterWrite, JOB_MAX>, writes: Writes) {
-    for write in writes {
-        let full = into.try_push(write).is_err();
-        debug_assert!(!full, "a job holds the longest command and a hold");
-    }
-}
-
-fn request_error(error: &BusError, span: Span) -> RequestError {
-    let address = span.address;
-    match error {
-        BusError::Timeout { after } => {
-            let after_ms = u64::try_from(after.as_millis()).unwrap_or(u64::MAX);
-            RequestError::Timeout { address, after_ms }
-        }
-        BusError::Refused { reason } => RequestError::Refused {
-            address,
-            reason: reason.clone(),
-        },
-        BusError::WrongLength { got, want } => RequestError::WrongLength {
-            address,
-            got: *got,
-            want: *want,
-        },
-        BusError::TooLong => RequestError::TooLong {
-            address,
-            len: span.len,
-        },
-        BusError::Lost(_) => RequestError::LinkLost,
     }
 }

@@ -65,7 +65,10 @@ impl<'a> Label<'a> {
 
     /// Draws it.
     pub(crate) fn put(self, ui: &mut Ui, rect: Rect) -> Response {
-        let mut response = ui.allocate_rect(rect, Sense::hover());
+        // Not allocated: that would take the list's cursor back to the end of this rectangle.
+        let id = ui.next_auto_id();
+        ui.skip_ahead_auto_ids(1);
+        let mut response = ui.interact(rect, id, Sense::hover());
         let elided = paint_text(ui, rect, self.align, self.text, self.font, self.color);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
         if let Some(name) = self.name {

@@ -12,6 +12,8 @@ use egui::{Id, Rect, TextEdit, Ui, UiBuilder, pos2, vec2};
 const LAST_FIXED: u8 = 13;
 /// Height of the overview from which its tiles are large enough for names.
 const ROOMY: f32 = 640.0;
+/// Width of a tile from which a name can be read and typed in it.
+const NAMED: f32 = 48.0;
 /// Characters that a name may have.
 const NAME_MAX: usize = 24;
 
@@ -55,7 +57,6 @@ impl GestureView {
     pub(crate) fn strip_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
         let (mut head, body) = controls::titled_card(ui, look, rect, look.say(panels::GESTURES));
-        self.head_ui(ui, &mut head, pane);
         let gap = theme::STEP;
         let count: u8 = if rect.height() < 120.0 { 20 } else { 10 };
         let (columns, rows) = (
@@ -66,8 +67,15 @@ impl GestureView {
             (body.width() - gap * (columns - 1.0)) / columns,
             (body.height() - gap * (rows - 1.0)) / rows,
         );
+        route_ui(ui, take_right(&mut head, 148.0), pane);
+        // Where names do not fit they are typed in the view of its own.
+        let fits = size.x >= NAMED;
+        if fits {
+            self.naming_ui(ui, &mut head, pane);
+        }
+        hint_ui(ui, head, pane);
         for (gesture, place) in grid(body, size, gap, count) {
-            self.tile_ui(ui, place, pane, gesture);
+            self.tile_ui(ui, place, pane, gesture, self.naming && fits);
         }
     }
 
@@ -75,7 +83,9 @@ impl GestureView {
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
         let (mut head, body) = controls::titled_card(ui, look, rect, look.say(panels::GESTURES));
-        self.head_ui(ui, &mut head, pane);
+        route_ui(ui, take_right(&mut head, 148.0), pane);
+        self.naming_ui(ui, &mut head, pane);
+        hint_ui(ui, head, pane);
         let columns: u8 = if body.width() < 800.0 { 5 } else { 8 };
         let rows = f32::from(Gesture::MAX.get().div_ceil(columns));
         let gap = theme::GAP;
@@ -84,13 +94,12 @@ impl GestureView {
             ((body.height() - gap * (rows - 1.0)) / rows).clamp(28.0, 72.0),
         );
         for (gesture, place) in grid(body, size, gap, columns) {
-            self.tile_ui(ui, place, pane, gesture);
+            self.tile_ui(ui, place, pane, gesture, self.naming);
         }
     }
 
-    fn head_ui(&mut self, ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
+    fn naming_ui(&mut self, ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
         let look = pane.look;
-        route_ui(ui, take_right(head, 148.0), pane);
         let text = if self.naming {
             panels::GESTURE_NAME_DONE
         } else {
@@ -117,20 +126,17 @@ impl GestureView {
             self.naming = !self.naming;
             self.typed = None;
         }
-        let hint = format!(
-            "{} · {} · {}",
-            look.say(panels::GESTURES_FIXED),
-            look.say(panels::GESTURES_USER),
-            look.say(panels::GESTURES_NOT_LISTED)
-        );
-        Label::new(&hint, look.palette.faint)
-            .small()
-            .put(ui, *head)
-            .on_hover_text(look.say(panels::GESTURES_TIP));
     }
 
-    fn tile_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, gesture: Gesture) {
-        if self.naming {
+    fn tile_ui(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        pane: &mut Pane<'_>,
+        gesture: Gesture,
+        naming: bool,
+    ) {
+        if naming {
             return self.name_ui(ui, rect, pane, gesture);
         }
         let look = pane.look;
@@ -193,6 +199,20 @@ impl GestureView {
     }
 }
 
+fn hint_ui(ui: &mut Ui, head: Rect, pane: &Pane<'_>) {
+    let look = pane.look;
+    let hint = format!(
+        "{} · {} · {}",
+        look.say(panels::GESTURES_FIXED),
+        look.say(panels::GESTURES_USER),
+        look.say(panels::GESTURES_NOT_LISTED)
+    );
+    Label::new(&hint, look.palette.faint)
+        .small()
+        .put(ui, head)
+        .on_hover_text(look.say(panels::GESTURES_TIP));
+}
+
 fn tile_text(
     ui: &Ui,
     look: Look,
@@ -208,7 +228,7 @@ fn tile_text(
     } else {
         color.gamma_multiply(0.8)
     };
-    if name.is_empty() || rect.width() < 48.0 {
+    if name.is_empty() || rect.width() < NAMED {
         let center = egui::Align2::CENTER_CENTER;
         controls::paint_text(ui, inner, center, number, theme::number(), number_color);
         return;

@@ -1,0 +1,150 @@
+//! Requests of the window on their way: writes that go out one a step, and reads of any memory. Motion among them
+//! needs arming, like every other.
+
+use crate::hand::{HandCommand, RegisterWrite, Span, Writes};
+use crate::link::bus::{Bus, BusError};
+use crate::link::event::{Outcome, Request, RequestError, Ticket};
+use crate::link::late::LATE_HORIZON;
+use crate::link::motion::hold_targets;
+use crate::link::plan::Poll;
+use crate::link::session::{End, Session};
+use crate::link::status::LinkState;
+use arrayvec::ArrayVec;
+
+/// Writes of one job: those of the longest command, and the hold before clearing errors.
+const JOB_MAX: usize = 7;
+
+/// A request that is under way: its writes go out one a step.
+pub(crate) struct Job {
+    pub(crate) ticket: Ticket,
+    writes: ArrayVec<RegisterWrite, JOB_MAX>,
+    read: Option<Span>,
+    pub(crate) is_motion: bool,
+}
+
+impl Session {
+    /// True if a request is under way or one was waiting.
+    pub(crate) fn next_job(&mut self) -> bool {
+        if self.job.is_none()
+            && let Ok((ticket, request)) = self.ends.requests.try_recv()
+        {
+            self.take_job(ticket, request);
+        }
+        self.job.is_some()
+    }
+
+    pub(crate) fn take_job(&mut self, ticket: Ticket, request: Request) {
+        let mut job = Job {
+            ticket,
+            writes: ArrayVec::new(),
+            read: None,
+            is_motion: false,
+        };
+        match request {
+            Request::Read(span) => job.read = Some(span),
+            Request::Command(command) => {
+                job.is_motion = command.is_motion();
+                if job.is_motion && self.status.state != LinkState::Armed {
+                    self.answer(ticket, Err(RequestError::NotArmed));
+                    return;
+                }
+                // A cleared fault may set free a move to an old target: the pose is made the target first.
+                if command == HandCommand::ClearErrors {
+                    extend(
+                        &mut job.writes,
+                        HandCommand::Angles(hold_targets(&self.sample, self.now())).writes(),
+                    );
+                }
+                extend(&mut job.writes, command.writes());
+            }
+        }
+        self.job = Some(job);
+    }
+
+    /// Sends the next write of the request under way, or its read, and answers when all is done.
+    pub(crate) async fn work(&mut self, bus: &mut Bus) -> Result<(), End> {
+        let Some(mut job) = self.job.take() else {
+            return Ok(());
+        };
+        if let Some(span) = job.read {
+            return self.read_for(bus, job.ticket, span).await;
+        }
+        let Some(write) = job.writes.pop_at(0) else {
+            self.answer(job.ticket, Ok(Outcome::Acknowledged));
+            return Ok(());
+        };
+        let result = self.write(bus, &write).await;
+        match result {
+            Ok(()) if job.writes.is_empty() => self.answer(job.ticket, Ok(Outcome::Acknowledged)),
+            Ok(()) => self.job = Some(job),
+            Err(error) => {
+                self.answer(job.ticket, Err(request_error(&error, write.span())));
+                self.failed(bus, &error).await?;
+            }
+        }
+        Ok(())
+    }
+
+    async fn read_for(&mut self, bus: &mut Bus, ticket: Ticket, span: Span) -> Result<(), End> {
+        if bus.choose(&[span]).is_none() {
+            // The same question was answered just now; any other answer clears the line of doubles.
+            self.poll(bus, Poll::State).await?;
+        }
+        if bus.choose(&[span]).is_none() {
+            let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
+            self.answer(ticket, Err(RequestError::Ambiguous { address, wait_s }));
+            return Ok(());
+        }
+        let limit = self.reply_limit(bus, span.len);
+        let asked = self.now();
+        match bus.read(span, limit).await {
+            Ok(bytes) => {
+                let took = self.now().since(asked);
+                self.answered(took);
+                self.answer(
+                    ticket,
+                    Ok(Outcome::Memory {
+                        span,
+                        bytes: bytes.to_vec(),
+                    }),
+                );
+            }
+            Err(error) => {
+                self.answer(ticket, Err(request_error(&error, span)));
+                self.failed(bus, &error).await?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn extend(into: &mut ArrayVec<RegisterWrite, JOB_MAX>, writes: Writes) {
+    for write in writes {
+        let full = into.try_push(write).is_err();
+        debug_assert!(!full, "a job holds the longest command and a hold");
+    }
+}
+
+fn request_error(error: &BusError, span: Span) -> RequestError {
+    let address = span.address;
+    match error {
+        BusError::Timeout { after } => {
+            let after_ms = u64::try_from(after.as_millis()).unwrap_or(u64::MAX);
+            RequestError::Timeout { address, after_ms }
+        }
+        BusError::Refused { reason } => RequestError::Refused {
+            address,
+            reason: reason.clone(),
+        },
+        BusError::WrongLength { got, want } => RequestError::WrongLength {
+            address,
+            got: *got,
+            want: *want,
+        },
+        BusError::TooLong => RequestError::TooLong {
+            address,
+            len: span.len,
+        },
+        BusError::Lost(_) => RequestError::LinkLost,
+    }
+}

@@ -1,0 +1,215 @@
+//! Full cycles a second - one motion state and one sweep over all fingertips - as fast as the link goes.
+
+use crate::report::{Aim, Failure, Report};
+use handscope::app::SimDial;
+use handscope::link::{Clock, LinkConfig, LinkHandle, LinkStats, PollRates, open};
+use handscope::sim::serve::modbus_tcp;
+use handscope::sim::{Scenario, SharedHand, SimConfig, SimHand};
+use handscope::transport::Endpoint;
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+use tokio::runtime::{Builder, Runtime};
+use tokio::sync::oneshot;
+
+/// Until the rate is steady.
+const WARM: Duration = Duration::from_millis(500);
+/// How long is counted.
+const COUNTED: Duration = Duration::from_secs(3);
+/// How often the events are taken, more often than a window would.
+const LOOK_EACH: Duration = Duration::from_millis(5);
+/// A server that is not there by then will not come.
+const SERVER_WITHIN: Duration = Duration::from_secs(5);
+
+pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
+    let server = Server::tcp()?;
+    row(
+        report,
+        "state + tactile over tcp loopback",
+        &server.endpoint,
+        1000.0,
+    )?;
+    drop(server);
+    pseudo_terminal(report)?;
+    // No wire at all: what link and hand cost by themselves. Far too fast for a window to take every sample.
+    let measured = measure(&Endpoint::sim())?;
+    let what = "state + tactile over sim:, hand and link on one thread";
+    report.row(what, measured.cycles, "cycles/s", Aim::None)
+}
+
+#[cfg(unix)]
+fn pseudo_terminal(report: &mut Report) -> Result<(), Failure> {
+    let folder = tempfile::tempdir()?;
+    let server = Server::rs485(&folder.path().join("hand"))?;
+    row(
+        report,
+        "state + tactile over a pseudo-terminal",
+        &server.endpoint,
+        500.0,
+    )
+}
+
+#[cfg(not(unix))]
+fn pseudo_terminal(report: &mut Report) -> Result<(), Failure> {
+    report.absent(
+        "state + tactile over a pseudo-terminal",
+        "not on this system",
+    )
+}
+
+fn row(report: &mut Report, what: &str, endpoint: &Endpoint, aim: f64) -> Result<(), Failure> {
+    let measured = measure(endpoint)?;
+    report.row(what, measured.cycles, "cycles/s", Aim::AtLeast(aim))?;
+    let [median, slow] = measured.round_trip_us;
+    report.row("  round trip, median", median, "us", Aim::None)?;
+    report.row("  round trip, 99 of 100", slow, "us", Aim::None)?;
+    let what = "  requests that failed";
+    report.row(what, measured.failed, "", Aim::AtMost(0.0))?;
+    // At many times the rate that a window asks for, and more where other programs hold this one up.
+    let what = "  samples that the looking thread came too late for";
+    report.row(what, measured.dropped, "", Aim::None)
+}
+
+struct Measured {
+    cycles: f64,
+    /// Median, and 99 of 100.
+    round_trip_us: [f64; 2],
+    failed: f64,
+    dropped: f64,
+}
+
+fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
+    let runtime = Builder::new_multi_thread()
+        .worker_threads(1)
+        .enable_all()
+        .build()?;
+    let clock = runtime.block_on(async { Clock::start() });
+    let config = LinkConfig {
+        endpoint: endpoint.clone(),
+        rates: PollRates::FULL,
+        clock,
+        dial: Arc::new(SimDial::new(clock)),
+        wake: Arc::new(|| ()),
+    };
+    let mut link = open(config, runtime.handle());
+    listen(&mut link, WARM);
+    let (before, begun) = (link.stats(), Instant::now());
+    listen(&mut link, COUNTED);
+    let (after, took) = (link.stats(), begun.elapsed());
+    if after.state_reads == before.state_reads {
+        return Err(format!("{endpoint} gives nothing: {:?}", link.status()).into());
+    }
+    let state = count(after.state_reads - before.state_reads);
+    let tactile = count(after.tactile_reads - before.tactile_reads);
+    Ok(Measured {
+        cycles: state.min(tactile) / took.as_secs_f64(),
+        round_trip_us: [after.rtt_p50, after.rtt_p99]
+            .map(|time| time.unwrap_or_default().as_secs_f64() * 1e6),
+        failed: count(failed(&after)),
+        dropped: count(after.dropped_events - before.dropped_events),
+    })
+}
+
+const fn failed(stats: &LinkStats) -> u64 {
+    stats.timeouts
+        + stats.checksum_errors
+        + stats.resyncs
+        + stats.foreign_replies
+        + stats.refusals
+        + stats.reconnects
+}
+
+fn count(many: u64) -> f64 {
+    u32::try_from(many).map_or(f64::INFINITY, f64::from)
+}
+
+/// Takes what comes, as the window does.
+fn listen(link: &mut LinkHandle, length: Duration) {
+    let begun = Instant::now();
+    while begun.elapsed() < length {
+        while link.try_event().is_some() {}
+        thread::sleep(LOOK_EACH);
+    }
+}
+
+/// A hand behind a wire, on a thread and a runtime of its own. Ends when dropped.
+struct Server {
+    endpoint: Endpoint,
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<thread::JoinHandle<()>>,
+}
+
+impl Server {
+    fn tcp() -> Result<Self, Failure> {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0")?;
+        listener.set_nonblocking(true)?;
+        let endpoint = Endpoint::Tcp {
+            host: "127.0.0.1".into(),
+            port: listener.local_addr()?.port(),
+            unit: 255,
+        };
+        Self::start(endpoint, async move |hand| {
+            let listener = tokio::net::TcpListener::from_std(listener)?;
+            Ok(modbus_tcp::serve(hand, listener).await?)
+        })
+    }
+
+    #[cfg(unix)]
+    fn rs485(path: &std::path::Path) -> Result<Self, Failure> {
+        use handscope::sim::serve::pty;
+        let endpoint = format!("rs485:{}", path.display()).parse()?;
+        let made = path.to_path_buf();
+        let server = Self::start(endpoint, async move |hand| {
+            pty::serve_rs485(hand, &made)?.await;
+            Ok(())
+        })?;
+        let begun = Instant::now();
+        while !path.exists() && begun.elapsed() < SERVER_WITHIN {
+            thread::sleep(LOOK_EACH);
+        }
+        Ok(server)
+    }
+
+    fn start<S>(endpoint: Endpoint, serve: S) -> Result<Self, Failure>
+    where
+        S: AsyncFnOnce(SharedHand) -> Result<(), Failure> + Send + 'static,
+    {
+        let runtime: Runtime = Builder::new_current_thread().enable_all().build()?;
+        let (stop, stopped) = oneshot::channel();
+        let work = move || {
+            runtime.block_on(async {
+                let config = SimConfig {
+                    scenario: Scenario::Grasp,
+                    ..SimConfig::default()
+                };
+                let hand = SharedHand::new(SimHand::new(config), tokio::time::Instant::now());
+                tokio::select! {
+                    served = serve(hand) => {
+                        if let Err(failure) = served {
+                            crate::report::complain(&failure);
+                        }
+                    }
+                    _ = stopped => {}
+                }
+            });
+        };
+        Ok(Self {
+            endpoint,
+            stop: Some(stop),
+            thread: Some(thread::spawn(work)),
+        })
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        if let Some(stop) = self.stop.take() {
+            // A server that is gone already needs no word.
+            let _gone = stop.send(());
+        }
+        if let Some(thread) = self.thread.take() {
+            // Its panic was printed; the figure shows it too.
+            let _panicked = thread.join();
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! How fast the program is, as a table of figures and aims: `cargo bench`, or `cargo bench -- WORD` for a part.
+//! A figure that misses its aim is told, and fails nothing: machines differ.
+
+mod clock;
+mod codec;
+mod cycles;
+mod frames;
+mod memory;
+mod pictures;
+mod report;
+mod scene;
+mod start;
+
+use crate::report::{Failure, Report};
+use std::process::ExitCode;
+
+/// One part of the table: its name, by which it can be chosen, and what measures it.
+type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
+
+const PARTS: [Part; 6] = [
+    ("codec", codec::run),
+    ("cycles", cycles::run),
+    ("ui", frames::run),
+    ("png", pictures::run),
+    ("start", start::run),
+    ("memory", memory::run),
+];
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    if words.iter().any(|word| word == memory::CHILD) {
+        return ended(memory::child());
+    }
+    // Tests build benches too; only `cargo bench` says that time may be taken.
+    if !words.iter().any(|word| word == "--bench") {
+        return ExitCode::SUCCESS;
+    }
+    let wanted: Vec<&String> = words.iter().filter(|word| !word.starts_with('-')).collect();
+    ended(table(&wanted))
+}
+
+fn table(wanted: &[&String]) -> Result<(), Failure> {
+    let known = |word: &str| PARTS.iter().any(|(name, _)| name.contains(word));
+    if let Some(word) = wanted.iter().find(|word| !known(word)) {
+        let names = PARTS.map(|(name, _)| name).join(", ");
+        return Err(format!("'{word}' is no part: choose of {names}").into());
+    }
+    let mut report = Report::begin()?;
+    for (name, measure) in PARTS {
+        if wanted.is_empty() || wanted.iter().any(|word| name.contains(word.as_str())) {
+            measure(&mut report)?;
+        }
+    }
+    report.end()
+}
+
+fn ended(result: Result<(), Failure>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            report::complain(&failure);
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Processor time of one frame of the whole window: logic, layout and triangles, with one and ten minutes of history.
+
+use crate::clock::Sorted;
+use crate::report::{Aim, Failure, Report};
+use crate::scene::{Scene, Time};
+use handscope::app::settings::PlotWindow;
+use handscope::ui::View;
+use std::time::Duration;
+
+/// Frames of one figure.
+const FRAMES: usize = 200;
+/// Frames before, until layout and caches are settled.
+const WARM: usize = 20;
+/// A display of 60 Hz.
+const FRAME_EACH: Duration = Duration::from_millis(16);
+/// What a frame may take.
+const AIM_MS: f64 = 4.0;
+/// Growth that is still none: what one figure differs from the next anyway.
+const SAME: f64 = 1.25;
+
+const WINDOWS: [(PlotWindow, &str); 3] = [
+    (PlotWindow::S10, "10 s"),
+    (PlotWindow::M1, "1 min"),
+    (PlotWindow::M10, "10 min"),
+];
+
+pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
+    let mut scene = Scene::start(Time::Virtual)?;
+    scene.run(Duration::from_secs(60));
+    let young = all(report, &mut scene, "1 min")?;
+    scene.run(Duration::from_secs(545));
+    let held = scene.state().history.last_secs().unwrap_or_default()
+        - scene.state().history.first_secs().unwrap_or_default();
+    report.row("history held by now", held, "s", Aim::AtLeast(600.0))?;
+    let old = all(report, &mut scene, "10 min")?;
+    views(report, &mut scene)?;
+    growth(report, young, old)
+}
+
+/// How the frame grows with the history. Where one minute fills a tenth of the plots and ten minutes fill them, the
+/// frame must grow; it may not where both fill them.
+fn growth(
+    report: &mut Report,
+    [young_10_s, young_1_min, _]: [f64; 3],
+    [old_10_s, old_1_min, old_10_min]: [f64; 3],
+) -> Result<(), Failure> {
+    for (what, times) in [
+        (
+            "10 min of history to 1 min, plots of 10 s",
+            old_10_s / young_10_s,
+        ),
+        (
+            "10 min of history to 1 min, plots of 1 min",
+            old_1_min / young_1_min,
+        ),
+        (
+            "10 min held and shown to 1 min held and shown",
+            old_10_min / young_1_min,
+        ),
+    ] {
+        report.row(what, times, "times", Aim::AtMost(SAME))?;
+    }
+    Ok(())
+}
+
+/// The other views, with all plots of the first as they were left.
+fn views(report: &mut Report, scene: &mut Scene) -> Result<(), Failure> {
+    for view in View::ALL {
+        if view != View::Live {
+            scene.show(view);
+            let what = format!("view {}: median", view.name());
+            let [whole, ..] = measure(scene);
+            let median = whole.median();
+            report.row(&what, median, "ms cpu", Aim::AtMost(AIM_MS))?;
+        }
+    }
+    scene.show(View::Live);
+    Ok(())
+}
+
+/// The medians with each time window of the plots.
+fn all(report: &mut Report, scene: &mut Scene, held: &str) -> Result<[f64; 3], Failure> {
+    let mut medians = [f64::NAN; 3];
+    for (median, (window, shown)) in medians.iter_mut().zip(WINDOWS) {
+        scene.plot(window);
+        let [whole, logic, layout, triangles] = measure(scene);
+        *median = whole.median();
+        let what = format!("window frame, {held} of history, plots of {shown}: median");
+        report.row(&what, *median, "ms cpu", Aim::AtMost(AIM_MS))?;
+        report.row("  99 of 100", whole.percentile(99), "ms cpu", Aim::None)?;
+        for (part, figures) in [
+            ("  logic", logic),
+            ("  layout", layout),
+            ("  triangles", triangles),
+        ] {
+            report.row(part, figures.median(), "ms cpu", Aim::None)?;
+        }
+    }
+    Ok(medians)
+}
+
+/// Whole frames, then logic, layout and triangles of them.
+fn measure(scene: &mut Scene) -> [Sorted; 4] {
+    let mut figures = [const { Vec::new() }; 4];
+    for frame in 0..WARM + FRAMES {
+        scene.pass(FRAME_EACH);
+        let [logic, layout, triangles] = scene.frame();
+        if frame >= WARM {
+            let taken = [logic + layout + triangles, logic, layout, triangles];
+            for (figures, ms) in figures.iter_mut().zip(taken) {
+                figures.push(ms);
+            }
+        }
+    }
+    figures.map(Sorted::new)
+}

@@ -1,0 +1,58 @@
+//! Memory of the whole program after ten minutes, in a process of its own. A graphics driver's share is not in it.
+
+use crate::report::{Aim, Failure, Report, line};
+use crate::scene::{Scene, Time};
+use handscope::app::settings::PlotWindow;
+use std::process::Command;
+use std::time::Duration;
+
+/// The word that makes this program the measured one.
+pub(crate) const CHILD: &str = "--ten-minutes";
+/// Simulated minutes.
+const MINUTES: u32 = 10;
+/// Frames drawn a simulated minute, so that all that a window keeps is there.
+const FRAMES: u32 = 60;
+const AIM_MIB: f64 = 200.0;
+
+pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
+    let what = "memory in use after ten simulated minutes";
+    if !cfg!(target_os = "linux") {
+        return report.absent(what, "read from /proc, Linux only");
+    }
+    let output = Command::new(std::env::current_exe()?).arg(CHILD).output()?;
+    let text = String::from_utf8(output.stdout)?;
+    let mut words = text.split_whitespace().map(str::parse::<f64>);
+    let mut next = || words.next().ok_or("the measured process said nothing");
+    let (now, most, history) = (next()??, next()??, next()??);
+    report.row(what, now, "MiB", Aim::AtMost(AIM_MIB))?;
+    report.row("  at most on the way", most, "MiB", Aim::AtMost(AIM_MIB))?;
+    report.row("  of that the history", history, "MiB", Aim::None)
+}
+
+/// Lives ten minutes, then says how much memory that took: now, at most, and for the history, in MiB.
+pub(crate) fn child() -> Result<(), Failure> {
+    let mut scene = Scene::start(Time::Virtual)?;
+    scene.plot(PlotWindow::M10);
+    for _ in 0..MINUTES * FRAMES {
+        scene.run(Duration::from_secs(60) / FRAMES);
+        std::hint::black_box(scene.frame());
+    }
+    let history = u32::try_from(scene.state().history.bytes() / 1024)?;
+    line(&format!(
+        "{} {} {}",
+        mib("VmRSS:")?,
+        mib("VmHWM:")?,
+        f64::from(history) / 1024.0
+    ))
+}
+
+/// One line of this process's status, in MiB.
+fn mib(key: &str) -> Result<f64, Failure> {
+    let status = std::fs::read_to_string("/proc/self/status")?;
+    let value = status
+        .lines()
+        .find_map(|line| line.strip_prefix(key))
+        .and_then(|rest| rest.split_whitespace().next())
+        .ok_or("no such line in /proc/self/status")?;
+    Ok(value.parse::<f64>()? / 1024.0)
+}

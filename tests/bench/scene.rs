@@ -1,0 +1,137 @@
+//! The whole program with a window of 1440x900 that nobody sees, in virtual or in real time.
+
+use crate::clock::cpu_ms;
+use crate::report::Failure;
+use egui::{Context, RawInput, Rect, ViewportId, ViewportInfo, pos2, vec2};
+use handscope::app::settings::PlotWindow;
+use handscope::app::{Action, App, Env, Settings, SimDial, State};
+use handscope::hand::Moment;
+use handscope::link::Clock;
+use handscope::shell::Cockpit;
+use handscope::transport::Endpoint;
+use handscope::ui::View;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::runtime::{Builder, Runtime};
+
+/// How often the program looks at its link while nothing is drawn.
+const LOOK_EACH: Duration = Duration::from_millis(20);
+
+/// Which time the program lives in.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Time {
+    Virtual,
+    Real,
+}
+
+/// The program, its window and the screen.
+pub(crate) struct Scene {
+    cockpit: Cockpit,
+    context: Context,
+    clock: Clock,
+    runtime: Runtime,
+}
+
+impl Scene {
+    /// Starts the program with the built-in hand that grasps.
+    pub(crate) fn start(time: Time) -> Result<Self, Failure> {
+        let runtime = match time {
+            Time::Virtual => Builder::new_current_thread()
+                .enable_all()
+                .start_paused(true)
+                .build()?,
+            Time::Real => Builder::new_multi_thread()
+                .worker_threads(1)
+                .enable_all()
+                .build()?,
+        };
+        let inside = runtime.enter();
+        let clock = Clock::start();
+        let env = Env {
+            runtime: runtime.handle().clone(),
+            clock,
+            dial: Arc::new(SimDial::new(clock)),
+            wake: Arc::new(|| ()),
+            settings_path: None,
+        };
+        let mut app = App::new(env, Settings::default());
+        let hand = Endpoint::Sim {
+            seed: 1,
+            scenario: "grasp".into(),
+        };
+        app.open(Some(hand), clock.now());
+        drop(inside);
+        Ok(Self {
+            cockpit: Cockpit::new(app),
+            context: Context::default(),
+            clock,
+            runtime,
+        })
+    }
+
+    pub(crate) fn state(&self) -> &State {
+        self.cockpit.state()
+    }
+
+    /// Seconds that the plots show.
+    pub(crate) fn plot(&mut self, window: PlotWindow) {
+        let now = self.now();
+        self.cockpit.app().act(Action::PlotWindow(window), now);
+    }
+
+    pub(crate) fn show(&mut self, view: View) {
+        self.cockpit.show(view);
+    }
+
+    fn now(&self) -> Moment {
+        let _inside = self.runtime.enter();
+        self.clock.now()
+    }
+
+    /// Lets time pass without looking.
+    pub(crate) fn pass(&mut self, time: Duration) {
+        self.runtime
+            .block_on(async { tokio::time::sleep(time).await });
+    }
+
+    /// Lets time pass with the window hidden.
+    pub(crate) fn run(&mut self, time: Duration) {
+        let until = self.now().plus(time);
+        while self.now() < until {
+            self.pass(LOOK_EACH);
+            let now = self.now();
+            let _inside = self.runtime.enter();
+            self.cockpit.logic(now);
+        }
+    }
+
+    /// One frame, as far as the processor draws it. Gives processor milliseconds of logic, layout and triangles.
+    pub(crate) fn frame(&mut self) -> [f64; 3] {
+        let now = self.now();
+        let _inside = self.runtime.enter();
+        let (logic, ()) = cpu_ms(|| self.cockpit.logic(now));
+        let cockpit = &mut self.cockpit;
+        let context = &self.context;
+        let (layout, output) = cpu_ms(|| context.run_ui(screen(now), |ui| cockpit.ui(ui, now)));
+        let (triangles, meshes) =
+            cpu_ms(|| context.tessellate(output.shapes, output.pixels_per_point));
+        std::hint::black_box(meshes);
+        [logic, layout, triangles]
+    }
+}
+
+fn screen(now: Moment) -> RawInput {
+    let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(1440.0, 900.0));
+    let viewport = ViewportInfo {
+        native_pixels_per_point: Some(1.0),
+        inner_rect: Some(rect),
+        focused: Some(true),
+        ..ViewportInfo::default()
+    };
+    RawInput {
+        viewports: std::iter::once((ViewportId::ROOT, viewport)).collect(),
+        screen_rect: Some(rect),
+        time: Some(now.secs()),
+        ..RawInput::default()
+    }
+}

@@ -1,0 +1,411 @@
+//! The real program with its real window, in front of a simulated hand on a wire that can be pulled. Virtual time only.
+
+use egui::{Key, Modifiers, Rect, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use futures::future::BoxFuture;
+use handscope::app::program::{App, Env};
+use handscope::app::settings::Settings;
+use handscope::app::state::State;
+use handscope::hand::{Dof, Moment};
+use handscope::link::{Clock, LinkState};
+use handscope::shell::Cockpit;
+use handscope::sim::serve::{SharedHand, rs485};
+use handscope::sim::{SimConfig, SimHand};
+use handscope::transport::{BoxedWire, Dial, Endpoint, TransportError, pair};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use tokio::runtime::Runtime;
+use tokio::task::AbortHandle;
+
+pub use egui::accesskit::Role;
+
+pub const LARGE: Vec2 = vec2(1440.0, 900.0);
+/// Virtual time of one frame.
+pub const FRAME_MS: u64 = 20;
+
+/// ANGLE_SET, FORCE_SET, SPEED_SET, CLEAR_ERROR and the gesture number (manual 2.6).
+pub const ANGLE_SET: u16 = 1486;
+pub const FORCE_SET: u16 = 1498;
+pub const SPEED_SET: u16 = 1522;
+pub const CLEAR_ERROR: u16 = 1004;
+pub const GESTURE: u16 = 1008;
+
+/// The far end of the cable: plugged in or not.
+struct Socket {
+    hand: SharedHand,
+    plugged: Mutex<bool>,
+    served: Mutex<Vec<AbortHandle>>,
+}
+
+impl Dial for Socket {
+    fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
+        let place = endpoint.to_string();
+        if !*self.plugged.lock().unwrap() {
+            return Box::pin(async { Err(TransportError::Missing { place }) });
+        }
+        let (ours, its) = pair();
+        let task = tokio::spawn(rs485::serve(self.hand.clone(), its));
+        self.served.lock().unwrap().push(task.abort_handle());
+        Box::pin(async {
+            let wire: BoxedWire = Box::new(ours);
+            Ok(wire)
+        })
+    }
+}
+
+/// What the frames are drawn from.
+struct Room {
+    runtime: Runtime,
+    clock: Clock,
+    cockpit: Cockpit,
+    socket: Arc<Socket>,
+    /// Every state of the link there was at a frame's time, without repetitions.
+    seen: Vec<LinkState>,
+}
+
+impl Room {
+    fn new(config: SimConfig, settings: Settings) -> Self {
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .start_paused(true)
+            .build()
+            .unwrap();
+        let inside = runtime.enter();
+        let clock = Clock::start();
+        let hand = SharedHand::new(SimHand::new(config), clock.instant(clock.now()));
+        let socket = Arc::new(Socket {
+            hand,
+            plugged: Mutex::new(true),
+            served: Mutex::default(),
+        });
+        let env = Env {
+            runtime: runtime.handle().clone(),
+            clock,
+            dial: Arc::clone(&socket) as Arc<dyn Dial>,
+            wake: Arc::new(|| {}),
+            settings_path: None,
+        };
+        let mut app = App::new(env, settings);
+        app.open(None, clock.now());
+        drop(inside);
+        Self {
+            runtime,
+            clock,
+            cockpit: Cockpit::new(app),
+            socket,
+            seen: Vec::new(),
+        }
+    }
+
+    /// One frame's time goes by, drawn or not.
+    fn tick(&mut self) {
+        let step = Duration::from_millis(FRAME_MS);
+        self.runtime
+            .block_on(async { tokio::time::sleep(step).await });
+        let _inside = self.runtime.enter();
+        self.cockpit.logic(self.clock.now());
+        let state = self.cockpit.state().link.state;
+        if self.seen.last() != Some(&state) {
+            self.seen.push(state);
+        }
+    }
+
+    fn frame(&mut self, ui: &mut egui::Ui) {
+        self.tick();
+        let _inside = self.runtime.enter();
+        self.cockpit.ui(ui, self.clock.now());
+    }
+}
+
+/// A write that reached the hand.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Write {
+    pub at: Moment,
+    pub address: u16,
+    pub bytes: Vec<u8>,
+}
+
+impl Write {
+    /// The bytes as shorts.
+    pub fn shorts(&self) -> Vec<i16> {
+        let (pairs, _) = self.bytes.as_chunks::<2>();
+        pairs.iter().map(|pair| i16::from_le_bytes(*pair)).collect()
+    }
+}
+
+/// A person in front of the window. Everything is found by its label.
+pub struct Bench {
+    harness: Harness<'static, Room>,
+}
+
+impl Bench {
+    pub fn open(config: SimConfig, size: Vec2) -> Self {
+        let room = Room::new(config, Settings::default());
+        let frame_s = Duration::from_millis(FRAME_MS).as_secs_f32();
+        let harness = Harness::builder()
+            .with_size(size)
+            .with_step_dt(frame_s)
+            .build_ui_state(|ui, room: &mut Room| room.frame(ui), room);
+        Self { harness }
+    }
+
+    /// The first start, one second later.
+    pub fn live() -> Self {
+        let mut bench = Self::open(SimConfig::default(), LARGE);
+        bench.wait(1000);
+        bench
+    }
+
+    /// The first start, then the hand armed by a click.
+    pub fn armed() -> Self {
+        let mut bench = Self::live();
+        bench.click("Arm the hand");
+        bench.run(200);
+        assert!(bench.state().is_armed(), "{:?}", bench.state().link);
+        bench
+    }
+
+    pub fn run(&mut self, millis: u64) {
+        for _ in 0..millis.div_ceil(FRAME_MS) {
+            self.harness.step();
+        }
+    }
+
+    /// As [`Bench::run`], but only the last frames are drawn: as if the window had been hidden.
+    pub fn wait(&mut self, millis: u64) {
+        for _ in 0..millis.saturating_sub(2 * FRAME_MS).div_ceil(FRAME_MS) {
+            self.harness.state_mut().tick();
+        }
+        self.run(2 * FRAME_MS);
+    }
+
+    /// Frames until something is so; the virtual time that it took.
+    pub fn until(&mut self, within_ms: u64, so: impl Fn(&Self) -> bool) -> u64 {
+        let start = self.now();
+        while !so(self) {
+            let took = self.now().since(start).as_millis();
+            assert!(took < u128::from(within_ms), "not within {within_ms} ms");
+            self.harness.step();
+        }
+        u64::try_from(self.now().since(start).as_millis()).unwrap()
+    }
+
+    // --- what a person does -------------------------------------------------------------------
+
+    pub fn click(&mut self, name: &str) {
+        self.harness.get_by_label(name).click();
+        self.harness.remove_cursor();
+        self.harness.step();
+    }
+
+    /// For names that a text on the screen has too.
+    pub fn click_button(&mut self, name: &str) {
+        self.harness
+            .get_by_role_and_label(Role::Button, name)
+            .click();
+        self.harness.remove_cursor();
+        self.harness.step();
+    }
+
+    /// Where a view has a button of the same name: the one that is drawn first.
+    pub fn click_first_button(&mut self, name: &str) {
+        let mut all = self.harness.query_all_by_role(Role::Button);
+        let named = all.find(|node| node.accesskit_node().label().as_deref() == Some(name));
+        named
+            .unwrap_or_else(|| panic!("no button '{name}'"))
+            .click();
+        drop(all);
+        self.harness.remove_cursor();
+        self.harness.step();
+    }
+
+    pub fn key(&mut self, key: Key) {
+        self.harness.key_press(key);
+        self.harness.step();
+    }
+
+    /// Drags along a track, from one part of its length to another, and lets go.
+    pub fn drag(&mut self, name: &str, from: f32, to: f32) {
+        let rect = self.rect(Role::Slider, name);
+        let at = |part: f32| rect.lerp_inside(vec2(part, 0.5));
+        self.harness.hover_at(at(from));
+        self.harness.drag_at(at(from));
+        for step in 1_u8..=10 {
+            self.harness
+                .hover_at(at(egui::lerp(from..=to, f32::from(step) / 10.0)));
+        }
+        self.harness.drop_at(at(to));
+        self.harness.step();
+    }
+
+    pub fn focus(&mut self, name: &str) {
+        self.harness
+            .get_by_role_and_label(Role::TextInput, name)
+            .focus();
+        self.run(40);
+        let field = self.harness.get_by_role_and_label(Role::TextInput, name);
+        assert!(field.is_focused(), "{name}");
+    }
+
+    /// Replaces what stands in a text field, without Enter.
+    pub fn type_into(&mut self, name: &str, text: &str) {
+        self.focus(name);
+        self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.harness.step();
+        self.harness
+            .get_by_role_and_label(Role::TextInput, name)
+            .type_text(text);
+        self.run(40);
+    }
+
+    // --- what a person sees -------------------------------------------------------------------
+
+    pub fn state(&self) -> &State {
+        self.harness.state().cockpit.state()
+    }
+
+    pub fn now(&self) -> Moment {
+        self.state().now
+    }
+
+    /// The states of the link that were shown so far.
+    pub fn seen(&self) -> &[LinkState] {
+        &self.harness.state().seen
+    }
+
+    /// True if a text with exactly these words, or a control of this name, is on the screen.
+    pub fn shows(&self, text: &str) -> bool {
+        self.harness.query_all_by_label(text).next().is_some()
+    }
+
+    /// Every text on the screen that contains these words.
+    pub fn texts_with(&self, part: &str) -> Vec<String> {
+        let texts = self.texts().into_iter();
+        texts.filter(|text| text.contains(part)).collect()
+    }
+
+    /// Every text on the screen.
+    pub fn texts(&self) -> Vec<String> {
+        self.harness
+            .query_all_by_role(Role::Label)
+            .filter_map(|node| node.value())
+            .collect()
+    }
+
+    /// The text that stands under a name.
+    pub fn reading(&self, name: &str) -> String {
+        let found = self
+            .harness
+            .query_all_by_role(Role::Label)
+            .find(|node| node.accesskit_node().label().as_deref() == Some(name))
+            .and_then(|node| node.value());
+        let text = found.unwrap_or_else(|| panic!("no reading '{name}'"));
+        text.trim().to_owned()
+    }
+
+    /// Where the handle of a track stands.
+    pub fn handle(&self, name: &str) -> Option<f64> {
+        let node = self.harness.get_by_role_and_label(Role::Slider, name);
+        node.accesskit_node().numeric_value()
+    }
+
+    /// What stands in a text field.
+    pub fn typed(&self, name: &str) -> String {
+        let node = self.harness.get_by_role_and_label(Role::TextInput, name);
+        node.value().unwrap_or_default()
+    }
+
+    pub fn is_disabled(&self, role: Role, name: &str) -> bool {
+        let node = self.harness.get_by_role_and_label(role, name);
+        node.accesskit_node().is_disabled()
+    }
+
+    pub fn rect(&self, role: Role, name: &str) -> Rect {
+        self.harness.get_by_role_and_label(role, name).rect()
+    }
+
+    /// Names and places of everything with this role, as far as it is not scrolled away: what can be pressed.
+    pub fn all(&self, role: Role) -> Vec<(String, Rect)> {
+        let nodes = self.harness.query_all_by_role(role);
+        let named = nodes.map(|node| {
+            // A plain text has its words as value.
+            let words = node.accesskit_node();
+            let name = words.label().or_else(|| words.value()).unwrap_or_default();
+            let (id, _) = node.accesskit_node().locate();
+            let pressed = self.harness.ctx.viewport(|viewport| {
+                let mut layers = viewport.prev_pass.widgets.layers();
+                layers.find_map(|(_, widgets)| {
+                    let mut widgets = widgets.iter();
+                    widgets
+                        .find(|widget| widget.id.accesskit_id() == id)
+                        .map(|widget| widget.interact_rect)
+                })
+            });
+            (name, pressed.unwrap_or(node.rect()))
+        });
+        named.filter(|(_, rect)| rect.is_positive()).collect()
+    }
+
+    /// Colours of the frames that are painted around this place.
+    pub fn edges(&self, place: Rect) -> Vec<egui::Color32> {
+        let shapes = self.harness.output().shapes.iter();
+        shapes
+            .filter_map(|clipped| match &clipped.shape {
+                egui::Shape::Rect(rect) if near(rect.rect, place) => Some(rect.stroke.color),
+                _ => None,
+            })
+            .collect()
+    }
+
+    // --- the hand behind it -------------------------------------------------------------------
+
+    pub fn hand<T>(&self, act: impl FnOnce(&mut SimHand, Moment) -> T) -> T {
+        let room = self.harness.state();
+        let _inside = room.runtime.enter();
+        room.socket.hand.with(act)
+    }
+
+    /// Every write that reached the hand, oldest first.
+    pub fn writes(&self) -> Vec<Write> {
+        self.hand(|hand, _| {
+            let journal = hand.journal().iter();
+            journal
+                .map(|entry| Write {
+                    at: entry.at,
+                    address: entry.address,
+                    bytes: entry.bytes.clone(),
+                })
+                .collect()
+        })
+    }
+
+    pub fn addresses(&self) -> Vec<u16> {
+        self.writes().iter().map(|write| write.address).collect()
+    }
+
+    /// The angle of a joint as the hand itself has it.
+    pub fn angle(&self, dof: Dof) -> i16 {
+        use handscope::hand::register::ANGLE_ACT;
+        let bytes = self.hand(|hand, now| hand.read(ANGLE_ACT.span(), now).unwrap());
+        let (pairs, _) = bytes.as_chunks::<2>();
+        i16::from_le_bytes(pairs[dof.index()])
+    }
+
+    /// Pulls the cable out: the wire hangs up and the port is gone.
+    pub fn unplug(&mut self) {
+        let socket = &self.harness.state().socket;
+        *socket.plugged.lock().unwrap() = false;
+        for task in socket.served.lock().unwrap().drain(..) {
+            task.abort();
+        }
+    }
+
+    pub fn plug(&mut self) {
+        *self.harness.state().socket.plugged.lock().unwrap() = true;
+    }
+}
+
+fn near(a: Rect, b: Rect) -> bool {
+    (a.min - b.min).length() < 4.0 && (a.max - b.max).length() < 4.0
+}

@@ -1,0 +1,156 @@
+//! Claims about watching: what the first start shows, and that nothing but arming leads to a write.
+
+use crate::bench::{Bench, LARGE, Role};
+use handscope::hand::Dof;
+use handscope::link::LinkState;
+use handscope::shell::Cockpit;
+use handscope::sim::SimConfig;
+
+const JOINTS: [&str; 6] = [
+    "Little",
+    "Ring",
+    "Middle",
+    "Index",
+    "Thumb bend",
+    "Thumb rotate",
+];
+
+#[test]
+fn the_first_start_is_live_within_a_second_badged_disarmed_and_writes_nothing() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.until(1000, |bench| {
+        bench.state().link.state == LinkState::Monitoring
+            && bench.reading("Thumb normal force") != "-"
+    });
+    bench.wait(1000);
+    assert!(bench.shows("SIMULATED"));
+    assert!(bench.shows("Link state: Monitoring"));
+    assert!(!bench.is_disabled(Role::Button, "Arm the hand"));
+    assert!(!bench.shows("Disarm the hand"));
+    for (dof, joint) in Dof::ALL.into_iter().zip(JOINTS) {
+        let shown: i16 = bench
+            .reading(&format!("{joint} actual angle"))
+            .parse()
+            .unwrap();
+        assert!((shown - bench.angle(dof)).abs() <= 3, "{joint} {shown}");
+        let handle = bench.handle(&format!("{joint} angle target")).unwrap();
+        assert!((handle - f64::from(shown)).abs() <= 3.0, "{joint} {handle}");
+        assert!(bench.is_disabled(Role::Slider, &format!("{joint} angle target")));
+    }
+    assert!(bench.state().stats.state_hz > 50.0);
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn looking_around_writes_nothing() {
+    let mut bench = Bench::live();
+    for tab in ["Touch", "Faults", "Gestures", "Connection", "Live"] {
+        bench.click_button(tab);
+        bench.run(100);
+    }
+    for name in ["Theme", "Theme", "Pause the plots", "Thresholds"] {
+        bench.click(name);
+        bench.run(100);
+    }
+    bench.click("Language");
+    bench.run(100);
+    bench.click("语言");
+    bench.run(100);
+    assert!(bench.shows("Link state: Monitoring"));
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn connecting_and_disconnecting_write_nothing() {
+    let mut bench = Bench::live();
+    bench.click_button("Connection");
+    bench.run(100);
+    bench.click_button("Disconnect");
+    bench.wait(200);
+    assert!(bench.shows("NOT CONNECTED") && !bench.shows("SIMULATED"));
+    assert_eq!(bench.reading("Index actual angle"), "-");
+    bench.click_button("Connect");
+    bench.wait(1000);
+    assert!(bench.shows("SIMULATED") && bench.shows("Link state: Monitoring"));
+    assert_eq!(bench.reading("Index actual angle"), "1000");
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn without_arming_no_control_of_the_joints_writes() {
+    let mut bench = Bench::live();
+    for joint in JOINTS {
+        bench.drag(&format!("{joint} angle target"), 0.9, 0.1);
+        bench.drag(&format!("{joint} force threshold"), 0.2, 0.6);
+        bench.drag(&format!("{joint} speed"), 0.2, 0.6);
+    }
+    for name in ["Open all", "Gesture 1", "Index lock"] {
+        bench.click(name);
+    }
+    bench.wait(500);
+    assert_eq!(bench.writes(), []);
+    assert_eq!(bench.angle(Dof::Index), 1000);
+    let staged = bench.handle("Index speed").unwrap();
+    assert!(staged > 500.0, "kept for arming: {staged}");
+}
+
+#[test]
+fn stop_without_arming_holds_the_pose_it_sees() {
+    let mut bench = Bench::live();
+    bench.click_button("STOP");
+    bench.wait(1000);
+    let writes = bench.writes();
+    assert!(!writes.is_empty());
+    for write in &writes {
+        assert_eq!((write.address, write.shorts()), (1486, vec![1000; 6]));
+    }
+    assert!(bench.shows("Link state: Monitoring"));
+}
+
+/// The list beside each headless picture.
+#[test]
+fn the_list_of_labels_has_stop_the_badge_and_every_joint_with_its_value() {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .start_paused(true)
+        .build()
+        .unwrap();
+    let inside = runtime.enter();
+    let clock = handscope::link::Clock::start();
+    let env = handscope::app::Env {
+        runtime: runtime.handle().clone(),
+        clock,
+        dial: std::sync::Arc::new(handscope::app::SimDial::new(clock)),
+        wake: std::sync::Arc::new(|| {}),
+        settings_path: None,
+    };
+    let mut app = handscope::app::App::new(env, handscope::app::Settings::default());
+    app.open(None, clock.now());
+    let mut cockpit = Cockpit::new(app);
+    drop(inside);
+    let mut canvas = handscope::headless::canvas::Canvas::new((1440, 900), 1.0);
+    for _ in 0..50 {
+        let step = std::time::Duration::from_millis(20);
+        runtime.block_on(async { tokio::time::sleep(step).await });
+        let _inside = runtime.enter();
+        cockpit.logic(clock.now());
+    }
+    let _inside = runtime.enter();
+    let now = clock.now();
+    let picture = canvas.picture(now.secs(), |ui| cockpit.ui(ui, now));
+    let list = picture.labels.as_array().unwrap();
+    let find = |role: &str, name: &str| {
+        list.iter()
+            .find(|entry| entry["role"] == role && entry["name"] == name)
+            .unwrap_or_else(|| panic!("no {role} {name}"))
+    };
+    assert_eq!(find("button", "STOP")["disabled"], false);
+    find("label", "SIMULATED");
+    for joint in JOINTS {
+        let target = &find("slider", &format!("{joint} angle target"))["value"];
+        assert_eq!(target, &serde_json::json!(1000.0), "{joint}");
+        let actual = &find("label", &format!("{joint} actual angle"))["value"];
+        assert_eq!(actual.as_str().map(str::trim), Some("1000"), "{joint}");
+        find("label", &format!("{joint} live force"));
+    }
+}

@@ -1,0 +1,20 @@
+//! The real program behind its real window, driven by labels against the simulated hand over the real link. Virtual time.
+#![allow(
+    clippy::unwrap_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::expect_used,
+    unreachable_pub,
+    reason = "a test may"
+)]
+
+#[path = "window/bench.rs"]
+mod bench;
+#[path = "window/layout.rs"]
+mod layout;
+#[path = "window/motion.rs"]
+mod motion;
+#[path = "window/start.rs"]
+mod start;
+#[path = "window/trouble.rs"]
+mod trouble;
