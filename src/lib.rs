@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
-//! | 1 | [`transport`] | endpoints, serial ports, sockets, in-memory wires with faults |
+//! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
 //! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop |
 //! | 2 | [`sim`] | a hand that answers on the wire |
 //! | 3 | [`app`] | everything the program knows, without drawing |

@@ -9,7 +9,7 @@
 use handscope::hand::Dof;
 #[cfg(unix)]
 use handscope::sim::serve::pty;
-use handscope::sim::serve::{modbus_tcp, rs485};
+use handscope::sim::serve::{can, modbus_tcp, rs485, slcan};
 use handscope::sim::{Object, Personality, SharedHand, SimConfig, SimHand};
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
@@ -189,6 +189,55 @@ async fn serving_ends_when_the_wire_hangs_up() {
         .await
         .unwrap()
         .unwrap();
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_can_adapter_and_the_hand_behind_it_answer_the_manuals_frames() {
+    let hand = shared(Personality::default());
+    hand.with(|hand, now| hand.write(1492, &[0x58, 0x02], now).unwrap());
+    let (mut wire, theirs) = tokio::io::duplex(4096);
+    tokio::spawn(slcan::serve(hand, theirs));
+    for (request, reply) in [
+        // Closed: nothing can be sent, and there is nothing to close.
+        ("T01840001102\r", "\x07"),
+        ("C\r", "\x07"),
+        ("S8\r", "\r"),
+        ("S9\r", "\x07"),
+        ("O\r", "\r"),
+        ("O\r", "\x07"),
+        // ANGLE_SET(3), which holds 600, and the write of the same (2.3.2).
+        ("T01750001102\r", "Z\rT0175000125802\r"),
+        ("T0575000125802\r", "Z\rT05750001101\r"),
+        // Other hands, the wrist, more than eight bytes, remote frames: no answer.
+        ("T01840002102\r", "Z\r"),
+        ("T11840001102\r", "Z\r"),
+        ("T01840001109\r", "Z\r"),
+        ("R018400011\r", "\r"),
+        ("C\r", "\r"),
+    ] {
+        wire.write_all(request.as_bytes()).await.unwrap();
+        let heard = hear(&mut wire, reply.len()).await;
+        assert_eq!(heard, reply.as_bytes(), "{request}");
+        silent(&mut wire).await;
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn save_over_can_has_no_late_frame() {
+    let hand = shared(Personality::default());
+    let (mut wire, theirs) = tokio::io::duplex(4096);
+    tokio::spawn(can::serve(hand.clone(), theirs));
+    // SAVE is 1005: write flag, 3ED, hand 1; one byte.
+    let mut record = [0; 16];
+    record[..4].copy_from_slice(&0x84FB_4001_u32.to_ne_bytes());
+    record[4] = 1;
+    record[8] = 1;
+    wire.write_all(&record).await.unwrap();
+    assert_eq!(hear(&mut wire, 16).await, record);
+    tokio::time::sleep(Duration::from_secs(3)).await;
+    silent(&mut wire).await;
+    let journal = hand.with(|hand, _| hand.journal().last().cloned().unwrap());
+    assert_eq!((journal.address, journal.bytes), (1005, vec![1]));
 }
 
 async fn listen(hand: &SharedHand) -> (TcpStream, tokio::task::JoinHandle<std::io::Result<()>>) {

@@ -413,13 +413,8 @@ fn gestures_start_by_number_and_take_names() {
 }
 
 #[test]
-fn the_connection_is_spelled_as_everywhere_and_later_kinds_are_off() {
+fn the_connection_is_spelled_as_everywhere() {
     let mut harness = open_at(common::empty(), View::Connection, LARGE);
-    for kind in ["CAN", "CAN adapter"] {
-        let name = format!("Kind of link: {kind}");
-        let node = harness.get_by_label(&name);
-        assert!(node.accesskit_node().is_disabled(), "{kind}");
-    }
     harness.get_by_label("Kind of link: Modbus TCP").click();
     harness.run_steps(2);
     harness.get_by_label("Connect").click();
@@ -448,6 +443,24 @@ fn the_form_is_filled_from_an_rtu_endpoint() {
         actions(&mut harness),
         [Action::Connect(state.endpoint.unwrap())]
     );
+}
+
+#[test]
+fn a_can_interface_and_a_can_adapter_can_be_chosen() {
+    let mut harness = open_at(common::empty(), View::Connection, LARGE);
+    harness.get_by_label("Kind of link: CAN").click();
+    harness.run_steps(2);
+    harness.get_by_label("Connect").click();
+    let endpoint = "can:can0?id=1".parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+
+    let mut state = common::empty();
+    let endpoint: handscope::transport::Endpoint =
+        "slcan:/dev/ttyACM0?bitrate=500000&id=7".parse().unwrap();
+    state.endpoint = Some(endpoint.clone());
+    let mut harness = open_at(state, View::Connection, LARGE);
+    harness.get_by_label("Connect").click();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
 }
 
 #[test]

@@ -43,9 +43,9 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope read ANGLE_ACT TEMP --hand rs485:/dev/ttyUSB0\n  handscope read HAND_ID --hand tcp:192.168.11.210 --json\n\n'handscope registers' lists the names."
     )]
     Read(ReadArgs),
-    /// Be a hand for other programs: on pseudo-terminals, on TCP, or on all of them
+    /// Be a hand for other programs: on pseudo-terminals, on TCP, on CAN, or on all of them
     #[command(
-        after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n\nIt runs until Ctrl-C. All wires lead to one hand."
+        after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n\nIt runs until Ctrl-C. All wires lead to one hand."
     )]
     Sim(SimArgs),
     /// Print the register map
@@ -116,7 +116,7 @@ pub(crate) struct ReadArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(group = clap::ArgGroup::new("wire").required(true).multiple(true).args(["tcp", "rs485", "rtu"]))]
+#[command(group = clap::ArgGroup::new("wire").required(true).multiple(true).args(["tcp", "rs485", "rtu", "slcan", "can"]))]
 pub(crate) struct SimArgs {
     /// Serve Modbus TCP here, for example 127.0.0.1:6000
     #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
@@ -127,6 +127,12 @@ pub(crate) struct SimArgs {
     /// Make a pseudo-terminal and link it here; serve Modbus RTU on it
     #[arg(long, value_name = "LINK")]
     pub(crate) rtu: Option<PathBuf>,
+    /// Make a pseudo-terminal and link it here; be a serial CAN adapter (slcan) with the hand on its bus
+    #[arg(long, value_name = "LINK")]
+    pub(crate) slcan: Option<PathBuf>,
+    /// Answer on this CAN interface, for example vcan0 (Linux)
+    #[arg(long, value_name = "INTERFACE")]
+    pub(crate) can: Option<String>,
     /// Id of the hand, 1 to 254
     #[arg(long, default_value = "1", value_parser = hand_id)]
     pub(crate) id: HandId,
@@ -195,6 +201,8 @@ Hands are named by URL:
   rs485:/dev/ttyUSB0?baud=115200&id=1      RS485, the maker's own framing
   rtu:/dev/ttyUSB0?baud=115200&id=1        Modbus RTU on the same kind of port
   tcp:192.168.11.210:6000?unit=255         Modbus TCP
+  slcan:/dev/ttyACM0?bitrate=1000000&id=1  CAN through a serial adapter
+  can:can0?id=1                            CAN interface (Linux)
 
 Exit status: 0 done, 1 could not, 2 wrong usage.";
 

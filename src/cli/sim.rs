@@ -69,6 +69,22 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         }
         None => Box::pin(std::future::pending()),
     };
+    let slcan = match &args.slcan {
+        Some(link) => {
+            let served = serve_slcan(&hand, link)?;
+            ready.push(format!("ready slcan {}", link.display()));
+            served
+        }
+        None => Box::pin(std::future::pending()),
+    };
+    let can = match &args.can {
+        Some(interface) => {
+            let served = serve_can(&hand, interface)?;
+            ready.push(format!("ready can {interface}"));
+            served
+        }
+        None => Box::pin(std::future::pending()),
+    };
     for line in &ready {
         out.line(line)?;
     }
@@ -79,6 +95,8 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         error = tcp => Err(error),
         error = rs485 => Err(error),
         error = rtu => Err(error),
+        error = slcan => Err(error),
+        error = can => Err(error),
         () = live(&hand) => Ok(()),
     }
 }
@@ -130,19 +148,20 @@ fn bind_words(error: &io::Error) -> String {
 
 #[cfg(unix)]
 fn serve_rs485(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
-    let place = link.display().to_string();
-    let served =
-        pty::serve_rs485(hand.clone(), link).map_err(|error| link_words(&place, &error))?;
-    Ok(Box::pin(async move {
-        served.await;
-        anyhow!("the pseudo-terminal behind {place} was closed")
-    }))
+    let served = pty::serve_rs485(hand.clone(), link).map_err(|error| link_words(link, &error))?;
+    Ok(until_closed(link, served))
+}
+
+#[cfg(unix)]
+fn serve_slcan(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+    let served = pty::serve_slcan(hand.clone(), link).map_err(|error| link_words(link, &error))?;
+    Ok(until_closed(link, served))
 }
 
 #[cfg(unix)]
 fn serve_rtu(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
     let place = link.display().to_string();
-    let served = pty::serve_rtu(hand.clone(), link).map_err(|error| link_words(&place, &error))?;
+    let served = pty::serve_rtu(hand.clone(), link).map_err(|error| link_words(link, &error))?;
     Ok(Box::pin(async move {
         match served.await {
             Ok(()) => anyhow!("the pseudo-terminal behind {place} was closed"),
@@ -152,7 +171,17 @@ fn serve_rtu(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
 }
 
 #[cfg(unix)]
-fn link_words(place: &str, error: &TransportError) -> anyhow::Error {
+fn until_closed(link: &Path, served: impl Future<Output = ()> + Send + 'static) -> Served {
+    let place = link.display().to_string();
+    Box::pin(async move {
+        served.await;
+        anyhow!("the pseudo-terminal behind {place} was closed")
+    })
+}
+
+#[cfg(unix)]
+fn link_words(link: &Path, error: &TransportError) -> anyhow::Error {
+    let place = link.display();
     match error {
         TransportError::NotAPort { .. } => {
             anyhow!(
@@ -167,6 +196,25 @@ fn link_words(place: &str, error: &TransportError) -> anyhow::Error {
         }
         other => anyhow!("cannot make the link {place}: {other}"),
     }
+}
+
+#[cfg(target_os = "linux")]
+fn serve_can(hand: &SharedHand, interface: &str) -> anyhow::Result<Served> {
+    use crate::sim::serve::can;
+    let wire = crate::transport::can::open(interface, None)
+        .map_err(|error| anyhow!("cannot serve on {interface}: {error}"))?;
+    let (hand, place) = (hand.clone(), interface.to_owned());
+    Ok(Box::pin(async move {
+        match can::serve(hand, wire).await {
+            Ok(()) => anyhow!("the CAN interface {place} was closed"),
+            Err(error) => anyhow!("cannot go on serving on {place}: {error}"),
+        }
+    }))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn serve_can(_hand: &SharedHand, _interface: &str) -> anyhow::Result<Served> {
+    Err(anyhow!(crate::transport::TransportError::LinuxOnly))
 }
 
 #[cfg(not(unix))]
@@ -185,4 +233,9 @@ fn no_links(link: &Path) -> anyhow::Error {
         "cannot make {}: pseudo-terminals need Linux or macOS; use --tcp here",
         link.display()
     )
+}
+
+#[cfg(not(unix))]
+fn serve_slcan(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+    serve_rs485(hand, link)
 }

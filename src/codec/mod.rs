@@ -1,6 +1,8 @@
 //! Bytes on a wire to register operations and back, for both sides of the conversation. No IO, no clock.
 
+pub mod can;
 pub mod mbap;
 pub mod modbus;
 pub mod modbus_rtu;
 pub mod rs485;
+pub mod slcan;

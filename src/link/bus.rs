@@ -1,6 +1,7 @@
 //! One request and its reply, over whichever protocol the endpoint speaks. No plan, no retry.
 
 use crate::hand::{RegisterWrite, Span};
+use crate::link::can::Can;
 use crate::link::clock::Clock;
 use crate::link::late::LateReplies;
 use crate::link::modbus_rtu::ModbusRtu;
@@ -8,7 +9,6 @@ use crate::link::modbus_tcp::ModbusTcp;
 use crate::link::rs485::Rs485;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use arrayvec::ArrayVec;
-use std::io;
 use std::time::Duration;
 
 /// Most bytes that one read can carry over any protocol.
@@ -55,6 +55,7 @@ pub(crate) enum Bus {
     Rs485(Box<Rs485>),
     ModbusTcp(Box<ModbusTcp>),
     ModbusRtu(Box<ModbusRtu>),
+    Can(Box<Can>),
 }
 
 impl Bus {
@@ -77,9 +78,10 @@ impl Bus {
                 let bus = ModbusRtu::new(wire, line.baud, endpoint, late, clock);
                 Ok(Self::ModbusRtu(Box::new(bus)))
             }
-            Endpoint::Can { .. } | Endpoint::Slcan { .. } => Err(TransportError::Unsupported {
-                kind: endpoint.kind().into(),
-            }),
+            Endpoint::Can { .. } | Endpoint::Slcan { .. } => {
+                let bus = Can::new(wire, endpoint, late, clock);
+                Ok(Self::Can(Box::new(bus)))
+            }
         }
     }
 
@@ -89,6 +91,7 @@ impl Bus {
             Self::Rs485(bus) => bus.read(span, limit).await,
             Self::ModbusRtu(bus) => bus.read(span, limit).await,
             Self::ModbusTcp(bus) => bus.read(span, limit).await,
+            Self::Can(bus) => bus.read(span, limit).await,
         }
     }
 
@@ -102,6 +105,7 @@ impl Bus {
             Self::Rs485(bus) => bus.write(write, limit).await,
             Self::ModbusRtu(bus) => bus.write(write, limit).await,
             Self::ModbusTcp(bus) => bus.write(write, limit).await,
+            Self::Can(bus) => bus.write(write, limit).await,
         }
     }
 
@@ -110,7 +114,7 @@ impl Bus {
     pub(crate) async fn turn(&mut self) -> Result<(), BusError> {
         match self {
             Self::ModbusRtu(bus) => bus.turn().await,
-            Self::Rs485(_) | Self::ModbusTcp(_) => Ok(()),
+            Self::Rs485(_) | Self::ModbusTcp(_) | Self::Can(_) => Ok(()),
         }
     }
 
@@ -120,6 +124,7 @@ impl Bus {
             Self::Rs485(bus) => bus.settle().await,
             Self::ModbusRtu(bus) => bus.settle().await,
             Self::ModbusTcp(_) => Ok(()),
+            Self::Can(bus) => bus.settle().await,
         }
     }
 
@@ -133,6 +138,7 @@ impl Bus {
                 .iter()
                 .copied()
                 .max_by_key(|shape| (shape.address, shape.len)),
+            Self::Can(bus) => bus.choose(shapes),
         }
     }
 
@@ -142,6 +148,7 @@ impl Bus {
             Self::Rs485(bus) => bus.wire_time(bytes),
             Self::ModbusRtu(bus) => bus.wire_time(bytes),
             Self::ModbusTcp(_) => Duration::ZERO,
+            Self::Can(bus) => bus.wire_time(bytes),
         }
     }
 
@@ -150,6 +157,7 @@ impl Bus {
             Self::Rs485(bus) => bus.counts(),
             Self::ModbusRtu(bus) => bus.counts(),
             Self::ModbusTcp(bus) => bus.counts(),
+            Self::Can(bus) => bus.counts(),
         }
     }
 
@@ -159,6 +167,7 @@ impl Bus {
             Self::Rs485(bus) => bus.close(),
             Self::ModbusRtu(bus) => bus.close(),
             Self::ModbusTcp(_) => LateReplies::default(),
+            Self::Can(bus) => bus.close(),
         }
     }
 }
@@ -170,21 +179,5 @@ pub(crate) fn id_of(endpoint: &Endpoint) -> u16 {
         Endpoint::Rs485(line) | Endpoint::Rtu(line) => u16::from(line.id),
         Endpoint::Tcp { unit, .. } => u16::from(*unit),
         Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } => *id,
-    }
-}
-
-/// Why a wire broke, from what the system said.
-pub(crate) fn lost(place: String, error: &io::Error) -> TransportError {
-    // A pseudo-terminal says EIO and a USB adapter ENXIO or EPIPE when the other side goes.
-    let hung_up = matches!(
-        error.kind(),
-        io::ErrorKind::BrokenPipe | io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset
-    ) || matches!(error.raw_os_error(), Some(5 | 6));
-    if hung_up {
-        return TransportError::HungUp { place };
-    }
-    TransportError::Io {
-        place,
-        message: error.to_string(),
     }
 }

@@ -5,6 +5,8 @@
 //! setpoints, requests, reads ([`plan`]).
 
 mod bus;
+mod can;
+mod can_port;
 pub mod clock;
 mod counters;
 pub mod event;
@@ -13,6 +15,7 @@ pub mod handle;
 mod hold;
 mod jobs;
 mod late;
+mod lost;
 mod modbus;
 mod modbus_rtu;
 mod modbus_tcp;

@@ -5,7 +5,8 @@ use crate::codec::modbus::{
     ModbusWrite, READ_WORDS_MAX, bytes_from_words, words_for, words_from_write,
 };
 use crate::hand::{RegisterWrite, Span};
-use crate::link::bus::{BusError, Bytes, lost};
+use crate::link::bus::{BusError, Bytes};
+use crate::link::lost::lost;
 use crate::transport::TransportError;
 use std::borrow::Cow;
 use tokio_modbus::{Error, ExceptionCode, Request, Response};
@@ -88,6 +89,6 @@ pub(crate) fn outcome(
         Err(Error::Transport(_)) if closed => {
             Err(BusError::Lost(TransportError::HungUp { place: place() }))
         }
-        Err(Error::Transport(error)) => Err(BusError::Lost(lost(place(), &error))),
+        Err(Error::Transport(error)) => Err(lost(&place(), &error)),
     }
 }

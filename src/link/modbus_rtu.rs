@@ -3,9 +3,10 @@
 
 use crate::codec::modbus::words_for;
 use crate::hand::{HandId, RegisterWrite, Span};
-use crate::link::bus::{BusCounts, BusError, Bytes, id_of, lost};
+use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
 use crate::link::late::LateReplies;
+use crate::link::lost::lost;
 use crate::link::modbus;
 use crate::link::rtu_line::RtuLine;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
@@ -184,12 +185,11 @@ impl ModbusRtu {
     }
 
     fn lost(&self, error: &io::Error) -> BusError {
-        let place = self.place.clone();
-        BusError::Lost(if self.line.closed() {
-            TransportError::HungUp { place }
-        } else {
-            lost(place, error)
-        })
+        if self.line.closed() {
+            let place = self.place.clone();
+            return BusError::Lost(TransportError::HungUp { place });
+        }
+        lost(&self.place, error)
     }
 }
 

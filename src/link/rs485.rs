@@ -2,9 +2,10 @@
 
 use crate::codec::rs485::{Frame, Reply, ReplyDecoder, encode_read, encode_write};
 use crate::hand::{HandId, RegisterWrite, Span};
-use crate::link::bus::{BusCounts, BusError, Bytes, id_of, lost};
+use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
 use crate::link::late::LateReplies;
+use crate::link::lost::lost;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use futures::FutureExt as _;
 use std::io;
@@ -249,6 +250,6 @@ impl Rs485 {
     }
 
     fn lost(&self, error: &io::Error) -> BusError {
-        BusError::Lost(lost(self.place.clone(), error))
+        lost(&self.place, error)
     }
 }

@@ -1,11 +1,16 @@
 //! Opens the wires that the system has. The built-in hand is not one of them.
 
-use crate::transport::endpoint::Endpoint;
+#[cfg(target_os = "linux")]
+use crate::transport::can;
+use crate::transport::endpoint::{DEFAULT_ID, Endpoint, SerialLine};
 use crate::transport::wire::{BoxedWire, Dial, TransportError};
 use crate::transport::{serial, tcp};
 use futures::future::BoxFuture;
 
-/// Dials serial ports and sockets. Other kinds of link are [`TransportError::Unsupported`].
+/// Serial speed of CAN adapters: those on USB take any, those on a real line this.
+const ADAPTER_BAUD: u32 = 115_200;
+
+/// Dials serial ports, sockets and CAN interfaces. Other kinds of link are [`TransportError::Unsupported`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SystemDial;
 
@@ -20,6 +25,15 @@ impl Dial for SystemDial {
                 Endpoint::Tcp { host, port, .. } => {
                     Ok(Box::new(tcp::connect(&host, port).await?) as BoxedWire)
                 }
+                Endpoint::Slcan { port, .. } => {
+                    Ok(Box::new(serial::open(&adapter(port))?) as BoxedWire)
+                }
+                #[cfg(target_os = "linux")]
+                Endpoint::Can { interface, id } => {
+                    Ok(Box::new(can::open(&interface, Some(u32::from(id)))?) as BoxedWire)
+                }
+                #[cfg(not(target_os = "linux"))]
+                Endpoint::Can { .. } => Err(TransportError::LinuxOnly),
                 other => Err(TransportError::Unsupported {
                     kind: other.kind().into(),
                 }),
@@ -28,17 +42,42 @@ impl Dial for SystemDial {
     }
 }
 
+/// The serial side of a CAN adapter.
+fn adapter(port: String) -> SerialLine {
+    SerialLine {
+        port,
+        baud: ADAPTER_BAUD,
+        id: DEFAULT_ID,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[tokio::test]
-    async fn other_kinds_are_unsupported() {
-        for text in ["sim:", "can:can0", "slcan:/dev/ttyACM0"] {
+    async fn the_built_in_hand_is_no_wire_of_the_system() {
+        let error = SystemDial.dial(&Endpoint::sim()).await.err();
+        let kind = "sim".to_owned();
+        assert_eq!(error, Some(TransportError::Unsupported { kind }));
+    }
+
+    #[tokio::test]
+    async fn each_way_to_miss_a_can_bus_has_its_own_error() {
+        let dial = async |text: &str| {
             let endpoint: Endpoint = text.parse().unwrap_or_else(|_| Endpoint::sim());
-            let error = SystemDial.dial(&endpoint).await.err();
-            let kind = endpoint.kind().to_owned();
-            assert_eq!(error, Some(TransportError::Unsupported { kind }), "{text}");
-        }
+            SystemDial.dial(&endpoint).await.err()
+        };
+        let place = "/nowhere/ttyACM0".to_owned();
+        let missing = dial("slcan:/nowhere/ttyACM0").await;
+        assert_eq!(missing, Some(TransportError::Missing { place }));
+        let place = "nocan9".to_owned();
+        let missing = dial("can:nocan9").await;
+        let wanted = if cfg!(target_os = "linux") {
+            TransportError::NoInterface { place }
+        } else {
+            TransportError::LinuxOnly
+        };
+        assert_eq!(missing, Some(wanted));
     }
 }

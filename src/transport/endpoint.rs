@@ -11,10 +11,17 @@ pub const DEFAULT_TCP_PORT: u16 = 6000;
 pub const DEFAULT_UNIT: u8 = 255;
 /// CAN bit rate as delivered (manual 2.3).
 pub const DEFAULT_BITRATE: u32 = 1_000_000;
+/// CAN bit rates that serial adapters have a code for (Lawicel `S0` to `S8`).
+const SLCAN_BITRATES: [u32; 9] = [
+    10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000, 800_000, 1_000_000,
+];
 /// Bus id of a hand as delivered (manual 2.6.1).
 pub const DEFAULT_ID: u8 = 1;
 /// Scenario of the built-in hand when none is named.
 pub const DEFAULT_SCENARIO: &str = "idle";
+/// The same in words.
+const SLCAN_WANT: &str =
+    "10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000 or 1000000 bits a second";
 /// Largest id on a CAN bus (manual 2.3).
 const CAN_ID_MAX: u16 = 16_383;
 
@@ -302,12 +309,10 @@ impl Query<'_> {
         for (key, value) in self.pairs() {
             match key {
                 "bitrate" => {
-                    bitrate = in_range(
-                        key,
-                        value,
-                        10_000..=1_000_000,
-                        "a rate from 10000 to 1000000",
-                    )?
+                    bitrate = number(key, value, SLCAN_WANT)?;
+                    if !SLCAN_BITRATES.contains(&bitrate) {
+                        return Err(wrong_value(key, value, SLCAN_WANT));
+                    }
                 }
                 "id" => {
                     id = in_range(key, value, 1..=CAN_ID_MAX, "a whole number from 1 to 16383")?
@@ -340,12 +345,17 @@ fn unknown_key(key: &str, kind: &'static str, known: &'static str) -> EndpointEr
 }
 
 fn number<T: FromStr>(key: &str, value: &str, want: &'static str) -> Result<T, EndpointError> {
-    let wrong = |_| EndpointError::Value {
+    value
+        .parse()
+        .map_err(|_not_one| wrong_value(key, value, want))
+}
+
+fn wrong_value(key: &str, value: &str, want: &'static str) -> EndpointError {
+    EndpointError::Value {
         key: key.into(),
         value: value.into(),
         want,
-    };
-    value.parse().map_err(wrong)
+    }
 }
 
 fn in_range<T: FromStr + PartialOrd>(
@@ -358,11 +368,7 @@ fn in_range<T: FromStr + PartialOrd>(
     if range.contains(&parsed) {
         return Ok(parsed);
     }
-    Err(EndpointError::Value {
-        key: key.into(),
-        value: value.into(),
-        want,
-    })
+    Err(wrong_value(key, value, want))
 }
 
 #[cfg(test)]
@@ -419,6 +425,7 @@ mod tests {
             ("tcp:host:0", "1 to 65535"),
             ("tcp:host?unit=256", "0 to 255"),
             ("can:can0?id=16384", "16383"),
+            ("slcan:/dev/x?bitrate=83333", "800000 or 1000000"),
             ("sim:?seed=-1", "whole number"),
         ] {
             let error = text.parse::<Endpoint>().unwrap_err().to_string();

@@ -1,5 +1,7 @@
 //! Wires: endpoints, serial ports, sockets, in-memory pipes. Knows no hand.
 
+#[cfg(target_os = "linux")]
+pub mod can;
 pub mod dial;
 pub mod endpoint;
 pub mod faulty;

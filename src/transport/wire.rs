@@ -90,6 +90,73 @@ pub enum TransportError {
         /// The kind of link.
         kind: String,
     },
+    /// No such CAN interface.
+    #[error(
+        "there is no CAN interface {place}: plug the adapter in; 'ip link show type can' lists what is there"
+    )]
+    NoInterface {
+        /// Interface.
+        place: String,
+    },
+    /// A network interface of another kind.
+    #[error(
+        "{place} is no CAN interface: choose one that 'ip link show type can' lists, such as can0"
+    )]
+    NotCan {
+        /// Interface.
+        place: String,
+    },
+    /// The CAN interface is switched off.
+    #[error(
+        "the CAN interface {place} is down: run 'sudo ip link set {place} up type can bitrate 1000000'"
+    )]
+    InterfaceDown {
+        /// Interface.
+        place: String,
+    },
+    /// The system has no CAN sockets at all.
+    #[error(
+        "{place} cannot be opened: the kernel of this system has no CAN; use an adapter with slcan: instead"
+    )]
+    NoCan {
+        /// Interface.
+        place: String,
+    },
+    /// CAN sockets are Linux's.
+    #[error("'can:' links need Linux: use an adapter with slcan: here")]
+    LinuxOnly,
+    /// Frames wait to be sent and nobody takes them.
+    #[error(
+        "{place} cannot send, its frames stay in the queue: nobody on the CAN bus acknowledges them; check cable, termination, bit rate and the hand's power"
+    )]
+    QueueFull {
+        /// Interface or port.
+        place: String,
+    },
+    /// The controller gave up after too many errors.
+    #[error(
+        "{place} is bus-off, too many errors on the CAN bus: check bit rate, cable and termination, then run 'sudo ip link set {place} down' and up again"
+    )]
+    BusOff {
+        /// Interface.
+        place: String,
+    },
+    /// The controller met many errors, and requests stay without answer.
+    #[error(
+        "{place} is error-passive and nothing answers: most likely the bit rate is wrong, or nobody else is on the CAN bus; check bit rate, cable, termination and the hand's power"
+    )]
+    ErrorPassive {
+        /// Interface.
+        place: String,
+    },
+    /// The adapter does not take the bit rate.
+    #[error("the CAN adapter on {place} refused {bitrate} bit/s: choose another bit rate")]
+    BitrateRefused {
+        /// Port.
+        place: String,
+        /// Bits a second.
+        bitrate: u32,
+    },
     /// Anything else the system said.
     #[error("{place} failed: {message}")]
     Io {

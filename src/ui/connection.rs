@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::transport::Endpoint;
 use crate::transport::endpoint::{
-    DEFAULT_BAUD, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
+    DEFAULT_BAUD, DEFAULT_BITRATE, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
 };
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::link_figures;
@@ -50,16 +50,13 @@ impl Kind {
         }
     }
 
-    const fn is_there(self) -> bool {
-        matches!(self, Self::Sim | Self::Rs485 | Self::Tcp | Self::Rtu)
-    }
-
     const fn hint(self) -> Text {
         match self {
             Self::Sim => panels::HINT_SIM,
             Self::Rs485 | Self::Rtu => panels::HINT_SERIAL,
             Self::Tcp => panels::HINT_TCP,
-            Self::Can | Self::Slcan => panels::KIND_LATER,
+            Self::Can => panels::HINT_CAN,
+            Self::Slcan => panels::HINT_SLCAN,
         }
     }
 }
@@ -76,6 +73,8 @@ pub(crate) struct ConnectionForm {
     host: String,
     tcp_port: String,
     unit: String,
+    interface: String,
+    bitrate: String,
     /// The endpoint that the fields were filled from, so that a new one fills them again.
     filled_from: Option<Endpoint>,
 }
@@ -92,6 +91,8 @@ impl Default for ConnectionForm {
             host: "192.168.11.210".into(),
             tcp_port: DEFAULT_TCP_PORT.to_string(),
             unit: DEFAULT_UNIT.to_string(),
+            interface: "can0".into(),
+            bitrate: DEFAULT_BITRATE.to_string(),
             filled_from: None,
         }
     }
@@ -134,6 +135,17 @@ impl ConnectionForm {
                 self.tcp_port = port.to_string();
                 self.unit = unit.to_string();
             }
+            Some(Endpoint::Can { interface, id }) => {
+                self.kind = Kind::Can;
+                self.interface.clone_from(interface);
+                self.id = id.to_string();
+            }
+            Some(Endpoint::Slcan { port, bitrate, id }) => {
+                self.kind = Kind::Slcan;
+                self.port.clone_from(port);
+                self.bitrate = bitrate.to_string();
+                self.id = id.to_string();
+            }
             _ => {}
         }
     }
@@ -147,7 +159,14 @@ impl ConnectionForm {
                 trimmed(&self.seed),
                 trimmed(&self.scenario)
             ),
-            Kind::Rs485 | Kind::Rtu | Kind::Can | Kind::Slcan => format!(
+            Kind::Can => format!("can:{}?id={}", trimmed(&self.interface), trimmed(&self.id)),
+            Kind::Slcan => format!(
+                "slcan:{}?bitrate={}&id={}",
+                trimmed(&self.port),
+                trimmed(&self.bitrate),
+                trimmed(&self.id)
+            ),
+            Kind::Rs485 | Kind::Rtu => format!(
                 "{}:{}?baud={}&id={}",
                 if self.kind == Kind::Rtu {
                     "rtu"
@@ -192,11 +211,20 @@ impl ConnectionForm {
                 );
                 field_ui(ui, &mut body, pane, panels::SEED, "", &mut self.seed);
             }
-            Kind::Rs485 | Kind::Rtu | Kind::Can | Kind::Slcan => {
+            Kind::Rs485 | Kind::Rtu | Kind::Slcan => {
                 let hint = look.say(panels::PORT_HINT);
                 field_ui(ui, &mut body, pane, panels::PORT, hint, &mut self.port);
                 self.ports_ui(ui, &mut body, pane);
-                field_ui(ui, &mut body, pane, panels::BAUD, "", &mut self.baud);
+                let (caption, speed) = match self.kind {
+                    Kind::Slcan => (panels::BITRATE, &mut self.bitrate),
+                    _ => (panels::BAUD, &mut self.baud),
+                };
+                field_ui(ui, &mut body, pane, caption, "", speed);
+                field_ui(ui, &mut body, pane, panels::HAND_ID, "", &mut self.id);
+            }
+            Kind::Can => {
+                let interface = &mut self.interface;
+                field_ui(ui, &mut body, pane, panels::INTERFACE, "can0", interface);
                 field_ui(ui, &mut body, pane, panels::HAND_ID, "", &mut self.id);
             }
             Kind::Tcp => {
@@ -246,13 +274,11 @@ impl ConnectionForm {
             if n == 2 {
                 at = pos2(rect.left(), at.y + theme::CONTROL_LARGE + theme::GAP);
             }
-            let later = (!kind.is_there()).then(|| look.say(panels::KIND_LATER));
             let chosen = kind == self.kind;
             let text = look.say(kind.text());
             let name = format!("{}: {text}", look.say(panels::CONNECTION_KIND));
             let mut button = Button::new(text, look.say(panels::KIND_TIP))
                 .named(&name)
-                .disabled(later)
                 .weight(if chosen {
                     Weight::Chosen
                 } else {

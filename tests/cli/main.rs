@@ -8,6 +8,8 @@
 )]
 
 #[cfg(unix)]
+mod can;
+#[cfg(unix)]
 mod interop;
 #[cfg(unix)]
 mod loss;

@@ -120,7 +120,18 @@ fn every_way_to_miss_a_hand_has_its_own_words() {
             format!("tcp:{}", mute.local_addr().unwrap()),
             "no answer from id 255",
         ),
-        ("can:can0".to_owned(), "not in this version"),
+        (
+            "can:nocan9".to_owned(),
+            if cfg!(target_os = "linux") {
+                "there is no CAN interface nocan9"
+            } else {
+                "need Linux"
+            },
+        ),
+        (
+            format!("slcan:{}/gone", folder.path().display()),
+            "gone is not there",
+        ),
         ("sim:?scenario=party".to_owned(), "is no scenario"),
     ] {
         for command in [
@@ -140,7 +151,7 @@ fn every_way_to_miss_a_hand_has_its_own_words() {
         }
         all.insert(words);
     }
-    assert_eq!(all.len(), 6);
+    assert_eq!(all.len(), 7);
 }
 
 #[test]

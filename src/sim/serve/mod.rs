@@ -1,5 +1,6 @@
 //! Servers that put the simulated hand on wires and sockets. They own the clock; the hand does not.
 
+pub mod can;
 mod modbus;
 #[cfg(unix)]
 pub mod modbus_rtu;
@@ -8,5 +9,6 @@ pub mod modbus_tcp;
 pub mod pty;
 pub mod rs485;
 pub mod shared;
+pub mod slcan;
 
 pub use shared::SharedHand;

@@ -3,6 +3,7 @@
 use crate::sim::serve::modbus_rtu;
 use crate::sim::serve::rs485;
 use crate::sim::serve::shared::SharedHand;
+use crate::sim::serve::slcan;
 use crate::transport::{PtyLink, TransportError};
 use std::future::Future;
 use std::io;
@@ -32,4 +33,16 @@ pub fn serve_rtu(
 ) -> Result<impl Future<Output = io::Result<()>> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
     Ok(modbus_rtu::serve(hand, link))
+}
+
+/// As [`serve_rs485`], with the hand behind a serial CAN adapter.
+///
+/// # Errors
+/// As [`serve_rs485`].
+pub fn serve_slcan(
+    hand: SharedHand,
+    path: &Path,
+) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
+    let link = PtyLink::create(path)?;
+    Ok(slcan::serve(hand, link))
 }

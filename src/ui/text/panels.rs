@@ -109,7 +109,6 @@ texts! {
     KIND_CAN: "CAN", "CAN";
     KIND_SLCAN: "CAN adapter", "CAN 适配器";
     KIND_TIP: "How the hand is reached.", "与灵巧手的连接方式。";
-    KIND_LATER: "Comes in a later version.", "将在后续版本提供。";
     PORT: "Serial port", "串口";
     PORT_HINT: "/dev/ttyUSB0 or COM5", "/dev/ttyUSB0 或 COM5";
     PORTS_NONE: "No serial port found. Type its name, or plug in the adapter and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
@@ -118,6 +117,8 @@ texts! {
     PORT_PICK_TIP: "Takes this port.", "选用此串口。";
     BAUD: "Baud", "波特率";
     HAND_ID: "Hand id", "灵巧手 ID";
+    BITRATE: "Bit rate", "CAN 波特率";
+    INTERFACE: "Interface", "接口";
     HOST: "Address", "地址";
     TCP_PORT: "Port", "端口";
     UNIT: "Unit id", "单元标识符";
@@ -130,6 +131,8 @@ texts! {
     DISCONNECT_NONE: "Nothing is connected.", "当前没有连接。";
     HINT_SIM: "The built-in hand answers on a simulated RS485 wire. Nothing real moves.", "内置仿真手通过模拟的 RS485 线路应答，不会有真实动作。";
     HINT_SERIAL: "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
+    HINT_CAN: "Linux only. As delivered: 1000000 bit/s, id 1. The interface must be up: sudo ip link set can0 up type can bitrate 1000000.", "仅限 Linux。出厂设置：1000000 bit/s，ID 1。接口须已启用：sudo ip link set can0 up type can bitrate 1000000。";
+    HINT_SLCAN: "A serial CAN adapter that speaks slcan (Lawicel). As delivered, the hand has 1000000 bit/s and id 1.", "使用 slcan（Lawicel）协议的串口 CAN 适配器。灵巧手出厂设置：1000000 bit/s，ID 1。";
     HINT_TCP: "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "地址";

@@ -1,0 +1,362 @@
+//! CAN frames of manual 2.3: identifiers, pieces of at most 8 bytes, and Linux's 16-byte form of a frame. No bus, no clock.
+
+use crate::hand::register::TOUCH;
+use crate::hand::{RegisterWrite, Span};
+use arrayvec::ArrayVec;
+
+/// Most bytes that one frame carries.
+pub const PIECE_MAX: u16 = 8;
+/// Largest id of a hand: 14 bits (manual 2.3).
+pub const HAND_ID_MAX: u16 = 0x3FFF;
+/// Largest address: 12 bits (manual 2.3).
+pub const ADDRESS_MAX: u16 = 0x0FFF;
+/// Bytes of Linux's `struct can_frame`.
+pub const RECORD_LEN: usize = 16;
+/// Pieces of the longest run that one read may ask for: 252 bytes cut at even addresses, and some more of shorts.
+pub const PIECES_MAX: usize = 64;
+
+/// Identifiers have 29 bits.
+const ID_MASK: u32 = 0x1FFF_FFFF;
+/// Linux marks 29-bit identifiers, remote frames and error frames in the identifier's upper bits.
+const EXTENDED: u32 = 0x8000_0000;
+const REMOTE: u32 = 0x4000_0000;
+const ERROR: u32 = 0x2000_0000;
+/// Classes of Linux's error frames: the controller's state (byte 1 tells), and bus-off.
+const ERROR_CONTROLLER: u32 = 0x0000_0004;
+const ERROR_BUS_OFF: u32 = 0x0000_0040;
+/// Bits of an error frame's byte 1: receiver or transmitter is error-passive; back to error-active.
+const PASSIVE: u8 = 0x30;
+const ACTIVE: u8 = 0x40;
+
+/// The data bytes of one frame.
+pub type Payload = ArrayVec<u8, 8>;
+/// A run of memory cut into what single frames carry.
+pub type Pieces = ArrayVec<Span, PIECES_MAX>;
+
+/// What a frame is about: bits 26 to 28 of the identifier. The wrist's flags (4, 5) are not this hand's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Flag 0.
+    Read,
+    /// Flag 1.
+    Write,
+}
+
+/// A data frame with a 29-bit identifier, the only kind that the hand knows.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct CanFrame {
+    /// 0..=0x1FFF_FFFF.
+    pub id: u32,
+    /// 0 to 8 bytes.
+    pub data: Payload,
+}
+
+/// The parts of an identifier.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CanId {
+    /// Read or write.
+    pub way: Way,
+    /// First byte's address, 0..=4095.
+    pub address: u16,
+    /// The hand, 0..=16383.
+    pub hand: u16,
+}
+
+impl CanId {
+    /// The identifier; `None` if the hand or the address has too many bits.
+    #[must_use]
+    pub fn raw(self) -> Option<u32> {
+        if self.hand > HAND_ID_MAX || self.address > ADDRESS_MAX {
+            return None;
+        }
+        let way = match self.way {
+            Way::Read => 0,
+            Way::Write => 1,
+        };
+        Some((way << 26) | (u32::from(self.address) << 14) | u32::from(self.hand))
+    }
+
+    /// The parts of a 29-bit identifier; `None` for the wrist's flags and unknown ones.
+    #[must_use]
+    pub fn from_raw(id: u32) -> Option<Self> {
+        let way = match id >> 26 {
+            0 => Way::Read,
+            1 => Way::Write,
+            _ => return None,
+        };
+        Some(Self {
+            way,
+            address: u16::try_from((id >> 14) & u32::from(ADDRESS_MAX)).ok()?,
+            hand: u16::try_from(id & u32::from(HAND_ID_MAX)).ok()?,
+        })
+    }
+}
+
+/// The request that reads 1 to 8 bytes (manual 2.3.1): one byte of data, which is the length.
+#[must_use]
+pub fn read_request(hand: u16, span: Span) -> Option<CanFrame> {
+    if span.len == 0 || span.len > PIECE_MAX {
+        return None;
+    }
+    let len = u8::try_from(span.len).ok()?;
+    frame(Way::Read, hand, span.address, &[len])
+}
+
+/// A frame about this address: the reply to a read, a write (manual 2.3.2) or its reply; `None` for more than 8 bytes.
+#[must_use]
+pub fn frame(way: Way, hand: u16, address: u16, data: &[u8]) -> Option<CanFrame> {
+    let id = CanId { way, address, hand }.raw()?;
+    let data = Payload::try_from(data).ok()?;
+    Some(CanFrame { id, data })
+}
+
+/// The frames that write these bytes, in the order of addresses; each is answered by itself.
+#[must_use]
+pub fn write_requests(hand: u16, write: &RegisterWrite) -> Option<ArrayVec<CanFrame, 4>> {
+    let span = write.span();
+    split(span)?
+        .into_iter()
+        .map(|piece| {
+            frame(
+                Way::Write,
+                hand,
+                piece.address,
+                span.slice(write.bytes(), piece)?,
+            )
+        })
+        .collect()
+}
+
+/// Cuts a run into pieces of 1 to 8 bytes, never through a short, nor through a number of a fingertip block (manual 2.6.21).
+/// `None` for an empty run, one past address 4095, or one of more than [`PIECES_MAX`] pieces.
+// Manual: 2.3 says nothing of more than 8 bytes; others cut by address too.
+#[must_use]
+pub fn split(span: Span) -> Option<Pieces> {
+    let end = u16::try_from(span.end()).ok()?;
+    if span.len == 0 || end > ADDRESS_MAX + 1 {
+        return None;
+    }
+    let mut pieces = Pieces::new();
+    let mut from = span.address;
+    while from < end {
+        let last = end.min(from + PIECE_MAX);
+        let cut = (from + 1..=last)
+            .rev()
+            .find(|at| *at == end || may_cut(*at))
+            .unwrap_or(last);
+        pieces.try_push(Span::new(from, cut - from)).ok()?;
+        from = cut;
+    }
+    Some(pieces)
+}
+
+/// True if no number lies across this address.
+#[must_use]
+pub fn may_cut(at: u16) -> bool {
+    if at <= TOUCH.address || u32::from(at) >= TOUCH.end() {
+        return at.is_multiple_of(2);
+    }
+    // Eight raw values and four of force, four bytes each, direction, proximity, check, reserve.
+    match (at - TOUCH.address) % 58 {
+        inside @ 0..=48 => inside.is_multiple_of(4),
+        inside => matches!(inside, 50 | 54 | 56),
+    }
+}
+
+/// What a CAN interface says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Record {
+    /// A frame of the kind that the hand knows.
+    Frame(CanFrame),
+    /// The controller gave the bus up: it sends no more until it is restarted.
+    BusOff,
+    /// The controller met so many errors that it hardly takes part any more.
+    ErrorPassive,
+    /// The controller takes part again.
+    ErrorActive,
+    /// Frames of other kinds.
+    Other,
+}
+
+/// The frame as Linux's `struct can_frame`.
+#[must_use]
+pub fn to_record(frame: &CanFrame) -> [u8; RECORD_LEN] {
+    let mut record = [0; RECORD_LEN];
+    let id = ((frame.id & ID_MASK) | EXTENDED).to_ne_bytes();
+    let len = u8::try_from(frame.data.len()).unwrap_or_default();
+    let body = id.into_iter().chain([len, 0, 0, 0]);
+    for (at, byte) in record
+        .iter_mut()
+        .zip(body.chain(frame.data.iter().copied()))
+    {
+        *at = byte;
+    }
+    record
+}
+
+/// What a `struct can_frame` says.
+#[must_use]
+pub fn from_record(record: &[u8; RECORD_LEN]) -> Record {
+    let [a, b, c, d, len, _, _, _, data @ ..] = record;
+    let id = u32::from_ne_bytes([*a, *b, *c, *d]);
+    if id & ERROR != 0 {
+        return trouble(id, data);
+    }
+    match data.get(..usize::from(*len)).map(Payload::try_from) {
+        Some(Ok(data)) if id & EXTENDED != 0 && id & REMOTE == 0 => Record::Frame(CanFrame {
+            id: id & ID_MASK,
+            data,
+        }),
+        _ => Record::Other,
+    }
+}
+
+fn trouble(id: u32, data: &[u8]) -> Record {
+    let state = data.get(1).copied().unwrap_or_default();
+    if id & ERROR_BUS_OFF != 0 {
+        Record::BusOff
+    } else if id & ERROR_CONTROLLER != 0 && state & PASSIVE != 0 {
+        Record::ErrorPassive
+    } else if id & ERROR_CONTROLLER != 0 && state & ACTIVE != 0 {
+        Record::ErrorActive
+    } else {
+        Record::Other
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(
+        clippy::unwrap_used,
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        reason = "a test may"
+    )]
+    use super::*;
+    use crate::hand::{HandCommand, PerDof, Speed};
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_manuals_frames_come_out_byte_for_byte() {
+        // 2.3.1: ANGLE_ACT(3) of hand 1, and its answer 500.
+        let ask = read_request(1, Span::new(1552, 2)).unwrap();
+        assert_eq!((ask.id, &ask.data[..]), (0x0184_0001, &[0x02][..]));
+        let answer = frame(Way::Read, 1, 1552, &[0xF4, 0x01]).unwrap();
+        assert_eq!(
+            (answer.id, &answer.data[..]),
+            (0x0184_0001, &[0xF4, 0x01][..])
+        );
+        // 2.3.2: ANGLE_SET(3) of hand 1 = 600.
+        let write = frame(Way::Write, 1, 1492, &[0x58, 0x02]).unwrap();
+        assert_eq!(
+            (write.id, &write.data[..]),
+            (0x0575_0001, &[0x58, 0x02][..])
+        );
+        assert_eq!(
+            CanId::from_raw(0x0575_0001),
+            Some(CanId {
+                way: Way::Write,
+                address: 1492,
+                hand: 1
+            })
+        );
+    }
+
+    #[test]
+    fn what_does_not_fit_the_identifier_is_none() {
+        assert_eq!(read_request(1, Span::new(4096, 1)), None);
+        assert_eq!(read_request(16_384, Span::new(1000, 1)), None);
+        assert_eq!(read_request(1, Span::new(1000, 0)), None);
+        assert_eq!(read_request(1, Span::new(1000, 9)), None);
+        assert_eq!(split(Span::new(4095, 2)), None);
+        assert_eq!(split(Span::new(1546, 0)), None);
+        assert_eq!(split(Span::new(u16::MAX, u16::MAX)), None);
+        assert!(split(Span::new(4088, 8)).is_some());
+        for wrist in [4, 5] {
+            assert_eq!(CanId::from_raw((wrist << 26) | 1), None);
+        }
+    }
+
+    #[test]
+    fn six_shorts_are_written_as_four_and_two() {
+        let command = HandCommand::Speeds(PerDof::from_fn(|dof| {
+            Speed::new(100 + dof.index() as i64).ok()
+        }));
+        let writes = command.writes();
+        let frames: Vec<_> = writes
+            .iter()
+            .flat_map(|write| write_requests(1, write).unwrap())
+            .collect();
+        let parts: Vec<_> = frames
+            .iter()
+            .map(|frame| (CanId::from_raw(frame.id).unwrap().address, frame.data.len()))
+            .collect();
+        assert_eq!(parts, [(1522, 8), (1530, 4)]);
+        assert_eq!(frames[1].data[..], [104, 0, 105, 0]);
+    }
+
+    #[test]
+    fn a_fingertip_is_cut_between_its_numbers() {
+        let cuts: Vec<_> = split(Span::new(3058, 58))
+            .unwrap()
+            .iter()
+            .map(|piece| (piece.address - 3058, piece.len))
+            .collect();
+        let numbers = [(0, 8), (8, 8), (16, 8), (24, 8), (32, 8), (40, 8), (48, 8)];
+        assert_eq!(cuts[..7], numbers);
+        assert_eq!(cuts[7..], [(56, 2)]);
+    }
+
+    #[test]
+    fn error_frames_of_the_interface_are_told_apart() {
+        let of = |class: u32, state: u8| {
+            let mut record = [0; RECORD_LEN];
+            record[..4].copy_from_slice(&(0x2000_0000 | class).to_ne_bytes());
+            record[4] = 8;
+            record[9] = state;
+            from_record(&record)
+        };
+        assert_eq!(of(0x40, 0), Record::BusOff);
+        assert_eq!(of(0x04, 0x20), Record::ErrorPassive);
+        assert_eq!(of(0x04, 0x10), Record::ErrorPassive);
+        assert_eq!(of(0x04, 0x40), Record::ErrorActive);
+        assert_eq!(of(0x04, 0x08), Record::Other);
+        assert_eq!(of(0x20, 0), Record::Other);
+    }
+
+    proptest! {
+        #[test]
+        fn pieces_cover_the_run_in_order_and_cut_no_number(address in 0_u16..4096, len in 1_u16..253) {
+            let span = Span::new(address, len);
+            let Some(pieces) = split(span) else {
+                prop_assert!(span.end() > 4096);
+                return Ok(());
+            };
+            let mut at = u32::from(address);
+            for piece in &pieces {
+                prop_assert_eq!(u32::from(piece.address), at);
+                prop_assert!((1..=8).contains(&piece.len));
+                at = piece.end();
+                prop_assert!(at == span.end() || may_cut(at as u16));
+            }
+            prop_assert_eq!(at, span.end());
+        }
+
+        #[test]
+        fn identifiers_read_back(address in 0_u16..4096, hand in 0_u16..16384, write: bool) {
+            let way = if write { Way::Write } else { Way::Read };
+            let id = CanId { way, address, hand };
+            prop_assert_eq!(CanId::from_raw(id.raw().unwrap()), Some(id));
+        }
+
+        #[test]
+        fn records_read_back_and_no_record_panics(id in 0_u32..=0x1FFF_FFFF, data in prop::collection::vec(any::<u8>(), 0..9), any: [u8; 16]) {
+            let frame = CanFrame { id, data: Payload::try_from(&data[..]).unwrap() };
+            prop_assert_eq!(from_record(&to_record(&frame)), Record::Frame(frame));
+            if let Record::Frame(frame) = from_record(&any) {
+                prop_assert_eq!(from_record(&to_record(&frame)), Record::Frame(frame));
+            }
+        }
+    }
+}

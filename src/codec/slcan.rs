@@ -1,0 +1,416 @@
+//! The text protocol of serial CAN adapters (Lawicel: `O`, `C`, `S0`..`S8`, `T`, CR and BEL), both sides. No port, no clock.
+
+use crate::codec::can::{CanFrame, Payload};
+use arrayvec::ArrayVec;
+
+/// The longest line without its CR: `T`, 8 digits, length, 16 digits, 4 of time stamp.
+pub const LINE_MAX: usize = 30;
+/// Bit rates that have a code, `S0` first.
+pub const BITRATES: [u32; 9] = [
+    10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000, 800_000, 1_000_000,
+];
+
+/// Ends a line; alone from an adapter it means "done".
+const CR: u8 = b'\r';
+/// From an adapter: "could not".
+const BEL: u8 = 0x07;
+
+/// A line to send, with its CR.
+pub type Line = ArrayVec<u8, { LINE_MAX + 1 }>;
+
+/// What an adapter is told.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Command {
+    /// `O`: take part in the bus.
+    Open,
+    /// `C`: leave the bus.
+    Close,
+    /// `S0` to `S8`: the bit rate, by its place in [`BITRATES`].
+    Bitrate(u8),
+    /// `T`: send a data frame with a 29-bit identifier.
+    Send(CanFrame),
+    /// Anything else that is well-formed: versions, filters, 11-bit and remote frames.
+    Other(u8),
+}
+
+/// What an adapter says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Answer {
+    /// CR alone.
+    Done,
+    /// BEL.
+    Failed,
+    /// `z` or `Z`: the frame is on its way.
+    Sent,
+    /// `T`: a data frame with a 29-bit identifier was on the bus.
+    Frame(CanFrame),
+    /// Anything else that is well-formed: versions, status flags, 11-bit and remote frames.
+    Other(u8),
+}
+
+/// What a decoder met apart from good lines. Counts only grow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct NoiseCounts {
+    /// Lines that were no such thing, or had noise in front.
+    pub bad_lines: u64,
+    /// Bytes thrown away with them.
+    pub skipped_bytes: u64,
+}
+
+/// The code of a bit rate, if it has one.
+#[must_use]
+pub fn bitrate_code(bitrate: u32) -> Option<u8> {
+    let at = BITRATES.iter().position(|known| *known == bitrate)?;
+    u8::try_from(at).ok()
+}
+
+/// The line that says this to an adapter; `None` for [`Command::Other`] and codes past 8.
+#[must_use]
+pub fn encode_command(command: &Command) -> Option<Line> {
+    let mut line = Line::new();
+    match command {
+        Command::Open => line.push(b'O'),
+        Command::Close => line.push(b'C'),
+        Command::Bitrate(code @ 0..=8) => line.extend([b'S', b'0' + code]),
+        Command::Send(frame) => line = frame_line(frame),
+        Command::Bitrate(_) | Command::Other(_) => return None,
+    }
+    line.push(CR);
+    Some(line)
+}
+
+/// What an adapter sends for this; `None` for [`Answer::Other`].
+#[must_use]
+pub fn encode_answer(answer: &Answer) -> Option<Line> {
+    let mut line = Line::new();
+    match answer {
+        Answer::Done => {}
+        Answer::Failed => {
+            line.push(BEL);
+            return Some(line);
+        }
+        Answer::Sent => line.push(b'Z'),
+        Answer::Frame(frame) => line = frame_line(frame),
+        Answer::Other(_) => return None,
+    }
+    line.push(CR);
+    Some(line)
+}
+
+fn frame_line(frame: &CanFrame) -> Line {
+    let mut line = Line::from_iter([b'T']);
+    let id = frame.id.to_be_bytes();
+    line.extend(id.into_iter().flat_map(digits));
+    let len = u8::try_from(frame.data.len()).unwrap_or_default();
+    line.push(b'0' + len);
+    line.extend(frame.data.iter().copied().flat_map(digits));
+    line
+}
+
+fn digits(byte: u8) -> [u8; 2] {
+    [byte >> 4, byte & 15].map(|half| match half {
+        0..=9 => b'0' + half,
+        _ => b'A' + half - 10,
+    })
+}
+
+/// A line that is not whole yet.
+#[derive(Debug, Clone, Default)]
+struct Collector {
+    line: ArrayVec<u8, LINE_MAX>,
+    too_long: bool,
+    counts: NoiseCounts,
+}
+
+impl Collector {
+    /// Takes a byte of a line. What is longer than any line keeps its newest bytes: the good part may stand last.
+    fn keep(&mut self, byte: u8) {
+        if self.line.is_full() {
+            self.line.remove(0);
+            self.too_long = true;
+            self.counts.skipped_bytes += 1;
+        }
+        self.line.push(byte);
+    }
+
+    /// Reads the line and begins the next one.
+    fn end<T>(&mut self, parse: impl Fn(&[u8]) -> Option<T>) -> Option<T> {
+        let line = std::mem::take(&mut self.line);
+        let too_long = std::mem::take(&mut self.too_long);
+        let whole = if too_long { None } else { parse(&line) };
+        if whole.is_some() {
+            return whole;
+        }
+        self.counts.bad_lines += 1;
+        // Noise in front of a frame: `T` is no digit, so the last one begins it.
+        let from = line.iter().rposition(|byte| *byte == b'T');
+        let found = from.and_then(|from| Some((from, parse(line.get(from..)?)?)));
+        let skipped = found.as_ref().map_or(line.len(), |(from, _)| *from);
+        self.counts.skipped_bytes += u64::try_from(skipped).unwrap_or_default();
+        found.map(|(_, parsed)| parsed)
+    }
+}
+
+/// Reads what an adapter sends.
+#[derive(Debug, Clone, Default)]
+pub struct AnswerDecoder(Collector);
+
+impl AnswerDecoder {
+    /// Takes the next byte; gives what it completes.
+    pub fn push(&mut self, byte: u8) -> Option<Answer> {
+        match byte {
+            CR => self.0.end(parse_answer),
+            BEL => {
+                if !self.0.line.is_empty() {
+                    self.0.end(|_| None::<Answer>);
+                }
+                Some(Answer::Failed)
+            }
+            _ => {
+                self.0.keep(byte);
+                None
+            }
+        }
+    }
+
+    /// What was no good line.
+    #[must_use]
+    pub const fn counts(&self) -> NoiseCounts {
+        self.0.counts
+    }
+}
+
+/// Reads what an adapter is sent.
+#[derive(Debug, Clone, Default)]
+pub struct CommandDecoder(Collector);
+
+impl CommandDecoder {
+    /// Takes the next byte; gives what it completes. An unreadable line is an error, which an adapter answers with BEL.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Command, Unreadable>> {
+        match byte {
+            // Clients clear the line with empty commands, and some end lines with both characters.
+            CR if self.0.line.is_empty() => None,
+            b'\n' => None,
+            CR => Some(self.0.end(parse_command).ok_or(Unreadable)),
+            _ => {
+                self.0.keep(byte);
+                None
+            }
+        }
+    }
+
+    /// What was no good line.
+    #[must_use]
+    pub const fn counts(&self) -> NoiseCounts {
+        self.0.counts
+    }
+}
+
+/// A line that is no command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the line is no command of a serial CAN adapter")]
+pub struct Unreadable;
+
+fn parse_answer(line: &[u8]) -> Option<Answer> {
+    match line {
+        [] => Some(Answer::Done),
+        b"z" | b"Z" => Some(Answer::Sent),
+        [b'T', rest @ ..] => parse_frame(rest).map(Answer::Frame),
+        [
+            letter @ (b't' | b'r' | b'R' | b'V' | b'v' | b'N' | b'F'),
+            rest @ ..,
+        ] if rest.iter().all(u8::is_ascii_alphanumeric) => Some(Answer::Other(*letter)),
+        _ => None,
+    }
+}
+
+fn parse_command(line: &[u8]) -> Option<Command> {
+    match line {
+        b"O" => Some(Command::Open),
+        b"C" => Some(Command::Close),
+        [b'S', code @ b'0'..=b'8'] => Some(Command::Bitrate(code - b'0')),
+        [b'T', rest @ ..] => parse_frame(rest).map(Command::Send),
+        [letter, rest @ ..]
+            if b"trRVvNFZLMmsXWQPA".contains(letter)
+                && rest.iter().all(u8::is_ascii_alphanumeric) =>
+        {
+            Some(Command::Other(*letter))
+        }
+        _ => None,
+    }
+}
+
+/// Identifier, length, data and perhaps a time stamp.
+fn parse_frame(text: &[u8]) -> Option<CanFrame> {
+    let id = text.get(..8)?.iter().try_fold(0, |id: u32, digit| {
+        Some((id << 4) | u32::from(nibble(*digit)?))
+    })?;
+    let len = match text.get(8)? {
+        digit @ b'0'..=b'8' => usize::from(digit - b'0'),
+        _ => return None,
+    };
+    let stamp = text.get(9 + 2 * len..)?;
+    let stamped = stamp.is_empty() || (stamp.len() == 4 && stamp.iter().all(u8::is_ascii_hexdigit));
+    if id > 0x1FFF_FFFF || !stamped {
+        return None;
+    }
+    let (pairs, _) = text.get(9..9 + 2 * len)?.as_chunks::<2>();
+    let data: Option<Payload> = pairs
+        .iter()
+        .map(|[high, low]| Some((nibble(*high)? << 4) | nibble(*low)?))
+        .collect();
+    Some(CanFrame { id, data: data? })
+}
+
+fn nibble(digit: u8) -> Option<u8> {
+    match digit {
+        b'0'..=b'9' => Some(digit - b'0'),
+        b'a'..=b'f' => Some(digit - b'a' + 10),
+        b'A'..=b'F' => Some(digit - b'A' + 10),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+    use super::*;
+    use crate::codec::can;
+    use crate::hand::Span;
+    use proptest::prelude::*;
+
+    fn answers(text: &[u8]) -> (Vec<Answer>, NoiseCounts) {
+        let mut decoder = AnswerDecoder::default();
+        let found = text.iter().filter_map(|byte| decoder.push(*byte)).collect();
+        (found, decoder.counts())
+    }
+
+    fn commands(text: &[u8]) -> Vec<Result<Command, Unreadable>> {
+        let mut decoder = CommandDecoder::default();
+        text.iter().filter_map(|byte| decoder.push(*byte)).collect()
+    }
+
+    fn frame(id: u32, data: &[u8]) -> CanFrame {
+        CanFrame {
+            id,
+            data: Payload::try_from(data).unwrap(),
+        }
+    }
+
+    #[test]
+    fn the_manuals_frames_have_these_lines() {
+        let ask = can::read_request(1, Span::new(1552, 2)).unwrap();
+        let line = encode_command(&Command::Send(ask.clone())).unwrap();
+        assert_eq!(&line[..], b"T01840001102\r");
+        assert_eq!(commands(b"T01840001102\r"), [Ok(Command::Send(ask))]);
+        let write = frame(0x0575_0001, &[0x58, 0x02]);
+        let line = encode_command(&Command::Send(write)).unwrap();
+        assert_eq!(&line[..], b"T0575000125802\r");
+        let (found, _) = answers(b"T018400012F401\r");
+        assert_eq!(found, [Answer::Frame(frame(0x0184_0001, &[0xF4, 1]))]);
+    }
+
+    #[test]
+    fn every_rate_has_its_code_and_others_have_none() {
+        assert_eq!(bitrate_code(1_000_000), Some(8));
+        assert_eq!(bitrate_code(500_000), Some(6));
+        assert_eq!(bitrate_code(10_000), Some(0));
+        assert_eq!(bitrate_code(83_333), None);
+        let line = encode_command(&Command::Bitrate(8)).unwrap();
+        assert_eq!(&line[..], b"S8\r");
+        assert_eq!(encode_command(&Command::Bitrate(9)), None);
+    }
+
+    #[test]
+    fn acknowledgements_stamps_and_other_frames_are_understood() {
+        let got = Answer::Frame(frame(0x0184_0001, &[0xF4, 1]));
+        for (text, wanted) in [
+            (&b"\r"[..], vec![Answer::Done]),
+            (b"\x07", vec![Answer::Failed]),
+            (b"z\rZ\r", vec![Answer::Sent, Answer::Sent]),
+            (b"T018400012F401ABCD\r", vec![got.clone()]),
+            (b"T018400012f401\r", vec![got.clone()]),
+            (b"t1232F401\r", vec![Answer::Other(b't')]),
+            (
+                b"V1013\rNA123\r",
+                vec![Answer::Other(b'V'), Answer::Other(b'N')],
+            ),
+            (b"Z\rT018400012F401\r", vec![Answer::Sent, got.clone()]),
+        ] {
+            let (found, noise) = answers(text);
+            assert_eq!(found, wanted, "{text:?}");
+            assert_eq!(noise, NoiseCounts::default(), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn noise_is_skipped_and_counted_and_the_next_line_is_whole() {
+        let good = Answer::Frame(frame(0x0184_0001, &[0xF4, 1]));
+        for noise in [
+            &b"\xFF\x00"[..],
+            b"T0184",
+            b"T018400019\r",
+            b"T0184000120\r",
+            b"T218400012F401\r",
+            b"T018400012F401A\r",
+            &[b'0'; 500],
+        ] {
+            let (found, counts) = answers(&[noise, b"T018400012F401\r"].concat());
+            assert_eq!(found, std::slice::from_ref(&good), "{noise:?}");
+            assert_eq!(counts.bad_lines, 1, "{noise:?}");
+            let want = noise.len() - usize::from(noise.ends_with(b"\r"));
+            assert_eq!(counts.skipped_bytes, want as u64, "{noise:?}");
+        }
+    }
+
+    #[test]
+    fn an_adapter_says_no_to_what_it_cannot_read() {
+        for text in [&b"S9\r"[..], b"S\r", b"OO\r", b"T12\r", b"\xFF\r"] {
+            assert_eq!(commands(text), [Err(Unreadable)], "{text:?}");
+        }
+        assert_eq!(commands(b"\r\r"), []);
+        assert_eq!(
+            commands(b"C\rS8\rO\r"),
+            [
+                Ok(Command::Close),
+                Ok(Command::Bitrate(8)),
+                Ok(Command::Open)
+            ]
+        );
+        assert_eq!(commands(b"V\r"), [Ok(Command::Other(b'V'))]);
+    }
+
+    proptest! {
+        #[test]
+        fn frames_read_back_on_both_sides(id in 0_u32..=0x1FFF_FFFF, data in prop::collection::vec(any::<u8>(), 0..9)) {
+            let frame = frame(id, &data);
+            let line = encode_answer(&Answer::Frame(frame.clone())).unwrap();
+            prop_assert_eq!(answers(&line).0, [Answer::Frame(frame.clone())]);
+            let line = encode_command(&Command::Send(frame.clone())).unwrap();
+            prop_assert_eq!(commands(&line), [Ok(Command::Send(frame))]);
+        }
+
+        #[test]
+        fn no_bytes_make_either_side_panic_or_grow(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+            let (found, noise) = answers(&bytes);
+            prop_assert!(found.len() as u64 + noise.skipped_bytes <= bytes.len() as u64);
+            commands(&bytes);
+        }
+
+        #[test]
+        fn lines_of_likely_bytes_read_back_when_accepted(
+            text in prop::collection::vec(prop::sample::select(&b"TtZzVS018F\r\x07"[..]), 0..200),
+        ) {
+            for answer in answers(&text).0 {
+                if let Some(line) = encode_answer(&answer) {
+                    prop_assert_eq!(answers(&line).0, [answer]);
+                }
+            }
+            for command in commands(&text).into_iter().flatten() {
+                if let Some(line) = encode_command(&command) {
+                    prop_assert_eq!(commands(&line), [Ok(command)]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! The simulated hand on a CAN bus (manual 2.3), on a wire of Linux's 16-byte frames. Opens no interface.
+
+use crate::codec::can::{
+    CanFrame, CanId, PIECE_MAX, RECORD_LEN, Record, Way, frame, from_record, to_record,
+};
+use crate::hand::Span;
+use crate::sim::serve::shared::SharedHand;
+use crate::transport::Wire;
+use std::io;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::time::sleep;
+
+/// The data byte of the reply to a write.
+// Manual: 2.3.2 gives its length, 1, and not its content.
+const ACK: u8 = 1;
+
+/// Answers on `wire` until it ends. Silent for other ids, other kinds of frames and runs that the hand refuses.
+///
+/// # Errors
+/// How the wire ended; `UnexpectedEof` if the other side hung up.
+pub async fn serve(hand: SharedHand, mut wire: impl Wire) -> io::Result<()> {
+    let mut record = [0; RECORD_LEN];
+    loop {
+        wire.read_exact(&mut record).await?;
+        let Record::Frame(asked) = from_record(&record) else {
+            continue;
+        };
+        if let Some(reply) = answer(&hand, &asked).await {
+            wire.write_all(&to_record(&reply)).await?;
+            wire.flush().await?;
+        }
+    }
+}
+
+/// What the hand says to a frame, after its turnaround.
+pub(crate) async fn answer(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
+    let reply = reply(hand, asked)?;
+    let turnaround = hand.with(|hand, _| hand.personality().turnaround);
+    if !turnaround.is_zero() {
+        sleep(turnaround).await;
+    }
+    Some(reply)
+}
+
+fn reply(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
+    let CanId {
+        way,
+        address,
+        hand: id,
+    } = CanId::from_raw(asked.id)?;
+    hand.with(|hand, now| {
+        if id != u16::from(hand.id()) {
+            return None;
+        }
+        match (way, asked.data.as_slice()) {
+            (Way::Read, [len]) => {
+                let span = Span::new(address, u16::from(*len));
+                if span.len > PIECE_MAX {
+                    return None;
+                }
+                let bytes = hand.read(span, now).ok()?;
+                frame(way, id, address, &bytes)
+            }
+            (Way::Write, bytes @ [_, ..]) => {
+                let effect = hand.write(address, bytes, now).ok()?;
+                // The late frame that tells how a SAVE ended is the serial line's.
+                if effect.result_follows {
+                    hand.cancel_newest_save_result();
+                }
+                frame(way, u16::from(effect.ack_id), address, &[ACK])
+            }
+            _ => None,
+        }
+    })
+}

@@ -1,0 +1,94 @@
+//! The simulated hand behind a serial CAN adapter, adapter included (Lawicel's text). Opens no port.
+
+use crate::codec::slcan::{Answer, Command, CommandDecoder, encode_answer};
+use crate::sim::serve::can;
+use crate::sim::serve::shared::SharedHand;
+use crate::transport::Wire;
+use std::io;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+
+/// Bytes taken at once: many commands.
+const CHUNK: usize = 512;
+/// Code of the bit rate of a hand as delivered, 1 Mbit/s (manual 2.3).
+const HAND_BITRATE: u8 = 8;
+/// What the adapter says of itself, as the known ones do.
+const VERSION: &[u8] = b"V1013\r";
+const SERIAL: &[u8] = b"NSIM1\r";
+const FLAGS: &[u8] = b"F00\r";
+
+/// Answers on `wire` until the other side hangs up. At another bit rate than the hand's nobody is on the bus.
+pub async fn serve(hand: SharedHand, wire: impl Wire) {
+    let mut adapter = Adapter {
+        hand,
+        wire,
+        is_open: false,
+        bitrate: HAND_BITRATE,
+    };
+    // The end of the wire is the only end there is, and the only error.
+    let _hung_up = adapter.run().await;
+}
+
+struct Adapter<W> {
+    hand: SharedHand,
+    wire: W,
+    is_open: bool,
+    bitrate: u8,
+}
+
+impl<W: Wire> Adapter<W> {
+    async fn run(&mut self) -> io::Result<()> {
+        let mut decoder = CommandDecoder::default();
+        let mut chunk = [0; CHUNK];
+        loop {
+            let got = self.wire.read(&mut chunk).await?;
+            if got == 0 {
+                return Ok(());
+            }
+            for byte in chunk.iter().take(got) {
+                match decoder.push(*byte) {
+                    None => {}
+                    Some(Ok(command)) => self.obey(command).await?,
+                    Some(Err(_unreadable)) => self.say(&Answer::Failed).await?,
+                }
+            }
+            self.wire.flush().await?;
+        }
+    }
+
+    async fn obey(&mut self, command: Command) -> io::Result<()> {
+        let allowed = match &command {
+            Command::Open | Command::Bitrate(_) => !self.is_open,
+            Command::Close | Command::Send(_) => self.is_open,
+            Command::Other(_) => true,
+        };
+        if !allowed {
+            return self.say(&Answer::Failed).await;
+        }
+        match command {
+            Command::Open => self.is_open = true,
+            Command::Close => self.is_open = false,
+            Command::Bitrate(code) => self.bitrate = code,
+            Command::Other(b'V') => return self.wire.write_all(VERSION).await,
+            Command::Other(b'N') => return self.wire.write_all(SERIAL).await,
+            Command::Other(b'F') => return self.wire.write_all(FLAGS).await,
+            Command::Other(_) => {}
+            Command::Send(frame) => {
+                self.say(&Answer::Sent).await?;
+                if self.bitrate == HAND_BITRATE
+                    && let Some(reply) = can::answer(&self.hand, &frame).await
+                {
+                    self.say(&Answer::Frame(reply)).await?;
+                }
+                return Ok(());
+            }
+        }
+        self.say(&Answer::Done).await
+    }
+
+    async fn say(&mut self, answer: &Answer) -> io::Result<()> {
+        match encode_answer(answer) {
+            Some(line) => self.wire.write_all(&line).await,
+            None => Ok(()),
+        }
+    }
+}

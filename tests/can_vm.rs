@@ -1,0 +1,175 @@
+//! SocketCAN for real: the simulated hand and the link on an interface `vcan0`. Where there is none it says so and passes;
+//! `.ci/run` runs this inside a small guest that has one.
+#![cfg(target_os = "linux")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may"
+)]
+
+use handscope::hand::register;
+use handscope::link::{
+    self, Clock, LinkConfig, LinkEvent, LinkHandle, LinkTrouble, Outcome, PollRates, Request,
+};
+use handscope::sim::serve::can as served;
+use handscope::sim::{SharedHand, SimConfig, SimHand};
+use handscope::transport::{Endpoint, SystemDial, TransportError, can};
+use std::io;
+use std::process::Command;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::task::JoinHandle;
+use tokio::time::{Instant, sleep, timeout};
+
+/// Longer than anything here takes in an emulated processor.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// The interface to try, if there is one.
+fn interface() -> Option<&'static str> {
+    let there = std::path::Path::new("/sys/class/net/vcan0").exists();
+    if !there {
+        println!("no vcan0 here: SocketCAN was not tried");
+    }
+    there.then_some("vcan0")
+}
+
+fn serve(interface: &str, id: u8) -> JoinHandle<io::Result<()>> {
+    let config = SimConfig {
+        id,
+        ..SimConfig::default()
+    };
+    let hand = SharedHand::new(SimHand::new(config), Instant::now());
+    let wire = can::open(interface, None).unwrap();
+    tokio::spawn(served::serve(hand, wire))
+}
+
+fn connect(endpoint: &str) -> LinkHandle {
+    let endpoint: Endpoint = endpoint.parse().unwrap();
+    let config = LinkConfig {
+        endpoint,
+        rates: PollRates::default(),
+        clock: Clock::start(),
+        dial: Arc::new(SystemDial),
+        wake: Arc::new(|| ()),
+    };
+    link::open(config, &tokio::runtime::Handle::current())
+}
+
+async fn until(link: &mut LinkHandle, wanted: impl Fn(&LinkHandle) -> bool) {
+    let found = timeout(PATIENCE, async {
+        while !wanted(link) {
+            while link.try_event().is_some() {}
+            sleep(Duration::from_millis(5)).await;
+        }
+    });
+    let in_time = found.await.is_ok();
+    assert!(in_time, "{:?} {:?}", link.status(), link.stats());
+}
+
+#[tokio::test]
+async fn a_hand_on_a_real_interface_is_read_whole() {
+    let Some(interface) = interface() else { return };
+    let (_seven, _other) = (serve(interface, 7), serve(interface, 8));
+    let mut link = connect(&format!("can:{interface}?id=7"));
+    until(&mut link, |link| {
+        let stats = link.stats();
+        stats.state_reads > 50 && stats.tactile_reads > 10
+    })
+    .await;
+    let stats = link.stats();
+    println!("{stats:?}");
+    assert_eq!(stats.foreign_replies, 0, "own frames come back: {stats:?}");
+    let asked = Request::Read(register::HAND_ID.span());
+    let ours = link.ask(asked).unwrap();
+    let told = timeout(PATIENCE, async {
+        loop {
+            if let Some(LinkEvent::Done { ticket, result }) = link.event().await
+                && ticket == ours
+            {
+                return result;
+            }
+        }
+    });
+    let Ok(Outcome::Memory { bytes, .. }) = told.await.unwrap() else {
+        panic!("no answer");
+    };
+    assert_eq!(bytes, [7]);
+}
+
+#[tokio::test]
+async fn the_filter_passes_frames_of_one_hand_with_long_identifiers_only() {
+    let Some(interface) = interface() else { return };
+    let mut ours = can::open(interface, Some(7)).unwrap();
+    let mut other = can::open(interface, None).unwrap();
+    let record = |id: u32| {
+        let mut record = [0; can::FRAME_LEN];
+        for (at, byte) in record.iter_mut().zip(id.to_ne_bytes()) {
+            *at = byte;
+        }
+        record
+    };
+    // Another hand, an 11-bit identifier, a remote frame, then ours.
+    for id in [0x8184_0008, 0x0000_0007, 0xC184_0007, 0x8184_0007] {
+        other.write_all(&record(id)).await.unwrap();
+    }
+    ours.write_all(&record(0x8184_0007)).await.unwrap();
+    let mut got = [0; can::FRAME_LEN];
+    timeout(PATIENCE, ours.read_exact(&mut got))
+        .await
+        .unwrap()
+        .unwrap();
+    assert_eq!(got, record(0x8184_0007));
+    let more = timeout(Duration::from_millis(100), ours.read_exact(&mut got)).await;
+    assert!(more.is_err(), "more came through: {got:?}");
+}
+
+fn ip(words: &str) -> bool {
+    let run = |program: &str, first: &[&str]| {
+        let ended = Command::new(program)
+            .args(first)
+            .args(words.split(' '))
+            .output();
+        ended.is_ok_and(|ended| ended.status.success())
+    };
+    run("ip", &[]) || run("busybox", &["ip"]) || run("/bin/busybox", &["ip"])
+}
+
+#[tokio::test]
+async fn missing_down_and_taken_away_have_their_own_words() {
+    if interface().is_none() {
+        return;
+    }
+    let place = || "vcan9".to_owned();
+    let told = |link: &LinkHandle| link.status().trouble;
+    let mut link = connect("can:vcan9");
+    until(&mut link, |link| told(link).is_some()).await;
+    let missing = TransportError::NoInterface { place: place() };
+    assert_eq!(told(&link), Some(LinkTrouble::Transport(missing)));
+    if !ip("link add dev vcan9 type vcan") {
+        println!("no right to make interfaces here: going down was not tried");
+        return;
+    }
+    let down = LinkTrouble::Transport(TransportError::InterfaceDown { place: place() });
+    until(&mut link, |link| told(link).as_ref() == Some(&down)).await;
+    assert!(ip("link set vcan9 up"));
+    let hand = serve("vcan9", 1);
+    until(&mut link, |link| link.status().state.is_live()).await;
+    assert!(ip("link set vcan9 down"));
+    until(&mut link, |link| told(link).as_ref() == Some(&down)).await;
+    let ended = timeout(PATIENCE, hand).await.unwrap().unwrap();
+    assert!(ended.unwrap_err().to_string().contains("is down"));
+    assert!(ip("link set vcan9 up"));
+    let _hand = serve("vcan9", 1);
+    until(&mut link, |link| link.status().state.is_live()).await;
+    assert!(ip("link del vcan9"));
+    let gone = [
+        LinkTrouble::Transport(TransportError::NoInterface { place: place() }),
+        LinkTrouble::Transport(TransportError::InterfaceDown { place: place() }),
+    ];
+    until(&mut link, |link| {
+        told(link).is_some_and(|told| gone.contains(&told))
+    })
+    .await;
+}
