@@ -387,7 +387,7 @@ async fn armed_on(baud: u32, turnaround: Duration) -> (LinkHandle, Log, Clock) {
             turnaround,
             ..Quirks::default()
         },
-        is_tcp: false,
+        protocol: Protocol::Rs485,
         state: Mutex::default(),
     });
     let config = LinkConfig {
