@@ -57,7 +57,7 @@ impl ModbusRtu {
         Self {
             context: rtu::attach_slave(line.clone(), Slave(id)),
             line,
-            place: endpoint.to_string(),
+            place: endpoint.place(),
             baud: baud.max(1),
             late,
             clock,

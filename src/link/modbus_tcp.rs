@@ -26,7 +26,7 @@ impl ModbusTcp {
         Self {
             context: tcp::attach_slave(filter, Slave(unit)),
             counts,
-            place: endpoint.to_string(),
+            place: endpoint.place(),
         }
     }
 

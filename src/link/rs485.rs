@@ -66,7 +66,7 @@ impl Rs485 {
         };
         Self {
             wire,
-            place: endpoint.to_string(),
+            place: endpoint.place(),
             id: HandId::nearest(id_of(endpoint)),
             baud,
             decoder: ReplyDecoder::default(),

@@ -136,6 +136,19 @@ impl Endpoint {
         matches!(self, Self::Sim { .. })
     }
 
+    /// What a person looks at when it fails: the port, the address, the interface.
+    #[must_use]
+    pub fn place(&self) -> String {
+        match self {
+            Self::Sim { .. } => "the simulated hand".into(),
+            Self::Rs485(line) | Self::Rtu(line) => line.port.clone(),
+            Self::Tcp { host, port, .. } if host.contains(':') => format!("[{host}]:{port}"),
+            Self::Tcp { host, port, .. } => format!("{host}:{port}"),
+            Self::Can { interface, .. } => interface.clone(),
+            Self::Slcan { port, .. } => port.clone(),
+        }
+    }
+
     /// The part before the colon.
     #[must_use]
     pub const fn kind(&self) -> &'static str {
@@ -406,6 +419,19 @@ mod tests {
             let endpoint: Endpoint = text.parse().unwrap();
             assert_eq!(endpoint.to_string(), full);
             assert_eq!(full.parse::<Endpoint>().unwrap(), endpoint);
+        }
+    }
+
+    #[test]
+    fn the_place_is_what_a_person_looks_at() {
+        for (text, place) in [
+            ("sim:", "the simulated hand"),
+            ("rs485:/dev/ttyUSB0", "/dev/ttyUSB0"),
+            ("tcp:[::1]:6001?unit=1", "[::1]:6001"),
+            ("tcp:127.0.0.1", "127.0.0.1:6000"),
+            ("can:can0?id=3", "can0"),
+        ] {
+            assert_eq!(text.parse::<Endpoint>().unwrap().place(), place);
         }
     }
 

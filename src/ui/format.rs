@@ -79,14 +79,18 @@ pub(crate) fn age(value: Duration) -> String {
     }
 }
 
-/// An error's text as a sentence: capital letter first, a full stop last.
+/// An error's text as a sentence: capital letter first, unless it begins with the name of a port or an address, and a
+/// full stop last.
 pub(crate) fn sentence(text: &str) -> String {
-    let mut signs = text.chars();
-    let mut out: String = signs
+    let is_word = text
+        .split(' ')
         .next()
-        .into_iter()
-        .flat_map(char::to_uppercase)
-        .collect();
+        .is_some_and(|first| first.chars().all(char::is_alphabetic));
+    let mut signs = text.chars();
+    let mut out: String = match signs.next() {
+        Some(first) if is_word => first.to_uppercase().collect(),
+        first => first.into_iter().collect(),
+    };
     out.push_str(signs.as_str());
     if !out.ends_with(['.', '!', '?', '。']) {
         out.push('.');
@@ -97,6 +101,17 @@ pub(crate) fn sentence(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sentence_begins_with_a_capital_but_a_port_keeps_its_name() {
+        assert_eq!(sentence("no answer from id 1"), "No answer from id 1.");
+        assert_eq!(sentence("can0 is down"), "can0 is down.");
+        assert_eq!(
+            sentence("localhost:6000 refused."),
+            "localhost:6000 refused."
+        );
+        assert_eq!(sentence(""), ".");
+    }
 
     #[test]
     fn unknown_is_a_dash_and_never_a_zero() {
