@@ -382,7 +382,7 @@ mod tests {
         assert!(matches!(read, Err(BusError::Refused { .. })), "{read:?}");
         drop(far);
         let read = bus.read(STATE, LIMIT).await;
-        let place = "rtu:test?baud=115200&id=1".into();
+        let place = "test".into();
         assert_eq!(read, Err(BusError::Lost(TransportError::HungUp { place })));
     }
 
