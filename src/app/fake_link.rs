@@ -6,7 +6,9 @@ use crate::app::desk::Desk;
 use crate::app::notices::NoticeKind;
 use crate::app::seam::Link;
 use crate::app::settings::Settings;
-use crate::hand::{Angle, AngleReading, Dof, Group, Groups, HandSample, Moment, PerDof, Timed};
+use crate::hand::{
+    Angle, AngleReading, Dof, Faults, Group, Groups, HandSample, Moment, PerDof, Timed,
+};
 use crate::link::{
     ArmEpoch, ArmRequest, LinkEvent, LinkState, LinkStats, LinkStatus, Request, RequestError,
     Setpoints, Ticket,
@@ -141,6 +143,11 @@ impl Bench {
         let sample = HandSample {
             angle: Some(Timed {
                 value: angles,
+                asked: at,
+                received: at,
+            }),
+            faults: Some(Timed {
+                value: PerDof::splat(Faults::default()),
                 asked: at,
                 received: at,
             }),

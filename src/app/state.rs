@@ -5,7 +5,8 @@ use crate::app::gestures::GestureBook;
 use crate::app::history::History;
 use crate::app::notices::Notices;
 use crate::app::settings::Settings;
-use crate::hand::{Angle, Dof, Force, HandSample, Moment, PerDof, PerFinger, Speed};
+use crate::hand::{Angle, Force, HandSample, Moment, PerDof, PerFinger, Speed};
+use crate::link::motion::arm_refusal;
 use crate::link::{ArmRefusal, LinkState, LinkStats, LinkStatus};
 use crate::transport::Endpoint;
 use std::time::Duration;
@@ -101,23 +102,9 @@ impl State {
         self.link.state == LinkState::Armed
     }
 
-    /// Why the hand cannot be armed now; `None` if it can or already is.
+    /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.
     #[must_use]
     pub fn arm_refusal(&self) -> Option<ArmRefusal> {
-        match self.link.state {
-            LinkState::Offline | LinkState::Identifying => return Some(ArmRefusal::Offline),
-            LinkState::Holding => return Some(ArmRefusal::Holding),
-            LinkState::Fault => return Some(ArmRefusal::Fault),
-            LinkState::Armed => return None,
-            LinkState::Monitoring => {}
-        }
-        let angle = self
-            .sample
-            .angle
-            .filter(|angle| angle.age(self.now) <= STALE_AFTER);
-        Dof::ALL
-            .into_iter()
-            .find(|dof| angle.is_none_or(|angle| angle.value[*dof].hold().is_none()))
-            .map(|dof| ArmRefusal::UnknownPose { dof })
+        arm_refusal(self.link.state, &self.sample, self.now)
     }
 }

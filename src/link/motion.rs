@@ -139,7 +139,7 @@ pub(crate) fn hold_targets(sample: &HandSample, now: Moment) -> PerDof<Target> {
     }
 }
 
-/// Why a hand in this state and with these readings must not be armed.
+/// Why a hand in this state and with these readings must not be armed; `None` if it may be, or is.
 pub(crate) fn arm_refusal(
     state: LinkState,
     sample: &HandSample,
@@ -149,7 +149,8 @@ pub(crate) fn arm_refusal(
         LinkState::Offline | LinkState::Identifying => return Some(ArmRefusal::Offline),
         LinkState::Holding => return Some(ArmRefusal::Holding),
         LinkState::Fault => return Some(ArmRefusal::Fault),
-        LinkState::Monitoring | LinkState::Armed => {}
+        LinkState::Armed => return None,
+        LinkState::Monitoring => {}
     }
     if sample.faults.is_none() {
         return Some(ArmRefusal::UnknownPose { dof: Dof::Little });

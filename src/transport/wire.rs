@@ -84,8 +84,10 @@ pub enum TransportError {
         /// Port or address.
         place: String,
     },
-    /// This kind of link is not in this version or on this system.
-    #[error("'{kind}:' links are not in this version yet: use rs485:, rtu: or tcp:")]
+    /// This kind of link is no wire of the system's: the built-in hand, where none was put behind the dial.
+    #[error(
+        "'{kind}:' is not reached over a wire of this system: name a port, an address or an interface"
+    )]
     Unsupported {
         /// The kind of link.
         kind: String,
