@@ -1,5 +1,6 @@
 //! One request and its reply, over whichever protocol the endpoint speaks. No plan, no retry.
 
+use crate::codec::modbus::BytePacking;
 use crate::hand::{RegisterWrite, Span};
 use crate::link::can::Can;
 use crate::link::clock::Clock;
@@ -82,6 +83,14 @@ impl Bus {
                 let bus = Can::new(wire, endpoint, late, clock);
                 Ok(Self::Can(Box::new(bus)))
             }
+        }
+    }
+
+    /// Learns what this hand does in its own way, by reading only; where the wire leaves something open.
+    pub(crate) async fn learn(&mut self, limit: Duration) -> Result<Option<BytePacking>, BusError> {
+        match self {
+            Self::ModbusTcp(bus) => bus.learn(limit).await.map(Some),
+            Self::Rs485(_) | Self::ModbusRtu(_) | Self::Can(_) => Ok(None),
         }
     }
 

@@ -146,6 +146,11 @@ impl Session {
             match answer {
                 // A refusal is an answer too.
                 Ok(_) | Err(BusError::Refused { .. } | BusError::WrongLength { .. }) => {
+                    match bus.learn(limit).await {
+                        Ok(packing) => self.status.packing = packing,
+                        Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
+                        Err(_) => self.status.packing = None,
+                    }
                     self.begin();
                     return Ok(());
                 }

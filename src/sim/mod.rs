@@ -18,6 +18,6 @@ pub use body::{Body, Object};
 pub use drive::Contact;
 pub use hand::{JournalEntry, SaveFrame, SimConfig, SimHand, WriteEffect};
 pub use memory::Refusal;
-pub use personality::{MinusOne, OutOfRangeWrite, Personality, SaveAnswer, SpeedZero};
+pub use personality::{ByteWords, MinusOne, OutOfRangeWrite, Personality, SaveAnswer, SpeedZero};
 pub use scenario::{Scenario, UnknownScenario};
 pub use serve::SharedHand;

@@ -47,6 +47,16 @@ pub enum SaveAnswer {
     Failed,
 }
 
+/// How single bytes become Modbus words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ByteWords {
+    /// Two a word, low byte first.
+    #[default]
+    Packed,
+    /// One a word where a read begins at ERROR, STATUS or TEMP, as one real hand was seen to do.
+    OnePerWord,
+}
+
 /// One reading of everything the manual leaves open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Personality {
@@ -62,6 +72,8 @@ pub struct Personality {
     pub gap_readable: bool,
     /// Whether 1558 to 1565 hold the moment of the read in microseconds, low byte first; for tests.
     pub stamp_gap: bool,
+    /// How ERROR, STATUS and TEMP are read over Modbus.
+    pub byte_words: ByteWords,
     /// From the end of a request to the reply on a serial line.
     pub turnaround: Duration,
 }
@@ -73,6 +85,7 @@ impl Default for Personality {
             minus_one_mid_move: MinusOne::default(),
             speed_zero: SpeedZero::default(),
             save_frame: SaveAnswer::default(),
+            byte_words: ByteWords::default(),
             gap_readable: true,
             stamp_gap: false,
             turnaround: Duration::ZERO,

@@ -1,5 +1,6 @@
 //! How the link goes: state, rates, round trips, counts. Asks for nothing.
 
+use crate::codec::modbus::BytePacking;
 use crate::ui::controls::{self, Label, take_right, take_top};
 use crate::ui::look::Pane;
 use crate::ui::text::{Text, notices, panels};
@@ -73,13 +74,23 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
             },
         )
     };
+    let packing = pane.state.link.packing.map(|packing| {
+        let word = match packing {
+            BytePacking::LowFirst => panels::PACKING_LOW,
+            BytePacking::HighFirst => panels::PACKING_HIGH,
+            BytePacking::OnePerWord => panels::PACKING_ONE,
+        };
+        (panels::PACKING, pane.look.say(word).to_owned(), plain)
+    });
+    let mut rates = vec![
+        (panels::STATE_RATE, rate(stats.state_hz), plain),
+        (panels::TACTILE_RATE, rate(stats.tactile_hz), plain),
+        (panels::RTT_P50, trip(stats.rtt_p50), plain),
+        (panels::RTT_P99, trip(stats.rtt_p99), plain),
+    ];
+    rates.extend(packing);
     [
-        vec![
-            (panels::STATE_RATE, rate(stats.state_hz), plain),
-            (panels::TACTILE_RATE, rate(stats.tactile_hz), plain),
-            (panels::RTT_P50, trip(stats.rtt_p50), plain),
-            (panels::RTT_P99, trip(stats.rtt_p99), plain),
-        ],
+        rates,
         vec![
             count(panels::READS, stats.state_reads + stats.tactile_reads),
             count(panels::WRITES, stats.writes),

@@ -1,7 +1,9 @@
 //! The simulated hand's memory as Modbus sees it, over a socket or a serial line (manual 2.4, 2.5). Serves nothing.
 
 use crate::hand::Span;
+use crate::hand::register::{ERROR, STATUS, TEMP};
 use crate::sim::memory::Refusal;
+use crate::sim::personality::ByteWords;
 use crate::sim::serve::shared::SharedHand;
 use tokio_modbus::{ExceptionCode, Request, Response};
 
@@ -55,6 +57,15 @@ impl Memory {
             .hand
             .with(|hand, now| hand.read(span, now))
             .map_err(exception)?;
+        let own_words =
+            self.hand.with(|hand, _| hand.personality().byte_words) == ByteWords::OnePerWord;
+        if own_words && [ERROR.address, STATUS.address, TEMP.address].contains(&address) {
+            return Ok(bytes
+                .iter()
+                .take(usize::from(count))
+                .map(|byte| u16::from(*byte))
+                .collect());
+        }
         let (pairs, _) = bytes.as_chunks::<2>();
         Ok(pairs.iter().map(|pair| u16::from_le_bytes(*pair)).collect())
     }

@@ -137,6 +137,10 @@ texts! {
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "地址";
     SINCE: "for", "已持续";
+    PACKING: "Bytes in Modbus words", "Modbus 字内字节";
+    PACKING_LOW: "low first", "低字节在前";
+    PACKING_HIGH: "high first", "高字节在前";
+    PACKING_ONE: "one a word", "每字一字节";
     STATE_RATE: "Motion state", "运动状态";
     TACTILE_RATE: "Fingertips", "指尖";
     RTT_P50: "Round trip, median", "往返时间，中位数";
