@@ -2,7 +2,7 @@
 
 use crate::hand::dof::{Dof, PerDof};
 use crate::hand::register::{self, Register, Span};
-use crate::hand::units::{Angle, Force, Gesture, HandId, SerialSpeed, Speed, Target};
+use crate::hand::units::{Force, Gesture, HandId, SerialSpeed, Speed, Target};
 use arrayvec::ArrayVec;
 use std::net::Ipv4Addr;
 
@@ -107,12 +107,6 @@ impl RegisterWrite {
 pub type Writes = ArrayVec<RegisterWrite, WRITES_MAX>;
 
 impl HandCommand {
-    /// Hold: every joint stays where it was last seen.
-    #[must_use]
-    pub const fn hold(targets: PerDof<Target>) -> Self {
-        Self::Angles(targets)
-    }
-
     /// True if the hand moves because of it.
     #[must_use]
     pub const fn is_motion(&self) -> bool {
@@ -201,18 +195,6 @@ fn runs(row: &Register, values: PerDof<Option<i16>>, out: &mut Writes) {
     flush(&mut run, out);
 }
 
-/// Six angles from plain numbers, for tables of poses.
-///
-/// # Errors
-/// The first number outside 0..=1000.
-pub fn angles_from(raw: [i16; 6]) -> Result<PerDof<Angle>, crate::hand::units::OutOfRange> {
-    let mut out = PerDof::splat(Angle::MAX);
-    for ((_, angle), raw) in out.iter_mut().zip(raw) {
-        *angle = Angle::new(raw)?;
-    }
-    Ok(out)
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(
@@ -224,7 +206,16 @@ mod tests {
     )]
     use super::*;
     use crate::hand::register::{Access, Element, by_address};
+    use crate::hand::units::{Angle, OutOfRange};
     use proptest::prelude::*;
+
+    fn angles_from(raw: [i16; 6]) -> Result<PerDof<Angle>, OutOfRange> {
+        let mut out = PerDof::splat(Angle::MAX);
+        for ((_, angle), raw) in out.iter_mut().zip(raw) {
+            *angle = Angle::new(raw)?;
+        }
+        Ok(out)
+    }
 
     #[test]
     fn the_manuals_write_example_is_refused_where_it_leaves_the_range() {

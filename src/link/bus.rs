@@ -89,7 +89,7 @@ impl Bus {
     /// Learns what this hand does in its own way, by reading only; where the wire leaves something open.
     pub(crate) async fn learn(&mut self, limit: Duration) -> Result<Option<BytePacking>, BusError> {
         match self {
-            Self::ModbusTcp(bus) => bus.learn(limit).await.map(Some),
+            Self::ModbusTcp(bus) => bus.learn(limit).await,
             Self::Rs485(_) | Self::ModbusRtu(_) | Self::Can(_) => Ok(None),
         }
     }

@@ -39,20 +39,18 @@ impl ModbusTcp {
         }
     }
 
-    /// Finds out, by reading only, how this hand puts single bytes into words. A hand that refuses the question counts
-    /// as most hands: two a word, low byte first.
-    pub(crate) async fn learn(&mut self, limit: Duration) -> Result<BytePacking, BusError> {
+    /// Finds out, by reading only, how this hand puts single bytes into words. Without an answer it is treated as most
+    /// hands are, two a word and low byte first, but not said to be so: `None`.
+    pub(crate) async fn learn(&mut self, limit: Duration) -> Result<Option<BytePacking>, BusError> {
         let request = Request::ReadHoldingRegisters(TEMP.address, PACKING_WORDS);
-        match self.call(request, limit).await {
-            Ok(Response::ReadHoldingRegisters(words)) => {
-                if let Ok(words) = words.as_slice().try_into() {
-                    self.packing = BytePacking::detect(words);
-                }
-            }
+        let words = match self.call(request, limit).await {
+            Ok(Response::ReadHoldingRegisters(words)) => words,
             Err(BusError::Lost(error)) => return Err(BusError::Lost(error)),
-            Ok(_) | Err(_) => {}
-        }
-        Ok(self.packing)
+            Ok(_) | Err(_) => return Ok(None),
+        };
+        let found = words.as_slice().try_into().ok().map(BytePacking::detect);
+        self.packing = found.unwrap_or_default();
+        Ok(found)
     }
 
     pub(crate) async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
