@@ -1,8 +1,9 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
 use crate::app::settings::{Language, Theme};
+use crate::cli::ids::HandIds;
 use crate::cli::names;
-use crate::hand::{HandId, Register};
+use crate::hand::Register;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::View;
@@ -45,7 +46,8 @@ pub(crate) enum Command {
     Read(ReadArgs),
     /// Be a hand for other programs: on pseudo-terminals, on TCP, on CAN, or on all of them
     #[command(
-        after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n\nIt runs until Ctrl-C. All wires lead to one hand."
+        after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands.
+On Modbus TCP the unit id says which hand is meant; 255 means the first, and a hand that is alone answers to all."
     )]
     Sim(SimArgs),
     /// Print the register map
@@ -133,10 +135,10 @@ pub(crate) struct SimArgs {
     /// Answer on this CAN interface, for example vcan0 (Linux)
     #[arg(long, value_name = "INTERFACE")]
     pub(crate) can: Option<String>,
-    /// Id of the hand, 1 to 254
-    #[arg(long, default_value = "1", value_parser = hand_id)]
-    pub(crate) id: HandId,
-    /// Seed of everything random in it
+    /// Ids of the hands, 1 to 254: 1, or 1,2,3, or 1-4; each is a hand of its own
+    #[arg(long, value_name = "IDS", default_value = "1", value_parser = few_ids)]
+    pub(crate) id: HandIds,
+    /// Seed of everything random in it; of several hands, that of the first, the next has the next number
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// What it does: idle, grasp, faults, extremes
@@ -258,11 +260,18 @@ fn scale(text: &str) -> Result<f32, String> {
     }
 }
 
-fn hand_id(text: &str) -> Result<HandId, String> {
-    let id: i64 = text
-        .parse()
-        .map_err(|_not_one| format!("'{text}' is no whole number"))?;
-    HandId::new(id).map_err(|error| error.to_string())
+/// Hands that one process plays: a bus of RS485 carries 32 (TIA-485-A), and each costs computing time.
+const SIM_HANDS_MAX: usize = 32;
+
+fn few_ids(text: &str) -> Result<HandIds, String> {
+    let ids: HandIds = text.parse()?;
+    let asked = ids.iter().len();
+    if asked > SIM_HANDS_MAX {
+        return Err(format!(
+            "'{text}' asks for {asked} hands; {SIM_HANDS_MAX} at most can be simulated at once"
+        ));
+    }
+    Ok(ids)
 }
 
 #[cfg(test)]
@@ -287,6 +296,8 @@ mod tests {
             "handscope sim",
             "handscope sim --tcp 127.0.0.1:6000 --id 0",
             "handscope sim --tcp 127.0.0.1:6000 --id 255",
+            "handscope sim --tcp 127.0.0.1:6000 --id 1,1",
+            "handscope sim --tcp 127.0.0.1:6000 --id 1-33",
             "handscope read ANGLE_ATC --hand sim:",
             "handscope sim --tcp 6000",
             "handscope sim --tcp localhost:6000",

@@ -2,6 +2,7 @@
 //! protocol and draws nothing.
 
 mod args;
+mod ids;
 mod interrupt;
 mod names;
 mod out;

@@ -1,5 +1,5 @@
-//! `sim`: one simulated hand on the wires that other programs can open. Runs until it is ended; the hand's behaviour is
-//! not decided here.
+//! `sim`: simulated hands on the wires that other programs can open. Runs until it is ended; how a hand behaves is not
+//! decided here.
 
 use crate::cli::args::SimArgs;
 use crate::cli::interrupt::Interrupt;
@@ -7,7 +7,7 @@ use crate::cli::out::{Out, say};
 use crate::sim::serve::modbus_tcp;
 #[cfg(unix)]
 use crate::sim::serve::pty;
-use crate::sim::{SharedHand, SimConfig, SimHand};
+use crate::sim::{Hands, SharedHand, SimConfig, SimHand};
 #[cfg(unix)]
 use crate::transport::TransportError;
 use anyhow::{Context as _, anyhow};
@@ -36,18 +36,12 @@ pub(crate) fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
 
 async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
-    let hand = SimHand::new(SimConfig {
-        seed: args.seed,
-        id: args.id.get(),
-        scenario: args.scenario,
-        ..SimConfig::default()
-    });
-    let hand = SharedHand::new(hand, Instant::now());
+    let hands = hands(args).context("no hand to simulate")?;
     // All wires are there before any is announced: who waits for one may use all.
     let mut ready = Vec::new();
     let tcp = match args.tcp {
         Some(address) => {
-            let (served, bound) = serve_tcp(&hand, address).await?;
+            let (served, bound) = serve_tcp(&hands, address).await?;
             ready.push(format!("ready tcp {bound}"));
             served
         }
@@ -55,7 +49,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     };
     let rs485 = match &args.rs485 {
         Some(link) => {
-            let served = serve_rs485(&hand, link)?;
+            let served = serve_rs485(&hands, link)?;
             ready.push(format!("ready rs485 {}", link.display()));
             served
         }
@@ -63,7 +57,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     };
     let rtu = match &args.rtu {
         Some(link) => {
-            let served = serve_rtu(&hand, link)?;
+            let served = serve_rtu(&hands, link)?;
             ready.push(format!("ready rtu {}", link.display()));
             served
         }
@@ -71,7 +65,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     };
     let slcan = match &args.slcan {
         Some(link) => {
-            let served = serve_slcan(&hand, link)?;
+            let served = serve_slcan(&hands, link)?;
             ready.push(format!("ready slcan {}", link.display()));
             served
         }
@@ -79,7 +73,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     };
     let can = match &args.can {
         Some(interface) => {
-            let served = serve_can(&hand, interface)?;
+            let served = serve_can(&hands, interface)?;
             ready.push(format!("ready can {interface}"));
             served
         }
@@ -97,19 +91,36 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         error = rtu => Err(error),
         error = slcan => Err(error),
         error = can => Err(error),
-        () = live(&hand) => Ok(()),
+        () = live(&hands) => Ok(()),
     }
 }
 
-async fn live(hand: &SharedHand) {
+/// Each a hand of its own, with memory, body and chance of its own.
+fn hands(args: &SimArgs) -> Option<Hands> {
+    let begun = Instant::now();
+    let seeds = (0..).map(|nth| args.seed.wrapping_add(nth));
+    let mut hands = args.id.iter().zip(seeds).map(|(id, seed)| {
+        let hand = SimHand::new(SimConfig {
+            seed,
+            id: id.get(),
+            scenario: args.scenario,
+            ..SimConfig::default()
+        });
+        SharedHand::new(hand, begun)
+    });
+    let first = hands.next()?;
+    Some(Hands::new(first, hands.collect()))
+}
+
+async fn live(hands: &Hands) {
     let mut tick = interval(LIVE_EACH);
     loop {
         tick.tick().await;
-        hand.with(SimHand::advance_to);
+        hands.with_each(SimHand::advance_to);
     }
 }
 
-async fn serve_tcp(hand: &SharedHand, address: SocketAddr) -> anyhow::Result<(Served, SocketAddr)> {
+async fn serve_tcp(hands: &Hands, address: SocketAddr) -> anyhow::Result<(Served, SocketAddr)> {
     let listener = TcpListener::bind(address)
         .await
         .map_err(|error| anyhow!("cannot serve on {address}: {}", bind_words(&error)))?;
@@ -121,9 +132,9 @@ async fn serve_tcp(hand: &SharedHand, address: SocketAddr) -> anyhow::Result<(Se
             "warning: anyone in the network can reach {bound} and move the simulated hand; 127.0.0.1 keeps it to this computer"
         ));
     }
-    let hand = hand.clone();
+    let hands = hands.clone();
     let served = async move {
-        match modbus_tcp::serve(hand, listener).await {
+        match modbus_tcp::serve(hands, listener).await {
             Ok(()) => anyhow!("the server on {bound} ended"),
             Err(error) => anyhow!("the server on {bound} failed: {error}"),
         }
@@ -147,21 +158,21 @@ fn bind_words(error: &io::Error) -> String {
 }
 
 #[cfg(unix)]
-fn serve_rs485(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
-    let served = pty::serve_rs485(hand.clone(), link).map_err(|error| link_words(link, &error))?;
+fn serve_rs485(hands: &Hands, link: &Path) -> anyhow::Result<Served> {
+    let served = pty::serve_rs485(hands.clone(), link).map_err(|error| link_words(link, &error))?;
     Ok(until_closed(link, served))
 }
 
 #[cfg(unix)]
-fn serve_slcan(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
-    let served = pty::serve_slcan(hand.clone(), link).map_err(|error| link_words(link, &error))?;
+fn serve_slcan(hands: &Hands, link: &Path) -> anyhow::Result<Served> {
+    let served = pty::serve_slcan(hands.clone(), link).map_err(|error| link_words(link, &error))?;
     Ok(until_closed(link, served))
 }
 
 #[cfg(unix)]
-fn serve_rtu(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+fn serve_rtu(hands: &Hands, link: &Path) -> anyhow::Result<Served> {
     let place = link.display().to_string();
-    let served = pty::serve_rtu(hand.clone(), link).map_err(|error| link_words(link, &error))?;
+    let served = pty::serve_rtu(hands.clone(), link).map_err(|error| link_words(link, &error))?;
     Ok(Box::pin(async move {
         match served.await {
             Ok(()) => anyhow!("the pseudo-terminal behind {place} was closed"),
@@ -199,13 +210,13 @@ fn link_words(link: &Path, error: &TransportError) -> anyhow::Error {
 }
 
 #[cfg(target_os = "linux")]
-fn serve_can(hand: &SharedHand, interface: &str) -> anyhow::Result<Served> {
+fn serve_can(hands: &Hands, interface: &str) -> anyhow::Result<Served> {
     use crate::sim::serve::can;
     let wire = crate::transport::can::open(interface, None)
         .map_err(|error| anyhow!("cannot serve on {interface}: {error}"))?;
-    let (hand, place) = (hand.clone(), interface.to_owned());
+    let (hands, place) = (hands.clone(), interface.to_owned());
     Ok(Box::pin(async move {
-        match can::serve(hand, wire).await {
+        match can::serve(hands, wire).await {
             Ok(()) => anyhow!("the CAN interface {place} was closed"),
             Err(error) => anyhow!("cannot go on serving on {place}: {error}"),
         }
@@ -213,17 +224,17 @@ fn serve_can(hand: &SharedHand, interface: &str) -> anyhow::Result<Served> {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn serve_can(_hand: &SharedHand, _interface: &str) -> anyhow::Result<Served> {
+fn serve_can(_hands: &Hands, _interface: &str) -> anyhow::Result<Served> {
     Err(anyhow!(crate::transport::TransportError::LinuxOnly))
 }
 
 #[cfg(not(unix))]
-fn serve_rs485(_hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+fn serve_rs485(_hands: &Hands, link: &Path) -> anyhow::Result<Served> {
     Err(no_links(link))
 }
 
 #[cfg(not(unix))]
-fn serve_rtu(_hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
+fn serve_rtu(_hands: &Hands, link: &Path) -> anyhow::Result<Served> {
     Err(no_links(link))
 }
 
@@ -236,6 +247,6 @@ fn no_links(link: &Path) -> anyhow::Error {
 }
 
 #[cfg(not(unix))]
-fn serve_slcan(hand: &SharedHand, link: &Path) -> anyhow::Result<Served> {
-    serve_rs485(hand, link)
+fn serve_slcan(hands: &Hands, link: &Path) -> anyhow::Result<Served> {
+    serve_rs485(hands, link)
 }

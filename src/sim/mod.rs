@@ -20,4 +20,4 @@ pub use hand::{JournalEntry, SaveFrame, SimConfig, SimHand, WriteEffect};
 pub use memory::Refusal;
 pub use personality::{ByteWords, MinusOne, OutOfRangeWrite, Personality, SaveAnswer, SpeedZero};
 pub use scenario::{Scenario, UnknownScenario};
-pub use serve::SharedHand;
+pub use serve::{Hands, SharedHand};

@@ -15,6 +15,8 @@ mod interop;
 mod loss;
 mod pictures;
 mod program;
+#[cfg(unix)]
+mod several;
 mod usage;
 #[cfg(unix)]
 mod wires;

@@ -45,6 +45,15 @@ fn wrong_usage_ends_with_two_and_says_what_is_right() {
             "idle, grasp, faults or extremes",
         ),
         (&["sim", "--tcp", "127.0.0.1:0", "--id", "255"], "254"),
+        (
+            &["sim", "--tcp", "127.0.0.1:0", "--id", "1,2,2"],
+            "id 2 is named twice",
+        ),
+        (&["sim", "--tcp", "127.0.0.1:0", "--id", "1;2"], "1,2,3"),
+        (
+            &["sim", "--tcp", "127.0.0.1:0", "--id", "1-40"],
+            "32 at most",
+        ),
         (&["snapshot"], "--out"),
         (
             &["snapshot", "--out", "x", "--view", "nowhere"],

@@ -1,9 +1,10 @@
-//! The simulated hand on a CAN bus (manual 2.3), on a wire of Linux's 16-byte frames. Opens no interface.
+//! Simulated hands on a CAN bus (manual 2.3), on a wire of Linux's 16-byte frames. Opens no interface.
 
 use crate::codec::can::{
     CanFrame, CanId, PIECE_MAX, RECORD_LEN, Record, Way, frame, from_record, to_record,
 };
 use crate::hand::Span;
+use crate::sim::serve::hands::Hands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
 use std::io;
@@ -18,21 +19,24 @@ const ACK: u8 = 1;
 ///
 /// # Errors
 /// How the wire ended; `UnexpectedEof` if the other side hung up.
-pub async fn serve(hand: SharedHand, mut wire: impl Wire) -> io::Result<()> {
+pub async fn serve(hands: impl Into<Hands>, mut wire: impl Wire) -> io::Result<()> {
+    let hands = hands.into();
     let mut record = [0; RECORD_LEN];
     loop {
         wire.read_exact(&mut record).await?;
         let Record::Frame(asked) = from_record(&record) else {
             continue;
         };
-        if let Some(reply) = answer(&hand, &asked).await {
-            wire.write_all(&to_record(&reply)).await?;
-            wire.flush().await?;
+        for hand in hands.iter() {
+            if let Some(reply) = answer(hand, &asked).await {
+                wire.write_all(&to_record(&reply)).await?;
+                wire.flush().await?;
+            }
         }
     }
 }
 
-/// What the hand says to a frame, after its turnaround.
+/// What one hand says to a frame, after its turnaround.
 pub(crate) async fn answer(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
     let reply = reply(hand, asked)?;
     let turnaround = hand.with(|hand, _| hand.personality().turnaround);

@@ -1,6 +1,7 @@
 //! Servers that put the simulated hand on wires and sockets. They own the clock; the hand does not.
 
 pub mod can;
+pub mod hands;
 mod modbus;
 #[cfg(unix)]
 pub mod modbus_rtu;
@@ -11,4 +12,5 @@ pub mod rs485;
 pub mod shared;
 pub mod slcan;
 
+pub use hands::Hands;
 pub use shared::SharedHand;

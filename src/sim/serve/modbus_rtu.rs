@@ -1,9 +1,9 @@
-//! The simulated hand as a Modbus RTU server (manual 2.4), through tokio-modbus. Opens no port of its own: it is given
+//! Simulated hands as a Modbus RTU server (manual 2.4), through tokio-modbus. Opens no port of its own: it is given
 //! a wire. Unix only, because that server takes nothing but a serial port, and one end of a pair of pseudo-terminals is
 //! one.
 
+use crate::sim::serve::hands::Hands;
 use crate::sim::serve::modbus::Memory;
-use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
 use futures::future::BoxFuture;
 use std::io;
@@ -28,24 +28,22 @@ const SILENCE: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 /// The system has no pseudo-terminal to give.
-pub async fn serve(hand: SharedHand, mut wire: impl Wire) -> io::Result<()> {
+pub async fn serve(hands: impl Into<Hands>, mut wire: impl Wire) -> io::Result<()> {
+    let hands = hands.into();
     loop {
         let (theirs, ours) = SerialStream::pair()?;
-        let unit = Unit(Arc::new(Memory::new(hand.clone())));
+        let units = hands.iter().cloned().map(Memory::new).map(Arc::new);
+        let bus = Line(units.collect());
         tokio::select! {
             biased;
             // Noise ended the server; the next begins with an empty line.
-            _ended = Server::new(theirs).serve_forever(unit) => {}
-            between = carry(&mut wire, ours, turnaround(&hand)) => match between {
+            _ended = Server::new(theirs).serve_forever(bus) => {}
+            between = carry(&mut wire, ours, hands.turnaround()) => match between {
                 Carried::HungUp => return Ok(()),
                 Carried::Unanswered => {}
             }
         }
     }
-}
-
-fn turnaround(hand: &SharedHand) -> Duration {
-    hand.with(|hand, _| hand.personality().turnaround)
 }
 
 /// Why bytes are not carried any more.
@@ -81,24 +79,22 @@ async fn carry(wire: &mut impl Wire, mut server: SerialStream, turnaround: Durat
     }
 }
 
-/// One hand on the bus.
-struct Unit(Arc<Memory>);
+/// The hands on the bus.
+struct Line(Vec<Arc<Memory>>);
 
-impl Service for Unit {
+impl Service for Line {
     type Request = SlaveRequest<'static>;
     type Response = Option<Response>;
     type Exception = ExceptionCode;
     type Future = BoxFuture<'static, Result<Option<Response>, ExceptionCode>>;
 
     fn call(&self, asked: Self::Request) -> Self::Future {
-        let memory = Arc::clone(&self.0);
+        let mut units = self.0.iter();
+        let meant = units.find(|unit| unit.hand().with(|hand, _| hand.id()) == asked.slave);
+        let meant = meant.map(Arc::clone);
         Box::pin(async move {
-            let (id, turnaround) = memory
-                .hand()
-                .with(|hand, _| (hand.id(), hand.personality().turnaround));
-            if asked.slave != id {
-                return Ok(None);
-            }
+            let Some(memory) = meant else { return Ok(None) };
+            let turnaround = memory.hand().with(|hand, _| hand.personality().turnaround);
             let answer = memory.answer(&asked.request);
             if !turnaround.is_zero() {
                 sleep(turnaround).await;

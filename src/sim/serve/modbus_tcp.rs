@@ -1,7 +1,7 @@
-//! The simulated hand as a Modbus TCP server (manual 2.5). Binds nothing: it is given a listener.
+//! Simulated hands as a Modbus TCP server (manual 2.5). Binds nothing: it is given a listener.
 
+use crate::sim::serve::hands::Hands;
 use crate::sim::serve::modbus::Memory;
-use crate::sim::serve::shared::SharedHand;
 use std::future::{Ready, ready};
 use std::io;
 use std::net::SocketAddr;
@@ -14,15 +14,18 @@ use tokio_modbus::{ExceptionCode, Response, SlaveRequest};
 /// Clients at one time. A hand was seen to take two; more lets tests and viewers look on.
 pub const CLIENTS_MAX: usize = 16;
 
-/// Answers every client of `listener` until the future is dropped, which closes all connections too.
+/// Answers every client of `listener` until the future is dropped, which closes all connections too. One hand answers
+/// to every unit id; of several, 255 and 0 mean the first, other units the hand of that id, and a unit that no hand
+/// has gets the exception of a gateway whose target is silent.
 ///
 /// # Errors
 /// The listener's own failures.
-pub async fn serve(hand: SharedHand, listener: TcpListener) -> io::Result<()> {
+pub async fn serve(hands: impl Into<Hands>, listener: TcpListener) -> io::Result<()> {
+    let hands = hands.into();
     let clients = Arc::new(());
     let connected = |stream: TcpStream, _peer: SocketAddr| {
         let service = Client {
-            memory: Memory::new(hand.clone()),
+            hands: hands.clone(),
             _client: Arc::clone(&clients),
         };
         // One is ours, one belongs to the client at the door.
@@ -40,7 +43,7 @@ pub async fn serve(hand: SharedHand, listener: TcpListener) -> io::Result<()> {
 
 /// One client; the clients are counted by what they hold.
 struct Client {
-    memory: Memory,
+    hands: Hands,
     _client: Arc<()>,
 }
 
@@ -51,6 +54,9 @@ impl Service for Client {
     type Future = Ready<Result<Response, ExceptionCode>>;
 
     fn call(&self, asked: Self::Request) -> Self::Future {
-        ready(self.memory.answer(&asked.request))
+        ready(match self.hands.unit(asked.slave) {
+            Some(hand) => Memory::new(hand.clone()).answer(&asked.request),
+            None => Err(ExceptionCode::GatewayTargetDevice),
+        })
     }
 }

@@ -1,8 +1,8 @@
-//! The simulated hand behind a pseudo-terminal, where other programs open it like a serial port. Unix only.
+//! Simulated hands behind a pseudo-terminal, where other programs open it like a serial port. Unix only.
 
+use crate::sim::serve::hands::Hands;
 use crate::sim::serve::modbus_rtu;
 use crate::sim::serve::rs485;
-use crate::sim::serve::shared::SharedHand;
 use crate::sim::serve::slcan;
 use crate::transport::{PtyLink, TransportError};
 use std::future::Future;
@@ -16,11 +16,11 @@ use std::path::Path;
 /// As [`PtyLink::create`]: something that is no link stands there, no permission, no such folder. Must be called
 /// within a tokio runtime.
 pub fn serve_rs485(
-    hand: SharedHand,
+    hands: impl Into<Hands> + Send + 'static,
     path: &Path,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
-    Ok(rs485::serve(hand, link))
+    Ok(rs485::serve(hands.into(), link))
 }
 
 /// As [`serve_rs485`], in Modbus RTU. The future ends with an error only if the system has no pseudo-terminals left.
@@ -28,11 +28,11 @@ pub fn serve_rs485(
 /// # Errors
 /// As [`serve_rs485`].
 pub fn serve_rtu(
-    hand: SharedHand,
+    hands: impl Into<Hands> + Send + 'static,
     path: &Path,
 ) -> Result<impl Future<Output = io::Result<()>> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
-    Ok(modbus_rtu::serve(hand, link))
+    Ok(modbus_rtu::serve(hands.into(), link))
 }
 
 /// As [`serve_rs485`], with the hand behind a serial CAN adapter.
@@ -40,9 +40,9 @@ pub fn serve_rtu(
 /// # Errors
 /// As [`serve_rs485`].
 pub fn serve_slcan(
-    hand: SharedHand,
+    hands: impl Into<Hands> + Send + 'static,
     path: &Path,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
-    Ok(slcan::serve(hand, link))
+    Ok(slcan::serve(hands.into(), link))
 }

@@ -1,9 +1,10 @@
-//! The simulated hand on a serial wire, private framing (manual 2.2). Opens no port.
+//! Simulated hands on a serial wire, private framing (manual 2.2). Opens no port.
 
 use crate::codec::rs485::{
     Frame, READ_LEN_MAX, Request, RequestDecoder, encode_read_reply, encode_save_result,
     encode_write_ack,
 };
+use crate::sim::serve::hands::Hands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
 use std::io;
@@ -19,9 +20,9 @@ const CHUNK: usize = 512;
 const SILENCE: Duration = Duration::from_millis(50);
 
 /// Answers on `wire` until the other side hangs up. Silent for other ids, bad frames and runs it refuses.
-pub async fn serve(hand: SharedHand, wire: impl Wire) {
+pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
     let mut line = Line {
-        hand,
+        hands: hands.into(),
         wire,
         decoder: RequestDecoder::default(),
     };
@@ -30,7 +31,7 @@ pub async fn serve(hand: SharedHand, wire: impl Wire) {
 }
 
 struct Line<W> {
-    hand: SharedHand,
+    hands: Hands,
     wire: W,
     decoder: RequestDecoder,
 }
@@ -39,12 +40,11 @@ impl<W: Wire> Line<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {
-            let due = self.hand.with(|hand, _| hand.next_save_result());
-            let due = due.map(|due| self.hand.instant(due));
+            let due = self.next_save_result();
             tokio::select! {
                 biased;
                 () = sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => {
-                    self.send_save_result().await?;
+                    self.send_save_results().await?;
                 }
                 read = self.wire.read(&mut chunk) => match read? {
                     0 => return Ok(()),
@@ -69,8 +69,11 @@ impl<W: Wire> Line<W> {
 
     async fn answer_all(&mut self) -> io::Result<()> {
         while let Some(request) = self.decoder.next() {
-            if let Some(frame) = answer(&self.hand, &request) {
-                let turnaround = self.hand.with(|hand, _| hand.personality().turnaround);
+            for hand in self.hands.iter() {
+                let Some(frame) = answer(hand, &request) else {
+                    continue;
+                };
+                let turnaround = hand.with(|hand, _| hand.personality().turnaround);
                 if !turnaround.is_zero() {
                     sleep(turnaround).await;
                 }
@@ -81,18 +84,26 @@ impl<W: Wire> Line<W> {
         Ok(())
     }
 
-    async fn send_save_result(&mut self) -> io::Result<()> {
-        let frame = self.hand.with(|hand, now| {
-            let result = hand.late_save_result(now)?;
-            Some(encode_save_result(hand.id(), result.command, result.ok))
+    fn next_save_result(&self) -> Option<Instant> {
+        let due = self.hands.iter().filter_map(|hand| {
+            let due = hand.with(|hand, _| hand.next_save_result())?;
+            Some(hand.instant(due))
         });
-        match frame {
-            Some(frame) => {
+        due.min()
+    }
+
+    async fn send_save_results(&mut self) -> io::Result<()> {
+        for hand in self.hands.iter() {
+            let frame = hand.with(|hand, now| {
+                let result = hand.late_save_result(now)?;
+                Some(encode_save_result(hand.id(), result.command, result.ok))
+            });
+            if let Some(frame) = frame {
                 self.wire.write_all(&frame).await?;
-                self.wire.flush().await
+                self.wire.flush().await?;
             }
-            None => Ok(()),
         }
+        Ok(())
     }
 }
 

@@ -1,8 +1,9 @@
-//! The simulated hand behind a serial CAN adapter, adapter included (Lawicel's text). Opens no port.
+//! Simulated hands behind a serial CAN adapter, adapter included (Lawicel's text). Opens no port.
 
+use crate::codec::can::CanFrame;
 use crate::codec::slcan::{Answer, Command, CommandDecoder, encode_answer};
 use crate::sim::serve::can;
-use crate::sim::serve::shared::SharedHand;
+use crate::sim::serve::hands::Hands;
 use crate::transport::Wire;
 use std::io;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -17,9 +18,9 @@ const SERIAL: &[u8] = b"NSIM1\r";
 const FLAGS: &[u8] = b"F00\r";
 
 /// Answers on `wire` until the other side hangs up. At another bit rate than the hand's nobody is on the bus.
-pub async fn serve(hand: SharedHand, wire: impl Wire) {
+pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
     let mut adapter = Adapter {
-        hand,
+        hands: hands.into(),
         wire,
         is_open: false,
         bitrate: HAND_BITRATE,
@@ -29,7 +30,7 @@ pub async fn serve(hand: SharedHand, wire: impl Wire) {
 }
 
 struct Adapter<W> {
-    hand: SharedHand,
+    hands: Hands,
     wire: W,
     is_open: bool,
     bitrate: u8,
@@ -74,15 +75,23 @@ impl<W: Wire> Adapter<W> {
             Command::Other(_) => {}
             Command::Send(frame) => {
                 self.say(&Answer::Sent).await?;
-                if self.bitrate == HAND_BITRATE
-                    && let Some(reply) = can::answer(&self.hand, &frame).await
-                {
-                    self.say(&Answer::Frame(reply)).await?;
-                }
-                return Ok(());
+                return self.put_on_the_bus(&frame).await;
             }
         }
         self.say(&Answer::Done).await
+    }
+
+    async fn put_on_the_bus(&mut self, frame: &CanFrame) -> io::Result<()> {
+        if self.bitrate != HAND_BITRATE {
+            return Ok(());
+        }
+        let hands = self.hands.clone();
+        for hand in hands.iter() {
+            if let Some(reply) = can::answer(hand, frame).await {
+                self.say(&Answer::Frame(reply)).await?;
+            }
+        }
+        Ok(())
     }
 
     async fn say(&mut self, answer: &Answer) -> io::Result<()> {
