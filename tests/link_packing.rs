@@ -54,7 +54,7 @@ async fn check(byte_words: ByteWords, packing: BytePacking) -> Result<Outcome, R
             break sample;
         }
     };
-    assert_eq!(link.status().packing, Some(packing));
+    assert_eq!(link.status().quirks.packing, Some(packing));
     let temperatures = sample
         .temperature
         .unwrap()

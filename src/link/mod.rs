@@ -21,6 +21,7 @@ mod modbus_rtu;
 mod modbus_tcp;
 pub mod motion;
 pub mod plan;
+pub mod quirks;
 mod rs485;
 mod rtu_line;
 mod serve;
@@ -32,6 +33,7 @@ pub use clock::Clock;
 pub use event::{LinkEvent, Outcome, Request, RequestError, Ticket};
 pub use handle::{LinkConfig, LinkHandle, Setpoints, Wake, open};
 pub use plan::PollRates;
+pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
 pub use stats::LinkStats;
 pub use status::{
     ArmEpoch, ArmRefusal, ArmRequest, Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble,

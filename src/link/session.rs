@@ -147,9 +147,9 @@ impl Session {
                 // A refusal is an answer too.
                 Ok(_) | Err(BusError::Refused { .. } | BusError::WrongLength { .. }) => {
                     match bus.learn(limit).await {
-                        Ok(packing) => self.status.packing = packing,
+                        Ok(packing) => self.status.quirks.packing = packing,
                         Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
-                        Err(_) => self.status.packing = None,
+                        Err(_) => self.status.quirks.packing = None,
                     }
                     self.begin();
                     return Ok(());

@@ -1,7 +1,7 @@
 //! What the link is doing and why, as plain values that may cross to any thread. No task, no wire.
 
-use crate::codec::modbus::BytePacking;
 use crate::hand::{Dof, Force, Moment, PerDof, Speed};
+use crate::link::quirks::Quirks;
 use crate::transport::TransportError;
 
 /// Where one conversation with one hand stands (`design.md` §4).
@@ -46,8 +46,8 @@ pub struct LinkStatus {
     pub trouble: Option<LinkTrouble>,
     /// The arming in force, if the hand is armed.
     pub armed: Option<ArmEpoch>,
-    /// How the hand puts single bytes into Modbus words, where the link asked for it.
-    pub packing: Option<BytePacking>,
+    /// What the hand answers in its own way, as found when the wire was opened.
+    pub quirks: Quirks,
     /// How the last hold went.
     pub hold: Hold,
     /// Why the hand is not armed, if it was.

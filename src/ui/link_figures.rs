@@ -74,7 +74,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
             },
         )
     };
-    let packing = pane.state.link.packing.map(|packing| {
+    let packing = pane.state.link.quirks.packing.map(|packing| {
         let word = match packing {
             BytePacking::LowFirst => panels::PACKING_LOW,
             BytePacking::HighFirst => panels::PACKING_HIGH,
