@@ -16,5 +16,7 @@ mod layout;
 mod motion;
 #[path = "window/start.rs"]
 mod start;
+#[path = "window/touch.rs"]
+mod touch;
 #[path = "window/trouble.rs"]
 mod trouble;

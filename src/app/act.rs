@@ -4,7 +4,10 @@ use crate::app::desk::Desk;
 use crate::app::gestures::{GestureProgress, LastGesture};
 use crate::app::history::MarkKind;
 use crate::app::notices::{Asked, NoticeKind};
-use crate::hand::{Angle, Dof, Force, Gesture, GestureRoute, HandCommand, Moment, Speed, Target};
+use crate::app::state::Freshness;
+use crate::hand::{
+    Angle, Dof, Finger, Force, Gesture, GestureRoute, HandCommand, Moment, Speed, Target,
+};
 use crate::link::{ArmRequest, LinkState, Request, RequestError, Setpoints};
 
 impl Desk {
@@ -153,6 +156,19 @@ impl Desk {
     /// Clears what can be cleared. The link holds the pose first.
     pub(crate) fn clear_errors(&mut self, now: Moment) {
         self.ask(HandCommand::ClearErrors, Asked::ClearErrors, now);
+    }
+
+    /// Counts tactile channels from now, where the reading is fresh: one fingertip, or all.
+    pub(crate) fn tare(&mut self, finger: Option<Finger>) {
+        let fresh: Vec<Finger> = Finger::ALL
+            .into_iter()
+            .filter(|each| finger.is_none_or(|finger| finger == *each))
+            .filter(|each| {
+                let asked = self.state.sample.tactile[*each].map(|block| block.asked);
+                self.state.freshness(asked) == Freshness::Live
+            })
+            .collect();
+        self.state.tare.tare(fresh, &self.state.sample);
     }
 
     /// True if it is on its way.

@@ -1,7 +1,7 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
 use crate::app::settings::{Language, PlotWindow, Theme};
-use crate::hand::{Angle, Dof, Force, Gesture, GestureRoute, Speed};
+use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Speed};
 use crate::transport::Endpoint;
 
 /// One thing a person asked for. Returned by the views, carried out by `App::act`.
@@ -47,6 +47,10 @@ pub enum Action {
     Language(Language),
     /// Seconds that the plots show.
     PlotWindow(PlotWindow),
+    /// Count the channels of these fingertips from now: one, or all.
+    Tare(Option<Finger>),
+    /// Take the last taring back.
+    UndoTare,
     /// Let the plots stand still; nothing is lost meanwhile.
     PausePlots(bool),
 }

@@ -7,7 +7,8 @@ use crate::app::notices::{Asked, NoticeKind, Notices};
 use crate::app::seam::Link;
 use crate::app::settings::Settings;
 use crate::app::state::{Joint, State};
-use crate::hand::{Dof, Force, Groups, HandSample, Moment, PerDof, PerFinger, Speed, Status};
+use crate::app::tare::Tare;
+use crate::hand::{Dof, Force, Groups, HandSample, Moment, PerDof, Speed, Status};
 use crate::link::{
     Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus, LinkTrouble, Outcome,
     RequestError, Ticket,
@@ -51,7 +52,7 @@ impl Desk {
             link: LinkStatus::default(),
             stats: LinkStats::default(),
             sample: HandSample::default(),
-            touch_rest: PerFinger::splat(None),
+            tare: Tare::default(),
             joints: PerDof::splat(joint),
             history: History::new(),
             faults: FaultBook::default(),
@@ -87,7 +88,7 @@ impl Desk {
         };
         self.state.stats = LinkStats::default();
         self.state.sample = HandSample::default();
-        self.state.touch_rest = PerFinger::splat(None);
+        self.state.tare = Tare::default();
         self.state.faults.clear();
         self.state.gestures.last = None;
         self.state.history.gap(now);
@@ -135,9 +136,7 @@ impl Desk {
 
     fn sample(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         self.state.sample = *sample;
-        for (finger, rest) in self.state.touch_rest.iter_mut() {
-            *rest = rest.or_else(|| sample.tactile[finger].map(|block| block.value.raw));
-        }
+        self.state.tare.begin(sample);
         self.state.history.push(sample, fresh);
         if self.state.faults.update(sample, fresh, now) {
             self.state.history.mark(now, MarkKind::Fault);

@@ -17,6 +17,7 @@ pub mod program;
 mod seam;
 pub mod settings;
 pub mod state;
+pub mod tare;
 #[cfg(test)]
 mod tests;
 

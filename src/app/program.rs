@@ -141,6 +141,8 @@ impl App {
             Action::Connect(endpoint) => self.connect(endpoint, now),
             Action::Disconnect => self.leave(None, now),
             Action::FindPorts => self.find_ports(),
+            Action::Tare(finger) => desk.tare(finger),
+            Action::UndoTare => desk.state.tare.undo(),
             Action::ForgetFaults => desk.state.faults.forget(),
             Action::Dismiss(id) => desk.state.notices.dismiss(id),
             kept => self.keep(kept),

@@ -5,7 +5,8 @@ use crate::app::gestures::GestureBook;
 use crate::app::history::History;
 use crate::app::notices::Notices;
 use crate::app::settings::Settings;
-use crate::hand::{Angle, Force, HandSample, Moment, PerDof, PerFinger, Speed};
+use crate::app::tare::Tare;
+use crate::hand::{Angle, Force, HandSample, Moment, PerDof, Speed};
 use crate::link::motion::arm_refusal;
 use crate::link::{ArmRefusal, LinkState, LinkStats, LinkStatus};
 use crate::transport::Endpoint;
@@ -27,8 +28,8 @@ pub struct State {
     pub stats: LinkStats,
     /// The newest of everything the hand said, with its times. Kept when the link is lost, and then old.
     pub sample: HandSample,
-    /// The first reading of each tactile channel since this hand was chosen: what heat is counted from.
-    pub touch_rest: PerFinger<Option<[u32; 8]>>,
+    /// What the tactile channels are counted from.
+    pub tare: Tare,
     /// The six joints as a person sets them.
     pub joints: PerDof<Joint>,
     /// What was measured over the last minutes.

@@ -11,6 +11,7 @@ pub mod reading;
 pub mod register;
 pub mod row;
 pub mod sample;
+pub mod skeleton;
 pub mod status;
 pub mod tactile;
 pub mod units;

@@ -39,6 +39,14 @@ pub(crate) struct Tip {
     pub(crate) stale: bool,
 }
 
+impl Tip {
+    /// How strong the proximity halo is, 0..=1.
+    pub(crate) fn nearness(&self) -> f32 {
+        let level = self.proximity.map_or(0.0, |counts| counts / FULL_PROXIMITY);
+        level.clamp(0.0, 1.0)
+    }
+}
+
 /// Millimetres of the sensor to points on the screen.
 struct Scale {
     center: Pos2,
@@ -111,7 +119,16 @@ pub(crate) fn paint(painter: &Painter, look: Look, rect: Rect, tip: &Tip) {
     halo(painter, look, &scale, tip, fade);
     skin(painter, look, &scale);
     pads(painter, look, &scale, tip, fade);
-    forces(painter, look, &scale, tip, fade);
+    let up = vec2(0.0, -1.0);
+    forces(
+        painter,
+        look,
+        scale.at(0.0, 0.6),
+        up,
+        scale.per_mm,
+        tip,
+        fade,
+    );
 }
 
 fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
@@ -142,10 +159,7 @@ fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
 }
 
 fn halo(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
-    let Some(proximity) = tip.proximity else {
-        return;
-    };
-    let level = (proximity / FULL_PROXIMITY).clamp(0.0, 1.0) * fade;
+    let level = tip.nearness() * fade;
     for (grow, part) in [(1.4, 0.10), (0.9, 0.16), (0.4, 0.26)] {
         let (rect, round) = outline(scale, grow);
         let color = look.palette.accent.gamma_multiply(part * level);
@@ -187,13 +201,34 @@ fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
     );
 }
 
-fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
+/// The forces of a fingertip that stands elsewhere: `along` points to its tip, `width` is that of the finger in points.
+pub(crate) fn forces_at(
+    painter: &Painter,
+    look: Look,
+    middle: Pos2,
+    along: Vec2,
+    width: f32,
+    tip: &Tip,
+) {
+    let fade = if tip.stale { 0.35 } else { 1.0 };
+    let per_mm = width / (2.0 * HALF_WIDTH_MM);
+    forces(painter, look, middle, along, per_mm, tip, fade);
+}
+
+fn forces(
+    painter: &Painter,
+    look: Look,
+    middle: Pos2,
+    up: Vec2,
+    per_mm: f32,
+    tip: &Tip,
+    fade: f32,
+) {
     let arrow = look.palette.arrow.gamma_multiply(fade);
-    let middle = scale.at(0.0, 0.6);
     if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
         // Area grows with force, so that twice the force looks twice as much.
         let part = (normal / FULL_NORMAL_N).clamp(0.0, 1.0).sqrt();
-        let radius = part * (HALF_WIDTH_MM - 1.0) * scale.per_mm;
+        let radius = part * (HALF_WIDTH_MM - 1.0) * per_mm;
         painter.circle(
             middle,
             radius,
@@ -202,10 +237,10 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
         );
     }
     if let Some((shear, direction)) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
-        let length = (shear / FULL_SHEAR_N).clamp(0.12, 1.0) * 9.0 * scale.per_mm;
-        // 0 is up and clockwise; the screen's y grows downwards.
-        let turn = direction.to_radians();
-        let along = vec2(turn.sin(), -turn.cos());
+        let length = (shear / FULL_SHEAR_N).clamp(0.12, 1.0) * 9.0 * per_mm;
+        // 0 is towards the tip, and clockwise; the screen's y grows downwards.
+        let (sin, cos) = direction.to_radians().sin_cos();
+        let along = up * cos + vec2(-up.y, up.x) * sin;
         arrow_shape(painter, middle, along, length, Stroke::new(2.0, arrow));
     }
 }

@@ -7,6 +7,7 @@ mod faults;
 mod fingertip;
 mod format;
 mod gestures;
+mod hand_picture;
 mod joint_row;
 mod joints;
 mod link_figures;
@@ -17,8 +18,10 @@ mod plot_head;
 mod plots;
 mod text;
 mod theme;
+mod tip_detail;
 mod top_bar;
 mod touch;
+mod touch_heat;
 mod track;
 mod window;
 

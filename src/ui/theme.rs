@@ -83,6 +83,12 @@ pub(crate) struct Palette {
     pub(crate) handle_dot: Color32,
     /// The skin of a drawn fingertip.
     pub(crate) skin: Color32,
+    /// The fingers and palm of the drawn hand in half light.
+    pub(crate) limb: Color32,
+    /// The same in full light.
+    pub(crate) limb_lit: Color32,
+    /// Their edges.
+    pub(crate) limb_edge: Color32,
     /// The shear arrow over the heat.
     pub(crate) arrow: Color32,
     /// The six joints; told apart by all common kinds of colour blindness.
@@ -118,6 +124,9 @@ static DARK: Palette = Palette {
     handle: Color32::from_rgb(0xE8, 0xEC, 0xF2),
     handle_dot: Color32::from_rgb(0x16, 0x1A, 0x20),
     skin: Color32::from_rgb(0x1E, 0x24, 0x2D),
+    limb: Color32::from_rgb(0x2B, 0x33, 0x3E),
+    limb_lit: Color32::from_rgb(0x4E, 0x5A, 0x69),
+    limb_edge: Color32::from_rgb(0x56, 0x62, 0x72),
     arrow: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     dof: PerDof::new([
         Color32::from_rgb(0x5A, 0xB4, 0xE8),
@@ -157,6 +166,9 @@ static LIGHT: Palette = Palette {
     handle: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     handle_dot: Color32::from_rgb(0x4E, 0x5A, 0x69),
     skin: Color32::from_rgb(0xE4, 0xE9, 0xEF),
+    limb: Color32::from_rgb(0xD3, 0xDA, 0xE3),
+    limb_lit: Color32::from_rgb(0xF4, 0xF7, 0xFA),
+    limb_edge: Color32::from_rgb(0xA4, 0xB0, 0xBE),
     arrow: Color32::from_rgb(0x10, 0x14, 0x1A),
     dof: PerDof::new([
         Color32::from_rgb(0x00, 0x72, 0xB2),

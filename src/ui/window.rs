@@ -13,7 +13,7 @@ use crate::ui::plots::PlotView;
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use crate::ui::top_bar;
-use crate::ui::touch;
+use crate::ui::touch::{self, TouchView};
 use egui::{Event, Key, Rect, Ui};
 
 /// The parts of the window that can be looked at.
@@ -80,6 +80,7 @@ pub struct Window {
     plots: PlotView,
     gestures: GestureView,
     connection: ConnectionForm,
+    touch: TouchView,
 }
 
 /// Puts fonts and style into a context. The window does it itself when the settings change.
@@ -166,7 +167,7 @@ impl Window {
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
-            View::Touch => touch::large_ui(ui, rect, pane),
+            View::Touch => self.touch.large_ui(ui, rect, pane),
             View::Faults => faults::faults_view_ui(ui, rect, pane),
             View::Gestures => self.gestures.large_ui(ui, rect, pane),
             View::Connection => self.connection.ui(ui, rect, pane),
@@ -182,10 +183,9 @@ impl Window {
         let (center, right) = upper.split_left_right_at_x(upper.right() - right_width);
         let center = center.with_max_x(center.right() - theme::GAP);
         self.plots.ui(ui, center, pane);
-        let most = (right.height() * 0.68).max(200.0);
-        let touch_height = touch::small_height(right.width()).min(most).round();
+        let touch_height = touch::overview_height(right);
         let (tips, list) = right.split_top_bottom_at_y(right.top() + touch_height);
-        touch::small_ui(ui, tips, pane);
+        self.touch.small_ui(ui, tips, pane);
         faults::faults_card_ui(ui, list.with_min_y(list.top() + theme::GAP), pane);
     }
 }

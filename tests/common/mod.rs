@@ -38,7 +38,7 @@ pub fn empty() -> State {
         link: LinkStatus::default(),
         stats: LinkStats::default(),
         sample: HandSample::default(),
-        touch_rest: handscope::hand::PerFinger::splat(None),
+        tare: handscope::app::tare::Tare::default(),
         joints: PerDof::splat(Joint {
             target: None,
             force: Force::GENTLE,

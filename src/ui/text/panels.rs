@@ -47,6 +47,38 @@ texts! {
     TOUCH_DELTA_N: "Normal delta", "法向变化";
     TOUCH_DELTA_T: "Shear delta", "切向变化";
 
+    HAND: "Hand", "灵巧手";
+    HAND_PICTURE: "Picture of the hand", "手部姿态图";
+    HAND_PICTURE_TIP: "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Dashed: where it is told to go.\nBones and couplings are those of a sister model; which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。虚线为目标姿态。\n骨骼与联动关系取自同系列型号；拇指旋转方向手册没有说明。";
+
+    TOUCH_SCALE_TARED: "Heat: counts since taring, age", "热度：去皮后的增量，距今";
+    TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
+    TARE_ALL: "Tare all", "全部去皮";
+    TARE_ALL_TIP: "Counts all channels from now on. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
+    TARE_ONE: "Tare", "去皮";
+    TARE_ONE_TIP: "Counts the channels of the chosen fingertip from now on.", "所选指尖的通道从当前读数起算。";
+    TARE_UNDO: "Undo", "撤销";
+    TARE_UNDO_TIP: "Takes the last taring back.", "撤销最近一次去皮。";
+    TARE_NOTHING: "Nothing was tared.", "还没有去皮。";
+    TARE_OFFLINE: "No live hand.", "没有在线的手。";
+    HEAT_LOCK: "Keep colours", "锁定色标";
+    HEAT_LOCK_TIP: "Keeps the end of the heat scale where it is now, so that pictures can be compared.", "把热度标尺上限固定在当前值，便于比较。";
+    TIP: "Fingertip", "指尖";
+    TIP_TIP: "Shows this fingertip in detail.", "查看该指尖的详情。";
+    TIP_UP: "tip", "指尖";
+    TIP_NORMAL: "Normal", "法向力";
+    TIP_SHEAR: "Tangential", "切向力";
+    TIP_RATIO: "Tangential / normal", "切向 / 法向";
+    TIP_MARGIN: "Slip margin", "防滑余量";
+    TIP_FRICTION: "Friction", "摩擦系数";
+    TIP_FRICTION_NAME: "Friction, percent", "摩擦系数，百分比";
+    TIP_FRICTION_TIP: "Friction between fingertip and object, from 0.01 to 1.5. The program cannot know it: choose it for your object. The ring shows it.", "指尖与物体间的摩擦系数，0.01 到 1.5。程序无法得知，请按物体选择；圆环表示该值。";
+    TIP_UNKNOWN: "Not known", "未知";
+    TIP_LOOSE: "No contact", "没有接触";
+    TIP_HOLDS: "Holds", "稳定";
+    TIP_NEAR: "Near to slipping", "接近打滑";
+    TIP_SLIPS: "Slips at this friction", "按此摩擦会打滑";
+
     FAULTS: "Faults", "故障";
     FAULTS_NONE: "No faults", "没有故障";
     FAULTS_NONE_HINT: "Faults appear here with their cause and what to do.", "出现故障时，这里会列出原因与处理建议。";

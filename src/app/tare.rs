@@ -1,0 +1,131 @@
+//! What the tactile channels are counted from: the first reading, or the one that a person chose. Changes no reading.
+
+use crate::hand::{Finger, HandSample, Moment, PerFinger};
+
+/// The reading of one fingertip that its channels are counted from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rest {
+    /// The eight channels, counts.
+    pub raw: [u32; 8],
+    /// When it was received.
+    pub at: Moment,
+    /// True if a person chose it, false for the first reading.
+    pub chosen: bool,
+}
+
+/// The rests of all fingertips, and those before the last taring.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tare {
+    rests: PerFinger<Option<Rest>>,
+    before: Option<PerFinger<Option<Rest>>>,
+}
+
+impl Tare {
+    /// What this fingertip is counted from; `None` before its first reading.
+    #[must_use]
+    pub fn rest(&self, finger: Finger) -> Option<Rest> {
+        self.rests[finger]
+    }
+
+    /// When a person tared last, if one did and it was not undone.
+    #[must_use]
+    pub fn chosen_at(&self) -> Option<Moment> {
+        let chosen = self.rests.iter().filter_map(|(_, rest)| *rest);
+        chosen.filter(|rest| rest.chosen).map(|rest| rest.at).max()
+    }
+
+    /// Whether there is a taring to take back.
+    #[must_use]
+    pub const fn can_undo(&self) -> bool {
+        self.before.is_some()
+    }
+
+    /// Takes the first reading of each fingertip as its rest.
+    pub(crate) fn begin(&mut self, sample: &HandSample) {
+        for (finger, rest) in self.rests.iter_mut() {
+            *rest = rest.or_else(|| reading(sample, finger, false));
+        }
+    }
+
+    /// Counts these fingertips from their newest reading. A fingertip without reading keeps what it had.
+    pub(crate) fn tare(&mut self, fingers: impl IntoIterator<Item = Finger>, sample: &HandSample) {
+        let before = self.rests;
+        for finger in fingers {
+            self.rests[finger] = reading(sample, finger, true).or(self.rests[finger]);
+        }
+        if self.rests != before {
+            self.before = Some(before);
+        }
+    }
+
+    /// Takes the last taring back, once.
+    pub(crate) fn undo(&mut self) {
+        if let Some(before) = self.before.take() {
+            self.rests = before;
+        }
+    }
+}
+
+fn reading(sample: &HandSample, finger: Finger, chosen: bool) -> Option<Rest> {
+    let block = sample.tactile[finger]?;
+    Some(Rest {
+        raw: block.value.raw,
+        at: block.received,
+        chosen,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{TactileBlock, Timed};
+
+    fn sample(raw: u32, millis: u64) -> HandSample {
+        let at = Moment::from_micros(millis * 1000);
+        let mut block = TactileBlock::decode(&[0; 58]);
+        if let Some(block) = &mut block {
+            block.raw = [raw; 8];
+        }
+        let mut sample = HandSample::default();
+        sample.tactile[Finger::Index] = block.map(|value| Timed {
+            value,
+            asked: at,
+            received: at,
+        });
+        sample
+    }
+
+    fn counted_from(tare: &Tare) -> Option<u32> {
+        tare.rest(Finger::Index).map(|rest| rest.raw[0])
+    }
+
+    #[test]
+    fn the_first_reading_stays_until_a_person_tares() {
+        let mut tare = Tare::default();
+        tare.begin(&sample(100, 1));
+        tare.begin(&sample(200, 2));
+        assert_eq!((counted_from(&tare), tare.chosen_at()), (Some(100), None));
+        tare.tare(Finger::ALL, &sample(300, 3));
+        assert_eq!(counted_from(&tare), Some(300));
+        assert_eq!(tare.chosen_at(), Some(Moment::from_micros(3000)));
+    }
+
+    #[test]
+    fn a_taring_can_be_taken_back_once() {
+        let mut tare = Tare::default();
+        tare.begin(&sample(100, 1));
+        tare.tare([Finger::Index], &sample(300, 3));
+        assert!(tare.can_undo());
+        tare.undo();
+        assert_eq!((counted_from(&tare), tare.can_undo()), (Some(100), false));
+        assert_eq!(tare.chosen_at(), None);
+    }
+
+    #[test]
+    fn a_fingertip_that_was_never_read_is_not_tared() {
+        let mut tare = Tare::default();
+        tare.tare([Finger::Thumb], &sample(300, 3));
+        assert_eq!(tare.rest(Finger::Thumb), None);
+        assert!(!tare.can_undo());
+    }
+}

@@ -1,0 +1,128 @@
+//! From tactile counts to heat: one scale for all fingers, automatic or locked. Draws only the scale.
+
+use crate::app::state::Freshness;
+use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::ui::controls::{self, Label};
+use crate::ui::fingertip::Tip;
+use crate::ui::look::Pane;
+use crate::ui::text::panels;
+use crate::ui::{format, theme};
+use egui::{CornerRadius, Rect, Ui, pos2, vec2};
+
+/// Counts above rest at which a pad is hottest, at least: below this, noise would look like touch.
+const HEAT_FLOOR: f32 = 20_000.0;
+/// Steps in which the scale's bar is drawn.
+const STEPS: u8 = 16;
+
+/// The scale of the heat.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct HeatScale {
+    /// Counts of the hottest colour, if a person keeps them where they are.
+    pub(crate) locked: Option<f32>,
+}
+
+impl HeatScale {
+    /// Counts above rest of the hottest colour, the same for all fingers.
+    pub(crate) fn full(self, pane: &Pane<'_>) -> f32 {
+        self.locked.unwrap_or_else(|| automatic(pane))
+    }
+
+    /// What is drawn of each fingertip; none where it was never read.
+    pub(crate) fn tips(self, pane: &Pane<'_>) -> PerFinger<Option<Tip>> {
+        let full = self.full(pane);
+        PerFinger::from_fn(|finger| {
+            let block = pane.state.sample.tactile[finger]?;
+            Some(Tip {
+                stale: pane.freshness(Some(block.asked)) != Freshness::Live,
+                ..tip(pane, finger, &block.value, full)
+            })
+        })
+    }
+
+    /// The scale with its end, at the right of a title.
+    pub(crate) fn ui(self, ui: &mut Ui, head: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let mut rest = head;
+        let end = format::counts(Some(whole(self.full(pane))));
+        let width = controls::text_width(ui, &end, theme::small());
+        let end_place = controls::take_right(&mut rest, width + 1.0);
+        Label::new(&end, look.palette.faint)
+            .small()
+            .right()
+            .named(look.say(panels::TOUCH_SCALE_END))
+            .put(ui, end_place);
+        let bar = controls::middle(controls::take_right(&mut rest, 64.0), 8.0);
+        let width = bar.width() / f32::from(STEPS);
+        for step in 0..STEPS {
+            let left = bar.left() + width * f32::from(step);
+            let piece = Rect::from_min_size(pos2(left, bar.top()), vec2(width + 0.5, bar.height()));
+            let color = look.palette.heat(f32::from(step) / f32::from(STEPS - 1));
+            ui.painter().rect_filled(piece, CornerRadius::ZERO, color);
+        }
+        let chosen = pane.state.tare.chosen_at();
+        let text = chosen.map_or_else(
+            || look.say(panels::TOUCH_SCALE).to_owned(),
+            |at| {
+                let age = format::age(pane.state.now.since(at));
+                format!("{} {age}", look.say(panels::TOUCH_SCALE_TARED))
+            },
+        );
+        Label::new(&text, look.palette.faint)
+            .small()
+            .right()
+            .put(ui, rest);
+    }
+}
+
+fn automatic(pane: &Pane<'_>) -> f32 {
+    let mut full = HEAT_FLOOR;
+    for (finger, block) in pane.state.sample.tactile.iter() {
+        let (Some(block), Some(rest)) = (block, pane.state.tare.rest(finger)) else {
+            continue;
+        };
+        for (raw, rest) in block.value.raw.into_iter().zip(rest.raw) {
+            full = full.max(above(raw, rest));
+        }
+    }
+    // Steps of a fifth of a decade, so that the colours do not breathe with every reading.
+    let step = 10.0_f32.powf((full.log10() * 5.0).ceil() / 5.0);
+    step.max(HEAT_FLOOR)
+}
+
+fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock, full: f32) -> Tip {
+    let rest = pane.state.tare.rest(finger);
+    let rest = rest.map_or(block.raw, |rest| rest.raw);
+    let mut heat = [None; 8];
+    for ((heat, raw), rest) in heat.iter_mut().zip(block.raw).zip(rest) {
+        *heat = Some(above(raw, rest) / full);
+    }
+    Tip {
+        heat,
+        normal_n: block.normal(),
+        shear: block.tangential().zip(block.direction_deg().map(f32::from)),
+        proximity: Some(small_float(i64::from(block.proximity))),
+        stale: false,
+    }
+}
+
+fn above(raw: u32, rest: u32) -> f32 {
+    small_float(i64::from(raw) - i64::from(rest)).max(0.0)
+}
+
+fn small_float(value: i64) -> f32 {
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "only its place on a colour scale matters"
+    )]
+    let float = value as f32;
+    float
+}
+
+fn whole(value: f32) -> i64 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a float cast is cut to the range"
+    )]
+    let whole = value as i64;
+    whole
+}

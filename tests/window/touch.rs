@@ -1,0 +1,79 @@
+//! The fingertips and the drawn hand: choosing one, taring, keeping the colours.
+
+use crate::bench::{Bench, LARGE, Role};
+use handscope::hand::Finger;
+use handscope::sim::{Scenario, SimConfig};
+
+fn gripping() -> Bench {
+    let config = SimConfig {
+        scenario: Scenario::Grasp,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::open(config, LARGE);
+    bench.wait(3000);
+    bench.click_first_button("Touch");
+    bench.run(60);
+    bench
+}
+
+fn rest(bench: &Bench, finger: Finger) -> [u32; 8] {
+    bench.state().tare.rest(finger).expect("it was read").raw
+}
+
+#[test]
+fn the_hand_is_drawn_and_named_in_both_views() {
+    let mut bench = gripping();
+    let large = bench.rect(Role::Image, "Picture of the hand");
+    bench.click_first_button("Live");
+    bench.run(60);
+    let small = bench.rect(Role::Image, "Picture of the hand");
+    assert!(large.area() > small.area() && small.height() > 100.0);
+}
+
+#[test]
+fn a_fingertip_is_chosen_by_its_button_and_tared_alone() {
+    let mut bench = gripping();
+    let (before, thumb) = (rest(&bench, Finger::Middle), rest(&bench, Finger::Thumb));
+    bench.click("Fingertip: Middle");
+    bench.run(60);
+    bench.click("Tare Middle");
+    bench.run(60);
+    assert_ne!(rest(&bench, Finger::Middle), before);
+    assert_eq!(rest(&bench, Finger::Thumb), thumb);
+    bench.click("Undo");
+    bench.run(60);
+    assert_eq!(rest(&bench, Finger::Middle), before);
+    assert!(bench.is_disabled(Role::Button, "Undo"));
+}
+
+#[test]
+fn taring_counts_all_tips_from_now_and_writes_nothing() {
+    let mut bench = gripping();
+    bench.click("Tare all");
+    bench.run(60);
+    assert!(bench.state().tare.chosen_at().is_some());
+    for finger in Finger::ALL {
+        let now = bench.state().sample.tactile[finger].expect("it was read");
+        let apart = rest(&bench, finger)[0].abs_diff(now.value.raw[0]);
+        assert!(apart < 20_000, "{finger:?}: {apart}");
+    }
+    assert_eq!(bench.writes().len(), 0);
+}
+
+#[test]
+fn kept_colours_stay_when_the_grip_lets_go() {
+    let mut bench = gripping();
+    let end = |bench: &Bench| bench.reading("end of the heat scale");
+    let tight = end(&bench);
+    bench.click("Tare all");
+    bench.run(60);
+    assert_ne!(end(&bench), tight, "after taring nothing is hot");
+    bench.click("Undo");
+    bench.run(60);
+    bench.click("Keep colours");
+    bench.run(60);
+    let kept = end(&bench);
+    bench.click("Tare all");
+    bench.run(60);
+    assert_eq!(end(&bench), kept);
+}
