@@ -49,7 +49,7 @@ texts! {
 
     HAND: "Hand", "灵巧手";
     HAND_PICTURE: "Picture of the hand", "手部姿态图";
-    HAND_PICTURE_TIP: "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Dashed: where it is told to go.\nBones and couplings are those of a sister model; which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。虚线为目标姿态。\n骨骼与联动关系取自同系列型号；拇指旋转方向手册没有说明。";
+    HAND_PICTURE_TIP: "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Dashed: where it is told to go.\nBones and couplings are those of a sister model; which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。虚线为目标姿态。\n骨架与联动关系取自同系列型号；拇指旋转方向手册没有说明。";
 
     TOUCH_SCALE_TARED: "Heat: counts since taring, age", "热度：去皮后的增量，距今";
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
