@@ -3,7 +3,7 @@
 use crate::link::Clock;
 use crate::sim::serve::{SharedHand, rs485};
 use crate::sim::{Scenario, SimConfig, SimHand};
-use crate::transport::{BoxedWire, Dial, Endpoint, SystemDial, TransportError, pair};
+use crate::transport::{BoxedWire, Dial, Endpoint, PortFound, SystemDial, TransportError, pair};
 use futures::future::BoxFuture;
 use std::sync::{Mutex, PoisonError};
 
@@ -77,6 +77,10 @@ impl Dial for SimDial {
             let wire: BoxedWire = Box::new(ours);
             Ok(wire)
         })
+    }
+
+    fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
+        self.system.ports()
     }
 }
 

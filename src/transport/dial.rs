@@ -3,6 +3,7 @@
 #[cfg(target_os = "linux")]
 use crate::transport::can;
 use crate::transport::endpoint::{DEFAULT_ID, Endpoint, SerialLine};
+use crate::transport::serial::PortFound;
 use crate::transport::wire::{BoxedWire, Dial, TransportError};
 use crate::transport::{serial, tcp};
 use futures::future::BoxFuture;
@@ -38,6 +39,14 @@ impl Dial for SystemDial {
                     kind: other.kind().into(),
                 }),
             }
+        })
+    }
+
+    fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
+        // Some systems take tens of milliseconds to list their ports, and other links live on this thread.
+        Box::pin(async {
+            let listed = tokio::task::spawn_blocking(serial::ports).await;
+            listed.unwrap_or_default()
         })
     }
 }

@@ -149,6 +149,28 @@ impl Endpoint {
         }
     }
 
+    /// The serial port it is reached through, if it is.
+    #[must_use]
+    pub fn port(&self) -> Option<&str> {
+        match self {
+            Self::Rs485(line) | Self::Rtu(line) => Some(&line.port),
+            Self::Slcan { port, .. } => Some(port),
+            Self::Sim { .. } | Self::Tcp { .. } | Self::Can { .. } => None,
+        }
+    }
+
+    /// The same hand through another serial port. Endpoints without one stay as they are.
+    #[must_use]
+    pub fn through(&self, path: &str) -> Self {
+        let mut moved = self.clone();
+        match &mut moved {
+            Self::Rs485(line) | Self::Rtu(line) => path.clone_into(&mut line.port),
+            Self::Slcan { port, .. } => path.clone_into(port),
+            Self::Sim { .. } | Self::Tcp { .. } | Self::Can { .. } => {}
+        }
+        moved
+    }
+
     /// The part before the colon.
     #[must_use]
     pub const fn kind(&self) -> &'static str {

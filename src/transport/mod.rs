@@ -1,22 +1,29 @@
 //! Wires: endpoints, serial ports, sockets, in-memory pipes. Knows no hand.
 
+pub mod adapter;
 #[cfg(target_os = "linux")]
 pub mod can;
 pub mod dial;
 pub mod endpoint;
 pub mod faulty;
+mod holder;
+pub mod permission;
 pub mod pipe;
 #[cfg(unix)]
 pub mod pty;
 pub mod serial;
+pub mod sysfs;
 pub mod tcp;
 pub mod wire;
 
+pub use adapter::{Adapter, Whereabouts, is_same_port};
 pub use dial::SystemDial;
 pub use endpoint::{Endpoint, EndpointError, SerialLine};
 pub use faulty::{FaultCounts, FaultOdds, FaultPlan, FaultSwitch, Pace, faulty_pair};
+pub use permission::Remedy;
 pub use pipe::{Pipe, pair};
 #[cfg(unix)]
 pub use pty::PtyLink;
 pub use serial::{PortFound, UsbFound, ports};
+pub use sysfs::Sysfs;
 pub use wire::{BoxedWire, Dial, TransportError, Wire};

@@ -1,5 +1,6 @@
 //! A pseudo-terminal with a link to it, so that other programs can open the simulated hand like a serial port. Knows no protocol.
 
+use crate::transport::permission::remedy;
 use crate::transport::wire::TransportError;
 use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use nix::pty::openpty;
@@ -130,7 +131,10 @@ fn link_error(link_path: &Path, error: &io::Error) -> TransportError {
     let place = link_path.display().to_string();
     match error.kind() {
         io::ErrorKind::NotFound => TransportError::Missing { place },
-        io::ErrorKind::PermissionDenied => TransportError::Permission { place },
+        io::ErrorKind::PermissionDenied => TransportError::Permission {
+            remedy: remedy(&place),
+            place,
+        },
         _ => TransportError::Io {
             place,
             message: error.to_string(),

@@ -1,6 +1,9 @@
 //! Serial ports: which there are, and how one is opened. What is said over them is not known here.
 
 use crate::transport::endpoint::SerialLine;
+use crate::transport::holder;
+use crate::transport::permission::remedy;
+use crate::transport::sysfs::Sysfs;
 use crate::transport::wire::TransportError;
 use std::panic::catch_unwind;
 use std::path::Path;
@@ -10,7 +13,7 @@ use tokio_serial::{
 };
 
 /// A USB adapter.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct UsbFound {
     /// USB vendor id.
     pub vendor_id: u16,
@@ -22,6 +25,10 @@ pub struct UsbFound {
     pub maker: Option<String>,
     /// Product's name.
     pub product: Option<String>,
+    /// Place on the bus and interface, such as `1-2:1.0`, where the system tells (Linux).
+    pub location: Option<String>,
+    /// How long it may keep what it got, milliseconds, where its driver tells (Linux).
+    pub latency_timer_ms: Option<u16>,
 }
 
 /// A serial port that the system lists.
@@ -39,13 +46,13 @@ pub struct PortFound {
 pub fn ports() -> Vec<PortFound> {
     // serialport panics where /sys is not mounted.
     let listed = catch_unwind(tokio_serial::available_ports);
+    let sysfs = Sysfs::default();
     let mut ports: Vec<_> = listed
         .ok()
         .and_then(Result::ok)
         .unwrap_or_default()
         .into_iter()
         .map(|port| PortFound {
-            path: port.port_name,
             usb: match port.port_type {
                 SerialPortType::UsbPort(usb) => Some(UsbFound {
                     vendor_id: usb.vid,
@@ -53,9 +60,12 @@ pub fn ports() -> Vec<PortFound> {
                     serial: usb.serial_number,
                     maker: usb.manufacturer,
                     product: usb.product,
+                    location: sysfs.usb_location(&port.port_name),
+                    latency_timer_ms: sysfs.latency_timer_ms(&port.port_name),
                 }),
                 _ => None,
             },
+            path: port.port_name,
         })
         .collect();
     ports.sort_by(|a, b| a.path.cmp(&b.path));
@@ -97,7 +107,7 @@ fn refuse_what_is_no_port(place: &str) -> Result<(), TransportError> {
         Ok(_) => Err(TransportError::NotAPort { place: place() }),
         Err(error) => Err(match error.kind() {
             NotFound => TransportError::Missing { place: place() },
-            PermissionDenied => TransportError::Permission { place: place() },
+            PermissionDenied => denied(place()),
             _ => io_error(&place(), &error.to_string()),
         }),
     }
@@ -139,7 +149,7 @@ fn open_error(place: &str, error: &tokio_serial::Error) -> TransportError {
             place: text(),
             holder: None,
         },
-        ErrorKind::Io(PermissionDenied) => TransportError::Permission { place: text() },
+        ErrorKind::Io(PermissionDenied) => denied(text()),
         _ if error.description.contains("Inappropriate ioctl")
             || error.description.contains("Not a typewriter") =>
         {
@@ -149,56 +159,17 @@ fn open_error(place: &str, error: &tokio_serial::Error) -> TransportError {
     }
 }
 
+fn denied(place: String) -> TransportError {
+    TransportError::Permission {
+        remedy: remedy(&place),
+        place,
+    }
+}
+
 fn io_error(place: &str, message: &str) -> TransportError {
     TransportError::Io {
         place: place.into(),
         message: message.into(),
-    }
-}
-
-/// Who holds a port.
-#[cfg(target_os = "linux")]
-mod holder {
-    use std::fs;
-    use std::path::Path;
-
-    /// Processes looked at, so that a busy machine does not hold up the answer.
-    const PROCESSES_MAX: usize = 4096;
-
-    /// Name and id of a process that has this file open, if this person may see it.
-    pub(super) fn find(place: &Path) -> Option<String> {
-        let real = fs::canonicalize(place).ok()?;
-        // The maker of a pseudo-terminal has it open too and is not the one meant.
-        if real.starts_with("/dev/pts") {
-            return None;
-        }
-        let process = fs::read_dir("/proc")
-            .ok()?
-            .flatten()
-            .take(PROCESSES_MAX)
-            .find(|process| {
-                let open = fs::read_dir(process.path().join("fd"));
-                open.is_ok_and(|open| {
-                    open.flatten()
-                        .any(|fd| fs::read_link(fd.path()).is_ok_and(|file| file == real))
-                })
-            })?;
-        let name = fs::read_to_string(process.path().join("comm")).unwrap_or_default();
-        let id = process.file_name();
-        Some(format!(
-            "{} (process {})",
-            name.trim(),
-            id.to_string_lossy()
-        ))
-    }
-}
-
-#[cfg(not(target_os = "linux"))]
-mod holder {
-    use std::path::Path;
-
-    pub(super) fn find(_place: &Path) -> Option<String> {
-        None
     }
 }
 
@@ -254,10 +225,8 @@ mod tests {
         assert!(matches!(lock, TransportError::Busy { .. }));
         let denied = ErrorKind::Io(std::io::ErrorKind::PermissionDenied);
         if cfg!(unix) {
-            assert_eq!(
-                of(denied, "Permission denied"),
-                TransportError::Permission { place: place() }
-            );
+            let error = of(denied, "Permission denied");
+            assert!(matches!(error, TransportError::Permission { .. }));
         }
         assert_eq!(
             of(ErrorKind::Io(std::io::ErrorKind::NotFound), "gone"),

@@ -1,6 +1,8 @@
 //! What every wire is: a stream of bytes both ways, and how one is opened. No hand, no protocol.
 
 use crate::transport::endpoint::Endpoint;
+use crate::transport::permission::Remedy;
+use crate::transport::serial::PortFound;
 use futures::future::BoxFuture;
 use tokio::io::{AsyncRead, AsyncWrite};
 
@@ -16,6 +18,23 @@ pub type BoxedWire = Box<dyn Wire>;
 pub trait Dial: Send + Sync + 'static {
     /// Opens the wire of this endpoint. Must be cancellable by dropping.
     fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>>;
+
+    /// The serial ports that the system lists now, so that an adapter is found again under another name. None where
+    /// wires are not the system's. Must be cancellable by dropping.
+    fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
+        Box::pin(std::future::ready(Vec::new()))
+    }
+}
+
+/// What else is plugged in, with what to do.
+fn instead(alike: &[String]) -> String {
+    if alike.is_empty() {
+        return ": plug it in again".into();
+    }
+    format!(
+        ": plug it in again, or connect to {} if that is the one you mean",
+        alike.join(" or ")
+    )
 }
 
 /// Why a wire could not be opened, or broke. Each kind has its own words for a person.
@@ -34,12 +53,20 @@ pub enum TransportError {
         place: String,
     },
     /// The system does not let this person open it.
-    #[error(
-        "no permission to open {place}: run 'sudo usermod -aG dialout $USER', then log out and in again"
-    )]
+    #[error("no permission to open {place}: {remedy}")]
     Permission {
         /// Port or interface.
         place: String,
+        /// What changes it.
+        remedy: Remedy,
+    },
+    /// The adapter that was used is not plugged in, and what is there instead may be another.
+    #[error("the USB adapter of {place} is unplugged{}", instead(.alike))]
+    Away {
+        /// Port as it was asked for.
+        place: String,
+        /// Ports of adapters that cannot be told from it, or that took its name.
+        alike: Vec<String>,
     },
     /// Another program holds it.
     #[error(
