@@ -95,7 +95,7 @@ impl<'a> Watch<'a> {
         let status = self.link.status();
         if status.state.is_live() {
             if self.told.take().is_some() {
-                say("the hand answers again");
+                say(&answers_again(status.moved_to.as_deref()));
             }
             self.answered = true;
             return Ok(());
@@ -195,6 +195,11 @@ impl<'a> Watch<'a> {
         self.out.line(&line)?;
         self.out.flush()
     }
+}
+
+fn answers_again(moved_to: Option<&str>) -> String {
+    let place = moved_to.map(|port| format!("; its adapter is now at {port}"));
+    format!("the hand answers again{}", place.unwrap_or_default())
 }
 
 /// Resolves when the time is over; never if there is no end.

@@ -11,6 +11,7 @@ pub mod clock;
 mod counters;
 pub mod event;
 mod filter;
+mod follow;
 pub mod handle;
 mod hold;
 mod jobs;

@@ -6,12 +6,14 @@ use crate::link::bus::{Bus, BusCounts, BusError, id_of};
 use crate::link::clock::SleepWatch;
 use crate::link::counters::Counters;
 use crate::link::event::{LinkEvent, Outcome, RequestError, Ticket};
+use crate::link::follow::Follow;
 use crate::link::handle::{Ends, LinkConfig, Wanted};
 use crate::link::jobs::Job;
 use crate::link::late::LateReplies;
 use crate::link::motion::Motion;
 use crate::link::plan::PollPlan;
 use crate::link::status::{Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble};
+use crate::transport::{BoxedWire, Endpoint, TransportError};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::watch;
@@ -23,12 +25,16 @@ const RETRY_FIRST: Duration = Duration::from_millis(300);
 const RETRY_LONGEST: Duration = Duration::from_secs(1);
 /// Tries to get a first answer on a fresh wire.
 const IDENTIFY_TRIES: u32 = 3;
-/// Requests in a row without reply after which the link counts as lost.
+/// Requests in a row without reply after which the link counts as lost …
 pub(crate) const SILENT_MAX: u32 = 4;
+/// … or fewer, but never one alone, where one more would make the silence longer than this. A wire so slow that two
+/// requests take longer is given those two.
+const SILENCE_MAX: Duration = Duration::from_millis(300);
+const SILENT_LEAST: u32 = 2;
 /// Shortest wait for a reply: a hand takes up to 15 ms, a USB adapter up to 16 more.
 const REPLY_LIMIT_MIN: Duration = Duration::from_millis(50);
-/// Longest wait for a reply: part of the time in which a stop gets through.
-const REPLY_LIMIT_MAX: Duration = Duration::from_millis(300);
+/// Longest wait for a reply: part of the time in which a stop gets through, and half of that in which silence shows.
+const REPLY_LIMIT_MAX: Duration = Duration::from_millis(120);
 /// Places in the event queue that samples leave to states and answers.
 const EVENTS_RESERVED: usize = 64;
 
@@ -52,6 +58,11 @@ pub(crate) struct Session {
     pub(crate) job: Option<Job>,
     pub(crate) sleep: SleepWatch,
     silent: u32,
+    /// When the first of the unanswered requests in a row was asked.
+    silent_since: Option<Moment>,
+    follow: Follow,
+    /// The endpoint as it was dialled last: through the port at which the adapter is.
+    dialled: Endpoint,
     late: LateReplies,
     closed_wires: BusCounts,
 }
@@ -62,6 +73,7 @@ impl Session {
         Self {
             plan: PollPlan::new(config.rates, now),
             sleep: SleepWatch::new(now),
+            dialled: config.endpoint.clone(),
             config,
             ends,
             status: LinkStatus::default(),
@@ -70,6 +82,8 @@ impl Session {
             motion: Motion::default(),
             job: None,
             silent: 0,
+            silent_since: None,
+            follow: Follow::default(),
             late: LateReplies::default(),
             closed_wires: BusCounts::default(),
         }
@@ -102,21 +116,22 @@ impl Session {
     async fn conversation(&mut self, attempt: u32) -> (End, bool) {
         self.status.dialling = Dialling::Trying { attempt };
         self.publish();
-        let dialled = self.config.dial.dial(&self.config.endpoint);
         let closed = closed(Arc::clone(&self.ends.wanted));
         let dialled = tokio::select! {
             biased;
             () = closed => return (End::Closed, false),
-            dialled = dialled => dialled,
+            dialled = self.dial() => dialled,
         };
         let late = std::mem::take(&mut self.late);
-        let bus =
-            dialled.and_then(|wire| Bus::new(&self.config.endpoint, wire, late, self.config.clock));
+        let bus = dialled.and_then(|(endpoint, wire)| {
+            self.dialled = endpoint;
+            Bus::new(&self.dialled, wire, late, self.config.clock)
+        });
         let mut bus = match bus {
             Ok(bus) => bus,
             Err(error) => return (End::Lost(error.into()), false),
         };
-        self.silent = 0;
+        self.heard();
         self.sleep = SleepWatch::new(self.now());
         self.go(LinkState::Identifying);
         let (end, answered) = match self.identify(&mut bus).await {
@@ -127,6 +142,14 @@ impl Session {
         self.closed_wires = self.closed_wires.plus(bus.counts());
         self.late = bus.close();
         (end, answered)
+    }
+
+    /// Opens the wire where the adapter is now, and says where that is.
+    async fn dial(&self) -> Result<(Endpoint, BoxedWire), TransportError> {
+        let dial = self.config.dial.as_ref();
+        let endpoint = self.follow.endpoint(dial, &self.config.endpoint).await?;
+        let wire = dial.dial(&endpoint).await?;
+        Ok((endpoint, wire))
     }
 
     /// Asks for the id, read-only, until the hand answers.
@@ -151,6 +174,7 @@ impl Session {
                         Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
                         Err(_) => self.status.quirks.packing = None,
                     }
+                    self.note_port().await;
                     self.begin();
                     return Ok(());
                 }
@@ -166,6 +190,14 @@ impl Session {
         Err(End::Lost(LinkTrouble::NoAnswer {
             id: id_of(&self.config.endpoint),
         }))
+    }
+
+    /// Notes through which adapter the hand answered.
+    async fn note_port(&mut self) {
+        let (asked, at) = (&self.config.endpoint, &self.dialled);
+        let found = self.follow.remember(self.config.dial.as_ref(), at).await;
+        self.status.latency_timer_ms = found.and_then(|port| port.usb?.latency_timer_ms);
+        self.status.moved_to = at.port().filter(|_| at != asked).map(str::to_owned);
     }
 
     /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
@@ -234,7 +266,7 @@ impl Session {
 
     /// A request was answered after `took`.
     pub(crate) fn answered(&mut self, took: Duration) {
-        self.silent = 0;
+        self.heard();
         self.counters.round_trip(took);
     }
 
@@ -243,15 +275,14 @@ impl Session {
         match error {
             BusError::Lost(error) => return Err(End::Lost(error.clone().into())),
             BusError::Refused { .. } => {
-                self.silent = 0;
+                self.heard();
                 self.counters.stats.refusals += 1;
                 return Ok(());
             }
             BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
             BusError::Timeout { .. } => self.counters.stats.timeouts += 1,
         }
-        self.silent += 1;
-        if self.silent >= SILENT_MAX {
+        if self.unheard(error) {
             return Err(End::Lost(LinkTrouble::Silent {
                 silent: self.silent,
             }));
@@ -269,6 +300,26 @@ impl Session {
                 _ => Ok(()),
             },
         }
+    }
+
+    /// The hand answered.
+    fn heard(&mut self) {
+        self.silent = 0;
+        self.silent_since = None;
+    }
+
+    /// A request stayed without a usable reply; true if the hand is taken for gone now.
+    fn unheard(&mut self, error: &BusError) -> bool {
+        let now = self.now();
+        let waited = match error {
+            BusError::Timeout { after } => *after,
+            _ => Duration::ZERO,
+        };
+        let asked = Moment::from_duration(now.since(Moment::ZERO).saturating_sub(waited));
+        self.silent += 1;
+        let since = *self.silent_since.get_or_insert(asked);
+        let one_more = now.since(since) + waited;
+        self.silent >= SILENT_MAX || self.silent >= SILENT_LEAST && one_more > SILENCE_MAX
     }
 
     /// Goes to a state and tells the window.

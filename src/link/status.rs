@@ -48,6 +48,10 @@ pub struct LinkStatus {
     pub armed: Option<ArmEpoch>,
     /// What the hand answers in its own way, as found when the wire was opened.
     pub quirks: Quirks,
+    /// The port at which the adapter is now, if that is another than was asked for.
+    pub moved_to: Option<String>,
+    /// How long the adapter may keep what it got, milliseconds, where the system tells.
+    pub latency_timer_ms: Option<u16>,
     /// How the last hold went.
     pub hold: Hold,
     /// Why the hand is not armed, if it was.

@@ -25,6 +25,10 @@ pub(crate) fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
             .number()
             .put(ui, row);
     }
+    if let Some(port) = &pane.state.link.moved_to {
+        let text = format!("{} {port}", look.say(panels::MOVED_TO));
+        Label::new(&text, look.palette.warn).put(ui, take_top(&mut body, 16.0));
+    }
     if let Some(trouble) = &pane.state.link.trouble {
         let text = notices::trouble(look, trouble);
         paragraph_ui(ui, &mut body, &text, look.palette.bad);

@@ -169,6 +169,7 @@ texts! {
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "地址";
     SINCE: "for", "已持续";
+    MOVED_TO: "The adapter is now at", "适配器现位于";
     PACKING: "Bytes in Modbus words", "Modbus 字内字节";
     PACKING_LOW: "low first", "低字节在前";
     PACKING_HIGH: "high first", "高字节在前";

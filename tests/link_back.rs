@@ -1,0 +1,380 @@
+//! The link comes back: a wire that hangs up or falls silent is noticed in time, and the adapter is found again, also
+//! under another name. All in virtual time.
+#![allow(
+    unreachable_pub,
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    reason = "a test may"
+)]
+
+#[path = "faults/device.rs"]
+mod device;
+
+use device::Quirks;
+use futures::FutureExt as _;
+use futures::future::BoxFuture;
+use handscope::hand::{Angle, Dof, Force, PerDof, Speed, Target};
+use handscope::link::{
+    self, ArmRequest, Clock, Disarmed, LinkConfig, LinkHandle, LinkState, LinkStatus, LinkTrouble,
+    PollRates, Setpoints,
+};
+use handscope::sim::serve::{rs485, slcan};
+use handscope::sim::{SharedHand, SimConfig, SimHand};
+use handscope::transport::{
+    BoxedWire, Dial, Endpoint, PortFound, TransportError, UsbFound, Wire, pair,
+};
+use std::sync::{Arc, Mutex};
+use tokio::sync::watch;
+use tokio::task::JoinHandle;
+use tokio::time::{Duration, Instant, sleep, timeout};
+
+/// What the issue asks for.
+const UNPLUG_WITHIN: Duration = Duration::from_millis(100);
+const SILENCE_WITHIN: Duration = Duration::from_millis(300);
+const BACK_WITHIN: Duration = Duration::from_secs(2);
+
+const WIRES: [&str; 4] = [
+    "rs485:/dev/ttyT0",
+    "rtu:/dev/ttyT0",
+    "slcan:/dev/ttyT0",
+    "tcp:127.0.0.1:6000",
+];
+
+/// A computer whose ports are a list, with one hand behind whichever port has the adapter `A5`.
+struct Computer {
+    hand: SharedHand,
+    state: Mutex<Plugged>,
+    mute: watch::Sender<bool>,
+}
+
+#[derive(Default)]
+struct Plugged {
+    ports: Vec<PortFound>,
+    wires: Vec<JoinHandle<()>>,
+    /// Paths that were opened.
+    opened: Vec<String>,
+    /// Open wires at the time of each opening.
+    open_then: Vec<usize>,
+    unreachable: bool,
+}
+
+impl Computer {
+    fn new() -> Arc<Self> {
+        let hand = SharedHand::new(SimHand::new(SimConfig::default()), Instant::now());
+        let computer = Arc::new(Self {
+            hand,
+            state: Mutex::default(),
+            mute: watch::Sender::new(false),
+        });
+        computer.plug(&[usb("/dev/ttyT0", Some("A5"), "1-2:1.0")]);
+        computer
+    }
+
+    fn plug(&self, ports: &[PortFound]) {
+        let mut state = self.state.lock().unwrap();
+        state.ports = ports.to_vec();
+        state.unreachable = false;
+    }
+
+    /// The adapter is pulled out: its wire hangs up, its port is gone.
+    fn unplug(&self) {
+        let mut state = self.state.lock().unwrap();
+        state.ports.clear();
+        state.unreachable = true;
+        for wire in state.wires.drain(..) {
+            wire.abort();
+        }
+    }
+
+    fn mute(&self, mute: bool) {
+        self.mute.send_replace(mute);
+    }
+}
+
+fn usb(path: &str, serial: Option<&str>, location: &str) -> PortFound {
+    PortFound {
+        path: path.into(),
+        usb: Some(UsbFound {
+            vendor_id: 0x0403,
+            product_id: 0x6001,
+            serial: serial.map(str::to_owned),
+            location: Some(location.into()),
+            ..UsbFound::default()
+        }),
+    }
+}
+
+impl Dial for Computer {
+    fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
+        let mut state = self.state.lock().unwrap();
+        let place = endpoint.place();
+        let is_there = match endpoint.port() {
+            Some(port) => state.ports.iter().any(|found| found.path == port),
+            None => !state.unreachable,
+        };
+        if !is_there {
+            return futures::future::ready(Err(TransportError::Missing { place })).boxed();
+        }
+        state.opened.push(place);
+        let open = state.wires.iter().filter(|wire| !wire.is_finished());
+        let open = open.count();
+        state.open_then.push(open);
+        let (near, far) = pair();
+        let (far, hand) = (Mutable::new(far, self.mute.subscribe()), self.hand.clone());
+        let quirks = Quirks::default();
+        let wire = match endpoint {
+            Endpoint::Rtu(_) => tokio::spawn(device::modbus_rtu(hand, far, quirks, 1)),
+            Endpoint::Tcp { .. } => tokio::spawn(device::modbus_tcp(hand, far, quirks, 1)),
+            Endpoint::Slcan { .. } => tokio::spawn(slcan::serve(hand, far)),
+            _ => tokio::spawn(rs485::serve(hand, far)),
+        };
+        state.wires.push(wire);
+        futures::future::ready(Ok(Box::new(near) as BoxedWire)).boxed()
+    }
+
+    fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
+        let ports = self.state.lock().unwrap().ports.clone();
+        futures::future::ready(ports).boxed()
+    }
+}
+
+/// A hand's end of a wire that says nothing while it is muted.
+struct Mutable<W> {
+    wire: W,
+    mute: watch::Receiver<bool>,
+}
+
+impl<W: Wire> Mutable<W> {
+    fn new(wire: W, mute: watch::Receiver<bool>) -> Self {
+        Self { wire, mute }
+    }
+}
+
+impl<W: Wire> tokio::io::AsyncRead for Mutable<W> {
+    fn poll_read(
+        mut self: std::pin::Pin<&mut Self>,
+        cx: &mut std::task::Context<'_>,
+        buf: &mut tokio::io::ReadBuf<'_>,
+    ) -> std::task::Poll<std::io::Result<()>> {
+        std::pin::Pin::new(&mut self.wire).poll_read(cx, buf)
+    }
+}
+
+impl<W: Wire> tokio::io::AsyncWrite for Mutable<W> {
+    fn poll_write(
+        mut self: std::pin::Pin<&mut Self>,
+        cx: &mut std::task::Context<'_>,
+        buf: &[u8],
+    ) -> std::task::Poll<std::io::Result<usize>> {
+        if *self.mute.borrow() {
+            return std::task::Poll::Ready(Ok(buf.len()));
+        }
+        std::pin::Pin::new(&mut self.wire).poll_write(cx, buf)
+    }
+
+    fn poll_flush(
+        self: std::pin::Pin<&mut Self>,
+        _cx: &mut std::task::Context<'_>,
+    ) -> std::task::Poll<std::io::Result<()>> {
+        std::task::Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(
+        self: std::pin::Pin<&mut Self>,
+        _cx: &mut std::task::Context<'_>,
+    ) -> std::task::Poll<std::io::Result<()>> {
+        std::task::Poll::Ready(Ok(()))
+    }
+}
+
+fn open(computer: &Arc<Computer>, endpoint: &str) -> LinkHandle {
+    let config = LinkConfig {
+        endpoint: endpoint.parse().unwrap(),
+        rates: PollRates::default(),
+        clock: Clock::start(),
+        dial: Arc::clone(computer) as Arc<dyn Dial>,
+        wake: Arc::new(|| ()),
+    };
+    link::open(config, &tokio::runtime::Handle::current())
+}
+
+/// Waits until the link is as wanted; how long that took, and how the link stands.
+async fn until(
+    link: &mut LinkHandle,
+    within: Duration,
+    wanted: impl Fn(&LinkStatus) -> bool,
+) -> (Duration, LinkStatus) {
+    let begun = Instant::now();
+    let status = timeout(within + Duration::from_secs(10), async {
+        loop {
+            let status = link.status();
+            if wanted(&status) {
+                return status;
+            }
+            while link.try_event().is_some() {}
+            sleep(Duration::from_millis(1)).await;
+        }
+    })
+    .await
+    .unwrap_or_else(|_| panic!("{:?}", link.status()));
+    let took = begun.elapsed();
+    assert!(took <= within, "{took:?} > {within:?}: {status:?}");
+    (took, status)
+}
+
+/// Arms and sets the hand in motion.
+async fn armed(link: &mut LinkHandle) {
+    until(link, BACK_WITHIN, |status| {
+        status.state == LinkState::Monitoring
+    })
+    .await;
+    sleep(Duration::from_millis(200)).await;
+    link.arm(ArmRequest {
+        speed: PerDof::splat(Speed::GENTLE),
+        force: PerDof::splat(Force::GENTLE),
+    });
+    let (_, status) = until(link, BACK_WITHIN, |status| status.armed.is_some()).await;
+    let mut setpoints = Setpoints::none(status.armed.unwrap());
+    setpoints.angle[Dof::Index] = Some(Target::Go(Angle::nearest(300)));
+    link.set(&setpoints);
+    sleep(Duration::from_millis(100)).await;
+}
+
+/// After a loss: back in time, not armed, and nothing was written since `writes`.
+async fn back(link: &mut LinkHandle, computer: &Computer, writes: usize) -> LinkStatus {
+    let (_, status) = until(link, BACK_WITHIN, |status| status.state.is_live()).await;
+    assert_eq!((status.state, status.armed), (LinkState::Monitoring, None));
+    sleep(Duration::from_secs(1)).await;
+    assert_eq!(link.status().disarmed, Some(Disarmed::LinkLost));
+    let now = computer.hand.with(|hand, _| hand.journal().len());
+    assert_eq!(now, writes, "nothing is written by coming back");
+    status
+}
+
+fn is_lost(status: &LinkStatus) -> bool {
+    status.state == LinkState::Offline
+}
+
+fn writes(computer: &Computer) -> usize {
+    computer.hand.with(|hand, _| hand.journal().len())
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_pulled_plug_is_noticed_in_100_ms_and_the_same_name_serves_again_in_2_s() {
+    for wire in WIRES {
+        let computer = Computer::new();
+        let mut link = open(&computer, wire);
+        armed(&mut link).await;
+        computer.unplug();
+        let (_, status) = until(&mut link, UNPLUG_WITHIN, is_lost).await;
+        let trouble = status.trouble.unwrap();
+        assert!(
+            matches!(
+                trouble,
+                LinkTrouble::Transport(TransportError::HungUp { .. })
+            ),
+            "{wire}: {trouble}"
+        );
+        let before = writes(&computer);
+        sleep(Duration::from_secs(7)).await;
+        computer.plug(&[usb("/dev/ttyT0", Some("A5"), "1-2:1.0")]);
+        let status = back(&mut link, &computer, before).await;
+        assert_eq!(status.moved_to, None, "{wire}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn silence_is_noticed_in_300_ms_and_an_answer_within_2_s() {
+    for wire in WIRES {
+        let computer = Computer::new();
+        let mut link = open(&computer, wire);
+        armed(&mut link).await;
+        computer.mute(true);
+        let (_, status) = until(&mut link, SILENCE_WITHIN, is_lost).await;
+        let trouble = status.trouble.unwrap();
+        assert!(
+            matches!(trouble, LinkTrouble::Silent { .. }),
+            "{wire}: {trouble}"
+        );
+        sleep(Duration::from_secs(7)).await;
+        computer.mute(false);
+        let before = writes(&computer);
+        back(&mut link, &computer, before).await;
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_adapter_that_returns_under_another_name_is_followed_by_its_serial_number() {
+    for wire in &WIRES[..3] {
+        let computer = Computer::new();
+        let mut link = open(&computer, wire);
+        armed(&mut link).await;
+        computer.unplug();
+        until(&mut link, UNPLUG_WITHIN, is_lost).await;
+        let before = writes(&computer);
+        sleep(Duration::from_secs(3)).await;
+        // In another USB port, beside another adapter that came first and has the old name.
+        computer.plug(&[
+            usb("/dev/ttyT0", Some("B6"), "1-2:1.0"),
+            usb("/dev/ttyT1", Some("A5"), "1-3:1.0"),
+        ]);
+        let status = back(&mut link, &computer, before).await;
+        assert_eq!(status.moved_to.as_deref(), Some("/dev/ttyT1"), "{wire}");
+        let state = computer.state.lock().unwrap();
+        assert_eq!(state.opened, ["/dev/ttyT0", "/dev/ttyT1"], "{wire}");
+        assert_eq!(state.open_then, [0, 0], "the old wire is closed first");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_adapter_that_cannot_be_told_from_another_is_not_opened_but_named() {
+    let computer = Computer::new();
+    computer.plug(&[usb("/dev/ttyT0", None, "1-2:1.0")]);
+    let mut link = open(&computer, WIRES[0]);
+    armed(&mut link).await;
+    computer.unplug();
+    until(&mut link, UNPLUG_WITHIN, is_lost).await;
+    for strangers in [
+        // The same kind without a number, elsewhere; and another kind under the old name.
+        usb("/dev/ttyT1", None, "1-3:1.0"),
+        usb("/dev/ttyT0", Some("B6"), "1-2:1.0"),
+    ] {
+        computer.plug(std::slice::from_ref(&strangers));
+        sleep(Duration::from_secs(5)).await;
+        let status = link.status();
+        assert!(is_lost(&status));
+        let words = status.trouble.unwrap().to_string();
+        assert!(
+            words.contains("/dev/ttyT0 is unplugged") && words.contains(&strangers.path),
+            "{words}"
+        );
+        assert_eq!(computer.state.lock().unwrap().opened.len(), 1);
+    }
+    // A person who means that one says so, and a fresh link goes by the name alone.
+    drop(link);
+    let mut link = open(&computer, WIRES[0]);
+    until(&mut link, BACK_WITHIN, |status| status.state.is_live()).await;
+}
+
+#[tokio::test(start_paused = true)]
+async fn while_waiting_a_port_is_looked_for_once_a_second_at_most() {
+    let computer = Computer::new();
+    let mut link = open(&computer, WIRES[0]);
+    armed(&mut link).await;
+    computer.unplug();
+    until(&mut link, UNPLUG_WITHIN, is_lost).await;
+    sleep(Duration::from_secs(2)).await;
+    let mut tries = 0;
+    let mut last = link.status().dialling;
+    let end = Instant::now() + Duration::from_secs(60);
+    while Instant::now() < end {
+        sleep(Duration::from_millis(10)).await;
+        let now = link.status().dialling;
+        tries += u32::from(now != last);
+        last = now;
+    }
+    assert!(tries <= 61, "{tries}");
+}
