@@ -91,7 +91,8 @@ pub(crate) fn remedy(_port: &str) -> Remedy {
     Remedy::Unknown
 }
 
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod tests {
     use super::*;
 

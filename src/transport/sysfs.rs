@@ -71,7 +71,8 @@ fn is_interface(name: &str) -> bool {
     is_digits(bus) && ports.split('.').all(is_digits) && interface.split('.').all(is_digits)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
