@@ -41,6 +41,7 @@ pub(crate) fn stats_json(stats: &LinkStats, elapsed: Duration) -> Value {
         "checksum_errors": stats.checksum_errors,
         "resyncs": stats.resyncs,
         "foreign_replies": stats.foreign_replies,
+        "foreign_requests": stats.foreign_requests,
         "refusals": stats.refusals,
         "reconnects": stats.reconnects,
         "writes": stats.writes,

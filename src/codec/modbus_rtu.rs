@@ -13,6 +13,10 @@ const CHECK_LEN: usize = 2;
 const EXCEPTION_LEN: usize = 5;
 /// Unit, function, address, count or value, check.
 const WRITTEN_LEN: usize = 8;
+/// Unit, function, address, count or value, check.
+const REQUEST_LEN: usize = 8;
+/// Unit, function, address, count, number of bytes.
+const WRITE_HEAD_LEN: usize = 7;
 /// Unit, function, number of bytes.
 const READ_HEAD_LEN: usize = 3;
 /// Most bytes that a read reply can hold: 125 words (manual 2.5.1).
@@ -59,6 +63,15 @@ pub struct RtuNoise {
     pub resyncs: u64,
 }
 
+/// Requests that were on the line: ours, given back by an adapter, or another controller's.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RtuRequests {
+    /// Those that were announced by [`RtuSplitter::expect_echo`].
+    pub echoes: u64,
+    /// All others that could be told from replies.
+    pub foreign: u64,
+}
+
 /// Cuts a stream into the replies of one unit. RTU marks no beginning, only a silence that adapters do not keep, so
 /// a reply is where unit, function, length and check agree; bytes that fit none are skipped.
 #[derive(Debug, Clone)]
@@ -68,6 +81,9 @@ pub struct RtuSplitter {
     noise: RtuNoise,
     /// Within a run of skipped bytes, which counts once.
     skipping: bool,
+    /// The request whose echo may come; empty if none may.
+    echo: ArrayVec<u8, FRAME_LEN_MAX>,
+    requests: RtuRequests,
 }
 
 /// What the bytes at the front can be.
@@ -76,6 +92,8 @@ enum Head {
     Good(usize),
     /// Looks like a reply, but its check is wrong.
     Bad,
+    /// What was sent, given back, of so many bytes.
+    Echo(usize),
     /// Too few bytes to tell.
     Open,
     /// No reply begins so.
@@ -94,7 +112,29 @@ impl RtuSplitter {
                 resyncs: 0,
             },
             skipping: false,
+            echo: ArrayVec::new_const(),
+            requests: RtuRequests {
+                echoes: 0,
+                foreign: 0,
+            },
         }
+    }
+
+    /// This request goes out now, and the first bytes like it are no reply: an adapter may give it back. Not to be
+    /// called for function 06 unless it surely does so, because there the reply is like the request.
+    pub fn expect_echo(&mut self, request: &[u8]) {
+        self.echo = request.iter().copied().take(FRAME_LEN_MAX).collect();
+    }
+
+    /// No echo is reckoned with any more.
+    pub fn expect_no_echo(&mut self) {
+        self.echo.clear();
+    }
+
+    /// Requests met so far.
+    #[must_use]
+    pub const fn requests(&self) -> RtuRequests {
+        self.requests
     }
 
     /// Takes bytes as they come; returns how many. The rest is given again after [`Self::next`] said `None`.
@@ -114,6 +154,8 @@ impl RtuSplitter {
             match self.head(0) {
                 Head::Good(len) => return Some(self.take(len)),
                 Head::Open => return None,
+                Head::Echo(len) => self.take_echo(len),
+                Head::Bad | Head::None if self.take_foreign() => {}
                 Head::Bad => {
                     self.noise.checksum_errors += u64::from(!self.skipping);
                     self.skip(1);
@@ -125,8 +167,14 @@ impl RtuSplitter {
 
     /// The line is silent, so nothing unfinished will be finished: skips to the next whole reply, or everything.
     pub fn flush_pending(&mut self) {
-        let whole = (0..self.buffer.len()).find(|at| matches!(self.head(*at), Head::Good(_)));
-        self.skip(whole.unwrap_or(self.buffer.len()));
+        while !self.buffer.is_empty() {
+            match self.head(0) {
+                Head::Good(_) => return,
+                Head::Echo(len) => self.take_echo(len),
+                Head::Bad | Head::Open | Head::None if self.take_foreign() => {}
+                Head::Bad | Head::Open | Head::None => self.skip(1),
+            }
+        }
     }
 
     /// What was skipped so far.
@@ -143,6 +191,14 @@ impl RtuSplitter {
 
     fn head(&self, at: usize) -> Head {
         let bytes = self.buffer.get(at..).unwrap_or_default();
+        if !self.echo.is_empty() {
+            if bytes.starts_with(&self.echo) {
+                return Head::Echo(self.echo.len());
+            }
+            if self.echo.starts_with(bytes) {
+                return Head::Open;
+            }
+        }
         if bytes.first().is_some_and(|unit| *unit != self.unit) {
             return Head::None;
         }
@@ -160,6 +216,33 @@ impl RtuSplitter {
             Some((body, check)) if crc16(body) == u16::from_le_bytes(*check) => Head::Good(len),
             Some(_) => Head::Bad,
         }
+    }
+
+    fn take_echo(&mut self, len: usize) {
+        self.requests.echoes += 1;
+        self.echo.clear();
+        self.skipping = false;
+        self.buffer.drain(..len);
+    }
+
+    /// Takes a whole request of another controller from the front, if one stands there where no reply does.
+    fn take_foreign(&mut self) -> bool {
+        let bytes = self.buffer.as_slice();
+        let len = match bytes {
+            [1..=247, 3 | 6, ..] => REQUEST_LEN,
+            [1..=247, 16, _, _, _, _, count, ..] => {
+                WRITE_HEAD_LEN + usize::from(*count) + CHECK_LEN
+            }
+            _ => return false,
+        };
+        let whole = bytes.get(..len).and_then(<[u8]>::split_last_chunk);
+        let is_good = whole.is_some_and(|(body, check)| crc16(body) == u16::from_le_bytes(*check));
+        if is_good {
+            self.requests.foreign += 1;
+            self.skipping = false;
+            self.buffer.drain(..len);
+        }
+        is_good
     }
 
     fn take(&mut self, len: usize) -> RtuReply {

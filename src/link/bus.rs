@@ -39,6 +39,7 @@ pub(crate) struct BusCounts {
     pub(crate) checksum_errors: u64,
     pub(crate) resyncs: u64,
     pub(crate) foreign_replies: u64,
+    pub(crate) foreign_requests: u64,
 }
 
 impl BusCounts {
@@ -47,6 +48,7 @@ impl BusCounts {
             checksum_errors: self.checksum_errors + more.checksum_errors,
             resyncs: self.resyncs + more.resyncs,
             foreign_replies: self.foreign_replies + more.foreign_replies,
+            foreign_requests: self.foreign_requests + more.foreign_requests,
         }
     }
 }
@@ -167,6 +169,16 @@ impl Bus {
             Self::ModbusRtu(bus) => bus.counts(),
             Self::ModbusTcp(bus) => bus.counts(),
             Self::Can(bus) => bus.counts(),
+        }
+    }
+
+    /// True if the adapter was found to give back what is sent.
+    pub(crate) fn echoes(&self) -> bool {
+        match self {
+            Self::Rs485(bus) => bus.echoes(),
+            Self::ModbusRtu(bus) => bus.echoes(),
+            Self::ModbusTcp(_) => false,
+            Self::Can(bus) => bus.echoes(),
         }
     }
 

@@ -14,6 +14,7 @@ use crate::link::can_port::CanPort;
 use crate::link::clock::Clock;
 use crate::link::late::LateReplies;
 use crate::transport::{BoxedWire, Endpoint};
+use arrayvec::ArrayVec;
 use futures::FutureExt as _;
 use std::time::Duration;
 use tokio::time::{Instant, timeout, timeout_at};
@@ -32,6 +33,8 @@ const ADAPTER_PIECE_TIME: Duration = Duration::from_millis(18);
 const ACK_LEN: usize = 1;
 /// Requests in a row without reply after which what the controller says of the bus is taken for the cause.
 const UNANSWERED_MAX: u32 = 2;
+/// Requests remembered: more than an adapter that echoes can hold back.
+const SENT_MAX: usize = 8;
 /// Asked first, to see whether the adapter echoes: two bytes, so that request and reply differ in length.
 const PROBE: Span = Span::new(register::ANGLE_ACT.address, 2);
 
@@ -46,6 +49,9 @@ pub(crate) struct Can {
     clock: Clock,
     unanswered: u32,
     foreign: u64,
+    /// Requests sent last, oldest first: a frame like one of them is no one else's.
+    sent: ArrayVec<CanFrame, SENT_MAX>,
+    foreign_requests: u64,
 }
 
 impl Can {
@@ -65,6 +71,8 @@ impl Can {
             clock,
             unanswered: 0,
             foreign: 0,
+            sent: ArrayVec::new(),
+            foreign_requests: 0,
         }
     }
 
@@ -156,7 +164,13 @@ impl Can {
             checksum_errors: 0,
             resyncs: self.port.bad_lines(),
             foreign_replies: self.foreign,
+            foreign_requests: self.foreign_requests,
         }
+    }
+
+    /// True if the adapter gives back what is sent.
+    pub(crate) fn echoes(&self) -> bool {
+        self.echoes == Some(true)
     }
 
     pub(crate) fn close(mut self) -> LateReplies {
@@ -212,6 +226,10 @@ impl Can {
         limit: Duration,
     ) -> Result<Payload, BusError> {
         self.take_waiting()?;
+        if self.sent.is_full() {
+            self.sent.remove(0);
+        }
+        self.sent.push(request.clone());
         let deadline = end.min(Instant::now() + PIECE_LIMIT);
         match timeout_at(deadline, self.port.send(request)).await {
             Ok(sent) => sent?,
@@ -264,11 +282,28 @@ impl Can {
         }
     }
 
+    /// Whether a frame asks. Requests and replies share an identifier: a write of two bytes or more asks, because it is
+    /// acknowledged by one; a single byte of a read asks, unless we asked for a single byte there ourselves.
+    fn is_request(&self, id: CanId, frame: &CanFrame) -> bool {
+        match id.way {
+            Way::Write => frame.data.len() > ACK_LEN,
+            Way::Read => {
+                let asked_here =
+                    |sent: &CanFrame| sent.id == frame.id && sent.data.as_slice() == [1];
+                frame.data.len() == 1 && !self.sent.iter().any(asked_here)
+            }
+        }
+    }
+
     /// A frame that answers nothing. Those of other hands are none of our business.
     fn foreign_frame(&mut self, frame: &CanFrame) {
         let Some(id) = CanId::from_raw(frame.id).filter(|id| id.hand == self.hand) else {
             return;
         };
+        if self.is_request(id, frame) {
+            self.foreign_requests += u64::from(!self.sent.contains(frame));
+            return;
+        }
         self.foreign += 1;
         if id.way == Way::Read
             && let Ok(len) = u16::try_from(frame.data.len())

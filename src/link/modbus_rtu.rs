@@ -137,7 +137,13 @@ impl ModbusRtu {
             checksum_errors: noise.checksum_errors,
             resyncs: noise.resyncs,
             foreign_replies: self.line.foreign(),
+            foreign_requests: self.line.foreign_requests(),
         }
+    }
+
+    /// True if the adapter gives back what is sent.
+    pub(crate) fn echoes(&self) -> bool {
+        self.line.echoes()
     }
 
     pub(crate) fn close(self) -> LateReplies {

@@ -4,6 +4,7 @@ use crate::codec::rs485::{Frame, Reply, ReplyDecoder, encode_read, encode_write}
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
+use crate::link::echo::Echo;
 use crate::link::late::LateReplies;
 use crate::link::lost::lost;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
@@ -34,6 +35,10 @@ pub(crate) struct Rs485 {
     late: LateReplies,
     clock: Clock,
     foreign: u64,
+    /// The request that went out last: what comes back like it is an echo.
+    sent: Frame,
+    echo: Echo,
+    foreign_requests: u64,
 }
 
 /// What an open request waits for.
@@ -73,6 +78,9 @@ impl Rs485 {
             late,
             clock,
             foreign: 0,
+            sent: Frame::new(),
+            echo: Echo::default(),
+            foreign_requests: 0,
         }
     }
 
@@ -135,7 +143,13 @@ impl Rs485 {
             checksum_errors: noise.checksum_errors,
             resyncs: noise.resyncs,
             foreign_replies: self.foreign,
+            foreign_requests: self.foreign_requests,
         }
+    }
+
+    /// True if the adapter gives back what is sent.
+    pub(crate) const fn echoes(&self) -> bool {
+        self.echo.is_sure()
     }
 
     pub(crate) fn close(self) -> LateReplies {
@@ -149,6 +163,8 @@ impl Rs485 {
         limit: Duration,
     ) -> Result<Fit, BusError> {
         self.take_waiting()?;
+        self.sent.clone_from(frame);
+        self.echo.sent();
         let deadline = Instant::now() + limit;
         let timed_out = BusError::Timeout { after: limit };
         match timeout_at(deadline, self.wire.write_all(frame)).await {
@@ -184,16 +200,33 @@ impl Rs485 {
         while let Some(reply) = self.decoder.next() {
             self.foreign_reply(&reply);
         }
+        self.sort_overheard();
+    }
+
+    /// Requests on the line: our own, given back by the adapter, or another controller's.
+    fn sort_overheard(&mut self) {
+        while let Some(request) = self.decoder.overheard() {
+            if request == self.sent {
+                self.echo.came_back();
+            } else {
+                self.foreign_requests += 1;
+            }
+        }
     }
 
     /// The reply to the open request, if it is there; others are counted and dropped.
     fn fitting(&mut self, expected: &Expected) -> Option<Fit> {
         while let Some(reply) = self.decoder.next() {
+            self.sort_overheard();
             match self.fit(&reply, expected) {
                 Fit::No => self.foreign_reply(&reply),
-                fit => return Some(fit),
+                fit => {
+                    self.echo.answered();
+                    return Some(fit);
+                }
             }
         }
+        self.sort_overheard();
         None
     }
 

@@ -2,6 +2,7 @@
 //! listen to between requests. Which request is made, and when, is not decided here.
 
 use crate::codec::modbus_rtu::{FRAME_LEN_MAX, RtuNoise, RtuReply, RtuSplitter};
+use crate::link::echo::Echo;
 use crate::transport::BoxedWire;
 use arrayvec::ArrayVec;
 use std::io;
@@ -67,6 +68,8 @@ struct Line {
     /// The reply on its way to the client.
     passed: ArrayVec<u8, FRAME_LEN_MAX>,
     foreign: u64,
+    echo: Echo,
+    echoes: u64,
     closed: bool,
     heard: Option<Instant>,
 }
@@ -81,6 +84,8 @@ impl RtuLine {
             written: 0,
             passed: ArrayVec::new(),
             foreign: 0,
+            echo: Echo::default(),
+            echoes: 0,
             closed: false,
             heard: None,
         })))
@@ -110,6 +115,16 @@ impl RtuLine {
     /// Replies that nobody asked for, since the line was opened.
     pub(crate) fn foreign(&self) -> u64 {
         self.line().foreign
+    }
+
+    /// Requests of others, since the line was opened.
+    pub(crate) fn foreign_requests(&self) -> u64 {
+        self.line().splitter.requests().foreign
+    }
+
+    /// True if the adapter gives back what is sent.
+    pub(crate) fn echoes(&self) -> bool {
+        self.line().echo.is_sure()
     }
 
     /// What was skipped since the line was opened.
@@ -154,12 +169,35 @@ impl Line {
     /// Passes the reply to the open request; counts and drops all others.
     fn sort(&mut self) {
         while let Some(reply) = self.splitter.next() {
+            self.note_echo();
             if self.open.is_some_and(|open| open.fits(&reply)) {
                 self.open = None;
+                self.echo.answered();
                 self.passed = reply.bytes;
             } else {
                 self.foreign += 1;
             }
+        }
+    }
+
+    fn note_echo(&mut self) {
+        let echoes = self.splitter.requests().echoes;
+        if echoes > self.echoes {
+            self.echoes = echoes;
+            self.echo.came_back();
+        }
+    }
+
+    /// Reckons with the echo of a request that goes out now. The reply to function 06 is like its request: there an
+    /// echo is looked for only where the exchange before had one, and each conversation begins with reads.
+    fn expect_echo(&mut self, request: &[u8]) {
+        self.note_echo();
+        self.echo.sent();
+        let looks_like_its_reply = matches!(request, [_, 6, ..]);
+        if looks_like_its_reply && !self.echo.is_likely() {
+            self.splitter.expect_no_echo();
+        } else {
+            self.splitter.expect_echo(request);
         }
     }
 
@@ -207,6 +245,7 @@ impl AsyncWrite for RtuLine {
             return Poll::Ready(Err(io::ErrorKind::InvalidInput.into()));
         }
         line.open = Expected::to(request);
+        line.expect_echo(request);
         line.passed.clear();
         Poll::Ready(Ok(request.len()))
     }

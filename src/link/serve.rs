@@ -35,7 +35,10 @@ impl Session {
                 return end;
             }
             match self.step(bus).await {
-                Ok(true) => self.count(bus),
+                Ok(true) => {
+                    self.count(bus);
+                    self.watch_others(bus);
+                }
                 Ok(false) => self.idle().await,
                 Err(end) => return end,
             }
@@ -187,6 +190,20 @@ impl Session {
         }
     }
 
+    /// Another controller disarms, once: who arms while it is there has been told and wants it.
+    fn watch_others(&mut self, bus: &Bus) {
+        let rival = self.rival.is_active(self.now());
+        let is_news = rival && !self.status.rival;
+        if (self.status.rival, self.status.echoes) != (rival, bus.echoes()) {
+            self.status.rival = rival;
+            self.status.echoes = bus.echoes();
+            self.publish();
+        }
+        if is_news {
+            self.disarm(Disarmed::Rival);
+        }
+    }
+
     fn begin_hold(&mut self) {
         let now = self.now();
         self.disarm(Disarmed::Stop);
@@ -246,6 +263,7 @@ impl Session {
         let limit = self.reply_limit(bus, ACK_LEN);
         let asked = self.now();
         self.counters.stats.writes += 1;
+        self.rival.wrote(write, asked);
         bus.write(write, limit).await?;
         let took = self.now().since(asked);
         self.answered(took);
@@ -333,6 +351,7 @@ impl Session {
         // Counted from the asking, so that the rate is kept whatever the reply takes.
         self.plan.done(poll, asked);
         let fresh = self.sample.take(reply);
+        self.rival.read(&self.sample, fresh);
         let sample = Box::new(self.sample);
         self.tell(LinkEvent::Sample { sample, fresh });
         if fresh.contains(Group::Faults) {

@@ -12,6 +12,7 @@ use crate::link::jobs::Job;
 use crate::link::late::LateReplies;
 use crate::link::motion::Motion;
 use crate::link::plan::PollPlan;
+use crate::link::rival::Rival;
 use crate::link::status::{Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble};
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use std::sync::Arc;
@@ -64,6 +65,7 @@ pub(crate) struct Session {
     /// The endpoint as it was dialled last: through the port at which the adapter is.
     dialled: Endpoint,
     late: LateReplies,
+    pub(crate) rival: Rival,
     closed_wires: BusCounts,
 }
 
@@ -85,6 +87,7 @@ impl Session {
             silent_since: None,
             follow: Follow::default(),
             late: LateReplies::default(),
+            rival: Rival::default(),
             closed_wires: BusCounts::default(),
         }
     }
@@ -207,6 +210,7 @@ impl Session {
             self.counters.stats.reconnects += 1;
         }
         self.sample = HandSample::default();
+        self.rival.begin();
         self.plan = PollPlan::new(self.config.rates, self.now());
         self.motion = Motion::after(self.motion.last_epoch);
         self.status.dialling = Dialling::Idle;
@@ -367,6 +371,8 @@ impl Session {
         self.counters.stats.checksum_errors = all.checksum_errors;
         self.counters.stats.resyncs = all.resyncs;
         self.counters.stats.foreign_replies = all.foreign_replies;
+        self.rival.overheard(all.foreign_requests, self.now());
+        self.counters.stats.foreign_requests = all.foreign_requests + self.rival.changes;
         self.counters.digest(self.now());
         self.ends.stats.send_replace(self.counters.stats);
     }

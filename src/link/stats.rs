@@ -25,6 +25,8 @@ pub struct LinkStats {
     pub resyncs: u64,
     /// Replies that belonged to no open request: late, doubled, or someone else's.
     pub foreign_replies: u64,
+    /// Requests of another controller, and setpoints that it changed.
+    pub foreign_requests: u64,
     /// Requests that the hand refused.
     pub refusals: u64,
     /// Times the wire was opened again.

@@ -48,6 +48,10 @@ pub struct LinkStatus {
     pub armed: Option<ArmEpoch>,
     /// What the hand answers in its own way, as found when the wire was opened.
     pub quirks: Quirks,
+    /// True if the adapter gives back what is sent.
+    pub echoes: bool,
+    /// Another controller talks to this hand, noticed in the last seconds.
+    pub rival: bool,
     /// The port at which the adapter is now, if that is another than was asked for.
     pub moved_to: Option<String>,
     /// How long the adapter may keep what it got, milliseconds, where the system tells.
@@ -151,6 +155,8 @@ pub enum Disarmed {
     Stale,
     /// This computer slept.
     Resume,
+    /// Another controller talks to this hand.
+    Rival,
 }
 
 /// Why the hand cannot be armed.

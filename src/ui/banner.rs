@@ -26,6 +26,7 @@ pub(crate) fn banners(pane: &Pane<'_>) -> Vec<Banner> {
         alarm(pane),
         lost(pane),
         faults(pane),
+        rival(pane),
         stale(pane),
         empty(pane),
     ]
@@ -111,6 +112,17 @@ fn faults(pane: &Pane<'_>) -> Option<Banner> {
         aside: String::new(),
         color: look.value(pane.freshness(Some(faults.asked)), look.palette.bad),
         opens: Some((View::Faults, main::FAULT_SHOW, main::FAULT_SHOW_TIP)),
+    })
+}
+
+fn rival(pane: &Pane<'_>) -> Option<Banner> {
+    let link = &pane.state.link;
+    (link.state.is_live() && link.rival).then(|| Banner {
+        title: main::RIVAL_TITLE,
+        body: pane.look.say(main::RIVAL_BODY).into(),
+        aside: String::new(),
+        color: pane.look.palette.warn,
+        opens: None,
     })
 }
 

@@ -29,6 +29,9 @@ pub(crate) fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let text = format!("{} {port}", look.say(panels::MOVED_TO));
         Label::new(&text, look.palette.warn).put(ui, take_top(&mut body, 16.0));
     }
+    if pane.state.link.echoes {
+        paragraph_ui(ui, &mut body, look.say(panels::ECHOES), look.palette.muted);
+    }
     if let Some(trouble) = &pane.state.link.trouble {
         let text = notices::trouble(look, trouble);
         paragraph_ui(ui, &mut body, &text, look.palette.bad);
@@ -105,6 +108,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
             bad(panels::CHECKSUMS, stats.checksum_errors),
             bad(panels::RESYNCS, stats.resyncs),
             bad(panels::FOREIGN, stats.foreign_replies),
+            bad(panels::RIVAL_REQUESTS, stats.foreign_requests),
             bad(panels::REFUSALS, stats.refusals),
             bad(panels::DROPPED, stats.dropped_events),
         ],

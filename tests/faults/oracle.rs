@@ -5,7 +5,7 @@ use crate::tap::{Log, Sent};
 use handscope::hand::register::{Access, Element, by_address};
 use handscope::hand::{Finger, Group, Groups, HandSample, Moment, Timed};
 use handscope::link::{
-    Hold, LinkEvent, LinkHandle, LinkState, Outcome, Request, RequestError, Ticket,
+    Disarmed, Hold, LinkEvent, LinkHandle, LinkState, Outcome, Request, RequestError, Ticket,
 };
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -186,6 +186,12 @@ impl Witness {
         self.check_recovery(link, now);
         let stats = link.stats();
         assert_eq!(stats.dropped_events, 0, "seed {}", self.seed);
+        let status = link.status();
+        assert!(
+            !status.rival && status.disarmed != Some(Disarmed::Rival) && !status.echoes,
+            "seed {}: nobody else was on the line: {status:?}",
+            self.seed
+        );
         assert!(
             self.seen.armed <= self.seen.arm_asks,
             "seed {}: armed by itself",

@@ -125,6 +125,14 @@ impl Reply {
     }
 }
 
+impl ReplyDecoder {
+    /// A whole request that was on the line: our own that an adapter gave back, or another controller's. Oldest first;
+    /// of many at once only the first few are kept.
+    pub fn overheard(&mut self) -> Option<Frame> {
+        self.0.overheard()
+    }
+}
+
 framing::decoder!(
     /// Finds replies in what comes from the wire. Whole requests (echoes) are skipped and counted.
     ReplyDecoder,

@@ -11,6 +11,9 @@ pub const READ_LEN_MAX: u16 = 252;
 /// Bytes that a decoder keeps: two of the longest frames, so that a frame behind a false header still fits.
 pub const BUFFER_LEN: usize = 520;
 
+/// Frames of the other way that wait to be looked at; more at once only count.
+const OVERHEARD_MAX: usize = 4;
+
 /// Command byte of a read.
 pub(super) const READ: u8 = 0x11;
 /// Command byte of a write.
@@ -173,6 +176,8 @@ pub(super) struct Framer {
     stale: usize,
     /// True while skipping, so that a run is counted once.
     skipping: bool,
+    /// Whole frames of the other way.
+    overheard: ArrayVec<Frame, OVERHEARD_MAX>,
     counts: NoiseCounts,
 }
 
@@ -183,6 +188,7 @@ impl Framer {
             buffer: ArrayVec::new_const(),
             stale: 0,
             skipping: false,
+            overheard: ArrayVec::new_const(),
             counts: NoiseCounts {
                 frames: 0,
                 echoes: 0,
@@ -206,13 +212,17 @@ impl Framer {
             match scan(rest) {
                 Scan::Frame(way, total) => {
                     self.skipping = false;
-                    let frame = rest.get(..total).and_then(parts);
+                    let whole = rest.get(..total).unwrap_or_default();
                     at += total;
                     if way == self.way {
                         self.counts.frames += 1;
-                        break frame;
+                        break parts(whole);
                     }
                     self.counts.echoes += 1;
+                    if let Ok(frame) = Frame::try_from(whole) {
+                        // Too many at once are counted all the same.
+                        let _full = self.overheard.try_push(frame);
+                    }
                 }
                 Scan::NeedMore if rest.is_empty() || at >= self.stale => break None,
                 Scan::NeedMore | Scan::Bad => self.skip(&mut at),
@@ -235,6 +245,11 @@ impl Framer {
         self.skipping = true;
         self.counts.skipped_bytes += 1;
         *at += 1;
+    }
+
+    /// The oldest frame of the other way that was not looked at yet.
+    pub(super) fn overheard(&mut self) -> Option<Frame> {
+        self.overheard.pop_at(0)
     }
 
     pub(super) const fn flush_pending(&mut self) {

@@ -80,6 +80,7 @@ fn disarmed(look: Look, why: Disarmed) -> &'static str {
         Disarmed::Fault => panels::DISARMED_FAULT,
         Disarmed::LinkLost => panels::DISARMED_LOST,
         Disarmed::Stale => panels::DISARMED_STALE,
+        Disarmed::Rival => panels::DISARMED_RIVAL,
         Disarmed::Resume => panels::DISARMED_RESUME,
     })
 }

@@ -111,6 +111,7 @@ texts! {
     DISARMED_FAULT: "Not armed any more: a drive reports a fault.", "已取消使能：驱动器报告故障。";
     DISARMED_LOST: "Not armed any more: the link was lost.", "已取消使能：连接断开。";
     DISARMED_STALE: "Not armed any more: feedback grew old.", "已取消使能：反馈过时。";
+    DISARMED_RIVAL: "Not armed any more: another controller talks to this hand. Arming again is your confirmation.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能即表示确认。";
     DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
     STATUS_LIST: "Status of the drives", "驱动器状态";
 
@@ -169,6 +170,7 @@ texts! {
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "地址";
     SINCE: "for", "已持续";
+    ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
     MOVED_TO: "The adapter is now at", "适配器现位于";
     PACKING: "Bytes in Modbus words", "Modbus 字内字节";
     PACKING_LOW: "low first", "低字节在前";
@@ -183,6 +185,7 @@ texts! {
     TIMEOUTS: "Timeouts", "超时";
     CHECKSUMS: "Checksum errors", "校验错误";
     RESYNCS: "Noise skipped", "跳过噪声";
+    RIVAL_REQUESTS: "Requests of others", "其他主站请求";
     FOREIGN: "Foreign replies", "无关应答";
     REFUSALS: "Refusals", "拒绝";
     RECONNECTS: "Reconnects", "重新连接";
