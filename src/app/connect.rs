@@ -82,6 +82,10 @@ impl Dial for SimDial {
     fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
         self.system.ports()
     }
+
+    fn interfaces(&self) -> BoxFuture<'static, Vec<String>> {
+        self.system.interfaces()
+    }
 }
 
 #[cfg(test)]

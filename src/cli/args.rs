@@ -3,6 +3,7 @@
 use crate::app::settings::{Language, Theme};
 use crate::cli::ids::HandIds;
 use crate::cli::names;
+use crate::cli::scan::ScanArgs;
 use crate::hand::Register;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
@@ -44,6 +45,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope read ANGLE_ACT TEMP --hand rs485:/dev/ttyUSB0\n  handscope read HAND_ID --hand tcp:192.168.11.210 --json\n\n'handscope registers' lists the names."
     )]
     Read(ReadArgs),
+    /// Find hands: on all serial ports and CAN interfaces, or where you say
+    #[command(
+        after_help = "Examples:\n  handscope scan\n  handscope scan --serial /dev/ttyUSB0 --all-ids\n  handscope scan --tcp 192.168.11.210 --tcp 192.168.11.0/24 --json\n\nOn serial ports both protocols and all four speeds are tried, the likely ones first. Each port is opened and asked for HAND_ID; nothing is written. No address in the network is tried that is not named. Ctrl-C ends it with what was found.\n\nExit status: 0 hands found, or all looked at; 1 nothing found and something could not be looked at; 2 wrong usage."
+    )]
+    Scan(ScanArgs),
     /// Be a hand for other programs: on pseudo-terminals, on TCP, on CAN, or on all of them
     #[command(
         after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands.

@@ -8,6 +8,7 @@ mod names;
 mod out;
 mod read;
 mod registers;
+mod scan;
 mod session;
 mod sim;
 mod snapshot;
@@ -18,7 +19,7 @@ mod window;
 
 use args::{Cli, Command};
 use clap::Parser as _;
-use out::{Out, ReaderGone};
+use out::{Out, ReaderGone, Told};
 use std::process::ExitCode;
 
 /// Does what the command line asks. Errors go to standard error as one sentence each.
@@ -34,6 +35,7 @@ pub fn run() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if error.is::<ReaderGone>() => ExitCode::SUCCESS,
+        Err(error) if error.is::<Told>() => ExitCode::FAILURE,
         Err(error) => {
             out::say(&format!("{error:#}"));
             ExitCode::FAILURE
@@ -47,6 +49,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Snapshot(args) => snapshot::run(&mut out, &args),
         Command::Watch(args) => watch::run(&mut out, args),
         Command::Read(args) => read::run(&mut out, args),
+        Command::Scan(args) => scan::run(&mut out, &args),
         Command::Sim(args) => sim::run(&mut out, &args),
         Command::Registers(args) => registers::run(&mut out, args.json),
     };

@@ -17,6 +17,11 @@ pub(crate) struct Out {
 #[error("the reader of the output went away")]
 pub(crate) struct ReaderGone;
 
+/// The command could not do what was asked, and has said why already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("it was said already")]
+pub(crate) struct Told;
+
 impl Out {
     /// The process's standard output.
     pub(crate) fn stdout() -> Self {

@@ -93,6 +93,13 @@ bounded!(
     Gesture(u8), "GESTURE_NO_SET", 1..=40
 );
 
+impl HandId {
+    /// All of them, from the lowest.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (Self::MIN.0..=Self::MAX.0).map(Self)
+    }
+}
+
 impl Angle {
     /// Degrees of this joint at this angle, by the linear map of [`Dof::degrees`].
     #[must_use]

@@ -27,6 +27,7 @@ pub mod quirks;
 mod rival;
 mod rs485;
 mod rtu_line;
+pub mod scan;
 mod serve;
 mod session;
 pub mod stats;

@@ -53,6 +53,26 @@ pub fn open(interface: &str, node: Option<u32>) -> Result<CanWire, TransportErro
     })
 }
 
+/// The CAN interfaces that there are, up or down, by name.
+#[must_use]
+pub fn interfaces() -> Vec<String> {
+    /// What the kernel calls a CAN interface (ARPHRD_CAN).
+    const CAN: &str = "280";
+    let Ok(all) = std::fs::read_dir("/sys/class/net") else {
+        return Vec::new();
+    };
+    let mut names: Vec<String> = all
+        .flatten()
+        .filter(|entry| {
+            let kind = std::fs::read_to_string(entry.path().join("type"));
+            kind.is_ok_and(|kind| kind.trim() == CAN)
+        })
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .collect();
+    names.sort();
+    names
+}
+
 /// The kernel opens an interface that is down, and says so only when something is sent.
 fn refuse_if_down(interface: &str) -> Result<(), TransportError> {
     const UP: u32 = 1;

@@ -49,6 +49,14 @@ impl Dial for SystemDial {
             listed.unwrap_or_default()
         })
     }
+
+    #[cfg(target_os = "linux")]
+    fn interfaces(&self) -> BoxFuture<'static, Vec<String>> {
+        Box::pin(async {
+            let listed = tokio::task::spawn_blocking(can::interfaces).await;
+            listed.unwrap_or_default()
+        })
+    }
 }
 
 /// The serial side of a CAN adapter.

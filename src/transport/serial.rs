@@ -31,6 +31,27 @@ pub struct UsbFound {
     pub latency_timer_ms: Option<u16>,
 }
 
+/// Vendor and product of USB adapters that bring CAN frames as text: CANable and its likes, CANtact, Lawicel's CANUSB.
+const CAN_ADAPTERS: [(u16, u16); 4] = [
+    (0x16D0, 0x117E),
+    (0xAD50, 0x60C4),
+    (0x04D8, 0x000A),
+    (0x0403, 0xFFA8),
+];
+/// What such adapters call themselves.
+const CAN_NAMES: [&str; 5] = ["slcan", "canable", "cantact", "canusb", "usbtin"];
+
+impl UsbFound {
+    /// True if it looks like an adapter that brings CAN frames as text, not a serial line.
+    #[must_use]
+    pub fn looks_like_can(&self) -> bool {
+        let named = [&self.maker, &self.product].into_iter().flatten();
+        let mut named = named.map(|name| name.to_lowercase());
+        CAN_ADAPTERS.contains(&(self.vendor_id, self.product_id))
+            || named.any(|name| CAN_NAMES.iter().any(|can| name.contains(can)))
+    }
+}
+
 /// A serial port that the system lists.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PortFound {

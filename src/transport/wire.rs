@@ -24,6 +24,11 @@ pub trait Dial: Send + Sync + 'static {
     fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
         Box::pin(std::future::ready(Vec::new()))
     }
+
+    /// The CAN interfaces that the system lists now, by name. Must be cancellable by dropping.
+    fn interfaces(&self) -> BoxFuture<'static, Vec<String>> {
+        Box::pin(std::future::ready(Vec::new()))
+    }
 }
 
 /// What else is plugged in, with what to do.

@@ -16,6 +16,8 @@ mod loss;
 mod pictures;
 mod program;
 #[cfg(unix)]
+mod scan;
+#[cfg(unix)]
 mod several;
 mod usage;
 #[cfg(unix)]

@@ -84,7 +84,7 @@ fn help_names_every_command_and_endpoint() {
     ] {
         assert!(help.contains(word), "{word}");
     }
-    for command in ["snapshot", "watch", "read", "sim"] {
+    for command in ["snapshot", "watch", "read", "scan", "sim"] {
         let help = run(&[command, "--help"]).ok().out;
         assert!(help.contains("Examples"), "{command}");
     }

@@ -1,0 +1,347 @@
+//! `scan`: which hands answer, on all ports and interfaces of this computer or on those that are named, and at addresses
+//! that are named. Writes nothing to any hand.
+
+use crate::app::SimDial;
+use crate::cli::ids::HandIds;
+use crate::cli::interrupt::Interrupt;
+use crate::cli::out::{Out, Told, say};
+use crate::cli::session;
+use crate::hand::HandId;
+use crate::link::Clock;
+use crate::link::scan::{
+    Found, HOSTS_MAX, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanHint,
+    ScanSummary, Speaks, start,
+};
+use crate::transport::{TransportError, UsbFound};
+use anyhow::bail;
+use clap::builder::NonEmptyStringValueParser;
+use clap::error::ErrorKind;
+use serde_json::{Value, json};
+use std::io::{self, IsTerminal as _, Write as _};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::runtime::Handle;
+use tokio::time::{MissedTickBehavior, interval};
+
+/// The progress line of a terminal moves this often.
+const SHOW_EACH: Duration = Duration::from_millis(200);
+/// Where no terminal shows a line that moves, a plain one comes this often.
+const SAY_EACH: Duration = Duration::from_secs(10);
+/// Ids asked where none are named: a bus seldom has more hands, and each costs about half a second a port.
+const IDS_UP_TO: u8 = 10;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ScanArgs {
+    /// Look at this serial port; may be given several times
+    #[arg(long, value_name = "PORT", value_parser = NonEmptyStringValueParser::new())]
+    serial: Vec<String>,
+    /// Look at this address or at all of a range, for example 192.168.11.210 or 192.168.11.0/24; several times
+    #[arg(long, value_name = "HOST[:PORT]|CIDR")]
+    tcp: Vec<Hosts>,
+    /// Look at this CAN interface; several times
+    #[arg(long, value_name = "INTERFACE", value_parser = NonEmptyStringValueParser::new())]
+    can: Vec<String>,
+    /// Look behind the serial CAN adapter on this port; several times
+    #[arg(long, value_name = "PORT", value_parser = NonEmptyStringValueParser::new())]
+    slcan: Vec<String>,
+    /// Ids to ask on every bus, for example 1-10 or 1,2,7 [default: 1-10]
+    #[arg(long, value_name = "IDS", conflicts_with = "all_ids")]
+    ids: Option<HandIds>,
+    /// Ask all ids, 1 to 254
+    #[arg(long)]
+    all_ids: bool,
+    /// One JSON object a line
+    #[arg(long)]
+    json: bool,
+}
+
+impl ScanArgs {
+    fn local(&self) -> Local {
+        let named = [&self.serial, &self.can, &self.slcan];
+        if self.tcp.is_empty() && named.iter().all(|list| list.is_empty()) {
+            return Local::Listed;
+        }
+        let wish = |port: &String, speaks| PortWish {
+            port: port.clone(),
+            usb: None,
+            speaks,
+        };
+        let serial = self
+            .serial
+            .iter()
+            .map(|port| match self.slcan.contains(port) {
+                true => wish(port, Speaks::Either),
+                false => wish(port, Speaks::Hand),
+            });
+        let slcan = self.slcan.iter().map(|port| wish(port, Speaks::CanAdapter));
+        Local::Named {
+            ports: serial.chain(slcan).collect(),
+            can: self.can.clone(),
+        }
+    }
+
+    fn ids(&self) -> Vec<HandId> {
+        match &self.ids {
+            Some(ids) => ids.iter().collect(),
+            None if self.all_ids => HandId::all().collect(),
+            None => HandId::all().take(usize::from(IDS_UP_TO)).collect(),
+        }
+    }
+
+    /// Several ranges together are bounded as one is.
+    fn refuse_too_many_hosts(&self) {
+        let hosts: usize = self.tcp.iter().map(Hosts::count).sum();
+        if hosts > HOSTS_MAX {
+            let words =
+                format!("--tcp names {hosts} addresses, {HOSTS_MAX} at most are looked at\n");
+            clap::Error::raw(ErrorKind::ValueValidation, words).exit();
+        }
+    }
+}
+
+/// Looks everywhere that was asked for. Fails if nothing was found and something could not be looked at.
+pub(crate) fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
+    args.refuse_too_many_hosts();
+    session::runtime()?.block_on(async {
+        let interrupt = Interrupt::listen()?;
+        let clock = Clock::start();
+        let config = ScanConfig {
+            local: args.local(),
+            hosts: args.tcp.clone(),
+            ids: args.ids(),
+            held: None,
+            clock,
+            dial: Arc::new(SimDial::new(clock)),
+            wake: Arc::new(|| ()),
+        };
+        let scan = Scan {
+            out,
+            json: args.json,
+            all_ids: args.all_ids,
+            handle: start(config, &Handle::current()),
+            screen: Screen::new(),
+            found: 0,
+        };
+        scan.run(interrupt).await
+    })
+}
+
+struct Scan<'a> {
+    out: &'a mut Out,
+    json: bool,
+    all_ids: bool,
+    handle: ScanHandle,
+    screen: Screen,
+    found: usize,
+}
+
+impl Scan<'_> {
+    async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
+        let mut tick = interval(self.screen.each());
+        tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        // The first tick comes at once, when nothing is known yet.
+        tick.tick().await;
+        let summary = loop {
+            let event = tokio::select! {
+                biased;
+                () = interrupt.wished() => break None,
+                event = self.handle.event() => event,
+                _ = tick.tick() => {
+                    self.screen.progress(&self.handle, self.found);
+                    continue;
+                }
+            };
+            match event {
+                Some(ScanEvent::Done(summary)) => break Some(summary),
+                Some(event) => self.take(event)?,
+                None => break None,
+            }
+        };
+        self.screen.clear();
+        self.end(summary)
+    }
+
+    fn take(&mut self, event: ScanEvent) -> anyhow::Result<()> {
+        self.screen.clear();
+        match event {
+            ScanEvent::Found(found) => {
+                self.found += 1;
+                let line = match self.json {
+                    true => found_json(&found).to_string(),
+                    false => found_text(&found),
+                };
+                self.out.line(&line)?;
+            }
+            ScanEvent::Trouble { place, error } => {
+                say(&error.to_string());
+                self.object(|| trouble_json(&place, &error))?;
+            }
+            ScanEvent::Hint(hint) => {
+                say(&hint.to_string());
+                self.object(|| hint_json(&hint))?;
+            }
+            ScanEvent::Begun { .. } | ScanEvent::Held { .. } | ScanEvent::Done(_) => {}
+        }
+        self.out.flush()
+    }
+
+    fn object(&mut self, object: impl FnOnce() -> Value) -> anyhow::Result<()> {
+        match self.json {
+            true => self.out.line(&object().to_string()),
+            false => Ok(()),
+        }
+    }
+
+    /// What came of it; without a summary the person ended it.
+    fn end(mut self, summary: Option<ScanSummary>) -> anyhow::Result<()> {
+        let found = self.found;
+        self.object(|| summary_json(found, summary))?;
+        self.out.flush()?;
+        match summary {
+            _ if found > 0 => Ok(()),
+            None => bail!("the scan was ended before it found a hand"),
+            Some(summary) if summary.failed > 0 => Err(Told.into()),
+            Some(summary) if summary.places == 0 => bail!(
+                "there is nothing to scan: the system lists no serial port and no CAN interface; plug the adapter in, or name what to scan with --serial, --can, --slcan or --tcp"
+            ),
+            Some(summary) => {
+                say(&format!(
+                    "no hand answered ({} questions, {:.1} s): check power and cable{}",
+                    summary.asked,
+                    summary.took.as_secs_f64(),
+                    if self.all_ids {
+                        ""
+                    } else {
+                        "; --all-ids asks all ids"
+                    }
+                ));
+                Ok(())
+            }
+        }
+    }
+}
+
+/// The line on standard error that tells how far the scan is.
+struct Screen {
+    is_terminal: bool,
+    shown: bool,
+}
+
+impl Screen {
+    fn new() -> Self {
+        Self {
+            is_terminal: io::stderr().is_terminal(),
+            shown: false,
+        }
+    }
+
+    const fn each(&self) -> Duration {
+        if self.is_terminal {
+            SHOW_EACH
+        } else {
+            SAY_EACH
+        }
+    }
+
+    fn progress(&mut self, handle: &ScanHandle, found: usize) {
+        let progress = handle.progress();
+        let left = progress.left.as_secs() + 1;
+        let words = format!(
+            "scan: {} of {} questions, {found} found, about {left} s left",
+            progress.tried, progress.total
+        );
+        if self.is_terminal {
+            self.shown = true;
+            put(&format!("\r\x1b[K{words}"));
+        } else {
+            say(&words);
+        }
+    }
+
+    /// Makes room for a line that stays.
+    fn clear(&mut self) {
+        if std::mem::take(&mut self.shown) {
+            put("\r\x1b[K");
+        }
+    }
+}
+
+fn put(text: &str) {
+    let mut terminal = io::stderr().lock();
+    // Where nobody can read, nobody can be told.
+    let _unread = terminal
+        .write_all(text.as_bytes())
+        .and_then(|()| terminal.flush());
+}
+
+fn found_text(found: &Found) -> String {
+    let about = found.usb.as_ref().map(usb_text).unwrap_or_default();
+    format!(
+        "{}  HAND_ID {}  {:.1} ms  {about}",
+        found.endpoint,
+        found.hand_id,
+        found.round_trip.as_secs_f64() * 1e3
+    )
+    .trim_end()
+    .to_owned()
+}
+
+/// Maker, product and serial number, then what the system knows it by.
+fn usb_text(usb: &UsbFound) -> String {
+    let words: Vec<&str> = [&usb.maker, &usb.product]
+        .into_iter()
+        .flatten()
+        .map(String::as_str)
+        .collect();
+    let serial = usb
+        .serial
+        .as_ref()
+        .map(|serial| format!(", serial {serial}"));
+    format!(
+        "{} (USB {:04x}:{:04x}{})",
+        words.join(" "),
+        usb.vendor_id,
+        usb.product_id,
+        serial.unwrap_or_default()
+    )
+    .trim_start()
+    .to_owned()
+}
+
+fn found_json(found: &Found) -> Value {
+    json!({ "hand": {
+        "url": found.endpoint.to_string(),
+        "kind": found.endpoint.kind(),
+        "place": found.endpoint.place(),
+        "hand_id": found.hand_id,
+        "round_trip_ms": found.round_trip.as_secs_f64() * 1e3,
+        "usb": found.usb.as_ref().map(|usb| json!({
+            "vendor_id": format!("{:04x}", usb.vendor_id),
+            "product_id": format!("{:04x}", usb.product_id),
+            "serial": usb.serial,
+            "maker": usb.maker,
+            "product": usb.product,
+        })),
+    }})
+}
+
+fn trouble_json(place: &str, error: &TransportError) -> Value {
+    json!({ "trouble": { "place": place, "words": error.to_string() } })
+}
+
+fn hint_json(hint: &ScanHint) -> Value {
+    json!({ "hint": { "place": hint.place(), "words": hint.to_string() } })
+}
+
+fn summary_json(found: usize, summary: Option<ScanSummary>) -> Value {
+    let counts = summary.unwrap_or_default();
+    let known = |count: usize| summary.map(|_| count);
+    json!({ "summary": {
+        "found": found,
+        "complete": summary.is_some(),
+        "places": known(counts.places),
+        "failed": known(counts.failed),
+        "questions": known(counts.asked),
+        "took_s": summary.map(|summary| summary.took.as_secs_f64()),
+    }})
+}

@@ -1,0 +1,131 @@
+//! A wire that is lent to one protocol after another, and remembers whether anything at all was heard on it. Asks nothing.
+
+use crate::transport::BoxedWire;
+use std::io;
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll};
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+
+/// Bytes kept of each direction, to know an echo by: longer than any question of a scan.
+const KEPT_MAX: usize = 64;
+
+/// One open wire with several users, one at a time. It closes when the last of them is dropped.
+#[derive(Clone)]
+pub(crate) struct LentWire(Arc<Mutex<Line>>);
+
+struct Line {
+    wire: BoxedWire,
+    sent: Vec<u8>,
+    heard: Vec<u8>,
+    heard_bytes: usize,
+}
+
+impl LentWire {
+    pub(crate) fn new(wire: BoxedWire) -> Self {
+        Self(Arc::new(Mutex::new(Line {
+            wire,
+            sent: Vec::new(),
+            heard: Vec::new(),
+            heard_bytes: 0,
+        })))
+    }
+
+    /// Bytes heard since the last call; none if they are only what was sent, come back.
+    pub(crate) fn take_heard(&self) -> usize {
+        let mut line = self.line();
+        let echo = line.sent == line.heard && line.heard_bytes == line.heard.len();
+        let heard = if echo { 0 } else { line.heard_bytes };
+        line.sent.clear();
+        line.heard.clear();
+        line.heard_bytes = 0;
+        heard
+    }
+
+    fn line(&self) -> MutexGuard<'_, Line> {
+        // A line whose user panicked is a whole line: nothing is left half done in it.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn keep(kept: &mut Vec<u8>, bytes: &[u8]) {
+    let room = KEPT_MAX.saturating_sub(kept.len());
+    kept.extend(bytes.iter().take(room));
+}
+
+impl AsyncRead for LentWire {
+    fn poll_read(
+        self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        buf: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        let mut line = self.line();
+        let before = buf.filled().len();
+        let polled = Pin::new(&mut line.wire).poll_read(cx, buf);
+        let got = buf.filled().get(before..).unwrap_or_default();
+        line.heard_bytes = line.heard_bytes.saturating_add(got.len());
+        keep(&mut line.heard, got);
+        polled
+    }
+}
+
+impl AsyncWrite for LentWire {
+    fn poll_write(
+        self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        buf: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        let mut line = self.line();
+        let polled = Pin::new(&mut line.wire).poll_write(cx, buf);
+        if let Poll::Ready(Ok(put)) = polled {
+            keep(&mut line.sent, buf.get(..put).unwrap_or_default());
+        }
+        polled
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.line().wire).poll_flush(cx)
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, _cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        // The next user goes on with it.
+        Poll::Ready(Ok(()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::transport::pair;
+    use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+
+    #[tokio::test]
+    async fn an_echo_is_not_taken_for_talk() {
+        let (near, mut far) = pair();
+        let lent = LentWire::new(Box::new(near));
+        for (sent, came, heard) in [
+            (&b"question"[..], &b"question"[..], 0),
+            (b"question", b"", 0),
+            (b"question", b"questionanswer", 14),
+            (b"", b"noise", 5),
+            (b"question", &[7; 100], 100),
+        ] {
+            let mut user = lent.clone();
+            user.write_all(sent).await.unwrap();
+            user.shutdown().await.unwrap();
+            far.write_all(came).await.unwrap();
+            let mut got = vec![0; came.len()];
+            user.read_exact(&mut got).await.unwrap();
+            assert_eq!(lent.take_heard(), heard, "{came:?}");
+            let mut rest = vec![0; sent.len()];
+            far.read_exact(&mut rest).await.unwrap();
+        }
+        drop(lent);
+        assert_eq!(
+            far.read(&mut [0]).await.unwrap(),
+            0,
+            "closed with the last user"
+        );
+    }
+}

@@ -1,0 +1,474 @@
+//! What a scan tries and in which order, and how long that takes: likely and cheap things first. Asks nobody, and
+//! knows no clock.
+
+use crate::hand::{HandId, SerialSpeed};
+use crate::link::scan::hosts::Hosts;
+use crate::transport::endpoint::{DEFAULT_BITRATE, DEFAULT_UNIT};
+use crate::transport::tcp::CONNECT_DEADLINE;
+use crate::transport::{Endpoint, SerialLine, UsbFound};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::time::Duration;
+
+/// CAN bit rates that a hand can have (manual 2.6.2), as delivered first.
+pub const BITRATES: [u32; 2] = [DEFAULT_BITRATE, 500_000];
+/// Units asked at a TCP address: the manual's, and the one that other servers begin with.
+pub const UNITS: [u8; 2] = [DEFAULT_UNIT, 1];
+/// A hand answers within 15 ms, behind a USB adapter twice 16 ms later; this leaves room.
+pub const REPLY_WAIT: Duration = Duration::from_millis(60);
+/// A reply through a network that the person named, which may be a slow one.
+const TCP_REPLY_WAIT: Duration = Duration::from_millis(500);
+/// Time in which a serial CAN adapter is put on the bus.
+const ADAPTER_TIME: Duration = Duration::from_millis(30);
+/// Bytes of the read of one register byte and of its reply, in the longer of the two framings (manual 2.2, 2.4).
+const EXCHANGE_BYTES: u64 = 18;
+/// Bits of a byte on the line: start, eight, stop.
+const BITS: u64 = 10;
+/// Ports looked through at one time. Each is a wire of its own; more would only load the USB bus.
+pub const PORTS_AT_ONCE: usize = 8;
+/// Addresses asked at one time: well below the sockets that a process may have.
+pub const HOSTS_AT_ONCE: usize = 64;
+
+/// What is asked behind a serial port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Speaks {
+    /// A hand, in the private framing and in Modbus RTU.
+    Hand,
+    /// A serial CAN adapter.
+    CanAdapter,
+    /// Either: the adapter is tried first.
+    Either,
+}
+
+/// One serial port to look at.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PortWish {
+    /// Path or name.
+    pub port: String,
+    /// What is plugged in there, if it is on USB.
+    pub usb: Option<UsbFound>,
+    /// What is asked there.
+    pub speaks: Speaks,
+}
+
+/// Where to look.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Places {
+    /// Serial ports.
+    pub ports: Vec<PortWish>,
+    /// CAN interfaces.
+    pub can: Vec<String>,
+    /// Hosts.
+    pub hosts: Vec<Hosts>,
+}
+
+/// The kind of a place, which says how many are looked at together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum LaneKind {
+    Port,
+    Can,
+    Host,
+}
+
+/// One question, and how long its answer is waited for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Try {
+    pub(crate) endpoint: Endpoint,
+    pub(crate) limit: Duration,
+    /// Time that it takes if nobody answers.
+    pub(crate) cost: Duration,
+}
+
+/// All that is tried at one place, one after the other.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Lane {
+    pub(crate) kind: LaneKind,
+    /// As a person knows it.
+    pub(crate) place: String,
+    pub(crate) usb: Option<UsbFound>,
+    /// One of a range: that nobody is there is not worth a word.
+    pub(crate) is_one_of_many: bool,
+    pub(crate) tries: Vec<Try>,
+}
+
+/// Everything that a scan does if nobody answers.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ScanPlan {
+    pub(crate) lanes: Vec<Lane>,
+    /// Places that this program's own link holds.
+    pub(crate) held: Vec<String>,
+}
+
+impl ScanPlan {
+    /// Plans for these places and ids. `held` is the hand that is connected now: its port is left alone.
+    #[must_use]
+    pub fn new(places: &Places, ids: &[HandId], held: Option<&Endpoint>) -> Self {
+        let mut plan = Self::default();
+        for wish in &places.ports {
+            plan.add(port_lane(wish, ids), held);
+        }
+        for interface in &places.can {
+            plan.add(can_lane(interface, ids), None);
+        }
+        for hosts in &places.hosts {
+            for host in hosts.iter() {
+                plan.add(host_lane(host, hosts), held);
+            }
+        }
+        plan
+    }
+
+    fn add(&mut self, lane: Lane, held: Option<&Endpoint>) {
+        let known = |place: &String| *place == lane.place;
+        if self
+            .lanes
+            .iter()
+            .map(|lane| &lane.place)
+            .chain(&self.held)
+            .any(known)
+        {
+            return;
+        }
+        let is_held = held.is_some_and(|held| held.place() == lane.place);
+        match is_held {
+            true => self.held.push(lane.place),
+            false => self.lanes.push(lane),
+        }
+    }
+
+    /// How many questions there are at most.
+    #[must_use]
+    pub fn tries(&self) -> usize {
+        self.lanes.iter().map(|lane| lane.tries.len()).sum()
+    }
+
+    /// How many places are looked at.
+    #[must_use]
+    pub const fn places(&self) -> usize {
+        self.lanes.len()
+    }
+
+    /// Time that it takes if nobody answers.
+    #[must_use]
+    pub fn estimate(&self) -> Duration {
+        estimate(self.lanes.iter().map(|lane| (lane.kind, lane.cost())))
+    }
+}
+
+impl Lane {
+    /// Time that it takes if nobody answers.
+    pub(crate) fn cost(&self) -> Duration {
+        self.tries.iter().map(|one| one.cost).sum()
+    }
+}
+
+/// How long lanes of such lengths take, those of one kind beside each other as far as that is allowed.
+pub(crate) fn estimate(lanes: impl Iterator<Item = (LaneKind, Duration)>) -> Duration {
+    let (mut ports, mut hosts) = (Vec::new(), Vec::new());
+    for (kind, cost) in lanes {
+        match kind {
+            LaneKind::Port | LaneKind::Can => ports.push(cost),
+            LaneKind::Host => hosts.push(cost),
+        }
+    }
+    beside(&ports, PORTS_AT_ONCE).max(beside(&hosts, HOSTS_AT_ONCE))
+}
+
+/// Each is begun as soon as one of those under way is done.
+fn beside(costs: &[Duration], at_once: usize) -> Duration {
+    let mut free_at = BinaryHeap::from(vec![Reverse(Duration::ZERO); at_once]);
+    let mut end = Duration::ZERO;
+    for cost in costs {
+        let begun = free_at.pop().map_or(Duration::ZERO, |Reverse(at)| at);
+        end = end.max(begun + *cost);
+        free_at.push(Reverse(begun + *cost));
+    }
+    end
+}
+
+/// True if both are asked over the same line in the same way, so that a hand that answers to one speaks for the other.
+pub(crate) fn same_line(one: &Endpoint, other: &Endpoint) -> bool {
+    match (one, other) {
+        (Endpoint::Rs485(a), Endpoint::Rs485(b)) | (Endpoint::Rtu(a), Endpoint::Rtu(b)) => {
+            a.port == b.port && a.baud == b.baud
+        }
+        (
+            Endpoint::Slcan {
+                port: a,
+                bitrate: x,
+                ..
+            },
+            Endpoint::Slcan {
+                port: b,
+                bitrate: y,
+                ..
+            },
+        ) => a == b && x == y,
+        (Endpoint::Can { interface: a, .. }, Endpoint::Can { interface: b, .. }) => a == b,
+        _ => false,
+    }
+}
+
+/// The ids that are asked first on every line, and all others: most hands have the id they were delivered with.
+fn first_and_rest(ids: &[HandId]) -> [&[HandId]; 2] {
+    let (first, rest) = ids.split_at(ids.len().min(1));
+    [first, rest]
+}
+
+fn port_lane(wish: &PortWish, ids: &[HandId]) -> Lane {
+    let mut tries = Vec::new();
+    if wish.speaks != Speaks::Hand {
+        for ids in first_and_rest(ids) {
+            for bitrate in BITRATES {
+                tries.extend(ids.iter().map(|id| adapter_try(&wish.port, bitrate, *id)));
+            }
+        }
+    }
+    if wish.speaks != Speaks::CanAdapter {
+        for ids in first_and_rest(ids) {
+            // By code, which is also the order of likelihood: as delivered first.
+            for speed in SerialSpeed::ALL {
+                for kind in [Endpoint::Rs485, Endpoint::Rtu] {
+                    tries.extend(
+                        ids.iter()
+                            .map(|id| line_try(kind, &wish.port, speed.baud(), *id)),
+                    );
+                }
+            }
+        }
+    }
+    Lane {
+        kind: LaneKind::Port,
+        place: wish.port.clone(),
+        usb: wish.usb.clone(),
+        is_one_of_many: false,
+        tries,
+    }
+}
+
+fn can_lane(interface: &str, ids: &[HandId]) -> Lane {
+    let tries = ids.iter().map(|id| Try {
+        endpoint: Endpoint::Can {
+            interface: interface.into(),
+            id: u16::from(id.get()),
+        },
+        limit: REPLY_WAIT,
+        cost: REPLY_WAIT,
+    });
+    Lane {
+        kind: LaneKind::Can,
+        place: interface.into(),
+        usb: None,
+        is_one_of_many: false,
+        tries: tries.collect(),
+    }
+}
+
+fn host_lane(host: &str, hosts: &Hosts) -> Lane {
+    let tries = UNITS.map(|unit| Try {
+        endpoint: Endpoint::Tcp {
+            host: host.into(),
+            port: hosts.port(),
+            unit,
+        },
+        limit: TCP_REPLY_WAIT,
+        // A host that does not take the call costs the time to call, and is not called again.
+        cost: CONNECT_DEADLINE / 2,
+    });
+    let place = tries.first().map(|one| one.endpoint.place());
+    Lane {
+        kind: LaneKind::Host,
+        place: place.unwrap_or_default(),
+        usb: None,
+        is_one_of_many: hosts.is_range(),
+        tries: tries.into(),
+    }
+}
+
+fn line_try(kind: fn(SerialLine) -> Endpoint, port: &str, baud: u32, id: HandId) -> Try {
+    let on_the_wire = EXCHANGE_BYTES * BITS * 1_000_000 / u64::from(baud);
+    let limit = REPLY_WAIT + Duration::from_micros(on_the_wire);
+    Try {
+        endpoint: kind(SerialLine {
+            port: port.into(),
+            baud,
+            id: id.get(),
+        }),
+        limit,
+        cost: limit,
+    }
+}
+
+fn adapter_try(port: &str, bitrate: u32, id: HandId) -> Try {
+    Try {
+        endpoint: Endpoint::Slcan {
+            port: port.into(),
+            bitrate,
+            id: u16::from(id.get()),
+        },
+        limit: REPLY_WAIT,
+        cost: ADAPTER_TIME + REPLY_WAIT,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+    use super::*;
+
+    fn ids(last: usize) -> Vec<HandId> {
+        HandId::all().take(last).collect()
+    }
+
+    fn port(name: &str, speaks: Speaks) -> PortWish {
+        PortWish {
+            port: name.into(),
+            usb: None,
+            speaks,
+        }
+    }
+
+    fn ports(count: usize) -> Places {
+        Places {
+            ports: (0..count)
+                .map(|nth| port(&format!("/dev/ttyUSB{nth}"), Speaks::Hand))
+                .collect(),
+            ..Places::default()
+        }
+    }
+
+    fn hosts(text: &str) -> Places {
+        Places {
+            hosts: vec![text.parse().unwrap()],
+            ..Places::default()
+        }
+    }
+
+    fn spelled(lane: &Lane) -> Vec<String> {
+        let tries = lane.tries.iter();
+        tries.map(|one| one.endpoint.to_string()).collect()
+    }
+
+    #[test]
+    fn a_port_is_asked_for_the_first_id_everywhere_before_the_others() {
+        let plan = ScanPlan::new(&ports(1), &ids(3), None);
+        let tries = spelled(&plan.lanes[0]);
+        assert_eq!(tries.len(), 4 * 2 * 3);
+        let start = [
+            "rs485:/dev/ttyUSB0?baud=115200&id=1",
+            "rtu:/dev/ttyUSB0?baud=115200&id=1",
+            "rs485:/dev/ttyUSB0?baud=57600&id=1",
+            "rtu:/dev/ttyUSB0?baud=57600&id=1",
+            "rs485:/dev/ttyUSB0?baud=19200&id=1",
+            "rtu:/dev/ttyUSB0?baud=19200&id=1",
+            "rs485:/dev/ttyUSB0?baud=921600&id=1",
+            "rtu:/dev/ttyUSB0?baud=921600&id=1",
+            "rs485:/dev/ttyUSB0?baud=115200&id=2",
+            "rs485:/dev/ttyUSB0?baud=115200&id=3",
+            "rtu:/dev/ttyUSB0?baud=115200&id=2",
+        ];
+        assert_eq!(tries[..start.len()], start);
+        let mut once = tries.clone();
+        once.sort();
+        once.dedup();
+        assert_eq!(once.len(), tries.len(), "nothing is asked twice");
+    }
+
+    #[test]
+    fn each_kind_of_place_is_asked_in_its_own_way() {
+        let places = Places {
+            ports: vec![
+                port("COM3", Speaks::CanAdapter),
+                port("COM4", Speaks::Either),
+            ],
+            can: vec!["can0".into()],
+            hosts: vec!["127.0.0.1:6001".parse().unwrap()],
+        };
+        let plan = ScanPlan::new(&places, &ids(2), None);
+        let kinds = |nth: usize| -> Vec<&str> {
+            let mut kinds: Vec<_> = plan.lanes[nth]
+                .tries
+                .iter()
+                .map(|one| one.endpoint.kind())
+                .collect();
+            kinds.dedup();
+            kinds
+        };
+        assert_eq!(kinds(0), ["slcan"]);
+        assert_eq!(kinds(1)[..3], ["slcan", "rs485", "rtu"]);
+        assert_eq!(spelled(&plan.lanes[2]), ["can:can0?id=1", "can:can0?id=2"]);
+        assert_eq!(
+            spelled(&plan.lanes[3]),
+            ["tcp:127.0.0.1:6001?unit=255", "tcp:127.0.0.1:6001?unit=1"]
+        );
+        assert_eq!(plan.tries(), 4 + (4 + 16) + 2 + 2);
+    }
+
+    #[test]
+    fn the_estimate_is_the_sum_of_a_ports_waits() {
+        // 60 ms each, and 18 bytes of 10 bits at each speed: 1562, 3125, 9375 and 195 us.
+        let on_the_wire = Duration::from_micros(1562 + 3125 + 9375 + 195);
+        for count in [1, 10, 254] {
+            let waits = Duration::from_millis(4 * 60) + on_the_wire;
+            let whole = waits * 2 * u32::try_from(count).unwrap();
+            let plan = ScanPlan::new(&ports(1), &ids(count), None);
+            assert_eq!(plan.estimate(), whole, "{count} ids");
+            // Ports are looked at beside each other, eight at a time.
+            let eight = ScanPlan::new(&ports(PORTS_AT_ONCE), &ids(count), None);
+            assert_eq!(eight.estimate(), whole);
+            let nine = ScanPlan::new(&ports(PORTS_AT_ONCE + 1), &ids(count), None);
+            assert_eq!(nine.estimate(), 2 * whole);
+        }
+    }
+
+    #[test]
+    fn addresses_take_one_call_each_sixty_four_at_a_time() {
+        for (range, calls) in [
+            ("127.0.0.1", 1),
+            ("127.0.0.0/26", 1),
+            ("127.0.0.0/25", 2),
+            ("127.0.0.0/24", 4),
+            ("127.0.0.0/22", 16),
+        ] {
+            let plan = ScanPlan::new(&hosts(range), &ids(10), None);
+            assert_eq!(plan.estimate(), CONNECT_DEADLINE * calls, "{range}");
+        }
+        assert_eq!(ScanPlan::default().estimate(), Duration::ZERO);
+    }
+
+    #[test]
+    fn no_address_is_planned_that_was_not_named() {
+        let places = Places {
+            can: vec!["can0".into()],
+            ..ports(3)
+        };
+        let plan = ScanPlan::new(&places, &ids(254), None);
+        let tcp = plan
+            .lanes
+            .iter()
+            .flat_map(spelled)
+            .filter(|one| one.starts_with("tcp:"));
+        assert_eq!(tcp.count(), 0);
+    }
+
+    #[test]
+    fn the_port_of_the_connected_hand_is_left_alone_and_none_is_looked_at_twice() {
+        for (held, kept) in [
+            ("rs485:/dev/ttyUSB0", vec!["/dev/ttyUSB1"]),
+            ("slcan:/dev/ttyUSB1", vec!["/dev/ttyUSB0"]),
+            ("rtu:/dev/ttyUSB7", vec!["/dev/ttyUSB0", "/dev/ttyUSB1"]),
+            ("sim:", vec!["/dev/ttyUSB0", "/dev/ttyUSB1"]),
+        ] {
+            let mut places = ports(2);
+            places.ports.extend(ports(2).ports);
+            let plan = ScanPlan::new(&places, &ids(1), Some(&held.parse().unwrap()));
+            let left: Vec<_> = plan.lanes.iter().map(|lane| lane.place.as_str()).collect();
+            assert_eq!(left, kept, "{held}");
+            assert_eq!(plan.held.len(), 2 - kept.len());
+        }
+        let held = "tcp:127.0.0.1:6000?unit=1".parse().unwrap();
+        let plan = ScanPlan::new(&hosts("127.0.0.0/30"), &ids(1), Some(&held));
+        assert_eq!(plan.held, ["127.0.0.1:6000"]);
+        assert_eq!(plan.places(), 1);
+    }
+}
