@@ -4,5 +4,6 @@ pub mod can;
 pub mod mbap;
 pub mod modbus;
 pub mod modbus_rtu;
+pub mod pdu;
 pub mod rs485;
 pub mod slcan;

@@ -7,6 +7,7 @@ use crate::link::plan::PollRates;
 use crate::link::session::Session;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmEpoch, ArmRequest, LinkStatus};
+use crate::link::tap::WireTap;
 use crate::transport::{Dial, Endpoint};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -111,6 +112,7 @@ pub(crate) struct Ends {
     pub(crate) events: mpsc::Sender<LinkEvent>,
     pub(crate) status: watch::Sender<LinkStatus>,
     pub(crate) stats: watch::Sender<LinkStats>,
+    pub(crate) tap: WireTap,
 }
 
 /// One open link. Dropping it closes the wire; the hand keeps what it was told last.
@@ -122,6 +124,7 @@ pub struct LinkHandle {
     status: watch::Receiver<LinkStatus>,
     stats: watch::Receiver<LinkStats>,
     tickets: AtomicU64,
+    tap: WireTap,
 }
 
 /// Opens a link on this runtime and keeps it open until the handle is dropped. Writes nothing by itself.
@@ -132,12 +135,14 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> LinkHandle 
     let (told, events) = mpsc::channel(EVENTS_MAX);
     let (status_in, status) = watch::channel(LinkStatus::default());
     let (stats_in, stats) = watch::channel(LinkStats::default());
+    let tap = WireTap::default();
     let ends = Ends {
         wanted: Arc::clone(&wanted),
         requests: asked,
         events: told,
         status: status_in,
         stats: stats_in,
+        tap: tap.clone(),
     };
     runtime.spawn(Session::new(config, ends).run());
     LinkHandle {
@@ -147,6 +152,7 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> LinkHandle 
         status,
         stats,
         tickets: AtomicU64::new(0),
+        tap,
     }
 }
 
@@ -213,6 +219,12 @@ impl LinkHandle {
             }),
             Err(mpsc::error::TrySendError::Closed(_)) => Err(RequestError::NotConnected),
         }
+    }
+
+    /// What went over the wire; copies go on recording with the link.
+    #[must_use]
+    pub fn tap(&self) -> WireTap {
+        self.tap.clone()
     }
 
     /// The next event, if one waits.

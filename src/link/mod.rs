@@ -2,7 +2,7 @@
 //!
 //! [`handle::open`] starts a session and gives the window's end of it. The session ([`session`], [`serve`])
 //! owns the wire, asks one thing at a time ([`bus`]) and decides by priority what comes next: stop, hold,
-//! setpoints, requests, reads ([`plan`]).
+//! setpoints, requests, reads ([`plan`]). What went over the wire can be looked at afterwards ([`tap`], [`traffic`]).
 
 mod bus;
 mod can;
@@ -32,6 +32,8 @@ mod serve;
 mod session;
 pub mod stats;
 pub mod status;
+pub mod tap;
+pub mod traffic;
 
 pub use clock::Clock;
 pub use event::{LinkEvent, Outcome, Request, RequestError, Ticket};
@@ -42,3 +44,5 @@ pub use stats::LinkStats;
 pub use status::{
     ArmEpoch, ArmRefusal, ArmRequest, Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble,
 };
+pub use tap::{Direction, WireTap};
+pub use traffic::Traffic;

@@ -14,6 +14,7 @@ use crate::link::motion::Motion;
 use crate::link::plan::PollPlan;
 use crate::link::rival::Rival;
 use crate::link::status::{Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble};
+use crate::link::tap::TappedWire;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use std::sync::Arc;
 use std::time::Duration;
@@ -128,7 +129,9 @@ impl Session {
         let late = std::mem::take(&mut self.late);
         let bus = dialled.and_then(|(endpoint, wire)| {
             self.dialled = endpoint;
-            Bus::new(&self.dialled, wire, late, self.config.clock)
+            let (tap, clock) = (self.ends.tap.clone(), self.config.clock);
+            let wire = Box::new(TappedWire::new(wire, tap, clock));
+            Bus::new(&self.dialled, wire, late, clock)
         });
         let mut bus = match bus {
             Ok(bus) => bus,

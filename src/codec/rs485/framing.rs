@@ -28,7 +28,7 @@ const SHORTEST: u8 = 4;
 
 /// Which way a frame goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Way {
+pub enum Way {
     /// To the hand.
     Request,
     /// From the hand.
@@ -79,11 +79,11 @@ pub(super) struct Parts {
 
 /// What stands at the beginning of a slice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Scan {
+pub(super) enum Scan {
     /// No frame begins here.
     Bad,
-    /// A possible frame whose checksum is wrong.
-    BadSum,
+    /// A possible frame of this way and length whose checksum is wrong.
+    BadSum(Way, usize),
     /// A possible frame that is not whole yet.
     NeedMore,
     /// A good frame of this way and length in bytes.
@@ -91,11 +91,16 @@ enum Scan {
 }
 
 /// The low byte of the sum of all bytes after the header (manual 2.2.1).
-fn checksum(body: &[u8]) -> u8 {
+pub(super) fn checksum(body: &[u8]) -> u8 {
     body.iter().fold(0, |sum, byte| sum.wrapping_add(*byte))
 }
 
-fn scan(bytes: &[u8]) -> Scan {
+/// Bytes of a frame with this length byte, header to checksum.
+pub(super) fn total(len: u8) -> usize {
+    usize::from(len) + AROUND
+}
+
+pub(super) fn scan(bytes: &[u8]) -> Scan {
     let way = match bytes {
         [] => return Scan::NeedMore,
         [first, ..] if *first == REQUEST_HEADER[0] => Way::Request,
@@ -117,15 +122,15 @@ fn scan(bytes: &[u8]) -> Scan {
     {
         return Scan::Bad;
     }
-    let total = usize::from(len) + AROUND;
+    let total = total(len);
     match bytes.get(2..total) {
         Some([body @ .., sum]) if checksum(body) == *sum => Scan::Frame(way, total),
-        Some(_) => Scan::BadSum,
+        Some(_) => Scan::BadSum(way, total),
         None => Scan::NeedMore,
     }
 }
 
-fn parts(frame: &[u8]) -> Option<Parts> {
+pub(super) fn parts(frame: &[u8]) -> Option<Parts> {
     let [_, _, id, _, command, low, high, data @ .., _sum] = frame else {
         return None;
     };
@@ -226,7 +231,7 @@ impl Framer {
                 }
                 Scan::NeedMore if rest.is_empty() || at >= self.stale => break None,
                 Scan::NeedMore | Scan::Bad => self.skip(&mut at),
-                Scan::BadSum => {
+                Scan::BadSum(..) => {
                     self.counts.checksum_errors += 1;
                     self.skip(&mut at);
                 }

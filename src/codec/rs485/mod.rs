@@ -3,6 +3,7 @@
 pub mod client;
 pub mod device;
 pub mod framing;
+pub mod inspect;
 
 pub use client::{Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
 pub use device::{

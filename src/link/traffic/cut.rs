@@ -1,0 +1,140 @@
+//! Cuts a stream of one direction into frames and runs of other bytes, by what a protocol sees at each place. Bounded;
+//! knows no protocol.
+
+use crate::link::traffic::frame::Wrong;
+
+/// Bytes that may wait for the rest of their frame: the longest frame of any wire has 261.
+pub const WAITING_MAX: usize = 600;
+/// Longest run of other bytes that is one entry.
+const RUN_MAX: usize = 128;
+
+/// What a protocol sees at a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seen {
+    /// A frame of so many bytes.
+    Whole(usize),
+    /// A frame of so many bytes that is damaged. A good one may begin inside.
+    Damaged(usize, Wrong),
+    /// A frame that is not whole yet; its length if that is known.
+    Open(Option<usize>),
+    /// No frame begins here.
+    Nothing(Wrong),
+}
+
+/// Some bytes of the stream, cut out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cut {
+    /// The bytes, at least one.
+    pub bytes: Vec<u8>,
+    /// What is wrong about them; `None` for a good frame.
+    pub wrong: Option<Wrong>,
+}
+
+/// The bytes of one direction that wait for the rest of their frame.
+#[derive(Debug, Clone, Default)]
+pub struct Cutter {
+    waiting: Vec<u8>,
+}
+
+impl Cutter {
+    /// Takes bytes and gives what is cut by them to `out`. At most [`WAITING_MAX`] bytes are kept.
+    pub fn push(
+        &mut self,
+        mut bytes: &[u8],
+        look: impl Fn(&[u8]) -> Seen,
+        mut out: impl FnMut(Cut),
+    ) {
+        while !bytes.is_empty() {
+            let room = WAITING_MAX.saturating_sub(self.waiting.len()).max(1);
+            let (now, later) = bytes.split_at(room.min(bytes.len()));
+            self.waiting.extend_from_slice(now);
+            bytes = later;
+            self.cut(&look, &mut out, false);
+            if self.waiting.len() >= WAITING_MAX {
+                self.cut(&look, &mut out, true);
+            }
+        }
+    }
+
+    /// The line fell silent: what is not whole by now never will be.
+    pub fn flush(&mut self, look: impl Fn(&[u8]) -> Seen, mut out: impl FnMut(Cut)) {
+        self.cut(&look, &mut out, true);
+    }
+
+    /// Bytes that wait.
+    #[must_use]
+    pub const fn waiting(&self) -> usize {
+        self.waiting.len()
+    }
+
+    fn cut(&mut self, look: &impl Fn(&[u8]) -> Seen, out: &mut impl FnMut(Cut), silent: bool) {
+        let mut run = Run::default();
+        let mut at = 0;
+        while let Some(rest @ [_, ..]) = self.waiting.get(at..) {
+            let (len, wrong) = match look(rest) {
+                Seen::Whole(len) => (len, None),
+                Seen::Damaged(len, wrong) => (until_next(rest, len, look), Some(wrong)),
+                Seen::Open(_) if !silent => break,
+                Seen::Open(want) => {
+                    let got = until_next(rest, rest.len(), look);
+                    (got, Some(Wrong::CutOff { got, want }))
+                }
+                Seen::Nothing(wrong) => {
+                    run.take(rest, wrong, out);
+                    at += 1;
+                    continue;
+                }
+            };
+            run.end(out);
+            let len = len.clamp(1, rest.len());
+            let bytes = rest.get(..len).unwrap_or_default().to_vec();
+            out(Cut { bytes, wrong });
+            at += len;
+        }
+        run.end(out);
+        self.waiting.drain(..at.min(self.waiting.len()));
+    }
+}
+
+/// Bytes up to the first good frame behind a damaged beginning, or all `len`.
+fn until_next(bytes: &[u8], len: usize, look: impl Fn(&[u8]) -> Seen) -> usize {
+    let good = |at: &usize| {
+        let rest = bytes.get(*at..).unwrap_or_default();
+        matches!(look(rest), Seen::Whole(_))
+    };
+    (1..len.min(bytes.len())).find(good).unwrap_or(len)
+}
+
+/// Bytes that begin no frame, one behind the other.
+#[derive(Default)]
+struct Run {
+    bytes: Vec<u8>,
+    wrong: Option<Wrong>,
+}
+
+impl Run {
+    fn take(&mut self, rest: &[u8], wrong: Wrong, out: &mut impl FnMut(Cut)) {
+        if self.bytes.len() >= RUN_MAX {
+            self.end(out);
+        }
+        self.bytes.extend(rest.first());
+        self.wrong.get_or_insert(wrong);
+    }
+
+    fn end(&mut self, out: &mut impl FnMut(Cut)) {
+        let run = std::mem::take(self);
+        if run.bytes.is_empty() {
+            return;
+        }
+        // The length of a run is known only at its end.
+        let len = run.bytes.len();
+        let wrong = match run.wrong {
+            Some(Wrong::NoFrame { .. }) | None => Wrong::NoFrame { len },
+            Some(wrong) => wrong,
+        };
+        out(Cut {
+            bytes: run.bytes,
+            wrong: Some(wrong),
+        });
+    }
+}

@@ -1,0 +1,197 @@
+//! Pieces of a tap to frames, for one link. Pure: no clock, no lock; the same pieces give the same frames.
+
+use crate::hand::Moment;
+use crate::link::bus::id_of;
+use crate::link::tap::{Direction, Piece, PieceKind};
+use crate::link::traffic::cut::{Cut, Cutter, Seen};
+use crate::link::traffic::frame::{Form, Frame, Kind, Wrong};
+use crate::link::traffic::matching::Matching;
+use crate::link::traffic::said::Said;
+use crate::link::traffic::{can, modbus, rs485};
+use crate::transport::Endpoint;
+use std::time::Duration;
+
+/// After so long without a byte an unfinished frame will not be finished: a reply's pieces follow one another within
+/// the 16 ms of a USB adapter.
+pub const SILENCE: Duration = Duration::from_millis(25);
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Heard {
+    /// A frame.
+    Frame(Frame),
+    /// The request of this number stayed without reply.
+    NoReply(u64),
+}
+
+/// One direction of the wire.
+#[derive(Debug, Clone, Default)]
+struct Half {
+    cutter: Cutter,
+    /// When its last byte passed.
+    last: Moment,
+}
+
+/// Makes frames of pieces.
+#[derive(Debug, Clone)]
+pub struct Decoder {
+    form: Form,
+    unit: u8,
+    to_hand: Half,
+    from_hand: Half,
+    matching: Matching,
+    number: u64,
+}
+
+impl Decoder {
+    /// For a link to this hand.
+    #[must_use]
+    pub fn new(endpoint: &Endpoint) -> Self {
+        let form = match endpoint {
+            Endpoint::Sim { .. } | Endpoint::Rs485(_) => Form::Rs485,
+            Endpoint::Rtu(_) => Form::Rtu,
+            Endpoint::Tcp { .. } => Form::Tcp,
+            Endpoint::Can { .. } => Form::Can,
+            Endpoint::Slcan { .. } => Form::Slcan,
+        };
+        let hand = id_of(endpoint);
+        Self {
+            form,
+            unit: u8::try_from(hand).unwrap_or_default(),
+            to_hand: Half::default(),
+            from_hand: Half::default(),
+            matching: Matching::new(form, hand),
+            number: 0,
+        }
+    }
+
+    /// Takes the next piece.
+    pub fn push(&mut self, piece: &Piece, out: &mut Vec<Heard>) {
+        self.tick(piece.at, out);
+        match piece.kind {
+            PieceKind::Bytes(direction) => self.bytes(piece.at, direction, &piece.bytes, out),
+            PieceKind::Opened => self.wire(piece.at, Kind::Opened, out),
+            PieceKind::Broken => self.wire(piece.at, Kind::Broken, out),
+            PieceKind::Closed => self.wire(piece.at, Kind::Closed, out),
+        }
+    }
+
+    /// Pieces are missing here.
+    pub fn gap(&mut self, at: Moment, pieces: u64, out: &mut Vec<Heard>) {
+        self.wire(at, Kind::Gap, out);
+        if let Some(Heard::Frame(frame)) = out.last_mut() {
+            frame.wrong = Some(Wrong::Forgotten { pieces });
+        }
+    }
+
+    /// Time passes: what has been unfinished for [`SILENCE`] is given as it is.
+    pub fn tick(&mut self, now: Moment, out: &mut Vec<Heard>) {
+        for direction in [Direction::ToHand, Direction::FromHand] {
+            let half = self.half(direction);
+            if half.cutter.waiting() > 0 && now.since(half.last) >= SILENCE {
+                self.flush(direction, out);
+            }
+        }
+        out.extend(self.matching.overdue(now).map(Heard::NoReply));
+    }
+
+    /// Bytes that wait for the rest of their frame, of both directions.
+    #[must_use]
+    pub const fn waiting(&self) -> usize {
+        self.to_hand.cutter.waiting() + self.from_hand.cutter.waiting()
+    }
+
+    const fn half(&mut self, direction: Direction) -> &mut Half {
+        match direction {
+            Direction::ToHand => &mut self.to_hand,
+            Direction::FromHand => &mut self.from_hand,
+        }
+    }
+
+    fn bytes(&mut self, at: Moment, direction: Direction, bytes: &[u8], out: &mut Vec<Heard>) {
+        let look = looker(self.form, self.unit, direction);
+        let half = self.half(direction);
+        half.last = at;
+        let mut cuts = Vec::new();
+        half.cutter.push(bytes, look, |cut| cuts.push(cut));
+        for cut in cuts {
+            self.frame(at, direction, cut, out);
+        }
+    }
+
+    fn flush(&mut self, direction: Direction, out: &mut Vec<Heard>) {
+        let look = looker(self.form, self.unit, direction);
+        let half = self.half(direction);
+        let at = half.last;
+        let mut cuts = Vec::new();
+        half.cutter.flush(look, |cut| cuts.push(cut));
+        for cut in cuts {
+            self.frame(at, direction, cut, out);
+        }
+    }
+
+    fn frame(&mut self, at: Moment, direction: Direction, cut: Cut, out: &mut Vec<Heard>) {
+        let said = match cut.wrong {
+            None => said(self.form, direction, &cut.bytes),
+            Some(wrong @ (Wrong::Checksum { .. } | Wrong::Crc { .. })) => {
+                said(self.form, direction, &cut.bytes).wrong(wrong)
+            }
+            Some(wrong) => Said::noise(wrong),
+        };
+        let mut frame = self.empty(at, direction, said.kind);
+        frame.bytes = cut.bytes.into_boxed_slice();
+        // Damage counts before what damaged bytes seem to say.
+        frame.wrong = cut.wrong;
+        out.extend(self.matching.place(&mut frame, said).map(Heard::NoReply));
+        out.push(Heard::Frame(frame));
+    }
+
+    fn wire(&mut self, at: Moment, kind: Kind, out: &mut Vec<Heard>) {
+        self.flush(Direction::ToHand, out);
+        self.flush(Direction::FromHand, out);
+        out.extend(self.matching.renew().map(Heard::NoReply));
+        let direction = match kind {
+            Kind::Opened | Kind::Closed => Direction::ToHand,
+            _ => Direction::FromHand,
+        };
+        let frame = self.empty(at, direction, kind);
+        out.push(Heard::Frame(frame));
+    }
+
+    fn empty(&mut self, at: Moment, direction: Direction, kind: Kind) -> Frame {
+        self.number += 1;
+        Frame {
+            number: self.number,
+            at,
+            direction,
+            form: self.form,
+            bytes: Box::default(),
+            kind,
+            hand: None,
+            span: None,
+            memory: Box::default(),
+            wrong: None,
+            took: None,
+        }
+    }
+}
+
+fn looker(form: Form, unit: u8, direction: Direction) -> impl Fn(&[u8]) -> Seen {
+    move |bytes| match form {
+        Form::Rs485 => rs485::look(bytes),
+        Form::Rtu => modbus::look_rtu(direction, unit, bytes),
+        Form::Tcp => modbus::look_tcp(bytes),
+        Form::Can => can::look_record(bytes),
+        Form::Slcan => can::look_line(bytes),
+    }
+}
+
+fn said(form: Form, direction: Direction, bytes: &[u8]) -> Said {
+    match form {
+        Form::Rs485 => rs485::said(direction, bytes),
+        Form::Rtu => modbus::said_rtu(direction, bytes),
+        Form::Tcp => modbus::said_tcp(direction, bytes),
+        Form::Can => can::said_record(direction, bytes),
+        Form::Slcan => can::said_line(direction, bytes),
+    }
+}

@@ -1,0 +1,309 @@
+//! A frame byte by byte: which bytes are what, and which of them are wrong. Words for people are the views'.
+
+use crate::link::tap::Direction;
+use crate::link::traffic::frame::{Form, Frame, Kind, Wrong};
+use crate::link::traffic::values;
+use std::ops::Range;
+
+/// What some bytes of a frame are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FieldName {
+    /// The two bytes that a frame begins with (manual 2.2).
+    Header,
+    /// The hand's id.
+    Id,
+    /// The Modbus unit.
+    Unit,
+    /// Length of what follows.
+    Length,
+    /// 0x11 read, 0x12 write.
+    Command,
+    /// Modbus function.
+    Function,
+    /// Byte address in the hand's memory.
+    Address,
+    /// Bytes that are asked for.
+    Wanted,
+    /// Words that are asked for or were written.
+    Words,
+    /// Bytes of memory.
+    Data,
+    /// 1 = taken.
+    Acknowledge,
+    /// Why the hand said no.
+    Code,
+    /// Sum over the frame.
+    Checksum,
+    /// CRC over the frame.
+    Crc,
+    /// Modbus TCP: number of the request.
+    Transaction,
+    /// Modbus TCP: always 0.
+    Protocol,
+    /// CAN identifier.
+    CanId,
+    /// Filler of Linux's form of a CAN frame.
+    Filler,
+    /// Text of a serial CAN adapter.
+    Text,
+    /// Bytes of no known meaning.
+    Unknown,
+}
+
+/// Some bytes of a frame.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Field {
+    /// Which bytes.
+    pub at: Range<usize>,
+    /// What they are.
+    pub name: FieldName,
+    /// The register whose memory they are, as the manual names it.
+    pub register: Option<String>,
+    /// What they say, as a number or numbers; empty if nothing.
+    pub value: String,
+    /// What is wrong about them.
+    pub wrong: Option<Wrong>,
+}
+
+impl Frame {
+    /// All bytes, in order and without holes.
+    #[must_use]
+    pub fn fields(&self) -> Vec<Field> {
+        let mut parts = Parts {
+            frame: self,
+            at: 0,
+            fields: Vec::new(),
+        };
+        let is_broken = self
+            .wrong
+            .is_some_and(|wrong| wrong.is_damage() && !is_sum(wrong));
+        match self.form {
+            _ if is_broken || self.kind == Kind::Noise => {}
+            Form::Rs485 => rs485(&mut parts),
+            Form::Rtu => rtu(&mut parts),
+            Form::Tcp => tcp(&mut parts),
+            Form::Can => record(&mut parts),
+            Form::Slcan => parts.put(self.bytes.len(), FieldName::Text),
+        }
+        parts.rest();
+        parts.fields
+    }
+}
+
+const fn is_sum(wrong: Wrong) -> bool {
+    matches!(wrong, Wrong::Checksum { .. } | Wrong::Crc { .. })
+}
+
+struct Parts<'a> {
+    frame: &'a Frame,
+    at: usize,
+    fields: Vec<Field>,
+}
+
+impl Parts<'_> {
+    fn bytes(&self, at: &Range<usize>) -> &[u8] {
+        self.frame.bytes.get(at.clone()).unwrap_or_default()
+    }
+
+    fn left(&self) -> usize {
+        self.frame.bytes.len().saturating_sub(self.at)
+    }
+
+    /// The next `len` bytes, or what is left.
+    fn put(&mut self, len: usize, name: FieldName) {
+        let len = len.min(self.left());
+        if len == 0 {
+            return;
+        }
+        let at = self.at..self.at + len;
+        let value = value(self.frame, name, self.bytes(&at));
+        self.at += len;
+        self.fields.push(Field {
+            wrong: self.frame.wrong.filter(|wrong| blames(*wrong, name)),
+            at,
+            name,
+            register: None,
+            value,
+        });
+    }
+
+    /// The next `len` bytes are memory: one field a register.
+    fn memory(&mut self, len: usize) {
+        let end = self.at + len.min(self.left());
+        let (Some(span), true) = (self.frame.span, self.frame.memory.len() == len) else {
+            return self.put(len, FieldName::Data);
+        };
+        let start = self.at;
+        for held in values::held(span, &self.frame.memory) {
+            let from = start + usize::from(held.span.address - span.address);
+            if from > self.at {
+                self.put(from - self.at, FieldName::Data);
+            }
+            let to = (from + usize::from(held.span.len)).min(end);
+            self.fields.push(Field {
+                at: from..to,
+                name: FieldName::Data,
+                register: Some(held.name()),
+                value: [held.numbers.as_str(), held.row.unit]
+                    .join(" ")
+                    .trim()
+                    .to_owned(),
+                wrong: None,
+            });
+            self.at = to;
+        }
+        self.put(end.saturating_sub(self.at), FieldName::Data);
+    }
+
+    fn rest(&mut self) {
+        self.put(self.left(), FieldName::Unknown);
+        let blamed = self.fields.iter().any(|field| field.wrong.is_some());
+        if let Some(field) = self.fields.first_mut().filter(|_| !blamed) {
+            field.wrong = self.frame.wrong;
+        }
+    }
+}
+
+/// Which field a fault is shown at; the first if none fits.
+const fn blames(wrong: Wrong, name: FieldName) -> bool {
+    matches!(
+        (wrong, name),
+        (Wrong::Checksum { .. }, FieldName::Checksum)
+            | (Wrong::Crc { .. }, FieldName::Crc)
+            | (
+                Wrong::ForeignId { .. },
+                FieldName::Id | FieldName::Unit | FieldName::CanId
+            )
+            | (Wrong::Refused { .. }, FieldName::Code)
+            | (Wrong::NotTaken { .. }, FieldName::Acknowledge)
+            | (Wrong::Address { .. }, FieldName::Address)
+            | (Wrong::Amount { .. }, FieldName::Length)
+            | (Wrong::Transaction { .. }, FieldName::Transaction)
+    )
+}
+
+fn value(frame: &Frame, name: FieldName, bytes: &[u8]) -> String {
+    let number = |little: bool| {
+        let fold = |sum: u64, byte: &u8| (sum << 8) | u64::from(*byte);
+        if little {
+            bytes.iter().rev().fold(0, fold)
+        } else {
+            bytes.iter().fold(0, fold)
+        }
+    };
+    let is_little = matches!(frame.form, Form::Rs485);
+    match name {
+        FieldName::Header | FieldName::Data | FieldName::Filler | FieldName::Unknown => {
+            String::new()
+        }
+        FieldName::Checksum => format!("{:02X}", number(true)),
+        FieldName::Crc => format!("{:04X}", number(true)),
+        FieldName::CanId => format!(
+            "{:08X}",
+            number(cfg!(target_endian = "little")) & 0x1FFF_FFFF
+        ),
+        FieldName::Text => String::from_utf8_lossy(bytes)
+            .trim_end()
+            .escape_debug()
+            .to_string(),
+        FieldName::Address => {
+            let address = u16::try_from(number(is_little)).unwrap_or_default();
+            let row = crate::hand::register::by_address(address);
+            row.map_or_else(
+                || address.to_string(),
+                |row| format!("{address} {}", row.name),
+            )
+        }
+        FieldName::Command | FieldName::Function => format!("{:02X}h", number(true)),
+        _ => number(is_little).to_string(),
+    }
+}
+
+fn rs485(parts: &mut Parts<'_>) {
+    use FieldName as F;
+    for (len, name) in [
+        (2, F::Header),
+        (1, F::Id),
+        (1, F::Length),
+        (1, F::Command),
+        (2, F::Address),
+    ] {
+        parts.put(len, name);
+    }
+    let data = parts.left().saturating_sub(1);
+    match parts.frame.kind {
+        Kind::Read => parts.put(data, F::Wanted),
+        Kind::WriteReply | Kind::SaveResult => parts.put(data, F::Acknowledge),
+        _ => parts.memory(data),
+    }
+    parts.put(1, F::Checksum);
+}
+
+fn rtu(parts: &mut Parts<'_>) {
+    parts.put(1, FieldName::Unit);
+    pdu(parts, 2);
+    parts.put(2, FieldName::Crc);
+}
+
+fn tcp(parts: &mut Parts<'_>) {
+    use FieldName as F;
+    for (len, name) in [
+        (2, F::Transaction),
+        (2, F::Protocol),
+        (2, F::Length),
+        (1, F::Unit),
+    ] {
+        parts.put(len, name);
+    }
+    pdu(parts, 0);
+}
+
+/// Function and what follows, up to `behind` bytes before the end.
+fn pdu(parts: &mut Parts<'_>, behind: usize) {
+    use FieldName as F;
+    let function = parts.frame.bytes.get(parts.at).copied().unwrap_or_default();
+    parts.put(1, F::Function);
+    let is_request = parts.frame.direction == Direction::ToHand || parts.frame.kind == Kind::Read;
+    let left = |parts: &Parts<'_>| parts.left().saturating_sub(behind);
+    match (function, is_request) {
+        (3, true) => {
+            parts.put(2, F::Address);
+            parts.put(2, F::Words);
+        }
+        (3, false) => {
+            parts.put(1, F::Length);
+            parts.memory(left(parts));
+        }
+        (6, _) => {
+            parts.put(2, F::Address);
+            let rest = left(parts);
+            parts.put(rest, F::Data);
+        }
+        (16, _) => {
+            parts.put(2, F::Address);
+            parts.put(2, F::Words);
+            if left(parts) > 0 {
+                parts.put(1, F::Length);
+                parts.memory(left(parts));
+            }
+        }
+        (0x80..=0xFF, _) => parts.put(1, F::Code),
+        _ => {}
+    }
+}
+
+fn record(parts: &mut Parts<'_>) {
+    use FieldName as F;
+    parts.put(4, F::CanId);
+    let len = usize::from(parts.frame.bytes.get(4).copied().unwrap_or_default()).min(8);
+    parts.put(1, F::Length);
+    parts.put(3, F::Filler);
+    match parts.frame.kind {
+        Kind::Read => parts.put(len, F::Wanted),
+        Kind::WriteReply => parts.put(len, F::Acknowledge),
+        Kind::ReadReply | Kind::Write => parts.memory(len),
+        _ => parts.put(len, F::Unknown),
+    }
+    let rest = parts.left();
+    parts.put(rest, F::Filler);
+}

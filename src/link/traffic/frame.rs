@@ -1,0 +1,284 @@
+//! One frame as it is shown: when, which way, what it says, what is wrong about it. How it is found is not known here.
+
+use crate::hand::{Moment, Span};
+use crate::link::tap::Direction;
+use std::time::Duration;
+
+/// How frames stand on the wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Form {
+    /// The private framing (manual 2.2).
+    Rs485,
+    /// Modbus RTU (manual 2.4).
+    Rtu,
+    /// Modbus TCP (manual 2.5).
+    Tcp,
+    /// Linux's `struct can_frame` (manual 2.3).
+    Can,
+    /// Lines of a serial CAN adapter.
+    Slcan,
+}
+
+/// What a frame is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// The wire was opened.
+    Opened,
+    /// This program closed the wire.
+    Closed,
+    /// The other side hung up, or the wire broke.
+    Broken,
+    /// Pieces that went out of the ring before anybody looked.
+    Gap,
+    /// Memory is asked for.
+    Read,
+    /// Memory is told.
+    ReadReply,
+    /// Memory is to be changed.
+    Write,
+    /// A change was taken.
+    WriteReply,
+    /// The hand said no.
+    Refusal,
+    /// The late frame that tells how a SAVE ended (manual 2.2.2).
+    SaveResult,
+    /// Something for the CAN adapter itself.
+    Adapter,
+    /// Something from the CAN adapter or the CAN interface itself.
+    AdapterReply,
+    /// No frame.
+    Noise,
+}
+
+/// What is wrong about a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+pub enum Wrong {
+    /// The sum over the frame differs (manual 2.2.1).
+    #[error("checksum {got:02X}, should be {want:02X}")]
+    Checksum {
+        /// As sent.
+        got: u8,
+        /// Of what was sent.
+        want: u8,
+    },
+    /// The CRC over the frame differs (manual 2.4).
+    #[error("CRC {got:04X}, should be {want:04X}")]
+    Crc {
+        /// As sent.
+        got: u16,
+        /// Of what was sent.
+        want: u16,
+    },
+    /// It ended before its own length byte says.
+    #[error("cut off: {got} bytes{}", of(.want))]
+    CutOff {
+        /// Bytes there were.
+        got: usize,
+        /// Bytes there should be, as far as that is known.
+        want: Option<usize>,
+    },
+    /// A header and an impossible length or command behind it.
+    #[error("header with impossible length {len} or command")]
+    BadHead {
+        /// The length byte.
+        len: u8,
+        /// The command byte.
+        command: Option<u8>,
+    },
+    /// Bytes in which no frame begins.
+    #[error("{len} bytes that are no frame")]
+    NoFrame {
+        /// How many.
+        len: usize,
+    },
+    /// Another protocol id than 0 (manual 2.5).
+    #[error("protocol id {got}, should be 0: the other side does not speak Modbus TCP")]
+    Protocol {
+        /// As sent.
+        got: u16,
+    },
+    /// A length field that no message has (manual 2.5).
+    #[error("length field {got}, possible are 2 to 254")]
+    LengthField {
+        /// As sent.
+        got: u16,
+    },
+    /// A function that this hand does not know, or whose length does not fit it.
+    #[error("unknown function {function}, or one of the wrong length")]
+    Function {
+        /// As sent.
+        function: u8,
+    },
+    /// From or to another hand.
+    #[error("id {got}, this hand is {want}")]
+    ForeignId {
+        /// As sent.
+        got: u16,
+        /// The one of this link.
+        want: u16,
+    },
+    /// A CAN identifier that is not this hand's protocol.
+    #[error("identifier {id:08X} is none of the hand's")]
+    ForeignCanId {
+        /// As sent.
+        id: u32,
+    },
+    /// A request that came in: an adapter that echoes, or another program that asks.
+    #[error("a request from outside: an echo, or another program on the bus")]
+    Echo,
+    /// A reply from us, which nobody sends.
+    #[error("a reply going out")]
+    Backwards,
+    /// Nothing was asked that this could answer.
+    #[error("nobody asked for it")]
+    NotAsked,
+    /// It answers a request that was given up.
+    #[error("late: the request was given up {after_ms} ms ago")]
+    Late {
+        /// Since the request.
+        after_ms: u64,
+    },
+    /// Fewer or more bytes than were asked for.
+    #[error("{got} bytes of memory, asked were {want}")]
+    Amount {
+        /// As sent.
+        got: u16,
+        /// As asked.
+        want: u16,
+    },
+    /// It is about another address than was asked.
+    #[error("address {got}, asked was {want}")]
+    Address {
+        /// As sent.
+        got: u16,
+        /// As asked.
+        want: u16,
+    },
+    /// Another number than that of the open request (manual 2.5).
+    #[error("transaction {got}, open is {want}")]
+    Transaction {
+        /// As sent.
+        got: u16,
+        /// That of the request.
+        want: u16,
+    },
+    /// The hand said no.
+    #[error("refused with code {code}")]
+    Refused {
+        /// Why, by the standard's table.
+        code: u8,
+    },
+    /// The hand did not take it: an acknowledgement other than 1.
+    #[error("not taken: acknowledgement {value}, should be 1")]
+    NotTaken {
+        /// As sent.
+        value: u8,
+    },
+    /// A SAVE that failed (manual 2.2.2).
+    #[error("SAVE failed with {value:02X}")]
+    NotSaved {
+        /// As sent.
+        value: u8,
+    },
+    /// No reply came before the next request.
+    #[error("no reply")]
+    NoReply,
+    /// A line that no adapter says or takes.
+    #[error("no line of a serial CAN adapter")]
+    Line,
+    /// The adapter said that it could not.
+    #[error("the adapter could not do it")]
+    AdapterFailed,
+    /// The CAN controller gave the bus up.
+    #[error("bus-off: the controller left the bus")]
+    BusOff,
+    /// The CAN controller met many errors.
+    #[error("error-passive: the controller met many errors")]
+    ErrorPassive,
+    /// Pieces that are gone.
+    #[error("{pieces} earlier pieces are no longer kept")]
+    Forgotten {
+        /// How many.
+        pieces: u64,
+    },
+}
+
+fn of(want: &Option<usize>) -> String {
+    want.map(|want| format!(" of {want}")).unwrap_or_default()
+}
+
+impl Wrong {
+    /// True if the bytes themselves are damaged or no frame, not only out of place.
+    #[must_use]
+    pub const fn is_damage(&self) -> bool {
+        matches!(
+            self,
+            Self::Checksum { .. }
+                | Self::Crc { .. }
+                | Self::CutOff { .. }
+                | Self::BadHead { .. }
+                | Self::NoFrame { .. }
+                | Self::Protocol { .. }
+                | Self::LengthField { .. }
+                | Self::Function { .. }
+                | Self::Line
+        )
+    }
+}
+
+/// One frame, or a change of the wire, which has no bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Frame {
+    /// Counts all frames of a link, from 1. Never given twice.
+    pub number: u64,
+    /// When its last byte passed.
+    pub at: Moment,
+    /// Which way it went.
+    pub direction: Direction,
+    /// How it stands on the wire.
+    pub form: Form,
+    /// All of it, as it passed.
+    pub bytes: Box<[u8]>,
+    /// What it is.
+    pub kind: Kind,
+    /// The hand that is meant or that answers.
+    pub hand: Option<u16>,
+    /// The memory it is about. In a reply without address, that of the request it answers.
+    pub span: Option<Span>,
+    /// Bytes of the hand's memory that it carries, in memory order.
+    pub memory: Box<[u8]>,
+    /// What is wrong about it.
+    pub wrong: Option<Wrong>,
+    /// From the end of the request to the end of this reply.
+    pub took: Option<Duration>,
+}
+
+impl Frame {
+    /// True if it is part of the regular reading and nothing is wrong about it.
+    #[must_use]
+    pub const fn is_polling(&self) -> bool {
+        matches!(self.kind, Kind::Read | Kind::ReadReply) && self.wrong.is_none()
+    }
+
+    /// The bytes in hex, two digits each with spaces between.
+    #[must_use]
+    pub fn hex(&self) -> String {
+        hex(&self.bytes)
+    }
+}
+
+/// Bytes in hex, two digits each with spaces between.
+#[must_use]
+pub fn hex(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+    let digit = |half: u8| char::from(DIGITS.get(usize::from(half)).copied().unwrap_or(b'?'));
+    let mut text = String::with_capacity(bytes.len() * 3);
+    for byte in bytes {
+        if !text.is_empty() {
+            text.push(' ');
+        }
+        text.push(digit(byte >> 4));
+        text.push(digit(byte & 15));
+    }
+    text
+}

@@ -1,0 +1,245 @@
+//! Sets what comes in against what was asked: which request a reply answers, and what is out of place. One request is
+//! open at a time, as the link has it.
+
+use crate::codec::modbus::BytePacking;
+use crate::codec::rs485::SaveResult;
+use crate::hand::register::{ERROR, SAVE, STATUS, TEMP};
+use crate::hand::{Moment, Span};
+use crate::link::tap::Direction;
+use crate::link::traffic::frame::{Form, Frame, Kind, Wrong};
+use crate::link::traffic::rs485;
+use crate::link::traffic::said::Said;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Requests without reply that a late reply is still set against.
+const GIVEN_UP_MAX: usize = 16;
+/// A request that is open for so long gets no reply any more.
+const REPLY_WITHIN: Duration = Duration::from_secs(1);
+
+/// A request that waits for its reply.
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    number: u64,
+    at: Moment,
+    writes: bool,
+    span: Span,
+    transaction: Option<u16>,
+}
+
+impl Asked {
+    fn is_answered_by(&self, said: &Said) -> bool {
+        self.is_of_kind(said)
+            && said.transaction == self.transaction
+            && said
+                .span
+                .is_none_or(|span| span.address == self.span.address)
+            && (self.writes || said.kind == Kind::Refusal || said.len == Some(self.span.len))
+    }
+
+    const fn is_of_kind(&self, said: &Said) -> bool {
+        match said.kind {
+            Kind::Refusal => true,
+            Kind::WriteReply => self.writes,
+            _ => !self.writes,
+        }
+    }
+}
+
+/// What a link asked and what became of it.
+#[derive(Debug, Clone)]
+pub struct Matching {
+    form: Form,
+    hand: u16,
+    open: Option<Asked>,
+    given_up: VecDeque<Asked>,
+    saving: bool,
+    packing: BytePacking,
+}
+
+impl Matching {
+    /// Nothing asked yet of this hand.
+    #[must_use]
+    pub fn new(form: Form, hand: u16) -> Self {
+        Self {
+            form,
+            hand,
+            open: None,
+            given_up: VecDeque::new(),
+            saving: false,
+            packing: BytePacking::default(),
+        }
+    }
+
+    /// The number of a request that will get no reply any more.
+    pub fn overdue(&mut self, now: Moment) -> Option<u64> {
+        self.open
+            .take_if(|open| now.since(open.at) >= REPLY_WITHIN)
+            .map(|open| self.give_up(open))
+    }
+
+    /// The wire is another one now: nothing asked before is answered on it. Gives the number of the open request.
+    pub fn renew(&mut self) -> Option<u64> {
+        self.given_up.clear();
+        self.open.take().map(|open| open.number)
+    }
+
+    /// Puts what was said into a frame. If it is a request, the number of the one before it that stayed without reply.
+    pub fn place(&mut self, frame: &mut Frame, said: Said) -> Option<u64> {
+        frame.kind = said.kind;
+        frame.hand = said.hand;
+        frame.span = said.span;
+        frame.wrong = frame.wrong.or(said.wrong);
+        let foreign = said.hand.filter(|id| *id != self.hand);
+        let mut before = None;
+        if let Some(got) = foreign {
+            let want = self.hand;
+            frame.wrong = frame.wrong.or(Some(Wrong::ForeignId { got, want }));
+        } else if frame.wrong.is_none_or(|wrong| !is_final(wrong)) {
+            match (frame.direction, said.kind) {
+                (Direction::ToHand, Kind::Read | Kind::Write) => before = self.ask(frame, &said),
+                (Direction::FromHand, Kind::ReadReply | Kind::WriteReply | Kind::Refusal) => {
+                    self.answer(frame, &said);
+                }
+                _ => {}
+            }
+        }
+        frame.memory = said.memory.into_boxed_slice();
+        self.unpack(frame);
+        before
+    }
+
+    fn ask(&mut self, frame: &Frame, said: &Said) -> Option<u64> {
+        let before = self.open.take().map(|open| self.give_up(open));
+        let span = said.span?;
+        self.saving |= said.kind == Kind::Write && span.address == SAVE.address;
+        self.open = Some(Asked {
+            number: frame.number,
+            at: frame.at,
+            writes: said.kind == Kind::Write,
+            span,
+            transaction: said.transaction,
+        });
+        before
+    }
+
+    fn give_up(&mut self, open: Asked) -> u64 {
+        if self.given_up.len() >= GIVEN_UP_MAX {
+            self.given_up.pop_front();
+        }
+        self.given_up.push_back(open);
+        open.number
+    }
+
+    fn answer(&mut self, frame: &mut Frame, said: &Said) {
+        if let Some(open) = self.open.take_if(|open| open.is_answered_by(said)) {
+            frame.took = Some(frame.at.since(open.at));
+            frame.span = Some(open.span);
+            return;
+        }
+        if self.is_save_result(frame, said) {
+            return;
+        }
+        let late = self
+            .given_up
+            .iter()
+            .position(|asked| asked.is_answered_by(said));
+        if let Some(asked) = late.and_then(|at| self.given_up.remove(at)) {
+            let after = frame.at.since(asked.at).as_millis();
+            let after_ms = u64::try_from(after).unwrap_or(u64::MAX);
+            frame.span = Some(asked.span);
+            frame.wrong = Some(Wrong::Late { after_ms });
+            return;
+        }
+        let wrong = self.misfit(said);
+        frame.wrong = Some(wrong);
+        // It was the answer, only a wrong one: no other will come.
+        if matches!(wrong, Wrong::Amount { .. }) {
+            self.open = None;
+        }
+    }
+
+    fn misfit(&self, said: &Said) -> Wrong {
+        let Some(open) = self.open else {
+            return Wrong::NotAsked;
+        };
+        if let (Some(got), Some(want)) = (said.transaction, open.transaction)
+            && got != want
+        {
+            return Wrong::Transaction { got, want };
+        }
+        if !open.is_of_kind(said) {
+            return Wrong::NotAsked;
+        }
+        let want = open.span.address;
+        if let Some(got) = said
+            .span
+            .map(|span| span.address)
+            .filter(|got| *got != want)
+        {
+            return Wrong::Address { got, want };
+        }
+        // Request and reply share an identifier on CAN, so an echo is told by what it carries.
+        let is_can = matches!(self.form, Form::Can | Form::Slcan);
+        let asked_for = u8::try_from(open.span.len).unwrap_or(u8::MAX);
+        if is_can && said.memory == [asked_for] {
+            return Wrong::Echo;
+        }
+        Wrong::Amount {
+            got: said.len.unwrap_or_default(),
+            want: open.span.len,
+        }
+    }
+
+    fn is_save_result(&mut self, frame: &mut Frame, said: &Said) -> bool {
+        if self.form != Form::Rs485 || !self.saving {
+            return false;
+        }
+        let Some(result) = rs485::save_result(said) else {
+            return false;
+        };
+        self.saving = false;
+        frame.kind = Kind::SaveResult;
+        frame.wrong = match result {
+            SaveResult::Ok => None,
+            SaveResult::Failed => Some(Wrong::NotSaved { value: 0xFF }),
+            SaveResult::Other(value) => Some(Wrong::NotSaved { value }),
+        };
+        true
+    }
+
+    /// Some hands keep single bytes one a word (manual 2.5 is silent); the link finds out at TEMP, and so is it here.
+    fn unpack(&mut self, frame: &mut Frame) {
+        let is_modbus = matches!(self.form, Form::Rtu | Form::Tcp);
+        let Some(span) = frame
+            .span
+            .filter(|_| is_modbus && frame.kind == Kind::ReadReply)
+        else {
+            return;
+        };
+        let (pairs, _) = frame.memory.as_chunks::<2>();
+        let words: Vec<u16> = pairs.iter().map(|pair| u16::from_le_bytes(*pair)).collect();
+        let Ok(six) = <[u16; 6]>::try_from(words.as_slice()) else {
+            return;
+        };
+        if span.address == TEMP.address {
+            self.packing = BytePacking::detect(&six);
+        }
+        let groups = [ERROR.address, STATUS.address, TEMP.address];
+        if self.packing == BytePacking::OnePerWord
+            && groups.contains(&span.address)
+            && let Some(bytes) = self.packing.group(&six)
+        {
+            frame.memory = Box::from(bytes);
+            frame.span = Some(Span::new(span.address, 6));
+        }
+    }
+}
+
+/// True if a frame with this fault takes no part in asking and answering.
+const fn is_final(wrong: Wrong) -> bool {
+    !matches!(
+        wrong,
+        Wrong::Refused { .. } | Wrong::NotTaken { .. } | Wrong::Amount { .. }
+    )
+}

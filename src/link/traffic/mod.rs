@@ -1,0 +1,19 @@
+//! Frames cut out of what a tap recorded, with what they mean and what is wrong about them. Only for those who look:
+//! the link itself never asks here.
+
+pub mod can;
+pub mod cut;
+pub mod decode;
+pub mod fields;
+pub mod frame;
+pub mod matching;
+pub mod modbus;
+pub mod reader;
+pub mod rs485;
+pub mod said;
+pub mod values;
+pub mod words;
+
+pub use decode::Decoder;
+pub use frame::{Form, Frame, Kind, Wrong};
+pub use reader::{FRAMES_MAX, Traffic};

@@ -1,0 +1,120 @@
+//! The last frames of a link, read on from its tap by whoever looks. Costs the link nothing but the copying of pieces.
+
+use crate::hand::Moment;
+use crate::link::tap::WireTap;
+use crate::link::traffic::decode::{Decoder, Heard};
+use crate::link::traffic::frame::{Frame, Wrong};
+use crate::transport::Endpoint;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// Frames kept: half a minute of the fastest wire, and as much as a person looks through.
+pub const FRAMES_MAX: usize = 10_000;
+/// Requests are marked "no reply" this far back: the next request comes right behind.
+const LOOK_BACK: usize = 64;
+
+/// The last frames of one link.
+#[derive(Debug, Clone, Default)]
+pub struct Traffic {
+    source: Option<Source>,
+    frames: VecDeque<Arc<Frame>>,
+    changes: u64,
+}
+
+#[derive(Debug, Clone)]
+struct Source {
+    tap: WireTap,
+    decoder: Decoder,
+    next: u64,
+}
+
+impl Traffic {
+    /// Of this link, from the oldest piece that its tap still has.
+    #[must_use]
+    pub fn of(tap: WireTap, endpoint: &Endpoint) -> Self {
+        Self {
+            source: Some(Source {
+                tap,
+                decoder: Decoder::new(endpoint),
+                next: 0,
+            }),
+            ..Self::default()
+        }
+    }
+
+    /// Reads on, until nothing more waits.
+    pub fn read_on(&mut self, now: Moment) {
+        while self.read_some(now) {}
+    }
+
+    /// Reads some pieces on; true if more wait.
+    pub fn read_some(&mut self, now: Moment) -> bool {
+        let Some(source) = &mut self.source else {
+            return false;
+        };
+        let got = source.tap.after(source.next);
+        let is_first = source.next == 0;
+        source.next = got.next;
+        let mut heard = Vec::new();
+        if got.lost > 0 && !is_first {
+            let at = got.pieces.first().map_or(now, |piece| piece.at);
+            source.decoder.gap(at, got.lost, &mut heard);
+        }
+        for piece in &got.pieces {
+            source.decoder.push(piece, &mut heard);
+        }
+        if !got.more {
+            source.decoder.tick(now, &mut heard);
+        }
+        for one in heard {
+            self.take(one);
+        }
+        got.more
+    }
+
+    fn take(&mut self, heard: Heard) {
+        self.changes += 1;
+        match heard {
+            Heard::Frame(frame) => {
+                if self.frames.len() >= FRAMES_MAX {
+                    self.frames.pop_front();
+                }
+                let later = self.frames.iter().rev().take(LOOK_BACK);
+                let later = later.take_while(|other| other.at > frame.at).count();
+                let at = self.frames.len().saturating_sub(later);
+                self.frames.insert(at, Arc::new(frame));
+            }
+            Heard::NoReply(number) => {
+                let found = self
+                    .frames
+                    .iter_mut()
+                    .rev()
+                    .take(LOOK_BACK)
+                    .find(|frame| frame.number == number);
+                if let Some(frame) = found.filter(|frame| frame.wrong.is_none()) {
+                    Arc::make_mut(frame).wrong = Some(Wrong::NoReply);
+                }
+            }
+        }
+    }
+
+    /// Oldest first, at most [`FRAMES_MAX`].
+    #[must_use]
+    pub const fn frames(&self) -> &VecDeque<Arc<Frame>> {
+        &self.frames
+    }
+
+    /// Grows with each change of the frames.
+    #[must_use]
+    pub const fn changes(&self) -> u64 {
+        self.changes
+    }
+
+    /// Number of the newest frame; 0 before the first.
+    #[must_use]
+    pub fn newest(&self) -> u64 {
+        // A frame that was finished by silence may stand before one with a smaller number.
+        let last = self.frames.iter().rev().take(LOOK_BACK);
+        last.map(|frame| frame.number).max().unwrap_or_default()
+    }
+}
