@@ -4,6 +4,7 @@ use crate::codec::modbus::BytePacking;
 use crate::hand::{RegisterWrite, Span};
 use crate::link::can::Can;
 use crate::link::clock::Clock;
+use crate::link::cost::WireCost;
 use crate::link::late::LateReplies;
 use crate::link::modbus_rtu::ModbusRtu;
 use crate::link::modbus_tcp::ModbusTcp;
@@ -106,6 +107,20 @@ impl Bus {
         }
     }
 
+    /// Reads a span of memory, unless something more urgent comes up between two of its pieces, where it has some.
+    /// None if it did: what was read until then is forgotten.
+    pub(crate) async fn read_unless(
+        &mut self,
+        span: Span,
+        limit: Duration,
+        urgent: impl Fn() -> bool,
+    ) -> Result<Option<Bytes>, BusError> {
+        match self {
+            Self::Can(bus) => bus.read_unless(span, limit, urgent).await,
+            whole => whole.read(span, limit).await.map(Some),
+        }
+    }
+
     /// Writes, and waits for the acknowledgement.
     pub(crate) async fn write(
         &mut self,
@@ -144,12 +159,19 @@ impl Bus {
         match self {
             Self::Rs485(bus) => bus.choose(shapes),
             Self::ModbusRtu(bus) => bus.choose(shapes),
-            // Transaction ids tell replies apart, so the widest shape serves always.
-            Self::ModbusTcp(_) => shapes
-                .iter()
-                .copied()
-                .max_by_key(|shape| (shape.address, shape.len)),
+            // Transaction ids tell replies apart, so the first serves always.
+            Self::ModbusTcp(_) => shapes.first().copied(),
             Self::Can(bus) => bus.choose(shapes),
+        }
+    }
+
+    /// What reads cost on this wire.
+    pub(crate) fn cost(&self) -> WireCost {
+        match self {
+            Self::Rs485(bus) => bus.cost(),
+            Self::ModbusRtu(bus) => bus.cost(),
+            Self::ModbusTcp(_) => WireCost::tcp(),
+            Self::Can(bus) => bus.cost(),
         }
     }
 

@@ -12,7 +12,9 @@ use crate::hand::{RegisterWrite, Span, register};
 use crate::link::bus::{BusCounts, BusError, Bytes, READ_MAX, id_of};
 use crate::link::can_port::CanPort;
 use crate::link::clock::Clock;
+use crate::link::cost::WireCost;
 use crate::link::late::LateReplies;
+use crate::transport::endpoint::DEFAULT_BITRATE;
 use crate::transport::{BoxedWire, Endpoint};
 use arrayvec::ArrayVec;
 use futures::FutureExt as _;
@@ -42,6 +44,7 @@ const PROBE: Span = Span::new(register::ANGLE_ACT.address, 2);
 pub(crate) struct Can {
     port: CanPort,
     hand: u16,
+    bitrate: u32,
     is_open: bool,
     /// Whether what we send comes back to us, once that is known.
     echoes: Option<bool>,
@@ -64,6 +67,10 @@ impl Can {
         let port = CanPort::new(wire, endpoint);
         Self {
             hand: id_of(endpoint),
+            bitrate: match endpoint {
+                Endpoint::Slcan { bitrate, .. } => *bitrate,
+                _ => DEFAULT_BITRATE,
+            },
             is_open: false,
             echoes: port.never_echoes().then_some(false),
             port,
@@ -77,6 +84,17 @@ impl Can {
     }
 
     pub(crate) async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
+        let read = self.read_unless(span, limit, || false).await?;
+        Ok(read.unwrap_or_default())
+    }
+
+    /// None if something urgent came up between two pieces.
+    pub(crate) async fn read_unless(
+        &mut self,
+        span: Span,
+        limit: Duration,
+        urgent: impl Fn() -> bool,
+    ) -> Result<Option<Bytes>, BusError> {
         if usize::from(span.len) > READ_MAX {
             return Err(BusError::TooLong);
         }
@@ -87,11 +105,14 @@ impl Can {
         let end = Instant::now() + limit;
         let mut bytes = Bytes::new();
         for piece in pieces {
+            if urgent() {
+                return Ok(None);
+            }
             let got = self.read_piece(piece, end, limit).await?;
             // No piece is longer than asked, and the run fits.
             bytes.extend(got);
         }
-        Ok(bytes)
+        Ok(Some(bytes))
     }
 
     async fn read_piece(
@@ -148,6 +169,10 @@ impl Can {
             let mut shapes = shapes.iter().copied();
             shapes.find(|shape| self.clear_pieces(*shape).is_some())
         })
+    }
+
+    pub(crate) fn cost(&self) -> WireCost {
+        WireCost::can(self.bitrate)
     }
 
     pub(crate) fn wire_time(&self, bytes: u16) -> Duration {

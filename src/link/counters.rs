@@ -1,7 +1,9 @@
 //! Counting for [`LinkStats`]: rates over the last second and percentiles over the last round trips.
 
-use crate::hand::Moment;
-use crate::link::stats::LinkStats;
+use crate::hand::{Finger, Group, Groups, Moment, Span};
+use crate::link::cost::WireCost;
+use crate::link::line_meter::LineMeter;
+use crate::link::stats::{LineUse, LinkStats};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -21,6 +23,8 @@ pub(crate) struct Counters {
     round_trips: VecDeque<Duration>,
     state: Rate,
     tactile: Rate,
+    sweep: Sweep,
+    pub(crate) line: LineMeter,
     digested: Moment,
 }
 
@@ -32,14 +36,31 @@ impl Counters {
         self.round_trips.push_back(took);
     }
 
-    pub(crate) fn state_read(&mut self, now: Moment) {
-        self.stats.state_reads += 1;
-        self.state.hit(now);
+    /// A window was answered.
+    pub(crate) fn read(&mut self, cost: &WireCost, window: Span, took: Duration) {
+        self.line.read(cost, window, took);
     }
 
-    pub(crate) fn tactile_read(&mut self, now: Moment) {
-        self.stats.tactile_reads += 1;
-        self.tactile.hit(now);
+    /// A write went out, answered or not.
+    pub(crate) fn wrote(&mut self, cost: &WireCost, written: Span, took: Duration) {
+        self.line.wrote(cost, written, took);
+    }
+
+    /// A read had no good end.
+    pub(crate) fn failed(&mut self, took: Duration) {
+        self.line.failed(took);
+    }
+
+    /// These groups came anew.
+    pub(crate) fn fresh(&mut self, fresh: Groups, now: Moment) {
+        if fresh.contains(Group::Angle) {
+            self.stats.state_reads += 1;
+            self.state.hit(now);
+        }
+        if self.sweep.is_whole_with(fresh) {
+            self.stats.tactile_reads += 1;
+            self.tactile.hit(now);
+        }
     }
 
     /// Brings rates and percentiles up to date, not more often than needed.
@@ -61,10 +82,37 @@ impl Counters {
         self.round_trips.clear();
         self.state = Rate::default();
         self.tactile = Rate::default();
+        self.sweep = Sweep::default();
+        self.line = LineMeter::default();
         self.stats.state_hz = 0.0;
         self.stats.tactile_hz = 0.0;
         self.stats.rtt_p50 = None;
         self.stats.rtt_p99 = None;
+        self.stats.line = LineUse::default();
+    }
+}
+
+/// The fingertips read since all five were.
+#[derive(Debug, Default)]
+struct Sweep(Groups);
+
+impl Sweep {
+    fn is_whole_with(&mut self, fresh: Groups) -> bool {
+        if !fresh.has_tactile() {
+            return false;
+        }
+        for finger in Finger::ALL {
+            if fresh.contains(Group::Tactile(finger)) {
+                self.0.insert(Group::Tactile(finger));
+            }
+        }
+        let whole = Finger::ALL
+            .iter()
+            .all(|finger| self.0.contains(Group::Tactile(*finger)));
+        if whole {
+            self.0 = Groups::NONE;
+        }
+        whole
     }
 }
 
@@ -116,12 +164,20 @@ impl Rate {
 mod tests {
     use super::*;
 
+    fn groups(all: &[Group]) -> Groups {
+        let mut groups = Groups::NONE;
+        for group in all {
+            groups.insert(*group);
+        }
+        groups
+    }
+
     #[test]
     fn rates_and_percentiles_come_from_the_last_second() {
         let mut counters = Counters::default();
         for n in 0..200u64 {
             let now = Moment::from_micros(n * 10_000);
-            counters.state_read(now);
+            counters.fresh(groups(&[Group::Angle]), now);
             counters.round_trip(Duration::from_millis(if n % 50 == 0 { 30 } else { 5 }));
             counters.digest(now);
         }
@@ -135,5 +191,19 @@ mod tests {
             (0.0, None)
         );
         assert_eq!(counters.stats.state_reads, 200);
+    }
+
+    #[test]
+    fn a_sweep_counts_once_all_five_fingertips_came_in_whatever_portions() {
+        let mut counters = Counters::default();
+        let tips = Finger::ALL.map(Group::Tactile);
+        for portion in [&tips[..2], &tips[1..3], &[Group::Angle], &tips[2..4]] {
+            counters.fresh(groups(portion), Moment::ZERO);
+        }
+        assert_eq!(counters.stats.tactile_reads, 0);
+        counters.fresh(groups(&tips[4..]), Moment::ZERO);
+        assert_eq!(counters.stats.tactile_reads, 1);
+        counters.fresh(groups(&tips[..4]), Moment::ZERO);
+        assert_eq!(counters.stats.tactile_reads, 1);
     }
 }

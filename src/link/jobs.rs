@@ -6,7 +6,6 @@ use crate::link::bus::{Bus, BusError};
 use crate::link::event::{Outcome, Request, RequestError, Ticket};
 use crate::link::late::LATE_HORIZON;
 use crate::link::motion::hold_targets;
-use crate::link::plan::Poll;
 use crate::link::session::{End, Session};
 use crate::link::status::LinkState;
 use arrayvec::ArrayVec;
@@ -74,7 +73,7 @@ impl Session {
                 // The same question was answered just now; any other answer clears the line of doubles.
                 job.cleared = true;
                 self.job = Some(job);
-                return self.poll(bus, Poll::State).await;
+                return self.poll_motion(bus).await;
             }
             return self.read_for(bus, job.ticket, span).await;
         }
@@ -82,6 +81,9 @@ impl Session {
             self.answer(job.ticket, Ok(Outcome::Acknowledged));
             return Ok(());
         };
+        if job.is_motion {
+            self.moving.commanded(self.now());
+        }
         let result = self.write(bus, &write).await;
         match result {
             Ok(()) if job.writes.is_empty() => self.answer(job.ticket, Ok(Outcome::Acknowledged)),

@@ -2,12 +2,13 @@
 //!
 //! [`handle::open`] starts a session and gives the window's end of it. The session ([`session`], [`serve`])
 //! owns the wire, asks one thing at a time ([`bus`]) and decides by priority what comes next: stop, hold,
-//! setpoints, requests, reads ([`plan`]). What went over the wire can be looked at afterwards ([`tap`], [`traffic`]).
+//! setpoints, requests, reads ([`plan`], [`window`], [`cost`]). What went over the wire can be looked at afterwards ([`tap`], [`traffic`]).
 
 mod bus;
 mod can;
 mod can_port;
 pub mod clock;
+mod cost;
 mod counters;
 mod echo;
 pub mod event;
@@ -17,12 +18,15 @@ pub mod handle;
 mod hold;
 mod jobs;
 mod late;
+mod line_meter;
 mod lost;
 mod modbus;
 mod modbus_rtu;
 mod modbus_tcp;
 pub mod motion;
+mod moving;
 pub mod plan;
+mod polling;
 pub mod quirks;
 mod rival;
 mod rs485;
@@ -34,13 +38,14 @@ pub mod stats;
 pub mod status;
 pub mod tap;
 pub mod traffic;
+mod window;
 
 pub use clock::Clock;
 pub use event::{LinkEvent, Outcome, Request, RequestError, Ticket};
 pub use handle::{LinkConfig, LinkHandle, Setpoints, Wake, open};
 pub use plan::PollRates;
 pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
-pub use stats::LinkStats;
+pub use stats::{GroupUse, LineUse, LinkStats, PollGroup};
 pub use status::{
     ArmEpoch, ArmRefusal, ArmRequest, Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble,
 };

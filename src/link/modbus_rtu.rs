@@ -5,10 +5,12 @@ use crate::codec::modbus::words_for;
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
+use crate::link::cost::WireCost;
 use crate::link::late::LateReplies;
 use crate::link::lost::lost;
 use crate::link::modbus;
 use crate::link::rtu_line::RtuLine;
+use crate::link::window::SHAPES_MAX;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use arrayvec::ArrayVec;
 use futures::FutureExt as _;
@@ -29,8 +31,6 @@ const FRAMING: u64 = 8 + 5;
 /// Above this baud the silence between frames does not shrink any more (Modbus over serial line 1.02, 2.5.1.1).
 const FIXED_GAP_ABOVE: u32 = 19_200;
 const FIXED_GAP: Duration = Duration::from_micros(1750);
-/// Most shapes that one group is asked in.
-const SHAPES_MAX: usize = 16;
 
 /// The client side of one RTU line.
 pub(crate) struct ModbusRtu {
@@ -125,6 +125,10 @@ impl ModbusRtu {
             shapes.iter().copied().map(seen).take(SHAPES_MAX).collect();
         let clear = self.late.first_clear(&as_seen, self.clock.now())?;
         shapes.iter().copied().find(|shape| seen(*shape) == clear)
+    }
+
+    pub(crate) fn cost(&self) -> WireCost {
+        WireCost::rtu(self.baud, gap(self.baud))
     }
 
     pub(crate) fn wire_time(&self, bytes: u16) -> Duration {

@@ -16,6 +16,9 @@ pub(crate) const ANGLE_LOST: Duration = Duration::from_millis(500);
 /// Writes of one round: speeds and forces in at most three runs each, and the angles.
 const ROUND_MAX: usize = 7;
 
+/// Rounds in a row between which only the motion state is read, on a line that is full with them.
+const ROUNDS_MAX: u8 = 2;
+
 /// Arming, setpoints and stop of one session.
 #[derive(Debug, Default)]
 pub(crate) struct Motion {
@@ -28,6 +31,8 @@ pub(crate) struct Motion {
     round_began: Option<Moment>,
     /// No pose was asked for since the round began: on a slow line writes alone must not fill it.
     pose_due: bool,
+    /// Rounds since anything but the motion state was asked for.
+    rounds: u8,
 }
 
 impl Motion {
@@ -82,12 +87,13 @@ impl Motion {
             return None;
         }
         if self.round.is_empty() {
-            if self.pose_due {
+            if self.pose_due || self.rounds >= ROUNDS_MAX {
                 return None;
             }
             let setpoints = self.setpoints.take()?;
             self.round_began = Some(now);
             self.pose_due = true;
+            self.rounds = self.rounds.saturating_add(1);
             self.round = round(&setpoints);
         }
         self.round.pop_at(0)
@@ -95,14 +101,30 @@ impl Motion {
 
     /// True if the next round waits only for a look at the pose.
     pub(crate) fn wants_pose(&self, now: Moment) -> bool {
-        self.pose_due
-            && self.round.is_empty()
-            && self.next_send(now).is_some_and(|send| send <= now)
+        self.pose_due && self.waits(now)
     }
 
-    /// The pose was asked for, answered or not.
-    pub(crate) const fn pose_asked(&mut self) {
-        self.pose_due = false;
+    /// True if the next round waits only for something else to be read.
+    pub(crate) fn wants_others(&self, now: Moment) -> bool {
+        !self.pose_due && self.rounds >= ROUNDS_MAX && self.waits(now)
+    }
+
+    fn waits(&self, now: Moment) -> bool {
+        self.round.is_empty() && self.next_send(now).is_some_and(|send| send <= now)
+    }
+
+    /// Something was asked for, answered or not.
+    pub(crate) const fn asked(&mut self, is_pose: bool) {
+        if is_pose {
+            self.pose_due = false;
+        } else {
+            self.rounds = 0;
+        }
+    }
+
+    /// Nothing but the pose is wanted of the hand: rounds need not wait.
+    pub(crate) const fn nothing_else(&mut self) {
+        self.rounds = 0;
     }
 
     /// The write was not acknowledged: it goes out again, unless something newer replaced it.
@@ -236,7 +258,7 @@ mod tests {
             .map(|write| write.address())
             .collect();
         assert_eq!(sent, [1528, 1504, 1486]);
-        motion.pose_asked();
+        motion.asked(true);
         motion.want(&wish, Some(epoch));
         assert_eq!(motion.next_write(now.plus(Duration::from_millis(19))), None);
         assert!(
@@ -257,7 +279,7 @@ mod tests {
         motion.want(&wish, Some(epoch));
         let later = Moment::from_micros(100_000);
         assert!(motion.wants_pose(later) && motion.next_write(later).is_none());
-        motion.pose_asked();
+        motion.asked(true);
         assert!(!motion.wants_pose(later) && motion.next_write(later).is_some());
     }
 

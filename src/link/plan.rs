@@ -1,22 +1,28 @@
-//! What to read next, and when. Pure: time comes in, spans go out; nothing is sent here.
+//! What to read next, and when. Pure: time, answers and failures come in, spans go out; nothing is sent here.
+//!
+//! Each part of memory has its own rate. The part that waited longest, measured in its own periods, opens a window,
+//! and others that are wanted too join it where that is cheaper ([`crate::link::window`]). How long a window may be
+//! follows from the stop ([`crate::link::cost`]): at rest so long that a stop is still in time behind it, while
+//! something moves no longer than one fingertip, and then the motion state has every second turn at least.
 
-use crate::hand::register::{SETPOINTS, STATE, TOUCH};
 use crate::hand::{Moment, Span};
+use crate::link::cost::{Turnaround, WireCost};
+use crate::link::quirks::GapRead;
+use crate::link::stats::PollGroup;
+use crate::link::window::{Gaps, Joining, Part, SHAPES_MAX};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// STATE without TEMP: temperatures need no second read in a row, and two shapes in turn keep a
-/// doubled reply from being taken for the next one.
-const STATE_SHORT_LEN: u16 = 72;
-/// POS_ACT may be read along in steps of a joint: more shapes for a line that carries late replies.
-const POSITIONS: u16 = 6;
-/// Bytes of one fingertip.
-const TIP: u16 = 58;
-/// Ways to split five fingertips into two reads of at most 250 bytes.
-const SPLITS: [u16; 4] = [4, 3, 2, 1];
-
-/// Groups that are wanted without limit count as this fast when they are weighed against slow ones.
-const SHORTEST_PERIOD: Duration = Duration::from_millis(5);
+/// Parts that are wanted without limit count as this fast when they are weighed against slow ones …
+const SHORTEST_PERIOD: Duration = Duration::from_millis(10);
+/// … and slow ones as this fast, so that on a line that is too slow for all they do not wait for many of their periods.
+const LONGEST_PERIOD: Duration = Duration::from_millis(30);
+/// Temperatures change slowly and are read just often enough not to be shown as old.
+const TEMPERATURE_HZ: f64 = 5.0;
+/// Windows asked for last, none of which is asked for again in the same form: a whole run of replies may be doubled.
+const RECENT: usize = 3;
+/// Reckoned with before the first answer: that of a quick hand.
+const TURNAROUND: Duration = Duration::from_millis(3);
 
 /// How often each group is wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,184 +52,298 @@ impl PollRates {
         tactile_hz: f64::INFINITY,
         settings_hz: 2.0,
     };
+
+    fn of(&self, part: Part) -> f64 {
+        match part {
+            Part::Angle | Part::Force | Part::Drives => self.state_hz,
+            Part::Temperature => self.state_hz.min(TEMPERATURE_HZ),
+            Part::Targets | Part::Speeds | Part::Position => self.settings_hz,
+            Part::Tip(_) => self.tactile_hz,
+        }
+    }
 }
 
-/// One group of reads.
+/// What the hand is about, as far as reading it is concerned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Poll {
-    State,
-    Tactile,
-    Settings,
+pub(crate) enum Tempo {
+    /// Nothing seems to move.
+    Rest,
+    /// Setpoints flow, or something moves.
+    Motion,
+    /// A stop waits to be confirmed: only what tells of motion and faults counts.
+    Stopping,
 }
 
-/// Due times of one group.
+/// What is read next: the forms of one window, in the order of preference.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Question {
+    /// The caller takes the first that no late reply can be mistaken for.
+    pub(crate) shapes: ArrayVec<Span, SHAPES_MAX>,
+    /// True if it asks where the hand is.
+    pub(crate) is_motion: bool,
+}
+
+/// Due time of one part.
 #[derive(Debug, Clone, Copy)]
 struct Due {
-    poll: Poll,
+    part: Part,
     period: Duration,
     next: Moment,
+    asked: Moment,
 }
 
 /// Decides what is read next.
 #[derive(Debug)]
 pub(crate) struct PollPlan {
-    groups: [Due; 3],
-    turn: usize,
-    split: usize,
-    second_half: bool,
+    parts: [Due; Part::ALL.len()],
+    cost: WireCost,
+    turnaround: Turnaround,
+    gaps: Gaps,
+    recent: ArrayVec<Span, RECENT>,
+    /// The last question was no motion state.
+    motion_turn: bool,
 }
 
 impl PollPlan {
-    pub(crate) fn new(rates: PollRates, now: Moment) -> Self {
-        let due = |poll, hz: f64| Due {
-            poll,
-            period: period(hz),
-            next: now,
-        };
+    pub(crate) fn new(rates: PollRates, cost: WireCost, now: Moment) -> Self {
         Self {
-            groups: [
-                due(Poll::State, rates.state_hz),
-                due(Poll::Tactile, rates.tactile_hz),
-                due(Poll::Settings, rates.settings_hz),
-            ],
-            turn: 0,
-            split: 0,
-            second_half: false,
+            parts: Part::ALL.map(|part| Due {
+                part,
+                period: period(rates.of(part)),
+                next: now,
+                asked: now,
+            }),
+            cost,
+            turnaround: Turnaround::default(),
+            gaps: Gaps::default(),
+            recent: ArrayVec::new(),
+            motion_turn: true,
         }
     }
 
-    /// The group whose turn it is, if any is due: the one that waited longest measured in its own
-    /// periods, so that a full line serves all in proportion and none starves.
-    pub(crate) fn due(&self, now: Moment) -> Option<Poll> {
-        self.groups
-            .iter()
-            .filter(|group| group.next <= now)
-            .max_by_key(|group| group.lateness(now))
-            .map(|group| group.poll)
+    /// The wire's cost model.
+    pub(crate) const fn cost(&self) -> &WireCost {
+        &self.cost
     }
 
-    /// When the next group is due.
-    pub(crate) fn next_due(&self) -> Moment {
-        self.groups
-            .iter()
-            .map(|group| group.next)
-            .min()
-            .unwrap_or(Moment::ZERO)
+    /// The hand's turnaround as learnt.
+    pub(crate) const fn turnaround(&self) -> &Turnaround {
+        &self.turnaround
     }
 
-    /// The group was asked at `now`: its next time is one period on, without catching up. A sweep of
-    /// fingertips takes two reads, of which the first only turns the page.
-    pub(crate) fn done(&mut self, poll: Poll, now: Moment) {
-        match poll {
-            Poll::State => self.turn += 1,
-            Poll::Tactile if !self.second_half => {
-                self.second_half = true;
-                return;
-            }
-            Poll::Tactile => {
-                self.second_half = false;
-                self.split += 1;
-            }
-            Poll::Settings => {}
-        }
-        for group in &mut self.groups {
-            if group.poll == poll {
-                group.next = group.next.plus(group.period).max(now);
-            }
-        }
+    /// How this hand takes reads through the gap between angles and forces.
+    pub(crate) fn know_gap(&mut self, gap: GapRead) {
+        self.gaps = Gaps::known(gap);
     }
 
-    /// Reads a group as soon as possible: something was just written that it shows.
-    pub(crate) fn hasten(&mut self, poll: Poll, now: Moment) {
-        for group in &mut self.groups {
-            if group.poll == poll {
-                group.next = group.next.min(now);
-            }
-        }
+    /// True if windows are split because the hand refuses to be read through a gap.
+    pub(crate) fn gaps_are_split(&self) -> bool {
+        self.gaps.are_split()
     }
 
-    /// Does not read a group before `until`.
-    pub(crate) fn postpone(&mut self, poll: Poll, until: Moment) {
-        for group in &mut self.groups {
-            if group.poll == poll {
-                group.next = group.next.max(until);
-            }
-        }
-    }
-
-    /// When this group is due.
-    pub(crate) fn next_due_of(&self, poll: Poll) -> Moment {
-        let due = self.groups.iter().find(|group| group.poll == poll);
-        due.map_or(Moment::ZERO, |group| group.next)
-    }
-
-    /// The span to read for a group, in the order of preference; the caller takes the first that no
-    /// late reply can be mistaken for.
-    pub(crate) fn shapes(&self, poll: Poll) -> ArrayVec<Span, 16> {
-        match poll {
-            Poll::State => self.state_shapes(),
-            Poll::Tactile => self.tactile_shapes(),
-            Poll::Settings => (0..POSITIONS)
-                .map(|n| Span::new(SETPOINTS.address, SETPOINTS.len + 2 * n))
-                .collect(),
-        }
-    }
-
-    /// True while the second half of a sweep is to be read.
-    pub(crate) fn in_second_half(&self) -> bool {
-        self.second_half
-    }
-
-    fn state_shapes(&self) -> ArrayVec<Span, 16> {
-        let mut shapes = ArrayVec::new();
-        let lens = [STATE.len, STATE_SHORT_LEN];
-        let ordered = if self.turn.is_multiple_of(2) {
-            lens
-        } else {
-            [lens[1], lens[0]]
+    /// Whole reads of a group a second, if the wire carried nothing else; 0 before the first answer.
+    pub(crate) fn could_hz(&self, group: PollGroup) -> f64 {
+        let Some(turnaround) = self.turnaround.typical() else {
+            return 0.0;
         };
-        for joints in 0..=POSITIONS {
-            for len in ordered {
-                let ahead = 2 * joints;
-                shapes.push(Span::new(STATE.address - ahead, len + ahead));
+        let joining = self.joining(Tempo::Rest);
+        let mut left: ArrayVec<Part, { Part::ALL.len() }> = Part::ALL.into_iter().collect();
+        left.retain(|part| part.group() == group);
+        let mut all = Duration::ZERO;
+        while let Some(first) = left.first() {
+            let window = joining.window(first.span(), left.iter().copied());
+            all += self.cost.read(window.len, turnaround);
+            left.retain(|part| !window.covers(part.span()));
+        }
+        if all.is_zero() {
+            0.0
+        } else {
+            1.0 / all.as_secs_f64()
+        }
+    }
+
+    fn joining(&self, tempo: Tempo) -> Joining {
+        let longest = match tempo {
+            Tempo::Rest => self.cost.window(self.turnaround.longest()),
+            Tempo::Motion | Tempo::Stopping => self.cost.window_moving(),
+        };
+        Joining {
+            cost: self.cost,
+            turnaround: self.turnaround.typical().unwrap_or(TURNAROUND),
+            longest,
+            gaps: self.gaps,
+        }
+    }
+
+    /// What is to be read now, if anything is due.
+    pub(crate) fn next(&self, now: Moment, tempo: Tempo) -> Option<Question> {
+        let due = || self.wanted(tempo).filter(|due| due.next <= now);
+        let motion = || {
+            due()
+                .filter(|due| due.part.is_motion())
+                .reduce(|a, b| a.later(b, now))
+        };
+        let any = || due().reduce(|a, b| a.later(b, now));
+        let others = || {
+            due()
+                .filter(|due| !due.part.is_motion())
+                .reduce(|a, b| a.later(b, now))
+        };
+        let first = match (tempo, self.motion_turn) {
+            (Tempo::Rest, _) => any(),
+            (_, true) => motion().or_else(any),
+            (_, false) => others().or_else(any),
+        };
+        first.map(|first| self.question(first, now, tempo))
+    }
+
+    /// The motion state, due or not.
+    pub(crate) fn motion(&self, now: Moment, tempo: Tempo) -> Question {
+        let angle = self.parts.iter().find(|due| due.part == Part::Angle);
+        let angle = angle.copied().unwrap_or(Due {
+            part: Part::Angle,
+            period: Duration::ZERO,
+            next: now,
+            asked: now,
+        });
+        self.question(&angle, now, tempo)
+    }
+
+    /// What is read between two rounds of setpoints, so that a drag starves nothing; due or not it is no motion state.
+    pub(crate) fn others(&self, now: Moment) -> Option<Question> {
+        let due = self.parts.iter().filter(|due| due.next <= now);
+        due.filter(|due| !due.part.is_motion())
+            .reduce(|a, b| a.later(b, now))
+            .map(|first| self.question(first, now, Tempo::Motion))
+    }
+
+    /// When something is due next.
+    pub(crate) fn next_due(&self, tempo: Tempo) -> Moment {
+        let next = self.wanted(tempo).map(|due| due.next).min();
+        next.unwrap_or(Moment::ZERO)
+    }
+
+    /// A window was answered. Its parts are due one period on, without catching up; counted from the asking, so that
+    /// rates are kept whatever the reply takes.
+    pub(crate) fn answered(&mut self, window: Span, asked: Moment, took: Duration) {
+        let now = asked.plus(took);
+        self.turnaround.learn(&self.cost, window.len, took, now);
+        self.gaps.answered(window);
+        self.asked(window, asked);
+    }
+
+    /// A window was not answered as it should be.
+    pub(crate) fn failed(&mut self, window: Span, now: Moment) {
+        self.gaps.failed(window);
+        self.asked(window, now);
+    }
+
+    /// Reads the setpoints as soon as possible: they were just written.
+    pub(crate) fn hasten_settings(&mut self, now: Moment) {
+        for due in &mut self.parts {
+            if matches!(due.part, Part::Targets | Part::Speeds) {
+                due.next = due.next.min(now);
             }
         }
-        shapes
     }
 
-    fn tactile_shapes(&self) -> ArrayVec<Span, 16> {
-        let ways = SPLITS.len();
-        let turns = if self.second_half { 0..1 } else { 0..ways };
-        turns
-            .filter_map(|turn| SPLITS.get((self.split + turn) % ways))
-            .map(|fingers| {
-                if self.second_half {
-                    Span::new(TOUCH.address + TIP * fingers, TIP * (5 - fingers))
-                } else {
-                    Span::new(TOUCH.address, TIP * fingers)
-                }
-            })
-            .collect()
-    }
-
-    /// The first half was read with this shape: the second half is what it left.
-    pub(crate) fn split_at(&mut self, span: Span) {
-        if let Some(split) = SPLITS.iter().position(|fingers| fingers * TIP == span.len) {
-            self.split = split;
+    /// No form of this window could be asked for: its parts wait until `until`.
+    pub(crate) fn failed_to_ask(&mut self, window: Span, now: Moment, until: Moment) {
+        self.motion_turn = true;
+        for due in &mut self.parts {
+            if window.covers(due.part.span()) {
+                due.next = due.next.plus(due.period).max(now).max(until);
+            }
         }
     }
 
-    /// Gives a sweep up after its first half, so that the next begins anew with another split.
-    pub(crate) fn drop_sweep(&mut self, now: Moment) {
-        self.second_half = true;
-        self.done(Poll::Tactile, now);
+    fn asked(&mut self, window: Span, at: Moment) {
+        if self.recent.is_full() {
+            self.recent.remove(0);
+        }
+        self.recent.push(window);
+        self.motion_turn = true;
+        for due in &mut self.parts {
+            if window.covers(due.part.span()) {
+                due.next = due.next.plus(due.period).max(at);
+                due.asked = at;
+                self.motion_turn &= !due.part.is_motion();
+            }
+        }
+    }
+
+    fn wanted(&self, tempo: Tempo) -> impl Iterator<Item = &Due> + Clone {
+        self.parts.iter().filter(move |due| {
+            tempo != Tempo::Stopping || due.part.is_motion() || due.part == Part::Drives
+        })
+    }
+
+    /// The question about a part and what goes well with it.
+    fn question(&self, first: &Due, now: Moment, tempo: Tempo) -> Question {
+        let joining = self.joining(tempo);
+        let joins = self
+            .wanted(tempo)
+            .filter(|due| due.joins(first, now, tempo));
+        // What belongs together goes first, so that chance neighbours do not take its place.
+        let alike = joins.clone().filter(|due| due.period == first.period);
+        let narrow = joining.window(first.part.span(), alike.map(|due| due.part));
+        let wide = joining.window(narrow, joins.map(|due| due.part));
+        let is_motion = wide.covers(Part::Angle.span());
+        let mut forms = joining.shapes(wide);
+        if is_motion {
+            // Shorter ones, for a line on which each longer one may still be answered late.
+            let shorter = [narrow, Part::Angle.span()].into_iter();
+            for window in shorter.filter(|window| *window != wide) {
+                forms.extend(
+                    joining
+                        .shapes(window)
+                        .into_iter()
+                        .take(forms.remaining_capacity()),
+                );
+            }
+        }
+        let is_recent = |shape: &&Span| self.recent.contains(shape);
+        let fresh = forms.iter().filter(|shape| !is_recent(shape));
+        let shapes = fresh
+            .chain(forms.iter().filter(is_recent))
+            .copied()
+            .collect();
+        Question { shapes, is_motion }
     }
 }
 
 impl Due {
+    /// How long it waits, in its own periods.
     fn lateness(&self, now: Moment) -> u128 {
         let late = now.since(self.next).as_micros() + 1;
-        late * 1_000_000 / self.period.max(SHORTEST_PERIOD).as_micros()
+        late * 1_000_000
+            / self
+                .period
+                .clamp(SHORTEST_PERIOD, LONGEST_PERIOD)
+                .as_micros()
+    }
+
+    /// Whichever waits longer; the earlier in the table if both do.
+    fn later<'a>(&'a self, other: &'a Self, now: Moment) -> &'a Self {
+        if other.lateness(now) > self.lateness(now) {
+            other
+        } else {
+            self
+        }
+    }
+
+    /// True if it may be read with `first`, being wanted now or so soon that this read serves as well.
+    fn joins(&self, first: &Self, now: Moment, tempo: Tempo) -> bool {
+        if tempo != Tempo::Rest && self.part.is_motion() != first.part.is_motion() {
+            return false;
+        }
+        match self.part {
+            // Fingertips that were read just now wait for their turn, else the last of them would take them along.
+            Part::Tip(_) => now.since(self.asked) * 3 >= now.since(first.asked) * 2,
+            // What belongs together stays together, and what is wanted seldom is not read much more often for company.
+            _ if self.period == first.period => self.next <= now.plus(self.period / 2),
+            _ => self.next <= now.plus(self.period / 8),
+        }
     }
 }
 
@@ -236,102 +356,5 @@ fn period(hz: f64) -> Duration {
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::indexing_slicing,
-        clippy::panic,
-        reason = "a test may"
-    )]
-    use super::*;
-
-    const EXCHANGE: Duration = Duration::from_micros(200);
-
-    /// Runs the plan on a line where each read takes `EXCHANGE`; counts whole polls per group.
-    fn run(rates: PollRates, exchange: Duration, length: Duration) -> (Vec<Poll>, [u32; 3]) {
-        let mut now = Moment::ZERO;
-        let mut plan = PollPlan::new(rates, now);
-        let (mut order, mut counts) = (Vec::new(), [0; 3]);
-        while now < Moment::ZERO.plus(length) {
-            let Some(poll) = plan.due(now) else {
-                now = plan.next_due();
-                continue;
-            };
-            now = now.plus(exchange);
-            let whole = poll != Poll::Tactile || plan.in_second_half();
-            plan.done(poll, now);
-            order.push(poll);
-            counts[poll as usize] += u32::from(whole);
-        }
-        (order, counts)
-    }
-
-    #[test]
-    fn rates_are_kept_where_the_line_allows() {
-        let (_, [state, tactile, settings]) =
-            run(PollRates::default(), EXCHANGE, Duration::from_secs(10));
-        assert!((990..=1001).contains(&state), "{state}");
-        assert!((290..=301).contains(&tactile), "{tactile}");
-        assert!((19..=21).contains(&settings), "{settings}");
-    }
-
-    #[test]
-    fn nothing_starves_on_a_line_that_is_too_slow() {
-        let (_, [state, tactile, settings]) = run(
-            PollRates::default(),
-            Duration::from_millis(15),
-            Duration::from_secs(10),
-        );
-        assert!(
-            state > 200 && tactile > 60 && settings >= 10,
-            "{state} {tactile} {settings}"
-        );
-    }
-
-    #[test]
-    fn at_full_rate_states_and_sweeps_take_turns() {
-        let (order, [state, tactile, settings]) =
-            run(PollRates::FULL, EXCHANGE, Duration::from_secs(2));
-        assert!(state.abs_diff(tactile) <= 1 + settings, "{state} {tactile}");
-        assert!((3..=5).contains(&settings));
-        assert_eq!(
-            order[..4]
-                .iter()
-                .filter(|poll| **poll == Poll::State)
-                .count(),
-            1
-        );
-    }
-
-    #[test]
-    fn two_states_in_a_row_never_have_the_same_shape() {
-        let mut plan = PollPlan::new(PollRates::FULL, Moment::ZERO);
-        let mut last = None;
-        for _ in 0..10 {
-            let shape = plan.shapes(Poll::State)[0];
-            assert_ne!(last, Some(shape));
-            assert!(shape.covers(Span::new(1546, 72)));
-            last = Some(shape);
-            plan.done(Poll::State, Moment::ZERO);
-        }
-        assert_eq!(plan.shapes(Poll::State).len(), 14);
-    }
-
-    #[test]
-    fn both_halves_of_every_split_cover_all_fingers_within_the_limits() {
-        let mut plan = PollPlan::new(PollRates::FULL, Moment::ZERO);
-        for _ in 0..SPLITS.len() {
-            for first in plan.shapes(Poll::Tactile) {
-                let mut half = PollPlan::new(PollRates::FULL, Moment::ZERO);
-                half.split_at(first);
-                half.done(Poll::Tactile, Moment::ZERO);
-                let second = half.shapes(Poll::Tactile)[0];
-                assert_eq!((first.address, second.end()), (TOUCH.address, TOUCH.end()));
-                assert_eq!(first.end(), u32::from(second.address));
-                assert!(first.len <= 250 && second.len <= 250);
-            }
-            plan.drop_sweep(Moment::ZERO);
-        }
-    }
-}
+#[path = "plan_tests.rs"]
+mod tests;

@@ -4,6 +4,7 @@ use crate::codec::rs485::{Frame, Reply, ReplyDecoder, encode_read, encode_write}
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
+use crate::link::cost::WireCost;
 use crate::link::echo::Echo;
 use crate::link::late::LateReplies;
 use crate::link::lost::lost;
@@ -128,6 +129,10 @@ impl Rs485 {
 
     pub(crate) fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
         self.late.first_clear(shapes, self.clock.now())
+    }
+
+    pub(crate) fn cost(&self) -> WireCost {
+        WireCost::rs485(self.baud)
     }
 
     pub(crate) fn wire_time(&self, bytes: u16) -> Duration {

@@ -1,24 +1,20 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{Group, HandCommand, Moment, RegisterWrite, Reply};
+use crate::hand::{HandCommand, RegisterWrite};
 use crate::link::bus::{Bus, BusError};
 use crate::link::event::{LinkEvent, RequestError};
 use crate::link::handle::Wanted;
 use crate::link::hold::HoldWatch;
 use crate::link::motion::{ANGLE_LOST, arm_refusal, hold_targets};
-use crate::link::plan::Poll;
 use crate::link::session::{End, Session};
 use crate::link::status::{
     ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkState, LinkTrouble,
 };
-use std::time::Duration;
 use tokio::time::sleep_until;
 
 /// Bytes of an acknowledgement's data.
 const ACK_LEN: u16 = 1;
-/// A group whose every question is open is looked at again after this: often enough, and not in a busy loop.
-const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
 
 impl Session {
     /// Serves the wire until it is lost or the handle is gone.
@@ -63,8 +59,8 @@ impl Session {
             self.send_setpoint(bus, write).await?;
         } else if self.motion.hold.is_none() && self.next_job() {
             self.work(bus).await?;
-        } else if let Some(poll) = self.next_poll() {
-            self.poll(bus, poll).await?;
+        } else if let Some(question) = self.next_poll() {
+            self.poll(bus, &question).await?;
         } else {
             return Ok(false);
         }
@@ -152,7 +148,7 @@ impl Session {
         self.status.disarmed = None;
         self.status.hold = Hold::None;
         let now = self.now();
-        self.plan.hasten(Poll::Settings, now);
+        self.plan.hasten_settings(now);
         self.go(LinkState::Armed);
         Ok(())
     }
@@ -239,7 +235,7 @@ impl Session {
         Ok(())
     }
 
-    fn hold_confirmed(&mut self) {
+    pub(crate) fn hold_confirmed(&mut self) {
         let Some(hold) = self.motion.hold.take() else {
             return;
         };
@@ -264,13 +260,16 @@ impl Session {
         let asked = self.now();
         self.counters.stats.writes += 1;
         self.rival.wrote(write, asked);
-        bus.write(write, limit).await?;
+        let written = bus.write(write, limit).await;
         let took = self.now().since(asked);
+        self.counters.wrote(self.plan.cost(), write.span(), took);
+        written?;
         self.answered(took);
         Ok(())
     }
 
     async fn send_setpoint(&mut self, bus: &mut Bus, write: RegisterWrite) -> Result<(), End> {
+        self.moving.commanded(self.now());
         if let Err(error) = self.write(bus, &write).await {
             if matches!(error, BusError::Timeout { .. }) {
                 self.motion.again(write);
@@ -285,115 +284,6 @@ impl Session {
         match bus.turn().await {
             Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
             _ => Ok(()),
-        }
-    }
-
-    /// The group to read now. While a stop is being confirmed only the motion state counts.
-    fn next_poll(&self) -> Option<Poll> {
-        let now = self.now();
-        if self.motion.hold.is_some() {
-            return (self.next_read() <= now).then_some(Poll::State);
-        }
-        if self.motion.wants_pose(now) {
-            return Some(Poll::State);
-        }
-        self.plan.due(now)
-    }
-
-    /// When the next read is due.
-    fn next_read(&self) -> Moment {
-        if self.motion.hold.is_some() {
-            return self.plan.next_due_of(Poll::State);
-        }
-        self.plan.next_due()
-    }
-
-    /// One read of a group, and what its answer changes.
-    pub(crate) async fn poll(&mut self, bus: &mut Bus, poll: Poll) -> Result<(), End> {
-        let asked = self.now();
-        if poll == Poll::State {
-            self.motion.pose_asked();
-        }
-        let Some(span) = bus.choose(&self.plan.shapes(poll)) else {
-            return self.ambiguous(poll);
-        };
-        let limit = self.reply_limit(bus, span.len);
-        match bus.read(span, limit).await {
-            Ok(bytes) => {
-                let received = self.now();
-                self.answered(received.since(asked));
-                self.take(
-                    poll,
-                    &Reply {
-                        span,
-                        bytes: &bytes,
-                        asked,
-                        received,
-                    },
-                );
-                Ok(())
-            }
-            Err(error) => {
-                self.give_up(poll);
-                self.failed(bus, &error).await
-            }
-        }
-    }
-
-    fn take(&mut self, poll: Poll, reply: &Reply<'_>) {
-        let (asked, now) = (reply.asked, reply.received);
-        match poll {
-            Poll::State => self.counters.state_read(now),
-            Poll::Tactile if self.plan.in_second_half() => self.counters.tactile_read(now),
-            Poll::Tactile => self.plan.split_at(reply.span),
-            Poll::Settings => {}
-        }
-        // Counted from the asking, so that the rate is kept whatever the reply takes.
-        self.plan.done(poll, asked);
-        let fresh = self.sample.take(reply);
-        self.rival.read(&self.sample, fresh);
-        let sample = Box::new(self.sample);
-        self.tell(LinkEvent::Sample { sample, fresh });
-        if fresh.contains(Group::Faults) {
-            self.watch_faults();
-        }
-        if self
-            .motion
-            .hold
-            .as_mut()
-            .is_some_and(|hold| hold.rests(&self.sample, fresh))
-        {
-            self.hold_confirmed();
-        }
-    }
-
-    fn give_up(&mut self, poll: Poll) {
-        let now = self.now();
-        match poll {
-            Poll::Tactile => self.plan.drop_sweep(now),
-            Poll::State | Poll::Settings => self.plan.done(poll, now),
-        }
-    }
-
-    /// Every way to ask could be answered by a late reply. The motion state is worth a new wire; the rest waits.
-    fn ambiguous(&mut self, poll: Poll) -> Result<(), End> {
-        let now = self.now();
-        self.give_up(poll);
-        self.plan.postpone(poll, now.plus(AMBIGUOUS_WAIT));
-        match poll {
-            Poll::State => Err(End::Lost(LinkTrouble::Ambiguous)),
-            Poll::Tactile | Poll::Settings => Ok(()),
-        }
-    }
-
-    fn watch_faults(&mut self) {
-        match (self.sample.has_fault(), self.status.state) {
-            (true, LinkState::Armed | LinkState::Monitoring) => {
-                self.disarm(Disarmed::Fault);
-                self.go(LinkState::Fault);
-            }
-            (false, LinkState::Fault) => self.go(LinkState::Monitoring),
-            _ => {}
         }
     }
 }

@@ -4,6 +4,7 @@
 use crate::hand::{HandSample, Moment, register};
 use crate::link::bus::{Bus, BusCounts, BusError, id_of};
 use crate::link::clock::SleepWatch;
+use crate::link::cost::WireCost;
 use crate::link::counters::Counters;
 use crate::link::event::{LinkEvent, Outcome, RequestError, Ticket};
 use crate::link::follow::Follow;
@@ -11,6 +12,7 @@ use crate::link::handle::{Ends, LinkConfig, Wanted};
 use crate::link::jobs::Job;
 use crate::link::late::LateReplies;
 use crate::link::motion::Motion;
+use crate::link::moving::MoveWatch;
 use crate::link::plan::PollPlan;
 use crate::link::rival::Rival;
 use crate::link::status::{Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble};
@@ -57,6 +59,7 @@ pub(crate) struct Session {
     pub(crate) sample: HandSample,
     pub(crate) plan: PollPlan,
     pub(crate) motion: Motion,
+    pub(crate) moving: MoveWatch,
     pub(crate) job: Option<Job>,
     pub(crate) sleep: SleepWatch,
     silent: u32,
@@ -74,7 +77,7 @@ impl Session {
     pub(crate) fn new(config: LinkConfig, ends: Ends) -> Self {
         let now = config.clock.now();
         Self {
-            plan: PollPlan::new(config.rates, now),
+            plan: PollPlan::new(config.rates, WireCost::default(), now),
             sleep: SleepWatch::new(now),
             dialled: config.endpoint.clone(),
             config,
@@ -83,6 +86,7 @@ impl Session {
             counters: Counters::default(),
             sample: HandSample::default(),
             motion: Motion::default(),
+            moving: MoveWatch::default(),
             job: None,
             silent: 0,
             silent_since: None,
@@ -181,7 +185,7 @@ impl Session {
                         Err(_) => self.status.quirks.packing = None,
                     }
                     self.note_port().await;
-                    self.begin();
+                    self.begin(bus);
                     return Ok(());
                 }
                 Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
@@ -207,14 +211,18 @@ impl Session {
     }
 
     /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
-    fn begin(&mut self) {
+    fn begin(&mut self, bus: &Bus) {
         self.forget_wishes();
         if self.sample != HandSample::default() {
             self.counters.stats.reconnects += 1;
         }
         self.sample = HandSample::default();
         self.rival.begin();
-        self.plan = PollPlan::new(self.config.rates, self.now());
+        self.plan = PollPlan::new(self.config.rates, bus.cost(), self.now());
+        if let Some(gap) = self.status.quirks.gap {
+            self.plan.know_gap(gap);
+        }
+        self.moving = MoveWatch::default();
         self.motion = Motion::after(self.motion.last_epoch);
         self.status.dialling = Dialling::Idle;
         self.status.trouble = None;
@@ -376,7 +384,11 @@ impl Session {
         self.counters.stats.foreign_replies = all.foreign_replies;
         self.rival.overheard(all.foreign_requests, self.now());
         self.counters.stats.foreign_requests = all.foreign_requests + self.rival.changes;
-        self.counters.digest(self.now());
+        let now = self.now();
+        self.counters.digest(now);
+        if let Some(line) = self.counters.line.figures(&self.plan, now) {
+            self.counters.stats.line = line;
+        }
         self.ends.stats.send_replace(self.counters.stats);
     }
 }

@@ -35,4 +35,61 @@ pub struct LinkStats {
     pub writes: u64,
     /// Samples that the window was too slow to take.
     pub dropped_events: u64,
+    /// What the line is used for.
+    pub line: LineUse,
+}
+
+/// How the time of the line is spent, over the last second.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LineUse {
+    /// Share of the time in which a request was open, or the silence after its reply was kept, 0 to 1. At full rate 1 is
+    /// what the line and the hand can give.
+    pub utilisation: f64,
+    /// Share of the time in which bits were on the wire, 0 to 1; `None` where the wire has no speed of its own.
+    pub on_wire: Option<f64>,
+    /// The hand's turnaround as the link learnt it, with what adapter and system add; `None` before the first answer.
+    pub turnaround: Option<Duration>,
+    /// Share of the writes, 0 to 1.
+    pub writes: f64,
+    /// The groups of reads, in the order of [`PollGroup::ALL`].
+    pub groups: [GroupUse; PollGroup::ALL.len()],
+    /// True if windows end at gaps between registers, because this hand refuses to be read through them.
+    pub split: bool,
+}
+
+/// What one group of reads gets, and what the wire could give.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GroupUse {
+    /// Whole reads of the group a second.
+    pub hz: f64,
+    /// Its share of the time, 0 to 1.
+    pub share: f64,
+    /// Whole reads a second that the wire would give if it carried nothing else; 0 before the first answer.
+    pub could_hz: f64,
+}
+
+/// What is read at one rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PollGroup {
+    /// Angles and forces.
+    Motion,
+    /// Currents, faults and status.
+    Drives,
+    /// Temperatures.
+    Temperature,
+    /// All five fingertips.
+    Tactile,
+    /// The setpoints that the hand holds, and the drives' positions.
+    Settings,
+}
+
+impl PollGroup {
+    /// All, in the order in which they are shown.
+    pub const ALL: [Self; 5] = [
+        Self::Motion,
+        Self::Drives,
+        Self::Temperature,
+        Self::Tactile,
+        Self::Settings,
+    ];
 }

@@ -14,6 +14,7 @@ pub mod pty;
 pub mod serial;
 pub mod sysfs;
 pub mod tcp;
+pub mod timer;
 pub mod wire;
 
 pub use adapter::{Adapter, Whereabouts, is_same_port};
@@ -26,4 +27,5 @@ pub use pipe::{Pipe, pair};
 pub use pty::PtyLink;
 pub use serial::{PortFound, UsbFound, ports};
 pub use sysfs::Sysfs;
+pub use timer::Timer;
 pub use wire::{BoxedWire, Dial, TransportError, Wire};
