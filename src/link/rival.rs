@@ -56,16 +56,16 @@ impl Rival {
     pub(crate) fn wrote(&mut self, write: &RegisterWrite, now: Moment) {
         let within = |row: &register::Register| row.span().covers(write.span());
         if within(&register::ANGLE_SET) {
-            self.angles.wrote = Some(now);
+            self.angles.wrote(now);
         } else if within(&register::FORCE_SET) {
-            self.forces.wrote = Some(now);
+            self.forces.wrote(now);
         } else if within(&register::SPEED_SET) {
-            self.speeds.wrote = Some(now);
+            self.speeds.wrote(now);
         } else {
             // A gesture, a cleared fault: the hand may set its own setpoints then.
-            self.angles.wrote = Some(now);
-            self.forces.wrote = Some(now);
-            self.speeds.wrote = Some(now);
+            self.angles.wrote(now);
+            self.forces.wrote(now);
+            self.speeds.wrote(now);
         }
     }
 
@@ -109,6 +109,12 @@ impl<T> Default for Held<T> {
 }
 
 impl<T: Copy + PartialEq> Held<T> {
+    /// We wrote it: what was read before says nothing any more, however long the next reading takes.
+    fn wrote(&mut self, now: Moment) {
+        self.wrote = Some(now);
+        self.known = None;
+    }
+
     /// When a change that is not ours was read, for the second time.
     fn take(&mut self, read: Option<Timed<T>>) -> Option<Moment> {
         let read = read?;
@@ -193,6 +199,12 @@ mod tests {
             (3500, 250),
             (4000, 250),
         ] {
+            read(&mut rival, speed, ms);
+        }
+        assert_eq!(rival.changes, 0);
+        // On a line that is busy with other things it may be long until it is read again.
+        rival.wrote(&speeds.writes()[0], at(4200));
+        for (ms, speed) in [(8000, 99), (8500, 99)] {
             read(&mut rival, speed, ms);
         }
         assert_eq!(rival.changes, 0);
