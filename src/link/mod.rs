@@ -2,7 +2,8 @@
 //!
 //! [`handle::open`] starts a session and gives the window's end of it. The session ([`session`], [`serve`])
 //! owns the wire, asks one thing at a time ([`bus`]) and decides by priority what comes next: stop, hold,
-//! setpoints, requests, reads ([`plan`], [`window`], [`cost`]). What went over the wire can be looked at afterwards ([`tap`], [`traffic`]).
+//! setpoints, requests, reads ([`plan`], [`window`], [`cost`]). What went over the wire can be looked at afterwards
+//! ([`tap`], [`traffic`]).
 
 mod bus;
 mod can;
