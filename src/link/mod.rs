@@ -27,6 +27,8 @@ mod modbus_tcp;
 pub mod motion;
 mod moving;
 pub mod plan;
+#[cfg(test)]
+mod plan_tests;
 mod polling;
 pub mod quirks;
 mod rival;

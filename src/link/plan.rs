@@ -354,7 +354,3 @@ fn period(hz: f64) -> Duration {
         Duration::from_secs(u64::from(u32::MAX))
     }
 }
-
-#[cfg(test)]
-#[path = "plan_tests.rs"]
-mod tests;

@@ -6,7 +6,13 @@
     clippy::panic,
     reason = "a test may"
 )]
-use super::*;
+use crate::hand::{Moment, Span};
+use crate::link::cost::WireCost;
+use crate::link::plan::{PollPlan, PollRates, Tempo};
+use crate::link::quirks::GapRead;
+use crate::link::stats::PollGroup;
+use crate::link::window::Part;
+use std::time::Duration;
 
 const MS: Duration = Duration::from_millis(1);
 const SECONDS: u64 = 10;
