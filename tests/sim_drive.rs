@@ -1,8 +1,8 @@
 //! One drive of the simulated hand: motion, impact, protection, heat. Registers are tested elsewhere.
 
+use handscope::hand::impact::RIGID_G_PER_COUNT;
 use handscope::hand::{Fault, Status};
 use handscope::sim::drive::{Contact, DEAD_TIME_MS, Drive, Goal, STROKE, Setting};
-use handscope::sim::impact::RIGID_G_PER_COUNT;
 
 const FAST: Setting = Setting {
     speed: 1000.0,

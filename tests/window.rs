@@ -497,7 +497,7 @@ fn joints_do_not_overlap_and_stay_on_the_screen() {
                 .chain(harness.query_all_by_role(Role::TextInput))
                 .map(|node| node.rect())
                 .collect();
-            assert_eq!(rects.len(), 36);
+            assert_eq!(rects.len(), 40);
             let screen = Rect::from_min_size(egui::Pos2::ZERO, size);
             while let Some(rect) = rects.pop() {
                 assert!(screen.contains_rect(rect), "{size} {rect}");

@@ -1,5 +1,6 @@
 //! What a person asks of the hand, and the rules that stand before it. Opens no link, writes no file.
 
+use crate::app::action::Preset;
 use crate::app::desk::Desk;
 use crate::app::gestures::{GestureProgress, LastGesture};
 use crate::app::history::MarkKind;
@@ -81,6 +82,20 @@ impl Desk {
         }
     }
 
+    /// The same force threshold for all joints.
+    pub(crate) fn force_of_all(&mut self, force: Force) {
+        for dof in Dof::ALL {
+            self.force(dof, force);
+        }
+    }
+
+    /// The same speed for all joints.
+    pub(crate) fn speed_of_all(&mut self, speed: Speed) {
+        for dof in Dof::ALL {
+            self.speed(dof, speed);
+        }
+    }
+
     /// Leaves a joint alone, or not. Its slider stands at the actual angle until it is touched again; force and
     /// speed that were changed meanwhile go out when it is free again.
     pub(crate) fn lock(&mut self, dof: Dof, locked: bool) {
@@ -98,22 +113,28 @@ impl Desk {
         }
     }
 
-    /// All joints that are not locked to fully open, in one step.
-    pub(crate) fn open_hand(&mut self) {
-        let free: Vec<Dof> = Dof::ALL
+    /// All joints that are not locked to where the preset has them, in one step. Those that are faster than gentle are
+    /// slowed down first, on the slider too.
+    pub(crate) fn preset(&mut self, preset: Preset) {
+        let moves: Vec<(Dof, Angle)> = Dof::ALL
             .into_iter()
             .filter(|dof| self.is_free(*dof))
+            .filter_map(|dof| Some((dof, preset.angle(dof)?)))
             .collect();
-        if free.is_empty() {
+        if moves.is_empty() {
             return;
         }
-        for dof in &free {
-            self.state.joints[*dof].target = Some(Angle::MAX);
+        for (dof, angle) in &moves {
+            let joint = &mut self.state.joints[*dof];
+            joint.target = Some(*angle);
+            joint.speed = joint.speed.min(Speed::GENTLE);
             self.following[*dof] = false;
         }
+        let joints = self.state.joints;
         self.send(|setpoints| {
-            for dof in &free {
-                setpoints.angle[*dof] = Some(Target::Go(Angle::MAX));
+            for (dof, angle) in &moves {
+                setpoints.speed[*dof] = Some(joints[*dof].speed);
+                setpoints.angle[*dof] = Some(Target::Go(*angle));
             }
         });
     }

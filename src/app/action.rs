@@ -1,8 +1,32 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
-use crate::app::settings::{Language, PlotWindow, Theme};
+use crate::app::settings::{AngleUnit, Language, PlotWindow, Theme};
 use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Speed};
 use crate::transport::Endpoint;
+
+/// Poses that need no library.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Preset {
+    /// Every joint open.
+    Open,
+    /// Fingers and thumb half bent; the thumb's rotation stays.
+    Half,
+    /// Fingers and thumb bent; the thumb's rotation stays.
+    Close,
+}
+
+impl Preset {
+    /// Where this joint goes, if it moves at all.
+    #[must_use]
+    pub fn angle(self, dof: Dof) -> Option<Angle> {
+        match (self, dof) {
+            (Self::Open, _) => Some(Angle::MAX),
+            (Self::Half | Self::Close, Dof::ThumbRotate) => None,
+            (Self::Half, _) => Some(Angle::nearest(500)),
+            (Self::Close, _) => Some(Angle::MIN),
+        }
+    }
+}
 
 /// One thing a person asked for. Returned by the views, carried out by `App::act`.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,8 +45,12 @@ pub enum Action {
     Speed(Dof, Speed),
     /// Leave a joint alone, or not.
     Lock(Dof, bool),
-    /// All joints that are not locked to fully open. Needs arming.
-    Open,
+    /// All joints that are not locked towards open or bent, none faster than is gentle. Needs arming.
+    Preset(Preset),
+    /// Force threshold of all joints.
+    ForceOfAll(Force),
+    /// Speed of all joints.
+    SpeedOfAll(Speed),
     /// Take a stored pose. Needs arming.
     Gesture(Gesture),
     /// Give a gesture a name; empty takes it away.
@@ -45,6 +73,8 @@ pub enum Action {
     Theme(Theme),
     /// English or Chinese.
     Language(Language),
+    /// How angles are written and typed.
+    AngleUnit(AngleUnit),
     /// Seconds that the plots show.
     PlotWindow(PlotWindow),
     /// Count the channels of these fingertips from now: one, or all.

@@ -4,11 +4,12 @@ use crate::app::faults::FaultBook;
 use crate::app::gestures::{GestureBook, GestureProgress};
 use crate::app::history::{History, MarkKind};
 use crate::app::notices::{Asked, NoticeKind, Notices};
+use crate::app::peaks::ForcePeaks;
 use crate::app::seam::Link;
 use crate::app::settings::Settings;
 use crate::app::state::{Joint, State};
 use crate::app::tare::Tare;
-use crate::hand::{Dof, Force, Groups, HandSample, Moment, PerDof, Speed, Status};
+use crate::hand::{Dof, Force, Group, Groups, HandSample, Moment, PerDof, Speed, Status};
 use crate::link::{
     Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus, LinkTrouble, Outcome,
     RequestError, Ticket,
@@ -53,6 +54,7 @@ impl Desk {
             stats: LinkStats::default(),
             sample: HandSample::default(),
             tare: Tare::default(),
+            peaks: ForcePeaks::default(),
             joints: PerDof::splat(joint),
             history: History::new(),
             faults: FaultBook::default(),
@@ -89,6 +91,7 @@ impl Desk {
         self.state.stats = LinkStats::default();
         self.state.sample = HandSample::default();
         self.state.tare = Tare::default();
+        self.state.peaks = ForcePeaks::default();
         self.state.faults.clear();
         self.state.gestures.last = None;
         self.state.history.gap(now);
@@ -137,6 +140,9 @@ impl Desk {
     fn sample(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         self.state.sample = *sample;
         self.state.tare.begin(sample);
+        if fresh.contains(Group::Force) {
+            self.state.peaks.update(sample);
+        }
         self.state.history.push(sample, fresh);
         if self.state.faults.update(sample, fresh, now) {
             self.state.history.mark(now, MarkKind::Fault);

@@ -13,7 +13,9 @@ pub mod history;
 #[cfg(test)]
 mod live_tests;
 pub mod notices;
+pub mod peaks;
 pub mod program;
+pub mod recipe;
 mod seam;
 pub mod settings;
 pub mod state;

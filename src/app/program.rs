@@ -135,7 +135,9 @@ impl App {
             Action::Force(dof, force) => desk.force(dof, force),
             Action::Speed(dof, speed) => desk.speed(dof, speed),
             Action::Lock(dof, locked) => desk.lock(dof, locked),
-            Action::Open => desk.open_hand(),
+            Action::Preset(preset) => desk.preset(preset),
+            Action::ForceOfAll(force) => desk.force_of_all(force),
+            Action::SpeedOfAll(speed) => desk.speed_of_all(speed),
             Action::Gesture(gesture) => desk.gesture(gesture, now),
             Action::ClearErrors => desk.clear_errors(now),
             Action::Connect(endpoint) => self.connect(endpoint, now),
@@ -165,6 +167,7 @@ impl App {
             }
             Action::Theme(theme) => settings.theme = theme,
             Action::Language(language) => settings.language = language,
+            Action::AngleUnit(unit) => settings.angle_unit = unit,
             Action::PlotWindow(window) => settings.plot_window = window,
             // Standing plots are the view's own matter, and all others were carried out before.
             _ => {}

@@ -26,6 +26,31 @@ pub enum Language {
     Zh,
 }
 
+/// How angles are written and typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AngleUnit {
+    /// The register's own 0 to 1000.
+    #[default]
+    Raw,
+    /// Degrees of the joint.
+    Degrees,
+    /// Percent of the way to open.
+    Percent,
+}
+
+impl AngleUnit {
+    /// The next one, round and round.
+    #[must_use]
+    pub const fn next(self) -> Self {
+        match self {
+            Self::Raw => Self::Degrees,
+            Self::Degrees => Self::Percent,
+            Self::Percent => Self::Raw,
+        }
+    }
+}
+
 /// How much time the plots show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -80,6 +105,8 @@ pub struct Settings {
     pub theme: Theme,
     /// Language of the window.
     pub language: Language,
+    /// How angles are written and typed.
+    pub angle_unit: AngleUnit,
     /// Seconds that the plots show.
     pub plot_window: PlotWindow,
     /// How gestures are started.

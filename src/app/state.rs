@@ -4,6 +4,7 @@ use crate::app::faults::FaultBook;
 use crate::app::gestures::GestureBook;
 use crate::app::history::History;
 use crate::app::notices::Notices;
+use crate::app::peaks::ForcePeaks;
 use crate::app::settings::Settings;
 use crate::app::tare::Tare;
 use crate::hand::{Angle, Force, HandSample, Moment, PerDof, Speed};
@@ -30,6 +31,8 @@ pub struct State {
     pub sample: HandSample,
     /// What the tactile channels are counted from.
     pub tare: Tare,
+    /// The highest forces of the last seconds.
+    pub peaks: ForcePeaks,
     /// The six joints as a person sets them.
     pub joints: PerDof<Joint>,
     /// What was measured over the last minutes.

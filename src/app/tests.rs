@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
+use crate::app::action::Preset;
 use crate::app::gestures::GestureProgress;
 use crate::app::notices::{Asked, Level, NoticeKind};
 use crate::hand::{
@@ -25,7 +26,7 @@ fn nothing_is_told_by_starting_connecting_or_dragging_while_not_armed() {
         bench.desk.lock(dof, true);
         bench.desk.lock(dof, false);
     }
-    bench.desk.open_hand();
+    bench.desk.preset(Preset::Open);
     bench.desk.gesture(Gesture::MIN, bench.now());
     bench.step();
     assert_eq!(bench.told(), []);
@@ -121,7 +122,7 @@ fn an_armed_joint_goes_where_it_is_told_and_a_locked_one_never() {
         (bench.target(Dof::Index), bench.target(Dof::Ring)),
         (Some(1000), Some(500))
     );
-    bench.desk.open_hand();
+    bench.desk.preset(Preset::Open);
     let [Told::Set(all)] = bench.told()[..] else {
         panic!("one write")
     };

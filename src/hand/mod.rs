@@ -6,6 +6,7 @@
 pub mod command;
 pub mod dof;
 pub mod fault;
+pub mod impact;
 pub mod moment;
 pub mod reading;
 pub mod register;

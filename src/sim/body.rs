@@ -51,7 +51,7 @@ impl Object {
         Self {
             contacts: PerDof::splat(Some(Contact {
                 angle,
-                stiffness: crate::sim::impact::RIGID_G_PER_COUNT,
+                stiffness: crate::hand::impact::RIGID_G_PER_COUNT,
             })),
         }
     }

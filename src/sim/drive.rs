@@ -1,7 +1,7 @@
 //! One drive: motion, contact, current, heat, faults, in steps of one millisecond. Knows no registers.
 
+use crate::hand::impact::{RIGID_G_PER_COUNT, overshoot_g};
 use crate::hand::{Fault, Faults, Status};
-use crate::sim::impact::{RIGID_G_PER_COUNT, overshoot_g};
 use arrayvec::ArrayVec;
 
 /// Length of a step, s.

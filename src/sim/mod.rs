@@ -5,7 +5,6 @@ pub mod drive;
 mod extremes;
 pub mod gesture;
 pub mod hand;
-pub mod impact;
 mod live;
 pub mod memory;
 mod number;

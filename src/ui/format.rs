@@ -23,6 +23,14 @@ pub(crate) fn degrees(value: Option<f32>) -> String {
     value.map_or_else(|| format!("{UNKNOWN:>6}"), |value| format!("{value:>5.1}°"))
 }
 
+/// Percent of the way from bent (0) to open (1000), or "-".
+pub(crate) fn percent(angle: Option<i16>) -> String {
+    angle.map_or_else(
+        || format!("{UNKNOWN:>6}"),
+        |angle| format!("{:>5.1}%", f32::from(angle) / 10.0),
+    )
+}
+
 /// A number of newtons as the hand sent it: also "NaN", "inf" and numbers that are too long.
 pub(crate) fn newtons(value: Option<f32>) -> String {
     match value {

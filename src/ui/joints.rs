@@ -1,10 +1,12 @@
 //! The six joint rows: target over actual, threshold over force, speed, lamp, lock. Sends nothing by itself.
 
-use crate::app::action::Action;
+use crate::app::action::{Action, Preset};
+use crate::app::settings::AngleUnit;
 use crate::app::state::Freshness;
 use crate::hand::Dof;
-use crate::ui::controls::{self, Button, Label, take_right};
+use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right};
 use crate::ui::joint_row::Row;
+use crate::ui::joint_tracks::all_joints_ui;
 use crate::ui::look::Pane;
 use crate::ui::text::main;
 use crate::ui::{format, theme};
@@ -14,33 +16,88 @@ use egui::{Id, Rect, Ui, pos2, vec2};
 const LINE_MAX: f32 = 28.0;
 /// No line of a row is lower than this; the list scrolls instead.
 const LINE_MIN: f32 = 19.0;
-/// Draws the column of joints.
-pub(crate) fn joints_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    let (mut head, mut rest) = controls::titled_card(ui, look, rect, look.say(main::JOINTS));
-    age_ui(ui, &mut head, pane);
-    let rows_height = rest.height() - theme::CONTROL_LARGE - theme::GAP;
-    let fits = rows_height / 6.0 >= 3.0 * LINE_MIN + theme::GAP;
-    let row_height = if fits {
-        (rows_height / 6.0).min(4.0 * LINE_MAX + 2.0 * theme::GAP)
-    } else {
-        3.0 * LINE_MIN + theme::GAP
-    };
-    let list = controls::take_top(&mut rest, if fits { row_height * 6.0 } else { rows_height });
-    if fits {
-        rows_ui(ui, list, row_height, pane);
-    } else {
+
+/// The column of joints.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct JointsView {
+    /// The four fingers move together.
+    linked: bool,
+}
+
+impl JointsView {
+    /// Draws it.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let (mut head, mut rest) = controls::titled_card(ui, look, rect, look.say(main::JOINTS));
+        self.head_ui(ui, &mut head, pane);
+        let below = theme::CONTROL_LARGE + theme::CONTROL + 2.0 * theme::GAP;
+        let height = rest.height() - below;
+        let list = controls::take_top(&mut rest, height);
+        self.list_ui(ui, list, pane);
+        let all = controls::take_top(&mut rest, theme::CONTROL);
+        all_joints_ui(ui, all, pane);
+        buttons_ui(ui, rest.with_max_y(rest.top() + theme::CONTROL_LARGE), pane);
+    }
+
+    fn head_ui(&mut self, ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let unit = pane.state.settings.angle_unit;
+        let text = look.say(match unit {
+            AngleUnit::Raw => main::UNIT_RAW,
+            AngleUnit::Degrees => main::UNIT_DEGREES,
+            AngleUnit::Percent => main::UNIT_PERCENT,
+        });
+        let button_width =
+            |ui: &Ui, text: &str| controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP;
+        let place = take_right(head, button_width(ui, text));
+        let button = Button::new(text, look.say(main::UNIT_TIP))
+            .named(look.say(main::UNIT_NAME))
+            .weight(Weight::Quiet);
+        if button
+            .put(ui, look, place, Id::unique("angle unit"))
+            .clicked()
+        {
+            pane.actions.push(Action::AngleUnit(unit.next()));
+        }
+        let text = look.say(main::LINK_FINGERS);
+        let place = take_right(head, button_width(ui, text));
+        let button = Button::new(text, look.say(main::LINK_FINGERS_TIP)).choice(self.linked);
+        if button
+            .put(ui, look, place, Id::unique("link fingers"))
+            .clicked()
+        {
+            self.linked = !self.linked;
+        }
+        age_ui(ui, head, pane);
+    }
+
+    fn list_ui(&self, ui: &mut Ui, list: Rect, pane: &mut Pane<'_>) {
+        let least = 3.0 * LINE_MIN + theme::GAP;
+        let height = list.height() / 6.0;
+        if height >= least {
+            let height = height.min(4.0 * LINE_MAX + 2.0 * theme::GAP);
+            self.rows_ui(ui, list, height, pane);
+            return;
+        }
         ui.scope_builder(egui::UiBuilder::new().max_rect(list), |ui| {
             egui::ScrollArea::vertical()
                 .auto_shrink(false)
                 .show(ui, |ui| {
-                    let whole =
-                        Rect::from_min_size(ui.cursor().min, vec2(list.width(), row_height * 6.0));
-                    rows_ui(ui, whole, row_height, pane);
+                    let size = vec2(list.width(), least * 6.0);
+                    let whole = Rect::from_min_size(ui.cursor().min, size);
+                    self.rows_ui(ui, whole, least, pane);
                 });
         });
     }
-    buttons_ui(ui, rest.with_max_y(rest.top() + theme::CONTROL_LARGE), pane);
+
+    fn rows_ui(&self, ui: &mut Ui, list: Rect, height: f32, pane: &mut Pane<'_>) {
+        let mut top = list.top();
+        for dof in Dof::ALL {
+            let rect = Rect::from_min_size(pos2(list.left(), top), vec2(list.width(), height));
+            Row::new(dof, pane).ui(ui, rect, pane, self.linked);
+            top += height;
+        }
+    }
 }
 
 fn age_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
@@ -64,28 +121,26 @@ fn age_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
         .on_hover_text(look.say(main::AGE_TIP));
 }
 
-fn rows_ui(ui: &mut Ui, list: Rect, height: f32, pane: &mut Pane<'_>) {
-    let mut top = list.top();
-    for dof in Dof::ALL {
-        let rect = Rect::from_min_size(pos2(list.left(), top), vec2(list.width(), height));
-        Row::new(dof, pane).ui(ui, rect, pane);
-        top += height;
-    }
-}
-
 fn buttons_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let half = (rect.width() - theme::GAP) / 2.0;
-    let (mut left, right) = rect.split_left_right_at_x(rect.left() + half);
-    left.max.y = rect.bottom();
-    let open = Button::new(look.say(main::OPEN), look.say(main::OPEN_TIP))
-        .disabled((!pane.state.is_armed()).then(|| look.say(main::NOT_ARMED)));
-    if open.put(ui, look, left, Id::unique("open all")).clicked() {
-        pane.actions.push(Action::Open);
+    let width = (rect.width() - 3.0 * theme::GAP) / 4.0;
+    let mut rest = rect;
+    let not_armed = (!pane.state.is_armed()).then(|| look.say(main::NOT_ARMED));
+    let presets = [
+        (main::OPEN, main::OPEN_TIP, Preset::Open),
+        (main::HALF, main::HALF_TIP, Preset::Half),
+        (main::CLOSE, main::CLOSE_TIP, Preset::Close),
+    ];
+    for (text, tip, preset) in presets {
+        let place = take_left(&mut rest, width);
+        let button = Button::new(look.say(text), look.say(tip)).disabled(not_armed);
+        let id = Id::unique(("preset", preset));
+        if button.put(ui, look, place, id).clicked() {
+            pane.actions.push(Action::Preset(preset));
+        }
     }
-    let right = right.with_min_x(right.left() + theme::GAP);
     let hold = Button::new(look.say(main::HOLD), look.say(main::HOLD_TIP));
-    if hold.put(ui, look, right, Id::unique("hold")).clicked() {
+    if hold.put(ui, look, rest, Id::unique("hold")).clicked() {
         pane.actions.push(Action::Stop);
     }
 }

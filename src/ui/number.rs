@@ -21,9 +21,11 @@ pub(crate) struct NumberField<'a> {
     /// Why nothing can be typed now.
     pub(crate) disabled: Option<&'a str>,
     /// What is in force; none is shown as "-".
-    pub(crate) value: Option<i16>,
+    pub(crate) value: Option<f64>,
     /// What may be typed.
-    pub(crate) range: RangeInclusive<i16>,
+    pub(crate) range: RangeInclusive<f64>,
+    /// Digits after the decimal mark; with none only whole numbers are taken.
+    pub(crate) decimals: usize,
 }
 
 impl NumberField<'_> {
@@ -35,10 +37,11 @@ impl NumberField<'_> {
         typing: &mut Typing,
         rect: Rect,
         id: Id,
-    ) -> Option<i16> {
+    ) -> Option<f64> {
+        let decimals = self.decimals;
         let shown = self
             .value
-            .map_or_else(|| UNKNOWN.to_owned(), |value| value.to_string());
+            .map_or_else(|| UNKNOWN.to_owned(), |value| format!("{value:.decimals$}"));
         if ui.memory(|memory| memory.has_focus(id)) && self.disabled.is_none() {
             if typing.field != Some(id) {
                 *typing = Typing {
@@ -61,7 +64,7 @@ impl NumberField<'_> {
             typing.refused = typing.refused.filter(|_| !response.changed());
         }
         let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        let parsed = strict(&text).filter(|value| self.range.contains(value));
+        let parsed = strict(&text, decimals).filter(|value| self.range.contains(value));
         let (from, to) = (self.range.start(), self.range.end());
         response.on_hover_text(match self.disabled {
             Some(reason) => reason.to_owned(),
@@ -134,11 +137,18 @@ impl NumberField<'_> {
     }
 }
 
-/// A whole number written with plain digits and nothing else: no comma, no point, no full-width digit.
-fn strict(text: &str) -> Option<i16> {
+/// A number written with plain digits and nothing else: no group marks, no full-width digit. Where decimals are wanted
+/// a point or a comma may stand before them, and a minus before all.
+fn strict(text: &str, decimals: usize) -> Option<f64> {
     let text = text.trim();
-    let plain = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    plain.then(|| text.parse().ok()).flatten()
+    let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    if decimals == 0 {
+        return digits(text).then(|| text.parse().ok()).flatten();
+    }
+    let size = text.strip_prefix('-').unwrap_or(text);
+    let (whole, part) = size.split_once(['.', ',']).unwrap_or((size, "0"));
+    let plain = digits(whole) && digits(part) && part.len() <= decimals;
+    plain.then(|| text.replace(',', ".").parse().ok()).flatten()
 }
 
 #[cfg(test)]
@@ -148,17 +158,33 @@ mod tests {
     #[test]
     fn only_plain_digits_are_a_number() {
         for (text, value) in [
-            ("500", Some(500)),
-            (" 7 ", Some(7)),
+            ("500", Some(500.0)),
+            (" 7 ", Some(7.0)),
             ("-1", None),
             ("1,000", None),
             ("1.5", None),
             ("５００", None),
             ("1e3", None),
             ("", None),
-            ("99999", None),
         ] {
-            assert_eq!(strict(text), value, "{text}");
+            assert_eq!(strict(text, 0), value, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_decimal_comma_is_understood_where_decimals_are() {
+        for (text, value) in [
+            ("72.5", Some(72.5)),
+            ("72,5", Some(72.5)),
+            ("-13", Some(-13.0)),
+            ("1,000", None),
+            ("1.2.3", None),
+            (",5", None),
+            ("5,", None),
+            ("--1", None),
+            ("", None),
+        ] {
+            assert_eq!(strict(text, 1), value, "{text}");
         }
     }
 }

@@ -275,6 +275,8 @@ impl TipDetail {
             draws: Actual::Bar,
             color: look.palette.accent,
             tick: Some(FRICTION_PERCENT),
+            rough_from: None,
+            peak: None,
         };
         if let Some(percent) = track.put(ui, look, right, Id::unique("tip friction")) {
             self.friction_percent = percent.max(1);

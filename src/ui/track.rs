@@ -9,6 +9,8 @@ use egui::{
 
 /// Height of the rail.
 const RAIL: f32 = 6.0;
+/// Distance of the lines of the rough zone.
+const HATCH: f32 = 5.0;
 /// Radius of the handle.
 const HANDLE: f32 = 7.0;
 
@@ -44,6 +46,10 @@ pub(crate) struct Track<'a> {
     pub(crate) color: Color32,
     /// A value worth a small tick.
     pub(crate) tick: Option<i16>,
+    /// From here to the end a person should think twice; painted on the rail.
+    pub(crate) rough_from: Option<i16>,
+    /// The highest measured value of late.
+    pub(crate) peak: Option<i16>,
 }
 
 impl Track<'_> {
@@ -153,6 +159,10 @@ impl Track<'_> {
                 by_key
             };
         });
+        // Only with the keyboard on it: a wheel that turns while the pointer passes moves nothing.
+        if response.hovered() {
+            steps += ui.input_mut(wheel_steps);
+        }
         steps
     }
 
@@ -192,6 +202,9 @@ impl Track<'_> {
             Stroke::new(1.0, palette.edge),
             StrokeKind::Inside,
         );
+        if let Some(from) = self.rough_from {
+            self.paint_rough(ui, look, ground, self.x_of(rail, from));
+        }
         if let Some(tick) = self.tick {
             let x = self.x_of(rail, tick);
             let line = [pos2(x, rail.bottom() + 2.0), pos2(x, rail.bottom() + 5.0)];
@@ -200,10 +213,38 @@ impl Track<'_> {
         let actual = self.actual.map(|value| self.x_of(rail, value));
         let target = shown.map(|value| self.x_of(rail, value));
         self.paint_actual(ui, ground, rail, actual, target);
+        if let Some(peak) = self.peak.filter(|peak| *peak > 0) {
+            let x = self.x_of(rail, peak);
+            let line = [pos2(x, rail.top() - 1.0), pos2(x, rail.bottom() + 1.0)];
+            painter.line_segment(line, Stroke::new(2.0, self.color));
+        }
         if let Some(x) = target {
             self.paint_handle(ui, look, response, rail, x);
         }
         focus_ring(ui, look, response, ground.expand2(vec2(0.0, 5.0)));
+    }
+
+    /// Slanted lines on the far end of the rail: more than a colour.
+    fn paint_rough(&self, ui: &Ui, look: Look, ground: Rect, from: f32) {
+        let zone = ground.with_min_x(from).shrink(1.0);
+        if zone.width() <= 0.0 {
+            return;
+        }
+        let painter = ui.painter_at(zone);
+        painter.rect_filled(
+            zone,
+            CornerRadius::ZERO,
+            look.palette.wash(look.palette.warn),
+        );
+        let stroke = Stroke::new(1.0, look.palette.warn.gamma_multiply(0.45));
+        let mut x = zone.left();
+        while x < zone.right() + zone.height() {
+            painter.line_segment(
+                [pos2(x - zone.height(), zone.bottom()), pos2(x, zone.top())],
+                stroke,
+            );
+            x += HATCH;
+        }
     }
 
     fn paint_actual(
@@ -256,6 +297,33 @@ impl Track<'_> {
         painter.circle(center, HANDLE, palette.handle, Stroke::new(2.0, edge));
         painter.circle_filled(center, 2.5, palette.handle_dot);
     }
+}
+
+/// Points of a touchpad that count as one notch of a wheel.
+const NOTCH: f32 = 16.0;
+
+/// Whole notches of the wheel, taken out of the input so that nothing scrolls as well.
+fn wheel_steps(input: &mut egui::InputState) -> i16 {
+    let mut notches = 0.0;
+    input.events.retain(|event| match event {
+        egui::Event::MouseWheel { unit, delta, .. } => {
+            notches += match unit {
+                egui::MouseWheelUnit::Point => (delta.x + delta.y) / NOTCH,
+                egui::MouseWheelUnit::Line | egui::MouseWheelUnit::Page => delta.x + delta.y,
+            };
+            false
+        }
+        _ => true,
+    });
+    if notches != 0.0 {
+        input.smooth_scroll_delta = egui::Vec2::ZERO;
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "clamped to what a hand can turn"
+    )]
+    let steps = notches.clamp(-100.0, 100.0) as i16;
+    steps
 }
 
 fn clip(count: usize) -> i16 {

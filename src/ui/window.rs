@@ -7,7 +7,7 @@ use crate::ui::banner;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::faults;
 use crate::ui::gestures::GestureView;
-use crate::ui::joints;
+use crate::ui::joints::JointsView;
 use crate::ui::look::{Look, Pane, Typing};
 use crate::ui::plots::PlotView;
 use crate::ui::text::{Text, main};
@@ -77,6 +77,7 @@ pub struct Window {
     view: View,
     installed: Option<(Theme, Language)>,
     typing: Typing,
+    joints: JointsView,
     plots: PlotView,
     gestures: GestureView,
     connection: ConnectionForm,
@@ -160,7 +161,7 @@ impl Window {
         let body = body.with_min_x(body.left() + theme::GAP);
         let joints_width = (whole.width() * 0.29).clamp(384.0, 560.0).round();
         let (left, right) = body.split_left_right_at_x(body.left() + joints_width);
-        joints::joints_ui(ui, left, pane);
+        self.joints.ui(ui, left, pane);
         self.view_ui(ui, right.with_min_x(right.left() + theme::GAP), pane);
     }
 
@@ -236,7 +237,11 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
     actions.retain(|action| {
         !matches!(
             action,
-            Action::Stop | Action::Arm | Action::Target(..) | Action::Open | Action::Gesture(_)
+            Action::Stop
+                | Action::Arm
+                | Action::Target(..)
+                | Action::Preset(_)
+                | Action::Gesture(_)
         )
     });
     actions.insert(0, Action::Stop);
@@ -246,6 +251,7 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::action::Preset;
     use crate::hand::{Angle, Dof, Gesture};
 
     #[test]
@@ -254,7 +260,7 @@ mod tests {
             vec![
                 Action::Arm,
                 Action::Target(Dof::Index, Angle::MAX),
-                Action::Open,
+                Action::Preset(Preset::Open),
                 Action::Gesture(Gesture::MIN),
                 Action::FindPorts,
             ]

@@ -39,6 +39,7 @@ pub fn empty() -> State {
         stats: LinkStats::default(),
         sample: HandSample::default(),
         tare: handscope::app::tare::Tare::default(),
+        peaks: handscope::app::peaks::ForcePeaks::default(),
         joints: PerDof::splat(Joint {
             target: None,
             force: Force::GENTLE,

@@ -220,6 +220,45 @@ impl Bench {
         self.harness.step();
     }
 
+    /// The secondary button on a track.
+    pub fn click_secondary(&mut self, name: &str) {
+        self.harness
+            .get_by_role_and_label(Role::Slider, name)
+            .click_secondary();
+        self.harness.step();
+    }
+
+    /// One notch of the wheel over a track.
+    pub fn wheel(&mut self, name: &str, notches: f32) {
+        let at = self.rect(Role::Slider, name).center();
+        self.harness.hover_at(at);
+        self.harness.step();
+        self.harness.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: vec2(0.0, notches),
+            modifiers: Modifiers::NONE,
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+        });
+        self.harness.step();
+        self.harness.remove_cursor();
+        self.run(60);
+    }
+
+    /// Presses a button and says what it put on the clipboard.
+    pub fn click_copy(&mut self, name: &str) -> Option<String> {
+        self.harness.get_by_label(name).click();
+        self.harness.step();
+        let commands = &self.harness.output().platform_output.commands;
+        let copied = commands.iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        });
+        self.harness.remove_cursor();
+        self.harness.step();
+        copied
+    }
+
     pub fn key(&mut self, key: Key) {
         self.harness.key_press(key);
         self.harness.step();
