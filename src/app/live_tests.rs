@@ -229,6 +229,7 @@ async fn settings_are_kept_and_setpoints_never() {
     assert_eq!(
         keys,
         [
+            "angle_unit",
             "gesture_names",
             "gesture_route",
             "language",

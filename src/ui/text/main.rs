@@ -118,7 +118,7 @@ texts! {
     ALL_JOINTS: "All", "全部";
     LINK_FINGERS: "Link", "联动";
     LINK_FINGERS_TIP: "The four fingers move together: each goes as far as the one you move. The thumb stays apart.", "四指联动：拖动一指，其余三指移动相同的量。大拇指不受影响。";
-    UNIT_RAW: "0–1000", "0–1000";
+    UNIT_RAW: "0..1000", "0..1000";
     UNIT_DEGREES: "Degrees", "角度制";
     UNIT_PERCENT: "Percent", "百分比";
     UNIT_NAME: "Angle unit", "角度单位";
