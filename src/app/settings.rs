@@ -66,19 +66,25 @@ pub enum PlotWindow {
     M1,
     /// Five minutes.
     M5,
-    /// Ten minutes: all that is held.
+    /// Ten minutes.
     M10,
+    /// Half an hour.
+    M30,
+    /// An hour: all that is held.
+    H1,
 }
 
 impl PlotWindow {
     /// All, shortest first.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::S5,
         Self::S10,
         Self::S30,
         Self::M1,
         Self::M5,
         Self::M10,
+        Self::M30,
+        Self::H1,
     ];
 
     /// Seconds shown.
@@ -91,6 +97,8 @@ impl PlotWindow {
             Self::M1 => 60.0,
             Self::M5 => 300.0,
             Self::M10 => 600.0,
+            Self::M30 => 1800.0,
+            Self::H1 => 3600.0,
         }
     }
 }

@@ -70,8 +70,8 @@ fn bars(ui: &Ui, place: Rect, color: Color32) {
 fn window_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let now = pane.state.settings.plot_window;
-    let each = (head.width() / 6.0).min(52.0);
-    let mut row = take_right(&mut head, each * 6.0);
+    let each = (head.width() / 8.0).min(52.0);
+    let mut row = take_right(&mut head, each * 8.0);
     let round = CornerRadius::same(theme::ROUND_SMALL);
     ui.painter().rect_filled(row, round, look.palette.sunken);
     for window in PlotWindow::ALL {
@@ -107,6 +107,8 @@ const fn window_text(window: PlotWindow) -> (&'static str, &'static str) {
         PlotWindow::M1 => ("1 min", "1m"),
         PlotWindow::M5 => ("5 min", "5m"),
         PlotWindow::M10 => ("10 min", "10m"),
+        PlotWindow::M30 => ("30 min", "30m"),
+        PlotWindow::H1 => ("1 h", "1h"),
     }
 }
 

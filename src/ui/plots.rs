@@ -213,7 +213,7 @@ impl PlotView {
                 plot.set_plot_bounds_x(sight.span.0..=sight.span.1);
                 plot.set_plot_bounds_y(sight.band.low..=sight.band.high);
                 for mark in pane.state.history.marks(sight.span.0, sight.span.1) {
-                    let (_, color) = mark_look(pane, mark.kind);
+                    let (_, color) = mark_look(pane, &mark.kind);
                     let line = VLine::new("", mark.at.secs()).color(color).width(1.0);
                     plot.vline(line.allow_hover(false));
                 }
@@ -286,7 +286,7 @@ fn threshold_lines(plot: &mut PlotUi<'_>, pane: &Pane<'_>) {
     }
 }
 
-fn mark_look(pane: &Pane<'_>, kind: MarkKind) -> (Text, Color32) {
+fn mark_look(pane: &Pane<'_>, kind: &MarkKind) -> (Text, Color32) {
     let palette = pane.look.palette;
     match kind {
         MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
@@ -296,6 +296,7 @@ fn mark_look(pane: &Pane<'_>, kind: MarkKind) -> (Text, Color32) {
         MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
         MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
         MarkKind::Gesture(_) => (panels::MARK_GESTURE, palette.accent),
+        MarkKind::Note(_) => (panels::MARK_NOTE, palette.text),
     }
 }
 
@@ -303,7 +304,7 @@ fn mark_look(pane: &Pane<'_>, kind: MarkKind) -> (Text, Color32) {
 fn mark_labels(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, span: (f64, f64)) {
     let mut free_from = rect.left();
     for mark in pane.state.history.marks(span.0, span.1) {
-        let (text, color) = mark_look(pane, mark.kind);
+        let (text, color) = mark_look(pane, &mark.kind);
         let text = mark_text(pane, mark, text);
         let x = plot_axes::x_of(rect, span, mark.at.secs());
         let width = controls::text_width(ui, &text, theme::small()) + 1.0;
@@ -324,7 +325,7 @@ fn mark_labels(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, span: (f64, f64)) {
 
 fn mark_text(pane: &Pane<'_>, mark: &Mark, text: Text) -> String {
     let text = pane.look.say(text);
-    match mark.kind {
+    match &mark.kind {
         MarkKind::Gesture(number) => format!("{text} {number}"),
         _ => text.to_owned(),
     }

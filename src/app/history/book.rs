@@ -1,6 +1,8 @@
 //! The whole history of one hand: which reading goes to which line. How lines are kept is told in the siblings.
 
 use crate::app::history::mark::{Mark, MarkKind, Marks};
+use crate::app::history::reading::{Reading, Summary};
+use crate::app::history::table::{Table, TableGroup};
 use crate::app::history::trace::Trace;
 use crate::app::history::track::{Slice, Track};
 use crate::hand::{
@@ -8,8 +10,9 @@ use crate::hand::{
 };
 
 /// The longest window of the plots.
-pub const HISTORY_SECONDS: u32 = 600;
-/// Rows kept of each group: ten minutes at 200 Hz, the most a serial line carries. About 37 MB when all are full.
+pub const HISTORY_SECONDS: u32 = 3600;
+/// Rows kept of each group: an hour at 200 Hz, the most a serial line carries; a faster link holds less time. About
+/// 80 MB with an hour at 100 Hz and fingertips at 30 Hz, and 230 MB when all are full.
 pub const HISTORY_ROWS: usize = 200 * HISTORY_SECONDS as usize;
 /// A longer silence than this breaks measured lines.
 const GAP_AFTER_S: f64 = 0.5;
@@ -51,6 +54,11 @@ pub enum Touch {
     Tangential,
 }
 
+impl Touch {
+    /// All, in the order of the variants.
+    pub const ALL: [Self; 2] = [Self::Normal, Self::Tangential];
+}
+
 /// One line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Series {
@@ -58,6 +66,48 @@ pub enum Series {
     Joint(Quantity, Dof),
     /// Of a fingertip.
     Tip(Touch, Finger),
+}
+
+impl Series {
+    /// The head of its column in a table: what, of which part, unit. Stable.
+    #[must_use]
+    pub fn column_name(self) -> String {
+        let (what, part, unit) = match self {
+            Self::Joint(Quantity::Angle, dof) => ("angle", dof.name(), ""),
+            Self::Joint(Quantity::Force, dof) => ("force", dof.name(), "_g"),
+            Self::Joint(Quantity::Current, dof) => ("current", dof.name(), "_mA"),
+            Self::Joint(Quantity::Temperature, dof) => ("temperature", dof.name(), "_C"),
+            Self::Joint(Quantity::TargetAngle, dof) => ("target_angle", dof.name(), ""),
+            Self::Tip(Touch::Normal, finger) => ("normal", finger.name(), "_N"),
+            Self::Tip(Touch::Tangential, finger) => ("tangential", finger.name(), "_N"),
+        };
+        format!("{what}_{part}{unit}")
+    }
+
+    /// Which row of times it is on, and its place there.
+    const fn place(self) -> (u8, usize) {
+        match self {
+            Self::Joint(_, dof) => (self.track(), dof.index()),
+            Self::Tip(Touch::Normal, _) => (self.track(), 0),
+            Self::Tip(Touch::Tangential, _) => (self.track(), 1),
+        }
+    }
+
+    /// Tells the rows of times apart.
+    const fn track(self) -> u8 {
+        match self {
+            Self::Joint(Quantity::Angle, _) => 0,
+            Self::Joint(Quantity::Force, _) => 1,
+            Self::Joint(Quantity::Current, _) => 2,
+            Self::Joint(Quantity::Temperature, _) => 3,
+            Self::Joint(Quantity::TargetAngle, _) => 4,
+            Self::Tip(_, Finger::Little) => 5,
+            Self::Tip(_, Finger::Ring) => 6,
+            Self::Tip(_, Finger::Middle) => 7,
+            Self::Tip(_, Finger::Index) => 8,
+            Self::Tip(_, Finger::Thumb) => 9,
+        }
+    }
 }
 
 /// What was measured over the last minutes, by the time it was received.
@@ -82,14 +132,26 @@ impl History {
     /// Empty.
     #[must_use]
     pub fn new() -> Self {
-        let joints = |gap_after_s| Track::new(Dof::ALL.len(), HISTORY_ROWS, gap_after_s);
+        let joints = |quantity: Quantity, gap_after_s| {
+            let number = Series::Joint(quantity, Dof::Index).track();
+            Track::new(number, Dof::ALL.len(), HISTORY_ROWS, gap_after_s)
+        };
+        let tip = |finger| {
+            let number = Series::Tip(Touch::Normal, finger).track();
+            Box::new(Track::new(
+                number,
+                Touch::ALL.len(),
+                HISTORY_ROWS,
+                GAP_AFTER_S,
+            ))
+        };
         Self {
-            angle: joints(GAP_AFTER_S),
-            force: joints(GAP_AFTER_S),
-            current: joints(GAP_AFTER_S),
-            temperature: joints(GAP_AFTER_S),
-            target: joints(TARGET_GAP_AFTER_S),
-            tips: PerFinger::from_fn(|_| Box::new(Track::new(2, HISTORY_ROWS, GAP_AFTER_S))),
+            angle: joints(Quantity::Angle, GAP_AFTER_S),
+            force: joints(Quantity::Force, GAP_AFTER_S),
+            current: joints(Quantity::Current, GAP_AFTER_S),
+            temperature: joints(Quantity::Temperature, GAP_AFTER_S),
+            target: joints(Quantity::TargetAngle, TARGET_GAP_AFTER_S),
+            tips: PerFinger::from_fn(tip),
             marks: Marks::default(),
         }
     }
@@ -124,7 +186,11 @@ impl History {
         }
         for finger in Finger::ALL {
             if let Some(block) = sample.tactile[finger].filter(|_| new(Group::Tactile(finger))) {
-                let values = [block.value.normal(), block.value.tangential()];
+                let finite = |value: Option<f32>| value.filter(|value| value.is_finite());
+                let values = [
+                    finite(block.value.normal()),
+                    finite(block.value.tangential()),
+                ];
                 self.tips[finger].push(block.received.secs(), values);
             }
         }
@@ -161,13 +227,8 @@ impl History {
     /// extreme is lost. The work grows with the columns, not with the history.
     pub fn trace(&self, series: Series, from_s: f64, to_s: f64, columns: usize, out: &mut Trace) {
         let columns = u32::try_from(columns).unwrap_or(u32::MAX).max(1);
-        let (track, quantity) = match series {
-            Series::Joint(quantity, dof) => (self.joint(quantity), dof.index()),
-            Series::Tip(Touch::Normal, finger) => (self.tips[finger].as_ref(), 0),
-            Series::Tip(Touch::Tangential, finger) => (self.tips[finger].as_ref(), 1),
-        };
-        track.trace(
-            quantity,
+        self.track(series).trace(
+            series.place().1,
             Slice {
                 from_s,
                 to_s,
@@ -175,6 +236,58 @@ impl History {
             },
             out,
         );
+    }
+
+    /// The measurement nearest to a time; `None` in a gap.
+    #[must_use]
+    pub fn reading(&self, series: Series, at_s: f64) -> Option<Reading> {
+        self.track(series).reading(series.place().1, at_s)
+    }
+
+    /// What all measurements of a stretch of time come to, both ends included; `None` if there is none. The work grows
+    /// with the logarithm of their number.
+    #[must_use]
+    pub fn summary(&self, series: Series, from_s: f64, to_s: f64) -> Option<Summary> {
+        self.track(series).summary(series.place().1, from_s, to_s)
+    }
+
+    /// A copy of all measurements of some lines over a stretch of time, with the marks there.
+    #[must_use]
+    pub fn table(&self, series: &[Series], from_s: f64, to_s: f64) -> Table {
+        let mut tracks: Vec<u8> = series.iter().map(|one| one.track()).collect();
+        tracks.sort_unstable();
+        tracks.dedup();
+        let groups = tracks.into_iter().filter_map(|number| {
+            let own = || series.iter().filter(move |one| one.track() == number);
+            let track = self.track(*own().next()?);
+            let rows = track.rows_within(from_s, to_s);
+            let column = |one: &Series| {
+                let place = one.place().1;
+                let values = rows.clone().filter_map(|row| track.value(place, row));
+                (one.column_name(), values.collect())
+            };
+            Some(TableGroup {
+                times: rows.clone().filter_map(|row| track.time_s(row)).collect(),
+                columns: own().map(column).collect(),
+            })
+        });
+        let marks = self.marks(from_s, to_s);
+        Table::new(
+            groups.collect(),
+            marks
+                .map(|mark| (mark.at.secs(), mark.kind.words()))
+                .collect(),
+        )
+    }
+
+    /// Measurements of some lines over a stretch of time, without copying them.
+    #[must_use]
+    pub fn rows(&self, series: &[Series], from_s: f64, to_s: f64) -> usize {
+        let mut tracks: Vec<Series> = series.to_vec();
+        tracks.sort_unstable_by_key(|one| one.track());
+        tracks.dedup_by_key(|one| one.track());
+        let rows = |one: &Series| self.track(*one).rows_within(from_s, to_s).len();
+        tracks.iter().map(rows).sum()
     }
 
     /// Time of the oldest measurement that is still held, in seconds.
@@ -193,6 +306,13 @@ impl History {
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.tracks().map(Track::bytes).sum()
+    }
+
+    fn track(&self, series: Series) -> &Track {
+        match series {
+            Series::Joint(quantity, _) => self.joint(quantity),
+            Series::Tip(_, finger) => self.tips[finger].as_ref(),
+        }
     }
 
     const fn joint(&self, quantity: Quantity) -> &Track {
@@ -229,204 +349,4 @@ fn add<T: Copy>(
 
 fn target_angle(target: Target) -> Option<f32> {
     target.angle().map(|angle| f32::from(angle.get()))
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::expect_used, clippy::indexing_slicing, reason = "a test may")]
-    use super::*;
-    use crate::app::history::mark::MARKS_MAX;
-    use crate::hand::{AngleReading, ForceReading, TactileBlock};
-
-    const FORCE: Series = Series::Joint(Quantity::Force, Dof::Index);
-
-    fn group<T: Copy>(value: T, millis: u64) -> Option<Timed<PerDof<T>>> {
-        let at = Moment::from_micros(millis * 1000);
-        Some(Timed {
-            value: PerDof::splat(value),
-            asked: at,
-            received: at,
-        })
-    }
-
-    fn force(history: &mut History, millis: u64, grams: i16) {
-        let sample = HandSample {
-            force: group(ForceReading::new(grams), millis),
-            ..HandSample::default()
-        };
-        let mut fresh = Groups::NONE;
-        fresh.insert(Group::Force);
-        history.push(&sample, fresh);
-    }
-
-    fn trace(history: &History, from_s: f64, to_s: f64) -> Trace {
-        let mut out = Trace::default();
-        history.trace(FORCE, from_s, to_s, 800, &mut out);
-        out
-    }
-
-    #[test]
-    fn one_spike_in_ten_minutes_is_still_seen() {
-        let mut history = History::new();
-        for tick in 0..HISTORY_ROWS as u64 {
-            force(
-                &mut history,
-                tick * 5,
-                if tick == 77_777 { 1234 } else { 10 },
-            );
-        }
-        let seen = trace(&history, 0.0, 600.0);
-        assert!(seen.decimated);
-        assert_eq!(seen.segments.len(), 1);
-        assert!(seen.points().count() <= 4 * 802);
-        let peaks: Vec<_> = seen.points().filter(|point| point[1] > 1000.0).collect();
-        assert_eq!(peaks.len(), 1);
-        assert!((peaks[0][0] - 77_777.0 * 0.005).abs() < 1.0, "{peaks:?}");
-        assert!(
-            seen.points()
-                .zip(seen.points().skip(1))
-                .all(|(one, two)| one[0] <= two[0])
-        );
-    }
-
-    #[test]
-    fn a_short_window_shows_every_value() {
-        let mut history = History::new();
-        for tick in 0..100 {
-            force(&mut history, tick * 10, 5);
-        }
-        let seen = trace(&history, 0.0, 1.0);
-        assert!(!seen.decimated);
-        assert_eq!(seen.points().count(), 100);
-    }
-
-    #[test]
-    fn lost_links_and_long_silences_break_the_line_at_every_zoom() {
-        let mut history = History::new();
-        for tick in 0..10_000 {
-            force(&mut history, tick * 5, 5);
-        }
-        history.gap(Moment::from_micros(50_000_000));
-        for tick in 0..10_000 {
-            force(&mut history, 50_200 + tick * 5, 5);
-        }
-        for tick in 0..10_000 {
-            force(&mut history, 101_000 + tick * 5, 5);
-        }
-        for (from_s, to_s) in [(0.0, 600.0), (0.0, 160.0), (40.0, 110.0)] {
-            let seen = trace(&history, from_s, to_s);
-            assert_eq!(seen.segments.len(), 3, "{from_s}..{to_s}");
-            assert!(seen.segments.iter().all(|segment| !segment.is_empty()));
-            let ends = seen.segments[0].last().map(|point| point[0]);
-            assert!(ends.is_some_and(|end| end <= 50.0));
-        }
-    }
-
-    #[test]
-    fn values_outside_the_manual_are_gaps_and_never_zero() {
-        let mut history = History::new();
-        for tick in 0..10 {
-            force(&mut history, tick * 10, if tick == 5 { 9999 } else { 100 });
-        }
-        let seen = trace(&history, 0.0, 1.0);
-        assert_eq!(seen.segments.len(), 2);
-        assert!(seen.points().all(|point| (point[1] - 100.0).abs() < 1e-9));
-    }
-
-    #[test]
-    fn a_tip_that_is_not_a_number_is_a_gap() {
-        let mut history = History::new();
-        let mut fresh = Groups::NONE;
-        fresh.insert(Group::Tactile(Finger::Thumb));
-        for (millis, normal_n) in [(0, 1.0), (30, f32::NAN), (60, 2.0)] {
-            let mut block = TactileBlock::decode(&[0; 58]).expect("58 bytes");
-            block.normal_n = normal_n;
-            let at = Moment::from_micros(millis * 1000);
-            let mut sample = HandSample::default();
-            sample.tactile[Finger::Thumb] = Some(Timed {
-                value: block,
-                asked: at,
-                received: at,
-            });
-            history.push(&sample, fresh);
-        }
-        let mut out = Trace::default();
-        history.trace(
-            Series::Tip(Touch::Normal, Finger::Thumb),
-            0.0,
-            1.0,
-            800,
-            &mut out,
-        );
-        assert_eq!(out.segments, [vec![[0.0, 1.0]], vec![[0.06, 2.0]]]);
-        history.trace(
-            Series::Tip(Touch::Normal, Finger::Index),
-            0.0,
-            1.0,
-            800,
-            &mut out,
-        );
-        assert!(out.segments.is_empty());
-    }
-
-    #[test]
-    fn only_fresh_groups_are_taken() {
-        let mut history = History::new();
-        let sample = HandSample {
-            angle: group(AngleReading::new(5), 1),
-            ..HandSample::default()
-        };
-        history.push(&sample, Groups::NONE);
-        assert_eq!(history.last_secs(), None);
-    }
-
-    #[test]
-    fn history_is_bounded_in_rows_and_memory() {
-        let mut history = History::new();
-        let block = TactileBlock::decode(&[0; 58]).expect("58 bytes");
-        let mut sample = HandSample::default();
-        let mut fresh = Groups::NONE;
-        for group in [
-            Group::Angle,
-            Group::Force,
-            Group::Current,
-            Group::Temperature,
-            Group::AngleSet,
-        ] {
-            fresh.insert(group);
-        }
-        for finger in Finger::ALL {
-            fresh.insert(Group::Tactile(finger));
-        }
-        for tick in 0..HISTORY_ROWS as u64 + 5000 {
-            let at = Moment::from_micros(tick * 5000);
-            sample.angle = group(AngleReading::new(1), tick * 5);
-            sample.force = group(ForceReading::new(1), tick * 5);
-            sample.current = group(crate::hand::CurrentReading::new(1), tick * 5);
-            sample.temperature = group(crate::hand::TemperatureReading::new(1), tick * 5);
-            sample.angle_set = group(None, tick * 5);
-            sample.tactile = PerFinger::splat(Some(Timed {
-                value: block,
-                asked: at,
-                received: at,
-            }));
-            history.push(&sample, fresh);
-        }
-        assert!(history.bytes() <= 40_000_000, "{}", history.bytes());
-        assert!(
-            history
-                .first_secs()
-                .is_some_and(|first| (first - 25.0).abs() < 0.1)
-        );
-    }
-
-    #[test]
-    fn marks_are_bounded_and_found_by_time() {
-        let mut history = History::new();
-        for second in 0..2000 {
-            history.mark(Moment::from_micros(second * 1_000_000), MarkKind::Stop);
-        }
-        assert_eq!(history.marks(0.0, 2000.0).count(), MARKS_MAX);
-        assert_eq!(history.marks(1990.0, 1994.0).count(), 5);
-    }
 }

@@ -5,8 +5,10 @@ use std::ops::Range;
 
 /// Each level spans this many times what the one below spans, as a shift.
 const FACTOR_SHIFT: u32 = 3;
-/// Levels above the values: the topmost spans 32 768 rows, about a quarter of all that is held.
+/// Levels above the values: the topmost spans 32 768 rows, a twentieth of all that is held.
 const LEVELS: u32 = 5;
+/// The lowest level with sums: a mean looks at up to 63 values at either end by themselves.
+const SUMS_FROM: u32 = 2;
 
 /// The extremes of a stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,22 +54,49 @@ impl Extremes {
     }
 }
 
+/// How many values are known in a stretch, and their sum.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Sum {
+    /// Of the known values.
+    pub(crate) sum: f64,
+    /// Known values.
+    pub(crate) count: u32,
+}
+
+impl Sum {
+    fn take(&mut self, value: f32) {
+        if !value.is_nan() {
+            self.sum += f64::from(value);
+            self.count += 1;
+        }
+    }
+
+    fn join(&mut self, other: Self) {
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+}
+
 /// One measured quantity, newest rows only. NaN stands for not known.
 #[derive(Debug, Clone)]
 pub(crate) struct Column {
     values: Ring<f32>,
     levels: Vec<Ring<Extremes>>,
+    sums: Vec<Ring<Sum>>,
 }
 
 impl Column {
     /// Keeps this many rows.
     pub(crate) fn new(room: usize) -> Self {
-        let levels = (1..=LEVELS)
-            .map(|level| Ring::new((room >> (FACTOR_SHIFT * level)) + 2))
-            .collect();
+        let stretches = |level| (room >> (FACTOR_SHIFT * level)) + 2;
         Self {
             values: Ring::new(room),
-            levels,
+            levels: (1..=LEVELS)
+                .map(|level| Ring::new(stretches(level)))
+                .collect(),
+            sums: (SUMS_FROM..=LEVELS)
+                .map(|level| Ring::new(stretches(level)))
+                .collect(),
         }
     }
 
@@ -80,6 +109,14 @@ impl Column {
             match ring.last_mut().filter(|_| !starts) {
                 Some(newest) => newest.take(value),
                 None => ring.push(Extremes::of(value)),
+            }
+        }
+        for (level, ring) in (SUMS_FROM..).zip(&mut self.sums) {
+            if row.is_multiple_of(span(level)) {
+                ring.push(Sum::default());
+            }
+            if let Some(newest) = ring.last_mut() {
+                newest.take(value);
             }
         }
     }
@@ -104,6 +141,26 @@ impl Column {
         all
     }
 
+    /// The sum of these rows; work grows with the logarithm of their number.
+    pub(crate) fn sum(&self, rows: Range<usize>) -> Sum {
+        let mut all = Sum::default();
+        let mut row = rows.start;
+        while row < rows.end {
+            let level = self.level_at(row, rows.end);
+            let ring = level
+                .checked_sub(SUMS_FROM)
+                .and_then(|above| self.sums.get(usize::try_from(above).ok()?));
+            if let Some(stretch) = ring.and_then(|ring| ring.get(row >> (FACTOR_SHIFT * level))) {
+                all.join(stretch);
+                row += span(level);
+            } else {
+                all.take(self.values.get(row).unwrap_or(f32::NAN));
+                row += 1;
+            }
+        }
+        all
+    }
+
     /// The highest level with a stretch that starts here and ends by then.
     fn level_at(&self, row: usize, end: usize) -> u32 {
         (1..=LEVELS)
@@ -124,7 +181,9 @@ impl Column {
 
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        self.values.bytes() + self.levels.iter().map(Ring::bytes).sum::<usize>()
+        self.values.bytes()
+            + self.levels.iter().map(Ring::bytes).sum::<usize>()
+            + self.sums.iter().map(Ring::bytes).sum::<usize>()
     }
 }
 
@@ -135,8 +194,41 @@ const fn span(level: u32) -> usize {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::cast_precision_loss, reason = "a test may")]
+    #![allow(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a test may"
+    )]
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The pyramid says what the values say, whatever is asked and however often the ring went round.
+        #[test]
+        fn the_pyramid_equals_the_values(
+            values in prop::collection::vec(prop_oneof![9 => -4000i16..4000, 1 => Just(i16::MAX)], 1..6000),
+            room in 600usize..4000,
+            asked in prop::collection::vec((0.0f64..1.0, 0.0f64..1.0), 20),
+        ) {
+            let value = |raw: &i16| if *raw == i16::MAX { f32::NAN } else { f32::from(*raw) };
+            let mut column = Column::new(room);
+            values.iter().for_each(|raw| column.push(value(raw)));
+            let held = values.len().saturating_sub(room)..values.len();
+            let row = |part: f64| held.start + (part * held.len() as f64) as usize;
+            for (one, two) in asked {
+                let rows = row(one.min(two))..row(one.max(two));
+                let seen = values.get(rows.clone()).unwrap_or_default();
+                let (mut extremes, mut sum) = (Extremes::NONE, Sum::default());
+                for raw in seen {
+                    extremes.take(value(raw));
+                    sum.take(value(raw));
+                }
+                prop_assert_eq!(column.extremes(rows.clone()), extremes);
+                prop_assert_eq!(column.sum(rows), sum);
+            }
+        }
+    }
 
     #[test]
     fn extremes_of_any_rows_are_those_of_the_values() {

@@ -2,12 +2,15 @@
 
 use crate::hand::Moment;
 use std::collections::VecDeque;
+use std::sync::Arc;
 
-/// Marks that are kept: a person makes about one every few seconds at most, for ten minutes.
-pub const MARKS_MAX: usize = 512;
+/// Marks that are kept: one every two seconds for an hour is more than a person looks at.
+pub const MARKS_MAX: usize = 2048;
+/// Characters of a note: one line of the window.
+pub const NOTE_MAX: usize = 80;
 
 /// What happened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum MarkKind {
     /// The hand was armed.
     Armed,
@@ -23,10 +26,42 @@ pub enum MarkKind {
     Reconnected,
     /// A gesture was started, by number.
     Gesture(u8),
+    /// What a person noted, at most [`NOTE_MAX`] characters on one line.
+    Note(Arc<str>),
+}
+
+impl MarkKind {
+    /// A note of these words, cut to one line of [`NOTE_MAX`] characters; `None` if nothing is left.
+    #[must_use]
+    pub fn note(words: &str) -> Option<Self> {
+        let line: String = words
+            .trim()
+            .lines()
+            .next()?
+            .chars()
+            .take(NOTE_MAX)
+            .collect();
+        (!line.is_empty()).then(|| Self::Note(line.into()))
+    }
+
+    /// Stable lower-case name for files; a note is followed by its words, a gesture by its number.
+    #[must_use]
+    pub fn words(&self) -> String {
+        match self {
+            Self::Armed => "armed".into(),
+            Self::Stop => "stop".into(),
+            Self::HoldConfirmed => "at rest".into(),
+            Self::Fault => "fault".into(),
+            Self::LinkLost => "link lost".into(),
+            Self::Reconnected => "reconnected".into(),
+            Self::Gesture(number) => format!("gesture {number}"),
+            Self::Note(words) => format!("note: {words}"),
+        }
+    }
 }
 
 /// One moment worth a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mark {
     /// When.
     pub at: Moment,
@@ -43,7 +78,9 @@ impl Marks {
         if self.0.len() >= MARKS_MAX {
             self.0.pop_front();
         }
-        self.0.push_back(mark);
+        // A note stands where its key was pressed, which is a while ago.
+        let place = self.0.partition_point(|before| before.at <= mark.at);
+        self.0.insert(place, mark);
     }
 
     pub(crate) fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Mark> {

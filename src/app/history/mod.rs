@@ -1,12 +1,18 @@
 //! What was measured over the last minutes: cheap to add to, cheap to draw from. Draws nothing.
 
 mod book;
+#[cfg(test)]
+mod book_tests;
 mod column;
 mod mark;
+mod reading;
 mod ring;
+mod table;
 mod trace;
 mod track;
 
 pub use book::{HISTORY_ROWS, HISTORY_SECONDS, History, Quantity, Series, Touch};
-pub use mark::{MARKS_MAX, Mark, MarkKind};
+pub use mark::{MARKS_MAX, Mark, MarkKind, NOTE_MAX};
+pub use reading::{Reading, Summary};
+pub use table::Table;
 pub use trace::Trace;

@@ -1,13 +1,13 @@
 //! A ring that knows each entry by its running number. No times, no meaning.
 
-/// Entries added at once when a ring grows for the first time.
-const FIRST_ROOM: usize = 1024;
+/// Entries in one piece of memory. Pieces are added and never moved, so that no frame pays for a copy of an hour.
+const PIECE: usize = 4096;
 
 /// The newest `room` entries of an endless row. Numbers run from 0 and never start again.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring<T> {
     room: usize,
-    kept: Vec<T>,
+    kept: Vec<Vec<T>>,
     end: usize,
 }
 
@@ -37,7 +37,8 @@ impl<T: Copy> Ring<T> {
         if number < self.start() || number >= self.end {
             return None;
         }
-        self.kept.get(number % self.room).copied()
+        let slot = self.slot(number);
+        self.kept.get(slot / PIECE)?.get(slot % PIECE).copied()
     }
 
     /// The newest.
@@ -47,33 +48,45 @@ impl<T: Copy> Ring<T> {
 
     /// The newest, to change it.
     pub(crate) fn last_mut(&mut self) -> Option<&mut T> {
-        let newest = self.end.checked_sub(1)?;
-        self.kept.get_mut(newest % self.room)
+        let slot = self.slot(self.end.checked_sub(1)?);
+        self.kept.get_mut(slot / PIECE)?.get_mut(slot % PIECE)
     }
 
     /// Adds one; the oldest goes if there is no room.
     pub(crate) fn push(&mut self, value: T) {
-        match self.kept.get_mut(self.end % self.room) {
-            Some(slot) => *slot = value,
-            None => {
-                self.grow();
-                self.kept.push(value);
+        let slot = self.slot(self.end);
+        if slot / PIECE == self.kept.len() {
+            self.kept.push(self.piece(slot));
+        }
+        if let Some(piece) = self.kept.get_mut(slot / PIECE) {
+            match piece.get_mut(slot % PIECE) {
+                Some(kept) => *kept = value,
+                None => piece.push(value),
             }
         }
         self.end += 1;
     }
 
     /// Bytes held.
-    pub(crate) const fn bytes(&self) -> usize {
-        self.kept.capacity() * size_of::<T>()
+    pub(crate) fn bytes(&self) -> usize {
+        let entries: usize = self.kept.iter().map(Vec::capacity).sum();
+        entries * size_of::<T>()
     }
 
-    /// Doubles, and stops exactly at the room there is.
-    fn grow(&mut self) {
-        let len = self.kept.len();
-        if len == self.kept.capacity() {
-            let more = len.max(FIRST_ROOM).min(self.room.saturating_sub(len));
-            self.kept.reserve_exact(more);
+    /// An empty piece that begins at this slot. The first one grows, as short rows need little.
+    fn piece(&self, slot: usize) -> Vec<T> {
+        if slot == 0 {
+            return Vec::new();
+        }
+        Vec::with_capacity(PIECE.min(self.room.saturating_sub(slot)))
+    }
+
+    /// Where an entry lies. A division is slow, and for the first hour there is none.
+    const fn slot(&self, number: usize) -> usize {
+        if number < self.room {
+            number
+        } else {
+            number % self.room
         }
     }
 }
@@ -102,5 +115,15 @@ mod tests {
             ring.push(value);
         }
         assert_eq!(ring.bytes(), 5000 * 4);
+        assert!((15_000..20_000).all(|row| ring.get(row) == u32::try_from(row).ok()));
+    }
+
+    #[test]
+    fn what_is_held_never_moves_in_memory() {
+        let mut ring = Ring::new(100_000);
+        (0..=PIECE).for_each(|value| ring.push(value));
+        let place = ring.kept.first().map(Vec::as_ptr);
+        (0..90_000).for_each(|value| ring.push(value));
+        assert_eq!(ring.kept.first().map(Vec::as_ptr), place);
     }
 }

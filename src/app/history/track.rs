@@ -1,16 +1,18 @@
 //! Quantities that are read together, over one row of times, and how they become lines. Knows no hand.
 
 use crate::app::history::column::{Column, Extremes};
+use crate::app::history::reading::{Reading, Summary};
 use crate::app::history::ring::Ring;
-use crate::app::history::trace::Trace;
+use crate::app::history::trace::{Cut, CutKey, Stretch, Trace};
 use std::ops::Range;
 
 /// Rows that one trace may look at one by one around gaps; a stretch with more of them is drawn as a break.
 const GAP_ROWS_MAX: usize = 4096;
-/// Columns at least this many rows wide begin at a whole stretch: no row is then looked at by itself.
-const WHOLE_FROM_ROWS: usize = 32;
-/// Rows in the smallest stretch.
-const STRETCH_ROWS: usize = 8;
+/// Columns begin at a whole stretch of the pyramid of which this many fit in: a column then looks at a handful of
+/// stretches, however many rows it is wide, and begins less than half a pixel too early.
+const STRETCHES_A_COLUMN: usize = 2;
+/// Each stretch of the pyramid is this many times as long as the next shorter one.
+const STRETCH_FACTOR: usize = 8;
 
 /// What is drawn: a stretch of time over some columns of pixels.
 #[derive(Debug, Clone, Copy)]
@@ -26,15 +28,17 @@ pub(crate) struct Slice {
 /// Quantities that are read together.
 #[derive(Debug, Clone)]
 pub(crate) struct Track {
+    number: u8,
     times: Ring<f64>,
     columns: Vec<Column>,
     gap_after_s: f64,
 }
 
 impl Track {
-    /// So many quantities and rows; a longer silence than `gap_after_s` breaks the lines.
-    pub(crate) fn new(quantities: usize, rows: usize, gap_after_s: f64) -> Self {
+    /// So many quantities and rows; a longer silence than `gap_after_s` breaks the lines. `number` tells tracks apart.
+    pub(crate) fn new(number: u8, quantities: usize, rows: usize, gap_after_s: f64) -> Self {
         Self {
+            number,
             times: Ring::new(rows),
             columns: (0..quantities).map(|_| Column::new(rows)).collect(),
             gap_after_s,
@@ -107,6 +111,53 @@ impl Track {
         out.end();
     }
 
+    /// The newest row at or before a time, or the next one if that is nearer; `None` in a gap.
+    pub(crate) fn reading(&self, quantity: usize, at_s: f64) -> Option<Reading> {
+        let column = self.columns.get(quantity)?;
+        let next = self.row_at(at_s, self.whole());
+        let near = |row: usize| {
+            let time_s = self.times.get(row)?;
+            let value = column.get(row).filter(|value| !value.is_nan())?;
+            let apart_s = (time_s - at_s).abs();
+            (apart_s <= self.gap_after_s).then_some((apart_s, Reading { time_s, value }))
+        };
+        let both = [next.checked_sub(1).and_then(near), near(next)];
+        let nearest = both
+            .into_iter()
+            .flatten()
+            .min_by(|one, two| one.0.total_cmp(&two.0));
+        nearest.map(|(_, reading)| reading)
+    }
+
+    /// What the known values of a stretch of time come to; both ends belong to it.
+    pub(crate) fn summary(&self, quantity: usize, from_s: f64, to_s: f64) -> Option<Summary> {
+        let column = self.columns.get(quantity)?;
+        let rows = self.rows_within(from_s, to_s);
+        let (extremes, sum) = (column.extremes(rows.clone()), column.sum(rows));
+        (sum.count > 0).then(|| Summary {
+            count: sum.count,
+            min: extremes.min,
+            max: extremes.max,
+            mean: sum.sum / f64::from(sum.count),
+        })
+    }
+
+    /// The rows of a stretch of time; both ends belong to it.
+    pub(crate) fn rows_within(&self, from_s: f64, to_s: f64) -> Range<usize> {
+        let from = self.row_at(from_s, self.whole());
+        from..self.row_at(to_s.next_up(), self.whole()).max(from)
+    }
+
+    /// Time of a row.
+    pub(crate) fn time_s(&self, row: usize) -> Option<f64> {
+        self.times.get(row)
+    }
+
+    /// One value; `None` if it is not held, NaN if it is not known.
+    pub(crate) fn value(&self, quantity: usize, row: usize) -> Option<f32> {
+        self.columns.get(quantity)?.get(row)
+    }
+
     fn whole(&self) -> Range<usize> {
         self.times.start()..self.times.end()
     }
@@ -153,41 +204,77 @@ impl Track {
     /// Columns stand on a grid of time that does not move with the window, so that a scrolling line does not flicker.
     fn each_column(&self, column: &Column, rows: Range<usize>, slice: Slice, out: &mut Trace) {
         out.decimated = true;
-        let step_s = (slice.to_s - slice.from_s) / f64::from(slice.columns.max(1));
-        let mut border =
-            (self.times.get(rows.start).unwrap_or(slice.from_s) / step_s).floor() + 1.0;
+        let key = CutKey {
+            track: self.number,
+            end: self.times.end(),
+            from_s: slice.from_s,
+            to_s: slice.to_s,
+            columns: slice.columns,
+        };
+        let mut cut = std::mem::take(&mut out.cut);
+        if cut.key != Some(key) {
+            self.cut(rows, slice, &mut cut);
+            cut.key = Some(key);
+        }
         let mut budget = GAP_ROWS_MAX;
+        for stretch in &cut.stretches {
+            self.one_column(column, *stretch, &mut budget, out);
+        }
+        out.cut = cut;
+    }
+
+    fn cut(&self, rows: Range<usize>, slice: Slice, cut: &mut Cut) {
+        cut.stretches.clear();
+        let step_s = (slice.to_s - slice.from_s) / f64::from(slice.columns.max(1));
+        let column_after =
+            |row: usize| (self.times.get(row).unwrap_or(slice.to_s) / step_s).floor() + 1.0;
+        let mut border = column_after(rows.start);
         let (mut row, mut width) = (rows.start, 1);
         while row < rows.end {
             let mut next = self.row_ahead(border * step_s, row, width, rows.end);
-            if next - row >= WHOLE_FROM_ROWS && next < rows.end {
-                next -= next % STRETCH_ROWS;
+            if next < rows.end {
+                next -= next % whole_rows(next - row);
             }
             if next > row {
-                self.one_column(column, row..next, &mut budget, out);
+                cut.stretches.push(self.stretch(row..next, slice.to_s));
                 width = next - row;
                 row = next;
                 border += 1.0;
             } else {
                 // Nothing was measured in this column: go to the one of the next row.
-                border = (self.times.get(row).unwrap_or(slice.to_s) / step_s).floor() + 1.0;
+                border = column_after(row);
             }
         }
     }
 
-    fn one_column(&self, column: &Column, rows: Range<usize>, budget: &mut usize, out: &mut Trace) {
+    fn stretch(&self, rows: Range<usize>, else_s: f64) -> Stretch {
+        let time = |row| self.times.get(row).unwrap_or(else_s);
+        Stretch {
+            start: rows.start,
+            end: rows.end,
+            first_s: time(rows.start),
+            middle_s: time(
+                rows.start
+                    .midpoint(rows.end)
+                    .min(rows.end.saturating_sub(1)),
+            ),
+        }
+    }
+
+    fn one_column(&self, column: &Column, stretch: Stretch, budget: &mut usize, out: &mut Trace) {
+        let rows = stretch.start..stretch.end;
         let extremes = column.extremes(rows.clone());
         if extremes.is_empty() {
             out.end();
         } else if !extremes.gap {
-            self.pair(column, rows, extremes, out);
+            pair(column, stretch, extremes, out);
         } else if let Some(rest) = budget.checked_sub(rows.len()) {
             *budget = rest;
             self.runs(column, rows, out);
         } else {
             // Too many gaps to look at each: both ends of the stretch are breaks.
             out.end();
-            self.pair(column, rows, extremes, out);
+            pair(column, stretch, extremes, out);
             out.end();
         }
     }
@@ -197,36 +284,41 @@ impl Track {
         let mut begin = rows.start;
         for row in rows.clone() {
             if column.get(row).is_none_or(f32::is_nan) {
-                self.pair(column, begin..row, column.extremes(begin..row), out);
+                self.run(column, begin..row, out);
                 out.end();
                 begin = row + 1;
             }
         }
-        self.pair(
-            column,
-            begin..rows.end,
-            column.extremes(begin..rows.end),
-            out,
-        );
+        self.run(column, begin..rows.end, out);
     }
 
-    /// Smallest and largest value of a stretch, in the order that follows the line.
-    fn pair(&self, column: &Column, rows: Range<usize>, extremes: Extremes, out: &mut Trace) {
-        let (Some(last), false) = (rows.end.checked_sub(1), extremes.is_empty()) else {
-            return;
-        };
-        let middle = rows.start.midpoint(rows.end);
-        let (Some(first_s), Some(middle_s)) =
-            (self.times.get(rows.start), self.times.get(middle.min(last)))
-        else {
-            return;
-        };
-        let (min, max) = (extremes.min, extremes.max);
-        let rises = column.get(rows.start) <= column.get(last);
-        let (one, two) = if rises { (min, max) } else { (max, min) };
-        out.point(first_s, one);
-        if rows.len() > 1 {
-            out.point(middle_s, two);
+    fn run(&self, column: &Column, rows: Range<usize>, out: &mut Trace) {
+        if let Some(first_s) = self.times.get(rows.start).filter(|_| !rows.is_empty()) {
+            let extremes = column.extremes(rows.clone());
+            pair(column, self.stretch(rows, first_s), extremes, out);
         }
+    }
+}
+
+/// Rows of the longest stretch of the pyramid of which enough fit into a column of so many rows.
+const fn whole_rows(width: usize) -> usize {
+    let mut rows = 1;
+    while rows * STRETCH_FACTOR * STRETCHES_A_COLUMN <= width {
+        rows *= STRETCH_FACTOR;
+    }
+    rows
+}
+
+/// Smallest and largest value of a stretch, in the order that follows the line.
+fn pair(column: &Column, stretch: Stretch, extremes: Extremes, out: &mut Trace) {
+    let Some(last) = stretch.end.checked_sub(1).filter(|_| !extremes.is_empty()) else {
+        return;
+    };
+    let (min, max) = (extremes.min, extremes.max);
+    let rises = column.get(stretch.start) <= column.get(last);
+    let (one, two) = if rises { (min, max) } else { (max, min) };
+    out.point(stretch.first_s, one);
+    if last > stretch.start {
+        out.point(stretch.middle_s, two);
     }
 }

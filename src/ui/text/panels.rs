@@ -25,6 +25,7 @@ texts! {
     MARK_GESTURE: "Gesture", "手势";
     MARK_LOST: "Link lost", "断开";
     MARK_ARMED: "Armed", "使能";
+    MARK_NOTE: "Note", "标记";
     MARK_HELD: "At rest", "静止";
 
     TOUCH: "Fingertips", "指尖触觉";

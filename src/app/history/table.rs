@@ -1,0 +1,134 @@
+//! Measurements as a table of text: one line for each moment at which something was received. Writes no file.
+
+use std::fmt::Write as _;
+
+/// Lines that were read together.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TableGroup {
+    /// Times of the rows, in seconds, never falling.
+    pub(crate) times: Vec<f64>,
+    /// Head and values of each column; NaN = not known.
+    pub(crate) columns: Vec<(String, Vec<f32>)>,
+}
+
+/// A copy of measurements, free of the history it came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    groups: Vec<TableGroup>,
+    marks: Vec<(f64, String)>,
+}
+
+impl Table {
+    pub(crate) const fn new(groups: Vec<TableGroup>, marks: Vec<(f64, String)>) -> Self {
+        Self { groups, marks }
+    }
+
+    /// Measurements in it, a row of joints or a fingertip counting as one.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.groups.iter().map(|group| group.times.len()).sum()
+    }
+
+    /// True if nothing was measured.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Comma-separated values: `time_s` since the start of the program, then the columns with their units, then what
+    /// happened. A value that was not measured at that moment or is not known is an empty cell; a line of empty cells
+    /// is a break.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut text = String::from("time_s");
+        for (name, _) in self.groups.iter().flat_map(|group| &group.columns) {
+            text.push(',');
+            text.push_str(name);
+        }
+        text.push_str(",event\n");
+        let mut rows = vec![0; self.groups.len()];
+        let mut mark = 0;
+        while let Some(now_s) = self.next_s(&rows, mark) {
+            // Writing to a string cannot fail.
+            let _done = write!(text, "{now_s:.6}");
+            for (group, row) in self.groups.iter().zip(&mut rows) {
+                let here = group.times.get(*row).is_some_and(|time| *time <= now_s);
+                for (_, values) in &group.columns {
+                    text.push(',');
+                    let value = values.get(*row).filter(|value| here && !value.is_nan());
+                    if let Some(value) = value {
+                        let _done = write!(text, "{value}");
+                    }
+                }
+                *row += usize::from(here);
+            }
+            text.push(',');
+            if let Some((_, words)) = self.marks.get(mark).filter(|(at_s, _)| *at_s <= now_s) {
+                text.push_str(&quoted(words));
+                mark += 1;
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The earliest time that is not written yet.
+    fn next_s(&self, rows: &[usize], mark: usize) -> Option<f64> {
+        let times = self.groups.iter().zip(rows);
+        let times = times.filter_map(|(group, row)| group.times.get(*row).copied());
+        let marks = self.marks.get(mark).map(|(at_s, _)| *at_s);
+        times.chain(marks).reduce(f64::min)
+    }
+}
+
+/// A cell of free text. One that a spreadsheet would take for a formula is made a text.
+fn quoted(words: &str) -> String {
+    let formula = words.starts_with(['=', '+', '-', '@']);
+    let lead = if formula { "\'" } else { "" };
+    if formula || words.contains([',', '"', '\n', '\r']) {
+        return format!("\"{lead}{}\"", words.replace('"', "\"\""));
+    }
+    words.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_moment_is_a_line_and_what_is_not_known_is_an_empty_cell() {
+        let column = |name: &str, values: &[f32]| (name.to_owned(), values.to_vec());
+        let table = Table::new(
+            vec![
+                TableGroup {
+                    times: vec![1.0, 1.01, 1.01],
+                    columns: vec![
+                        column("force_index_g", &[5.0, -7.0, f32::NAN]),
+                        column("force_ring_g", &[6.0, f32::NAN, f32::NAN]),
+                    ],
+                },
+                TableGroup {
+                    times: vec![1.01, 1.5],
+                    columns: vec![column("normal_thumb_N", &[0.25, 1.5])],
+                },
+            ],
+            vec![(1.2, "stop".into()), (1.5, "note: \"ok\", once".into())],
+        );
+        let lines = [
+            "time_s,force_index_g,force_ring_g,normal_thumb_N,event",
+            "1.000000,5,6,,",
+            "1.010000,-7,,0.25,",
+            "1.010000,,,,",
+            "1.200000,,,,stop",
+            "1.500000,,,1.5,\"note: \"\"ok\"\", once\"",
+            "",
+        ];
+        assert_eq!(table.csv(), lines.join("\n"));
+        assert_eq!(table.len(), 5);
+    }
+
+    #[test]
+    fn an_empty_table_has_its_head() {
+        assert_eq!(Table::new(Vec::new(), Vec::new()).csv(), "time_s,event\n");
+    }
+}
