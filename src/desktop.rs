@@ -1,11 +1,12 @@
 //! The real window: eframe around the cockpit, and the one thread that all links run on. Draws nothing itself.
 
 use crate::app::config::Loaded;
-use crate::app::{App, Env, SimDial};
+use crate::app::{App, ChooseFile, Env, SimDial};
 use crate::hand::Moment;
 use crate::link::{Clock, Wake};
 use crate::shell::Cockpit;
 use crate::transport::Endpoint;
+use futures::future::BoxFuture;
 use std::panic::AssertUnwindSafe;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -125,6 +126,18 @@ fn panic_words(panic: &(dyn std::any::Any + Send)) -> String {
         .unwrap_or_else(|| "the graphics system failed".into())
 }
 
+/// The system's own dialog.
+struct NativeDialog;
+
+impl ChooseFile for NativeDialog {
+    fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        let dialog = rfd::AsyncFileDialog::new().set_file_name(suggested);
+        // Begun here, on the window's thread, as some systems demand.
+        let asked = dialog.save_file();
+        Box::pin(async move { asked.await.map(|file| file.path().to_path_buf()) })
+    }
+}
+
 struct Desktop {
     cockpit: Cockpit,
     clock: Clock,
@@ -146,6 +159,7 @@ impl Desktop {
             runtime,
             clock,
             wake,
+            files: Arc::new(NativeDialog),
             settings_path: start.settings_path,
         };
         let mut app = App::new(env, start.loaded.settings);

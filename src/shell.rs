@@ -28,6 +28,9 @@ impl Cockpit {
 
     /// Draws one frame and carries out what the person asked for in it.
     pub fn ui(&mut self, ui: &mut egui::Ui, now: Moment) {
+        if self.window.view() == View::Traffic {
+            self.app.read_traffic(now);
+        }
         for action in self.window.ui(ui, self.app.state()) {
             self.app.act(action, now);
         }

@@ -20,5 +20,7 @@ mod motion;
 mod start;
 #[path = "window/touch.rs"]
 mod touch;
+#[path = "window/traffic.rs"]
+mod traffic;
 #[path = "window/trouble.rs"]
 mod trouble;

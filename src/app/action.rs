@@ -1,6 +1,8 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
+use crate::app::save::Content;
 use crate::app::settings::{AngleUnit, Language, PlotWindow, Theme};
+use crate::app::settings::{Language, PlotWindow, Theme};
 use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Speed};
 use crate::transport::Endpoint;
 
@@ -67,6 +69,8 @@ pub enum Action {
     FindPorts,
     /// Forget faults that are over.
     ForgetFaults,
+    /// Ask where a file should go, and write it.
+    Save(Content),
     /// A notice was read.
     Dismiss(u64),
     /// Dark or light.

@@ -12,7 +12,7 @@ use crate::app::tare::Tare;
 use crate::hand::{Dof, Force, Group, Groups, HandSample, Moment, PerDof, Speed, Status};
 use crate::link::{
     Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus, LinkTrouble, Outcome,
-    RequestError, Ticket,
+    RequestError, Ticket, Traffic,
 };
 use crate::transport::Endpoint;
 
@@ -60,6 +60,7 @@ impl Desk {
             faults: FaultBook::default(),
             notices: Notices::default(),
             gestures,
+            traffic: Traffic::default(),
             ports: Vec::new(),
             settings,
         };
@@ -82,6 +83,10 @@ impl Desk {
         link: Option<Box<dyn Link>>,
         now: Moment,
     ) {
+        self.state.traffic = match (&link, &endpoint) {
+            (Some(link), Some(endpoint)) => Traffic::of(link.tap(), endpoint),
+            _ => Traffic::default(),
+        };
         self.link = link;
         self.state.endpoint = endpoint;
         self.state.link = LinkStatus {

@@ -11,7 +11,7 @@ use crate::hand::{
 };
 use crate::link::{
     ArmEpoch, ArmRequest, LinkEvent, LinkState, LinkStats, LinkStatus, Request, RequestError,
-    Setpoints, Ticket,
+    Setpoints, Ticket, WireTap,
 };
 use crate::transport::Endpoint;
 use std::cell::RefCell;
@@ -66,6 +66,9 @@ impl Link for FakeLink {
     fn ask(&self, request: Request) -> Result<Ticket, RequestError> {
         self.note(Told::Ask(request));
         self.0.borrow().refuse.clone().map_or(Ok(Ticket(7)), Err)
+    }
+    fn tap(&self) -> WireTap {
+        WireTap::default()
     }
     fn try_event(&mut self) -> Option<LinkEvent> {
         self.0.borrow_mut().events.pop_front()

@@ -7,6 +7,7 @@ use crate::app::connect::SimDial;
 use crate::app::history::{Quantity, Series, Trace};
 use crate::app::notices::NoticeKind;
 use crate::app::program::{App, Env};
+use crate::app::save::NoChoice;
 use crate::app::settings::{Settings, Theme};
 use crate::hand::{Angle, Dof, Force, Speed};
 use crate::link::{Clock, Hold, LinkState};
@@ -28,6 +29,7 @@ impl Bench {
             clock,
             dial: Arc::new(SimDial::new(clock)),
             wake: Arc::new(|| {}),
+            files: Arc::new(NoChoice),
             settings_path,
         };
         Self {

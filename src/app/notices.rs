@@ -88,6 +88,22 @@ pub enum NoticeKind {
         /// Where it lies now; `None` if it could not be moved.
         kept_as: Option<PathBuf>,
     },
+    /// A file was written.
+    Saved {
+        /// Where.
+        path: PathBuf,
+        /// Entries in it.
+        entries: usize,
+    },
+    /// A file could not be written.
+    NotSaved {
+        /// Where.
+        path: PathBuf,
+        /// The system's words.
+        message: String,
+    },
+    /// No place was chosen for a file: the dialog was cancelled, or this desktop has none.
+    NoFileChosen,
     /// The remembered hand's spelling means nothing.
     EndpointIgnored {
         /// What the file says.
@@ -101,9 +117,11 @@ impl NoticeKind {
     pub const fn level(&self) -> Level {
         match self {
             Self::LinkLost(_) | Self::HoldAlarm => Level::Alarm,
-            Self::Reconnected | Self::HoldConfirmed { .. } | Self::Acknowledged { .. } => {
-                Level::Info
-            }
+            Self::Reconnected
+            | Self::HoldConfirmed { .. }
+            | Self::Acknowledged { .. }
+            | Self::Saved { .. }
+            | Self::NoFileChosen => Level::Info,
             Self::NoLink(_)
             | Self::Disarmed(_)
             | Self::ArmRefused(_)
@@ -111,6 +129,7 @@ impl NoticeKind {
             | Self::RequestFailed { .. }
             | Self::GestureWouldMoveLocked { .. }
             | Self::GesturesOff
+            | Self::NotSaved { .. }
             | Self::SettingsNotSaved { .. }
             | Self::SettingsIgnored { .. }
             | Self::EndpointIgnored { .. } => Level::Warn,

@@ -4,6 +4,7 @@ use crate::app::action::Action;
 use crate::app::config::Saver;
 use crate::app::desk::Desk;
 use crate::app::notices::NoticeKind;
+use crate::app::save::{self, ChooseFile, Content, Saving};
 use crate::app::settings::Settings;
 use crate::app::state::{PortChoice, State};
 use crate::hand::Moment;
@@ -29,6 +30,8 @@ pub struct Env {
     pub dial: Arc<dyn Dial>,
     /// Called when something new is there.
     pub wake: Wake,
+    /// How a person is asked where a file should go.
+    pub files: Arc<dyn ChooseFile>,
     /// Where settings are kept; `None` = nowhere.
     pub settings_path: Option<PathBuf>,
 }
@@ -56,6 +59,7 @@ pub struct App {
     leaving: Option<Leaving>,
     closing: Option<Closing>,
     ports: Option<oneshot::Receiver<Vec<PortFound>>>,
+    saving: Option<Saving>,
 }
 
 impl App {
@@ -74,6 +78,7 @@ impl App {
             leaving: None,
             closing: None,
             ports: None,
+            saving: None,
         }
     }
 
@@ -116,6 +121,10 @@ impl App {
             self.go(leaving.to, now);
         }
         self.take_ports();
+        if let Some(end) = self.saving.as_mut().and_then(Saving::ended) {
+            self.saving = None;
+            self.tell(end, now);
+        }
         if let Some(failed) = self.saver.tick(&self.desk.state.settings, now) {
             self.tell(failed, now);
         }
@@ -143,6 +152,7 @@ impl App {
             Action::Connect(endpoint) => self.connect(endpoint, now),
             Action::Disconnect => self.leave(None, now),
             Action::FindPorts => self.find_ports(),
+            Action::Save(content) => self.save(content),
             Action::Tare(finger) => desk.tare(finger),
             Action::UndoTare => desk.state.tare.undo(),
             Action::ForgetFaults => desk.state.faults.forget(),
@@ -204,6 +214,21 @@ impl App {
         };
         let link = link::open(config, &self.env.runtime);
         self.desk.replace(Some(endpoint), Some(Box::new(link)), now);
+    }
+
+    /// Reads on what went over the wire. Called while somebody looks at it, and only then.
+    pub fn read_traffic(&mut self, now: Moment) {
+        save::read_on(&mut self.desk.state.traffic, now);
+    }
+
+    /// One file at a time: while a dialog is open, another is not opened.
+    fn save(&mut self, content: Content) {
+        if self.saving.is_some() {
+            return;
+        }
+        let (files, wake) = (&self.env.files, Arc::clone(&self.env.wake));
+        let saving = Saving::start(content, files.as_ref(), &self.env.runtime, wake);
+        self.saving = Some(saving);
     }
 
     fn find_ports(&mut self) {

@@ -2,7 +2,7 @@
 
 use crate::link::{
     ArmRequest, LinkEvent, LinkHandle, LinkStats, LinkStatus, Request, RequestError, Setpoints,
-    Ticket,
+    Ticket, WireTap,
 };
 
 /// One open link. Dropping it closes it.
@@ -23,6 +23,8 @@ pub(crate) trait Link {
     fn ask(&self, request: Request) -> Result<Ticket, RequestError>;
     /// The next event, if one waits.
     fn try_event(&mut self) -> Option<LinkEvent>;
+    /// What goes over its wire.
+    fn tap(&self) -> WireTap;
 }
 
 impl Link for LinkHandle {
@@ -56,5 +58,9 @@ impl Link for LinkHandle {
 
     fn try_event(&mut self) -> Option<LinkEvent> {
         Self::try_event(self)
+    }
+
+    fn tap(&self) -> WireTap {
+        Self::tap(self)
     }
 }

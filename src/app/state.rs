@@ -9,7 +9,7 @@ use crate::app::settings::Settings;
 use crate::app::tare::Tare;
 use crate::hand::{Angle, Force, HandSample, Moment, PerDof, Speed};
 use crate::link::motion::arm_refusal;
-use crate::link::{ArmRefusal, LinkState, LinkStats, LinkStatus};
+use crate::link::{ArmRefusal, LinkState, LinkStats, LinkStatus, Traffic};
 use crate::transport::Endpoint;
 use std::time::Duration;
 
@@ -43,6 +43,8 @@ pub struct State {
     pub notices: Notices,
     /// Gestures and their names.
     pub gestures: GestureBook,
+    /// What went over the wire, as far as it was looked at.
+    pub traffic: Traffic,
     /// Serial ports found when last looked.
     pub ports: Vec<PortChoice>,
     /// What is kept from one start to the next.

@@ -74,7 +74,7 @@ pub(crate) struct SnapshotArgs {
     /// Seconds after connecting
     #[arg(long, value_name = "SECONDS", default_value = "3", value_parser = seconds)]
     pub(crate) at: Duration,
-    /// One view (live, touch, faults, gestures, connection), the window as it opens, or all of them
+    /// One view (live, touch, faults, gestures, connection, traffic), the window as it opens, or all of them
     #[arg(long, value_name = "NAME", default_value = "window", value_parser = views)]
     pub(crate) view: Views,
     /// Width x height in points
@@ -105,6 +105,9 @@ pub(crate) struct WatchArgs {
     /// One JSON object a line
     #[arg(long)]
     pub(crate) json: bool,
+    /// Print what goes over the wire, frame by frame, in place of values
+    #[arg(long)]
+    pub(crate) wire: bool,
     /// Read as fast as the wire goes, not 100 states and 30 touch sweeps a second
     #[arg(long)]
     pub(crate) full_rate: bool,

@@ -16,6 +16,7 @@ mod telemetry;
 mod value;
 mod watch;
 mod window;
+mod wire;
 
 use args::{Cli, Command};
 use clap::Parser as _;
@@ -47,6 +48,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
     let mut out = Out::stdout();
     let done = match command {
         Command::Snapshot(args) => snapshot::run(&mut out, &args),
+        Command::Watch(args) if args.wire => wire::run(&mut out, &args),
         Command::Watch(args) => watch::run(&mut out, args),
         Command::Read(args) => read::run(&mut out, args),
         Command::Scan(args) => scan::run(&mut out, &args),

@@ -2,7 +2,7 @@
 //! so that seconds take milliseconds and two runs give equal bytes. Writes no file.
 
 use crate::app::settings::{Language, Theme};
-use crate::app::{App, Env, Settings, SimDial};
+use crate::app::{App, Env, NoChoice, Settings, SimDial};
 use crate::hand::Moment;
 use crate::headless::canvas::{Canvas, Picture};
 use crate::link::{Clock, LinkTrouble};
@@ -92,6 +92,7 @@ impl Driver {
             clock,
             dial: Arc::new(SimDial::new(clock)),
             wake: Arc::new(|| ()),
+            files: Arc::new(NoChoice),
             settings_path: None,
         };
         let settings = Settings {

@@ -26,6 +26,10 @@ mod top_bar;
 mod touch;
 mod touch_heat;
 mod track;
+mod traffic;
+mod traffic_detail;
+mod traffic_filter;
+mod traffic_list;
 mod window;
 
 pub use window::{View, Window, install};

@@ -14,6 +14,7 @@ use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use crate::ui::top_bar;
 use crate::ui::touch::{self, TouchView};
+use crate::ui::traffic::TrafficView;
 use egui::{Event, Key, Rect, Ui};
 
 /// The parts of the window that can be looked at.
@@ -30,16 +31,19 @@ pub enum View {
     Gestures,
     /// The link and its settings.
     Connection,
+    /// What goes over the wire, frame by frame.
+    Traffic,
 }
 
 impl View {
     /// All, in the order of the tabs.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Live,
         Self::Touch,
         Self::Faults,
         Self::Gestures,
         Self::Connection,
+        Self::Traffic,
     ];
 
     /// Stable lower-case name for the command line and files.
@@ -51,6 +55,7 @@ impl View {
             Self::Faults => "faults",
             Self::Gestures => "gestures",
             Self::Connection => "connection",
+            Self::Traffic => "traffic",
         }
     }
 
@@ -67,6 +72,7 @@ impl View {
             Self::Faults => main::TAB_FAULTS,
             Self::Gestures => main::TAB_GESTURES,
             Self::Connection => main::TAB_CONNECTION,
+            Self::Traffic => main::TAB_TRAFFIC,
         }
     }
 }
@@ -82,6 +88,7 @@ pub struct Window {
     gestures: GestureView,
     connection: ConnectionForm,
     touch: TouchView,
+    traffic: TrafficView,
 }
 
 /// Puts fonts and style into a context. The window does it itself when the settings change.
@@ -172,6 +179,7 @@ impl Window {
             View::Faults => faults::faults_view_ui(ui, rect, pane),
             View::Gestures => self.gestures.large_ui(ui, rect, pane),
             View::Connection => self.connection.ui(ui, rect, pane),
+            View::Traffic => self.traffic.ui(ui, rect, pane),
         }
     }
 

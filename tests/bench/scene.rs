@@ -4,7 +4,7 @@ use crate::clock::cpu_ms;
 use crate::report::Failure;
 use egui::{Context, RawInput, Rect, ViewportId, ViewportInfo, pos2, vec2};
 use handscope::app::settings::PlotWindow;
-use handscope::app::{Action, App, Env, Settings, SimDial, State};
+use handscope::app::{Action, App, Env, NoChoice, Settings, SimDial, State};
 use handscope::hand::Moment;
 use handscope::link::Clock;
 use handscope::shell::Cockpit;
@@ -52,6 +52,7 @@ impl Scene {
             clock,
             dial: Arc::new(SimDial::new(clock)),
             wake: Arc::new(|| ()),
+            files: Arc::new(NoChoice),
             settings_path: None,
         };
         let mut app = App::new(env, Settings::default());

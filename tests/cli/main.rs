@@ -21,4 +21,6 @@ mod scan;
 mod several;
 mod usage;
 #[cfg(unix)]
+mod wire;
+#[cfg(unix)]
 mod wires;

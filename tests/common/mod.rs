@@ -50,6 +50,7 @@ pub fn empty() -> State {
         faults: FaultBook::default(),
         notices: Notices::default(),
         gestures: GestureBook::default(),
+        traffic: Traffic::default(),
         ports: Vec::new(),
         settings: Settings::default(),
     }

@@ -4,6 +4,7 @@ use egui::{Key, Modifiers, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use futures::future::BoxFuture;
+use handscope::app::InFolder;
 use handscope::app::program::{App, Env};
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
@@ -12,9 +13,12 @@ use handscope::link::{Clock, LinkState};
 use handscope::shell::Cockpit;
 use handscope::sim::serve::{SharedHand, rs485};
 use handscope::sim::{SimConfig, SimHand};
-use handscope::transport::{BoxedWire, Dial, Endpoint, TransportError, pair};
+use handscope::transport::{
+    BoxedWire, Dial, Endpoint, FaultPlan, TransportError, faulty_pair, pair,
+};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+use tempfile::TempDir;
 use tokio::runtime::Runtime;
 use tokio::task::AbortHandle;
 
@@ -35,6 +39,8 @@ pub const GESTURE: u16 = 1008;
 struct Socket {
     hand: SharedHand,
     plugged: Mutex<bool>,
+    /// What the next wire has.
+    faults: Mutex<Option<FaultPlan>>,
     served: Mutex<Vec<AbortHandle>>,
 }
 
@@ -44,7 +50,13 @@ impl Dial for Socket {
         if !*self.plugged.lock().unwrap() {
             return Box::pin(async { Err(TransportError::Missing { place }) });
         }
-        let (ours, its) = pair();
+        let (ours, its) = match *self.faults.lock().unwrap() {
+            None => pair(),
+            Some(plan) => {
+                let (ours, its, _) = faulty_pair(plan);
+                (ours, its)
+            }
+        };
         let task = tokio::spawn(rs485::serve(self.hand.clone(), its));
         self.served.lock().unwrap().push(task.abort_handle());
         Box::pin(async {
@@ -60,6 +72,8 @@ struct Room {
     clock: Clock,
     cockpit: Cockpit,
     socket: Arc<Socket>,
+    /// Where files go that the person saves.
+    folder: TempDir,
     /// Every state of the link there was at a frame's time, without repetitions.
     seen: Vec<LinkState>,
 }
@@ -72,11 +86,13 @@ impl Room {
             .build()
             .unwrap();
         let inside = runtime.enter();
+        let folder = TempDir::new().unwrap();
         let clock = Clock::start();
         let hand = SharedHand::new(SimHand::new(config), clock.instant(clock.now()));
         let socket = Arc::new(Socket {
             hand,
             plugged: Mutex::new(true),
+            faults: Mutex::default(),
             served: Mutex::default(),
         });
         let env = Env {
@@ -84,6 +100,7 @@ impl Room {
             clock,
             dial: Arc::clone(&socket) as Arc<dyn Dial>,
             wake: Arc::new(|| {}),
+            files: Arc::new(InFolder(folder.path().into())),
             settings_path: None,
         };
         let mut app = App::new(env, settings);
@@ -94,6 +111,7 @@ impl Room {
             clock,
             cockpit: Cockpit::new(app),
             socket,
+            folder,
             seen: Vec::new(),
         }
     }
@@ -438,6 +456,46 @@ impl Bench {
         for task in socket.served.lock().unwrap().drain(..) {
             task.abort();
         }
+    }
+
+    /// The next wire that is plugged in has these faults.
+    pub fn faults(&mut self, plan: FaultPlan) {
+        *self.harness.state().socket.faults.lock().unwrap() = Some(plan);
+    }
+
+    /// Clicks, and gives what that put on the clipboard.
+    pub fn click_to_copy(&mut self, name: &str) -> Option<String> {
+        self.harness
+            .get_by_role_and_label(Role::Button, name)
+            .click();
+        (0..4).find_map(|_| {
+            self.harness.step();
+            let commands = &self.harness.output().platform_output.commands;
+            commands.iter().find_map(|command| match command {
+                egui::OutputCommand::CopyText(text) => Some(text.clone()),
+                _ => None,
+            })
+        })
+    }
+
+    /// Clicks a row of a list, by a part of its name, newest first; its name.
+    pub fn click_row(&mut self, part: &str) -> String {
+        let rows = self.harness.query_all_by_role(Role::Row);
+        let name = |node: &egui_kittest::Node<'_>| node.accesskit_node().label();
+        let found = rows
+            .filter(|node| name(node).is_some_and(|name| name.contains(part)))
+            .last()
+            .unwrap_or_else(|| panic!("no row with '{part}'"));
+        let clicked = name(&found).unwrap();
+        found.click();
+        self.harness.remove_cursor();
+        self.run(2 * FRAME_MS);
+        clicked
+    }
+
+    /// The folder of saved files.
+    pub fn folder(&self) -> &std::path::Path {
+        self.harness.state().folder.path()
     }
 
     pub fn plug(&mut self) {

@@ -122,6 +122,7 @@ fn the_list_of_labels_has_stop_the_badge_and_every_joint_with_its_value() {
         clock,
         dial: std::sync::Arc::new(handscope::app::SimDial::new(clock)),
         wake: std::sync::Arc::new(|| {}),
+        files: std::sync::Arc::new(handscope::app::NoChoice),
         settings_path: None,
     };
     let mut app = handscope::app::App::new(env, handscope::app::Settings::default());

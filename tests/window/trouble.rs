@@ -5,7 +5,14 @@ use handscope::hand::{Dof, Fault};
 use handscope::link::LinkState;
 use handscope::sim::{Scenario, SimConfig};
 
-const VIEWS: [&str; 5] = ["Live", "Touch", "Faults", "Gestures", "Connection"];
+const VIEWS: [&str; 6] = [
+    "Live",
+    "Touch",
+    "Faults",
+    "Gestures",
+    "Connection",
+    "Traffic",
+];
 
 #[test]
 fn an_unplugged_hand_is_said_in_words_and_cannot_be_driven() {

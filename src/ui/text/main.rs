@@ -71,6 +71,7 @@ texts! {
     TAB_TOUCH: "Touch", "触觉";
     TAB_FAULTS: "Faults", "故障";
     TAB_GESTURES: "Gestures", "手势";
+    TAB_TRAFFIC: "Traffic", "报文";
     TAB_CONNECTION: "Connection", "连接";
     TAB_TIP: "Shows this part of the window. Nothing moves.", "切换到此视图，不会产生动作。";
     THEME_DARK: "Dark", "深色";

@@ -7,7 +7,7 @@ use crate::hand::Words;
 use crate::link::{Disarmed, LinkTrouble, RequestError};
 use crate::ui::format;
 use crate::ui::look::Look;
-use crate::ui::text::{main, panels, words};
+use crate::ui::text::{main, panels, traffic, words};
 
 /// Title, cause and advice of what is wrong with a drive.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
@@ -138,6 +138,13 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             let kept = kept.unwrap_or_default();
             format!("{} {message} {kept}", said(panels::NOTICE_SETTINGS))
         }
+        NoticeKind::Saved { path, entries } => {
+            format!("{} {} ({entries})", said(traffic::SAVED), path.display())
+        }
+        NoticeKind::NotSaved { path, message } => {
+            format!("{} {}: {message}", said(traffic::NOT_SAVED), path.display())
+        }
+        NoticeKind::NoFileChosen => said(traffic::NO_FILE),
         NoticeKind::EndpointIgnored { text } => {
             format!("{} {text}", said(panels::NOTICE_ENDPOINT))
         }

@@ -36,11 +36,11 @@ pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::{main, panels};
+    use crate::ui::text::{main, panels, traffic};
 
     #[test]
     fn no_sentence_lacks_a_language() {
-        for text in main::ALL.iter().chain(panels::ALL) {
+        for text in main::ALL.iter().chain(panels::ALL).chain(traffic::ALL) {
             assert!(!text.en.is_empty() && !text.zh.is_empty(), "{text:?}");
             assert!(
                 text.en.is_ascii() || text.en.contains(['°', '±']),
@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn every_chinese_character_is_in_the_font() {
         let known = include_str!("../../../assets/fonts/characters.txt");
-        let all = main::ALL.iter().chain(panels::ALL);
+        let all = main::ALL.iter().chain(panels::ALL).chain(traffic::ALL);
         for text in all {
             for sign in text
                 .zh

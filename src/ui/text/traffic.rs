@@ -1,0 +1,178 @@
+//! Sentences of the traffic view: kinds of frames, what is wrong about them, names of their bytes. Decides nothing.
+
+use crate::app::settings::Language;
+use crate::link::traffic::fields::FieldName;
+use crate::link::traffic::frame::{Kind, Wrong};
+use crate::ui::look::Look;
+use crate::ui::text::phrase::{Text, texts};
+
+texts! {
+    TITLE: "Traffic", "报文";
+    SHOWN_OF: "of", "/";
+    FRAMES: "frames", "条报文";
+    PAUSE: "Pause", "暂停";
+    PAUSED: "Paused", "已暂停";
+    PAUSE_NAME: "Pause the list", "暂停列表";
+    PAUSE_TIP: "Lets the list stand still. Recording goes on.", "列表停止更新，记录继续进行。";
+    CAME_SINCE: "came since", "条新报文";
+    FOLLOW: "Follow", "跟随";
+    FOLLOW_NAME: "Follow the newest", "跟随最新报文";
+    FOLLOW_TIP: "Keeps the newest frame in sight.", "始终显示最新的报文。";
+    CLEAR: "Clear", "清除";
+    CLEAR_NAME: "Clear the list", "清除列表";
+    CLEAR_TIP: "Takes all frames from the list. New ones appear as they pass.", "清空列表，之后的报文会继续显示。";
+    COPY: "Copy hex", "复制十六进制";
+    COPY_TIP: "Puts the bytes of the chosen frames on the clipboard, one frame a line. Ctrl+C does the same.", "将所选报文的字节复制到剪贴板，每条一行。Ctrl+C 作用相同。";
+    COPY_NONE: "No frame is chosen.", "没有选择报文。";
+    EXPORT_CSV: "Export CSV", "导出 CSV";
+    EXPORT_JSON: "Export JSON", "导出 JSON";
+    EXPORT_TIP: "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";
+    EXPORT_NONE: "The list is empty.", "列表为空。";
+    FILTER: "Filter", "筛选";
+    FILTER_HINT: "register name, or bytes in hex", "寄存器名称或十六进制字节";
+    WAY_ALL: "Both ways", "双向";
+    WAY_OUT: "To hand", "发往手";
+    WAY_IN: "From hand", "来自手";
+    WAY_TIP: "Which way frames went.", "报文的方向。";
+    WRONG_ONLY: "Only wrong", "仅异常";
+    WRONG_ONLY_TIP: "Shows only frames with something wrong about them.", "只显示有异常的报文。";
+    HIDE_POLLING: "Hide polling", "隐藏轮询";
+    HIDE_POLLING_TIP: "Hides the regular reads and their good replies.", "隐藏定时读取及其正常应答。";
+    EMPTY: "Nothing has passed over the wire yet.", "线路上还没有报文。";
+    EMPTY_LINK: "Nothing is connected. Frames appear here as soon as a wire is open.", "当前没有连接。线路打开后，报文会显示在这里。";
+    EMPTY_FILTER: "No frame passes the filter.", "没有符合筛选条件的报文。";
+    HEAD_TIME: "Time, s", "时间 s";
+    HEAD_KIND: "Kind", "类型";
+    HEAD_MEANING: "Meaning", "含义";
+    HEAD_BYTES: "Bytes", "字节";
+    DETAIL: "Frame", "报文";
+    DETAIL_HINT: "Choose a frame to see what each of its bytes says.", "选择一条报文，查看每个字节的含义。";
+    DETAIL_MANY: "frames chosen", "条报文已选";
+    TOOK: "answered within", "应答用时";
+    ALL_WELL: "Nothing wrong", "正常";
+    SAVED: "Saved:", "已保存：";
+    NOT_SAVED: "Could not be written:", "无法写入：";
+    NO_FILE: "Nothing was saved: no file was chosen. Where no dialog came up, this desktop has none; 'handscope watch --wire' prints frames too.", "未保存：没有选择文件。如果没有出现对话框，说明此桌面不提供；也可使用 handscope watch --wire 输出报文。";
+
+    OPENED: "Wire opened", "线路打开";
+    CLOSED: "Wire closed", "线路关闭";
+    BROKEN: "Wire broke", "线路断开";
+    GAP: "Not kept", "未保留";
+    READ: "Read", "读取";
+    READ_REPLY: "Values", "数值";
+    WRITE: "Write", "写入";
+    WRITE_REPLY: "Taken", "确认";
+    REFUSAL: "Refused", "拒绝";
+    SAVE_RESULT: "Save result", "保存结果";
+    ADAPTER: "To adapter", "适配器命令";
+    ADAPTER_REPLY: "Adapter", "适配器";
+    NOISE: "No frame", "非报文";
+
+    HEADER: "Header", "帧头";
+    ID: "Hand id", "灵巧手 ID";
+    UNIT: "Unit id", "单元标识符";
+    LENGTH: "Length", "长度";
+    COMMAND: "Command", "命令";
+    FUNCTION: "Function", "功能码";
+    ADDRESS: "Address", "地址";
+    WANTED: "Bytes wanted", "读取字节数";
+    WORDS: "Words", "字数";
+    DATA: "Data", "数据";
+    ACKNOWLEDGE: "Acknowledgement", "确认";
+    CODE: "Code", "异常码";
+    CHECKSUM: "Checksum", "校验和";
+    CRC: "CRC", "CRC";
+    TRANSACTION: "Transaction", "事务编号";
+    PROTOCOL: "Protocol", "协议";
+    CAN_ID: "Identifier", "标识符";
+    FILLER: "Filler", "填充";
+    TEXT_LINE: "Text", "文本";
+    UNKNOWN: "Unknown", "未知";
+}
+
+/// What a frame is, in a word.
+pub(crate) const fn kind(kind: Kind) -> Text {
+    match kind {
+        Kind::Opened => OPENED,
+        Kind::Closed => CLOSED,
+        Kind::Broken => BROKEN,
+        Kind::Gap => GAP,
+        Kind::Read => READ,
+        Kind::ReadReply => READ_REPLY,
+        Kind::Write => WRITE,
+        Kind::WriteReply => WRITE_REPLY,
+        Kind::Refusal => REFUSAL,
+        Kind::SaveResult => SAVE_RESULT,
+        Kind::Adapter => ADAPTER,
+        Kind::AdapterReply => ADAPTER_REPLY,
+        Kind::Noise => NOISE,
+    }
+}
+
+/// What some bytes are, in a word.
+pub(crate) const fn field(name: FieldName) -> Text {
+    match name {
+        FieldName::Header => HEADER,
+        FieldName::Id => ID,
+        FieldName::Unit => UNIT,
+        FieldName::Length => LENGTH,
+        FieldName::Command => COMMAND,
+        FieldName::Function => FUNCTION,
+        FieldName::Address => ADDRESS,
+        FieldName::Wanted => WANTED,
+        FieldName::Words => WORDS,
+        FieldName::Data => DATA,
+        FieldName::Acknowledge => ACKNOWLEDGE,
+        FieldName::Code => CODE,
+        FieldName::Checksum => CHECKSUM,
+        FieldName::Crc => CRC,
+        FieldName::Transaction => TRANSACTION,
+        FieldName::Protocol => PROTOCOL,
+        FieldName::CanId => CAN_ID,
+        FieldName::Filler => FILLER,
+        FieldName::Text => TEXT_LINE,
+        FieldName::Unknown => UNKNOWN,
+    }
+}
+
+/// What is wrong about a frame, in a short sentence.
+pub(crate) fn wrong(look: Look, wrong: Wrong) -> String {
+    if look.language == Language::En {
+        let text = wrong.to_string();
+        let mut signs = text.chars();
+        let first = signs.next().map(|sign| sign.to_ascii_uppercase());
+        return first.into_iter().chain(signs).collect();
+    }
+    match wrong {
+        Wrong::Checksum { got, want } => format!("校验和为 {got:02X}，应为 {want:02X}"),
+        Wrong::Crc { got, want } => format!("CRC 为 {got:04X}，应为 {want:04X}"),
+        Wrong::CutOff { got, want: None } => format!("不完整：{got} 字节"),
+        Wrong::CutOff {
+            got,
+            want: Some(want),
+        } => format!("不完整：{got} 字节，应为 {want} 字节"),
+        Wrong::BadHead { len, .. } => format!("帧头之后的长度 {len} 或命令无效"),
+        Wrong::NoFrame { len } => format!("{len} 字节不是报文"),
+        Wrong::Protocol { got } => format!("协议标识 {got}，应为 0：对方不是 Modbus TCP"),
+        Wrong::LengthField { got } => format!("长度字段 {got}，应为 2 至 254"),
+        Wrong::Function { function } => format!("未知功能码 {function} 或长度不符"),
+        Wrong::ForeignId { got, want } => format!("ID 为 {got}，当前灵巧手为 {want}"),
+        Wrong::ForeignCanId { id } => format!("标识符 {id:08X} 不属于灵巧手"),
+        Wrong::Echo => "收到请求：回显，或总线上有其他程序".into(),
+        Wrong::Backwards => "发出了应答".into(),
+        Wrong::NotAsked => "没有对应的请求".into(),
+        Wrong::Late { after_ms } => format!("迟到：请求在 {after_ms} ms 前发出，已放弃"),
+        Wrong::Amount { got, want } => format!("应答 {got} 字节，请求 {want} 字节"),
+        Wrong::Address { got, want } => format!("地址 {got}，请求的是 {want}"),
+        Wrong::Transaction { got, want } => format!("事务编号 {got}，等待的是 {want}"),
+        Wrong::Refused { code } => format!("拒绝，异常码 {code}"),
+        Wrong::NotTaken { value } => format!("未确认：{value}，应为 1"),
+        Wrong::NotSaved { value } => format!("保存失败：{value:02X}"),
+        Wrong::NoReply => "没有应答".into(),
+        Wrong::Line => "不是串口 CAN 适配器的文本".into(),
+        Wrong::AdapterFailed => "适配器无法执行".into(),
+        Wrong::BusOff => "总线关闭：控制器已离开总线".into(),
+        Wrong::ErrorPassive => "错误被动：控制器遇到大量错误".into(),
+        Wrong::Forgotten { pieces } => format!("之前的 {pieces} 段数据已不再保留"),
+    }
+}
