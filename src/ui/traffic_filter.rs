@@ -202,10 +202,15 @@ mod tests {
         };
         let [ask, noise, save] =
             [&ASK[..], &[1, 2, 3], &SAVE].map(crate::link::traffic::frame::hex);
-        let [ask, noise, save] = [ask, noise, save].map(|hex| hex);
         assert_eq!(with(|_| {}).len(), 3);
-        assert_eq!(with(|filter| filter.text = "angle".into()), [ask.clone()]);
-        assert_eq!(with(|filter| filter.text = "01 02".into()), [noise.clone()]);
+        assert_eq!(
+            with(|filter| filter.text = "angle".into()),
+            vec![ask.clone()]
+        );
+        assert_eq!(
+            with(|filter| filter.text = "01 02".into()),
+            vec![noise.clone()]
+        );
         assert_eq!(with(|filter| filter.text = "eb90".into()).len(), 2);
         assert_eq!(with(|filter| filter.text = "b901".into()).len(), 0);
         let out = |filter: &mut Filter| filter.direction = Some(Direction::ToHand);

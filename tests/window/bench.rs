@@ -480,11 +480,10 @@ impl Bench {
 
     /// Clicks a row of a list, by a part of its name, newest first; its name.
     pub fn click_row(&mut self, part: &str) -> String {
-        let rows = self.harness.query_all_by_role(Role::Row);
+        let mut rows = self.harness.query_all_by_role(Role::Row);
         let name = |node: &egui_kittest::Node<'_>| node.accesskit_node().label();
         let found = rows
-            .filter(|node| name(node).is_some_and(|name| name.contains(part)))
-            .last()
+            .rfind(|node| name(node).is_some_and(|name| name.contains(part)))
             .unwrap_or_else(|| panic!("no row with '{part}'"));
         let clicked = name(&found).unwrap();
         found.click();
