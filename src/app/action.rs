@@ -2,7 +2,6 @@
 
 use crate::app::save::Content;
 use crate::app::settings::{AngleUnit, Language, PlotWindow, Theme};
-use crate::app::settings::{Language, PlotWindow, Theme};
 use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Speed};
 use crate::transport::Endpoint;
 

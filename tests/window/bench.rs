@@ -487,6 +487,7 @@ impl Bench {
             .unwrap_or_else(|| panic!("no row with '{part}'"));
         let clicked = name(&found).unwrap();
         found.click();
+        drop(rows);
         self.harness.remove_cursor();
         self.run(2 * FRAME_MS);
         clicked
