@@ -395,7 +395,7 @@ async fn one_program_after_another_opens_the_pseudo_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("hand");
     let hand = shared(Personality::default());
-    let served = tokio::spawn(pty::serve_rs485(hand, &path).unwrap());
+    let served = tokio::spawn(pty::serve_rs485(hand, &path, None).unwrap());
     let place = SerialLine {
         port: path.to_str().unwrap().into(),
         baud: 115_200,

@@ -138,6 +138,12 @@ pub(crate) struct SimArgs {
     /// Make a pseudo-terminal and link it here; serve Modbus RTU on it
     #[arg(long, value_name = "LINK")]
     pub(crate) rtu: Option<PathBuf>,
+    /// Let --rs485 and --rtu take the time of a line of this speed [default: no time at all]
+    #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(1200..=4_000_000))]
+    pub(crate) baud: Option<u32>,
+    /// On such a line: milliseconds from the end of a request to the reply
+    #[arg(long = "turnaround-ms", value_name = "MS", default_value = "6", requires = "baud", value_parser = turnaround)]
+    pub(crate) turnaround: Duration,
     /// Make a pseudo-terminal and link it here; be a serial CAN adapter (slcan) with the hand on its bus
     #[arg(long, value_name = "LINK")]
     pub(crate) slcan: Option<PathBuf>,
@@ -230,6 +236,15 @@ fn seconds(text: &str) -> Result<Duration, String> {
     Ok(Duration::from_secs_f64(seconds))
 }
 
+fn turnaround(text: &str) -> Result<Duration, String> {
+    match text.parse::<f64>() {
+        Ok(ms) if (0.0..=1000.0).contains(&ms) => Ok(Duration::from_secs_f64(ms / 1000.0)),
+        _ => Err(format!(
+            "'{text}' is no time between 0 and 1000 milliseconds"
+        )),
+    }
+}
+
 fn views(text: &str) -> Result<Views, String> {
     match text {
         "window" => Ok(Views::Window),
@@ -308,6 +323,9 @@ mod tests {
             "handscope sim --tcp 127.0.0.1:6000 --id 1,1",
             "handscope sim --tcp 127.0.0.1:6000 --id 1-33",
             "handscope read ANGLE_ATC --hand sim:",
+            "handscope sim --rs485 x --baud 0",
+            "handscope sim --rs485 x --turnaround-ms 3",
+            "handscope sim --rs485 x --baud 115200 --turnaround-ms NaN",
             "handscope sim --tcp 6000",
             "handscope sim --tcp localhost:6000",
             "handscope sim --tcp 127.0.0.1:6000 --scenario party",

@@ -8,6 +8,7 @@ use crate::sim::serve::modbus_tcp;
 #[cfg(unix)]
 use crate::sim::serve::pty;
 use crate::sim::{Hands, SharedHand, SimConfig, SimHand};
+use crate::transport::LinePace;
 #[cfg(unix)]
 use crate::transport::TransportError;
 use anyhow::{Context as _, anyhow};
@@ -37,6 +38,10 @@ pub(crate) fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
 async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let hands = hands(args).context("no hand to simulate")?;
+    let pace = args.baud.map(|baud| LinePace {
+        baud,
+        turnaround: args.turnaround,
+    });
     // All wires are there before any is announced: who waits for one may use all.
     let mut ready = Vec::new();
     let tcp = match args.tcp {
@@ -49,7 +54,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     };
     let rs485 = match &args.rs485 {
         Some(link) => {
-            let served = serve_rs485(&hands, link)?;
+            let served = serve_rs485(&hands, link, pace)?;
             ready.push(format!("ready rs485 {}", link.display()));
             served
         }
@@ -57,7 +62,7 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     };
     let rtu = match &args.rtu {
         Some(link) => {
-            let served = serve_rtu(&hands, link)?;
+            let served = serve_rtu(&hands, link, pace)?;
             ready.push(format!("ready rtu {}", link.display()));
             served
         }
@@ -158,8 +163,9 @@ fn bind_words(error: &io::Error) -> String {
 }
 
 #[cfg(unix)]
-fn serve_rs485(hands: &Hands, link: &Path) -> anyhow::Result<Served> {
-    let served = pty::serve_rs485(hands.clone(), link).map_err(|error| link_words(link, &error))?;
+fn serve_rs485(hands: &Hands, link: &Path, pace: Option<LinePace>) -> anyhow::Result<Served> {
+    let served =
+        pty::serve_rs485(hands.clone(), link, pace).map_err(|error| link_words(link, &error))?;
     Ok(until_closed(link, served))
 }
 
@@ -170,9 +176,10 @@ fn serve_slcan(hands: &Hands, link: &Path) -> anyhow::Result<Served> {
 }
 
 #[cfg(unix)]
-fn serve_rtu(hands: &Hands, link: &Path) -> anyhow::Result<Served> {
+fn serve_rtu(hands: &Hands, link: &Path, pace: Option<LinePace>) -> anyhow::Result<Served> {
     let place = link.display().to_string();
-    let served = pty::serve_rtu(hands.clone(), link).map_err(|error| link_words(link, &error))?;
+    let served =
+        pty::serve_rtu(hands.clone(), link, pace).map_err(|error| link_words(link, &error))?;
     Ok(Box::pin(async move {
         match served.await {
             Ok(()) => anyhow!("the pseudo-terminal behind {place} was closed"),
@@ -229,12 +236,12 @@ fn serve_can(_hands: &Hands, _interface: &str) -> anyhow::Result<Served> {
 }
 
 #[cfg(not(unix))]
-fn serve_rs485(_hands: &Hands, link: &Path) -> anyhow::Result<Served> {
+fn serve_rs485(_hands: &Hands, link: &Path, _pace: Option<LinePace>) -> anyhow::Result<Served> {
     Err(no_links(link))
 }
 
 #[cfg(not(unix))]
-fn serve_rtu(_hands: &Hands, link: &Path) -> anyhow::Result<Served> {
+fn serve_rtu(_hands: &Hands, link: &Path, _pace: Option<LinePace>) -> anyhow::Result<Served> {
     Err(no_links(link))
 }
 
@@ -248,5 +255,5 @@ fn no_links(link: &Path) -> anyhow::Error {
 
 #[cfg(not(unix))]
 fn serve_slcan(hands: &Hands, link: &Path) -> anyhow::Result<Served> {
-    serve_rs485(hands, link)
+    serve_rs485(hands, link, None)
 }

@@ -1,8 +1,8 @@
 //! Samples and statistics as the JSON lines and the text of `watch`. Pure; a contract with scripts.
 
 use crate::hand::{Fault, Faults, Finger, HandSample, Moment, PerDof, Status, TactileBlock, Timed};
-use crate::link::LinkStats;
-use serde_json::{Value, json};
+use crate::link::{LineUse, LinkStats, PollGroup};
+use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
 
@@ -46,7 +46,57 @@ pub(crate) fn stats_json(stats: &LinkStats, elapsed: Duration) -> Value {
         "reconnects": stats.reconnects,
         "writes": stats.writes,
         "dropped_samples": stats.dropped_events,
+        "line": line_json(&stats.line),
     }})
+}
+
+fn line_json(line: &LineUse) -> Value {
+    let groups = PollGroup::ALL.into_iter().zip(&line.groups);
+    let groups: Map<String, Value> = groups
+        .map(|(group, used)| {
+            let value = json!({
+                "hz": rounded(used.hz),
+                "share": rounded(used.share),
+                "could_hz": rounded(used.could_hz),
+            });
+            (group_name(group).to_owned(), value)
+        })
+        .collect();
+    json!({
+        "utilisation": rounded(line.utilisation),
+        "on_wire": line.on_wire.map(rounded),
+        "turnaround_ms": millis(line.turnaround),
+        "writes_share": rounded(line.writes),
+        "split_at_gap": line.split,
+        "groups": groups,
+    })
+}
+
+const fn group_name(group: PollGroup) -> &'static str {
+    match group {
+        PollGroup::Motion => "motion",
+        PollGroup::Drives => "drives",
+        PollGroup::Temperature => "temperature",
+        PollGroup::Tactile => "tactile",
+        PollGroup::Settings => "settings",
+    }
+}
+
+/// What the line was used for, as a line for a person.
+fn line_text(line: &LineUse) -> String {
+    let percent = |share: f64| format!("{:.0} %", share * 100.0);
+    let mut text = format!("line {} used", percent(line.utilisation));
+    if let Some(on_wire) = line.on_wire {
+        let _infallible = write!(text, ", bits on it {}", percent(on_wire));
+    }
+    if let Some(ms) = millis(line.turnaround) {
+        let _infallible = write!(text, ", turnaround {ms:.2} ms");
+    }
+    for (group, used) in PollGroup::ALL.into_iter().zip(&line.groups) {
+        let (name, share) = (group_name(group), percent(used.share));
+        let _infallible = write!(text, "; {name} {:.1} Hz, {share}", used.hz);
+    }
+    text
 }
 
 /// One sample as one line for a person.
@@ -96,7 +146,8 @@ pub(crate) fn stats_text(stats: &LinkStats, elapsed: Duration) -> String {
     };
     format!(
         "{:.1} s: {} states ({:.1} a second), {} touch sweeps ({:.1} a second), round trip {} (99 %: {})\n\
-         {} timeouts, {} checksum errors, {} resyncs, {} foreign replies, {} refusals, {} reconnects",
+         {} timeouts, {} checksum errors, {} resyncs, {} foreign replies, {} refusals, {} reconnects\n\
+         {}",
         elapsed.as_secs_f64(),
         stats.state_reads,
         stats.state_hz,
@@ -110,6 +161,7 @@ pub(crate) fn stats_text(stats: &LinkStats, elapsed: Duration) -> String {
         stats.foreign_replies,
         stats.refusals,
         stats.reconnects,
+        line_text(&stats.line),
     )
 }
 
@@ -246,9 +298,18 @@ mod tests {
             "checksum_errors",
             "resyncs",
             "reconnects",
+            "line",
         ] {
             assert!(!json["stats"][key].is_null(), "{key}");
         }
         assert!(json["stats"]["rtt_ms"]["p50"].is_null());
+        let line = &json["stats"]["line"];
+        assert_eq!(line["utilisation"], 0.0);
+        assert!(line["on_wire"].is_null() && line["turnaround_ms"].is_null());
+        for group in ["motion", "drives", "temperature", "tactile", "settings"] {
+            for key in ["hz", "share", "could_hz"] {
+                assert!(line["groups"][group][key].is_number(), "{group} {key}");
+            }
+        }
     }
 }

@@ -131,7 +131,20 @@ impl Bus {
             Self::Rs485(bus) => bus.write(write, limit).await,
             Self::ModbusRtu(bus) => bus.write(write, limit).await,
             Self::ModbusTcp(bus) => bus.write(write, limit).await,
-            Self::Can(bus) => bus.write(write, limit).await,
+            Self::Can(bus) => bus.write_unless(write, limit, || false).await,
+        }
+    }
+
+    /// Writes, unless something urgent comes up between two pieces: for what a stop overrides anyway.
+    pub(crate) async fn write_unless(
+        &mut self,
+        write: &RegisterWrite,
+        limit: Duration,
+        urgent: impl Fn() -> bool,
+    ) -> Result<(), BusError> {
+        match self {
+            Self::Can(bus) => bus.write_unless(write, limit, urgent).await,
+            whole => whole.write(write, limit).await,
         }
     }
 

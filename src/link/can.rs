@@ -132,15 +132,20 @@ impl Can {
         got
     }
 
-    /// Writes in the order of addresses. If a later piece fails, the earlier ones are written all the same.
-    pub(crate) async fn write(
+    /// Writes in the order of addresses. If a later piece fails, the earlier ones are written all the same; if something
+    /// urgent comes up, the later ones are not written.
+    pub(crate) async fn write_unless(
         &mut self,
         write: &RegisterWrite,
         limit: Duration,
+        urgent: impl Fn() -> bool,
     ) -> Result<(), BusError> {
         let requests = write_requests(self.hand, write).ok_or(BusError::TooLong)?;
         self.open(limit).await?;
-        for request in &requests {
+        for (nth, request) in requests.iter().enumerate() {
+            if nth > 0 && urgent() {
+                break;
+            }
             let end = Instant::now() + limit;
             self.exchange(request, ACK_LEN, end, limit).await?;
             self.late.answered(None);

@@ -11,6 +11,7 @@ use crate::link::session::{End, Session};
 use crate::link::status::{
     ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkState, LinkTrouble,
 };
+use std::sync::Arc;
 use tokio::time::sleep_until;
 
 /// Bytes of an acknowledgement's data.
@@ -256,11 +257,20 @@ impl Session {
         bus: &mut Bus,
         write: &RegisterWrite,
     ) -> Result<(), BusError> {
+        self.write_unless(bus, write, || false).await
+    }
+
+    async fn write_unless(
+        &mut self,
+        bus: &mut Bus,
+        write: &RegisterWrite,
+        urgent: impl Fn() -> bool,
+    ) -> Result<(), BusError> {
         let limit = self.reply_limit(bus, ACK_LEN);
         let asked = self.now();
         self.counters.stats.writes += 1;
         self.rival.wrote(write, asked);
-        let written = bus.write(write, limit).await;
+        let written = bus.write_unless(write, limit, urgent).await;
         let took = self.now().since(asked);
         self.counters.wrote(self.plan.cost(), write.span(), took);
         written?;
@@ -270,7 +280,9 @@ impl Session {
 
     async fn send_setpoint(&mut self, bus: &mut Bus, write: RegisterWrite) -> Result<(), End> {
         self.moving.commanded(self.now());
-        if let Err(error) = self.write(bus, &write).await {
+        let wanted = Arc::clone(&self.ends.wanted);
+        let stop = || wanted.borrow().stop;
+        if let Err(error) = self.write_unless(bus, &write, stop).await {
             if matches!(error, BusError::Timeout { .. }) {
                 self.motion.again(write);
             }

@@ -7,6 +7,7 @@ pub mod dial;
 pub mod endpoint;
 pub mod faulty;
 mod holder;
+pub mod paced;
 pub mod permission;
 pub mod pipe;
 #[cfg(unix)]
@@ -21,6 +22,7 @@ pub use adapter::{Adapter, Whereabouts, is_same_port};
 pub use dial::SystemDial;
 pub use endpoint::{Endpoint, EndpointError, SerialLine};
 pub use faulty::{FaultCounts, FaultOdds, FaultPlan, FaultSwitch, Pace, faulty_pair};
+pub use paced::{LinePace, paced};
 pub use permission::Remedy;
 pub use pipe::{Pipe, pair};
 #[cfg(unix)]

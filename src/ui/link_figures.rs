@@ -1,6 +1,7 @@
 //! How the link goes: state, rates, round trips, counts. Asks for nothing.
 
 use crate::codec::modbus::BytePacking;
+use crate::ui::budget;
 use crate::ui::controls::{self, Label, take_right, take_top};
 use crate::ui::look::Pane;
 use crate::ui::text::{Text, notices, panels};
@@ -8,9 +9,17 @@ use crate::ui::top_bar::link_words;
 use crate::ui::{format, theme};
 use egui::{Color32, Rect, Ui, pos2};
 
+/// From this height on there is room for the line's budget below the figures.
+const WITH_BUDGET: f32 = 640.0;
+
 /// Draws the card.
-pub(crate) fn link_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+pub(crate) fn link_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
     let look = pane.look;
+    if rect.height() >= WITH_BUDGET {
+        let (above, below) = rect.split_top_bottom_at_y(rect.bottom() - budget::HEIGHT);
+        budget::budget_ui(ui, below, pane);
+        rect = above.with_max_y(above.bottom() - theme::GAP);
+    }
     let (_, mut body) = controls::titled_card(ui, look, rect, look.say(panels::LINK_NOW));
     let (word, color) = link_words(pane);
     let mut row = take_top(&mut body, 20.0);
@@ -94,6 +103,15 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
         (panels::TACTILE_RATE, rate(stats.tactile_hz), plain),
         (panels::RTT_P50, trip(stats.rtt_p50), plain),
         (panels::RTT_P99, trip(stats.rtt_p99), plain),
+        (
+            panels::LINE_USED,
+            if live {
+                budget::percent(stats.line.utilisation)
+            } else {
+                format::UNKNOWN.into()
+            },
+            plain,
+        ),
     ];
     rates.extend(packing);
     [

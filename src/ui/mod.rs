@@ -1,6 +1,7 @@
 //! The window: reads [`crate::app::state::State`], draws it with egui, returns actions. No clock, file, thread or wire.
 
 mod banner;
+mod budget;
 mod connection;
 mod controls;
 mod faults;

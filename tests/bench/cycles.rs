@@ -110,7 +110,7 @@ fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
     })
 }
 
-const fn failed(stats: &LinkStats) -> u64 {
+pub(crate) const fn failed(stats: &LinkStats) -> u64 {
     stats.timeouts
         + stats.checksum_errors
         + stats.resyncs
@@ -119,12 +119,12 @@ const fn failed(stats: &LinkStats) -> u64 {
         + stats.reconnects
 }
 
-fn count(many: u64) -> f64 {
+pub(crate) fn count(many: u64) -> f64 {
     u32::try_from(many).map_or(f64::INFINITY, f64::from)
 }
 
 /// Takes what comes, as the window does.
-fn listen(link: &mut LinkHandle, length: Duration) {
+pub(crate) fn listen(link: &mut LinkHandle, length: Duration) {
     let begun = Instant::now();
     while begun.elapsed() < length {
         while link.try_event().is_some() {}
@@ -132,9 +132,18 @@ fn listen(link: &mut LinkHandle, length: Duration) {
     }
 }
 
+/// Waits until a server's link is there.
+#[cfg(unix)]
+pub(crate) fn wait_for(path: &std::path::Path) {
+    let begun = Instant::now();
+    while !path.exists() && begun.elapsed() < SERVER_WITHIN {
+        thread::sleep(LOOK_EACH);
+    }
+}
+
 /// A hand behind a wire, on a thread and a runtime of its own. Ends when dropped.
-struct Server {
-    endpoint: Endpoint,
+pub(crate) struct Server {
+    pub(crate) endpoint: Endpoint,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<thread::JoinHandle<()>>,
 }
@@ -160,17 +169,14 @@ impl Server {
         let endpoint = format!("rs485:{}", path.display()).parse()?;
         let made = path.to_path_buf();
         let server = Self::start(endpoint, async move |hand| {
-            pty::serve_rs485(hand, &made)?.await;
+            pty::serve_rs485(hand, &made, None)?.await;
             Ok(())
         })?;
-        let begun = Instant::now();
-        while !path.exists() && begun.elapsed() < SERVER_WITHIN {
-            thread::sleep(LOOK_EACH);
-        }
+        wait_for(path);
         Ok(server)
     }
 
-    fn start<S>(endpoint: Endpoint, serve: S) -> Result<Self, Failure>
+    pub(crate) fn start<S>(endpoint: Endpoint, serve: S) -> Result<Self, Failure>
     where
         S: AsyncFnOnce(SharedHand) -> Result<(), Failure> + Send + 'static,
     {

@@ -5,6 +5,8 @@ mod clock;
 mod codec;
 mod cycles;
 mod frames;
+#[cfg(unix)]
+mod line;
 mod memory;
 mod pictures;
 mod report;
@@ -14,12 +16,22 @@ mod start;
 use crate::report::{Failure, Report};
 use std::process::ExitCode;
 
+#[cfg(not(unix))]
+mod line {
+    use crate::report::{Failure, Report};
+
+    pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
+        report.absent("serial lines over a pseudo-terminal", "not on this system")
+    }
+}
+
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 6] = [
+const PARTS: [Part; 7] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
+    ("line", line::run),
     ("ui", frames::run),
     ("png", pictures::run),
     ("start", start::run),

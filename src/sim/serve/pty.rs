@@ -4,13 +4,13 @@ use crate::sim::serve::hands::Hands;
 use crate::sim::serve::modbus_rtu;
 use crate::sim::serve::rs485;
 use crate::sim::serve::slcan;
-use crate::transport::{PtyLink, TransportError};
+use crate::transport::{LinePace, PtyLink, TransportError, paced};
 use std::future::Future;
 use std::io;
 use std::path::Path;
 
 /// Makes the link at `path` at once, and answers there while the returned future lives. Clients may come and go;
-/// dropping the future removes the link.
+/// dropping the future removes the link. With a pace it takes the time of a line, else none.
 ///
 /// # Errors
 /// As [`PtyLink::create`]: something that is no link stands there, no permission, no such folder. Must be called
@@ -18,9 +18,15 @@ use std::path::Path;
 pub fn serve_rs485(
     hands: impl Into<Hands> + Send + 'static,
     path: &Path,
+    pace: Option<LinePace>,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
-    let link = PtyLink::create(path)?;
-    Ok(rs485::serve(hands.into(), link))
+    let (hands, link) = (hands.into(), PtyLink::create(path)?);
+    Ok(async move {
+        match pace {
+            Some(pace) => paced(link, pace, |wire| rs485::serve(hands, wire)).await,
+            None => rs485::serve(hands, link).await,
+        }
+    })
 }
 
 /// As [`serve_rs485`], in Modbus RTU. The future ends with an error only if the system has no pseudo-terminals left.
@@ -30,12 +36,18 @@ pub fn serve_rs485(
 pub fn serve_rtu(
     hands: impl Into<Hands> + Send + 'static,
     path: &Path,
+    pace: Option<LinePace>,
 ) -> Result<impl Future<Output = io::Result<()>> + Send + 'static, TransportError> {
-    let link = PtyLink::create(path)?;
-    Ok(modbus_rtu::serve(hands.into(), link))
+    let (hands, link) = (hands.into(), PtyLink::create(path)?);
+    Ok(async move {
+        match pace {
+            Some(pace) => paced(link, pace, |wire| modbus_rtu::serve(hands, wire)).await,
+            None => modbus_rtu::serve(hands, link).await,
+        }
+    })
 }
 
-/// As [`serve_rs485`], with the hand behind a serial CAN adapter.
+/// As [`serve_rs485`], with the hand behind a serial CAN adapter, which has no pace.
 ///
 /// # Errors
 /// As [`serve_rs485`].

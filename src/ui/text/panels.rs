@@ -177,6 +177,16 @@ texts! {
     PACKING_LOW: "low first", "低字节在前";
     PACKING_HIGH: "high first", "高字节在前";
     PACKING_ONE: "one a word", "每字一字节";
+    BUDGET: "The line's time", "线路时间分配";
+    BUDGET_NOW: "now", "当前";
+    BUDGET_SHARE: "share", "占比";
+    BUDGET_COULD: "alone", "独占可达";
+    BUDGET_WRITES: "Writes", "写入";
+    GROUP_MOTION: "Angles, forces", "角度、受力";
+    GROUP_DRIVES: "Currents, faults", "电流、故障";
+    GROUP_TEMPERATURE: "Temperatures", "温度";
+    GROUP_SETTINGS: "Setpoints", "设定值";
+    LINE_USED: "Line used", "线路占用";
     STATE_RATE: "Motion state", "运动状态";
     TACTILE_RATE: "Fingertips", "指尖";
     RTT_P50: "Round trip, median", "往返时间，中位数";

@@ -1,0 +1,135 @@
+//! How near the link comes to what a serial line can give: full cycles over a pseudo-terminal that keeps the time of a
+//! line, against the sum of the bytes.
+
+use crate::cycles::{Server, count, failed, listen};
+use crate::report::{Aim, Failure, Report};
+use handscope::app::SimDial;
+use handscope::link::{Clock, LinkConfig, LinkStats, PollRates, open};
+use handscope::sim::serve::pty;
+use handscope::transport::{Endpoint, LinePace};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tokio::runtime::Builder;
+
+/// The hand's own time: the middle of what was measured, 3 to 15 ms.
+const TURNAROUND: Duration = Duration::from_millis(6);
+/// Until the link has learnt the turnaround and windows have their length.
+const WARM: Duration = Duration::from_secs(3);
+/// How long is counted, and how often; the middle one counts.
+const COUNTED: Duration = Duration::from_secs(4);
+const TIMES: usize = 3;
+/// What the link is to reach of the line's own rate.
+const SHARE: f64 = 97.0;
+
+#[derive(Clone, Copy)]
+enum Protocol {
+    Rs485,
+    Rtu,
+}
+
+impl Protocol {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Rs485 => "rs485",
+            Self::Rtu => "rtu",
+        }
+    }
+
+    /// Bytes of a read request and of its reply around the data, and the silence between frames (manual 2.2, 2.4).
+    const fn frames(self) -> (f64, Duration) {
+        match self {
+            Self::Rs485 => (9.0 + 8.0, Duration::ZERO),
+            Self::Rtu => (8.0 + 5.0, Duration::from_micros(1750)),
+        }
+    }
+
+    /// Cycles a second that the line gives: angles to status in one read of 72 bytes, fingertips in two of 290 together.
+    fn could(self, baud: u32) -> f64 {
+        let (around, gap) = self.frames();
+        let bits = 10.0 * (3.0 * around + 72.0 + 290.0);
+        1.0 / (bits / f64::from(baud) + 3.0 * (TURNAROUND + gap).as_secs_f64())
+    }
+}
+
+pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
+    for protocol in [Protocol::Rs485, Protocol::Rtu] {
+        for baud in [115_200, 921_600] {
+            line(report, protocol, baud)?;
+        }
+    }
+    Ok(())
+}
+
+fn line(report: &mut Report, protocol: Protocol, baud: u32) -> Result<(), Failure> {
+    let folder = tempfile::tempdir()?;
+    let server = serve(protocol, &folder.path().join("hand"), baud)?;
+    let mut runs = (0..TIMES)
+        .map(|_| measure(&server.endpoint))
+        .collect::<Result<Vec<_>, _>>()?;
+    runs.sort_by(|a, b| a.cycles.total_cmp(&b.cycles));
+    let middle = runs.get(TIMES / 2).ok_or("nothing was measured")?;
+    let could = protocol.could(baud);
+    let name = protocol.name();
+    let what = format!("{name} at {baud} baud, hand of 6 ms: what the line gives");
+    report.row(&what, could, "cycles/s", Aim::None)?;
+    report.row("  reached", middle.cycles, "cycles/s", Aim::None)?;
+    let share = middle.cycles / could * 100.0;
+    report.row("  share of it", share, "%", Aim::AtLeast(SHARE))?;
+    let used = middle.stats.line.utilisation * 100.0;
+    report.row("  line utilisation", used, "%", Aim::None)?;
+    let lost = count(failed(&middle.stats));
+    report.row("  requests that failed", lost, "", Aim::AtMost(0.0))
+}
+
+struct Measured {
+    cycles: f64,
+    stats: LinkStats,
+}
+
+fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
+    let runtime = Builder::new_multi_thread()
+        .worker_threads(1)
+        .enable_all()
+        .build()?;
+    let clock = runtime.block_on(async { Clock::start() });
+    let config = LinkConfig {
+        endpoint: endpoint.clone(),
+        rates: PollRates::FULL,
+        clock,
+        dial: Arc::new(SimDial::new(clock)),
+        wake: Arc::new(|| ()),
+    };
+    let mut link = open(config, runtime.handle());
+    listen(&mut link, WARM);
+    let (before, begun) = (link.stats(), Instant::now());
+    listen(&mut link, COUNTED);
+    let (after, took) = (link.stats(), begun.elapsed());
+    let state = count(after.state_reads - before.state_reads);
+    let tactile = count(after.tactile_reads - before.tactile_reads);
+    if state == 0.0 {
+        return Err(format!("{endpoint} gives nothing: {:?}", link.status()).into());
+    }
+    Ok(Measured {
+        cycles: state.min(tactile) / took.as_secs_f64(),
+        stats: after,
+    })
+}
+
+fn serve(protocol: Protocol, path: &Path, baud: u32) -> Result<Server, Failure> {
+    let endpoint = format!("{}:{}?baud={baud}", protocol.name(), path.display()).parse()?;
+    let pace = Some(LinePace {
+        baud,
+        turnaround: TURNAROUND,
+    });
+    let made = path.to_path_buf();
+    let server = Server::start(endpoint, async move |hand| {
+        match protocol {
+            Protocol::Rs485 => pty::serve_rs485(hand, &made, pace)?.await,
+            Protocol::Rtu => pty::serve_rtu(hand, &made, pace)?.await?,
+        }
+        Ok(())
+    })?;
+    crate::cycles::wait_for(path);
+    Ok(server)
+}
