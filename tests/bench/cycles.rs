@@ -185,7 +185,8 @@ impl Server {
         let work = move || {
             runtime.block_on(async {
                 let config = SimConfig {
-                    scenario: Scenario::Grasp,
+                    // At rest: while something moves, reads are shorter and a cycle takes longer, by choice.
+                    scenario: Scenario::Idle,
                     ..SimConfig::default()
                 };
                 let hand = SharedHand::new(SimHand::new(config), tokio::time::Instant::now());
