@@ -1,7 +1,7 @@
 //! What a read costs on a wire, and how long a reply may be so that a stop gets through in time. Pure: learns from
 //! round trips that it is told, sends and times nothing.
 
-use crate::hand::Moment;
+use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Bits of a byte on a serial line: start, eight, stop.
@@ -18,8 +18,13 @@ const STOP_SLACK: Duration = Duration::from_millis(2);
 const STOP_BYTES: u64 = 138;
 /// Bytes of the longer form of a hold frame, Modbus RTU.
 const HOLD_FRAME: u64 = 21;
-/// The longest turnaround is remembered for this long at least, and at most twice as long.
-const WORST_OVER: Duration = Duration::from_secs(10);
+/// The longest turnaround is judged from so many answers: some seconds.
+const RECENT: usize = 256;
+/// Of a hundred answers so many count: the few slowest are mostly this computer's own delays, and shorter replies would
+/// not help against those.
+const COUNTED_OF_100: usize = 95;
+/// It is judged anew after so many answers.
+const JUDGED_EACH: u32 = 16;
 /// Answers after which the longest turnaround counts as known.
 const ANSWERS_MIN: u32 = 64;
 /// A learnt turnaround follows new ones by one part in so many.
@@ -173,30 +178,34 @@ fn byte_time(baud: u32) -> Duration {
 }
 
 /// The hand's turnaround, as round trips show it.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Turnaround {
     typical: Option<Duration>,
     answers: u32,
-    /// The longest since `since`, and in the time before.
-    longest: [Option<Duration>; 2],
-    since: Moment,
+    /// The last ones, oldest first.
+    recent: VecDeque<Duration>,
+    longest: Duration,
 }
 
 impl Turnaround {
     /// A read of so many bytes was answered after `took`.
-    pub(crate) fn learn(&mut self, cost: &WireCost, len: u16, took: Duration, now: Moment) {
+    pub(crate) fn learn(&mut self, cost: &WireCost, len: u16, took: Duration) {
         let each = took.saturating_sub(cost.on_wire(len)) / cost.turns(len);
         self.typical = Some(match self.typical {
             Some(typical) => (typical * (FOLLOW - 1) + each) / FOLLOW,
             None => each,
         });
         self.answers = self.answers.saturating_add(1);
-        let [newest, before] = &mut self.longest;
-        if now.since(self.since) >= WORST_OVER {
-            *before = newest.take();
-            self.since = now;
+        if self.recent.len() == RECENT {
+            self.recent.pop_front();
         }
-        *newest = Some(newest.map_or(each, |longest| longest.max(each)));
+        self.recent.push_back(each);
+        if self.answers.is_multiple_of(JUDGED_EACH) {
+            let mut sorted: Vec<Duration> = self.recent.iter().copied().collect();
+            sorted.sort_unstable();
+            let counted = sorted.len() * COUNTED_OF_100 / 100;
+            self.longest = sorted.get(counted).copied().unwrap_or(TURNAROUND_MAX);
+        }
     }
 
     /// What to reckon with; none before the first answer.
@@ -204,13 +213,12 @@ impl Turnaround {
         self.typical
     }
 
-    /// The longest of late; that of the slowest hands as long as not enough is known.
+    /// The longest of late, without the few slowest; that of the slowest hands as long as not enough is known.
     pub(crate) fn longest(&self) -> Duration {
         if self.answers < ANSWERS_MIN {
             return TURNAROUND_MAX;
         }
-        let longest = self.longest.into_iter().flatten().max();
-        longest.map_or(TURNAROUND_MAX, |longest| longest.min(TURNAROUND_MAX))
+        self.longest.min(TURNAROUND_MAX)
     }
 }
 
@@ -272,21 +280,20 @@ mod tests {
         let cost = WireCost::rs485(Some(115_200));
         let mut turnaround = Turnaround::default();
         assert_eq!(turnaround.longest(), TURNAROUND_MAX);
-        for n in 0..400_u64 {
-            let now = Moment::from_micros(n * 50_000);
-            let hand = if n == 150 { MS * 9 } else { MS * 3 };
-            turnaround.learn(&cost, 72, cost.on_wire(72) + hand, now);
+        // A slow answer in twenty counts, one in a hundred does not.
+        for (one_in, longest) in [(100, MS * 3), (10, MS * 9), (100, MS * 3)] {
+            for n in 0..400 {
+                let hand = if n % one_in == 0 { MS * 9 } else { MS * 3 };
+                turnaround.learn(&cost, 72, cost.on_wire(72) + hand);
+            }
+            let off = turnaround.longest().abs_diff(longest);
+            assert!(
+                off < Duration::from_micros(5),
+                "{one_in}: {:?}",
+                turnaround.longest()
+            );
+            let typical = turnaround.typical().unwrap_or_default();
+            assert!(typical.abs_diff(MS * 3) < MS * 2, "{typical:?}");
         }
-        assert!(
-            turnaround
-                .typical()
-                .is_some_and(|typical| typical.abs_diff(MS * 3) < MS / 10)
-        );
-        assert_eq!(turnaround.longest(), MS * 9);
-        for n in 400..1000_u64 {
-            let now = Moment::from_micros(n * 50_000);
-            turnaround.learn(&cost, 72, cost.on_wire(72) + MS * 3, now);
-        }
-        assert_eq!(turnaround.longest(), MS * 3);
     }
 }

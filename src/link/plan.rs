@@ -226,8 +226,7 @@ impl PollPlan {
     /// A window was answered. Its parts are due one period on, without catching up; counted from the asking, so that
     /// rates are kept whatever the reply takes.
     pub(crate) fn answered(&mut self, window: Span, asked: Moment, took: Duration) {
-        let now = asked.plus(took);
-        self.turnaround.learn(&self.cost, window.len, took, now);
+        self.turnaround.learn(&self.cost, window.len, took);
         self.gaps.answered(window);
         self.asked(window, asked);
     }
