@@ -16,6 +16,8 @@ mod joints;
 mod layout;
 #[path = "window/motion.rs"]
 mod motion;
+#[path = "window/scan.rs"]
+mod scan;
 #[path = "window/start.rs"]
 mod start;
 #[path = "window/touch.rs"]

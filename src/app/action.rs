@@ -1,6 +1,7 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
 use crate::app::save::Content;
+use crate::app::scan::ScanWish;
 use crate::app::settings::{AngleUnit, Language, PlotWindow, Theme};
 use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Speed};
 use crate::transport::Endpoint;
@@ -66,6 +67,10 @@ pub enum Action {
     Disconnect,
     /// Look for serial ports again.
     FindPorts,
+    /// Look for hands. Reads only.
+    Scan(ScanWish),
+    /// Look no further; what was found stays.
+    CancelScan,
     /// Forget faults that are over.
     ForgetFaults,
     /// Ask where a file should go, and write it.

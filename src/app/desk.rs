@@ -5,6 +5,7 @@ use crate::app::gestures::{GestureBook, GestureProgress};
 use crate::app::history::{History, MarkKind};
 use crate::app::notices::{Asked, NoticeKind, Notices};
 use crate::app::peaks::ForcePeaks;
+use crate::app::scan::ScanBook;
 use crate::app::seam::Link;
 use crate::app::settings::Settings;
 use crate::app::state::{Joint, State};
@@ -62,6 +63,7 @@ impl Desk {
             gestures,
             traffic: Traffic::default(),
             ports: Vec::new(),
+            scan: ScanBook::default(),
             settings,
         };
         Self {

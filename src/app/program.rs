@@ -5,6 +5,7 @@ use crate::app::config::Saver;
 use crate::app::desk::Desk;
 use crate::app::notices::NoticeKind;
 use crate::app::save::{self, ChooseFile, Content, Saving};
+use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
 use crate::app::state::{PortChoice, State};
 use crate::hand::Moment;
@@ -60,6 +61,7 @@ pub struct App {
     closing: Option<Closing>,
     ports: Option<oneshot::Receiver<Vec<PortFound>>>,
     saving: Option<Saving>,
+    scanner: Scanner,
 }
 
 impl App {
@@ -79,6 +81,7 @@ impl App {
             closing: None,
             ports: None,
             saving: None,
+            scanner: Scanner::default(),
         }
     }
 
@@ -125,6 +128,7 @@ impl App {
             self.saving = None;
             self.tell(end, now);
         }
+        self.scanner.drain(&mut self.desk.state.scan);
         if let Some(failed) = self.saver.tick(&self.desk.state.settings, now) {
             self.tell(failed, now);
         }
@@ -153,6 +157,12 @@ impl App {
             Action::Disconnect => self.leave(None, now),
             Action::FindPorts => self.find_ports(),
             Action::Save(content) => self.save(content),
+            Action::Scan(wish) => {
+                let held = desk.state.endpoint.clone();
+                self.scanner
+                    .begin(wish, held, &self.env, &mut desk.state.scan);
+            }
+            Action::CancelScan => self.scanner.cancel(&mut desk.state.scan),
             Action::Tare(finger) => desk.tare(finger),
             Action::UndoTare => desk.state.tare.undo(),
             Action::ForgetFaults => desk.state.faults.forget(),
@@ -185,6 +195,8 @@ impl App {
     }
 
     fn connect(&mut self, endpoint: Endpoint, now: Moment) {
+        // A scan may still ask further ids on the port that is wanted.
+        self.scanner.cancel(&mut self.desk.state.scan);
         self.desk.state.settings.endpoint = Some(endpoint.to_string());
         self.leave(Some(endpoint), now);
     }

@@ -5,6 +5,7 @@ use crate::app::gestures::GestureBook;
 use crate::app::history::History;
 use crate::app::notices::Notices;
 use crate::app::peaks::ForcePeaks;
+use crate::app::scan::ScanBook;
 use crate::app::settings::Settings;
 use crate::app::tare::Tare;
 use crate::hand::{Angle, Force, HandSample, Moment, PerDof, Speed};
@@ -47,6 +48,8 @@ pub struct State {
     pub traffic: Traffic,
     /// Serial ports found when last looked.
     pub ports: Vec<PortChoice>,
+    /// The newest scan for hands.
+    pub scan: ScanBook,
     /// What is kept from one start to the next.
     pub settings: Settings,
 }

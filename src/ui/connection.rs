@@ -8,12 +8,15 @@ use crate::transport::endpoint::{
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::link_figures;
 use crate::ui::look::Pane;
+use crate::ui::scan::ScanPanel;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use egui::{Id, Rect, TextEdit, Ui, pos2, vec2};
 
 /// Width of the captions of the form.
 const CAPTION: f32 = 112.0;
+/// Height of the longest form, with one row of ports.
+const HEIGHT: f32 = 440.0;
 /// Rows of ports shown at once.
 const PORTS_MAX: usize = 4;
 
@@ -75,6 +78,7 @@ pub(crate) struct ConnectionForm {
     unit: String,
     interface: String,
     bitrate: String,
+    scan: ScanPanel,
     /// The endpoint that the fields were filled from, so that a new one fills them again.
     filled_from: Option<Endpoint>,
 }
@@ -93,6 +97,7 @@ impl Default for ConnectionForm {
             unit: DEFAULT_UNIT.to_string(),
             interface: "can0".into(),
             bitrate: DEFAULT_BITRATE.to_string(),
+            scan: ScanPanel::default(),
             filled_from: None,
         }
     }
@@ -104,7 +109,10 @@ impl ConnectionForm {
         self.fill(pane.state.endpoint.as_ref());
         let (left, right) = rect.split_left_right_at_x(rect.left() + rect.width() * 0.56);
         let left = left.with_max_x(left.right() - theme::GAP);
-        self.form_ui(ui, left, pane);
+        let height = form_height(pane.state.ports.len());
+        if let Some(left) = self.scan.ui(ui, left, height, pane) {
+            self.form_ui(ui, left, pane);
+        }
         link_figures::link_ui(ui, right, pane);
     }
 
@@ -328,6 +336,12 @@ impl ConnectionForm {
             }
         }
     }
+}
+
+/// Height that the form has with so many ports listed.
+fn form_height(ports: usize) -> f32 {
+    let more = (1..PORTS_MAX.min(ports)).map(|_| theme::CONTROL + theme::GAP);
+    HEIGHT + more.sum::<f32>()
 }
 
 fn field_ui(

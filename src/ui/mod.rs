@@ -20,6 +20,7 @@ mod number;
 mod plot_axes;
 mod plot_head;
 mod plots;
+mod scan;
 mod text;
 mod theme;
 mod tip_detail;

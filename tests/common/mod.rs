@@ -52,6 +52,7 @@ pub fn empty() -> State {
         gestures: GestureBook::default(),
         traffic: Traffic::default(),
         ports: Vec::new(),
+        scan: handscope::app::ScanBook::default(),
         settings: Settings::default(),
     }
 }

@@ -14,8 +14,9 @@ use handscope::shell::Cockpit;
 use handscope::sim::serve::{SharedHand, rs485};
 use handscope::sim::{SimConfig, SimHand};
 use handscope::transport::{
-    BoxedWire, Dial, Endpoint, FaultPlan, TransportError, faulty_pair, pair,
+    BoxedWire, Dial, Endpoint, FaultPlan, PortFound, TransportError, faulty_pair, pair,
 };
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tempfile::TempDir;
@@ -42,11 +43,15 @@ struct Socket {
     /// What the next wire has.
     faults: Mutex<Option<FaultPlan>>,
     served: Mutex<Vec<AbortHandle>>,
+    /// What the system lists.
+    listed: Mutex<Vec<PortFound>>,
+    dials: AtomicUsize,
 }
 
 impl Dial for Socket {
     fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
         let place = endpoint.to_string();
+        self.dials.fetch_add(1, Ordering::Relaxed);
         if !*self.plugged.lock().unwrap() {
             return Box::pin(async { Err(TransportError::Missing { place }) });
         }
@@ -63,6 +68,11 @@ impl Dial for Socket {
             let wire: BoxedWire = Box::new(ours);
             Ok(wire)
         })
+    }
+
+    fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
+        let listed = self.listed.lock().unwrap().clone();
+        Box::pin(std::future::ready(listed))
     }
 }
 
@@ -94,6 +104,8 @@ impl Room {
             plugged: Mutex::new(true),
             faults: Mutex::default(),
             served: Mutex::default(),
+            listed: Mutex::default(),
+            dials: AtomicUsize::new(0),
         });
         let env = Env {
             runtime: runtime.handle().clone(),
@@ -496,6 +508,16 @@ impl Bench {
     /// The folder of saved files.
     pub fn folder(&self) -> &std::path::Path {
         self.harness.state().folder.path()
+    }
+
+    /// From now on the system lists these ports; the hand is behind each.
+    pub fn list_ports(&mut self, ports: Vec<PortFound>) {
+        *self.harness.state().socket.listed.lock().unwrap() = ports;
+    }
+
+    /// How often a wire was opened, or was to be.
+    pub fn dials(&self) -> usize {
+        self.harness.state().socket.dials.load(Ordering::Relaxed)
     }
 
     pub fn plug(&mut self) {

@@ -26,7 +26,7 @@ struct Names {
     language: &'static str,
 }
 
-fn check(bench: &Bench, size: Vec2, stop: &str, when: &str) {
+pub fn check(bench: &Bench, size: Vec2, stop: &str, when: &str) {
     let screen = Rect::from_min_size(Pos2::ZERO, size);
     assert!(!bench.is_disabled(Role::Button, stop), "{when}");
     let place = bench.rect(Role::Button, stop);

@@ -36,11 +36,16 @@ pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::{main, panels, traffic};
+    use crate::ui::text::{main, panels, scan, traffic};
 
     #[test]
     fn no_sentence_lacks_a_language() {
-        for text in main::ALL.iter().chain(panels::ALL).chain(traffic::ALL) {
+        for text in main::ALL
+            .iter()
+            .chain(panels::ALL)
+            .chain(scan::ALL)
+            .chain(traffic::ALL)
+        {
             assert!(!text.en.is_empty() && !text.zh.is_empty(), "{text:?}");
             assert!(
                 text.en.is_ascii() || text.en.contains(['°', '±']),
@@ -52,7 +57,11 @@ mod tests {
     #[test]
     fn every_chinese_character_is_in_the_font() {
         let known = include_str!("../../../assets/fonts/characters.txt");
-        let all = main::ALL.iter().chain(panels::ALL).chain(traffic::ALL);
+        let all = main::ALL
+            .iter()
+            .chain(panels::ALL)
+            .chain(scan::ALL)
+            .chain(traffic::ALL);
         for text in all {
             for sign in text
                 .zh

@@ -1,0 +1,212 @@
+//! Looking for hands: what the window shows of a scan, and the scan behind it. Never connects by itself.
+
+use crate::app::program::Env;
+use crate::hand::HandId;
+use crate::link::scan::{
+    Found, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanProgress, ScanSummary,
+    start,
+};
+use crate::transport::{Endpoint, TransportError};
+use std::sync::Arc;
+
+/// Hands kept: every id on one bus, and some more.
+const FOUND_MAX: usize = 512;
+/// Remarks kept; a person reads a few.
+const REMARKS_MAX: usize = 32;
+/// Events taken in one frame; the rest waits, and the scan waits for it.
+const EVENTS_PER_FRAME: usize = 64;
+/// Ids asked when not all are.
+const FEW: usize = 10;
+
+/// Which ids are asked on every bus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum IdRange {
+    /// 1 to 10.
+    #[default]
+    Few,
+    /// 1 to 254.
+    All,
+}
+
+/// What a person wants to be looked through.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ScanWish {
+    /// All serial ports and CAN interfaces of this computer.
+    Ports(IdRange),
+    /// These addresses and nothing else.
+    Hosts(Hosts),
+}
+
+/// Where a scan stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ScanStage {
+    /// None was begun yet.
+    #[default]
+    Never,
+    /// One is under way.
+    Running,
+    /// All was looked at.
+    Done(ScanSummary),
+    /// The person ended it.
+    Cancelled,
+}
+
+/// Something worth a word that is no hand.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ScanRemark {
+    /// A place could not be looked at.
+    Trouble(TransportError),
+    /// Something talks there, and is no hand that answers.
+    Hint(ScanHint),
+    /// The connected hand's own port, left alone.
+    Held {
+        /// Port or address.
+        place: String,
+    },
+}
+
+/// What the window shows of the newest scan.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ScanBook {
+    /// Where it stands.
+    pub stage: ScanStage,
+    /// What was asked for.
+    pub wish: Option<ScanWish>,
+    /// How far it is.
+    pub progress: ScanProgress,
+    /// Places that it looks at.
+    pub places: usize,
+    /// Hands, in the order in which they answered.
+    pub found: Vec<Found>,
+    /// What else there is to say.
+    pub remarks: Vec<ScanRemark>,
+    /// Hands and remarks for which there was no room.
+    pub left_out: usize,
+}
+
+impl ScanBook {
+    /// True while a scan is under way.
+    #[must_use]
+    pub fn is_running(&self) -> bool {
+        self.stage == ScanStage::Running
+    }
+
+    fn take(&mut self, event: ScanEvent) {
+        match event {
+            ScanEvent::Begun { places, .. } => self.places = places,
+            ScanEvent::Found(found) if self.found.len() < FOUND_MAX => self.found.push(found),
+            ScanEvent::Found(_) => self.left_out += 1,
+            ScanEvent::Trouble { error, .. } => self.remark(ScanRemark::Trouble(error)),
+            ScanEvent::Hint(hint) => self.remark(ScanRemark::Hint(hint)),
+            ScanEvent::Held { place } => self.remark(ScanRemark::Held { place }),
+            ScanEvent::Done(summary) => self.stage = ScanStage::Done(summary),
+        }
+    }
+
+    fn remark(&mut self, remark: ScanRemark) {
+        if self.remarks.len() < REMARKS_MAX {
+            self.remarks.push(remark);
+        } else {
+            self.left_out += 1;
+        }
+    }
+}
+
+/// The scan behind the book, if one runs.
+#[derive(Debug, Default)]
+pub(crate) struct Scanner {
+    handle: Option<ScanHandle>,
+}
+
+impl Scanner {
+    /// Begins a scan; one that runs goes on instead. `held` is the hand that is connected now.
+    pub(crate) fn begin(
+        &mut self,
+        wish: ScanWish,
+        held: Option<Endpoint>,
+        env: &Env,
+        book: &mut ScanBook,
+    ) {
+        if self.handle.is_some() {
+            return;
+        }
+        let nothing = Local::Named {
+            ports: Vec::new(),
+            can: Vec::new(),
+        };
+        *book = ScanBook {
+            stage: ScanStage::Running,
+            wish: Some(wish.clone()),
+            ..ScanBook::default()
+        };
+        let (local, hosts, ids) = match wish {
+            ScanWish::Ports(IdRange::Few) => (Local::Listed, Vec::new(), FEW),
+            ScanWish::Ports(IdRange::All) => (Local::Listed, Vec::new(), usize::MAX),
+            ScanWish::Hosts(hosts) => (nothing, vec![hosts], FEW),
+        };
+        let config = ScanConfig {
+            local,
+            hosts,
+            ids: HandId::all().take(ids).collect(),
+            held,
+            clock: env.clock,
+            dial: Arc::clone(&env.dial),
+            wake: Arc::clone(&env.wake),
+        };
+        self.handle = Some(start(config, &env.runtime));
+    }
+
+    /// Ends the scan that runs; what it found stays.
+    pub(crate) fn cancel(&mut self, book: &mut ScanBook) {
+        if self.handle.take().is_some() {
+            book.stage = ScanStage::Cancelled;
+        }
+    }
+
+    /// Takes in what was found.
+    pub(crate) fn drain(&mut self, book: &mut ScanBook) {
+        let Some(handle) = &mut self.handle else {
+            return;
+        };
+        book.progress = handle.progress();
+        for event in std::iter::from_fn(|| handle.try_event()).take(EVENTS_PER_FRAME) {
+            book.take(event);
+        }
+        if !book.is_running() {
+            self.handle = None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use std::time::Duration;
+
+    fn found(id: u8) -> ScanEvent {
+        ScanEvent::Found(Found {
+            endpoint: format!("rs485:/dev/x?id={id}").parse().unwrap(),
+            hand_id: id,
+            round_trip: Duration::from_millis(9),
+            usb: None,
+        })
+    }
+
+    #[test]
+    fn what_has_no_room_is_counted() {
+        let mut book = ScanBook::default();
+        for _ in 0..=FOUND_MAX {
+            book.take(found(1));
+        }
+        for _ in 0..=REMARKS_MAX {
+            let place = "/dev/x".to_owned();
+            book.take(ScanEvent::Held { place });
+        }
+        assert_eq!(
+            (book.found.len(), book.remarks.len()),
+            (FOUND_MAX, REMARKS_MAX)
+        );
+        assert_eq!(book.left_out, 2);
+    }
+}

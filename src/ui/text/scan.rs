@@ -1,0 +1,128 @@
+//! Sentences of looking for hands. Decides nothing.
+
+use crate::app::scan::ScanRemark;
+use crate::app::settings::Language;
+use crate::link::scan::ScanHint;
+use crate::ui::format;
+use crate::ui::look::Look;
+use crate::ui::text::phrase::texts;
+
+texts! {
+    FIND: "Find hands", "查找灵巧手";
+    FIND_TIP: "Looks for hands on this computer's ports, or at an address that you name.", "在本机的端口上，或在您指定的地址上查找灵巧手。";
+    FORM: "Type it in", "手动输入";
+    FORM_TIP: "Back to the fields of one connection.", "返回连接设置。";
+    SCAN_PORTS: "Scan all ports", "扫描全部端口";
+    SCAN_PORTS_TIP: "Asks on all serial ports and CAN interfaces, at all speeds, in all protocols. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
+    SCAN_HOST: "Scan address", "扫描地址";
+    SCAN_HOST_TIP: "Asks at this address, or at all of a range such as 192.168.11.0/24, and nowhere else. It only reads.", "仅查询此地址，或一个网段（例如 192.168.11.0/24）。只读取，不写入。";
+    CANCEL: "Cancel", "取消";
+    CANCEL_TIP: "Ends the scan. What was found stays.", "结束扫描，保留已找到的结果。";
+    RUNNING: "A scan is under way.", "正在扫描。";
+    IDS: "Ids", "ID";
+    IDS_FEW: "1 to 10", "1 至 10";
+    IDS_ALL: "1 to 254", "1 至 254";
+    IDS_TIP: "Which ids are asked on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
+    ADDRESS: "Address or range", "地址或网段";
+    ADDRESS_EMPTY: "Type an address first.", "请先输入地址。";
+    ADDRESS_WRONG: "This is no address:", "地址无法识别：";
+    PRESET_MAKER: "As delivered", "出厂地址";
+    PRESET_FIELD: "Seen on some hands", "部分灵巧手使用";
+    PRESET_TIP: "Puts this address into the field. Nothing is asked before you press the button.", "将此地址填入输入框。点击按钮之前不会发送任何内容。";
+    NEVER: "Nothing was scanned yet. A scan reads one register, the id, and writes nothing. No address in the network is tried that you do not name.", "尚未扫描。扫描只读取 ID 寄存器，不写入任何内容，也不会尝试未指定的网络地址。";
+    PROGRESS: "Scan progress", "扫描进度";
+    ASKED: "questions", "次查询";
+    TIME_LEFT: "time left about", "约剩";
+    LISTING: "Looking for ports", "正在查找端口";
+    FOUND_ONE: "hand answered", "只灵巧手有应答";
+    FOUND_MANY: "hands answered", "只灵巧手有应答";
+    NO_PLACES: "There is nothing to scan: this computer has no serial port and no CAN interface. Plug the adapter in, or scan an address.", "没有可扫描的端口：本机没有串口，也没有 CAN 接口。请插入适配器，或扫描地址。";
+    NOTHING: "No hand answered. Check power and cable; a hand may have an id above 10.", "没有灵巧手应答。请检查电源与线缆；ID 也可能大于 10。";
+    NOTHING_THERE: "No hand answered. Check power, cable and address; this computer needs an address in the same network.", "没有灵巧手应答。请检查电源、线缆与地址；本机需要同一网段的地址。";
+    NOTHING_AT_ALL: "No hand answered to any id. Check power, cable and wiring.", "所有 ID 均无应答。请检查电源、线缆与接线。";
+    NOWHERE: "Nothing could be scanned:", "无法扫描：";
+    CANCELLED: "Cancelled.", "已取消。";
+    USE: "Connect", "连接";
+    USE_TIP: "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
+    CONNECTED: "Connected", "已连接";
+    CONNECTED_TIP: "This is the hand of now.", "当前连接的灵巧手。";
+    HELD: "left alone, the connection of now uses it. Disconnect first to scan it.", "已跳过，当前连接正在使用。请先断开再扫描。";
+    MORE: "more", "更多";
+}
+
+/// What else a scan has to say, as a sentence.
+pub(crate) fn remark(look: Look, remark: &ScanRemark) -> String {
+    match remark {
+        ScanRemark::Held { place } => format!("{place}: {}", look.say(HELD)),
+        ScanRemark::Trouble(error) => match look.language {
+            Language::En => format::sentence(&error.to_string()),
+            Language::Zh => format!("线路问题：{error}。"),
+        },
+        ScanRemark::Hint(hint) => match look.language {
+            Language::En => format::sentence(&hint.to_string()),
+            Language::Zh => hint_zh(hint),
+        },
+    }
+}
+
+fn hint_zh(hint: &ScanHint) -> String {
+    match hint {
+        ScanHint::OtherId { endpoint, hand_id } => {
+            format!("{endpoint} 有应答，但 HAND_ID 为 {hand_id}：可能不是灵巧手。")
+        }
+        ScanHint::Refuses { endpoint, reason } => {
+            format!("{endpoint} 有应答，但不给出 HAND_ID（{reason}）：可能不是灵巧手。")
+        }
+        ScanHint::OtherTalk { endpoint } => format!(
+            "{} 上收到给其他主机的应答：另一程序正在使用此线路。请先结束它，或扫描全部 ID。",
+            endpoint.place()
+        ),
+        ScanHint::Garbled {
+            place,
+            bauds,
+            bytes,
+        } => {
+            let bauds: Vec<String> = bauds.iter().map(u32::to_string).collect();
+            format!(
+                "{place} 上有数据，但波特率 {} 下无法识别（{bytes} 字节）：可能波特率不同、是其他设备，或接线接反。",
+                bauds.join("、")
+            )
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+
+    #[test]
+    fn the_hints_are_in_the_font() {
+        let known = include_str!("../../../assets/fonts/characters.txt");
+        let endpoint = || "rs485:/dev/x".parse().unwrap();
+        for hint in [
+            ScanHint::OtherId {
+                endpoint: endpoint(),
+                hand_id: 7,
+            },
+            ScanHint::Refuses {
+                endpoint: endpoint(),
+                reason: "no".into(),
+            },
+            ScanHint::OtherTalk {
+                endpoint: endpoint(),
+            },
+            ScanHint::Garbled {
+                place: "x".into(),
+                bauds: vec![1, 2],
+                bytes: 3,
+            },
+        ] {
+            let text = hint_zh(&hint);
+            let missing = text
+                .chars()
+                .find(|sign| !sign.is_ascii() && !known.contains(*sign));
+            assert_eq!(missing, None, "{text}");
+        }
+    }
+}
