@@ -8,13 +8,14 @@
     reason = "a test may"
 )]
 
-use handscope::hand::register;
+use handscope::hand::{HandId, register};
+use handscope::link::scan::{Local, ScanConfig, ScanEvent, start};
 use handscope::link::{
     self, Clock, LinkConfig, LinkEvent, LinkHandle, LinkTrouble, Outcome, PollRates, Request,
 };
 use handscope::sim::serve::can as served;
 use handscope::sim::{SharedHand, SimConfig, SimHand};
-use handscope::transport::{Endpoint, SystemDial, TransportError, can};
+use handscope::transport::{Dial as _, Endpoint, SystemDial, TransportError, can};
 use std::io;
 use std::process::Command;
 use std::sync::Arc;
@@ -96,6 +97,46 @@ async fn a_hand_on_a_real_interface_is_read_whole() {
         panic!("no answer");
     };
     assert_eq!(bytes, [7]);
+}
+
+#[tokio::test]
+async fn a_scan_of_the_interface_finds_each_hand_on_it_and_writes_nothing() {
+    let Some(interface) = interface() else { return };
+    let (_two, _five) = (serve(interface, 2), serve(interface, 5));
+    let config = ScanConfig {
+        local: Local::Named {
+            ports: Vec::new(),
+            can: vec![interface.into(), "nocan9".into()],
+        },
+        hosts: Vec::new(),
+        ids: HandId::all().take(6).collect(),
+        held: None,
+        clock: Clock::start(),
+        dial: Arc::new(SystemDial),
+        wake: Arc::new(|| ()),
+    };
+    assert!(
+        SystemDial
+            .interfaces()
+            .await
+            .contains(&interface.to_owned())
+    );
+    let mut scan = start(config, &tokio::runtime::Handle::current());
+    let (mut found, mut troubles) = (Vec::new(), Vec::new());
+    while let Some(event) = timeout(PATIENCE, scan.event()).await.unwrap() {
+        match event {
+            ScanEvent::Found(one) => found.push(one.endpoint.to_string()),
+            ScanEvent::Trouble { error, .. } => troubles.push(error),
+            _ => {}
+        }
+    }
+    println!("{found:?}");
+    for id in [2, 5] {
+        let url = format!("can:{interface}?id={id}");
+        assert!(found.contains(&url), "{found:?}");
+    }
+    let place = "nocan9".to_owned();
+    assert_eq!(troubles, [TransportError::NoInterface { place }]);
 }
 
 #[tokio::test]
