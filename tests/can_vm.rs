@@ -100,7 +100,7 @@ async fn a_hand_on_a_real_interface_is_read_whole() {
 }
 
 #[tokio::test]
-async fn a_scan_of_the_interface_finds_each_hand_on_it_and_writes_nothing() {
+async fn a_scan_of_the_interface_finds_each_hand_on_it() {
     let Some(interface) = interface() else { return };
     let (_two, _five) = (serve(interface, 2), serve(interface, 5));
     let config = ScanConfig {

@@ -100,7 +100,8 @@ pub struct ScanPlan {
 }
 
 impl ScanPlan {
-    /// Plans for these places and ids. `held` is the hand that is connected now: its port is left alone.
+    /// Plans for these places and ids. `held` is the hand that is connected now: its port is left alone, its CAN interface
+    /// too, where its link would take our questions for those of another controller.
     #[must_use]
     pub fn new(places: &Places, ids: &[HandId], held: Option<&Endpoint>) -> Self {
         let mut plan = Self::default();
@@ -108,7 +109,7 @@ impl ScanPlan {
             plan.add(port_lane(wish, ids), held);
         }
         for interface in &places.can {
-            plan.add(can_lane(interface, ids), None);
+            plan.add(can_lane(interface, ids), held);
         }
         for hosts in &places.hosts {
             for host in hosts.iter() {
@@ -466,6 +467,12 @@ mod tests {
             assert_eq!(left, kept, "{held}");
             assert_eq!(plan.held.len(), 2 - kept.len());
         }
+        let can = Places {
+            can: vec!["can0".into(), "can1".into()],
+            ..Places::default()
+        };
+        let plan = ScanPlan::new(&can, &ids(1), Some(&"can:can1?id=9".parse().unwrap()));
+        assert_eq!((plan.places(), plan.held), (1, vec!["can1".to_owned()]));
         let held = "tcp:127.0.0.1:6000?unit=1".parse().unwrap();
         let plan = ScanPlan::new(&hosts("127.0.0.0/30"), &ids(1), Some(&held));
         assert_eq!(plan.held, ["127.0.0.1:6000"]);
