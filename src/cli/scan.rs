@@ -10,7 +10,7 @@ use crate::hand::HandId;
 use crate::link::Clock;
 use crate::link::scan::{
     Found, HOSTS_MAX, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanHint,
-    ScanSummary, Speaks, start,
+    ScanProgress, ScanSummary, Speaks, start,
 };
 use crate::transport::{TransportError, UsbFound};
 use anyhow::bail;
@@ -102,7 +102,8 @@ impl ScanArgs {
 /// Looks everywhere that was asked for. Fails if nothing was found and something could not be looked at.
 pub(crate) fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
     args.refuse_too_many_hosts();
-    session::runtime()?.block_on(async {
+    let runtime = session::runtime()?;
+    let done = runtime.block_on(async {
         let interrupt = Interrupt::listen()?;
         let clock = Clock::start();
         let config = ScanConfig {
@@ -123,7 +124,10 @@ pub(crate) fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
             found: 0,
         };
         scan.run(interrupt).await
-    })
+    });
+    // A name that is being resolved cannot be called back, and must not hold up the end.
+    runtime.shutdown_background();
+    done
 }
 
 struct Scan<'a> {
@@ -244,12 +248,7 @@ impl Screen {
     }
 
     fn progress(&mut self, handle: &ScanHandle, found: usize) {
-        let progress = handle.progress();
-        let left = progress.left.as_secs() + 1;
-        let words = format!(
-            "scan: {} of {} questions, {found} found, about {left} s left",
-            progress.tried, progress.total
-        );
+        let words = progress_text(handle.progress(), found);
         if self.is_terminal {
             self.shown = true;
             put(&format!("\r\x1b[K{words}"));
@@ -272,6 +271,15 @@ fn put(text: &str) {
     let _unread = terminal
         .write_all(text.as_bytes())
         .and_then(|()| terminal.flush());
+}
+
+fn progress_text(progress: ScanProgress, found: usize) -> String {
+    format!(
+        "scan: {} of {} questions, {found} found, about {} s left",
+        progress.tried,
+        progress.total,
+        progress.left.as_secs() + 1
+    )
 }
 
 fn found_text(found: &Found) -> String {
@@ -344,4 +352,103 @@ fn summary_json(found: usize, summary: Option<ScanSummary>) -> Value {
         "questions": known(counts.asked),
         "took_s": summary.map(|summary| summary.took.as_secs_f64()),
     }})
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+    use super::*;
+
+    fn found(usb: Option<UsbFound>) -> Found {
+        Found {
+            endpoint: "rs485:/dev/ttyUSB0?id=3".parse().unwrap(),
+            hand_id: 3,
+            round_trip: Duration::from_micros(9_870),
+            usb,
+        }
+    }
+
+    fn adapter() -> UsbFound {
+        UsbFound {
+            vendor_id: 0x0403,
+            product_id: 0x6001,
+            serial: Some("A50285BI".into()),
+            maker: Some("FTDI".into()),
+            product: Some("FT232R".into()),
+            location: None,
+            latency_timer_ms: None,
+        }
+    }
+
+    #[test]
+    fn a_hand_is_told_with_vendor_product_and_serial_number_of_its_adapter() {
+        let bare = UsbFound {
+            serial: None,
+            maker: None,
+            product: None,
+            ..adapter()
+        };
+        let line = "rs485:/dev/ttyUSB0?baud=115200&id=3  HAND_ID 3  9.9 ms";
+        for (usb, words) in [
+            (None, line.to_owned()),
+            (Some(bare), format!("{line}  (USB 0403:6001)")),
+            (
+                Some(adapter()),
+                format!("{line}  FTDI FT232R (USB 0403:6001, serial A50285BI)"),
+            ),
+        ] {
+            assert_eq!(found_text(&found(usb)), words);
+        }
+        let told = found_json(&found(Some(adapter())));
+        let usb = json!({
+            "vendor_id": "0403", "product_id": "6001", "serial": "A50285BI", "maker": "FTDI", "product": "FT232R",
+        });
+        assert_eq!(told["hand"]["usb"], usb);
+        assert_eq!(told["hand"]["place"], "/dev/ttyUSB0");
+        assert_eq!(found_json(&found(None))["hand"]["usb"], Value::Null);
+    }
+
+    #[test]
+    fn the_progress_line_names_what_is_done_and_what_is_left() {
+        let progress = ScanProgress {
+            tried: 34,
+            total: 80,
+            left: Duration::from_millis(2870),
+        };
+        let words = "scan: 34 of 80 questions, 1 found, about 3 s left";
+        assert_eq!(progress_text(progress, 1), words);
+    }
+
+    #[test]
+    fn without_places_all_listed_ones_are_looked_at_and_never_an_address() {
+        use clap::Parser as _;
+        #[derive(clap::Parser)]
+        struct Line {
+            #[command(flatten)]
+            args: ScanArgs,
+        }
+        let parsed = |text: &str| Line::parse_from(text.split(' ')).args;
+        let plain = parsed("scan");
+        assert_eq!(plain.local(), Local::Listed);
+        assert!(plain.tcp.is_empty());
+        assert_eq!(plain.ids().len(), 10);
+        assert_eq!(parsed("scan --all-ids").ids().len(), 254);
+        for named in [
+            "scan --tcp 127.0.0.1",
+            "scan --can can0",
+            "scan --slcan COM3",
+        ] {
+            assert_ne!(parsed(named).local(), Local::Listed, "{named}");
+        }
+        let Local::Named { ports, .. } = parsed("scan --serial a --slcan a --slcan b").local()
+        else {
+            unreachable!("ports were named");
+        };
+        let speaks: Vec<_> = ports.iter().map(|wish| wish.speaks).collect();
+        // The second mention of a port is dropped by the plan.
+        assert_eq!(
+            speaks,
+            [Speaks::Either, Speaks::CanAdapter, Speaks::CanAdapter]
+        );
+    }
 }

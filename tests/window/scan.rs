@@ -158,7 +158,11 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
     bench.type_into("Address or range", "127.0.0.5:6001");
     bench.click_button("Scan address");
     bench.until(4000, is_done);
-    assert_eq!(bench.dials(), dials + 1, "one address, and no port");
+    assert_eq!(
+        bench.dials(),
+        dials + 2,
+        "two units of one address, no port"
+    );
     assert!(
         !bench
             .texts_with("Check power, cable and address")
