@@ -50,6 +50,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope scan\n  handscope scan --serial /dev/ttyUSB0 --all-ids\n  handscope scan --tcp 192.168.11.210 --tcp 192.168.11.0/24 --json\n\nOn serial ports both protocols and all four speeds are tried, the likely ones first. Each port is opened and asked for HAND_ID; nothing is written. No address in the network is tried that is not named. Ctrl-C ends it with what was found.\n\nExit status: 0 hands found, or all looked at; 1 nothing found and something could not be looked at; 2 wrong usage."
     )]
     Scan(ScanArgs),
+    /// Find out what is wrong with a hand and the way to it, and what to do
+    #[command(
+        after_help = "Examples:\n  handscope doctor --hand rs485:/dev/ttyUSB0\n  handscope doctor --hand tcp:192.168.11.210 --for 20 --json\n\nOnly reads are sent, and only the named hand is asked. Exit status 0 if all is well, 1 if something is wrong."
+    )]
+    Doctor(DoctorArgs),
     /// Be a hand for other programs: on pseudo-terminals, on TCP, on CAN, or on all of them
     #[command(
         after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands.
@@ -111,6 +116,19 @@ pub(crate) struct WatchArgs {
     /// Read as fast as the wire goes, not 100 states and 30 touch sweeps a second
     #[arg(long)]
     pub(crate) full_rate: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DoctorArgs {
+    /// The hand to look at
+    #[arg(long, value_name = "URL")]
+    pub(crate) hand: Endpoint,
+    /// Seconds to measure, once it answers
+    #[arg(long = "for", value_name = "SECONDS", default_value = "5", value_parser = seconds)]
+    pub(crate) length: Duration,
+    /// One JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -2,6 +2,7 @@
 //! protocol and draws nothing.
 
 mod args;
+mod doctor;
 mod ids;
 mod interrupt;
 mod names;
@@ -52,6 +53,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Watch(args) => watch::run(&mut out, args),
         Command::Read(args) => read::run(&mut out, args),
         Command::Scan(args) => scan::run(&mut out, &args),
+        Command::Doctor(args) => doctor::run(&mut out, &args),
         Command::Sim(args) => sim::run(&mut out, &args),
         Command::Registers(args) => registers::run(&mut out, args.json),
     };

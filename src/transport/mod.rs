@@ -3,6 +3,8 @@
 pub mod adapter;
 #[cfg(target_os = "linux")]
 pub mod can;
+#[cfg(target_os = "linux")]
+pub mod can_facts;
 pub mod dial;
 pub mod endpoint;
 pub mod faulty;
@@ -10,8 +12,10 @@ mod holder;
 pub mod paced;
 pub mod permission;
 pub mod pipe;
+pub mod port_facts;
 #[cfg(unix)]
 pub mod pty;
+pub mod route;
 pub mod serial;
 pub mod sysfs;
 pub mod tcp;
@@ -25,8 +29,10 @@ pub use faulty::{FaultCounts, FaultOdds, FaultPlan, FaultSwitch, Pace, faulty_pa
 pub use paced::{LinePace, paced};
 pub use permission::Remedy;
 pub use pipe::{Pipe, pair};
+pub use port_facts::{PortFacts, port_facts};
 #[cfg(unix)]
 pub use pty::PtyLink;
+pub use route::{Route, route};
 pub use serial::{PortFound, UsbFound, ports};
 pub use sysfs::Sysfs;
 pub use timer::Timer;

@@ -1,0 +1,168 @@
+//! What a check-up found out about one hand and the way to it, as plain values. Measures, judges and prints nothing.
+
+use crate::hand::Span;
+use crate::link::{LinkStats, LinkStatus, line_time};
+#[cfg(target_os = "linux")]
+use crate::transport::can_facts::CanFacts;
+use crate::transport::{Endpoint, PortFacts, Route};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Round trips kept a window: a day's look stays small, and the newest count.
+const TRIPS_MAX: usize = 65_536;
+/// Upper edges of the histogram, milliseconds; what is longer is in one more place.
+pub(crate) const EDGES_MS: [u64; 7] = [1, 2, 4, 8, 16, 32, 64];
+
+/// One look at one hand.
+pub(crate) struct Checkup {
+    pub(crate) endpoint: Endpoint,
+    pub(crate) place: Place,
+    /// What was measured, or why the hand did not answer.
+    pub(crate) answer: Result<Measured, String>,
+}
+
+/// Where the hand is reached, as the system tells it.
+pub(crate) enum Place {
+    /// In this program.
+    BuiltIn,
+    /// Behind a serial port.
+    Port(PortFacts),
+    /// In a network; none where the system knows no way.
+    Net(Option<Route>),
+    /// On a CAN interface.
+    #[cfg(target_os = "linux")]
+    Can(CanFacts),
+    /// On a CAN interface, where there are none.
+    #[cfg(not(target_os = "linux"))]
+    NoCan,
+}
+
+/// What the hand's answers showed.
+pub(crate) struct Measured {
+    /// From opening to the first answer.
+    pub(crate) answered_after: Duration,
+    pub(crate) status: LinkStatus,
+    pub(crate) stats: LinkStats,
+    pub(crate) windows: Vec<Window>,
+    /// Round trips of short replies stand at the ticks of a latency timer.
+    pub(crate) ticks_seen: bool,
+    /// Why the link was lost while it was measured.
+    pub(crate) lost: Option<String>,
+}
+
+/// One run of registers, read again and again.
+pub(crate) struct Window {
+    pub(crate) name: &'static str,
+    pub(crate) span: Span,
+    /// The shortest time that the line allows, where its speed is known.
+    pub(crate) line: Option<Duration>,
+    pub(crate) refused: u64,
+    pub(crate) failed: u64,
+    reads: u64,
+    trips: VecDeque<Duration>,
+}
+
+impl Window {
+    pub(crate) fn new(name: &'static str, span: Span, endpoint: &Endpoint) -> Self {
+        Self {
+            name,
+            span,
+            line: line_time(endpoint, span.len),
+            refused: 0,
+            failed: 0,
+            reads: 0,
+            trips: VecDeque::new(),
+        }
+    }
+
+    pub(crate) fn took(&mut self, trip: Duration) {
+        self.reads += 1;
+        if self.trips.len() == TRIPS_MAX {
+            self.trips.pop_front();
+        }
+        self.trips.push_back(trip);
+    }
+
+    pub(crate) const fn reads(&self) -> u64 {
+        self.reads
+    }
+
+    /// Round trip that so many of a hundred do not exceed.
+    pub(crate) fn percentile(&self, percent: usize) -> Option<Duration> {
+        let mut sorted: Vec<Duration> = self.trips.iter().copied().collect();
+        sorted.sort_unstable();
+        let last = sorted.len().checked_sub(1)?;
+        sorted.get(last * percent / 100).copied()
+    }
+
+    /// Reads a second if nothing else were asked.
+    pub(crate) fn hz(&self) -> Option<f64> {
+        let all: Duration = self.trips.iter().sum();
+        let count = u32::try_from(self.trips.len())
+            .ok()
+            .filter(|count| *count > 0)?;
+        let mean = all.as_secs_f64() / f64::from(count);
+        (mean > 0.0).then(|| 1.0 / mean)
+    }
+
+    /// The same if hand and adapter took no time.
+    pub(crate) fn line_hz(&self) -> Option<f64> {
+        let seconds = self.line?.as_secs_f64();
+        (seconds > 0.0).then(|| 1.0 / seconds)
+    }
+
+    /// How many round trips lie below each edge and above the one before; the last place has the rest.
+    pub(crate) fn histogram(&self) -> [u64; EDGES_MS.len() + 1] {
+        let mut counts = [0; EDGES_MS.len() + 1];
+        for trip in &self.trips {
+            let place = EDGES_MS
+                .iter()
+                .position(|edge| *trip < Duration::from_millis(*edge));
+            if let Some(count) = counts.get_mut(place.unwrap_or(EDGES_MS.len())) {
+                *count += 1;
+            }
+        }
+        counts
+    }
+}
+
+impl Measured {
+    /// Requests of the check-up, answered or not.
+    pub(crate) fn requests(&self) -> u64 {
+        let asked = |window: &Window| window.reads + window.refused + window.failed;
+        self.windows.iter().map(asked).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+
+    #[test]
+    fn a_window_counts_its_round_trips() {
+        let endpoint = "rs485:/dev/ttyT0".parse().unwrap();
+        let mut window = Window::new("angles", Span::new(1546, 12), &endpoint);
+        assert_eq!((window.percentile(50), window.hz()), (None, None));
+        for ms in [0, 1, 3, 5, 9, 20, 40, 100] {
+            window.took(Duration::from_millis(ms));
+        }
+        assert_eq!(window.histogram(), [1; 8]);
+        assert_eq!(window.percentile(0), Some(Duration::ZERO));
+        assert_eq!(window.percentile(50), Some(Duration::from_millis(5)));
+        assert_eq!(window.percentile(100), Some(Duration::from_millis(100)));
+        assert_eq!(window.hz(), Some(8.0 / 0.178));
+        let line = window.line_hz().unwrap();
+        assert!((397.0..398.0).contains(&line), "{line}");
+    }
+
+    #[test]
+    fn a_long_look_stays_small() {
+        let mut window = Window::new("angles", Span::new(1546, 12), &Endpoint::sim());
+        for _ in 0..=TRIPS_MAX {
+            window.took(Duration::from_millis(1));
+        }
+        assert_eq!(window.trips.len(), TRIPS_MAX);
+        assert_eq!(window.reads(), TRIPS_MAX as u64 + 1);
+    }
+}

@@ -1,0 +1,117 @@
+//! A check-up as one JSON object; a contract with scripts, documented in the README. Measures and judges nothing.
+
+use crate::cli::doctor::checkup::{Checkup, EDGES_MS, Measured, Place, Window};
+use crate::cli::doctor::findings::Finding;
+use crate::transport::{PortFacts, Route};
+use serde_json::{Value, json};
+use std::time::Duration;
+
+/// The whole object. What is not known is null.
+pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
+    let measured = checkup.answer.as_ref().ok();
+    let (mut port, mut network, mut can) = (Value::Null, Value::Null, Value::Null);
+    match &checkup.place {
+        Place::BuiltIn => {}
+        Place::Port(facts) => port = port_json(facts),
+        Place::Net(way) => network = way.as_ref().map_or(Value::Null, net_json),
+        #[cfg(target_os = "linux")]
+        Place::Can(facts) => {
+            can = json!({
+                "exists": facts.exists,
+                "is_can": facts.is_can,
+                "is_up": facts.is_up,
+                "bitrate": facts.bitrate,
+                "state": facts.state,
+                "queue_len": facts.queue_len,
+            });
+        }
+        #[cfg(not(target_os = "linux"))]
+        Place::NoCan => can = Value::Null,
+    }
+    let status = measured.map(|measured| &measured.status);
+    json!({
+        "hand": checkup.endpoint.to_string(),
+        "well": !found.iter().any(|finding| finding.is_wrong),
+        "port": port,
+        "network": network,
+        "can": can,
+        "answers": measured.is_some(),
+        "error": checkup.answer.as_ref().err(),
+        "answered_after_ms": measured.map(|measured| millis(measured.answered_after)),
+        "now_at": status.and_then(|status| status.moved_to.clone()),
+        "adapter_echoes": status.map(|status| status.echoes),
+        "other_controller": status.map(|status| status.rival),
+        "latency_ticks": measured.map(|measured| measured.ticks_seen),
+        "windows": measured.map(|measured| measured.windows.iter().map(window_json).collect::<Vec<_>>()),
+        "errors": measured.map(errors_json),
+        "findings": found.iter().map(|finding| json!({
+            "wrong": finding.is_wrong,
+            "what": finding.what,
+            "advice": finding.advice,
+        })).collect::<Vec<_>>(),
+    })
+}
+
+fn port_json(facts: &PortFacts) -> Value {
+    let adapter = facts.usb.as_ref().map(|usb| {
+        json!({
+            "vendor_id": usb.vendor_id,
+            "product_id": usb.product_id,
+            "serial": usb.serial,
+            "maker": usb.maker,
+            "product": usb.product,
+            "location": usb.location,
+        })
+    });
+    json!({
+        "device": facts.device,
+        "adapter": adapter,
+        "driver": facts.driver,
+        "rights": facts.rights,
+        "held_by": facts.holder,
+        "latency_timer_ms": facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms),
+    })
+}
+
+fn net_json(way: &Route) -> Value {
+    json!({
+        "to": way.to.to_string(),
+        "from": way.from.to_string(),
+        "interface": way.interface,
+        "prefix": way.prefix,
+        "direct": way.is_direct(),
+    })
+}
+
+fn window_json(window: &Window) -> Value {
+    let at = |percent| window.percentile(percent).map(millis);
+    json!({
+        "name": window.name,
+        "address": window.span.address,
+        "bytes": window.span.len,
+        "reads": window.reads(),
+        "unanswered": window.failed,
+        "refused": window.refused,
+        "rtt_ms": {"min": at(0), "p50": at(50), "p99": at(99), "max": at(100)},
+        "histogram": {"below_ms": EDGES_MS, "counts": window.histogram()},
+        "hz": window.hz(),
+        "line_hz": window.line_hz(),
+    })
+}
+
+fn errors_json(measured: &Measured) -> Value {
+    let stats = &measured.stats;
+    json!({
+        "requests": measured.requests(),
+        "timeouts": stats.timeouts,
+        "checksum_errors": stats.checksum_errors,
+        "resyncs": stats.resyncs,
+        "foreign_replies": stats.foreign_replies,
+        "foreign_requests": stats.foreign_requests,
+        "refusals": stats.refusals,
+    })
+}
+
+fn millis(value: Duration) -> f64 {
+    (value.as_secs_f64() * 1e6).round() / 1e3
+}

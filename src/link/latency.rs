@@ -1,0 +1,75 @@
+//! The mark that a USB adapter's latency timer leaves in round trips: short replies wait for its next tick. Only judges.
+
+use arrayvec::ArrayVec;
+use std::time::Duration;
+
+/// Longest reply, in memory bytes, that an adapter keeps until its timer ticks; a fuller packet is passed on at once.
+pub const KEPT_MAX: u16 = 48;
+/// Round trips that a judgement needs, and looks at.
+const TRIPS: usize = 16;
+/// The tick of adapters as delivered.
+const TICK_MS: u128 = 16;
+/// How far a tick's round trips lie apart, either way.
+const SPREAD_MS: u128 = 2;
+
+/// The last round trips of short replies.
+#[derive(Debug, Clone, Default)]
+pub struct Ticks {
+    trips: ArrayVec<Duration, TRIPS>,
+}
+
+impl Ticks {
+    /// A reply of so many memory bytes took so long, as measured from here to here.
+    pub fn took(&mut self, bytes: u16, trip: Duration) {
+        if bytes > KEPT_MAX {
+            return;
+        }
+        if self.trips.is_full() {
+            self.trips.remove(0);
+        }
+        self.trips.push(trip);
+    }
+
+    /// True if the replies come with the ticks of a timer of 16 ms: nearly all after one, or nearly all after two.
+    #[must_use]
+    pub fn are_seen(&self) -> bool {
+        let near = |tick: u128| {
+            let on_it = |trip: &&Duration| trip.as_millis().abs_diff(tick) < SPREAD_MS;
+            self.trips.iter().filter(on_it).count() >= TRIPS - 2
+        };
+        self.trips.is_full() && (near(TICK_MS) || near(2 * TICK_MS))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(micros: impl Fn(u64) -> u64) -> bool {
+        let mut ticks = Ticks::default();
+        for n in 0..40 {
+            ticks.took(12, Duration::from_micros(micros(n)));
+            // Long replies do not wait, and do not count.
+            ticks.took(232, Duration::from_millis(40));
+        }
+        ticks.are_seen()
+    }
+
+    #[test]
+    fn a_plateau_at_one_or_two_ticks_is_a_timer() {
+        assert!(seen(|n| 15_600 + n % 5 * 200));
+        assert!(seen(|n| 31_500 + n % 5 * 200));
+        // One reply in ten was quicker.
+        assert!(seen(|n| if n % 10 == 0 { 8_000 } else { 16_100 }));
+    }
+
+    #[test]
+    fn quick_scattered_or_few_round_trips_are_none() {
+        assert!(!seen(|n| 6_000 + n % 7 * 1_000));
+        assert!(!seen(|n| 4_000 + n % 13 * 2_000));
+        assert!(!seen(|_| 300));
+        let mut few = Ticks::default();
+        few.took(12, Duration::from_millis(16));
+        assert!(!few.are_seen());
+    }
+}
