@@ -20,6 +20,8 @@ use crate::transport::Endpoint;
 /// Events taken in one frame: a tenth of a second of the fastest link and far more than a frame brings. The rest
 /// waits for the next frame, so that a window that was held up catches up without a jerk.
 const EVENTS_PER_FRAME: usize = 256;
+/// An adapter may keep what it got for so long without harm.
+const TIMER_MS_MAX: u16 = 2;
 /// Requests whose end is still awaited; the link itself lets fewer wait.
 const ASKED_MAX: usize = 32;
 
@@ -219,8 +221,25 @@ impl Desk {
         }
         let before = std::mem::replace(&mut self.state.link, status);
         self.reached(&before, now);
+        self.slowed(&before, now);
         self.held(&before, now);
         self.armed(&before, now);
+    }
+
+    /// An adapter that keeps replies back is told of once a connection.
+    fn slowed(&mut self, before: &LinkStatus, now: Moment) {
+        let link = &self.state.link;
+        let told = |link: &LinkStatus| link.latency_timer_ms.filter(|ms| *ms > TIMER_MS_MAX);
+        let is_news = link.state.is_live()
+            && (told(link).is_some() && !before.state.is_live()
+                || link.latency_ticks && !before.latency_ticks);
+        let asked = self.state.endpoint.as_ref().and_then(Endpoint::port);
+        let port = link.moved_to.as_deref().or(asked).map(str::to_owned);
+        if let Some(port) = port.filter(|_| is_news) {
+            let ms = told(link);
+            let kind = NoticeKind::LatencyTimer { port, ms };
+            self.state.notices.push(now, kind);
+        }
     }
 
     fn reached(&mut self, before: &LinkStatus, now: Moment) {

@@ -39,6 +39,13 @@ pub enum NoticeKind {
     NoLink(LinkTrouble),
     /// The hand answers again. It is not armed.
     Reconnected,
+    /// The USB adapter keeps replies back.
+    LatencyTimer {
+        /// Its port.
+        port: String,
+        /// For how long, where the system tells; else it was seen in round trips.
+        ms: Option<u16>,
+    },
     /// Feedback shows that the hand rests.
     HoldConfirmed {
         /// From the press to rest.
@@ -124,6 +131,7 @@ impl NoticeKind {
             | Self::NoFileChosen => Level::Info,
             Self::NoLink(_)
             | Self::Disarmed(_)
+            | Self::LatencyTimer { .. }
             | Self::ArmRefused(_)
             | Self::Fault { .. }
             | Self::RequestFailed { .. }

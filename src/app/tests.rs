@@ -4,7 +4,7 @@
 
 use crate::app::action::Preset;
 use crate::app::gestures::GestureProgress;
-use crate::app::notices::{Asked, Level, NoticeKind};
+use crate::app::notices::{Asked, Level, NoticeKind, Notices};
 use crate::hand::{
     Angle, Dof, Faults, Force, Gesture, GestureRoute, Group, Groups, HandCommand, HandSample,
     PerDof, Speed, Target, Timed,
@@ -240,6 +240,40 @@ fn a_hand_that_was_never_reached_is_not_called_lost() {
     bench.state(LinkState::Monitoring);
     bench.step();
     assert_eq!(bench.notices(), [], "it is reached now, for the first time");
+}
+
+#[test]
+fn an_adapter_that_keeps_replies_back_is_told_of_with_its_port_of_now() {
+    let mut bench = Bench::new();
+    bench.desk.state.endpoint = "rs485:/dev/ttyUSB0".parse().ok();
+    let told = |ms| NoticeKind::LatencyTimer {
+        port: "/dev/ttyUSB1".into(),
+        ms,
+    };
+    for (timer, ticks, wanted) in [
+        (Some(1), false, vec![]),
+        (Some(16), false, vec![told(Some(16))]),
+        (None, true, vec![told(None)]),
+    ] {
+        bench.state(LinkState::Offline);
+        bench.step();
+        bench.desk.state.notices = Notices::default();
+        bench.state(LinkState::Monitoring);
+        {
+            let mut wire = bench.wire.borrow_mut();
+            wire.status.latency_timer_ms = timer;
+            wire.status.latency_ticks = ticks;
+            wire.status.moved_to = Some("/dev/ttyUSB1".into());
+        }
+        bench.step();
+        bench.step();
+        let slow: Vec<_> = bench
+            .notices()
+            .into_iter()
+            .filter(|kind| matches!(kind, NoticeKind::LatencyTimer { .. }))
+            .collect();
+        assert_eq!(slow, wanted);
+    }
 }
 
 #[test]

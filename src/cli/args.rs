@@ -156,7 +156,8 @@ pub(crate) struct SimArgs {
     /// Make a pseudo-terminal and link it here; serve Modbus RTU on it
     #[arg(long, value_name = "LINK")]
     pub(crate) rtu: Option<PathBuf>,
-    /// Let --rs485 and --rtu take the time of a line of this speed [default: no time at all]
+    /// Let --rs485 and --rtu take the time of a line of this speed, where a client that sets another hears nonsense
+    /// [default: no time at all, and any speed]
     #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(1200..=4_000_000))]
     pub(crate) baud: Option<u32>,
     /// On such a line: milliseconds from the end of a request to the reply

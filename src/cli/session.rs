@@ -69,3 +69,17 @@ pub(crate) fn unanswered(endpoint: &Endpoint) -> String {
 pub(crate) fn trouble(status: &LinkStatus) -> Option<&LinkTrouble> {
     status.trouble.as_ref().filter(|_| !status.state.is_live())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transport::tcp::CONNECT_DEADLINE;
+
+    #[test]
+    fn the_cause_is_known_before_the_wait_is_over_and_the_wait_is_three_seconds() {
+        // Three requests of a tenth of a second each, and the line's rest between them.
+        let asked = Duration::from_millis(3 * (100 + 60));
+        assert!(CONNECT_DEADLINE + asked < ANSWER_WITHIN);
+        assert!(ANSWER_WITHIN <= Duration::from_secs(3));
+    }
+}

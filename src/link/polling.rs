@@ -70,6 +70,7 @@ impl Session {
             Ok(None) => Ok(()),
             Ok(Some(bytes)) => {
                 self.answered(took);
+                self.watch_ticks(span.len, took);
                 self.counters.read(self.plan.cost(), span, took);
                 let bytes = &bytes;
                 self.take(&Reply {

@@ -201,6 +201,17 @@ impl Session {
         }
     }
 
+    /// A reply took so long. Where the system does not tell an adapter's latency timer, its ticks do.
+    pub(crate) fn watch_ticks(&mut self, bytes: u16, took: Duration) {
+        self.ticks.took(bytes, took);
+        let untold = self.status.latency_timer_ms.is_none() && self.dialled.port().is_some();
+        let seen = untold && self.ticks.are_seen();
+        if self.status.latency_ticks != seen {
+            self.status.latency_ticks = seen;
+            self.publish();
+        }
+    }
+
     fn begin_hold(&mut self) {
         let now = self.now();
         self.disarm(Disarmed::Stop);

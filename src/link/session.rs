@@ -11,6 +11,7 @@ use crate::link::follow::Follow;
 use crate::link::handle::{Ends, LinkConfig, Wanted};
 use crate::link::jobs::Job;
 use crate::link::late::LateReplies;
+use crate::link::latency::Ticks;
 use crate::link::motion::Motion;
 use crate::link::moving::MoveWatch;
 use crate::link::plan::PollPlan;
@@ -66,8 +67,9 @@ pub(crate) struct Session {
     /// When the first of the unanswered requests in a row was asked.
     silent_since: Option<Moment>,
     follow: Follow,
+    pub(crate) ticks: Ticks,
     /// The endpoint as it was dialled last: through the port at which the adapter is.
-    dialled: Endpoint,
+    pub(crate) dialled: Endpoint,
     late: LateReplies,
     pub(crate) rival: Rival,
     closed_wires: BusCounts,
@@ -91,6 +93,7 @@ impl Session {
             silent: 0,
             silent_since: None,
             follow: Follow::default(),
+            ticks: Ticks::default(),
             late: LateReplies::default(),
             rival: Rival::default(),
             closed_wires: BusCounts::default(),
@@ -145,7 +148,7 @@ impl Session {
         self.sleep = SleepWatch::new(self.now());
         self.go(LinkState::Identifying);
         let (end, answered) = match self.identify(&mut bus).await {
-            Err(end) => (end, false),
+            Err(end) => (self.explained(end, &bus), false),
             Ok(()) => (self.serve(&mut bus).await, true),
         };
         self.count(&bus);
@@ -202,6 +205,21 @@ impl Session {
         }))
     }
 
+    /// A hand that never answered, with what was heard instead.
+    fn explained(&self, end: End, bus: &Bus) -> End {
+        let End::Lost(LinkTrouble::NoAnswer { id }) = end else {
+            return end;
+        };
+        let place = self.dialled.place();
+        let heard = bus.counts();
+        let is_noisy = heard.checksum_errors + heard.resyncs + heard.foreign_replies > 0;
+        End::Lost(match self.dialled {
+            Endpoint::Tcp { .. } => LinkTrouble::Mute { place, unit: id },
+            _ if is_noisy => LinkTrouble::Garbled { place, id },
+            _ => LinkTrouble::NoAnswer { id },
+        })
+    }
+
     /// Notes through which adapter the hand answered.
     async fn note_port(&mut self) {
         let (asked, at) = (&self.config.endpoint, &self.dialled);
@@ -223,6 +241,7 @@ impl Session {
             self.plan.know_gap(gap);
         }
         self.moving = MoveWatch::default();
+        self.ticks = Ticks::default();
         self.motion = Motion::after(self.motion.last_epoch);
         self.status.dialling = Dialling::Idle;
         self.status.trouble = None;

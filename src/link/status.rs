@@ -56,6 +56,8 @@ pub struct LinkStatus {
     pub moved_to: Option<String>,
     /// How long the adapter may keep what it got, milliseconds, where the system tells.
     pub latency_timer_ms: Option<u16>,
+    /// Round trips stand at the ticks of such a timer, where the system does not tell.
+    pub latency_ticks: bool,
     /// How the last hold went.
     pub hold: Hold,
     /// Why the hand is not armed, if it was.
@@ -89,10 +91,32 @@ pub enum LinkTrouble {
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// The wire is open and the hand says nothing.
-    #[error("no answer from id {id}: check power, id, baud and protocol of the hand")]
+    #[error(
+        "no answer from id {id}: check power, id, baud and protocol of the hand, or let 'handscope scan' try them all"
+    )]
     NoAnswer {
         /// Id or unit that was asked.
         id: u16,
+    },
+    /// Something is heard on the wire, and none of it is an answer.
+    #[error(
+        "something answers on {place}, but not as id {id} at this speed and in this protocol: 'handscope scan' finds out what it is"
+    )]
+    Garbled {
+        /// Port or interface.
+        place: String,
+        /// Id that was asked.
+        id: u16,
+    },
+    /// A host takes the connection and says nothing.
+    #[error(
+        "{place} takes the connection, but nothing there answers as unit {unit}: check address, port and unit, and that no other program keeps the hand busy"
+    )]
+    Mute {
+        /// Address and port.
+        place: String,
+        /// Unit that was asked.
+        unit: u16,
     },
     /// The hand answered and then fell silent for several requests in a row.
     #[error("the hand stopped answering: {silent} requests without a reply")]

@@ -28,6 +28,9 @@ pub struct PtyLink {
     slave_path: PathBuf,
     link_path: PathBuf,
     unheard: usize,
+    /// The one speed that is understood; none = any.
+    baud: Option<u32>,
+    garbled: Vec<u8>,
 }
 
 impl PtyLink {
@@ -56,7 +59,23 @@ impl PtyLink {
             slave_path: slave_path.clone(),
             link_path: link_path.to_path_buf(),
             unheard: 0,
+            baud: None,
+            garbled: Vec::new(),
         })
+    }
+
+    /// Understands this speed only, as a real line does: a client that has set another hears nonsense.
+    #[must_use]
+    pub const fn at_baud(mut self, baud: u32) -> Self {
+        self.baud = Some(baud);
+        self
+    }
+
+    /// True if the client has set another speed than is spoken here. The slave's settings are the client's.
+    fn is_misheard(&self) -> bool {
+        let set = rustix::termios::tcgetattr(&self.slave).map(|settings| settings.output_speed());
+        self.baud
+            .is_some_and(|baud| set.is_ok_and(|set| set != baud))
     }
 
     /// The device that the link points to.
@@ -171,9 +190,21 @@ impl AsyncWrite for PtyLink {
         buf: &[u8],
     ) -> Poll<io::Result<usize>> {
         self.forget_the_unheard(buf.len())?;
+        // Bits read at another speed fall into other places.
+        self.garbled.clear();
+        if self.is_misheard() {
+            let bytes = buf.iter().map(|byte| byte.rotate_left(3) ^ 0x5A);
+            self.garbled.extend(bytes);
+        }
+        let this = self.as_mut().get_mut();
+        let said = if this.garbled.is_empty() {
+            buf
+        } else {
+            &this.garbled
+        };
         let put = loop {
-            let mut guard = ready!(self.master.poll_write_ready(cx))?;
-            match guard.try_io(|master| master.get_ref().write(buf)) {
+            let mut guard = ready!(this.master.poll_write_ready(cx))?;
+            match guard.try_io(|master| master.get_ref().write(said)) {
                 Ok(put) => break put?,
                 Err(_would_block) => {}
             }

@@ -10,6 +10,10 @@
 #[cfg(unix)]
 mod can;
 #[cfg(unix)]
+mod doctor;
+#[cfg(unix)]
+mod doors;
+#[cfg(unix)]
 mod interop;
 #[cfg(unix)]
 mod loss;

@@ -1,6 +1,6 @@
 //! Claims about what goes wrong: a pulled cable, drives with faults, values that no hand should send.
 
-use crate::bench::{ANGLE_SET, Bench, CLEAR_ERROR, LARGE, Role};
+use crate::bench::{ANGLE_SET, Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
 use handscope::hand::{Dof, Fault};
 use handscope::link::LinkState;
 use handscope::sim::{Scenario, SimConfig};
@@ -245,4 +245,18 @@ fn impossible_angles_are_shown_raw_and_no_handle_stands_there() {
     assert_eq!(shown, ["1013", "-7", "1000", "0", "32767"]);
     assert_eq!(bench.handle("Thumb bend angle target"), None);
     assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn another_controller_is_a_banner_disarms_and_goes_away_again() {
+    let mut bench = Bench::armed();
+    // Setpoints are compared once nothing of ours can act any more.
+    bench.wait(4000);
+    let slow = [7, 0].repeat(6);
+    bench.hand(|hand, now| hand.write(SPEED_SET, &slow, now).map(drop).unwrap());
+    bench.until(2000, |bench| bench.shows("ANOTHER CONTROLLER"));
+    assert_eq!(bench.state().link.armed, None);
+    let told = bench.texts_with("another controller talks to this hand");
+    assert_eq!(told.len(), 1, "{told:?}");
+    bench.until(7000, |bench| !bench.shows("ANOTHER CONTROLLER"));
 }

@@ -94,8 +94,8 @@ fn window_json(window: &Window) -> Value {
         "refused": window.refused,
         "rtt_ms": {"min": at(0), "p50": at(50), "p99": at(99), "max": at(100)},
         "histogram": {"below_ms": EDGES_MS, "counts": window.histogram()},
-        "hz": window.hz(),
-        "line_hz": window.line_hz(),
+        "hz": window.hz().map(tenths),
+        "line_hz": window.line_hz().map(tenths),
     })
 }
 
@@ -114,4 +114,8 @@ fn errors_json(measured: &Measured) -> Value {
 
 fn millis(value: Duration) -> f64 {
     (value.as_secs_f64() * 1e6).round() / 1e3
+}
+
+fn tenths(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
 }

@@ -229,10 +229,16 @@ fn trips(window: &Window) -> String {
 
 fn rate(window: &Window) -> String {
     let hz = |value: Option<f64>| value.map_or_else(|| "-".into(), |hz| format!("{hz:.1}"));
-    let share = window.hz().zip(window.line_hz()).map_or_else(
-        || "-".into(),
-        |(hz, line)| format!("{:.0} %", 100.0 * hz / line),
-    );
+    let share = window
+        .hz()
+        .zip(window.line_hz())
+        .map(|(hz, line)| hz / line);
+    let share = match share {
+        // No real line: a pseudo-terminal takes no time.
+        Some(share) if share > 1.0 => "> 100 %".into(),
+        Some(share) => format!("{:.0} %", 100.0 * share),
+        None => "-".into(),
+    };
     format!(
         "{:<17}{:>12}{:>18}{share:>9}",
         window.name,

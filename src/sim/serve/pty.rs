@@ -20,7 +20,7 @@ pub fn serve_rs485(
     path: &Path,
     pace: Option<LinePace>,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
-    let (hands, link) = (hands.into(), PtyLink::create(path)?);
+    let (hands, link) = (hands.into(), line(path, pace)?);
     Ok(async move {
         match pace {
             Some(pace) => paced(link, pace, |wire| rs485::serve(hands, wire)).await,
@@ -38,12 +38,21 @@ pub fn serve_rtu(
     path: &Path,
     pace: Option<LinePace>,
 ) -> Result<impl Future<Output = io::Result<()>> + Send + 'static, TransportError> {
-    let (hands, link) = (hands.into(), PtyLink::create(path)?);
+    let (hands, link) = (hands.into(), line(path, pace)?);
     Ok(async move {
         match pace {
             Some(pace) => paced(link, pace, |wire| modbus_rtu::serve(hands, wire)).await,
             None => modbus_rtu::serve(hands, link).await,
         }
+    })
+}
+
+/// A line that speaks one speed, if it is given, and else any.
+fn line(path: &Path, pace: Option<LinePace>) -> Result<PtyLink, TransportError> {
+    let link = PtyLink::create(path)?;
+    Ok(match pace {
+        Some(pace) => link.at_baud(pace.baud),
+        None => link,
     })
 }
 

@@ -24,6 +24,14 @@ pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
     }
     match trouble {
         LinkTrouble::Transport(error) => format!("线路问题：{error}。"),
+        LinkTrouble::Garbled { place, id } => {
+            format!("{place} 上有应答，但不符合 ID {id}、此速度或此协议：请用扫描查找。")
+        }
+        LinkTrouble::Mute { place, unit } => {
+            format!(
+                "{place} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。"
+            )
+        }
         LinkTrouble::NoAnswer { id } => {
             format!("ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议。")
         }
@@ -85,6 +93,22 @@ fn disarmed(look: Look, why: Disarmed) -> &'static str {
     })
 }
 
+/// What a latency timer does, and the one line that cures it.
+fn latency_timer(look: Look, port: &str, ms: Option<u16>) -> String {
+    let said = match ms {
+        Some(ms) => format!("{} {ms} ms.", look.say(panels::TIMER_TOLD)),
+        None => look.say(panels::TIMER_SEEN).to_owned(),
+    };
+    let name = port.rsplit('/').next().unwrap_or(port);
+    let cure = if cfg!(windows) {
+        look.say(panels::TIMER_CURE_WINDOWS).to_owned()
+    } else {
+        let file = format!("/sys/bus/usb-serial/devices/{name}/latency_timer");
+        format!("{} echo 1 | sudo tee {file}", look.say(panels::TIMER_CURE))
+    };
+    format!("{said} {cure}")
+}
+
 /// A message as one or two sentences.
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
@@ -95,6 +119,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NoLink(why) => {
             format!("{} {}", said(panels::NOTICE_NO_LINK), trouble(look, why))
         }
+        NoticeKind::LatencyTimer { port, ms } => latency_timer(look, port, *ms),
         NoticeKind::Reconnected => said(panels::NOTICE_RECONNECTED),
         NoticeKind::HoldConfirmed { after } => {
             format!("{} {}", said(panels::NOTICE_HELD), format::age(*after))

@@ -99,6 +99,10 @@ texts! {
     MESSAGES_NONE: "No messages", "没有消息";
     NOTICE_LOST: "Link lost.", "连接断开。";
     NOTICE_NO_LINK: "No hand reached.", "未连接到灵巧手。";
+    TIMER_TOLD: "The USB adapter keeps replies back, which halves the rate. Its latency timer is", "USB 适配器延迟应答，速率减半。其延迟定时器为";
+    TIMER_SEEN: "Replies come every 16 ms, as from a USB adapter that keeps them back (latency timer).", "应答每 16 ms 才到，像是 USB 适配器的延迟定时器所致。";
+    TIMER_CURE: "In a terminal:", "在终端运行：";
+    TIMER_CURE_WINDOWS: "Device Manager, port, Port Settings, Advanced: latency timer 1 ms.", "设备管理器 → 端口 → 端口设置 → 高级：延迟定时器 1 ms。";
     NOTICE_RECONNECTED: "The hand answers again. It is not armed.", "灵巧手重新应答，尚未使能。";
     NOTICE_HELD: "Feedback shows rest. From stop to rest:", "反馈显示已静止。从停止到静止：";
     NOTICE_ARM: "Not armed.", "未能使能。";
