@@ -378,3 +378,69 @@ async fn while_waiting_a_port_is_looked_for_once_a_second_at_most() {
     }
     assert!(tries <= 61, "{tries}");
 }
+
+/// The system's own serial ports, with pseudo-terminals listed as if they were USB adapters.
+#[cfg(unix)]
+struct Listed(Mutex<Vec<PortFound>>);
+
+#[cfg(unix)]
+impl Dial for Listed {
+    fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
+        handscope::transport::SystemDial.dial(endpoint)
+    }
+
+    fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
+        futures::future::ready(self.0.lock().unwrap().clone()).boxed()
+    }
+}
+
+/// In real time, over the system's own ports: what counts is the order of things, not how long they take.
+#[cfg(unix)]
+#[tokio::test]
+async fn a_pseudo_terminal_that_comes_back_under_another_name_is_followed() {
+    use handscope::sim::serve::pty;
+    let folder = tempfile::tempdir().unwrap();
+    let hand = SharedHand::new(SimHand::new(SimConfig::default()), Instant::now());
+    let path = |name: &str| folder.path().join(name);
+    let listed = |name: &str| {
+        let path = path(name);
+        usb(path.to_str().unwrap(), Some("A5"), "1-2:1.0")
+    };
+    let real = |mut port: PortFound| {
+        port.path = std::fs::canonicalize(&port.path)
+            .unwrap()
+            .display()
+            .to_string();
+        port
+    };
+    let first = tokio::spawn(pty::serve_rs485(hand.clone(), &path("first")).unwrap());
+    let dial = Arc::new(Listed(Mutex::new(vec![real(listed("first"))])));
+    let config = LinkConfig {
+        endpoint: format!("rs485:{}", path("first").display())
+            .parse()
+            .unwrap(),
+        rates: PollRates::default(),
+        clock: Clock::start(),
+        dial: Arc::clone(&dial) as Arc<dyn Dial>,
+        wake: Arc::new(|| ()),
+    };
+    let mut link = link::open(config, &tokio::runtime::Handle::current());
+    let patient = Duration::from_secs(30);
+    until(&mut link, patient, |status| status.state.is_live()).await;
+    assert_eq!(link.status().moved_to, None);
+    dial.0.lock().unwrap().clear();
+    first.abort();
+    let (_, status) = until(&mut link, patient, is_lost).await;
+    assert!(matches!(
+        status.trouble,
+        Some(LinkTrouble::Transport(TransportError::HungUp { .. }))
+    ));
+    let second = pty::serve_rs485(hand.clone(), &path("second")).unwrap();
+    let moved = real(listed("second"));
+    *dial.0.lock().unwrap() = vec![moved.clone()];
+    let _second = tokio::spawn(second);
+    let (_, status) = until(&mut link, patient, |status| status.state.is_live()).await;
+    assert_eq!(status.state, LinkState::Monitoring);
+    assert_eq!(status.moved_to, Some(moved.path));
+    assert!(hand.with(|hand, _| hand.journal().is_empty()));
+}

@@ -12,6 +12,7 @@ mod pictures;
 mod report;
 mod scene;
 mod start;
+mod waiting;
 
 use crate::report::{Failure, Report};
 use std::process::ExitCode;
@@ -36,6 +37,7 @@ const PARTS: [Part; 7] = [
     ("png", pictures::run),
     ("start", start::run),
     ("memory", memory::run),
+    ("waiting", waiting::run),
 ];
 
 fn main() -> ExitCode {
