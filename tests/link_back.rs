@@ -22,7 +22,7 @@ use handscope::link::{
     PollRates, Setpoints,
 };
 use handscope::sim::serve::{rs485, slcan};
-use handscope::sim::{SharedHand, SimConfig, SimHand};
+use handscope::sim::{Personality, SharedHand, SimConfig, SimHand};
 use handscope::transport::{
     BoxedWire, Dial, Endpoint, PortFound, TransportError, UsbFound, Wire, pair,
 };
@@ -63,7 +63,19 @@ struct Plugged {
 
 impl Computer {
     fn new() -> Arc<Self> {
-        let hand = SharedHand::new(SimHand::new(SimConfig::default()), Instant::now());
+        Self::with_turnaround(Duration::ZERO)
+    }
+
+    /// The hand takes its time for each reply.
+    fn with_turnaround(turnaround: Duration) -> Arc<Self> {
+        let config = SimConfig {
+            personality: Personality {
+                turnaround,
+                ..Personality::default()
+            },
+            ..SimConfig::default()
+        };
+        let hand = SharedHand::new(SimHand::new(config), Instant::now());
         let computer = Arc::new(Self {
             hand,
             state: Mutex::default(),
@@ -377,6 +389,32 @@ async fn while_waiting_a_port_is_looked_for_once_a_second_at_most() {
         last = now;
     }
     assert!(tries <= 61, "{tries}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn replies_at_the_ticks_of_a_latency_timer_are_told_unless_the_system_knows_better() {
+    for (turnaround_ms, told, seen) in [
+        (16, None, true),
+        (16, Some(1), false),
+        (7, None, false),
+        (7, Some(16), false),
+    ] {
+        let computer = Computer::with_turnaround(Duration::from_millis(turnaround_ms));
+        let mut port = usb("/dev/ttyT0", Some("A5"), "1-2:1.0");
+        port.usb.as_mut().unwrap().latency_timer_ms = told;
+        computer.plug(&[port]);
+        let mut link = open(&computer, WIRES[0]);
+        until(&mut link, BACK_WITHIN, |status| status.state.is_live()).await;
+        for _ in 0..200 {
+            while link.try_event().is_some() {}
+            sleep(Duration::from_millis(100)).await;
+        }
+        let status = link.status();
+        assert_eq!(
+            (status.latency_timer_ms, status.latency_ticks),
+            (told, seen)
+        );
+    }
 }
 
 /// The system's own serial ports, with pseudo-terminals listed as if they were USB adapters.

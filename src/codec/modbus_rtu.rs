@@ -346,6 +346,51 @@ mod tests {
         assert_eq!(noise.resyncs, 1);
     }
 
+    /// What comes out of a stream in pieces, with an echo reckoned with.
+    fn sorted(stream: &[u8], piece: usize, echo: &[u8]) -> (Vec<Vec<u8>>, RtuRequests) {
+        let mut splitter = RtuSplitter::new(1);
+        splitter.expect_echo(echo);
+        let mut out = Vec::new();
+        for chunk in stream.chunks(piece) {
+            assert_eq!(splitter.push(chunk), chunk.len());
+            while let Some(reply) = splitter.next() {
+                out.push(reply.bytes.to_vec());
+            }
+        }
+        assert_eq!(splitter.noise(), RtuNoise::default());
+        (out, splitter.requests())
+    }
+
+    #[test]
+    fn an_echo_is_left_out_once_and_the_same_bytes_behind_it_are_the_reply() {
+        let six = checked(&[1, 6, 3, 0xEC, 0, 1]);
+        let read = checked(&[1, 3, 0, 0x6B, 0, 2]);
+        for piece in 1..=16 {
+            for (sent, reply) in [(&six, six.as_slice()), (&read, &READ)] {
+                let (replies, requests) = sorted(&[sent, reply].concat(), piece, sent);
+                assert_eq!((replies, requests.echoes), (vec![reply.to_vec()], 1));
+                assert_eq!(requests.foreign, 0);
+            }
+            let (replies, requests) = sorted(&six, piece, &[]);
+            assert_eq!((replies, requests.echoes), (vec![six.clone()], 0));
+        }
+    }
+
+    #[test]
+    fn requests_of_another_controller_are_counted_and_hide_no_reply() {
+        let read = checked(&[1, 3, 6, 0x0A, 0, 6]);
+        let write = checked(&[1, 16, 5, 0xCE, 0, 1, 2, 0, 7]);
+        let to_another = checked(&[9, 3, 6, 0x0A, 0, 6]);
+        for piece in 1..=20 {
+            let (replies, requests) = sorted(&[&read, READ.as_slice()].concat(), piece, &[]);
+            assert_eq!((replies, requests.foreign), (vec![READ.to_vec()], 1));
+        }
+        // Those that look like no reply at all are told only where they come whole.
+        let stream = [&write, &to_another, READ.as_slice()].concat();
+        let (replies, requests) = sorted(&stream, stream.len(), &[]);
+        assert_eq!((replies, requests.foreign), (vec![READ.to_vec()], 2));
+    }
+
     #[test]
     fn exceptions_come_out_too() {
         let refusal = checked(&[1, 0x83, 2]);

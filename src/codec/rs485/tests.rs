@@ -321,9 +321,12 @@ fn a_flush_does_not_harm_what_comes_after_it() {
 fn an_echoed_request_is_skipped_and_is_no_noise() {
     for (echo, _) in printed_requests() {
         let mut decoder = ReplyDecoder::default();
-        let mut stream = echo;
+        let mut stream = echo.clone();
         stream.extend(bytes("90 EB 01 04 12 CE 05 01 EB"));
         assert_eq!(decode_in(&mut decoder, &stream, &[5]), [ack(1, 1486)]);
+        let overheard = decoder.overheard();
+        assert_eq!(overheard.as_deref(), Some(echo.as_slice()));
+        assert_eq!(decoder.overheard(), None);
         let counts = decoder.counts();
         assert_eq!(
             (counts.echoes, counts.skipped_bytes, counts.resyncs),

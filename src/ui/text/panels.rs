@@ -116,7 +116,7 @@ texts! {
     DISARMED_FAULT: "Not armed any more: a drive reports a fault.", "已取消使能：驱动器报告故障。";
     DISARMED_LOST: "Not armed any more: the link was lost.", "已取消使能：连接断开。";
     DISARMED_STALE: "Not armed any more: feedback grew old.", "已取消使能：反馈过时。";
-    DISARMED_RIVAL: "Not armed any more: another controller talks to this hand. Arming again is your confirmation.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能即表示确认。";
+    DISARMED_RIVAL: "Not armed any more: another controller talks to this hand. Arm again if you want both.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。";
     DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
     STATUS_LIST: "Status of the drives", "驱动器状态";
 
