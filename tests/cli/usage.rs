@@ -127,7 +127,7 @@ fn every_way_to_miss_a_hand_has_its_own_words() {
         (format!("tcp:{nobody}"), "refused the connection"),
         (
             format!("tcp:{}", mute.local_addr().unwrap()),
-            "no answer from id 255",
+            "nothing there answers as unit 255",
         ),
         (
             "can:nocan9".to_owned(),
