@@ -331,7 +331,8 @@ impl Can {
             return;
         };
         if self.is_request(id, frame) {
-            self.foreign_requests += u64::from(!self.sent.contains(frame));
+            let echo = self.echoes != Some(false) && self.sent.contains(frame);
+            self.foreign_requests += u64::from(!echo);
             return;
         }
         self.foreign += 1;

@@ -108,6 +108,7 @@ impl Session {
             Ok(bytes) => {
                 let took = self.now().since(asked);
                 self.answered(took);
+                self.watch_ticks(span.len, took);
                 self.answer(
                     ticket,
                     Ok(Outcome::Memory {

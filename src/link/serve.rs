@@ -12,6 +12,7 @@ use crate::link::status::{
     ArmEpoch, ArmRefusal, ArmRequest, Disarmed, Hold, LinkState, LinkTrouble,
 };
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::time::sleep_until;
 
 /// Bytes of an acknowledgement's data.
