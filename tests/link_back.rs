@@ -453,7 +453,7 @@ async fn a_pseudo_terminal_that_comes_back_under_another_name_is_followed() {
             .to_string();
         port
     };
-    let first = tokio::spawn(pty::serve_rs485(hand.clone(), &path("first")).unwrap());
+    let first = tokio::spawn(pty::serve_rs485(hand.clone(), &path("first"), None).unwrap());
     let dial = Arc::new(Listed(Mutex::new(vec![real(listed("first"))])));
     let config = LinkConfig {
         endpoint: format!("rs485:{}", path("first").display())
@@ -475,7 +475,7 @@ async fn a_pseudo_terminal_that_comes_back_under_another_name_is_followed() {
         status.trouble,
         Some(LinkTrouble::Transport(TransportError::HungUp { .. }))
     ));
-    let second = pty::serve_rs485(hand.clone(), &path("second")).unwrap();
+    let second = pty::serve_rs485(hand.clone(), &path("second"), None).unwrap();
     let moved = real(listed("second"));
     *dial.0.lock().unwrap() = vec![moved.clone()];
     let _second = tokio::spawn(second);

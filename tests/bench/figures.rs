@@ -29,7 +29,7 @@ mod line {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 7] = [
+const PARTS: [Part; 8] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),

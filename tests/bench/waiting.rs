@@ -77,7 +77,7 @@ async fn unplugged(path: &Path) -> Result<LinkHandle, Failure> {
         SimHand::new(SimConfig::default()),
         tokio::time::Instant::now(),
     );
-    let served = tokio::spawn(pty::serve_rs485(hand, path)?);
+    let served = tokio::spawn(pty::serve_rs485(hand, path, None)?);
     let port = PortFound {
         path: std::fs::canonicalize(path)?.display().to_string(),
         usb: Some(UsbFound {
