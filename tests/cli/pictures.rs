@@ -4,12 +4,13 @@ use crate::program::run;
 use serde_json::Value;
 use std::fs;
 
-const VIEWS: [&str; 6] = [
+const VIEWS: [&str; 7] = [
     "live",
     "touch",
     "faults",
     "gestures",
     "connection",
+    "traffic",
     "window",
 ];
 
