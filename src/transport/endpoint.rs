@@ -303,7 +303,7 @@ impl Query<'_> {
             Some(port) => in_range("port", port, 1..=65_535, "a whole number from 1 to 65535")?,
             None => DEFAULT_TCP_PORT,
         };
-        if host.is_empty() {
+        if host.is_empty() || host.contains(['[', ']']) {
             return Err(EndpointError::Place {
                 text: self.text.into(),
                 kind: "tcp",
