@@ -469,6 +469,7 @@ mod tests {
             ("rs485:/dev/x?speed=1", "no setting"),
             ("rs485:/dev/x?baud=fast", "not possible"),
             ("tcp::6000", "lacks what follows"),
+            ("tcp:::1]6000", "lacks what follows"),
             ("tcp:host:99999", "1 to 65535"),
             ("tcp:host:0", "1 to 65535"),
             ("tcp:host?unit=256", "0 to 255"),
