@@ -14,6 +14,7 @@
 mod targets;
 
 use fastrand::Rng;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use targets::{OTHERS, State, Target, WIRES, seeds};
 
 /// Inputs of each decoder of a wire.
@@ -79,16 +80,18 @@ fn run(name: &str, target: Target, inputs: u64) {
     );
 }
 
+/// Two threads, each of which takes the next target as soon as it is done with one.
 fn run_all(targets: &[(&str, Target)], inputs: u64) {
     let inputs = setting("HANDSCOPE_INPUTS").unwrap_or(inputs);
-    std::thread::scope(|scope| {
-        for part in targets.chunks(targets.len().div_ceil(2)) {
-            scope.spawn(move || {
-                for (name, target) in part {
-                    run(name, *target, inputs);
-                }
-            });
+    let next = AtomicUsize::new(0);
+    let work = || {
+        while let Some((name, target)) = targets.get(next.fetch_add(1, Ordering::Relaxed)) {
+            run(name, *target, inputs);
         }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(work);
+        scope.spawn(work);
     });
 }
 
