@@ -7,7 +7,8 @@
 )]
 
 use handscope::hand::register::{
-    ANGLE_ACT, ANGLE_SET, CURRENT, ERROR, FORCE_ACT, POS_ACT, Register, SPEED_SET, STATUS, TEMP,
+    ANGLE_ACT, ANGLE_SET, CURRENT, ERROR, FORCE_ACT, FORCE_SET, POS_ACT, Register, SPEED_SET,
+    STATUS, TEMP,
 };
 use handscope::hand::sample::{HandSample, Reply, touch_span};
 use handscope::hand::{Dof, Fault, Finger, Moment, Span, TactileBlock};
@@ -372,6 +373,18 @@ fn the_grasp_at_three_seconds_shows_force_current_and_touch_on_all_fingers() {
         block(&mut hand, Finger::Index, 10_300).direction_deg(),
         turned
     );
+}
+
+#[test]
+fn the_grasp_leaves_the_setpoint_registers_to_the_controller() {
+    let mut hand = hand(Scenario::Grasp, Personality::default());
+    let before = bytes(&mut hand, &ANGLE_SET, 100);
+    assert_eq!(bytes(&mut hand, &ANGLE_SET, 3000), before);
+    let forces = shorts(&mut hand, &FORCE_SET, 3000);
+    assert_eq!(shorts(&mut hand, &FORCE_SET, 6000), forces);
+    // A setpoint from outside ends the script's own limits.
+    hand.write(1486, &[0xFF; 12], at(6100)).unwrap();
+    assert_eq!(shorts(&mut hand, &FORCE_SET, 6200), forces);
 }
 
 #[test]

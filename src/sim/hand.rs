@@ -101,6 +101,8 @@ pub struct SimHand {
     saves: VecDeque<(Moment, SaveFrame)>,
     baud_code: u8,
     journal: Vec<JournalEntry>,
+    /// What the hand's own script ordered last; a setpoint from outside ends it.
+    order: Option<Order>,
 }
 
 impl SimHand {
@@ -123,6 +125,7 @@ impl SimHand {
             saves: VecDeque::new(),
             baud_code: 0,
             journal: Vec::new(),
+            order: None,
         };
         hand.target_actual();
         hand
@@ -289,6 +292,12 @@ impl SimHand {
     }
 
     fn setting(&self, dof: Dof) -> Setting {
+        if let Some(order) = &self.order {
+            return Setting {
+                speed: f64::from(order.speeds[dof]),
+                threshold_g: f64::from(order.forces[dof]),
+            };
+        }
         let speed = f64::from(self.memory.short(&SPEED_SET, element(dof)));
         Setting {
             speed: match self.config.personality.speed_zero {
@@ -330,14 +339,13 @@ impl SimHand {
         }
     }
 
+    /// Moves as an action stored in the hand would. The setpoint registers stay what a controller wrote: a change there
+    /// would be another controller's.
     fn obey(&mut self, order: &Order) {
         for dof in Dof::ALL {
-            let at = element(dof);
-            self.memory.put_short(&SPEED_SET, at, order.speeds[dof]);
-            self.memory.put_short(&FORCE_SET, at, order.forces[dof]);
-            self.memory.put_angle_set(at, order.angles[dof]);
             self.go_to_angle(dof, order.angles[dof]);
         }
+        self.order = Some(*order);
     }
 
     fn go_to_angle(&mut self, dof: Dof, angle: i16) {
@@ -347,6 +355,9 @@ impl SimHand {
 
     fn apply(&mut self, change: &Change, now: Moment) {
         let on = change.value == 1;
+        if (ANGLE_SET.address..=SPEED_SET.address).contains(&change.register.address) {
+            self.order = None;
+        }
         match change.register.address {
             a if a == ANGLE_SET.address || a == POS_SET.address => self.apply_target(change),
             a if a == CLEAR_ERROR.address && on => {

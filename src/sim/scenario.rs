@@ -53,7 +53,7 @@ impl FromStr for Scenario {
     }
 }
 
-/// Six settings as another controller would write them.
+/// Six settings as the hand's own action has them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Order {
     /// ANGLE_SET.
@@ -74,13 +74,13 @@ const SLIP_LASTS_S: f64 = 0.4;
 /// When the hand opens, s into the grasp.
 const RELEASE_AT_S: f64 = 5.0;
 
-/// What the grasp's controller orders in this millisecond.
+/// What the grasp's action orders in this millisecond.
 #[must_use]
 pub fn grasp_order(now_ms: u64) -> Option<Order> {
     let (angles, more, speed) = match now_ms % GRASP_MS {
         // The dead time makes it move at 0.4 s.
         336 => ([120, 120, 120, 120, 200, 320], 0, 400),
-        // It tightens slowly, as a controller does that felt the slip.
+        // It tightens slowly, as one does that felt the slip.
         2760 => ([100, 100, 100, 100, 180, 320], 260, 5),
         5000 => ([1000; 6], 0, 400),
         _ => return None,
