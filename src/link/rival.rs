@@ -28,11 +28,12 @@ pub(crate) struct Rival {
 }
 
 impl Rival {
-    /// A fresh conversation with the hand: what it held before does not count. What was noticed does.
+    /// A fresh conversation with the hand: what it held before does not count. What was noticed does, and what we wrote
+    /// through the wire before may still act.
     pub(crate) fn begin(&mut self) {
-        self.angles = Held::default();
-        self.forces = Held::default();
-        self.speeds = Held::default();
+        self.angles.forget();
+        self.forces.forget();
+        self.speeds.forget();
     }
 
     /// The wire has counted this many foreign requests in all.
@@ -112,7 +113,12 @@ impl<T: Copy + PartialEq> Held<T> {
     /// We wrote it: what was read before says nothing any more, however long the next reading takes.
     fn wrote(&mut self, now: Moment) {
         self.wrote = Some(now);
+        self.forget();
+    }
+
+    fn forget(&mut self) {
         self.known = None;
+        self.doubted = false;
     }
 
     /// When a change that is not ours was read, for the second time.
@@ -122,8 +128,11 @@ impl<T: Copy + PartialEq> Held<T> {
         let ours = self
             .wrote
             .is_some_and(|at| read.asked.since(at) < LATE_HORIZON);
-        let known = self.known.filter(|_| !ours);
-        match known {
+        if ours {
+            self.forget();
+            return None;
+        }
+        match self.known {
             Some(known) if known != read.value && !self.doubted => {
                 self.doubted = true;
                 None
@@ -212,6 +221,29 @@ mod tests {
         read(&mut rival, 1, 9000);
         read(&mut rival, 1, 9500);
         assert_eq!(rival.changes, 0, "after a reconnect nothing is known");
+    }
+
+    #[test]
+    fn our_write_may_act_at_the_end_of_its_horizon_and_through_a_wire_that_is_gone() {
+        let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::GENTLE)));
+        for reconnected in [false, true] {
+            let mut rival = Rival::default();
+            read(&mut rival, 100, 0);
+            rival.wrote(&speeds.writes()[0], at(100));
+            if reconnected {
+                rival.begin();
+            }
+            for (ms, speed) in [
+                (1000, 100),
+                (2000, 100),
+                (2500, 250),
+                (3000, 250),
+                (3500, 250),
+            ] {
+                read(&mut rival, speed, ms);
+            }
+            assert_eq!(rival.changes, 0);
+        }
     }
 
     #[test]

@@ -32,9 +32,9 @@ const RETRY_LONGEST: Duration = Duration::from_secs(1);
 const IDENTIFY_TRIES: u32 = 3;
 /// Requests in a row without reply after which the link counts as lost …
 pub(crate) const SILENT_MAX: u32 = 4;
-/// … or fewer, but never one alone, where one more would make the silence longer than this. A wire so slow that two
-/// requests take longer is given those two.
-const SILENCE_MAX: Duration = Duration::from_millis(300);
+/// … or fewer, but never one alone, where not even the shortest wait for one more would fit into this: with the time
+/// before the first of them, silence shows within 300 ms. A wire so slow that two requests take longer is given those two.
+const SILENCE_MAX: Duration = Duration::from_millis(288);
 const SILENT_LEAST: u32 = 2;
 /// Shortest wait for a reply: a hand takes up to 15 ms, a USB adapter up to 16 more.
 const REPLY_LIMIT_MIN: Duration = Duration::from_millis(50);
@@ -295,7 +295,14 @@ impl Session {
     /// How long a reply of so many bytes may take on this link.
     pub(crate) fn reply_limit(&self, bus: &Bus, bytes: u16) -> Duration {
         let usual = self.counters.stats.rtt_p99.unwrap_or_default() * 2;
-        bus.wire_time(bytes) + usual.clamp(REPLY_LIMIT_MIN, REPLY_LIMIT_MAX)
+        let on_wire = bus.wire_time(bytes);
+        let limit = on_wire + usual.clamp(REPLY_LIMIT_MIN, REPLY_LIMIT_MAX);
+        // In a silence the requests share what is left of its time.
+        let Some(since) = self.silent_since else {
+            return limit;
+        };
+        let left = SILENCE_MAX.saturating_sub(self.now().since(since));
+        limit.min(left.max(on_wire + REPLY_LIMIT_MIN))
     }
 
     /// A request was answered after `took`.
@@ -352,7 +359,7 @@ impl Session {
         let asked = Moment::from_duration(now.since(Moment::ZERO).saturating_sub(waited));
         self.silent += 1;
         let since = *self.silent_since.get_or_insert(asked);
-        let one_more = now.since(since) + waited;
+        let one_more = now.since(since) + REPLY_LIMIT_MIN;
         self.silent >= SILENT_MAX || self.silent >= SILENT_LEAST && one_more > SILENCE_MAX
     }
 

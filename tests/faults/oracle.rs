@@ -189,7 +189,7 @@ impl Witness {
         let status = link.status();
         assert!(
             !status.rival && status.disarmed != Some(Disarmed::Rival) && !status.echoes,
-            "seed {}: nobody else was on the line: {status:?}",
+            "seed {}: nobody else was on the line: {status:?} {stats:?}",
             self.seed
         );
         assert!(
