@@ -102,29 +102,21 @@ impl Can {
         self.open(limit).await?;
         // The first question to a hand has no other form.
         let pieces = self.clear_pieces(span).unwrap_or(whole);
-        let end = Instant::now() + limit;
         let mut bytes = Bytes::new();
         for piece in pieces {
             if urgent() {
                 return Ok(None);
             }
-            let got = self.read_piece(piece, end, limit).await?;
+            let got = self.read_piece(piece, limit).await?;
             // No piece is longer than asked, and the run fits.
             bytes.extend(got);
         }
         Ok(Some(bytes))
     }
 
-    async fn read_piece(
-        &mut self,
-        piece: Span,
-        end: Instant,
-        limit: Duration,
-    ) -> Result<Payload, BusError> {
+    async fn read_piece(&mut self, piece: Span, limit: Duration) -> Result<Payload, BusError> {
         let request = read_request(self.hand, piece).ok_or(BusError::TooLong)?;
-        let got = self
-            .exchange(&request, usize::from(piece.len), end, limit)
-            .await;
+        let got = self.exchange(&request, usize::from(piece.len), limit).await;
         match &got {
             Ok(_) => self.late.answered(Some(piece)),
             Err(_) => self.late.gave_up(piece, self.clock.now()),
@@ -146,8 +138,7 @@ impl Can {
             if nth > 0 && urgent() {
                 break;
             }
-            let end = Instant::now() + limit;
-            self.exchange(request, ACK_LEN, end, limit).await?;
+            self.exchange(request, ACK_LEN, limit).await?;
             self.late.answered(None);
         }
         Ok(())
@@ -215,8 +206,7 @@ impl Can {
             self.is_open = true;
         }
         if self.echoes.is_none() {
-            self.read_piece(PROBE, Instant::now() + limit, limit)
-                .await?;
+            self.read_piece(PROBE, limit).await?;
             self.echoes.get_or_insert(false);
         }
         Ok(())
@@ -247,12 +237,11 @@ impl Can {
         Some(clear)
     }
 
-    /// One request and its reply of so many data bytes.
+    /// One request and its reply of so many data bytes. Each has the whole limit: a slow hand is slow forty times.
     async fn exchange(
         &mut self,
         request: &CanFrame,
         want: usize,
-        end: Instant,
         limit: Duration,
     ) -> Result<Payload, BusError> {
         self.take_waiting()?;
@@ -260,7 +249,8 @@ impl Can {
             self.sent.remove(0);
         }
         self.sent.push(request.clone());
-        let deadline = end.min(Instant::now() + PIECE_LIMIT);
+        let limit = limit.min(PIECE_LIMIT);
+        let deadline = Instant::now() + limit;
         match timeout_at(deadline, self.port.send(request)).await {
             Ok(sent) => sent?,
             Err(_) => return Err(self.no_reply(limit)),

@@ -9,6 +9,7 @@ use crate::link::motion::hold_targets;
 use crate::link::session::{End, Session};
 use crate::link::status::LinkState;
 use arrayvec::ArrayVec;
+use std::sync::Arc;
 
 /// Writes of one job: those of the longest command, and the hold before clearing errors.
 const JOB_MAX: usize = 7;
@@ -23,10 +24,23 @@ pub(crate) struct Job {
     pub(crate) is_motion: bool,
 }
 
+impl Job {
+    const fn reading(ticket: Ticket, span: Span) -> Self {
+        Self {
+            ticket,
+            writes: ArrayVec::new_const(),
+            read: Some(span),
+            cleared: false,
+            is_motion: false,
+        }
+    }
+}
+
 impl Session {
     /// True if a request is under way or one was waiting.
     pub(crate) fn next_job(&mut self) -> bool {
-        if self.job.is_none()
+        // One that is answered at once leaves the turn to the next.
+        while self.job.is_none()
             && let Ok((ticket, request)) = self.ends.requests.try_recv()
         {
             self.take_job(ticket, request);
@@ -104,8 +118,12 @@ impl Session {
         }
         let limit = self.reply_limit(bus, span.len);
         let asked = self.now();
-        match bus.read(span, limit).await {
-            Ok(bytes) => {
+        let wanted = Arc::clone(&self.ends.wanted);
+        let read = bus.read_unless(span, limit, || wanted.borrow().stop).await;
+        match read {
+            // Asked again from its start, once the stop is through.
+            Ok(None) => self.job = Some(Job::reading(ticket, span)),
+            Ok(Some(bytes)) => {
                 let took = self.now().since(asked);
                 self.answered(took);
                 self.watch_ticks(span.len, took);

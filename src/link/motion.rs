@@ -109,6 +109,15 @@ impl Motion {
         !self.pose_due && self.rounds >= ROUNDS_MAX && self.waits(now)
     }
 
+    /// True if requests may have their turns: not while a stop is being confirmed, but while its alarm lasts, and not
+    /// before the read that the next round waits for.
+    pub(crate) fn lets_jobs(&self, now: Moment) -> bool {
+        match &self.hold {
+            Some(hold) => hold.alarmed,
+            None => !self.wants_pose(now) && !self.wants_others(now),
+        }
+    }
+
     fn waits(&self, now: Moment) -> bool {
         self.round.is_empty() && self.next_send(now).is_some_and(|send| send <= now)
     }

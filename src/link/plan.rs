@@ -17,6 +17,8 @@ use std::time::Duration;
 const SHORTEST_PERIOD: Duration = Duration::from_millis(10);
 /// … and slow ones as this fast, so that on a line that is too slow for all they do not wait for many of their periods.
 const LONGEST_PERIOD: Duration = Duration::from_millis(30);
+/// What waits so long is as urgent as the fastest: a sweep over all fingertips takes a slow hand on CAN most of a second.
+const STARVED_AFTER: Duration = Duration::from_secs(1);
 /// Temperatures change slowly and are read just often enough not to be shown as old.
 const TEMPERATURE_HZ: f64 = 5.0;
 /// Windows asked for last, none of which is asked for again in the same form: a whole run of replies may be doubled.
@@ -89,6 +91,8 @@ struct Due {
     part: Part,
     period: Duration,
     next: Moment,
+    /// Not asked for before this, however late it is by then.
+    held_until: Moment,
     asked: Moment,
 }
 
@@ -111,6 +115,7 @@ impl PollPlan {
                 part,
                 period: period(rates.of(part)),
                 next: now,
+                held_until: now,
                 asked: now,
             }),
             cost,
@@ -177,7 +182,7 @@ impl PollPlan {
 
     /// What is to be read now, if anything is due.
     pub(crate) fn next(&self, now: Moment, tempo: Tempo) -> Option<Question> {
-        let due = || self.wanted(tempo).filter(|due| due.next <= now);
+        let due = || self.wanted(tempo).filter(|due| due.at() <= now);
         let motion = || {
             due()
                 .filter(|due| due.part.is_motion())
@@ -204,6 +209,7 @@ impl PollPlan {
             part: Part::Angle,
             period: Duration::ZERO,
             next: now,
+            held_until: now,
             asked: now,
         });
         self.question(&angle, now, tempo)
@@ -211,7 +217,7 @@ impl PollPlan {
 
     /// What is read between two rounds of setpoints, so that a drag starves nothing; due or not it is no motion state.
     pub(crate) fn others(&self, now: Moment) -> Option<Question> {
-        let due = self.parts.iter().filter(|due| due.next <= now);
+        let due = self.parts.iter().filter(|due| due.at() <= now);
         due.filter(|due| !due.part.is_motion())
             .reduce(|a, b| a.later(b, now))
             .map(|first| self.question(first, now, Tempo::Motion))
@@ -219,7 +225,7 @@ impl PollPlan {
 
     /// When something is due next.
     pub(crate) fn next_due(&self, tempo: Tempo) -> Moment {
-        let next = self.wanted(tempo).map(|due| due.next).min();
+        let next = self.wanted(tempo).map(Due::at).min();
         next.unwrap_or(Moment::ZERO)
     }
 
@@ -246,12 +252,12 @@ impl PollPlan {
         }
     }
 
-    /// No form of this window could be asked for: its parts wait until `until`.
-    pub(crate) fn failed_to_ask(&mut self, window: Span, now: Moment, until: Moment) {
+    /// No form of this window could be asked for: its parts wait until `until`, and are as late as they were.
+    pub(crate) fn failed_to_ask(&mut self, window: Span, until: Moment) {
         self.motion_turn = true;
         for due in &mut self.parts {
             if window.covers(due.part.span()) {
-                due.next = due.next.plus(due.period).max(now).max(until);
+                due.held_until = until;
             }
         }
     }
@@ -264,7 +270,8 @@ impl PollPlan {
         self.motion_turn = true;
         for due in &mut self.parts {
             if window.covers(due.part.span()) {
-                due.next = due.next.plus(due.period).max(at);
+                // A part that came along in company before its time is not put off for all the times it did.
+                due.next = due.next.plus(due.period).clamp(at, at.plus(due.period));
                 due.asked = at;
                 self.motion_turn &= !due.part.is_motion();
             }
@@ -312,14 +319,20 @@ impl PollPlan {
 }
 
 impl Due {
+    /// When it may be asked for.
+    fn at(&self) -> Moment {
+        self.next.max(self.held_until)
+    }
+
     /// How long it waits, in its own periods.
     fn lateness(&self, now: Moment) -> u128 {
-        let late = now.since(self.next).as_micros() + 1;
-        late * 1_000_000
-            / self
-                .period
-                .clamp(SHORTEST_PERIOD, LONGEST_PERIOD)
-                .as_micros()
+        let late = now.since(self.next);
+        let period = if late >= STARVED_AFTER {
+            SHORTEST_PERIOD
+        } else {
+            self.period.clamp(SHORTEST_PERIOD, LONGEST_PERIOD)
+        };
+        (late.as_micros() + 1) * 1_000_000 / period.as_micros()
     }
 
     /// Whichever waits longer; the earlier in the table if both do.

@@ -117,8 +117,7 @@ impl Session {
         let now = self.now();
         let window = question.shapes.first().copied();
         let window = window.unwrap_or(Span::new(0, 0));
-        self.plan
-            .failed_to_ask(window, now, now.plus(AMBIGUOUS_WAIT));
+        self.plan.failed_to_ask(window, now.plus(AMBIGUOUS_WAIT));
         if question.is_motion {
             return Err(End::Lost(LinkTrouble::Ambiguous));
         }

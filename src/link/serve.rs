@@ -59,7 +59,7 @@ impl Session {
             self.send_hold(bus).await?;
         } else if let Some(write) = self.motion.next_write(now) {
             self.send_setpoint(bus, write).await?;
-        } else if self.motion.hold.is_none() && self.next_job() {
+        } else if self.motion.lets_jobs(now) && self.next_job() {
             self.work(bus).await?;
         } else if let Some(question) = self.next_poll() {
             self.poll(bus, &question).await?;
