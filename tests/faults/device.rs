@@ -1,33 +1,11 @@
-//! A hand behind an in-memory wire: the simulated body, its replies stamped with the time they were made, so
-//! that a test can tell a fresh value from an old one. The protocol is written by hand here, not by our codec.
+//! A hand behind an in-memory serial line or socket. The protocol is written by hand here, not by our codec.
 
-use handscope::hand::{Moment, Span};
+use crate::body::{Quirks, memory};
+use handscope::hand::Span;
 use handscope::sim::SharedHand;
 use handscope::transport::Wire;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::time::{Duration, sleep};
-
-/// CURRENT, whose bytes carry the stamp: no rule of the link looks at it.
-const STAMP: Span = Span::new(1594, 4);
-const TOUCH: Span = Span::new(3000, 290);
-
-/// What is spoken on the wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Protocol {
-    Rs485,
-    Rtu,
-    Tcp,
-}
-
-/// What the device does wrong; for TCP it is all there is, as that loses nothing.
-#[derive(Debug, Clone, Default)]
-pub struct Quirks {
-    pub turnaround: Duration,
-    /// One reply in so many is answered late, doubled, cut or refused; 0 = none.
-    pub one_in: Arc<AtomicU32>,
-}
 
 pub async fn rs485(hand: SharedHand, mut wire: impl Wire, quirks: Quirks) {
     let mut held: Vec<u8> = Vec::new();
@@ -36,7 +14,7 @@ pub async fn rs485(hand: SharedHand, mut wire: impl Wire, quirks: Quirks) {
         held.extend(&chunk[..len]);
         while let Some((request, used)) = rs485_request(&held) {
             held.drain(..used);
-            let Some(reply) = rs485_answer(&hand, &request) else {
+            let Some(reply) = rs485_answer(&hand, &quirks, &request) else {
                 continue;
             };
             sleep(quirks.turnaround).await;
@@ -61,14 +39,14 @@ fn rs485_request(held: &[u8]) -> Option<(Vec<u8>, usize)> {
     })
 }
 
-fn rs485_answer(hand: &SharedHand, body: &[u8]) -> Option<Vec<u8>> {
+fn rs485_answer(hand: &SharedHand, quirks: &Quirks, body: &[u8]) -> Option<Vec<u8>> {
     let (id, command) = (body[0], body[2]);
     if id != 1 {
         return None;
     }
     let address = u16::from_le_bytes([body[3], body[4]]);
     let data = match command {
-        0x11 => memory(hand, Span::new(address, u16::from(body[5])))?,
+        0x11 => memory(hand, quirks, Span::new(address, u16::from(body[5])))?,
         0x12 => {
             hand.with(|hand, now| hand.write(address, &body[5..], now))
                 .ok()?;
@@ -102,8 +80,13 @@ pub async fn modbus_tcp(hand: SharedHand, mut wire: impl Wire, quirks: Quirks, s
         }
         sleep(quirks.turnaround).await;
         let mut head = [head[0], head[1], head[6]];
-        let (answer, copies) =
-            quirked(modbus_answer(&hand, &pdu), &quirks, &mut rng, &mut head[1]).await;
+        let (answer, copies) = quirked(
+            modbus_answer(&hand, &quirks, &pdu),
+            &quirks,
+            &mut rng,
+            &mut head[1],
+        )
+        .await;
         let [high, low, unit] = head;
         let mut adu = vec![high, low, 0, 0];
         adu.extend(u16::try_from(answer.len() + 1).unwrap().to_be_bytes());
@@ -124,8 +107,7 @@ async fn quirked(
     rng: &mut fastrand::Rng,
     whose: &mut u8,
 ) -> (Vec<u8>, usize) {
-    let one_in = quirks.one_in.load(Ordering::Relaxed);
-    if one_in == 0 || rng.u32(..one_in) != 0 {
+    if !quirks.strike(rng) {
         return (answer, 1);
     }
     match rng.u8(..6) {
@@ -170,7 +152,7 @@ pub async fn modbus_rtu(hand: SharedHand, mut wire: impl Wire, quirks: Quirks, s
             held.drain(..used);
             sleep(quirks.turnaround).await;
             let mut unit = 1;
-            let answer = modbus_answer(&hand, &pdu);
+            let answer = modbus_answer(&hand, &quirks, &pdu);
             let (answer, copies) = quirked(answer, &quirks, &mut rng, &mut unit).await;
             let mut reply = vec![unit];
             reply.extend(answer);
@@ -201,11 +183,11 @@ fn rtu_request(held: &[u8]) -> Option<(Vec<u8>, usize)> {
     })
 }
 
-fn modbus_answer(hand: &SharedHand, pdu: &[u8]) -> Vec<u8> {
+fn modbus_answer(hand: &SharedHand, quirks: &Quirks, pdu: &[u8]) -> Vec<u8> {
     let word = |at: usize| u16::from_be_bytes([pdu[at], pdu[at + 1]]);
     match pdu[0] {
         3 => {
-            let Some(bytes) = memory(hand, Span::new(word(1), word(3) * 2)) else {
+            let Some(bytes) = memory(hand, quirks, Span::new(word(1), word(3) * 2)) else {
                 return vec![0x83, 2];
             };
             let mut answer = vec![3, u8::try_from(bytes.len()).unwrap()];
@@ -226,29 +208,4 @@ fn modbus_answer(hand: &SharedHand, pdu: &[u8]) -> Vec<u8> {
         }
         other => vec![other | 0x80, 1],
     }
-}
-
-/// The hand's memory, with the stamp in CURRENT and in the first channel of each fingertip.
-fn memory(hand: &SharedHand, span: Span) -> Option<Vec<u8>> {
-    hand.with(|hand, now| {
-        let mut bytes = hand.read(span, now).ok()?;
-        let stamp = u32::try_from(now.micros() / 100).ok()?;
-        put(&mut bytes, span, STAMP.address, stamp);
-        for finger in 0..5 {
-            put(&mut bytes, span, TOUCH.address + 58 * finger, stamp);
-        }
-        Some(bytes)
-    })
-}
-
-fn put(bytes: &mut [u8], span: Span, address: u16, stamp: u32) {
-    if span.covers(Span::new(address, 4)) {
-        let at = usize::from(address - span.address);
-        bytes[at..at + 4].copy_from_slice(&stamp.to_le_bytes());
-    }
-}
-
-/// The moment a stamp was made, to a tenth of a millisecond.
-pub fn stamped(stamp: u32) -> Moment {
-    Moment::from_micros(u64::from(stamp) * 100)
 }

@@ -1,9 +1,12 @@
 //! What must hold on every schedule, whatever the faults: checked on the wire's log and on the events.
 
-use crate::device::stamped;
+use crate::body::{Protocol, STAMPS_END, stamped};
+use crate::order::{Story, Wish};
 use crate::tap::{Log, Sent};
 use handscope::hand::register::{Access, Element, by_address};
-use handscope::hand::{Finger, Group, Groups, HandSample, Moment, Timed};
+use handscope::hand::{
+    AngleReading, Finger, Group, Groups, HandSample, Moment, PerDof, Target, Timed,
+};
 use handscope::link::{
     Disarmed, Hold, LinkEvent, LinkHandle, LinkState, Outcome, Request, RequestError, Ticket,
 };
@@ -12,37 +15,59 @@ use std::time::Duration;
 
 /// The stamp is cut to a tenth of a millisecond.
 const STAMP_STEP: Duration = Duration::from_micros(100);
-/// Hold frames are at most this far apart: the repeat, and one exchange that was under way.
+/// Hold frames are at most this far apart: the repeat, and one exchange that was under way …
 const HOLD_GAP_MAX: Duration = Duration::from_millis(40 + 350);
+/// … which over CAN is a read of eleven pieces through an adapter, and a hold of two.
+const HOLD_GAP_MAX_PIECES: Duration = Duration::from_millis(40 + 500 + 160);
+/// Without faults every group is newer than this, on the slowest wire: forty pieces of a fingertip sweep at 15 ms each.
+const FRESH_WITHIN: Duration = Duration::from_millis(2000);
+/// Without faults the pose is newer than this …
+const POSE_WITHIN: Duration = Duration::from_millis(300);
+/// … and in pieces, between which that sweep lies.
+const POSE_WITHIN_PIECES: Duration = Duration::from_millis(1300);
 
 /// How often the oracles had something to judge.
 #[derive(Debug, Clone, Default)]
 pub struct Seen {
+    pub wires: BTreeMap<Protocol, u64>,
+    pub faults: u64,
     pub fresh_states: u64,
     pub fresh_tips: u64,
+    pub wishes: u64,
     pub setpoint_frames: u64,
     pub hold_frames: u64,
     pub arm_asks: u64,
     pub armed: u64,
+    pub stops_pressed: u64,
     pub stops_seen: u64,
     pub confirmed: u64,
     pub losses: u64,
+    pub reconnects: u64,
     pub answers: u64,
+    pub full: u64,
     pub disturbed: u64,
 }
 
 impl Seen {
     pub fn add(&mut self, more: &Self) {
+        for (wire, schedules) in &more.wires {
+            *self.wires.entry(*wire).or_default() += schedules;
+        }
+        self.faults += more.faults;
         self.fresh_states += more.fresh_states;
         self.fresh_tips += more.fresh_tips;
+        self.wishes += more.wishes;
         self.setpoint_frames += more.setpoint_frames;
         self.hold_frames += more.hold_frames;
         self.arm_asks += more.arm_asks;
         self.armed += more.armed;
+        self.stops_pressed += more.stops_pressed;
         self.stops_seen += more.stops_seen;
         self.confirmed += more.confirmed;
         self.losses += more.losses;
+        self.reconnects += more.reconnects;
         self.answers += more.answers;
+        self.full += more.full;
         self.disturbed += more.disturbed;
     }
 }
@@ -50,35 +75,71 @@ impl Seen {
 /// Watches one schedule.
 pub struct Witness {
     seed: u64,
+    protocol: Protocol,
     log: Log,
     pub seen: Seen,
     states: Vec<(Moment, LinkState)>,
-    samples: Vec<(Moment, HandSample)>,
+    poses: Vec<(Moment, PerDof<AngleReading>)>,
+    newest: HandSample,
     stops: Vec<Moment>,
-    open: BTreeMap<Ticket, Request>,
+    open: BTreeMap<Ticket, (Moment, Request)>,
+    jobs: Vec<(Moment, Moment)>,
+    wishes: Vec<Wish>,
+    quiet: Moment,
+    /// The adapter gives back what is sent.
+    pub echoes: bool,
 }
 
 impl Witness {
-    pub fn new(seed: u64, log: Log) -> Self {
+    pub fn new(seed: u64, protocol: Protocol, log: Log) -> Self {
         Self {
             seed,
+            protocol,
             log,
-            seen: Seen::default(),
+            seen: Seen {
+                wires: BTreeMap::from([(protocol, 1)]),
+                ..Seen::default()
+            },
             states: vec![(Moment::ZERO, LinkState::Offline)],
-            samples: Vec::new(),
+            poses: Vec::new(),
+            newest: HandSample::default(),
             stops: Vec::new(),
             open: BTreeMap::new(),
+            jobs: Vec::new(),
+            wishes: Vec::new(),
+            quiet: Moment::ZERO,
+            echoes: false,
+        }
+    }
+
+    /// The faults end.
+    pub fn quiet(&mut self, now: Moment) {
+        self.quiet = now;
+    }
+
+    pub fn wished(&mut self, wishes: &PerDof<Option<Target>>, now: Moment) {
+        for (dof, wish) in wishes.iter() {
+            if let Some(Target::Go(angle)) = wish {
+                self.seen.wishes += 1;
+                self.wishes.push(Wish {
+                    at: now,
+                    joint: dof.index(),
+                    angle: angle.get(),
+                    states: self.states.len(),
+                });
+            }
         }
     }
 
     pub fn stop_pressed(&mut self, link: &LinkHandle, now: Moment) {
         if link.status().state.is_live() {
             self.stops.push(now);
+            self.seen.stops_pressed += 1;
         }
     }
 
-    pub fn asked(&mut self, ticket: Ticket, request: Request) {
-        self.open.insert(ticket, request);
+    pub fn asked(&mut self, ticket: Ticket, request: Request, now: Moment) {
+        self.open.insert(ticket, (now, request));
     }
 
     pub fn event(&mut self, event: &LinkEvent, now: Moment) {
@@ -90,7 +151,7 @@ impl Witness {
                 self.states.push((*at, *state));
             }
             LinkEvent::ArmRefused { .. } => {}
-            LinkEvent::Done { ticket, result } => self.done(*ticket, result),
+            LinkEvent::Done { ticket, result } => self.done(*ticket, result, now),
         }
     }
 
@@ -112,28 +173,39 @@ impl Witness {
     fn sample(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         if fresh.contains(Group::Current) {
             let current = sample.current.unwrap();
-            let [low, high, ..] = current
-                .value
-                .as_array()
-                .map(|reading| reading.raw().cast_unsigned());
-            self.check_stamp(&current, u32::from(low) | u32::from(high) << 16);
+            for (_, reading) in current.value.iter() {
+                self.check_stamp(&current, u32::from(reading.raw().cast_unsigned()));
+            }
             self.seen.fresh_states += 1;
+        }
+        if fresh.contains(Group::Force) {
+            let force = sample.force.unwrap();
+            for (_, reading) in force.value.iter() {
+                self.check_stamp(&force, u32::from(reading.raw().cast_unsigned()));
+            }
         }
         for finger in Finger::ALL {
             if fresh.contains(Group::Tactile(finger)) {
                 let block = sample.tactile[finger].unwrap();
-                self.check_stamp(&block, block.value.raw[0]);
+                for stamp in block.value.raw {
+                    self.check_stamp(&block, stamp);
+                }
                 self.seen.fresh_tips += 1;
             }
         }
-        self.samples.push((now, *sample));
+        if let Some(angle) = sample.angle
+            && fresh.contains(Group::Angle)
+        {
+            self.poses.push((now, angle.value));
+        }
+        self.newest = *sample;
     }
 
     fn check_stamp<T>(&self, value: &Timed<T>, stamp: u32) {
         let made = stamped(stamp);
         let fresh = made.plus(STAMP_STEP) >= value.asked && made <= value.received;
         if !fresh {
-            let sent = self.log.sent();
+            let sent = self.log.take();
             let last = sent.get(sent.len().saturating_sub(12)..);
             println!("last requests: {last:#?}");
         }
@@ -144,15 +216,15 @@ impl Witness {
         );
     }
 
-    fn done(&mut self, ticket: Ticket, result: &Result<Outcome, RequestError>) {
-        let request = self.open.remove(&ticket);
-        assert!(
-            request.is_some(),
-            "seed {}: {ticket:?} answered twice or never asked",
-            self.seed
-        );
-        if let (Some(Request::Read(asked)), Ok(Outcome::Memory { span, bytes })) = (request, result)
-        {
+    fn done(&mut self, ticket: Ticket, result: &Result<Outcome, RequestError>, now: Moment) {
+        let Some((since, request)) = self.open.remove(&ticket) else {
+            panic!(
+                "seed {}: {ticket:?} answered twice or never asked",
+                self.seed
+            )
+        };
+        self.jobs.push((since, now));
+        if let (Request::Read(asked), Ok(Outcome::Memory { span, bytes })) = (request, result) {
             assert_eq!(
                 (asked, usize::from(asked.len)),
                 (*span, bytes.len()),
@@ -177,18 +249,23 @@ impl Witness {
     }
 
     pub fn finish(&mut self, link: &LinkHandle, now: Moment) {
-        let sent = self.log.sent();
+        assert!(now.since(Moment::ZERO) < STAMPS_END);
+        let sent = self.log.take();
         for frame in &sent {
             self.check_range(frame);
             self.check_motion(frame);
         }
         self.check_stops(&sent);
         self.check_recovery(link, now);
+        self.story(&sent, now).check();
         let stats = link.stats();
+        self.seen.reconnects += stats.reconnects;
         assert_eq!(stats.dropped_events, 0, "seed {}", self.seed);
         let status = link.status();
         assert!(
-            !status.rival && status.disarmed != Some(Disarmed::Rival) && !status.echoes,
+            !status.rival
+                && status.disarmed != Some(Disarmed::Rival)
+                && (self.echoes || !status.echoes),
             "seed {}: nobody else was on the line: {status:?} {stats:?}",
             self.seed
         );
@@ -205,6 +282,19 @@ impl Witness {
         );
         self.seen.disturbed +=
             stats.timeouts + stats.checksum_errors + stats.foreign_replies + stats.refusals;
+    }
+
+    fn story<'a>(&'a self, sent: &'a [Sent], end: Moment) -> Story<'a> {
+        Story {
+            seed: self.seed,
+            protocol: self.protocol,
+            sent,
+            states: &self.states,
+            wishes: &self.wishes,
+            jobs: &self.jobs,
+            quiet: self.quiet,
+            end,
+        }
     }
 
     /// No write outside the manual's addresses and ranges.
@@ -250,8 +340,9 @@ impl Witness {
             "seed {}: {frame:?} {state:?}",
             self.seed
         );
-        assert_eq!(
-            frame.address, 1486,
+        let second = self.protocol.in_pieces() && frame.address == 1494;
+        assert!(
+            frame.address == 1486 || second,
             "seed {}: {frame:?} {state:?}",
             self.seed
         );
@@ -262,15 +353,11 @@ impl Witness {
             .chunks(2)
             .map(|pair| i16::from_le_bytes([pair[0], pair[1]]))
             .collect();
-        let known = self.samples.iter().any(|(at, sample)| {
-            *at <= frame.at
-                && sample.angle.is_some_and(|angle| {
-                    angle
-                        .value
-                        .iter()
-                        .zip(&targets)
-                        .all(|((_, actual), target)| actual.raw() == *target)
-                })
+        let first = usize::from(frame.address - 1486) / 2;
+        let before = self.poses.partition_point(|(at, _)| *at <= frame.at);
+        let known = self.poses[..before].iter().rev().any(|(_, pose)| {
+            let pose = pose.as_array().map(|angle| angle.raw());
+            pose[first..].starts_with(&targets)
         });
         let leaves = targets.iter().all(|target| *target == -1);
         assert!(
@@ -288,9 +375,11 @@ impl Witness {
                 .iter()
                 .find(|(at, state)| *at >= pressed && *state == LinkState::Offline);
             let lost = lost.map_or(Moment::from_micros(u64::MAX), |(at, _)| *at);
+            let under_way = sent.iter().rfind(|frame| frame.at <= pressed);
             let mut after = sent
                 .iter()
-                .filter(|frame| frame.at > pressed && frame.at < lost);
+                .filter(|frame| frame.at > pressed && frame.at < lost)
+                .skip_while(|frame| under_way.is_some_and(|write| self.completes(frame, write)));
             let Some(next) = after.next() else { continue };
             // Within a stop that is under way, reads that watch for rest may come first.
             let already = self
@@ -308,6 +397,14 @@ impl Witness {
         }
     }
 
+    /// True for the second piece of a write that was under way.
+    fn completes(&self, frame: &Sent, write: &Sent) -> bool {
+        self.protocol.in_pieces()
+            && frame.written.is_some()
+            && write.written.is_some()
+            && frame.address == write.address + 8
+    }
+
     /// Hold goes out again and again until rest is seen.
     fn check_repeats(&self, pressed: Moment, lost: Moment, sent: &[Sent]) {
         let end = self
@@ -315,13 +412,18 @@ impl Witness {
             .iter()
             .find(|(at, state)| *at > pressed && *state != LinkState::Holding);
         let end = end.map_or(lost, |(at, _)| (*at).min(lost));
+        let longest = if self.protocol.in_pieces() {
+            HOLD_GAP_MAX_PIECES
+        } else {
+            HOLD_GAP_MAX
+        };
         let mut last = pressed;
         for frame in sent
             .iter()
             .filter(|frame| frame.at > pressed && frame.at < end && frame.is_motion())
         {
             assert!(
-                frame.at.since(last) <= HOLD_GAP_MAX,
+                frame.at.since(last) <= longest,
                 "seed {}: hold paused at {last:?}",
                 self.seed
             );
@@ -338,13 +440,49 @@ impl Witness {
             "seed {}: {status:?} at {now:?}",
             self.seed
         );
-        let (_, sample) = self.samples.last().unwrap();
-        let age = sample.angle.unwrap().age(now);
+        let longest = if self.protocol.in_pieces() {
+            POSE_WITHIN_PIECES
+        } else {
+            POSE_WITHIN
+        };
+        self.check_age("angle", self.newest.angle.as_ref(), now, longest);
+        self.check_freshness(now);
+        self.seen.confirmed += u64::from(matches!(status.hold, Hold::Confirmed { .. }));
+    }
+
+    fn check_freshness(&self, now: Moment) {
+        let HandSample {
+            angle_set,
+            force_set,
+            speed_set,
+            force,
+            current,
+            faults,
+            status,
+            temperature,
+            tactile,
+            ..
+        } = &self.newest;
+        let longest = FRESH_WITHIN;
+        self.check_age("angle_set", angle_set.as_ref(), now, longest);
+        self.check_age("force_set", force_set.as_ref(), now, longest);
+        self.check_age("speed_set", speed_set.as_ref(), now, longest);
+        self.check_age("force", force.as_ref(), now, longest);
+        self.check_age("current", current.as_ref(), now, longest);
+        self.check_age("faults", faults.as_ref(), now, longest);
+        self.check_age("status", status.as_ref(), now, longest);
+        self.check_age("temperature", temperature.as_ref(), now, longest);
+        for (finger, block) in tactile.iter() {
+            self.check_age(&format!("{finger:?}"), block.as_ref(), now, longest);
+        }
+    }
+
+    fn check_age<T>(&self, name: &str, value: Option<&Timed<T>>, now: Moment, longest: Duration) {
+        let age = value.map(|value| value.age(now));
         assert!(
-            age < Duration::from_millis(300),
-            "seed {}: the newest pose is {age:?} old",
+            age.is_some_and(|age| age < longest),
+            "seed {}: {name} is {age:?} old",
             self.seed
         );
-        self.seen.confirmed += u64::from(matches!(status.hold, Hold::Confirmed { .. }));
     }
 }
