@@ -6,13 +6,16 @@
     clippy::expect_used,
     clippy::indexing_slicing,
     clippy::panic,
+    clippy::cast_possible_truncation,
     reason = "a test may"
 )]
 
+#[path = "faults/body.rs"]
+mod body;
 #[path = "faults/device.rs"]
 mod device;
 
-use device::Quirks;
+use body::Quirks;
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use handscope::codec::can::{read_request, to_record};
