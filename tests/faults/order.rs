@@ -21,9 +21,9 @@ const ALARM: Duration = Duration::from_millis(500);
 const OTHERS_BEFORE_WISH: usize = 1;
 /// Rounds of setpoints keep this distance.
 const ROUND: Duration = Duration::from_millis(20);
-/// Live, and not asked for so long, is starved: a question that a late reply may answer waits up to two seconds, and one
-/// for which the line has no time another.
-const ASKED_WITHIN: Duration = Duration::from_secs(3);
+/// Live, and not asked for so long, is starved: a question that late replies may answer waits for two seconds after the
+/// last of them, with faults for one and a half before.
+const ASKED_WITHIN: Duration = Duration::from_millis(3600);
 /// A wire that is back is live again within this …
 const BACK_WITHIN: Duration = Duration::from_secs(2);
 /// … and a wish is on the wire within this, on a wire without faults.
