@@ -9,9 +9,9 @@
     reason = "a test may"
 )]
 
-use handscope::app::SimDial;
 use handscope::app::program::{App, Env};
 use handscope::app::settings::Settings;
+use handscope::app::{NoChoice, SimDial};
 use handscope::hand::Moment;
 use handscope::headless::canvas::Canvas;
 use handscope::link::{Clock, LinkState};
@@ -48,8 +48,8 @@ fn hand() -> SharedHand {
 fn serve(hand: &SharedHand, folder: &Path) -> Vec<String> {
     let place = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let [rs485, rtu, slcan] = ["rs485", "rtu", "slcan"].map(place);
-    tokio::spawn(pty::serve_rs485(hand.clone(), Path::new(&rs485)).unwrap());
-    tokio::spawn(pty::serve_rtu(hand.clone(), Path::new(&rtu)).unwrap());
+    tokio::spawn(pty::serve_rs485(hand.clone(), Path::new(&rs485), None).unwrap());
+    tokio::spawn(pty::serve_rtu(hand.clone(), Path::new(&rtu), None).unwrap());
     tokio::spawn(pty::serve_slcan(hand.clone(), Path::new(&slcan)).unwrap());
     let socket = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     socket.set_nonblocking(true).unwrap();
@@ -103,6 +103,7 @@ impl Desk {
             clock,
             dial: Arc::new(SimDial::new(clock)),
             wake: Arc::new(|| {}),
+            files: Arc::new(NoChoice),
             settings_path: None,
         };
         let mut app = App::new(env, Settings::default());
