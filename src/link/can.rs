@@ -265,7 +265,7 @@ impl Can {
                     self.unanswered = 0;
                     self.port.forget_refusals();
                     return Ok(frame.data);
-                } else if frame == *request && self.echoes != Some(false) {
+                } else if frame == *request && !self.port.never_echoes() {
                     self.echoes = Some(true);
                 } else {
                     self.foreign_frame(&frame);
@@ -321,7 +321,8 @@ impl Can {
             return;
         };
         if self.is_request(id, frame) {
-            let echo = self.echoes != Some(false) && self.sent.contains(frame);
+            // An adapter may have been taken for one that does not echo because the first echo got lost.
+            let echo = !self.port.never_echoes() && self.sent.contains(frame);
             self.foreign_requests += u64::from(!echo);
             return;
         }
