@@ -179,6 +179,13 @@ impl Desk {
         self.ask(HandCommand::ClearErrors, Asked::ClearErrors, now);
     }
 
+    /// Puts a person's note into the history.
+    pub(crate) fn note(&mut self, at: Moment, words: &str) {
+        if let Some(note) = MarkKind::note(words) {
+            self.state.history.mark(at, note);
+        }
+    }
+
     /// Counts tactile channels from now, where the reading is fresh: one fingertip, or all.
     pub(crate) fn tare(&mut self, finger: Option<Finger>) {
         let fresh: Vec<Finger> = Finger::ALL

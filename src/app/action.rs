@@ -2,8 +2,8 @@
 
 use crate::app::save::Content;
 use crate::app::scan::ScanWish;
-use crate::app::settings::{AngleUnit, Language, PlotWindow, Theme};
-use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Speed};
+use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme};
+use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Speed};
 use crate::transport::Endpoint;
 
 /// Poses that need no library.
@@ -85,6 +85,10 @@ pub enum Action {
     AngleUnit(AngleUnit),
     /// Seconds that the plots show.
     PlotWindow(PlotWindow),
+    /// Show a plot or hide it; the last one stays.
+    ShowPlot(PlotKind, bool),
+    /// Put a note of these words into the history at a moment; of no words, none.
+    Note(Moment, String),
     /// Count the channels of these fingertips from now: one, or all.
     Tare(Option<Finger>),
     /// Take the last taring back.

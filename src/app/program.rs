@@ -166,6 +166,7 @@ impl App {
             Action::Tare(finger) => desk.tare(finger),
             Action::UndoTare => desk.state.tare.undo(),
             Action::ForgetFaults => desk.state.faults.forget(),
+            Action::Note(at, words) => desk.note(at, &words),
             Action::Dismiss(id) => desk.state.notices.dismiss(id),
             kept => self.keep(kept),
         }
@@ -189,6 +190,7 @@ impl App {
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,
             Action::PlotWindow(window) => settings.plot_window = window,
+            Action::ShowPlot(kind, on) => settings.plots.set(kind, on),
             // Standing plots are the view's own matter, and all others were carried out before.
             _ => {}
         }

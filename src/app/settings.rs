@@ -103,6 +103,90 @@ impl PlotWindow {
     }
 }
 
+/// One of the stacked plots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PlotKind {
+    /// Force of the joints.
+    Force,
+    /// Normal force at the fingertips.
+    Normal,
+    /// Tangential force at the fingertips.
+    Tangential,
+    /// Current of the drives.
+    Current,
+    /// Temperature of the drives.
+    Temperature,
+    /// Angle of the joints: actual and target.
+    Angle,
+}
+
+/// The plots that are shown, always at least one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<PlotKind>", into = "Vec<PlotKind>")]
+pub struct ShownPlots([bool; 6]);
+
+impl PlotKind {
+    /// All, from top to bottom.
+    pub const ALL: [Self; 6] = [
+        Self::Force,
+        Self::Normal,
+        Self::Tangential,
+        Self::Current,
+        Self::Temperature,
+        Self::Angle,
+    ];
+}
+
+impl Default for ShownPlots {
+    fn default() -> Self {
+        use PlotKind::{Angle, Current, Force, Temperature};
+        vec![Force, Current, Temperature, Angle].into()
+    }
+}
+
+impl From<Vec<PlotKind>> for ShownPlots {
+    fn from(kinds: Vec<PlotKind>) -> Self {
+        if kinds.is_empty() {
+            return Self::default();
+        }
+        Self(PlotKind::ALL.map(|kind| kinds.contains(&kind)))
+    }
+}
+
+impl From<ShownPlots> for Vec<PlotKind> {
+    fn from(shown: ShownPlots) -> Self {
+        let all = PlotKind::ALL.into_iter();
+        all.filter(|kind| shown.shows(*kind)).collect()
+    }
+}
+
+impl ShownPlots {
+    /// Whether a plot is shown.
+    #[must_use]
+    pub fn shows(self, kind: PlotKind) -> bool {
+        let pairs = PlotKind::ALL.into_iter().zip(self.0);
+        pairs.into_iter().any(|(one, on)| on && one == kind)
+    }
+
+    /// How many are shown.
+    #[must_use]
+    pub fn count(self) -> usize {
+        self.0.into_iter().filter(|on| *on).count()
+    }
+
+    /// Shows or hides a plot. The last one stays.
+    pub fn set(&mut self, kind: PlotKind, on: bool) {
+        let mut changed = *self;
+        for (one, shown) in PlotKind::ALL.into_iter().zip(&mut changed.0) {
+            *shown = if one == kind { on } else { *shown };
+        }
+        if changed.count() > 0 {
+            *self = changed;
+        }
+    }
+}
+
 /// What is kept from one start to the next. Unknown keys of the file survive in [`Self::others`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -117,6 +201,8 @@ pub struct Settings {
     pub angle_unit: AngleUnit,
     /// Seconds that the plots show.
     pub plot_window: PlotWindow,
+    /// The plots that are shown.
+    pub plots: ShownPlots,
     /// How gestures are started.
     pub gesture_route: GestureRoute,
     /// Names that a person gave to gestures, by number.

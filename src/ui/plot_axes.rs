@@ -86,7 +86,7 @@ impl Band {
 }
 
 /// Where a value stands between the ends of a rectangle.
-fn y_of(rect: Rect, band: &Band, value: f64) -> f32 {
+pub(crate) fn y_of(rect: Rect, band: &Band, value: f64) -> f32 {
     let part = (value - band.low) / (band.high - band.low);
     #[expect(
         clippy::cast_possible_truncation,
@@ -107,6 +107,34 @@ pub(crate) fn x_of(rect: Rect, span: (f64, f64), time_s: f64) -> f32 {
     rect.left() + rect.width() * part
 }
 
+/// The time at a place; the other way round than [`x_of`].
+pub(crate) fn time_of(rect: Rect, span: (f64, f64), x: f32) -> f64 {
+    let part = f64::from(x - rect.left()) / f64::from(rect.width().max(1.0));
+    span.0 + (span.1 - span.0) * part
+}
+
+/// A time of the program as a clock shows it, as fine as a stretch of `width_s` seconds needs.
+pub(crate) fn clock(time_s: f64, width_s: f64) -> String {
+    let digits: u8 = match width_s {
+        width if width <= 1.0 => 3,
+        width if width <= 20.0 => 2,
+        width if width <= 120.0 => 1,
+        _ => 0,
+    };
+    let unit = 10_f64.powi(i32::from(digits));
+    // Rounded as a whole, so that 59.999 does not become 0:60.
+    let time_s = (time_s.max(0.0) * unit).round() / unit;
+    let (hours, minutes) = ((time_s / 3600.0).floor(), (time_s / 60.0).floor() % 60.0);
+    let seconds = time_s % 60.0;
+    let digits = usize::from(digits);
+    let width = if digits == 0 { 2 } else { digits + 3 };
+    if hours > 0.0 {
+        format!("{hours:.0}:{minutes:02.0}:{seconds:0width$.digits$}")
+    } else {
+        format!("{minutes:.0}:{seconds:0width$.digits$}")
+    }
+}
+
 /// The numbers left of a plot.
 pub(crate) fn value_axis_ui(ui: &Ui, ground: Rect, look: Look, band: &Band) {
     for value in band.lines() {
@@ -116,44 +144,65 @@ pub(crate) fn value_axis_ui(ui: &Ui, ground: Rect, look: Look, band: &Band) {
             pos2(ground.left() + AXIS / 2.0 - 3.0, y),
             vec2(AXIS - 6.0, 12.0),
         );
-        let text = format!("{value:.0}");
+        let digits = usize::from(band.step < 1.0);
+        let text = format!("{value:.digits$}");
         let (font, color) = (theme::number_small(), look.palette.faint);
         paint_text(ui, place, Align2::RIGHT_CENTER, &text, font, color);
     }
 }
 
-/// Seconds between two vertical lines.
-fn time_step(window_s: f64) -> f64 {
-    match window_s {
-        s if s <= 5.0 => 1.0,
-        s if s <= 10.0 => 2.0,
-        s if s <= 30.0 => 5.0,
-        s if s <= 60.0 => 10.0,
-        s if s <= 300.0 => 60.0,
-        s if s <= 600.0 => 120.0,
-        s if s <= 1800.0 => 300.0,
-        _ => 600.0,
+/// The time axis of all plots.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TimeAxis {
+    /// From and to, in seconds.
+    pub(crate) span: (f64, f64),
+    /// The newest time, while it is followed: times are then told by how long ago they are.
+    pub(crate) now: Option<f64>,
+}
+
+/// Seconds between two vertical lines: the least that gives no more than six of them.
+const TIME_STEPS: [f64; 16] = [
+    0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0,
+];
+
+impl TimeAxis {
+    fn width_s(self) -> f64 {
+        self.span.1 - self.span.0
+    }
+
+    fn step_s(self) -> f64 {
+        let mut steps = TIME_STEPS.into_iter();
+        let fits = |step: &f64| self.width_s() / step <= 6.0 + 1e-9;
+        steps.find(fits).unwrap_or(600.0)
+    }
+
+    /// The times with a vertical line, newest first.
+    fn lines(self) -> impl Iterator<Item = f64> {
+        let step = self.step_s();
+        let newest = match self.now {
+            Some(now) => now,
+            None => (self.span.1 / step).floor() * step,
+        };
+        (0..16u8)
+            .map(move |n| newest - f64::from(n) * step)
+            .take_while(move |time| *time >= self.span.0 - step * 1e-6)
+    }
+
+    fn text(self, time_s: f64) -> String {
+        let Some(now) = self.now else {
+            return clock(time_s, self.width_s());
+        };
+        let ago = now - time_s;
+        if self.width_s() > 60.0 {
+            format!("-{:.0} min", ago / 60.0)
+        } else {
+            format!("-{ago:.0} s")
+        }
     }
 }
 
-/// The vertical lines of a window, as seconds ago and place.
-fn time_lines(rect: Rect, window_s: f64) -> impl Iterator<Item = (f64, f32)> {
-    let step = time_step(window_s);
-    (0..32u8)
-        .map(move |n| f64::from(n) * step)
-        .take_while(move |ago| *ago <= window_s)
-        .map(move |ago| {
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "0..=1 of a width in pixels"
-            )]
-            let part = (ago / window_s) as f32;
-            (ago, rect.right() - rect.width() * part)
-        })
-}
-
 /// The lines behind the curves.
-pub(crate) fn grid(ui: &Ui, rect: Rect, look: Look, band: &Band, window_s: f64) {
+pub(crate) fn grid(ui: &Ui, rect: Rect, look: Look, band: &Band, time: TimeAxis) {
     let painter = ui.painter();
     let stroke = Stroke::new(1.0, look.palette.grid);
     for value in band.lines() {
@@ -169,29 +218,30 @@ pub(crate) fn grid(ui: &Ui, rect: Rect, look: Look, band: &Band, window_s: f64) 
             Stroke::new(1.0, color),
         );
     }
-    for (_, x) in time_lines(rect, window_s) {
-        painter.vline(x, rect.y_range(), stroke);
+    for time_s in time.lines() {
+        painter.vline(x_of(rect, time.span, time_s), rect.y_range(), stroke);
     }
 }
 
 /// The numbers under the lowest plot.
-pub(crate) fn time_axis_ui(ui: &Ui, rect: Rect, look: Look, window_s: f64) {
+pub(crate) fn time_axis_ui(ui: &Ui, rect: Rect, look: Look, time: TimeAxis) {
     let (font, color) = (theme::number_small(), look.palette.faint);
-    for (ago, x) in time_lines(rect, window_s) {
-        let text = match ago {
-            0.0 => look.say(panels::NOW).to_owned(),
-            ago if window_s > 60.0 => format!("-{:.0} min", ago / 60.0),
-            ago => format!("-{ago:.0} s"),
+    for time_s in time.lines() {
+        let x = x_of(rect, time.span, time_s);
+        let is_now = time.now == Some(time_s);
+        let text = if is_now {
+            look.say(panels::NOW).to_owned()
+        } else {
+            time.text(time_s)
         };
-        let place = Rect::from_center_size(pos2(x, rect.center().y), vec2(56.0, 14.0));
+        let place = Rect::from_center_size(pos2(x, rect.center().y), vec2(64.0, 14.0));
         let place = place.translate(vec2((rect.right() - place.right()).min(0.0), 0.0));
-        let align = if ago == 0.0 {
+        let align = if is_now {
             Align2::RIGHT_CENTER
         } else {
             Align2::CENTER_CENTER
         };
-        let room = x - rect.left() > 20.0 || ago == 0.0;
-        if room {
+        if x - rect.left() > 20.0 || is_now {
             paint_text(ui, place, align, &text, font.clone(), color);
         }
     }
@@ -227,5 +277,32 @@ mod tests {
         extent.include(f64::INFINITY);
         let band = Band::of((0.0, 200.0), &extent).rounded(STEPS, 5.0);
         assert_eq!((band.low, band.high), (0.0, 200.0));
+    }
+
+    #[test]
+    fn a_clock_is_as_fine_as_it_needs_to_be() {
+        for (time_s, width_s, text) in [
+            (5.25, 10.0, "0:05.25"),
+            (59.999, 10.0, "1:00.00"),
+            (3_725.0, 600.0, "1:02:05"),
+            (65.1234, 0.5, "1:05.123"),
+            (-1.0, 600.0, "0:00"),
+        ] {
+            assert_eq!(clock(time_s, width_s), text);
+        }
+    }
+
+    #[test]
+    fn a_place_and_its_time_belong_together_and_lines_are_few() {
+        let rect = Rect::from_min_size(pos2(40.0, 0.0), vec2(500.0, 100.0));
+        for width_s in [0.02, 0.7, 5.0, 42.0, 600.0, 3600.0] {
+            let span = (100.0, 100.0 + width_s);
+            let time_s = time_of(rect, span, 165.0);
+            assert!((x_of(rect, span, time_s) - 165.0).abs() < 0.01);
+            for now in [None, Some(span.1)] {
+                let count = TimeAxis { span, now }.lines().count();
+                assert!((1..=8).contains(&count), "{width_s}: {count}");
+            }
+        }
     }
 }

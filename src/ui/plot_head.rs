@@ -1,25 +1,143 @@
-//! What stands over the plots: legend, window, pause. Draws no curve.
+//! What stands over the plots: legend, window, pause, cursors and the menu. Draws no curve.
 
 use crate::app::action::Action;
 use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
 use crate::ui::controls::{self, Button, Weight, take_left, take_right, take_top};
 use crate::ui::look::{Look, Pane};
+use crate::ui::plot_panels::PANELS;
 use crate::ui::plots::PlotView;
-use crate::ui::text::{panels, words};
+use crate::ui::text::{Text, panels, plots, words};
 use crate::ui::theme;
-use egui::{Align2, Color32, CornerRadius, Id, Rect, Stroke, Ui, pos2, vec2};
+use egui::{
+    Align2, Color32, CornerRadius, Id, Popup, PopupCloseBehavior, Rect, Stroke, Ui, UiBuilder,
+    pos2, vec2,
+};
 
 /// Height of a row of the legend.
 const ROW: f32 = 20.0;
 /// Free room beside the title below which the switches are drawn short.
-const NARROW: f32 = 380.0;
+const NARROW: f32 = 440.0;
+/// Room that the row of windows needs; in less it becomes a list.
+const WINDOWS: f32 = 270.0;
+/// Width of the menu.
+const MENU: f32 = 250.0;
+/// Rows that go to the clipboard at once: they are made into text within one frame.
+const COPY_ROWS_MAX: usize = 20_000;
 
 /// The switches beside the title.
 pub(crate) fn head_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
     let narrow = head.width() < NARROW;
+    menu_ui(ui, take_right(&mut head, 26.0), pane, view);
+    let look = pane.look;
+    let span = view.sight.span();
+    if switch_ui(
+        ui,
+        take_right(&mut head, 34.0),
+        look,
+        view.cursors.at.is_some(),
+    ) {
+        view.cursors.toggle(span);
+    }
+    if !narrow {
+        let text = look.say(plots::NOTE);
+        let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP;
+        let place = take_right(&mut head, width);
+        let button = Button::new(text, look.say(plots::NOTE_TIP)).named(look.say(plots::NOTE_NAME));
+        let pressed = button.put(ui, look, place, Id::unique("note")).clicked();
+        view.note_asked |= pressed;
+    }
     pause_ui(ui, &mut head, pane, view, narrow.then_some(28.0));
-    window_ui(ui, head, pane);
+    if head.width() < WINDOWS {
+        window_list_ui(ui, head, pane, view);
+    } else {
+        window_ui(ui, head, pane, view);
+    }
+}
+
+/// The switch of the cursors; true if it was pressed.
+fn switch_ui(ui: &mut Ui, place: Rect, look: Look, on: bool) -> bool {
+    let button = Button::new(look.say(plots::CURSORS), look.say(plots::CURSORS_TIP))
+        .named(look.say(plots::CURSORS_NAME));
+    let button = Button {
+        selected: Some(on),
+        weight: if on { Weight::Chosen } else { Weight::Normal },
+        ..button
+    };
+    button.put(ui, look, place, Id::unique("cursors")).clicked()
+}
+
+/// Everything that is not needed all the time.
+fn menu_ui(ui: &mut Ui, place: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
+    let look = pane.look;
+    let button = Button::new(look.say(plots::MORE), look.say(plots::MORE_TIP))
+        .named(look.say(plots::MORE_NAME));
+    let response = button.ground(ui, look, place, Id::unique("more for plots"));
+    for y in [-5.0, 0.0, 5.0] {
+        let center = place.center() + vec2(0.0, y);
+        ui.painter()
+            .circle_filled(center, 1.6, button.text_color(look));
+    }
+    let shown = Popup::menu(&response)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.label(look.say(plots::SHOWN));
+            shown_ui(ui, pane);
+            ui.separator();
+            ui.checkbox(&mut view.large, look.say(plots::ENLARGE));
+            view.note_asked |= menu_button(ui, look, plots::NOTE_NAME, plots::NOTE_TIP);
+            ui.separator();
+            copy_ui(ui, pane, view);
+            ui.separator();
+            ui.set_max_width(MENU);
+            let hint = egui::RichText::new(look.say(plots::AREA_TIP));
+            ui.label(hint.small().color(look.palette.muted));
+        });
+    if shown.is_none() {
+        view.copied = None;
+    }
+    if view.note_asked {
+        Popup::close_all(ui.ctx());
+    }
+}
+
+fn menu_button(ui: &mut Ui, look: Look, text: Text, tip: Text) -> bool {
+    let response = ui.button(look.say(text));
+    response.on_hover_text(look.say(tip)).clicked()
+}
+
+/// A switch for each plot. The last one that is shown stays.
+fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let shown = pane.state.settings.plots;
+    for panel in &PANELS {
+        let mut on = shown.shows(panel.kind);
+        let enabled = !on || shown.count() > 1;
+        let switch = egui::Checkbox::new(&mut on, pane.look.say(panel.title));
+        if ui.add_enabled(enabled, switch).changed() {
+            pane.actions.push(Action::ShowPlot(panel.kind, on));
+        }
+    }
+}
+
+fn copy_ui(ui: &mut Ui, pane: &Pane<'_>, view: &mut PlotView) {
+    let look = pane.look;
+    let (from_s, to_s) = view.sight.span();
+    let series = view.shown_series(pane);
+    let rows = pane.state.history.rows(&series, from_s, to_s);
+    let fits = rows <= COPY_ROWS_MAX;
+    let button = egui::Button::new(look.say(plots::COPY));
+    let response = ui
+        .add_enabled(fits, button)
+        .on_hover_text(look.say(plots::COPY_TIP))
+        .on_disabled_hover_text(look.say(plots::COPY_LONG));
+    if response.clicked() {
+        let table = pane.state.history.table(&series, from_s, to_s);
+        ui.copy_text(table.csv());
+        view.copied = Some(table.len());
+    }
+    if let Some(rows) = view.copied {
+        ui.label(format!("{} {rows}", look.say(plots::COPIED)));
+    }
 }
 
 fn pause_ui(
@@ -30,13 +148,13 @@ fn pause_ui(
     icon_width: Option<f32>,
 ) {
     let look = pane.look;
-    let paused = view.held_s.is_some();
+    let paused = view.sight.is_held();
     let text = look.say(if paused {
         panels::PAUSED
     } else {
         panels::PAUSE
     });
-    let place = take_right(head, icon_width.unwrap_or(72.0));
+    let place = take_right(head, icon_width.unwrap_or(64.0));
     let mut button = Button::new(text, look.say(panels::PAUSE_TIP))
         .named(look.say(panels::PAUSE_NAME))
         .weight(if paused {
@@ -54,7 +172,11 @@ fn pause_ui(
         button.put(ui, look, place, id)
     };
     if response.clicked() {
-        view.held_s = (!paused).then(|| pane.state.now.secs());
+        if paused {
+            view.sight.follow();
+        } else {
+            view.sight.hold();
+        }
         pane.actions.push(Action::PausePlots(!paused));
     }
 }
@@ -67,7 +189,38 @@ fn bars(ui: &Ui, place: Rect, color: Color32) {
     }
 }
 
-fn window_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>) {
+/// The windows as a list, where a row has no room.
+fn window_list_ui(ui: &mut Ui, head: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
+    let now = pane.state.settings.plot_window;
+    let mut chosen = now;
+    let width = head.width().min(84.0);
+    let place = controls::middle(head.with_min_x(head.right() - width), theme::CONTROL);
+    ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+        let shown = egui::ComboBox::from_id_salt("plot window")
+            .width(width)
+            .selected_text(window_text(now).0)
+            .truncate()
+            .show_ui(ui, |ui| {
+                for window in PlotWindow::ALL {
+                    ui.selectable_value(&mut chosen, window, window_text(window).0);
+                }
+            });
+        shown
+            .response
+            .on_hover_text(pane.look.say(panels::WINDOW_TIP))
+            .accessible_name(pane.look.say(panels::WINDOW_NAME));
+    });
+    if chosen != now {
+        choose_window(pane, view, chosen);
+    }
+}
+
+fn choose_window(pane: &mut Pane<'_>, view: &mut PlotView, window: PlotWindow) {
+    view.sight.resize(window.seconds());
+    pane.actions.push(Action::PlotWindow(window));
+}
+
+fn window_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let now = pane.state.settings.plot_window;
     let each = (head.width() / 8.0).min(52.0);
@@ -80,8 +233,9 @@ fn window_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>) {
         let (text, short) = window_text(window);
         let name = format!("{}: {text}", look.say(panels::WINDOW_NAME));
         let shown = if each < 46.0 { short } else { text };
+        let as_wide = (view.sight.width_s() - window.seconds()).abs() < 1e-3;
         let button = Button::new(shown, look.say(panels::WINDOW_TIP))
-            .choice(window == now)
+            .choice(window == now && as_wide)
             .named(&name);
         let response = button.ground(ui, look, place, Id::unique(("plot window", text)));
         let color = button.text_color(look);
@@ -94,7 +248,7 @@ fn window_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>) {
             color,
         );
         if response.clicked() {
-            pane.actions.push(Action::PlotWindow(window));
+            choose_window(pane, view, window);
         }
     }
 }

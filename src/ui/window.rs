@@ -9,6 +9,7 @@ use crate::ui::faults;
 use crate::ui::gestures::GestureView;
 use crate::ui::joints::JointsView;
 use crate::ui::look::{Look, Pane, Typing};
+use crate::ui::note_bar::{self, NoteBar};
 use crate::ui::plots::PlotView;
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
@@ -85,6 +86,7 @@ pub struct Window {
     typing: Typing,
     joints: JointsView,
     plots: PlotView,
+    note: NoteBar,
     gestures: GestureView,
     connection: ConnectionForm,
     touch: TouchView,
@@ -124,6 +126,9 @@ impl Window {
         self.install_if_changed(ui, state);
         let mut actions = Vec::new();
         let stopped = take_stop_keys(ui);
+        if note_bar::take_note_key(ui) {
+            self.note.open(state.now);
+        }
         let mut typing = std::mem::take(&mut self.typing);
         let mut pane = Pane {
             state,
@@ -162,6 +167,11 @@ impl Window {
             }
             body = rest;
         }
+        if self.note.is_open() {
+            let (place, rest) = body.split_top_bottom_at_y(body.top() + theme::BANNER);
+            self.note.ui(ui, place, pane);
+            body = rest;
+        }
         let (tabs, body) = body.split_top_bottom_at_y(body.top() + theme::TABS);
         top_bar::tabs_ui(ui, tabs, pane, &mut self.view);
         let body = Rect::from_min_max(body.min, body.max - egui::vec2(theme::GAP, theme::GAP));
@@ -184,6 +194,10 @@ impl Window {
     }
 
     fn live_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        if self.plots.large {
+            self.plots_ui(ui, rect, pane);
+            return;
+        }
         let strip_height = GestureView::strip_height(rect.height());
         let (upper, strip) = rect.split_top_bottom_at_y(rect.bottom() - strip_height);
         self.gestures.strip_ui(ui, strip, pane);
@@ -191,11 +205,18 @@ impl Window {
         let right_width = (rect.width() * 0.4).clamp(288.0, 560.0).round();
         let (center, right) = upper.split_left_right_at_x(upper.right() - right_width);
         let center = center.with_max_x(center.right() - theme::GAP);
-        self.plots.ui(ui, center, pane);
+        self.plots_ui(ui, center, pane);
         let touch_height = touch::overview_height(right);
         let (tips, list) = right.split_top_bottom_at_y(right.top() + touch_height);
         self.touch.small_ui(ui, tips, pane);
         faults::faults_card_ui(ui, list.with_min_y(list.top() + theme::GAP), pane);
+    }
+
+    fn plots_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        self.plots.ui(ui, rect, pane);
+        if std::mem::take(&mut self.plots.note_asked) {
+            self.note.open(pane.state.now);
+        }
     }
 }
 

@@ -36,13 +36,14 @@ pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::{main, panels, scan, traffic};
+    use crate::ui::text::{main, panels, plots, scan, traffic};
 
     #[test]
     fn no_sentence_lacks_a_language() {
         for text in main::ALL
             .iter()
             .chain(panels::ALL)
+            .chain(plots::ALL)
             .chain(scan::ALL)
             .chain(traffic::ALL)
         {
@@ -60,6 +61,7 @@ mod tests {
         let all = main::ALL
             .iter()
             .chain(panels::ALL)
+            .chain(plots::ALL)
             .chain(scan::ALL)
             .chain(traffic::ALL);
         for text in all {

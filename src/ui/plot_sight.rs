@@ -1,0 +1,159 @@
+//! Which stretch of time the plots show: the newest, or one that a person chose. Knows no curve and no pixel.
+
+/// The shortest stretch: two measurements of a fast link.
+const SHORTEST_S: f64 = 0.02;
+/// The longest: all that is held.
+const LONGEST_S: f64 = 3600.0;
+/// This part of the view always shows a time from which something is held.
+const STAYS: f64 = 0.1;
+
+/// From and to, in seconds.
+pub(crate) type Span = (f64, f64);
+
+/// Where the plots stand in time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sight {
+    held: Option<Span>,
+    /// Time of the oldest measurement and of this frame.
+    bounds: Span,
+    /// Seconds shown while the plots follow.
+    window_s: f64,
+}
+
+impl Default for Sight {
+    fn default() -> Self {
+        Self {
+            held: None,
+            bounds: (0.0, 0.0),
+            window_s: 10.0,
+        }
+    }
+}
+
+impl Sight {
+    /// Time went on.
+    pub(crate) const fn advance(&mut self, bounds: Span, window_s: f64) {
+        self.bounds = bounds;
+        self.window_s = window_s;
+    }
+
+    /// What is shown.
+    pub(crate) fn span(&self) -> Span {
+        let newest = self.bounds.1;
+        self.held.unwrap_or((newest - self.window_s, newest))
+    }
+
+    /// Seconds shown.
+    pub(crate) fn width_s(&self) -> f64 {
+        let (from, to) = self.span();
+        to - from
+    }
+
+    /// True while the newest is not followed.
+    pub(crate) const fn is_held(&self) -> bool {
+        self.held.is_some()
+    }
+
+    /// Stands still from now on.
+    pub(crate) fn hold(&mut self) {
+        self.held = Some(self.span());
+    }
+
+    /// Follows the newest again.
+    pub(crate) const fn follow(&mut self) {
+        self.held = None;
+    }
+
+    /// Shows this stretch.
+    pub(crate) fn show(&mut self, (from, to): Span) {
+        let width = (to - from).clamp(SHORTEST_S, LONGEST_S);
+        let (first, newest) = self.bounds;
+        let earliest = (first + width * STAYS).min(newest);
+        let to = (from + width).clamp(earliest, newest);
+        self.held = Some((to - width, to));
+    }
+
+    /// Shows so many seconds, up to the same moment as now.
+    pub(crate) fn resize(&mut self, width_s: f64) {
+        if let Some((_, to)) = self.held {
+            self.show((to - width_s, to));
+        }
+    }
+
+    /// Shows `factor` times as much time; what stands at `at_s` stays in its place.
+    pub(crate) fn zoom(&mut self, at_s: f64, factor: f64) {
+        let (from, to) = self.span();
+        let width = (to - from).max(SHORTEST_S);
+        let factor = factor.clamp(SHORTEST_S / width, LONGEST_S / width);
+        self.show((at_s - (at_s - from) * factor, at_s + (to - at_s) * factor));
+    }
+
+    /// Shows what is so many seconds later.
+    pub(crate) fn pan(&mut self, by_s: f64) {
+        let (from, to) = self.span();
+        self.show((from + by_s, to + by_s));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sight() -> Sight {
+        let mut sight = Sight::default();
+        sight.advance((100.0, 1000.0), 10.0);
+        sight
+    }
+
+    fn same(one: Span, two: Span) {
+        let apart = (one.0 - two.0).abs().max((one.1 - two.1).abs());
+        assert!(apart < 1e-6, "{one:?} {two:?}");
+    }
+
+    #[test]
+    fn it_follows_until_it_is_held_and_then_stays() {
+        let mut sight = sight();
+        same(sight.span(), (990.0, 1000.0));
+        sight.advance((100.0, 1001.0), 10.0);
+        same(sight.span(), (991.0, 1001.0));
+        sight.hold();
+        sight.advance((100.0, 2000.0), 10.0);
+        same(sight.span(), (991.0, 1001.0));
+        sight.follow();
+        same(sight.span(), (1990.0, 2000.0));
+    }
+
+    #[test]
+    fn zooming_keeps_what_is_under_the_pointer() {
+        let mut sight = sight();
+        sight.show((400.0, 500.0));
+        sight.zoom(425.0, 0.5);
+        same(sight.span(), (412.5, 462.5));
+        sight.zoom(425.0, 2.0);
+        same(sight.span(), (400.0, 500.0));
+    }
+
+    #[test]
+    fn nothing_leads_beyond_now_or_before_what_is_held() {
+        let mut sight = sight();
+        sight.pan(50.0);
+        same(sight.span(), (990.0, 1000.0));
+        sight.pan(-1e9);
+        same(sight.span(), (91.0, 101.0));
+        sight.zoom(95.0, 1e9);
+        assert!((sight.width_s() - LONGEST_S).abs() < 1e-6);
+        sight.zoom(95.0, 1e-12);
+        assert!((sight.width_s() - SHORTEST_S).abs() < 1e-6);
+    }
+
+    #[test]
+    fn another_window_ends_where_the_held_one_ended() {
+        let mut sight = sight();
+        sight.show((400.0, 500.0));
+        sight.resize(30.0);
+        same(sight.span(), (470.0, 500.0));
+        sight.follow();
+        sight.resize(60.0);
+        assert!(!sight.is_held());
+    }
+}
