@@ -4,7 +4,7 @@ use crate::app::config::Loaded;
 use crate::app::{App, ChooseFile, Env, SimDial};
 use crate::hand::Moment;
 use crate::link::{Clock, Wake};
-use crate::shell::Cockpit;
+use crate::shell::{Cockpit, Snap};
 use crate::transport::Endpoint;
 use futures::future::BoxFuture;
 use std::panic::AssertUnwindSafe;
@@ -29,6 +29,8 @@ pub struct DesktopStart {
     pub loaded: Loaded,
     /// Where it is kept.
     pub settings_path: Option<PathBuf>,
+    /// What makes pictures of the plots.
+    pub snap: Snap,
 }
 
 /// Why there is no window.
@@ -167,7 +169,7 @@ impl Desktop {
             app.tell(notice, clock.now());
         }
         app.open(start.endpoint, clock.now());
-        let cockpit = Cockpit::new(app);
+        let cockpit = Cockpit::new(app).with_snap(start.snap);
         Self {
             cockpit,
             clock,

@@ -1,14 +1,21 @@
 //! The program and its window as one thing: drain, draw, act. The real window, the headless one and the tests
 //! drive the same. Opens no window itself.
 
+use crate::app::action::Action;
+use crate::app::save::Content;
 use crate::app::{App, State};
 use crate::hand::Moment;
 use crate::ui::{View, Window};
+
+/// Draws what `ui` draws at a time in seconds, in a size in points, into the bytes of a PNG file; `None` if it cannot.
+pub type Snap =
+    fn(size: (u32, u32), at_s: f64, ui: &mut dyn FnMut(&mut egui::Ui)) -> Option<Vec<u8>>;
 
 /// The program behind its window.
 pub struct Cockpit {
     app: App,
     window: Window,
+    snap: Option<Snap>,
 }
 
 impl Cockpit {
@@ -18,6 +25,16 @@ impl Cockpit {
         Self {
             app,
             window: Window::new(),
+            snap: None,
+        }
+    }
+
+    /// With something that makes pictures of parts of the window.
+    #[must_use]
+    pub fn with_snap(self, snap: Snap) -> Self {
+        Self {
+            snap: Some(snap),
+            ..self
         }
     }
 
@@ -32,7 +49,20 @@ impl Cockpit {
             self.app.read_traffic(now);
         }
         for action in self.window.ui(ui, self.app.state()) {
-            self.app.act(action, now);
+            match action {
+                Action::SavePicture(size) => self.save_picture(size, now),
+                action => self.app.act(action, now),
+            }
+        }
+    }
+
+    /// Draws the plots once more, by themselves, and asks where the picture should go.
+    fn save_picture(&mut self, size: (u32, u32), now: Moment) {
+        let (window, state) = (&mut self.window, self.app.state());
+        let mut draw = |ui: &mut egui::Ui| window.plots_alone_ui(ui, state);
+        let drawn = self.snap.and_then(|snap| snap(size, now.secs(), &mut draw));
+        if let Some(bytes) = drawn {
+            self.app.act(Action::Save(Content::Picture(bytes)), now);
         }
     }
 

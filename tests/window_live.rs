@@ -16,6 +16,8 @@ mod joints;
 mod layout;
 #[path = "window/motion.rs"]
 mod motion;
+#[path = "window/plots.rs"]
+mod plots;
 #[path = "window/scan.rs"]
 mod scan;
 #[path = "window/start.rs"]

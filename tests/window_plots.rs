@@ -189,7 +189,11 @@ fn the_values_under_the_pointer_are_read_out_while_live() {
     assert!(!is_held(&harness));
     let values = force_at_pointer(&harness);
     for (n, value) in values.iter().enumerate() {
-        near(*value, 950.0 + 100.0 * n as f64, 2.0);
+        near(
+            *value,
+            950.0 + 100.0 * f64::from(u8::try_from(n).unwrap()),
+            2.0,
+        );
     }
     harness.remove_cursor();
     harness.run_steps(2);

@@ -75,6 +75,9 @@ pub enum Action {
     ForgetFaults,
     /// Ask where a file should go, and write it.
     Save(Content),
+    /// Make a picture of the plots in this size (width, height in points), and save it. Carried out by the shell, as
+    /// the program itself draws nothing.
+    SavePicture((u32, u32)),
     /// A notice was read.
     Dismiss(u64),
     /// Dark or light.

@@ -1,5 +1,6 @@
 //! Saving to a file that a person chooses: how the place is asked for, and what is written there. Never blocks the window.
 
+use crate::app::history::Table;
 use crate::app::notices::NoticeKind;
 use crate::link::Traffic;
 use crate::link::traffic::frame::Frame;
@@ -49,6 +50,10 @@ pub enum TrafficForm {
 pub enum Content {
     /// Frames of the wire, in this order.
     Traffic(TrafficForm, Vec<Arc<Frame>>),
+    /// What the plots show, as comma-separated values.
+    Plots(Table),
+    /// A finished picture of the plots, as the bytes of a PNG file.
+    Picture(Vec<u8>),
 }
 
 impl Content {
@@ -58,25 +63,36 @@ impl Content {
         match self {
             Self::Traffic(TrafficForm::Csv, _) => "handscope-traffic.csv",
             Self::Traffic(TrafficForm::JsonLines, _) => "handscope-traffic.jsonl",
+            Self::Plots(_) => "handscope-plots.csv",
+            Self::Picture(_) => "handscope-plots.png",
         }
     }
 
-    /// Entries in it.
+    /// Entries in it; a picture is one.
     #[must_use]
-    pub const fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         match self {
             Self::Traffic(_, frames) => frames.len(),
+            Self::Plots(table) => table.len(),
+            Self::Picture(bytes) => usize::from(!bytes.is_empty()),
         }
     }
 
     /// True if there is nothing to save.
     #[must_use]
-    pub const fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    fn text(&self) -> String {
-        let Self::Traffic(form, frames) = self;
+    fn bytes(&self) -> Vec<u8> {
+        match self {
+            Self::Traffic(form, frames) => Self::traffic(*form, frames).into_bytes(),
+            Self::Plots(table) => table.csv().into_bytes(),
+            Self::Picture(bytes) => bytes.clone(),
+        }
+    }
+
+    fn traffic(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
         let (head, line): (Option<String>, fn(&Frame) -> String) = match form {
             TrafficForm::Csv => (Some(CSV_HEAD.into()), Frame::csv_line),
             TrafficForm::JsonLines => (None, Frame::json_line),
@@ -126,7 +142,7 @@ impl Saving {
 
 async fn write(content: Content, path: PathBuf) -> NoticeKind {
     let place = path.clone();
-    let work = move || std::fs::write(&place, content.text()).map(|()| content.len());
+    let work = move || std::fs::write(&place, content.bytes()).map(|()| content.len());
     match tokio::task::spawn_blocking(work).await {
         Ok(Ok(entries)) => NoticeKind::Saved { path, entries },
         Ok(Err(error)) => NoticeKind::NotSaved {

@@ -10,6 +10,7 @@ pub(crate) fn run(endpoint: Option<Endpoint>) -> anyhow::Result<()> {
     let settings_path = default_path();
     let loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
     desktop::run(DesktopStart {
+        snap: crate::headless::snap::snap,
         endpoint,
         loaded,
         settings_path,

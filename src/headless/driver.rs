@@ -5,6 +5,7 @@ use crate::app::settings::{Language, Theme};
 use crate::app::{App, Env, NoChoice, Settings, SimDial};
 use crate::hand::Moment;
 use crate::headless::canvas::{Canvas, Picture};
+use crate::headless::snap::snap;
 use crate::link::{Clock, LinkTrouble};
 use crate::shell::Cockpit;
 use crate::transport::Endpoint;
@@ -104,7 +105,7 @@ impl Driver {
         app.open(Some(scene.endpoint.clone()), clock.now());
         drop(inside);
         let mut driver = Self {
-            cockpit: Cockpit::new(app),
+            cockpit: Cockpit::new(app).with_snap(snap),
             canvas: Canvas::new(scene.size, scene.scale),
             clock,
             endpoint: scene.endpoint.clone(),

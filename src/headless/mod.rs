@@ -5,3 +5,4 @@ pub mod driver;
 pub mod labels;
 pub mod png;
 pub mod raster;
+pub mod snap;

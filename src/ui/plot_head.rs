@@ -1,6 +1,7 @@
 //! What stands over the plots: legend, window, pause, cursors and the menu. Draws no curve.
 
 use crate::app::action::Action;
+use crate::app::save::Content;
 use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
 use crate::ui::controls::{self, Button, Weight, take_left, take_right, take_top};
@@ -88,6 +89,7 @@ fn menu_ui(ui: &mut Ui, place: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
             view.note_asked |= menu_button(ui, look, plots::NOTE_NAME, plots::NOTE_TIP);
             ui.separator();
             copy_ui(ui, pane, view);
+            save_ui(ui, pane, view);
             ui.separator();
             ui.set_max_width(MENU);
             let hint = egui::RichText::new(look.say(plots::AREA_TIP));
@@ -137,6 +139,21 @@ fn copy_ui(ui: &mut Ui, pane: &Pane<'_>, view: &mut PlotView) {
     }
     if let Some(rows) = view.copied {
         ui.label(format!("{} {rows}", look.say(plots::COPIED)));
+    }
+}
+
+fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &PlotView) {
+    let look = pane.look;
+    if menu_button(ui, look, plots::SAVE_CSV, plots::SAVE_CSV_TIP) {
+        let (from_s, to_s) = view.sight.span();
+        let series = view.shown_series(pane);
+        let table = pane.state.history.table(&series, from_s, to_s);
+        pane.actions.push(Action::Save(Content::Plots(table)));
+        Popup::close_all(ui.ctx());
+    }
+    if menu_button(ui, look, plots::SAVE_PNG, plots::SAVE_PNG_TIP) {
+        pane.actions.push(Action::SavePicture(view.size));
+        Popup::close_all(ui.ctx());
     }
 }
 

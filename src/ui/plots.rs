@@ -44,6 +44,8 @@ pub(crate) struct PlotView {
     pub(crate) large: bool,
     /// True if a note was asked for in this frame.
     pub(crate) note_asked: bool,
+    /// Width and height of the card in points, for a picture of it.
+    pub(crate) size: (u32, u32),
     /// Rows that were copied last, while the menu is open.
     pub(crate) copied: Option<usize>,
     /// The stretch that is being marked to zoom into.
@@ -118,6 +120,7 @@ impl PlotView {
         let now = pane.state.now.secs();
         let first = pane.state.history.first_secs().unwrap_or(now);
         let window = pane.state.settings.plot_window.seconds();
+        self.size = (pixels(rect.width()), pixels(rect.height()));
         self.sight.advance((first.min(now), now), window);
         let (head, mut body) = controls::titled_card(ui, look, rect, look.say(panels::HISTORY));
         plot_head::head_ui(ui, head, pane, self);
@@ -298,12 +301,7 @@ impl PlotView {
 
     /// Fetches the curves of one plot, with as many points as the plot is wide.
     fn gather(&mut self, pane: &Pane<'_>, lines: &[PlotLine], span: Span, width: f32) {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a width in pixels, clamped"
-        )]
-        let columns = width.clamp(1.0, 8192.0) as usize;
+        let columns = usize::try_from(pixels(width)).unwrap_or(1);
         self.curves.clear();
         for line in lines {
             pane.state
@@ -391,6 +389,16 @@ fn mark_look(pane: &Pane<'_>, kind: &MarkKind) -> (Text, Color32) {
         MarkKind::Gesture(_) => (panels::MARK_GESTURE, palette.accent),
         MarkKind::Note(_) => (panels::MARK_NOTE, palette.text),
     }
+}
+
+/// A length on the screen as a whole number, at least 1.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a length in pixels, clamped"
+)]
+fn pixels(length: f32) -> u32 {
+    length.clamp(1.0, 8192.0) as u32
 }
 
 /// The words of the marks, once, in the topmost plot. Words that would overlap are left out.

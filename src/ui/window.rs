@@ -212,6 +212,23 @@ impl Window {
         faults::faults_card_ui(ui, list.with_min_y(list.top() + theme::GAP), pane);
     }
 
+    /// Draws the plots and nothing else, over all of `ui`, into a context of their own: for a picture.
+    pub fn plots_alone_ui(&mut self, ui: &mut Ui, state: &State) {
+        let style = theme::style(state.settings.theme, ui.style());
+        ui.set_style(style);
+        let (mut actions, mut typing) = (Vec::new(), Typing::default());
+        let mut pane = Pane {
+            state,
+            look: Look::of(state),
+            actions: &mut actions,
+            typing: &mut typing,
+        };
+        let whole = ui.max_rect();
+        ui.painter()
+            .rect_filled(whole, 0.0, pane.look.palette.window);
+        self.plots.ui(ui, whole, &mut pane);
+    }
+
     fn plots_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         self.plots.ui(ui, rect, pane);
         if std::mem::take(&mut self.plots.note_asked) {

@@ -121,7 +121,7 @@ impl Room {
         Self {
             runtime,
             clock,
-            cockpit: Cockpit::new(app),
+            cockpit: Cockpit::new(app).with_snap(handscope::headless::snap::snap),
             socket,
             folder,
             seen: Vec::new(),

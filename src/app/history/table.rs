@@ -11,6 +11,13 @@ pub(crate) struct TableGroup {
     pub(crate) columns: Vec<(String, Vec<f32>)>,
 }
 
+impl TableGroup {
+    /// Whether this row belongs to the line of this time.
+    fn is_at(&self, row: usize, now_s: f64) -> bool {
+        self.times.get(row).is_some_and(|time| *time <= now_s)
+    }
+}
+
 /// A copy of measurements, free of the history it came from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
@@ -23,16 +30,25 @@ impl Table {
         Self { groups, marks }
     }
 
-    /// Measurements in it, a row of joints or a fingertip counting as one.
+    /// Lines of the text after its head. The work grows with the measurements.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.groups.iter().map(|group| group.times.len()).sum()
+        let mut rows = vec![0; self.groups.len()];
+        let (mut mark, mut lines) = (0, 0);
+        while let Some(now_s) = self.next_s(&rows, mark) {
+            for (group, row) in self.groups.iter().zip(&mut rows) {
+                *row += usize::from(group.is_at(*row, now_s));
+            }
+            mark += usize::from(self.mark_at(mark, now_s).is_some());
+            lines += 1;
+        }
+        lines
     }
 
-    /// True if nothing was measured.
+    /// True if nothing was measured and nothing happened.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.len() == 0
+        self.marks.is_empty() && self.groups.iter().all(|group| group.times.is_empty())
     }
 
     /// Comma-separated values: `time_s` since the start of the program, then the columns with their units, then what
@@ -52,7 +68,7 @@ impl Table {
             // Writing to a string cannot fail.
             let _done = write!(text, "{now_s:.6}");
             for (group, row) in self.groups.iter().zip(&mut rows) {
-                let here = group.times.get(*row).is_some_and(|time| *time <= now_s);
+                let here = group.is_at(*row, now_s);
                 for (_, values) in &group.columns {
                     text.push(',');
                     let value = values.get(*row).filter(|value| here && !value.is_nan());
@@ -63,13 +79,18 @@ impl Table {
                 *row += usize::from(here);
             }
             text.push(',');
-            if let Some((_, words)) = self.marks.get(mark).filter(|(at_s, _)| *at_s <= now_s) {
+            if let Some(words) = self.mark_at(mark, now_s) {
                 text.push_str(&quoted(words));
                 mark += 1;
             }
             text.push('\n');
         }
         text
+    }
+
+    fn mark_at(&self, mark: usize, now_s: f64) -> Option<&str> {
+        let (at_s, words) = self.marks.get(mark)?;
+        (*at_s <= now_s).then_some(words.as_str())
     }
 
     /// The earliest time that is not written yet.

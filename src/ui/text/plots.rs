@@ -18,6 +18,10 @@ texts! {
     COPY: "Copy as CSV", "复制为 CSV";
     COPY_TIP: "All measurements of the shown time, plots and joints, as they were received.", "复制当前时间范围内所示曲线的全部原始数据。";
     COPY_LONG: "Too much for the clipboard: zoom in, or save it as a file.", "数据过多：请缩小范围，或保存为文件。";
+    SAVE_CSV: "Save as CSV", "保存为 CSV";
+    SAVE_CSV_TIP: "The same into a file, however long the time is. The window goes on meanwhile.", "保存到文件，时间长度不限。保存期间窗口照常工作。";
+    SAVE_PNG: "Save as PNG", "保存为 PNG";
+    SAVE_PNG_TIP: "A picture of these plots as they stand, twice as fine as on the screen.", "将当前曲线保存为图片，分辨率为屏幕的两倍。";
     COPIED: "Copied, rows:", "已复制行数：";
     CURSORS: "A|B", "A|B";
     CURSORS_NAME: "Cursors", "游标";
