@@ -138,6 +138,12 @@ impl ChooseFile for NativeDialog {
         let asked = dialog.save_file();
         Box::pin(async move { asked.await.map(|file| file.path().to_path_buf()) })
     }
+
+    fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        let dialog = rfd::AsyncFileDialog::new().set_file_name(suggested);
+        let asked = dialog.pick_file();
+        Box::pin(async move { asked.await.map(|file| file.path().to_path_buf()) })
+    }
 }
 
 struct Desktop {

@@ -459,6 +459,25 @@ fn gestures_run_from_both_addresses() {
 }
 
 #[test]
+fn a_taught_gesture_plays_and_another_one_stays_untaught() {
+    let mut hand = idle();
+    hand.set_object(&Object::none());
+    put(&mut hand, 1078, &[100, 200, 300, 400, 500, 600], 0);
+    assert_eq!(
+        shorts(&mut hand, &ANGLE_ACT, 500),
+        [1000; 6],
+        "storing moves nothing"
+    );
+    hand.write(1008, &[14], at(1000)).unwrap();
+    assert_eq!(shorts(&mut hand, &ANGLE_ACT, 2000), [1000; 6]);
+    hand.write(1008, &[15], at(2000)).unwrap();
+    assert_eq!(
+        shorts(&mut hand, &ANGLE_ACT, 3000),
+        [100, 200, 300, 400, 500, 600]
+    );
+}
+
+#[test]
 fn a_jammed_joint_stalls_alone() {
     let mut hand = idle();
     hand.set_jam(Dof::Middle, Some(700.0));

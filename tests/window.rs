@@ -161,10 +161,9 @@ fn every_control_has_its_name() {
         "Pause the plots",
         "Thresholds",
         "Plot window: 5 min",
-        "Name gestures",
-        "Gesture route",
         "Gesture 1 open",
-        "Gesture 40",
+        "Gesture 14 cup",
+        "Capture",
         "Theme",
         "Language",
         "Link state: Armed",
@@ -399,6 +398,11 @@ fn gestures_start_by_number_and_take_names() {
     harness.get_by_label("Gesture 7").click();
     let seven = Gesture::nearest(7);
     assert_eq!(actions(&mut harness), [Action::Gesture(seven)]);
+    let mut harness = open_at(common::armed(), View::Poses, LARGE);
+    harness.get_by_label("Stored in the hand").click();
+    harness.run_steps(2);
+    harness.get_by_label("Gesture route");
+    harness.get_by_label("Gesture 40");
     harness.get_by_label("Name gestures").click();
     harness.run_steps(2);
     harness.get_by_label("Name of gesture 7").focus();

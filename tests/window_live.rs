@@ -18,6 +18,8 @@ mod layout;
 mod motion;
 #[path = "window/plots.rs"]
 mod plots;
+#[path = "window/poses.rs"]
+mod poses;
 #[path = "window/scan.rs"]
 mod scan;
 #[path = "window/start.rs"]

@@ -61,6 +61,7 @@ impl Desk {
         if !self.is_free(dof) {
             return;
         }
+        self.take_over();
         self.state.joints[dof].target = Some(angle);
         self.following[dof] = false;
         self.send(|setpoints| setpoints.angle[dof] = Some(Target::Go(angle)));
@@ -124,6 +125,7 @@ impl Desk {
         if moves.is_empty() {
             return;
         }
+        self.take_over();
         for (dof, angle) in &moves {
             let joint = &mut self.state.joints[*dof];
             joint.target = Some(*angle);
@@ -156,6 +158,7 @@ impl Desk {
                 .push(now, NoticeKind::GestureWouldMoveLocked { dof });
             return;
         }
+        self.take_over();
         self.state.gestures.last = Some(LastGesture {
             gesture,
             at: now,
@@ -200,9 +203,14 @@ impl Desk {
     }
 
     /// True if it is on its way.
-    fn ask(&mut self, command: HandCommand, what: Asked, now: Moment) -> bool {
+    pub(crate) fn ask(&mut self, command: HandCommand, what: Asked, now: Moment) -> bool {
+        self.request(Request::Command(command), what, now)
+    }
+
+    /// True if it is on its way.
+    pub(crate) fn request(&mut self, request: Request, what: Asked, now: Moment) -> bool {
         let asked = match &self.link {
-            Some(link) => link.ask(Request::Command(command)),
+            Some(link) => link.ask(request),
             None => Err(RequestError::NotConnected),
         };
         match asked {
@@ -217,12 +225,8 @@ impl Desk {
         }
     }
 
-    fn is_free(&self, dof: Dof) -> bool {
-        self.state.is_armed() && !self.state.joints[dof].locked
-    }
-
     /// Sends for the arming in force; without one, nothing.
-    fn send(&mut self, fill: impl FnOnce(&mut Setpoints)) {
+    pub(crate) fn send(&mut self, fill: impl FnOnce(&mut Setpoints)) {
         let (Some(link), Some(epoch)) = (&self.link, self.state.link.armed) else {
             return;
         };

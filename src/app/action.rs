@@ -1,9 +1,13 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
+use crate::app::poses::edit::LibraryEdit;
+use crate::app::poses::library::{PoseId, SequenceId};
 use crate::app::save::Content;
 use crate::app::scan::ScanWish;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme};
-use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Speed};
+use crate::hand::{
+    Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, PerDof, Speed, UserGesture,
+};
 use crate::transport::Endpoint;
 
 /// Poses that need no library.
@@ -28,6 +32,25 @@ impl Preset {
             (Self::Close, _) => Some(Angle::MIN),
         }
     }
+}
+
+/// What a person does with a sequence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Play {
+    /// Run it from its start. Needs arming.
+    Start(SequenceId),
+    /// Take one step, then wait. Needs arming.
+    Step(SequenceId),
+    /// Hold where the hand is, until resumed.
+    Pause,
+    /// Go on where it was paused.
+    Resume,
+    /// End it and hold where the hand is.
+    End,
+    /// Show it on the drawn hand; nothing is sent.
+    Dry(SequenceId),
+    /// Show it no more.
+    EndDry,
 }
 
 /// One thing a person asked for. Returned by the views, carried out by `App::act`.
@@ -55,6 +78,26 @@ pub enum Action {
     SpeedOfAll(Speed),
     /// Take a stored pose. Needs arming.
     Gesture(Gesture),
+    /// Store six angles under a number of the user's, and read them back.
+    StoreGesture(UserGesture, PerDof<Angle>),
+    /// Read what is stored under a number of the user's.
+    ReadGesture(UserGesture),
+    /// Keep the pose that the hand has now, by this name or the next free one.
+    Capture(String),
+    /// Put the pose that the hand has now in the place of this one.
+    Recapture(PoseId),
+    /// Change poses or sequences. Sends nothing.
+    Library(LibraryEdit),
+    /// Take a pose of the library, within its speed and force. Needs arming.
+    Recall(PoseId),
+    /// Go to six angles at a gentle speed. Needs arming.
+    TryAngles(PerDof<Angle>),
+    /// Run a sequence, pause it, end it.
+    Play(Play),
+    /// Ask for a file of poses and add what it holds.
+    ImportPoses,
+    /// Ask where the poses should go, and write them.
+    ExportPoses,
     /// Give a gesture a name; empty takes it away.
     NameGesture(Gesture, String),
     /// How gestures are started.

@@ -65,20 +65,42 @@ fn read(path: &Path) -> std::io::Result<Option<String>> {
     }
 }
 
-fn set_aside(path: &Path) -> Option<PathBuf> {
+/// Gives an unreadable file another name; the name, if that worked.
+pub(crate) fn set_aside(path: &Path) -> Option<PathBuf> {
     let name = |number: u32| path.with_extension(format!("unreadable-{number}.toml"));
     let free = (1..UNREADABLE_MAX).map(name).find(|aside| !aside.exists());
     let aside = free.unwrap_or_else(|| name(UNREADABLE_MAX));
     std::fs::rename(path, &aside).ok().map(|()| aside)
 }
 
-/// Writes settings so that at any moment either the old or the new file is there, whole. The old one stays as
-/// `settings.last.toml`.
+/// What is kept in a file of its own.
+pub trait Kept: Clone + PartialEq + Send + 'static {
+    /// The file's text.
+    ///
+    /// # Errors
+    /// What the writer of the format says.
+    fn text(&self) -> std::io::Result<String>;
+    /// What a person is told when it could not be written.
+    fn not_saved(message: String) -> NoticeKind;
+}
+
+impl Kept for Settings {
+    fn text(&self) -> std::io::Result<String> {
+        toml::to_string_pretty(self).map_err(std::io::Error::other)
+    }
+
+    fn not_saved(message: String) -> NoticeKind {
+        NoticeKind::SettingsNotSaved { message }
+    }
+}
+
+/// Writes a file so that at any moment either the old or the new one is there, whole. The old one stays beside it as
+/// `….last.toml`.
 ///
 /// # Errors
 /// What the system says.
-pub fn save(path: &Path, settings: &Settings) -> std::io::Result<()> {
-    let text = toml::to_string_pretty(settings).map_err(std::io::Error::other)?;
+pub fn save<K: Kept>(path: &Path, kept: &K) -> std::io::Result<()> {
+    let text = kept.text()?;
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }
@@ -93,21 +115,21 @@ pub fn save(path: &Path, settings: &Settings) -> std::io::Result<()> {
     std::fs::rename(&new, path)
 }
 
-/// Writes settings when they changed, at most once a second and one at a time. Without a path, nothing is kept.
+/// Writes what is kept when it changed, at most once a second and one at a time. Without a path, nothing is kept.
 #[derive(Debug)]
-pub(crate) struct Saver {
+pub(crate) struct Saver<K> {
     path: Option<PathBuf>,
     runtime: tokio::runtime::Handle,
-    kept: Settings,
+    kept: K,
     begun: Option<Moment>,
     under_way: Option<oneshot::Receiver<std::io::Result<()>>>,
 }
 
-impl Saver {
+impl<K: Kept> Saver<K> {
     pub(crate) const fn new(
         path: Option<PathBuf>,
         runtime: tokio::runtime::Handle,
-        kept: Settings,
+        kept: K,
     ) -> Self {
         Self {
             path,
@@ -119,34 +141,34 @@ impl Saver {
     }
 
     /// Writes if needed. What went wrong with an earlier write comes back.
-    pub(crate) fn tick(&mut self, settings: &Settings, now: Moment) -> Option<NoticeKind> {
+    pub(crate) fn tick(&mut self, newest: &K, now: Moment) -> Option<NoticeKind> {
         let failed = self.finished();
         let waits = self
             .begun
             .is_some_and(|begun| now.since(begun) < SAVE_EVERY);
         if !waits {
-            self.begin(settings, now);
+            self.begin(newest, now);
         }
         failed
     }
 
     /// Writes what is not written yet, at once. True when all is on disk, or cannot be.
-    pub(crate) fn flush(&mut self, settings: &Settings, now: Moment) -> bool {
+    pub(crate) fn flush(&mut self, newest: &K, now: Moment) -> bool {
         let failed = self.finished();
-        self.begin(settings, now);
+        self.begin(newest, now);
         failed.is_some() || self.under_way.is_none()
     }
 
-    fn begin(&mut self, settings: &Settings, now: Moment) {
+    fn begin(&mut self, newest: &K, now: Moment) {
         let Some(path) = self.path.clone() else {
             return;
         };
-        if self.under_way.is_some() || *settings == self.kept {
+        if self.under_way.is_some() || *newest == self.kept {
             return;
         }
         let (done, under_way) = oneshot::channel();
-        self.kept = settings.clone();
-        let kept = settings.clone();
+        self.kept = newest.clone();
+        let kept = newest.clone();
         self.runtime.spawn_blocking(move || {
             // A receiver that is gone means that the window is gone: no one is left to tell.
             let _told = done.send(save(&path, &kept));
@@ -155,7 +177,7 @@ impl Saver {
         self.under_way = Some(under_way);
     }
 
-    /// A failed write is not tried again before the settings change again: the notice stands until then.
+    /// A failed write is not tried again before something changes again: the notice stands until then.
     fn finished(&mut self) -> Option<NoticeKind> {
         let under_way = self.under_way.as_mut()?;
         let message = match under_way.try_recv() {
@@ -165,7 +187,7 @@ impl Saver {
             Err(oneshot::error::TryRecvError::Closed) => Some("the program is ending".into()),
         };
         self.under_way = None;
-        message.map(|message| NoticeKind::SettingsNotSaved { message })
+        message.map(K::not_saved)
     }
 }
 

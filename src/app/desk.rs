@@ -1,10 +1,11 @@
 //! The state, the link behind it, and what comes in over the link. What a person asks for is in `act`; no file, no thread.
 
 use crate::app::faults::FaultBook;
-use crate::app::gestures::{GestureBook, GestureProgress};
+use crate::app::gestures::{GestureBook, GestureProgress, Verdict};
 use crate::app::history::{History, MarkKind};
 use crate::app::notices::{Asked, NoticeKind, Notices};
 use crate::app::peaks::ForcePeaks;
+use crate::app::poses::book::PoseBook;
 use crate::app::scan::ScanBook;
 use crate::app::seam::Link;
 use crate::app::settings::Settings;
@@ -63,6 +64,7 @@ impl Desk {
             faults: FaultBook::default(),
             notices: Notices::default(),
             gestures,
+            poses: PoseBook::default(),
             traffic: Traffic::default(),
             ports: Vec::new(),
             scan: ScanBook::default(),
@@ -102,7 +104,8 @@ impl Desk {
         self.state.tare = Tare::default();
         self.state.peaks = ForcePeaks::default();
         self.state.faults.clear();
-        self.state.gestures.last = None;
+        self.state.gestures.another_hand();
+        self.state.poses.run = None;
         self.state.history.gap(now);
         self.state
             .notices
@@ -121,6 +124,7 @@ impl Desk {
         self.state.now = now;
         let Some(link) = self.link.as_mut() else {
             self.follow();
+            self.tick_sequence(now);
             return;
         };
         let status = link.status();
@@ -133,6 +137,7 @@ impl Desk {
         }
         self.status(status, now);
         self.follow();
+        self.tick_sequence(now);
     }
 
     fn event(&mut self, event: LinkEvent, now: Moment) {
@@ -180,14 +185,20 @@ impl Desk {
         };
         let (_, what) = self.asked.swap_remove(index);
         match result {
-            Ok(_) => self.acknowledged(what, now),
+            Ok(outcome) => {
+                self.acknowledged(what, now);
+                self.gesture_answered(what, &outcome, now);
+            }
             Err(error) => self.failed(what, error, now),
         }
     }
 
     fn acknowledged(&mut self, what: Asked, now: Moment) {
-        if matches!(what, Asked::Gesture(_)) {
-            self.state.gestures.progress(GestureProgress::Acknowledged);
+        match what {
+            Asked::Gesture(_) => self.state.gestures.progress(GestureProgress::Acknowledged),
+            // What these come to is shown beside the pose, once it was read back.
+            Asked::StoreGesture(_) | Asked::ReadGesture(_) => return,
+            Asked::ClearErrors => {}
         }
         self.state
             .notices
@@ -196,8 +207,12 @@ impl Desk {
 
     /// Says that something did not work.
     pub(crate) fn failed(&mut self, what: Asked, error: RequestError, now: Moment) {
-        if matches!(what, Asked::Gesture(_)) {
-            self.state.gestures.progress(GestureProgress::Failed);
+        match what {
+            Asked::Gesture(_) => self.state.gestures.progress(GestureProgress::Failed),
+            Asked::StoreGesture(gesture) | Asked::ReadGesture(gesture) => {
+                self.state.gestures.judge(gesture, Verdict::Failed);
+            }
+            Asked::ClearErrors => {}
         }
         self.state
             .notices

@@ -1,7 +1,7 @@
 //! The forty stored poses by number, and the names that a person gave them. Starts none.
 
 use crate::app::settings::Settings;
-use crate::hand::{Gesture, GestureRoute, Moment};
+use crate::hand::{Angle, Gesture, GestureRoute, Moment, PerDof, UserGesture};
 use std::collections::BTreeMap;
 
 /// Characters in a name: what fits a button.
@@ -31,6 +31,41 @@ pub struct LastGesture {
     pub progress: GestureProgress,
 }
 
+/// What the hand has stored under a number, as it was read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stored {
+    /// The number.
+    pub gesture: UserGesture,
+    /// Its six shorts, as they are.
+    pub angles: PerDof<i16>,
+}
+
+/// How far storing a pose in the hand came. Written, acknowledged and read back are three things.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// On its way.
+    Writing,
+    /// Acknowledged; being read back.
+    ReadingBack,
+    /// Read back as it was written.
+    Same,
+    /// Read back as something else: the hand does not keep it there.
+    Differs,
+    /// It did not work; a notice says why.
+    Failed,
+}
+
+/// The pose that was stored last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Upload {
+    /// Its number.
+    pub gesture: UserGesture,
+    /// What was written.
+    pub wanted: PerDof<Angle>,
+    /// How far it came.
+    pub verdict: Verdict,
+}
+
 /// The stored poses.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GestureBook {
@@ -39,6 +74,10 @@ pub struct GestureBook {
     pub route: GestureRoute,
     /// The one that was started last.
     pub last: Option<LastGesture>,
+    /// The pose that was stored last.
+    pub upload: Option<Upload>,
+    /// What was read last of what the hand has stored.
+    pub stored: Option<Stored>,
 }
 
 impl GestureBook {
@@ -100,6 +139,35 @@ impl GestureBook {
             .iter()
             .map(|(number, name)| (number.to_string(), name.clone()))
             .collect()
+    }
+
+    /// Nothing of one hand's memory is taken for another's.
+    pub(crate) const fn another_hand(&mut self) {
+        self.last = None;
+        self.upload = None;
+        self.stored = None;
+    }
+
+    /// Notes how far storing came.
+    pub(crate) fn judge(&mut self, gesture: UserGesture, verdict: Verdict) {
+        if let Some(upload) = &mut self.upload
+            && upload.gesture == gesture
+            && matches!(upload.verdict, Verdict::Writing | Verdict::ReadingBack)
+        {
+            upload.verdict = verdict;
+        }
+    }
+
+    /// Takes what was read, and compares it with what was written.
+    pub(crate) fn read_back(&mut self, stored: Stored) {
+        self.stored = Some(stored);
+        let wanted = self.upload.map(|upload| upload.wanted.map(Angle::get));
+        let verdict = if wanted == Some(stored.angles) {
+            Verdict::Same
+        } else {
+            Verdict::Differs
+        };
+        self.judge(stored.gesture, verdict);
     }
 
     /// Notes how the last gesture went on.

@@ -1,6 +1,9 @@
 //! Everything the program knows, without drawing: state, actions, history, faults, notices, settings.
 
 mod act;
+mod act_poses;
+#[cfg(test)]
+mod act_poses_tests;
 pub mod action;
 pub mod config;
 pub mod connect;
@@ -14,6 +17,7 @@ pub mod history;
 mod live_tests;
 pub mod notices;
 pub mod peaks;
+pub mod poses;
 pub mod program;
 pub mod recipe;
 pub mod save;

@@ -1,7 +1,8 @@
 //! What a person should read, as typed causes. The words, in every language, are the views'.
 
 use crate::app::faults::FaultKind;
-use crate::hand::{Dof, Gesture, Moment};
+use crate::app::poses::file::PoseFileError;
+use crate::hand::{Dof, Gesture, Moment, UserGesture};
 use crate::link::{ArmRefusal, Disarmed, LinkTrouble, RequestError};
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -26,6 +27,10 @@ pub enum Level {
 pub enum Asked {
     /// A stored pose.
     Gesture(Gesture),
+    /// To store a pose in the hand.
+    StoreGesture(UserGesture),
+    /// To read a pose that is stored in the hand.
+    ReadGesture(UserGesture),
     /// To clear errors.
     ClearErrors,
 }
@@ -83,6 +88,34 @@ pub enum NoticeKind {
     },
     /// Gestures are switched off. Nothing was sent.
     GesturesOff,
+    /// A pose cannot be kept while an angle is unknown or old.
+    PoseUnknown,
+    /// A file of poses was added.
+    PosesImported {
+        /// Poses in it.
+        poses: usize,
+        /// Sequences in it.
+        sequences: usize,
+    },
+    /// A file of poses was not taken, not even in part.
+    PosesRefused {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        error: PoseFileError,
+    },
+    /// The kept poses could not be read; their file is left as it was, under another name.
+    PosesIgnored {
+        /// Where and why.
+        error: PoseFileError,
+        /// Where it lies now; `None` if it could not be moved.
+        kept_as: Option<PathBuf>,
+    },
+    /// Poses could not be written.
+    PosesNotSaved {
+        /// The system's words.
+        message: String,
+    },
     /// Settings could not be written.
     SettingsNotSaved {
         /// The system's words.
@@ -128,6 +161,7 @@ impl NoticeKind {
             | Self::HoldConfirmed { .. }
             | Self::Acknowledged { .. }
             | Self::Saved { .. }
+            | Self::PosesImported { .. }
             | Self::NoFileChosen => Level::Info,
             Self::NoLink(_)
             | Self::Disarmed(_)
@@ -137,6 +171,10 @@ impl NoticeKind {
             | Self::RequestFailed { .. }
             | Self::GestureWouldMoveLocked { .. }
             | Self::GesturesOff
+            | Self::PoseUnknown
+            | Self::PosesRefused { .. }
+            | Self::PosesIgnored { .. }
+            | Self::PosesNotSaved { .. }
             | Self::NotSaved { .. }
             | Self::SettingsNotSaved { .. }
             | Self::SettingsIgnored { .. }

@@ -4,6 +4,9 @@ use crate::app::action::Action;
 use crate::app::config::Saver;
 use crate::app::desk::Desk;
 use crate::app::notices::NoticeKind;
+use crate::app::poses::book::PoseBook;
+use crate::app::poses::library::Library;
+use crate::app::poses::store::{self, Reading};
 use crate::app::save::{self, ChooseFile, Content, Saving};
 use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
@@ -56,7 +59,9 @@ struct Closing {
 pub struct App {
     env: Env,
     desk: Desk,
-    saver: Saver,
+    saver: Saver<Settings>,
+    pose_saver: Saver<Library>,
+    reading: Option<Reading>,
     leaving: Option<Leaving>,
     closing: Option<Closing>,
     ports: Option<oneshot::Receiver<Vec<PortFound>>>,
@@ -73,10 +78,20 @@ impl App {
             env.runtime.clone(),
             settings.clone(),
         );
+        let mut desk = Desk::new(settings);
+        let pose_path = env.settings_path.as_deref().map(store::path_beside);
+        let (library, notice) = pose_path.as_deref().map(store::load).unwrap_or_default();
+        if let Some(what) = notice {
+            desk.state.notices.push(Moment::ZERO, what);
+        }
+        let pose_saver = Saver::new(pose_path, env.runtime.clone(), library.clone());
+        desk.state.poses = PoseBook::new(library);
         Self {
             env,
-            desk: Desk::new(settings),
+            desk,
             saver,
+            pose_saver,
+            reading: None,
             leaving: None,
             closing: None,
             ports: None,
@@ -129,7 +144,10 @@ impl App {
             self.tell(end, now);
         }
         self.scanner.drain(&mut self.desk.state.scan);
-        if let Some(failed) = self.saver.tick(&self.desk.state.settings, now) {
+        self.take_poses(now);
+        let failed = self.saver.tick(&self.desk.state.settings, now);
+        let poses = &self.desk.state.poses.library;
+        for failed in failed.into_iter().chain(self.pose_saver.tick(poses, now)) {
             self.tell(failed, now);
         }
     }
@@ -168,6 +186,24 @@ impl App {
             Action::ForgetFaults => desk.state.faults.forget(),
             Action::Note(at, words) => desk.note(at, &words),
             Action::Dismiss(id) => desk.state.notices.dismiss(id),
+            Action::ImportPoses => self.import_poses(),
+            Action::ExportPoses => self.save(Content::Poses(self.desk.state.poses.library.clone())),
+            action => self.act_on_poses(action, now),
+        }
+    }
+
+    /// Poses, sequences, and what the hand itself has stored.
+    fn act_on_poses(&mut self, action: Action, now: Moment) {
+        let desk = &mut self.desk;
+        match action {
+            Action::StoreGesture(gesture, angles) => desk.store_gesture(gesture, angles, now),
+            Action::ReadGesture(gesture) => desk.read_gesture(gesture, now),
+            Action::Capture(name) => desk.capture(&name, now),
+            Action::Recapture(id) => desk.recapture(id, now),
+            Action::Library(edit) => desk.state.poses.edit(edit),
+            Action::Recall(id) => desk.recall(id),
+            Action::TryAngles(angles) => desk.try_angles(angles),
+            Action::Play(play) => desk.play(play, now),
             kept => self.keep(kept),
         }
     }
@@ -245,6 +281,27 @@ impl App {
         self.saving = Some(saving);
     }
 
+    fn import_poses(&mut self) {
+        if self.reading.is_none() {
+            let (files, wake) = (&self.env.files, Arc::clone(&self.env.wake));
+            self.reading = Some(Reading::start(files.as_ref(), &self.env.runtime, wake));
+        }
+    }
+
+    /// A file of poses was read: all of it is added, or nothing.
+    fn take_poses(&mut self, now: Moment) {
+        let Some(end) = self.reading.as_mut().and_then(Reading::ended) else {
+            return;
+        };
+        self.reading = None;
+        let told = end.map(|library| {
+            let (poses, sequences) = (library.poses.len(), library.sequences.len());
+            self.desk.state.poses.import(library);
+            NoticeKind::PosesImported { poses, sequences }
+        });
+        self.tell(told.unwrap_or_else(|refused| refused), now);
+    }
+
     fn find_ports(&mut self) {
         if self.ports.is_some() {
             return;
@@ -279,7 +336,8 @@ impl App {
             }
             Closing { since: now, held }
         });
-        let saved = self.saver.flush(&self.desk.state.settings, now);
+        let poses = self.pose_saver.flush(&self.desk.state.poses.library, now);
+        let saved = self.saver.flush(&self.desk.state.settings, now) && poses;
         let rests = !closing.held || self.desk.is_at_rest(closing.since);
         saved && rests || now.since(closing.since) >= REST_WITHIN
     }

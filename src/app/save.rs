@@ -1,7 +1,10 @@
 //! Saving to a file that a person chooses: how the place is asked for, and what is written there. Never blocks the window.
 
+use crate::app::config::Kept;
 use crate::app::history::Table;
 use crate::app::notices::NoticeKind;
+use crate::app::poses::library::Library;
+use crate::app::poses::store;
 use crate::link::Traffic;
 use crate::link::traffic::frame::Frame;
 use crate::link::traffic::words::CSV_HEAD;
@@ -14,6 +17,9 @@ use tokio::sync::oneshot;
 pub trait ChooseFile: Send + Sync + 'static {
     /// Resolves to the chosen place; `None` if there was no choice. `suggested` is a file name.
     fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>>;
+
+    /// Resolves to a file that is there, to be read; `None` if there was no choice.
+    fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>>;
 }
 
 /// Where nobody can be asked: nothing is ever chosen.
@@ -22,6 +28,10 @@ pub struct NoChoice;
 
 impl ChooseFile for NoChoice {
     fn choose(&self, _suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        Box::pin(std::future::ready(None))
+    }
+
+    fn open(&self, _suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
         Box::pin(std::future::ready(None))
     }
 }
@@ -33,6 +43,10 @@ pub struct InFolder(pub PathBuf);
 impl ChooseFile for InFolder {
     fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
         Box::pin(std::future::ready(Some(self.0.join(suggested))))
+    }
+
+    fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        self.choose(suggested)
     }
 }
 
@@ -54,6 +68,8 @@ pub enum Content {
     Plots(Table),
     /// A finished picture of the plots, as the bytes of a PNG file.
     Picture(Vec<u8>),
+    /// Poses and sequences.
+    Poses(Library),
 }
 
 impl Content {
@@ -65,6 +81,7 @@ impl Content {
             Self::Traffic(TrafficForm::JsonLines, _) => "handscope-traffic.jsonl",
             Self::Plots(_) => "handscope-plots.csv",
             Self::Picture(_) => "handscope-plots.png",
+            Self::Poses(_) => store::FILE_NAME,
         }
     }
 
@@ -75,6 +92,7 @@ impl Content {
             Self::Traffic(_, frames) => frames.len(),
             Self::Plots(table) => table.len(),
             Self::Picture(bytes) => usize::from(!bytes.is_empty()),
+            Self::Poses(library) => library.poses.len() + library.sequences.len(),
         }
     }
 
@@ -84,24 +102,25 @@ impl Content {
         self.len() == 0
     }
 
-    fn bytes(&self) -> Vec<u8> {
-        match self {
-            Self::Traffic(form, frames) => Self::traffic(*form, frames).into_bytes(),
+    fn bytes(&self) -> std::io::Result<Vec<u8>> {
+        Ok(match self {
+            Self::Traffic(form, frames) => frame_lines(*form, frames).into_bytes(),
             Self::Plots(table) => table.csv().into_bytes(),
             Self::Picture(bytes) => bytes.clone(),
-        }
+            Self::Poses(library) => library.text()?.into_bytes(),
+        })
     }
+}
 
-    fn traffic(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
-        let (head, line): (Option<String>, fn(&Frame) -> String) = match form {
-            TrafficForm::Csv => (Some(CSV_HEAD.into()), Frame::csv_line),
-            TrafficForm::JsonLines => (None, Frame::json_line),
-        };
-        let lines = frames.iter().map(|frame| line(frame));
-        let mut text = head.into_iter().chain(lines).collect::<Vec<_>>().join("\n");
-        text.push('\n');
-        text
-    }
+fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
+    let (head, line): (Option<String>, fn(&Frame) -> String) = match form {
+        TrafficForm::Csv => (Some(CSV_HEAD.into()), Frame::csv_line),
+        TrafficForm::JsonLines => (None, Frame::json_line),
+    };
+    let lines = frames.iter().map(|frame| line(frame));
+    let mut text = head.into_iter().chain(lines).collect::<Vec<_>>().join("\n");
+    text.push('\n');
+    text
 }
 
 /// A file that is being chosen and written.
@@ -142,7 +161,7 @@ impl Saving {
 
 async fn write(content: Content, path: PathBuf) -> NoticeKind {
     let place = path.clone();
-    let work = move || std::fs::write(&place, content.bytes()).map(|()| content.len());
+    let work = move || std::fs::write(&place, content.bytes()?).map(|()| content.len());
     match tokio::task::spawn_blocking(work).await {
         Ok(Ok(entries)) => NoticeKind::Saved { path, entries },
         Ok(Err(error)) => NoticeKind::NotSaved {

@@ -5,6 +5,7 @@ use crate::app::gestures::GestureBook;
 use crate::app::history::History;
 use crate::app::notices::Notices;
 use crate::app::peaks::ForcePeaks;
+use crate::app::poses::book::PoseBook;
 use crate::app::scan::ScanBook;
 use crate::app::settings::Settings;
 use crate::app::tare::Tare;
@@ -44,6 +45,8 @@ pub struct State {
     pub notices: Notices,
     /// Gestures and their names.
     pub gestures: GestureBook,
+    /// The person's own poses and sequences.
+    pub poses: PoseBook,
     /// What went over the wire, as far as it was looked at.
     pub traffic: Traffic,
     /// Serial ports found when last looked.
@@ -103,6 +106,15 @@ impl State {
             Some(at) if self.now.since(at) > STALE_AFTER => Freshness::Stale,
             Some(_) => Freshness::Live,
         }
+    }
+
+    /// The pose that the hand has, if all six angles are known, live and fresh.
+    #[must_use]
+    pub fn pose_now(&self) -> Option<PerDof<Angle>> {
+        let angle = self.sample.angle?;
+        let live = self.freshness(Some(angle.asked)) == Freshness::Live;
+        let angles = angle.value.map(crate::hand::AngleReading::hold).all();
+        angles.filter(|_| live)
     }
 
     /// True while setpoints pass.

@@ -79,7 +79,7 @@ pub(crate) struct SnapshotArgs {
     /// Seconds after connecting
     #[arg(long, value_name = "SECONDS", default_value = "3", value_parser = seconds)]
     pub(crate) at: Duration,
-    /// One view (live, touch, faults, gestures, connection, traffic), the window as it opens, or all of them
+    /// One view (live, touch, faults, poses, connection, traffic), the window as it opens, or all of them
     #[arg(long, value_name = "NAME", default_value = "window", value_parser = views)]
     pub(crate) view: Views,
     /// Width x height in points

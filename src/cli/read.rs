@@ -4,7 +4,7 @@ use crate::cli::args::ReadArgs;
 use crate::cli::out::{Out, say};
 use crate::cli::session::{self, ANSWER_WITHIN};
 use crate::cli::value::{value_json, value_text};
-use crate::hand::Register;
+use crate::hand::{Register, Span};
 use crate::link::{
     Clock, LinkEvent, LinkHandle, Outcome, PollRates, Request, RequestError, Ticket,
 };
@@ -18,6 +18,9 @@ const ONLY_WHAT_IS_ASKED: PollRates = PollRates {
     tactile_hz: 0.0,
     settings_hz: 0.0,
 };
+
+/// Bytes asked for at once: nine stored gestures, which fit a frame of every protocol.
+const PIECE: u16 = 108;
 
 /// Reads the registers and prints them. Fails if any could not be read.
 pub(crate) fn run(out: &mut Out, args: ReadArgs) -> anyhow::Result<()> {
@@ -56,8 +59,30 @@ async fn read(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Reads a register, in pieces if it is longer than a frame.
 async fn ask(link: &mut LinkHandle, row: &Register) -> Result<Vec<u8>, RequestError> {
-    let ticket = link.ask(Request::Read(row.span()))?;
+    let mut bytes = Vec::new();
+    while let Some(left) = usize::from(row.len)
+        .checked_sub(bytes.len())
+        .filter(|left| *left > 0)
+    {
+        let done = row.len - u16::try_from(left).unwrap_or(row.len);
+        let piece = Span::new(row.address + done, PIECE.min(row.len - done));
+        let got = ask_piece(link, row, piece).await?;
+        if got.is_empty() {
+            break;
+        }
+        bytes.extend(got);
+    }
+    Ok(bytes)
+}
+
+async fn ask_piece(
+    link: &mut LinkHandle,
+    row: &Register,
+    piece: Span,
+) -> Result<Vec<u8>, RequestError> {
+    let ticket = link.ask(Request::Read(piece))?;
     match timeout(ANSWER_WITHIN, end_of(link, ticket)).await {
         Ok(end) => end,
         Err(_elapsed) => Err(RequestError::Timeout {

@@ -28,4 +28,6 @@ pub use register::{REGISTERS, Register, Span};
 pub use sample::{Group, Groups, HandSample, Reply};
 pub use status::{Status, Words};
 pub use tactile::TactileBlock;
-pub use units::{Angle, Force, Gesture, HandId, OutOfRange, SerialSpeed, Speed, Target};
+pub use units::{
+    Angle, Force, Gesture, HandId, OutOfRange, SerialSpeed, Speed, Target, UserGesture,
+};

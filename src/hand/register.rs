@@ -122,6 +122,16 @@ pub const DEFAULT_FORCE_SET: Register = Register {
     meaning: "Force thresholds after power-up.",
     ..six("DEFAULT_FORCE_SET", 1044, (0, 3000), "2.6.9")
 };
+/// USER_DEF_ANGLE(K, m), which the manual mentions without an address.
+pub const USER_DEF_ANGLE: Register = Register {
+    len: 27 * 12,
+    access: Access::ReadWrite,
+    // Nobody says whether SAVE keeps them; taken as kept, like the other parameters.
+    persistence: Persistence::Saved,
+    origin: Origin::Field,
+    meaning: "Six angles for each of the user's gestures 14 to 40. Address not in the manual's table.",
+    ..six("USER_DEF_ANGLE", 1066, (0, 1000), "2.6.7")
+};
 /// POS_SET(m). The manual advises against it; nothing here writes it.
 pub const POS_SET: Register = Register {
     access: Access::ReadWrite,
@@ -218,7 +228,7 @@ pub const ACTION_SEQ_RUN: Register = Register {
 };
 
 /// The whole map, by address: manual 2.6, and the registers known from the field that this program uses ([`Origin::Field`]).
-pub const REGISTERS: [Register; 31] = [
+pub const REGISTERS: [Register; 32] = [
     HAND_ID,
     REDU_RATIO,
     CLEAR_ERROR,
@@ -228,6 +238,7 @@ pub const REGISTERS: [Register; 31] = [
     GESTURE_FORCE_CLB,
     DEFAULT_SPEED_SET,
     DEFAULT_FORCE_SET,
+    USER_DEF_ANGLE,
     POS_SET,
     ANGLE_SET,
     FORCE_SET,

@@ -93,6 +93,19 @@ bounded!(
     Gesture(u8), "GESTURE_NO_SET", 1..=40
 );
 
+bounded!(
+    /// A gesture number whose pose the user stores (manual 2.6.7).
+    UserGesture(u8), "USER_DEF_ANGLE", 14..=40
+);
+
+impl UserGesture {
+    /// The number by which it is started.
+    #[must_use]
+    pub fn gesture(self) -> Gesture {
+        Gesture::nearest(self.0)
+    }
+}
+
 impl HandId {
     /// All of them, from the lowest.
     pub fn all() -> impl Iterator<Item = Self> {
@@ -218,6 +231,7 @@ mod tests {
         check_domain(Speed::new, Speed::nearest, 0..=1000);
         check_domain(HandId::new, HandId::nearest, 1..=254);
         check_domain(Gesture::new, Gesture::nearest, 1..=40);
+        check_domain(UserGesture::new, UserGesture::nearest, 14..=40);
     }
 
     #[test]

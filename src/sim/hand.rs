@@ -3,9 +3,10 @@
 use crate::hand::register::{
     ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, CLEAR_ERROR, FORCE_SET, GESTURE_FORCE_CLB,
     GESTURE_NO_SET, HAND_ID, POS_SET, REDU_RATIO, RESET_PARA, SAVE, SPEED_SET, Span,
+    USER_DEF_ANGLE,
 };
 use crate::hand::sample::touch_span;
-use crate::hand::{Dof, Fault, Finger, Moment, PerDof};
+use crate::hand::{Dof, Fault, Finger, Moment, PerDof, UserGesture};
 use crate::sim::body::{Body, Object};
 use crate::sim::drive::{Goal, Setting, position_of};
 use crate::sim::extremes;
@@ -394,10 +395,17 @@ impl SimHand {
     }
 
     fn take_pose(&mut self, number: i32) {
-        let pose = u8::try_from(number).ok().and_then(gesture::pose);
+        let number = u8::try_from(number).unwrap_or_default();
+        let taught = UserGesture::new(number).map(|number| {
+            let first = 6 * u16::from(number.get() - UserGesture::MIN.get());
+            PerDof::from_fn(|dof| self.memory.short(&USER_DEF_ANGLE, first + element(dof)))
+        });
+        let pose = gesture::pose(number).or(taught.ok());
         for (dof, angle) in pose.iter().flat_map(PerDof::iter) {
-            self.memory.put_angle_set(element(dof), *angle);
-            self.go_to_angle(dof, *angle);
+            if *angle >= 0 {
+                self.memory.put_angle_set(element(dof), *angle);
+                self.go_to_angle(dof, *angle);
+            }
         }
     }
 

@@ -75,6 +75,8 @@ impl Memory {
     fn put_default(&mut self, row: &Register) {
         let value = match (row.address, row.default) {
             (1032 | 1044, _) => i32::from(DEFAULT_SETTING),
+            // A gesture that nobody has taught moves no joint.
+            (1066, _) => -1,
             (_, Some(value)) => value,
             (_, None) => 0,
         };

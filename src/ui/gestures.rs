@@ -2,18 +2,13 @@
 
 use crate::app::action::Action;
 use crate::hand::{Gesture, GestureRoute};
-use crate::ui::controls::{self, Button, Label, Weight, take_right};
+use crate::ui::controls::{self, Button, Label, Weight, take_right, take_top};
 use crate::ui::look::{Look, Pane};
+use crate::ui::pose_tiles::gesture_tile_ui;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use egui::{Id, Rect, TextEdit, Ui, UiBuilder, pos2, vec2};
 
-/// The last of the gestures that cannot be changed (manual 2.6.7).
-const LAST_FIXED: u8 = 13;
-/// Height of the overview from which its tiles are large enough for names.
-const ROOMY: f32 = 640.0;
-/// Width of a tile from which a name can be read and typed in it.
-const NAMED: f32 = 48.0;
 /// Characters that a name may have.
 const NAME_MAX: usize = 24;
 
@@ -31,14 +26,6 @@ fn all() -> impl Iterator<Item = Gesture> {
     (Gesture::MIN.get()..=Gesture::MAX.get()).map(Gesture::nearest)
 }
 
-/// Why no gesture can be started now.
-fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
-    if pane.state.settings.gesture_route == GestureRoute::Off {
-        return Some(pane.look.say(panels::GESTURES_OFF));
-    }
-    (!pane.state.is_armed()).then(|| pane.look.say(crate::ui::text::main::NOT_ARMED))
-}
-
 const fn route_text(route: GestureRoute) -> Text {
     match route {
         GestureRoute::Register1008 => panels::ROUTE_1008,
@@ -48,50 +35,20 @@ const fn route_text(route: GestureRoute) -> Text {
 }
 
 impl GestureView {
-    /// Height of the strip in an overview of this height.
-    pub(crate) fn strip_height(height: f32) -> f32 {
-        if height < ROOMY { 96.0 } else { 160.0 }
-    }
-
-    /// The strip of the overview: two rows of numbers, or four rows with names.
-    pub(crate) fn strip_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        let look = pane.look;
-        let (mut head, body) = controls::titled_card(ui, look, rect, look.say(panels::GESTURES));
-        let gap = theme::STEP;
-        let count: u8 = if rect.height() < 120.0 { 20 } else { 10 };
-        let (columns, rows) = (
-            f32::from(count),
-            f32::from(Gesture::MAX.get().div_ceil(count)),
-        );
-        let size = vec2(
-            (body.width() - gap * (columns - 1.0)) / columns,
-            (body.height() - gap * (rows - 1.0)) / rows,
-        );
-        route_ui(ui, take_right(&mut head, 148.0), pane);
-        // Where names do not fit they are typed in the view of its own.
-        let fits = size.x >= NAMED;
-        if fits {
-            self.naming_ui(ui, &mut head, pane);
-        }
-        hint_ui(ui, head, pane);
-        for (gesture, place) in grid(body, size, gap, count) {
-            self.tile_ui(ui, place, pane, gesture, self.naming && fits);
-        }
-    }
-
     /// The view of its own: large tiles.
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let (mut head, body) = controls::titled_card(ui, look, rect, look.say(panels::GESTURES));
-        route_ui(ui, take_right(&mut head, 148.0), pane);
+        let mut body = rect;
+        let mut head = take_top(&mut body, theme::CONTROL);
         self.naming_ui(ui, &mut head, pane);
-        hint_ui(ui, head, pane);
-        let columns: u8 = if body.width() < 800.0 { 5 } else { 8 };
+        route_ui(ui, head, pane);
+        hint_ui(ui, take_top(&mut body, theme::CONTROL), look);
+        let columns: u8 = if body.width() < 640.0 { 4 } else { 5 };
         let rows = f32::from(Gesture::MAX.get().div_ceil(columns));
         let gap = theme::GAP;
         let size = vec2(
             (body.width() - gap * (f32::from(columns) - 1.0)) / f32::from(columns),
-            ((body.height() - gap * (rows - 1.0)) / rows).clamp(28.0, 72.0),
+            ((body.height() - gap * (rows - 1.0)) / rows).clamp(22.0, 72.0),
         );
         for (gesture, place) in grid(body, size, gap, columns) {
             self.tile_ui(ui, place, pane, gesture, self.naming);
@@ -139,26 +96,7 @@ impl GestureView {
         if naming {
             return self.name_ui(ui, rect, pane, gesture);
         }
-        let look = pane.look;
-        let name = pane
-            .state
-            .gestures
-            .name(gesture)
-            .unwrap_or_default()
-            .to_owned();
-        let number = gesture.get().to_string();
-        let label = format!("{} {number} {name}", look.say(panels::GESTURE));
-        let tip = format!("{}\n{}", label.trim(), look.say(panels::GESTURE_RUN_TIP));
-        let reason = refusal(pane);
-        let button = Button::new(&number, &tip)
-            .named(label.trim())
-            .disabled(reason);
-        let response = button.ground(ui, look, rect, Id::unique(("gesture", gesture)));
-        let color = button.text_color(look);
-        tile_text(ui, look, rect, &number, &name, color, gesture);
-        if response.clicked() {
-            pane.actions.push(Action::Gesture(gesture));
-        }
+        gesture_tile_ui(ui, rect, pane, gesture);
     }
 
     fn name_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, gesture: Gesture) {
@@ -199,8 +137,7 @@ impl GestureView {
     }
 }
 
-fn hint_ui(ui: &mut Ui, head: Rect, pane: &Pane<'_>) {
-    let look = pane.look;
+fn hint_ui(ui: &mut Ui, row: Rect, look: Look) {
     let hint = format!(
         "{} · {} · {}",
         look.say(panels::GESTURES_FIXED),
@@ -209,49 +146,8 @@ fn hint_ui(ui: &mut Ui, head: Rect, pane: &Pane<'_>) {
     );
     Label::new(&hint, look.palette.faint)
         .small()
-        .put(ui, head)
+        .put(ui, row)
         .on_hover_text(look.say(panels::GESTURES_TIP));
-}
-
-fn tile_text(
-    ui: &Ui,
-    look: Look,
-    rect: Rect,
-    number: &str,
-    name: &str,
-    color: egui::Color32,
-    gesture: Gesture,
-) {
-    let inner = rect.shrink2(vec2(theme::STEP + 1.0, 0.0));
-    let number_color = if gesture.get() <= LAST_FIXED {
-        color
-    } else {
-        color.gamma_multiply(0.8)
-    };
-    if name.is_empty() || rect.width() < NAMED {
-        let center = egui::Align2::CENTER_CENTER;
-        controls::paint_text(ui, inner, center, number, theme::number(), number_color);
-        return;
-    }
-    let left = egui::Align2::LEFT_CENTER;
-    if rect.height() >= 40.0 {
-        let (upper, lower) = inner
-            .shrink2(vec2(4.0, 6.0))
-            .split_top_bottom_at_fraction(0.45);
-        controls::paint_text(ui, upper, left, number, theme::number(), look.palette.muted);
-        controls::paint_text(ui, lower, left, name, theme::body(), color);
-        return;
-    }
-    let (narrow, rest) = inner.split_left_right_at_x(inner.left() + 17.0);
-    controls::paint_text(
-        ui,
-        narrow,
-        left,
-        number,
-        theme::number_small(),
-        look.palette.muted,
-    );
-    controls::paint_text(ui, rest, left, name, theme::small(), color);
 }
 
 fn grid(

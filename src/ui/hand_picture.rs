@@ -93,6 +93,23 @@ impl HandView {
     }
 }
 
+/// Draws a pose alone: for tiles and dry runs. `shares` of the way to open; an unknown joint gives no finger.
+pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
+    let scene = Scene::new(&HandView::default(), rect);
+    scene.palm(ui.painter(), look, 1.0);
+    let mut limbs: Vec<Limb> = Vec::with_capacity(11);
+    for (finger, bones) in skeleton::joints(shares).iter() {
+        match bones {
+            Some(bones) => limbs.extend(scene.limbs(finger, bones)),
+            None => scene.unknown(ui, look, finger),
+        }
+    }
+    limbs.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    for limb in &limbs {
+        scene.limb(ui.painter(), look, limb, None, 1.0);
+    }
+}
+
 /// Shares of the way to open, where the angle is known and makes sense.
 fn actual(pane: &Pane<'_>) -> PerDof<Option<f32>> {
     let angle = pane.state.sample.angle;

@@ -1,22 +1,26 @@
 //! The whole window: where each part stands, which keys act everywhere. Holds view state only, no hand.
 
-use crate::app::action::Action;
+use crate::app::action::{Action, Play};
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
 use crate::ui::banner;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::faults;
-use crate::ui::gestures::GestureView;
 use crate::ui::joints::JointsView;
 use crate::ui::look::{Look, Pane, Typing};
 use crate::ui::note_bar::{self, NoteBar};
 use crate::ui::plots::PlotView;
+use crate::ui::pose_tiles;
+use crate::ui::pose_view::PoseView;
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use crate::ui::top_bar;
 use crate::ui::touch::{self, TouchView};
 use crate::ui::traffic::TrafficView;
 use egui::{Event, Key, Rect, Ui};
+
+/// Height of the overview from which its strip has several rows.
+const ROOMY: f32 = 640.0;
 
 /// The parts of the window that can be looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -28,8 +32,8 @@ pub enum View {
     Touch,
     /// Faults, statuses and messages.
     Faults,
-    /// All forty gestures with their names.
-    Gestures,
+    /// The person's poses, sequences of them, and the gestures in the hand.
+    Poses,
     /// The link and its settings.
     Connection,
     /// What goes over the wire, frame by frame.
@@ -42,7 +46,7 @@ impl View {
         Self::Live,
         Self::Touch,
         Self::Faults,
-        Self::Gestures,
+        Self::Poses,
         Self::Connection,
         Self::Traffic,
     ];
@@ -54,7 +58,7 @@ impl View {
             Self::Live => "live",
             Self::Touch => "touch",
             Self::Faults => "faults",
-            Self::Gestures => "gestures",
+            Self::Poses => "poses",
             Self::Connection => "connection",
             Self::Traffic => "traffic",
         }
@@ -63,6 +67,8 @@ impl View {
     /// The view with this name.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
+        // What this view was called before poses were added.
+        let name = if name == "gestures" { "poses" } else { name };
         Self::ALL.into_iter().find(|view| view.name() == name)
     }
 
@@ -71,7 +77,7 @@ impl View {
             Self::Live => main::TAB_LIVE,
             Self::Touch => main::TAB_TOUCH,
             Self::Faults => main::TAB_FAULTS,
-            Self::Gestures => main::TAB_GESTURES,
+            Self::Poses => main::TAB_POSES,
             Self::Connection => main::TAB_CONNECTION,
             Self::Traffic => main::TAB_TRAFFIC,
         }
@@ -87,7 +93,7 @@ pub struct Window {
     joints: JointsView,
     plots: PlotView,
     note: NoteBar,
-    gestures: GestureView,
+    poses: PoseView,
     connection: ConnectionForm,
     touch: TouchView,
     traffic: TrafficView,
@@ -187,7 +193,7 @@ impl Window {
             View::Live => self.live_ui(ui, rect, pane),
             View::Touch => self.touch.large_ui(ui, rect, pane),
             View::Faults => faults::faults_view_ui(ui, rect, pane),
-            View::Gestures => self.gestures.large_ui(ui, rect, pane),
+            View::Poses => self.poses.ui(ui, rect, pane),
             View::Connection => self.connection.ui(ui, rect, pane),
             View::Traffic => self.traffic.ui(ui, rect, pane),
         }
@@ -198,9 +204,11 @@ impl Window {
             self.plots_ui(ui, rect, pane);
             return;
         }
-        let strip_height = GestureView::strip_height(rect.height());
+        let strip_height = if rect.height() < ROOMY { 88.0 } else { 164.0 };
         let (upper, strip) = rect.split_top_bottom_at_y(rect.bottom() - strip_height);
-        self.gestures.strip_ui(ui, strip, pane);
+        if pose_tiles::strip_ui(ui, strip, pane) {
+            self.view = View::Poses;
+        }
         let upper = upper.with_max_y(upper.bottom() - theme::GAP);
         let right_width = (rect.width() * 0.4).clamp(288.0, 560.0).round();
         let (center, right) = upper.split_left_right_at_x(upper.right() - right_width);
@@ -288,6 +296,9 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
                 | Action::Target(..)
                 | Action::Preset(_)
                 | Action::Gesture(_)
+                | Action::Recall(_)
+                | Action::TryAngles(_)
+                | Action::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
         )
     });
     actions.insert(0, Action::Stop);
@@ -298,7 +309,8 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
 mod tests {
     use super::*;
     use crate::app::action::Preset;
-    use crate::hand::{Angle, Dof, Gesture};
+    use crate::app::poses::library::{PoseId, SequenceId};
+    use crate::hand::{Angle, Dof, Gesture, PerDof};
 
     #[test]
     fn a_stop_goes_first_and_nothing_moves_in_the_same_frame() {
@@ -308,6 +320,11 @@ mod tests {
                 Action::Target(Dof::Index, Angle::MAX),
                 Action::Preset(Preset::Open),
                 Action::Gesture(Gesture::MIN),
+                Action::Recall(PoseId(1)),
+                Action::TryAngles(PerDof::splat(Angle::MAX)),
+                Action::Play(Play::Start(SequenceId(1))),
+                Action::Play(Play::Step(SequenceId(1))),
+                Action::Play(Play::Resume),
                 Action::FindPorts,
             ]
         };

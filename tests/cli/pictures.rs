@@ -8,7 +8,7 @@ const VIEWS: [&str; 7] = [
     "live",
     "touch",
     "faults",
-    "gestures",
+    "poses",
     "connection",
     "traffic",
     "window",

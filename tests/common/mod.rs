@@ -50,6 +50,7 @@ pub fn empty() -> State {
         faults: FaultBook::default(),
         notices: Notices::default(),
         gestures: GestureBook::default(),
+        poses: handscope::app::poses::book::PoseBook::default(),
         traffic: Traffic::default(),
         ports: Vec::new(),
         scan: handscope::app::ScanBook::default(),

@@ -390,6 +390,13 @@ impl Bench {
         node.accesskit_node().is_disabled()
     }
 
+    /// Whether each button of this name is disabled.
+    pub fn all_disabled(&self, name: &str) -> Vec<bool> {
+        let all = self.harness.query_all_by_role_and_label(Role::Button, name);
+        all.map(|node| node.accesskit_node().is_disabled())
+            .collect()
+    }
+
     pub fn rect(&self, role: Role, name: &str) -> Rect {
         self.harness.get_by_role_and_label(role, name).rect()
     }

@@ -7,13 +7,13 @@ use handscope::sim::SimConfig;
 const SIZES: [Vec2; 3] = [vec2(1024.0, 640.0), LARGE, vec2(2560.0, 1440.0)];
 /// Tabs, STOP, theme and language, as each language calls them.
 const ENGLISH: Names = Names {
-    tabs: ["Live", "Touch", "Faults", "Gestures", "Connection"],
+    tabs: ["Live", "Touch", "Faults", "Poses", "Connection"],
     stop: "STOP",
     theme: "Theme",
     language: "Language",
 };
 const CHINESE: Names = Names {
-    tabs: ["总览", "触觉", "故障", "手势", "连接"],
+    tabs: ["总览", "触觉", "故障", "姿态", "连接"],
     stop: "停止",
     theme: "主题",
     language: "语言",
@@ -63,7 +63,9 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
         assert!(bench.state().is_armed());
         bench.drag("Index angle target", 1.0, 0.6);
         check(&bench, size, "STOP", &format!("{size} armed"));
-        bench.click_first_button("Gestures");
+        bench.click_first_button("Poses");
+        bench.run(60);
+        bench.click("Stored in the hand");
         bench.run(60);
         bench.click("Name gestures");
         bench.run(60);

@@ -44,7 +44,7 @@ fn the_first_start_is_live_within_a_second_badged_disarmed_and_writes_nothing() 
 #[test]
 fn looking_around_writes_nothing() {
     let mut bench = Bench::live();
-    for tab in ["Touch", "Faults", "Gestures", "Connection", "Live"] {
+    for tab in ["Touch", "Faults", "Poses", "Connection", "Live"] {
         bench.click_button(tab);
         bench.run(100);
     }

@@ -5,14 +5,7 @@ use handscope::hand::{Dof, Fault};
 use handscope::link::LinkState;
 use handscope::sim::{Scenario, SimConfig};
 
-const VIEWS: [&str; 6] = [
-    "Live",
-    "Touch",
-    "Faults",
-    "Gestures",
-    "Connection",
-    "Traffic",
-];
+const VIEWS: [&str; 6] = ["Live", "Touch", "Faults", "Poses", "Connection", "Traffic"];
 
 #[test]
 fn an_unplugged_hand_is_said_in_words_and_cannot_be_driven() {
@@ -223,7 +216,7 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
         assert!(!bench.texts_with(&words).is_empty(), "{words}");
     }
     bench.click("Language");
-    for view in ["总览", "触觉", "故障", "手势", "连接"] {
+    for view in ["总览", "触觉", "故障", "姿态", "连接"] {
         bench.click_button(view);
         bench.wait(200);
     }

@@ -70,7 +70,7 @@ texts! {
     TAB_LIVE: "Live", "总览";
     TAB_TOUCH: "Touch", "触觉";
     TAB_FAULTS: "Faults", "故障";
-    TAB_GESTURES: "Gestures", "手势";
+    TAB_POSES: "Poses", "姿态";
     TAB_TRAFFIC: "Traffic", "报文";
     TAB_CONNECTION: "Connection", "连接";
     TAB_TIP: "Shows this part of the window. Nothing moves.", "切换到此视图，不会产生动作。";

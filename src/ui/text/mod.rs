@@ -5,6 +5,7 @@ pub(crate) mod notices;
 pub(crate) mod panels;
 mod phrase;
 pub(crate) mod plots;
+pub(crate) mod poses;
 pub(crate) mod scan;
 pub(crate) mod traffic;
 pub(crate) mod words;

@@ -7,7 +7,7 @@ use crate::hand::Words;
 use crate::link::{Disarmed, LinkTrouble, RequestError};
 use crate::ui::format;
 use crate::ui::look::Look;
-use crate::ui::text::{main, panels, traffic, words};
+use crate::ui::text::{main, panels, poses, traffic, words};
 
 /// Title, cause and advice of what is wrong with a drive.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
@@ -77,6 +77,12 @@ fn request_error(look: Look, error: &RequestError) -> String {
 fn asked(look: Look, what: Asked) -> String {
     match what {
         Asked::Gesture(gesture) => format!("{} {}", look.say(panels::GESTURE), gesture.get()),
+        Asked::StoreGesture(gesture) => {
+            format!("{} {}", look.say(poses::STORE_ASKED), gesture.get())
+        }
+        Asked::ReadGesture(gesture) => {
+            format!("{} {}", look.say(poses::READ_ASKED), gesture.get())
+        }
         Asked::ClearErrors => look.say(panels::CLEAR).into(),
     }
 }
@@ -153,6 +159,30 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
                 said(panels::NOTICE_LOCKED),
                 look.say(words::dof(*dof))
             )
+        }
+        NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
+        NoticeKind::PosesImported {
+            poses: count,
+            sequences,
+        } => format!(
+            "{} {count} {}, {sequences} {}",
+            said(poses::IMPORTED),
+            said(poses::COUNT_POSES),
+            said(poses::COUNT_SEQUENCES)
+        ),
+        NoticeKind::PosesRefused { path, error } => {
+            format!("{} {}: {error}", said(poses::REFUSED), path.display())
+        }
+        NoticeKind::PosesIgnored { error, kept_as } => {
+            let kept = kept_as.as_ref().map(|path| path.display().to_string());
+            format!(
+                "{} {error} {}",
+                said(poses::IGNORED),
+                kept.unwrap_or_default()
+            )
+        }
+        NoticeKind::PosesNotSaved { message } => {
+            format!("{} {message}", said(poses::NOT_SAVED))
         }
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         NoticeKind::SettingsNotSaved { message } => {

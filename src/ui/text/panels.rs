@@ -120,7 +120,6 @@ texts! {
     DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
     STATUS_LIST: "Status of the drives", "驱动器状态";
 
-    GESTURES: "Gestures", "手势";
     GESTURE: "Gesture", "手势";
     GESTURES_FIXED: "1 to 13 fixed", "1 至 13 固定";
     GESTURES_USER: "14 to 40 user", "14 至 40 用户自定";

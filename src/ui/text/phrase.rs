@@ -36,7 +36,7 @@ pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::{main, panels, plots, scan, traffic};
+    use crate::ui::text::{main, panels, plots, poses, scan, traffic};
 
     #[test]
     fn no_sentence_lacks_a_language() {
@@ -45,6 +45,7 @@ mod tests {
             .chain(panels::ALL)
             .chain(plots::ALL)
             .chain(scan::ALL)
+            .chain(poses::ALL)
             .chain(traffic::ALL)
         {
             assert!(!text.en.is_empty() && !text.zh.is_empty(), "{text:?}");
@@ -63,6 +64,7 @@ mod tests {
             .chain(panels::ALL)
             .chain(plots::ALL)
             .chain(scan::ALL)
+            .chain(poses::ALL)
             .chain(traffic::ALL);
         for text in all {
             for sign in text

@@ -1,0 +1,204 @@
+//! Poses and sequences as plain values. How they are changed is in `edit`, how they are written in `file`.
+
+use crate::hand::{Angle, Force, PerDof, Speed};
+use std::time::Duration;
+
+/// Poses and sequences that a library holds, each: more than a person finds again.
+pub const ENTRIES_MAX: usize = 500;
+/// Steps of a sequence.
+pub const STEPS_MAX: usize = 200;
+/// Characters of a name or tag: what fits a tile.
+pub const NAME_CHARS_MAX: usize = 32;
+/// Tags of one pose.
+pub const TAGS_MAX: usize = 8;
+
+/// A pose for as long as the program runs; files know it by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PoseId(pub u64);
+
+/// A sequence for as long as the program runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SequenceId(pub u64);
+
+/// A time in milliseconds, 0 to ten minutes.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+#[serde(try_from = "i64", into = "i64")]
+pub struct Millis(u32);
+
+/// A time that no step may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{got} ms is outside 0 to {}", Millis::MAX)]
+pub struct BadTime {
+    /// What was given.
+    pub got: i64,
+}
+
+impl Millis {
+    /// Longest time: ten minutes.
+    pub const MAX: u32 = 600_000;
+    /// How long a step waits at a pose at first.
+    pub const DWELL: Self = Self(500);
+    /// How long a step waits for arrival at first: the full way at a gentle speed takes 3 s.
+    pub const LIMIT: Self = Self(5000);
+
+    /// The nearest time in range.
+    #[must_use]
+    pub fn nearest(millis: u32) -> Self {
+        Self(millis.min(Self::MAX))
+    }
+
+    /// Milliseconds.
+    #[must_use]
+    pub const fn get(self) -> u32 {
+        self.0
+    }
+
+    /// As a duration.
+    #[must_use]
+    pub const fn duration(self) -> Duration {
+        Duration::from_millis(self.0 as u64)
+    }
+}
+
+impl TryFrom<i64> for Millis {
+    type Error = BadTime;
+    fn try_from(got: i64) -> Result<Self, BadTime> {
+        match u32::try_from(got) {
+            Ok(millis) if millis <= Self::MAX => Ok(Self(millis)),
+            _ => Err(BadTime { got }),
+        }
+    }
+}
+
+impl From<Millis> for i64 {
+    fn from(time: Millis) -> Self {
+        time.0.into()
+    }
+}
+
+/// Six angles under a name, and how to go there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pose {
+    /// To find it.
+    pub id: PoseId,
+    /// No two poses of a library have the same.
+    pub name: String,
+    /// Words to find it by.
+    pub tags: Vec<String>,
+    /// Where the joints go, 0 bent to 1000 open.
+    pub angles: PerDof<Angle>,
+    /// Joints that are left alone although an angle is known.
+    pub leave: PerDof<bool>,
+    /// Speed of the joints that move.
+    pub speed: Speed,
+    /// Force threshold of the joints that move.
+    pub force: Force,
+    /// Keys of a newer version, kept as they are.
+    pub others: toml::Table,
+}
+
+impl Pose {
+    /// Where each joint goes; `None` for those that are left alone.
+    #[must_use]
+    pub fn targets(&self) -> PerDof<Option<Angle>> {
+        PerDof::from_fn(|dof| (!self.leave[dof]).then_some(self.angles[dof]))
+    }
+}
+
+/// One pose on a timeline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The pose.
+    pub pose: PoseId,
+    /// Speed on the way there; the pose's own is for recalling it alone.
+    pub speed: Speed,
+    /// Time at the pose before the next step.
+    pub dwell: Millis,
+    /// Time after which a pose that is not reached counts as reached.
+    pub limit: Millis,
+    /// Keys of a newer version, kept as they are.
+    pub others: toml::Table,
+}
+
+/// Poses one after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sequence {
+    /// To find it.
+    pub id: SequenceId,
+    /// No two sequences of a library have the same.
+    pub name: String,
+    /// Whether the first step follows the last.
+    pub looped: bool,
+    /// In order.
+    pub steps: Vec<Step>,
+    /// Keys of a newer version, kept as they are.
+    pub others: toml::Table,
+}
+
+/// All poses and sequences, in the person's order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Library {
+    /// The poses.
+    pub poses: Vec<Pose>,
+    /// The sequences. Their steps name poses of this library only.
+    pub sequences: Vec<Sequence>,
+    /// Keys of a newer version, kept as they are.
+    pub others: toml::Table,
+    next: u64,
+}
+
+impl Library {
+    /// The pose with this id.
+    #[must_use]
+    pub fn pose(&self, id: PoseId) -> Option<&Pose> {
+        self.poses.iter().find(|pose| pose.id == id)
+    }
+
+    /// The pose with this name.
+    #[must_use]
+    pub fn pose_named(&self, name: &str) -> Option<&Pose> {
+        self.poses.iter().find(|pose| pose.name == name)
+    }
+
+    /// The sequence with this id.
+    #[must_use]
+    pub fn sequence(&self, id: SequenceId) -> Option<&Sequence> {
+        self.sequences.iter().find(|sequence| sequence.id == id)
+    }
+
+    /// True if there is nothing in it.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.poses.is_empty() && self.sequences.is_empty()
+    }
+
+    /// A number that nothing in this library has.
+    pub(crate) const fn fresh(&mut self) -> u64 {
+        self.next += 1;
+        self.next
+    }
+}
+
+/// A name as it is kept: one line, cut at [`NAME_CHARS_MAX`] characters. Empty if nothing is left.
+#[must_use]
+pub fn clean(name: &str) -> String {
+    let line = name.chars().map(|c| if c.is_control() { ' ' } else { c });
+    let line: String = line.collect();
+    let cut: String = line.trim().chars().take(NAME_CHARS_MAX).collect();
+    cut.trim_end().to_owned()
+}
+
+/// `wanted`, or the first of "wanted 2", "wanted 3", … that is not taken.
+#[must_use]
+pub fn free_name(wanted: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    if !is_taken(wanted) {
+        return wanted.to_owned();
+    }
+    let room = NAME_CHARS_MAX - 4;
+    let short: String = wanted.chars().take(room).collect();
+    let numbered = (2..=2 * ENTRIES_MAX).map(|number| format!("{} {number}", short.trim_end()));
+    let mut free = numbered.filter(|name| !is_taken(name));
+    free.next().unwrap_or_else(|| wanted.to_owned())
+}

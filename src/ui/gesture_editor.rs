@@ -1,0 +1,197 @@
+//! A gesture of the user's in the hand's own memory: six angles, tried, written and read back. Every step is an action.
+
+use crate::app::action::Action;
+use crate::app::gestures::Verdict;
+use crate::hand::{Angle, PerDof, UserGesture};
+use crate::ui::controls::{self, Button, Label, Weight, take_left, take_top};
+use crate::ui::hand_picture;
+use crate::ui::look::Pane;
+use crate::ui::number::NumberField;
+use crate::ui::pose_editor::{NUMBER, six_ui, whole};
+use crate::ui::text::{Text, main, poses};
+use crate::ui::theme;
+use egui::{Id, Rect, Ui};
+
+/// What the editor needs between frames.
+#[derive(Debug)]
+pub(crate) struct GestureEditor {
+    gesture: UserGesture,
+    angles: PerDof<Option<Angle>>,
+    /// A read was asked for, and what comes is taken.
+    reading: bool,
+}
+
+impl Default for GestureEditor {
+    fn default() -> Self {
+        Self {
+            gesture: UserGesture::MIN,
+            angles: PerDof::splat(None),
+            reading: false,
+        }
+    }
+}
+
+const fn verdict_text(verdict: Verdict) -> Text {
+    match verdict {
+        Verdict::Writing => poses::VERDICT_WRITING,
+        Verdict::ReadingBack => poses::VERDICT_READING,
+        Verdict::Same => poses::VERDICT_SAME,
+        Verdict::Differs => poses::VERDICT_DIFFERS,
+        Verdict::Failed => poses::VERDICT_FAILED,
+    }
+}
+
+impl GestureEditor {
+    /// Draws it.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        self.take_read(pane);
+        let mut left = rect;
+        self.number_ui(ui, take_top(&mut left, theme::CONTROL), pane);
+        let six = take_top(&mut left, 6.0 * (theme::CONTROL + theme::STEP));
+        let picture = six.with_min_x(six.left() + 96.0 + NUMBER + 2.0 * theme::GAP);
+        let shares = self
+            .angles
+            .map(|angle| Some(f32::from(angle?.get()) / 1000.0));
+        hand_picture::pose_ui(ui, pane.look, picture, &shares);
+        if let Some(angles) = six_ui(ui, six, pane, "gesture", &self.angles) {
+            self.angles = angles;
+        }
+        self.fill_ui(ui, take_top(&mut left, theme::CONTROL), pane);
+        self.send_ui(ui, take_top(&mut left, theme::CONTROL_LARGE), pane);
+        self.verdict_ui(ui, take_top(&mut left, 2.0 * theme::CONTROL), pane);
+        let text = pane.look.say(poses::USER_GESTURE_UNKNOWN);
+        wrapped(ui, left, pane, text);
+    }
+
+    fn take_read(&mut self, pane: &Pane<'_>) {
+        let Some(stored) = pane.state.gestures.stored.filter(|_| self.reading) else {
+            return;
+        };
+        if stored.gesture == self.gesture {
+            self.angles = stored.angles.map(|raw| Angle::new(raw).ok());
+            self.reading = false;
+        }
+    }
+
+    fn number_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let text = look.say(poses::USER_GESTURE);
+        Label::new(text, look.palette.text).put(ui, take_left(&mut row, 96.0));
+        let field = NumberField {
+            name: text,
+            tip: look.say(poses::USER_GESTURE_TIP),
+            disabled: None,
+            value: Some(f64::from(self.gesture.get())),
+            range: 14.0..=40.0,
+            decimals: 0,
+        };
+        let place = take_left(&mut row, NUMBER);
+        let typed = field.put(ui, look, pane.typing, place, Id::unique("user gesture"));
+        if let Some(gesture) = typed.and_then(|typed| UserGesture::new(whole(typed)).ok()) {
+            self.gesture = gesture;
+            self.reading = false;
+        }
+        let name = pane.state.gestures.name(self.gesture.gesture());
+        Label::new(name.unwrap_or_default(), look.palette.muted).put(ui, row);
+    }
+
+    fn fill_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let half = (row.width() - theme::GAP) / 2.0;
+        let now = pane.state.pose_now();
+        let unknown = now.is_none().then(|| look.say(poses::CAPTURE_UNKNOWN));
+        let take = Button::new(look.say(poses::RECAPTURE), look.say(poses::RECAPTURE_TIP));
+        let place = take_left(&mut row, half);
+        if take
+            .disabled(unknown)
+            .put(ui, look, place, Id::unique("gesture take"))
+            .clicked()
+            && let Some(now) = now
+        {
+            self.angles = now.map(Some);
+        }
+        let offline = (!pane.state.link.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
+        let read = Button::new(look.say(poses::READ_HAND), look.say(poses::READ_HAND_TIP));
+        if read
+            .disabled(offline)
+            .put(ui, look, row, Id::unique("gesture read"))
+            .clicked()
+        {
+            self.reading = true;
+            pane.actions.push(Action::ReadGesture(self.gesture));
+        }
+    }
+
+    fn send_ui(&self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let half = (row.width() - theme::GAP) / 2.0;
+        let angles = self.angles.all();
+        let missing = angles.is_none().then(|| look.say(poses::FIRST_ANGLES));
+        let unarmed = (!pane.state.is_armed()).then(|| look.say(main::NOT_ARMED));
+        let test = Button::new(look.say(poses::TEST), look.say(poses::TEST_TIP));
+        let place = take_left(&mut row, half);
+        let test = test.disabled(missing.or(unarmed));
+        if test
+            .put(ui, look, place, Id::unique("gesture test"))
+            .clicked()
+            && let Some(angles) = angles
+        {
+            pane.actions.push(Action::TryAngles(angles));
+        }
+        let offline = (!pane.state.link.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
+        let upload = Button::new(look.say(poses::UPLOAD), look.say(poses::UPLOAD_TIP));
+        let upload = upload.disabled(missing.or(offline)).weight(Weight::Strong);
+        if upload
+            .put(ui, look, row, Id::unique("gesture upload"))
+            .clicked()
+            && let Some(angles) = angles
+        {
+            pane.actions
+                .push(Action::StoreGesture(self.gesture, angles));
+        }
+    }
+
+    fn verdict_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let upload = pane
+            .state
+            .gestures
+            .upload
+            .filter(|last| last.gesture == self.gesture);
+        let stored = pane
+            .state
+            .gestures
+            .stored
+            .filter(|last| last.gesture == self.gesture);
+        let empty = stored.is_some_and(|last| last.angles.iter().all(|(_, raw)| *raw < 0));
+        let (text, color) = match upload.map(|upload| upload.verdict) {
+            Some(Verdict::Same) => (verdict_text(Verdict::Same), look.palette.ok),
+            Some(bad @ (Verdict::Differs | Verdict::Failed)) => {
+                (verdict_text(bad), look.palette.bad)
+            }
+            Some(under_way) => (verdict_text(under_way), look.palette.muted),
+            None if empty => (poses::STORED_NONE, look.palette.muted),
+            None => return,
+        };
+        let place = rect.with_max_y(rect.top() + theme::CONTROL);
+        Label::new(look.say(text), color).put(ui, place);
+    }
+}
+
+/// Running text on several lines.
+pub(crate) fn wrapped(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, text: &str) {
+    let job = egui::text::LayoutJob::simple(
+        text.to_owned(),
+        theme::small(),
+        pane.look.palette.faint,
+        rect.width(),
+    );
+    let galley = ui.painter().layout_job(job);
+    let clip = ui.painter().with_clip_rect(rect);
+    clip.galley(rect.min, galley, pane.look.palette.faint);
+    let id = ui.next_auto_id();
+    ui.skip_ahead_auto_ids(1);
+    let response = ui.interact(rect, id, egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
+    controls::focus_ring(ui, pane.look, &response, rect);
+}

@@ -1,0 +1,242 @@
+//! Poses as tiles with a drawn hand, in the library and in the overview's strip. Starts nothing by itself.
+
+use crate::app::action::Action;
+use crate::app::gestures::GestureBook;
+use crate::app::poses::library::Pose;
+use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
+use crate::ui::controls::{self, Button, Weight, take_right};
+use crate::ui::hand_picture;
+use crate::ui::look::{Look, Pane};
+use crate::ui::text::{main, panels, poses};
+use crate::ui::theme;
+use egui::{Align2, Id, Rect, Ui, Vec2, pos2, vec2};
+
+/// The least width and height of a tile in the overview: a finger's breadth.
+const STRIP_TILE: Vec2 = vec2(118.0, 38.0);
+
+/// Shares of the way to open.
+pub(crate) fn shares(angles: &PerDof<Angle>) -> PerDof<Option<f32>> {
+    PerDof::from_fn(|dof| Some(f32::from(angles[dof].get()) / 1000.0))
+}
+
+/// Why this pose cannot be taken now.
+pub(crate) fn refusal(pane: &Pane<'_>, pose: &Pose) -> Option<&'static str> {
+    if !pane.state.is_armed() {
+        return Some(pane.look.say(main::NOT_ARMED));
+    }
+    let moves = |dof: Dof| !pose.leave[dof] && !pane.state.joints[dof].locked;
+    let any = Dof::ALL.into_iter().any(moves);
+    (!any).then(|| pane.look.say(main::LOCKED))
+}
+
+/// Why no gesture can be started now.
+pub(crate) fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
+    if pane.state.settings.gesture_route == GestureRoute::Off {
+        return Some(pane.look.say(panels::GESTURES_OFF));
+    }
+    (!pane.state.is_armed()).then(|| pane.look.say(main::NOT_ARMED))
+}
+
+/// A button that takes a pose.
+pub(crate) fn go_ui(
+    ui: &mut Ui,
+    rect: Rect,
+    pane: &mut Pane<'_>,
+    pose: &Pose,
+    place: &'static str,
+) {
+    let look = pane.look;
+    let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
+    let button = Button::new(look.say(poses::RECALL), look.say(poses::RECALL_TIP))
+        .named(&name)
+        .disabled(refusal(pane, pose))
+        .weight(Weight::Strong);
+    if button
+        .put(ui, look, rect, Id::unique((place, pose.id)))
+        .clicked()
+    {
+        pane.actions.push(Action::Recall(pose.id));
+    }
+}
+
+/// A tile of the library: picture, name, tags. True if it was chosen.
+pub(crate) fn tile_ui(
+    ui: &mut Ui,
+    rect: Rect,
+    pane: &mut Pane<'_>,
+    pose: &Pose,
+    chosen: bool,
+) -> bool {
+    let look = pane.look;
+    let name = format!("{} {}", look.say(poses::POSE), pose.name);
+    let mut button = Button::new(&pose.name, look.say(poses::SELECT_TIP)).named(&name);
+    button.selected = Some(chosen);
+    if chosen {
+        button.weight = Weight::Chosen;
+    }
+    let (top, foot) = rect.split_top_bottom_at_y(rect.bottom() - theme::CONTROL - theme::STEP);
+    let response = button.ground(ui, look, top, Id::unique(("pose", pose.id)));
+    let (picture, words) = top.split_top_bottom_at_y(top.bottom() - 36.0);
+    hand_picture::pose_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
+    let words = words.shrink2(vec2(theme::GAP, 0.0));
+    let (upper, lower) = words.split_top_bottom_at_fraction(0.5);
+    let center = Align2::CENTER_CENTER;
+    controls::paint_text(
+        ui,
+        upper,
+        center,
+        &pose.name,
+        theme::body(),
+        look.palette.text,
+    );
+    let tags = pose.tags.join(" · ");
+    let about = if tags.is_empty() {
+        format!("{} · {} g", pose.speed.get(), pose.force.get())
+    } else {
+        tags
+    };
+    controls::paint_text(
+        ui,
+        lower,
+        center,
+        &about,
+        theme::small(),
+        look.palette.muted,
+    );
+    let foot = foot.with_min_y(foot.top() + theme::STEP);
+    go_ui(ui, foot, pane, pose, "tile");
+    response.clicked()
+}
+
+/// The overview's strip: the person's poses first, then named gestures, then the other numbers. True if all are wanted.
+pub(crate) fn strip_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
+    let look = pane.look;
+    let title = look.say(poses::STRIP);
+    let (mut head, body) = controls::titled_card(ui, look, rect, title);
+    let text = look.say(poses::EVERY);
+    let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+    let all = Button::new(text, look.say(poses::EVERY_TIP));
+    let place = take_right(&mut head, width);
+    let opened = all.put(ui, look, place, Id::unique("all poses")).clicked();
+    let wanted = Button::new(look.say(poses::CAPTURE), look.say(poses::CAPTURE_TIP));
+    capture_button(ui, &mut head, pane, wanted);
+    let gap = theme::STEP;
+    let fit = |room: f32, least: f32| ((room + gap) / (least + gap)).floor().max(1.0);
+    let (columns, rows) = (
+        fit(body.width(), STRIP_TILE.x),
+        fit(body.height(), STRIP_TILE.y),
+    );
+    let size = vec2(
+        (body.width() - gap * (columns - 1.0)) / columns,
+        (body.height() - gap * (rows - 1.0)) / rows,
+    );
+    let places = places(body, size, gap).take(count(columns * rows));
+    let (mut places, state) = (places, pane.state);
+    for pose in &state.poses.library.poses {
+        let Some(place) = places.next() else {
+            return opened;
+        };
+        small_tile_ui(ui, place, pane, pose);
+    }
+    let (named, others): (Vec<Gesture>, Vec<Gesture>) =
+        GestureBook::all().partition(|gesture| state.gestures.name(*gesture).is_some());
+    for (gesture, place) in named.into_iter().chain(others).zip(places) {
+        gesture_tile_ui(ui, place, pane, gesture);
+    }
+    opened
+}
+
+/// Keeps the pose of now.
+pub(crate) fn capture_button(
+    ui: &mut Ui,
+    head: &mut Rect,
+    pane: &mut Pane<'_>,
+    button: Button<'_>,
+) {
+    let look = pane.look;
+    let width = controls::text_width(ui, button.text, theme::body()) + 2.0 * theme::PAD;
+    let unknown = pane.state.pose_now().is_none();
+    let button = button.disabled(unknown.then(|| look.say(poses::CAPTURE_UNKNOWN)));
+    let place = take_right(head, width);
+    if button.put(ui, look, place, Id::unique("capture")).clicked() {
+        let name = look.say(poses::POSE).to_owned();
+        pane.actions.push(Action::Capture(name));
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "tiles that fit a window"
+)]
+const fn count(tiles: f32) -> usize {
+    tiles as usize
+}
+
+fn places(body: Rect, size: Vec2, gap: f32) -> impl Iterator<Item = Rect> {
+    let (mut x, mut y) = (body.left(), body.top());
+    std::iter::from_fn(move || {
+        let place = Rect::from_min_size(pos2(x, y), size);
+        x += size.x + gap;
+        if x + size.x > body.right() + 1.0 {
+            (x, y) = (body.left(), y + size.y + gap);
+        }
+        Some(place)
+    })
+}
+
+fn small_tile_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, pose: &Pose) {
+    let look = pane.look;
+    let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
+    let button = Button::new(&pose.name, look.say(poses::RECALL_TIP))
+        .named(&name)
+        .disabled(refusal(pane, pose));
+    let response = button.ground(ui, look, rect, Id::unique(("go", pose.id)));
+    let (picture, words) = rect.split_left_right_at_x(rect.left() + rect.height());
+    hand_picture::pose_ui(ui, look, picture.shrink(2.0), &shares(&pose.angles));
+    let words = words.shrink2(vec2(theme::STEP, 0.0));
+    let color = button.text_color(look);
+    controls::paint_text(
+        ui,
+        words,
+        Align2::LEFT_CENTER,
+        &pose.name,
+        theme::body(),
+        color,
+    );
+    if response.clicked() {
+        pane.actions.push(Action::Recall(pose.id));
+    }
+}
+
+/// A gesture of the hand: its name, or its number.
+pub(crate) fn gesture_tile_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, gesture: Gesture) {
+    let look = pane.look;
+    let name = pane.state.gestures.name(gesture).unwrap_or_default();
+    let number = gesture.get().to_string();
+    let label = format!("{} {number} {name}", look.say(panels::GESTURE));
+    let tip = format!("{}\n{}", label.trim(), look.say(panels::GESTURE_RUN_TIP));
+    let button = Button::new(&number, &tip)
+        .named(label.trim())
+        .disabled(gesture_refusal(pane));
+    let response = button.ground(ui, look, rect, Id::unique(("gesture", gesture)));
+    let color = button.text_color(look);
+    gesture_text(ui, look, rect, &number, name, color);
+    if response.clicked() {
+        pane.actions.push(Action::Gesture(gesture));
+    }
+}
+
+fn gesture_text(ui: &Ui, look: Look, rect: Rect, number: &str, name: &str, color: egui::Color32) {
+    let inner = rect.shrink2(vec2(theme::GAP, 0.0));
+    let (left, right) = (Align2::LEFT_CENTER, Align2::RIGHT_CENTER);
+    if name.is_empty() {
+        let center = Align2::CENTER_CENTER;
+        controls::paint_text(ui, inner, center, number, theme::number(), color);
+        return;
+    }
+    let (words, small) = inner.split_left_right_at_x(inner.right() - 18.0);
+    controls::paint_text(ui, words, left, name, theme::body(), color);
+    let font = theme::number_small();
+    controls::paint_text(ui, small, right, number, font, look.palette.faint);
+}

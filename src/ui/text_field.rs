@@ -1,0 +1,59 @@
+//! A line of text that counts when it is left, and not when it is left with Esc. Knows nothing of what it names.
+
+use crate::ui::theme;
+use egui::{Id, Key, Margin, Rect, Role, TextEdit, Ui, WidgetInfo};
+
+/// A text field at a place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TextField<'a> {
+    /// What a screen reader says.
+    pub(crate) name: &'a str,
+    /// Shown while nothing stands in it.
+    pub(crate) hint: &'a str,
+    /// What is in force.
+    pub(crate) value: &'a str,
+    /// Characters that fit.
+    pub(crate) max: usize,
+}
+
+impl TextField<'_> {
+    /// Draws it. What was typed, once it was left with something new in it.
+    pub(crate) fn put(
+        self,
+        ui: &mut Ui,
+        typed: &mut Option<(Id, String)>,
+        rect: Rect,
+        id: Id,
+    ) -> Option<String> {
+        let mut text = match typed {
+            Some((field, text)) if *field == id => text.clone(),
+            _ => self.value.to_owned(),
+        };
+        let edit = TextEdit::singleline(&mut text)
+            .id(id)
+            .font(theme::body())
+            .hint_text(self.hint)
+            .char_limit(self.max)
+            .clip_text(true)
+            .align(egui::Align2::LEFT_CENTER)
+            .margin(Margin::symmetric(6, 0))
+            .min_size(rect.size())
+            .desired_width(rect.width() - 12.0);
+        let response = ui.put(rect, edit);
+        response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::TextInput, true, self.name);
+            info.current_text_value = Some(text.clone());
+            info
+        });
+        if response.changed() {
+            *typed = Some((id, text.clone()));
+        }
+        if !response.lost_focus() {
+            return None;
+        }
+        let escaped = ui.input(|input| input.key_pressed(Key::Escape));
+        *typed = None;
+        let text = text.trim();
+        (!escaped && text != self.value).then(|| text.to_owned())
+    }
+}
