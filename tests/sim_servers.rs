@@ -400,6 +400,7 @@ async fn one_program_after_another_opens_the_pseudo_terminal() {
         port: path.to_str().unwrap().into(),
         baud: 115_200,
         id: 1,
+        packing: None,
     };
     for _ in 0..3 {
         let mut port = serial::open(&place).unwrap();

@@ -1,5 +1,6 @@
 //! Between bytes in the hand's memory and Modbus' 16-bit words (manual 2.5). No framing, no sending.
 
+use crate::hand::register::{Element, by_address};
 use crate::hand::{RegisterWrite, Span};
 use arrayvec::ArrayVec;
 
@@ -30,14 +31,26 @@ pub const fn words_for(span: Span) -> WordSpan {
     }
 }
 
-/// Memory bytes of these words, low byte first; words past [`READ_WORDS_MAX`] cannot come and are left out.
+/// Memory bytes of the words that begin at `address`; words past [`READ_WORDS_MAX`] cannot come and are left out.
+///
+/// The low byte comes first, but in registers of single bytes where [`BytePacking::HighFirst`] says otherwise. Words of
+/// [`BytePacking::OnePerWord`] are read by [`BytePacking::group`].
 #[must_use]
-pub fn bytes_from_words(words: &[u16]) -> WordBytes {
+pub fn bytes_from_words(address: u16, words: &[u16], packing: BytePacking) -> WordBytes {
+    let addresses = (0u16..).map(|nth| address.saturating_add(2 * nth));
     words
         .iter()
         .take(usize::from(READ_WORDS_MAX))
-        .flat_map(|word| word.to_le_bytes())
+        .zip(addresses)
+        .flat_map(|(word, at)| match packing {
+            BytePacking::HighFirst if holds_bytes(at) => word.to_be_bytes(),
+            _ => word.to_le_bytes(),
+        })
         .collect()
+}
+
+fn holds_bytes(address: u16) -> bool {
+    by_address(address).is_some_and(|row| row.element == Element::Byte)
 }
 
 /// A write as Modbus says it.
@@ -97,15 +110,22 @@ pub enum BytePacking {
 }
 
 impl BytePacking {
-    /// Judges by six words read at TEMP. Cannot tell [`Self::HighFirst`], which is only a person's choice.
+    /// Judges by the word at HAND_ID and six words at TEMP; `None` if they fit no packing, or more than one.
+    ///
+    /// Temperatures tell packed words from single ones. The id, whose neighbour 1001 is unused, tells which byte of a
+    /// word comes first: a hand 1 says 1 or 256.
     #[must_use]
-    pub fn detect(words_at_temp: &[u16; 6]) -> Self {
-        let [_, _, _, behind @ ..] = words_at_temp;
+    pub fn detect(word_at_id: u16, words_at_temp: &[u16; 6]) -> Option<Self> {
+        let [first, second, third, behind @ ..] = words_at_temp;
         let small = words_at_temp.iter().all(|word| *word <= 0xFF);
-        if small && behind.iter().all(|word| *word != 0) {
-            Self::OnePerWord
-        } else {
-            Self::LowFirst
+        if small && *first != 0 && behind.iter().all(|word| *word != 0) {
+            return Some(Self::OnePerWord);
+        }
+        let packed = [first, second, third].iter().any(|word| **word > 0xFF);
+        match word_at_id.to_le_bytes() {
+            [1..=254, 0] if packed => Some(Self::LowFirst),
+            [0, 1..=254] if packed => Some(Self::HighFirst),
+            _ => None,
         }
     }
 
@@ -159,9 +179,13 @@ mod tests {
     #[test]
     fn words_of_the_manuals_read_become_memory_bytes() {
         // Manual 2.5.1: 02 2B, 00 00, 00 64 on the wire are 555, 0, 100.
-        let bytes = bytes_from_words(&[555, 0, 100]);
+        let bytes = bytes_from_words(1546, &[555, 0, 100], BytePacking::LowFirst);
         assert_eq!(bytes.as_slice(), [0x2B, 0x02, 0x00, 0x00, 0x64, 0x00]);
-        assert_eq!(bytes_from_words(&[1; 126]).len(), 250);
+        let many = bytes_from_words(0, &[1; 126], BytePacking::LowFirst);
+        assert_eq!(many.len(), 250);
+        // High byte first: CURRENT ends at 1605, ERROR begins at 1606.
+        let bytes = bytes_from_words(1604, &[0x0102, 0x0304], BytePacking::HighFirst);
+        assert_eq!(bytes.as_slice(), [2, 1, 3, 4]);
     }
 
     #[test]
@@ -207,16 +231,28 @@ mod tests {
 
     #[test]
     fn packing_is_detected_by_temperatures() {
+        use BytePacking::{HighFirst, LowFirst, OnePerWord};
+        let packed = [0x2A28, 0x2628, 0x2828, 0, 0, 0];
         // One row is a record of a real hand: 40, 42, 40, 38, 40, 40, one a word.
-        for (words, packing) in [
-            ([40, 42, 40, 38, 40, 40], BytePacking::OnePerWord),
-            ([0x2A28, 0x2628, 0x2828, 0, 0, 0], BytePacking::LowFirst),
-            ([40, 42, 40, 0, 0, 0], BytePacking::LowFirst),
-            ([40, 42, 40, 38, 0, 40], BytePacking::LowFirst),
-            ([40, 42, 40, 38, 40, 256], BytePacking::LowFirst),
-            ([0; 6], BytePacking::LowFirst),
+        for (id, words, packing) in [
+            (1, [40, 42, 40, 38, 40, 40], Some(OnePerWord)),
+            (0x0100, [40, 42, 40, 38, 40, 40], Some(OnePerWord)),
+            (1, packed, Some(LowFirst)),
+            (254, packed, Some(LowFirst)),
+            (0x0100, packed, Some(HighFirst)),
+            // The maker's own word for "no temperature".
+            (1, [0xFFFF, 0xFFFF, 0xFFFF, 0, 0, 0], Some(LowFirst)),
+            // Joints at 40, 0, 42, 0, 40, 0 degrees, or three joints at 0: both read like this.
+            (1, [40, 42, 40, 0, 0, 0], None),
+            (1, [40, 42, 40, 38, 0, 40], None),
+            (1, [40, 42, 40, 38, 40, 256], None),
+            (1, [0; 6], None),
+            // No id tells the order of bytes here.
+            (0, packed, None),
+            (0x0101, packed, None),
+            (255, packed, None),
         ] {
-            assert_eq!(BytePacking::detect(&words), packing, "{words:?}");
+            assert_eq!(BytePacking::detect(id, &words), packing, "{id} {words:?}");
         }
     }
 

@@ -30,6 +30,8 @@ pub(crate) enum BusError {
     WrongLength { got: usize, want: usize },
     /// This protocol cannot carry so much.
     TooLong,
+    /// Every way to ask could be answered by a late reply.
+    Ambiguous,
     /// The wire is gone.
     Lost(TransportError),
 }
@@ -89,11 +91,39 @@ impl Bus {
         }
     }
 
-    /// Learns what this hand does in its own way, by reading only; where the wire leaves something open.
-    pub(crate) async fn learn(&mut self, limit: Duration) -> Result<Option<BytePacking>, BusError> {
+    /// Six words or more as Modbus gives them; none where the protocol has no words.
+    pub(crate) async fn words(
+        &mut self,
+        address: u16,
+        limit: Duration,
+    ) -> Result<Option<Vec<u16>>, BusError> {
+        let least = BytePacking::OnePerWord.words_per_group();
         match self {
-            Self::ModbusTcp(bus) => bus.learn(limit).await,
-            Self::Rs485(_) | Self::ModbusRtu(_) | Self::Can(_) => Ok(None),
+            Self::ModbusTcp(bus) => bus.words(address, least, limit).await.map(Some),
+            Self::ModbusRtu(bus) => bus.words(address, limit).await.map(Some),
+            Self::Rs485(_) | Self::Can(_) => Ok(None),
+        }
+    }
+
+    /// True where single bytes travel in words.
+    pub(crate) const fn has_words(&self) -> bool {
+        matches!(self, Self::ModbusTcp(_) | Self::ModbusRtu(_))
+    }
+
+    /// From now on single bytes are read and written as this hand was found to keep them.
+    pub(crate) const fn set_packing(&mut self, found: Option<BytePacking>) {
+        match self {
+            Self::ModbusTcp(bus) => bus.word_use.found = found,
+            Self::ModbusRtu(bus) => bus.word_use.found = found,
+            Self::Rs485(_) | Self::Can(_) => {}
+        }
+    }
+
+    /// The first of these spans, in their order, whose reply cannot be mistaken for a late one.
+    pub(crate) fn first_clear(&mut self, shapes: &[Span]) -> Option<Span> {
+        match self {
+            Self::ModbusTcp(_) => shapes.first().copied(),
+            Self::Rs485(_) | Self::ModbusRtu(_) | Self::Can(_) => self.choose(shapes),
         }
     }
 

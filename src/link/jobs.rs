@@ -171,6 +171,10 @@ fn request_error(error: &BusError, span: Span) -> RequestError {
             address,
             len: span.len,
         },
+        BusError::Ambiguous => RequestError::Ambiguous {
+            address,
+            wait_s: LATE_HORIZON.as_secs(),
+        },
         BusError::Lost(_) => RequestError::LinkLost,
     }
 }

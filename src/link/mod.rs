@@ -17,6 +17,7 @@ mod filter;
 mod follow;
 pub mod handle;
 mod hold;
+mod identify;
 mod jobs;
 mod late;
 pub mod latency;
@@ -28,6 +29,7 @@ mod modbus_rtu;
 mod modbus_tcp;
 pub mod motion;
 mod moving;
+mod packing;
 pub mod plan;
 #[cfg(test)]
 mod plan_tests;

@@ -2,7 +2,7 @@
 //! writes, memory out of responses, errors out of the library's. Sends nothing.
 
 use crate::codec::modbus::{
-    ModbusWrite, READ_WORDS_MAX, bytes_from_words, words_for, words_from_write,
+    BytePacking, ModbusWrite, READ_WORDS_MAX, bytes_from_words, words_for, words_from_write,
 };
 use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::{BusError, Bytes};
@@ -24,7 +24,11 @@ pub(crate) fn read_request(span: Span) -> Result<Request<'static>, BusError> {
 }
 
 /// The memory bytes that a response to [`read_request`] holds.
-pub(crate) fn read_response(span: Span, response: &Response) -> Result<Bytes, BusError> {
+pub(crate) fn read_response(
+    span: Span,
+    response: &Response,
+    packing: BytePacking,
+) -> Result<Bytes, BusError> {
     let want = usize::from(span.len);
     let Response::ReadHoldingRegisters(got) = response else {
         return Err(BusError::WrongLength { got: 0, want });
@@ -34,13 +38,47 @@ pub(crate) fn read_response(span: Span, response: &Response) -> Result<Bytes, Bu
         let got = got.len() * 2;
         return Err(BusError::WrongLength { got, want });
     }
-    let bytes = bytes_from_words(got);
+    let bytes = bytes_from_words(span.address, got, packing);
     let bytes = bytes
         .iter()
         .copied()
         .take(want)
         .take(Bytes::new().capacity());
     Ok(bytes.collect())
+}
+
+/// The read of a group of single bytes in words of its own, or of the words that tell how they are packed.
+pub(crate) const fn words_request(address: u16, count: u16) -> Request<'static> {
+    Request::ReadHoldingRegisters(address, count)
+}
+
+/// The words that a response to [`words_request`] holds.
+pub(crate) fn words_response(count: u16, response: Response) -> Result<Vec<u16>, BusError> {
+    let want = usize::from(count) * 2;
+    match response {
+        Response::ReadHoldingRegisters(words) if words.len() == usize::from(count) => Ok(words),
+        Response::ReadHoldingRegisters(words) => Err(BusError::WrongLength {
+            got: words.len() * 2,
+            want,
+        }),
+        _ => Err(BusError::WrongLength { got: 0, want }),
+    }
+}
+
+/// The wanted bytes of a group of six in words of its own, appended.
+pub(crate) fn take_group(
+    bytes: &mut Bytes,
+    words: &[u16],
+    skip: usize,
+    take: usize,
+) -> Result<(), BusError> {
+    let group = BytePacking::OnePerWord.group(words);
+    let group = group.ok_or(BusError::WrongLength {
+        got: words.len() * 2,
+        want: 2 * usize::from(BytePacking::OnePerWord.words_per_group()),
+    })?;
+    bytes.extend(group.into_iter().skip(skip).take(take));
+    Ok(())
 }
 
 /// A write, by function 06 or 16.

@@ -1,7 +1,7 @@
 //! Requests over Modbus RTU (manual 2.4), through tokio-modbus. Replies have neither number nor address, only a length:
 //! no length is asked for again while a reply of that length may still come.
 
-use crate::codec::modbus::words_for;
+use crate::codec::modbus::{BytePacking, words_for};
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
@@ -9,6 +9,7 @@ use crate::link::cost::WireCost;
 use crate::link::late::LateReplies;
 use crate::link::lost::lost;
 use crate::link::modbus;
+use crate::link::packing::{Piece, WordUse};
 use crate::link::rtu_line::RtuLine;
 use crate::link::window::SHAPES_MAX;
 use crate::transport::{BoxedWire, Endpoint, Timer, TransportError};
@@ -31,6 +32,8 @@ const FRAMING: u64 = 8 + 5;
 /// Above this baud the silence between frames does not shrink any more (Modbus over serial line 1.02, 2.5.1.1).
 const FIXED_GAP_ABOVE: u32 = 19_200;
 const FIXED_GAP: Duration = Duration::from_micros(1750);
+/// Lengths in which a group of single bytes is asked for: three groups in a row, and some that are still open.
+const GROUP_SHAPES: usize = 10;
 
 /// The client side of one RTU line.
 pub(crate) struct ModbusRtu {
@@ -43,6 +46,7 @@ pub(crate) struct ModbusRtu {
     timer: Timer,
     /// Foreign replies that `late` knows of.
     strays: u64,
+    pub(crate) word_use: WordUse,
 }
 
 impl ModbusRtu {
@@ -64,11 +68,58 @@ impl ModbusRtu {
             clock,
             timer: Timer::default(),
             strays: 0,
+            word_use: WordUse::new(endpoint),
         }
     }
 
     pub(crate) async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
-        let called = self.call(modbus::read_request(span)?, limit).await;
+        let mut bytes = Bytes::new();
+        for (nth, piece) in self.word_use.pieces(span).into_iter().enumerate() {
+            if nth > 0 {
+                self.turn().await?;
+            }
+            match piece {
+                Piece::Memory(part) => {
+                    let response = self.ask(modbus::read_request(part)?, part, limit).await?;
+                    let packing = self.word_use.reading();
+                    bytes.extend(modbus::read_response(part, &response, packing)?);
+                }
+                Piece::Group { group, skip, take } => {
+                    let words = self.words(group.address, limit).await?;
+                    modbus::take_group(&mut bytes, &words, skip, take)?;
+                }
+            }
+        }
+        Ok(bytes)
+    }
+
+    /// Six words as they come, or more: so many that no late reply can be taken for this one.
+    pub(crate) async fn words(
+        &mut self,
+        address: u16,
+        limit: Duration,
+    ) -> Result<Vec<u16>, BusError> {
+        let least = BytePacking::OnePerWord.words_per_group();
+        let shapes: ArrayVec<Span, GROUP_SHAPES> = (least..)
+            .map(|count| Span::new(address, 2 * count))
+            .take(GROUP_SHAPES)
+            .collect();
+        let as_seen: ArrayVec<Span, GROUP_SHAPES> = shapes.iter().copied().map(seen).collect();
+        let clear = self.late.first_clear(&as_seen, self.clock.now());
+        let shape = clear.ok_or(BusError::Ambiguous)?;
+        let count = shape.len / 2;
+        let request = modbus::words_request(address, count);
+        modbus::words_response(count, self.ask(request, shape, limit).await?)
+    }
+
+    /// One read, and what it leaves open.
+    async fn ask(
+        &mut self,
+        request: Request<'_>,
+        span: Span,
+        limit: Duration,
+    ) -> Result<Response, BusError> {
+        let called = self.call(request, limit).await;
         let now = self.clock.now();
         match &called {
             Ok(_) => self.late.answered(Some(seen(span))),
@@ -76,7 +127,7 @@ impl ModbusRtu {
             Err(_) => self.late.gave_up(seen(span), now),
         }
         self.note_strays();
-        modbus::read_response(span, &called?)
+        called
     }
 
     pub(crate) async fn write(
@@ -84,6 +135,7 @@ impl ModbusRtu {
         write: &RegisterWrite,
         limit: Duration,
     ) -> Result<(), BusError> {
+        self.word_use.allows(write)?;
         let response = self.call(modbus::write_request(write), limit).await?;
         modbus::write_response(write, &response)?;
         self.late.answered(None);
@@ -124,10 +176,25 @@ impl ModbusRtu {
     }
 
     pub(crate) fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
+        let word_use = self.word_use;
+        // Groups in words of their own choose their length when they are asked for.
+        let fixed = |shape: &Span| {
+            let first = word_use.pieces(*shape).into_iter().next();
+            match first {
+                Some(Piece::Memory(part)) => Some(seen(part)),
+                _ => None,
+            }
+        };
         let as_seen: ArrayVec<Span, SHAPES_MAX> =
-            shapes.iter().copied().map(seen).take(SHAPES_MAX).collect();
+            shapes.iter().filter_map(fixed).take(SHAPES_MAX).collect();
+        if let Some(free) = shapes.iter().find(|shape| fixed(shape).is_none()) {
+            return Some(*free);
+        }
         let clear = self.late.first_clear(&as_seen, self.clock.now())?;
-        shapes.iter().copied().find(|shape| seen(*shape) == clear)
+        shapes
+            .iter()
+            .copied()
+            .find(|shape| fixed(shape) == Some(clear))
     }
 
     pub(crate) fn cost(&self) -> WireCost {
@@ -244,7 +311,8 @@ mod tests {
         let (near, far) = tokio::io::duplex(4096);
         let endpoint = "rtu:test".parse().unwrap();
         let late = LateReplies::default();
-        let bus = ModbusRtu::new(Box::new(near), 115_200, &endpoint, late, Clock::start());
+        let mut bus = ModbusRtu::new(Box::new(near), 115_200, &endpoint, late, Clock::start());
+        bus.word_use.found = Some(BytePacking::LowFirst);
         (bus, far)
     }
 

@@ -1,8 +1,8 @@
 //! The task that owns one wire: dials, identifies, serves, and comes back after a loss. It decides what goes
 //! on the wire next: stop, then hold, setpoints, requests, reads. Nothing that was asked survives a lost link.
 
-use crate::hand::{HandSample, Moment, register};
-use crate::link::bus::{Bus, BusCounts, BusError, id_of};
+use crate::hand::{HandSample, Moment};
+use crate::link::bus::{Bus, BusCounts, BusError};
 use crate::link::clock::SleepWatch;
 use crate::link::cost::WireCost;
 use crate::link::counters::Counters;
@@ -28,8 +28,6 @@ use tokio::time::sleep_until;
 const RETRY_FIRST: Duration = Duration::from_millis(300);
 /// Longest wait: a hand that is back is seen again within two seconds.
 const RETRY_LONGEST: Duration = Duration::from_secs(1);
-/// Tries to get a first answer on a fresh wire.
-const IDENTIFY_TRIES: u32 = 3;
 /// Requests in a row without reply after which the link counts as lost …
 pub(crate) const SILENT_MAX: u32 = 4;
 /// … or fewer, but never one alone, where not even the shortest wait for one more would fit into this: with the time
@@ -149,7 +147,11 @@ impl Session {
         self.go(LinkState::Identifying);
         let (end, answered) = match self.identify(&mut bus).await {
             Err(end) => (self.explained(end, &bus), false),
-            Ok(()) => (self.serve(&mut bus).await, true),
+            Ok(()) => {
+                self.note_port().await;
+                self.begin(&bus);
+                (self.serve(&mut bus).await, true)
+            }
         };
         self.count(&bus);
         self.closed_wires = self.closed_wires.plus(bus.counts());
@@ -163,46 +165,6 @@ impl Session {
         let endpoint = self.follow.endpoint(dial, &self.config.endpoint).await?;
         let wire = dial.dial(&endpoint).await?;
         Ok((endpoint, wire))
-    }
-
-    /// Asks for the id, read-only, until the hand answers.
-    async fn identify(&mut self, bus: &mut Bus) -> Result<(), End> {
-        for _ in 0..IDENTIFY_TRIES {
-            let limit = self.reply_limit(bus, 1) * 2;
-            if let Err(BusError::Lost(error)) = bus.turn().await {
-                return Err(End::Lost(error.into()));
-            }
-            let asked = bus.read(register::HAND_ID.span(), limit);
-            let closed = closed(Arc::clone(&self.ends.wanted));
-            let answer = tokio::select! {
-                biased;
-                () = closed => return Err(End::Closed),
-                answer = asked => answer,
-            };
-            match answer {
-                // A refusal is an answer too.
-                Ok(_) | Err(BusError::Refused { .. } | BusError::WrongLength { .. }) => {
-                    match bus.learn(limit).await {
-                        Ok(packing) => self.status.quirks.packing = packing,
-                        Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
-                        Err(_) => self.status.quirks.packing = None,
-                    }
-                    self.note_port().await;
-                    self.begin(bus);
-                    return Ok(());
-                }
-                Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
-                Err(BusError::Timeout { .. } | BusError::TooLong) => {
-                    self.counters.stats.timeouts += 1;
-                    if let Err(BusError::Lost(error)) = bus.settle().await {
-                        return Err(End::Lost(error.into()));
-                    }
-                }
-            }
-        }
-        Err(End::Lost(LinkTrouble::NoAnswer {
-            id: id_of(&self.config.endpoint),
-        }))
     }
 
     /// A hand that never answered, with what was heard instead.
@@ -229,8 +191,9 @@ impl Session {
     }
 
     /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
+    /// A stop that came while the link got to know the hand is kept; nothing else is.
     fn begin(&mut self, bus: &Bus) {
-        self.forget_wishes();
+        self.forget_wishes_but(|wanted| wanted.stop);
         if self.sample != HandSample::default() {
             self.counters.stats.reconnects += 1;
         }
@@ -267,10 +230,15 @@ impl Session {
     }
 
     /// Empties the slot of wishes, but not the wish to close.
-    fn forget_wishes(&self) {
+    pub(crate) fn forget_wishes(&self) {
+        self.forget_wishes_but(|_| false);
+    }
+
+    fn forget_wishes_but(&self, stop: fn(&Wanted) -> bool) {
         self.ends.wanted.send_if_modified(|wanted| {
             *wanted = Wanted {
                 closed: wanted.closed,
+                stop: stop(wanted),
                 ..Wanted::default()
             };
             false
@@ -322,6 +290,8 @@ impl Session {
             }
             BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
             BusError::Timeout { .. } => self.counters.stats.timeouts += 1,
+            // Nothing was asked.
+            BusError::Ambiguous => return Ok(()),
         }
         if self.unheard(error) {
             return Err(End::Lost(LinkTrouble::Silent {
@@ -420,13 +390,13 @@ impl Session {
 }
 
 /// Resolves when the handle is gone.
-async fn closed(wanted: Arc<watch::Sender<Wanted>>) {
+pub(crate) async fn closed(wanted: Arc<watch::Sender<Wanted>>) {
     let mut wanted = wanted.subscribe();
     let _gone = wanted.wait_for(|wanted| wanted.closed).await;
 }
 
 /// Resolves when a stop is wanted, or the handle is gone.
-async fn stopped(wanted: Arc<watch::Sender<Wanted>>) {
+pub(crate) async fn stopped(wanted: Arc<watch::Sender<Wanted>>) {
     let mut wanted = wanted.subscribe();
     let _asked = wanted.wait_for(|wanted| wanted.stop || wanted.closed).await;
 }

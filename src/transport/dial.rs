@@ -65,6 +65,7 @@ fn adapter(port: String) -> SerialLine {
         port,
         baud: ADAPTER_BAUD,
         id: DEFAULT_ID,
+        packing: None,
     }
 }
 

@@ -1,5 +1,6 @@
 //! Endpoints: where a hand is, in one spelling for command line, config, window and files. Opens nothing.
 
+use crate::transport::packing::Packing;
 use std::fmt;
 use std::str::FromStr;
 
@@ -47,6 +48,8 @@ pub enum Endpoint {
         port: u16,
         /// Modbus unit id.
         unit: u8,
+        /// How single bytes stand in words, where a person says so; else the link finds out.
+        packing: Option<Packing>,
     },
     /// `can:can0?id=1`: SocketCAN.
     Can {
@@ -75,6 +78,8 @@ pub struct SerialLine {
     pub baud: u32,
     /// Hand id, 1..=254.
     pub id: u8,
+    /// As in [`Endpoint::Tcp`]; never in `rs485:`, which has no words.
+    pub packing: Option<Packing>,
 }
 
 /// Why a text is no endpoint.
@@ -197,18 +202,23 @@ impl fmt::Display for Endpoint {
                     line.port,
                     line.baud,
                     line.id
-                )
+                )?;
+                packing_key(f, line.packing)
             }
-            Self::Tcp { host, port, unit } if host.contains(':') => {
-                write!(f, "tcp:[{host}]:{port}?unit={unit}")
+            Self::Tcp { unit, packing, .. } => {
+                write!(f, "tcp:{}?unit={unit}", self.place())?;
+                packing_key(f, *packing)
             }
-            Self::Tcp { host, port, unit } => write!(f, "tcp:{host}:{port}?unit={unit}"),
             Self::Can { interface, id } => write!(f, "can:{interface}?id={id}"),
             Self::Slcan { port, bitrate, id } => {
                 write!(f, "slcan:{port}?bitrate={bitrate}&id={id}")
             }
         }
     }
+}
+
+fn packing_key(f: &mut fmt::Formatter<'_>, packing: Option<Packing>) -> fmt::Result {
+    packing.map_or(Ok(()), |packing| write!(f, "&packing={packing}"))
 }
 
 impl FromStr for Endpoint {
@@ -282,15 +292,24 @@ impl Query<'_> {
             port: self.place(kind, example)?,
             baud: DEFAULT_BAUD,
             id: DEFAULT_ID,
+            packing: None,
+        };
+        let known = if kind == "rtu" {
+            "baud, id and packing"
+        } else {
+            "baud and id"
         };
         for (key, value) in self.pairs() {
             match key {
+                "packing" if kind == "rtu" => {
+                    line.packing = Some(number(key, value, Packing::WANT)?);
+                }
                 "baud" => {
                     line.baud =
                         in_range(key, value, 300..=4_000_000, "a speed from 300 to 4000000")?
                 }
                 "id" => line.id = in_range(key, value, 1..=254, "a whole number from 1 to 254")?,
-                _ => return Err(unknown_key(key, kind, "baud and id")),
+                _ => return Err(unknown_key(key, kind, known)),
             }
         }
         Ok(line)
@@ -310,17 +329,19 @@ impl Query<'_> {
                 example: "tcp:192.168.11.210:6000",
             });
         }
-        let mut unit = DEFAULT_UNIT;
+        let (mut unit, mut packing) = (DEFAULT_UNIT, None);
         for (key, value) in self.pairs() {
             match key {
                 "unit" => unit = number(key, value, "a whole number from 0 to 255")?,
-                _ => return Err(unknown_key(key, "tcp", "unit")),
+                "packing" => packing = Some(number(key, value, Packing::WANT)?),
+                _ => return Err(unknown_key(key, "tcp", "unit and packing")),
             }
         }
         Ok(Endpoint::Tcp {
             host: host.into(),
             port,
             unit,
+            packing,
         })
     }
 
@@ -432,6 +453,18 @@ mod tests {
             ("tcp:127.0.0.1:6001?unit=1", "tcp:127.0.0.1:6001?unit=1"),
             ("tcp:[::1]:6001", "tcp:[::1]:6001?unit=255"),
             ("tcp:::1", "tcp:[::1]:6000?unit=255"),
+            (
+                "tcp:127.0.0.1?packing=high",
+                "tcp:127.0.0.1:6000?unit=255&packing=high",
+            ),
+            (
+                "rtu:COM3?packing=one&id=2",
+                "rtu:COM3?baud=115200&id=2&packing=one",
+            ),
+            (
+                "tcp:[::1]?packing=low",
+                "tcp:[::1]:6000?unit=255&packing=low",
+            ),
             ("can:can0?id=16383", "can:can0?id=16383"),
             (
                 "slcan:/dev/ttyACM0?bitrate=500000",
@@ -473,6 +506,9 @@ mod tests {
             ("tcp:host:99999", "1 to 65535"),
             ("tcp:host:0", "1 to 65535"),
             ("tcp:host?unit=256", "0 to 255"),
+            ("tcp:host?packing=middle", "low, high or one"),
+            ("tcp:host?packing=", "low, high or one"),
+            ("rs485:/dev/x?packing=high", "no setting"),
             ("can:can0?id=16384", "16383"),
             ("slcan:/dev/x?bitrate=83333", "800000 or 1000000"),
             ("sim:?seed=-1", "whole number"),

@@ -240,6 +240,7 @@ mod tests {
             port: path.to_str().unwrap().into(),
             baud: 115_200,
             id: 1,
+            packing: None,
         }
     }
 

@@ -204,6 +204,7 @@ mod tests {
             port: port.to_str().unwrap().into(),
             baud: 115_200,
             id: 1,
+            packing: None,
         };
         open(&line).unwrap_err()
     }

@@ -1,10 +1,10 @@
 //! The connection: which hand, over what, and how well it goes. Asks to connect; opens nothing.
 
 use crate::app::action::Action;
-use crate::transport::Endpoint;
 use crate::transport::endpoint::{
     DEFAULT_BAUD, DEFAULT_BITRATE, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
 };
+use crate::transport::{Endpoint, Packing};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::link_figures;
 use crate::ui::look::Pane;
@@ -76,6 +76,8 @@ pub(crate) struct ConnectionForm {
     host: String,
     tcp_port: String,
     unit: String,
+    /// Not typed: chosen beside what the hand answers, and kept with the address.
+    packing: Option<Packing>,
     interface: String,
     bitrate: String,
     scan: ScanPanel,
@@ -95,6 +97,7 @@ impl Default for ConnectionForm {
             host: "192.168.11.210".into(),
             tcp_port: DEFAULT_TCP_PORT.to_string(),
             unit: DEFAULT_UNIT.to_string(),
+            packing: None,
             interface: "can0".into(),
             bitrate: DEFAULT_BITRATE.to_string(),
             scan: ScanPanel::default(),
@@ -136,8 +139,15 @@ impl ConnectionForm {
                 self.port.clone_from(&line.port);
                 self.baud = line.baud.to_string();
                 self.id = line.id.to_string();
+                self.packing = line.packing;
             }
-            Some(Endpoint::Tcp { host, port, unit }) => {
+            Some(Endpoint::Tcp {
+                host,
+                port,
+                unit,
+                packing,
+            }) => {
+                self.packing = *packing;
                 self.kind = Kind::Tcp;
                 self.host.clone_from(host);
                 self.tcp_port = port.to_string();
@@ -175,7 +185,7 @@ impl ConnectionForm {
                 trimmed(&self.id)
             ),
             Kind::Rs485 | Kind::Rtu => format!(
-                "{}:{}?baud={}&id={}",
+                "{}:{}?baud={}&id={}{}",
                 if self.kind == Kind::Rtu {
                     "rtu"
                 } else {
@@ -183,7 +193,8 @@ impl ConnectionForm {
                 },
                 trimmed(&self.port),
                 trimmed(&self.baud),
-                trimmed(&self.id)
+                trimmed(&self.id),
+                self.packing_key()
             ),
             Kind::Tcp => {
                 let host = trimmed(&self.host);
@@ -193,12 +204,18 @@ impl ConnectionForm {
                     host
                 };
                 format!(
-                    "tcp:{host}:{}?unit={}",
+                    "tcp:{host}:{}?unit={}{}",
                     trimmed(&self.tcp_port),
-                    trimmed(&self.unit)
+                    trimmed(&self.unit),
+                    self.packing_key()
                 )
             }
         }
+    }
+
+    fn packing_key(&self) -> String {
+        let chosen = self.packing.filter(|_| self.kind != Kind::Rs485);
+        chosen.map_or_else(String::new, |packing| format!("&packing={packing}"))
     }
 
     fn form_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {

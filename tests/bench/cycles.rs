@@ -156,6 +156,7 @@ impl Server {
             host: "127.0.0.1".into(),
             port: listener.local_addr()?.port(),
             unit: 255,
+            packing: None,
         };
         Self::start(endpoint, async move |hand| {
             let listener = tokio::net::TcpListener::from_std(listener)?;
