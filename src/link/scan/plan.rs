@@ -268,6 +268,7 @@ fn can_lane(interface: &str, ids: &[HandId]) -> Lane {
 fn host_lane(host: &str, hosts: &Hosts) -> Lane {
     let tries = UNITS.map(|unit| Try {
         endpoint: Endpoint::Tcp {
+            packing: None,
             host: host.into(),
             port: hosts.port(),
             unit,
@@ -291,6 +292,7 @@ fn line_try(kind: fn(SerialLine) -> Endpoint, port: &str, baud: u32, id: HandId)
     let limit = REPLY_WAIT + Duration::from_micros(on_the_wire);
     Try {
         endpoint: kind(SerialLine {
+            packing: None,
             port: port.into(),
             baud,
             id: id.get(),
