@@ -219,22 +219,26 @@ impl Matching {
         };
         let (pairs, _) = frame.memory.as_chunks::<2>();
         let words: Vec<u16> = pairs.iter().map(|pair| u16::from_le_bytes(*pair)).collect();
-        let Ok(six) = <[u16; 6]>::try_from(words.as_slice()) else {
+        // Over RTU the link asks for more words than six where a late reply could have as many.
+        let Some(six) = words.first_chunk::<6>() else {
             return;
         };
         if span.address == TEMP.address {
-            self.packing = BytePacking::detect(&six);
+            self.packing = BytePacking::detect(ANY_ID, six).unwrap_or_default();
         }
         let groups = [ERROR.address, STATUS.address, TEMP.address];
         if self.packing == BytePacking::OnePerWord
             && groups.contains(&span.address)
-            && let Some(bytes) = self.packing.group(&six)
+            && let Some(bytes) = self.packing.group(six)
         {
             frame.memory = Box::from(bytes);
             frame.span = Some(Span::new(span.address, 6));
         }
     }
 }
+
+/// The word at HAND_ID of a hand that puts the low byte first, as most do; only one a word is looked for here.
+const ANY_ID: u16 = 1;
 
 /// True if a frame with this fault takes no part in asking and answering.
 const fn is_final(wrong: Wrong) -> bool {
