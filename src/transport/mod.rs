@@ -7,6 +7,7 @@ pub mod can;
 pub mod can_facts;
 pub mod dial;
 pub mod endpoint;
+mod endpoint_error;
 pub mod faulty;
 mod holder;
 pub mod paced;
