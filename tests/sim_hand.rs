@@ -13,8 +13,8 @@ use handscope::hand::register::{
 use handscope::hand::sample::{HandSample, Reply, touch_span};
 use handscope::hand::{Dof, Fault, Finger, Moment, Span, TactileBlock};
 use handscope::sim::{
-    MinusOne, Object, OutOfRangeWrite, Personality, SaveAnswer, SaveFrame, Scenario, SimConfig,
-    SimHand, SpeedZero,
+    GapAnswer, MinusOne, Object, OutOfRangeWrite, Personality, SaveAnswer, SaveFrame, Scenario,
+    SimConfig, SimHand, SpeedZero,
 };
 use std::collections::HashSet;
 
@@ -293,7 +293,7 @@ fn personalities_differ_where_the_manual_is_silent() {
         assert_eq!(shorts(&mut hand, &ANGLE_ACT, 2000) != [1000; 6], moves);
     }
     let mut closed = with(Personality {
-        gap_readable: false,
+        gap: GapAnswer::Refused,
         ..plain
     });
     assert!(closed.read(Span::new(1546, 78), at(0)).is_err());

@@ -4,6 +4,7 @@ use crate::app::settings::{Language, Theme};
 use crate::cli::ids::HandIds;
 use crate::cli::names;
 use crate::cli::scan::ScanArgs;
+use crate::cli::sim_quirks::{self, Quirk};
 use crate::hand::Register;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
@@ -57,8 +58,7 @@ pub(crate) enum Command {
     Doctor(DoctorArgs),
     /// Be a hand for other programs: on pseudo-terminals, on TCP, on CAN, or on all of them
     #[command(
-        after_help = "Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands.
-On Modbus TCP the unit id says which hand is meant; 255 means the first, and a hand that is alone answers to all."
+        after_help = sim_help()
     )]
     Sim(SimArgs),
     /// Print the register map
@@ -178,6 +178,9 @@ pub(crate) struct SimArgs {
     /// What it does: idle, grasp, faults, extremes
     #[arg(long, value_name = "NAME", default_value = "idle")]
     pub(crate) scenario: Scenario,
+    /// How it reads what the manual leaves open, one of the list below; may be given several times
+    #[arg(long = "quirk", value_name = "NAME=VALUE", value_parser = sim_quirks::quirk)]
+    pub(crate) quirks: Vec<Quirk>,
 }
 
 #[derive(Debug, Args)]
@@ -228,6 +231,14 @@ impl From<LanguageArg> for Language {
             LanguageArg::Zh => Self::Zh,
         }
     }
+}
+
+const SIM_HELP: &str = "\
+Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands.
+On Modbus TCP the unit id says which hand is meant; 255 means the first, and a hand that is alone answers to all.";
+
+fn sim_help() -> String {
+    format!("{SIM_HELP}\n\n{}", sim_quirks::list())
 }
 
 const ENDPOINTS: &str = "\
@@ -345,6 +356,7 @@ mod tests {
             "handscope sim --rs485 x --baud 0",
             "handscope sim --rs485 x --turnaround-ms 3",
             "handscope sim --rs485 x --baud 115200 --turnaround-ms NaN",
+            "handscope sim --tcp 127.0.0.1:6000 --quirk gap=ajar",
             "handscope sim --tcp 6000",
             "handscope sim --tcp localhost:6000",
             "handscope sim --tcp 127.0.0.1:6000 --scenario party",

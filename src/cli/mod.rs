@@ -12,6 +12,7 @@ mod registers;
 mod scan;
 mod session;
 mod sim;
+mod sim_quirks;
 mod snapshot;
 mod telemetry;
 mod value;

@@ -4,6 +4,7 @@
 use crate::cli::args::SimArgs;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
+use crate::cli::sim_quirks;
 use crate::sim::serve::modbus_tcp;
 #[cfg(unix)]
 use crate::sim::serve::pty;
@@ -109,7 +110,7 @@ fn hands(args: &SimArgs) -> Option<Hands> {
             seed,
             id: id.get(),
             scenario: args.scenario,
-            ..SimConfig::default()
+            personality: sim_quirks::personality(&args.quirks),
         });
         SharedHand::new(hand, begun)
     });

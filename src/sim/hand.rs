@@ -1,33 +1,36 @@
 //! The simulated hand: memory, body, fingertips and script put together. It is given the time; it owns no clock and no wire.
 
-use crate::hand::register::{
-    ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, CLEAR_ERROR, FORCE_SET, GESTURE_FORCE_CLB,
-    GESTURE_NO_SET, HAND_ID, POS_SET, REDU_RATIO, RESET_PARA, SAVE, SPEED_SET, Span,
-    USER_DEF_ANGLE,
-};
+use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
 use crate::hand::sample::touch_span;
-use crate::hand::{Dof, Fault, Finger, Moment, PerDof, UserGesture};
+use crate::hand::{Dof, Fault, Finger, Moment, PerDof};
 use crate::sim::body::{Body, Object};
 use crate::sim::drive::{Goal, Setting, position_of};
 use crate::sim::extremes;
-use crate::sim::gesture;
 use crate::sim::live::{self, element};
-use crate::sim::memory::{Change, GAP, Memory, Refusal};
+use crate::sim::memory::{GAP, Memory, Refusal};
 use crate::sim::number;
-use crate::sim::personality::{MinusOne, Personality, SaveAnswer, SpeedZero};
+use crate::sim::personality::{
+    ChangeAck, Doubles, GapAnswer, Personality, Power, SaveAnswer, SpeedZero, TactileCheck,
+    Turnaround,
+};
 use crate::sim::scenario::{self, Ailment, Order, Scenario};
 use crate::sim::touch::{SENSOR_MS, Touch};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// From SAVE to its result (manual 2.2.2: about one second).
-pub const SAVE_TAKES: Duration = Duration::from_secs(1);
-/// From GESTURE_FORCE_CLB to the new zero (manual 2.6.6: about six seconds).
-const CALIBRATION_MS: u64 = 6000;
+/// When the 24 V supply goes, and for how long, on a hand whose supply does.
+const POWER_OFF_MS: std::ops::Range<u64> = 3000..3500;
+/// What a sensor's own header adds to its sum: 55 AA, 56 bytes, a command, a number, 8 channels.
+// Manual: silent; the sensor maker's own frame has this header before the same 54 bytes.
+const SENSOR_HEADER_SUM: u16 = 0x55 + 0xAA + 56 + 3 + 1 + 8;
+/// Where the check stands in a fingertip's block (manual 2.6.21).
+const CHECK_AT: u16 = 54;
+/// One answer in so many comes twice, or late, on hands that do so.
+const DOUBLE_ONE_IN: u32 = 16;
+const RARE_ONE_IN: u32 = 64;
+const RARE_TURNAROUND: Duration = Duration::from_millis(500);
 /// Speed that a creeping hand takes SPEED_SET 0 for.
 const CREEP: f64 = 5.0;
-/// SAVE results under way: one second holds no more of them on any wire we have.
-const SAVES_MAX: usize = 64;
 /// Writes that the journal keeps; twice as many are held before the older half goes.
 pub const JOURNAL_KEEPS: usize = 8192;
 /// Where the time of a read stands when the personality stamps it.
@@ -62,10 +65,21 @@ impl Default for SimConfig {
 pub struct WriteEffect {
     /// The id in the acknowledgement: the new one, if the write changed it.
     pub ack_id: u8,
+    /// Whether there is an acknowledgement at all.
+    pub is_acked: bool,
     /// Elements that the hand took; the others were dropped without a word.
     pub taken: usize,
     /// A late result was put in line ([`SimHand::late_save_result`]).
     pub result_follows: bool,
+}
+
+/// How an answer is sent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Manner {
+    /// From the end of the request.
+    pub after: Duration,
+    /// How often it comes, 1 or 2.
+    pub copies: usize,
 }
 
 /// The second frame after a SAVE on a serial line.
@@ -91,19 +105,22 @@ pub struct JournalEntry {
 /// A hand that answers bytes.
 #[derive(Debug, Clone)]
 pub struct SimHand {
-    config: SimConfig,
-    memory: Memory,
-    body: Body,
+    pub(crate) config: SimConfig,
+    pub(crate) memory: Memory,
+    pub(crate) body: Body,
     touch: Touch,
     rng: fastrand::Rng,
-    now_ms: u64,
+    pub(crate) now_ms: u64,
     published_ms: Option<u64>,
-    calibration_due_ms: Option<u64>,
-    saves: VecDeque<(Moment, SaveFrame)>,
-    baud_code: u8,
+    pub(crate) calibration_due_ms: Option<u64>,
+    pub(crate) saves: VecDeque<(Moment, SaveFrame)>,
+    pub(crate) id: u8,
+    pub(crate) baud_code: u8,
+    /// Chance of what is not the body's: how answers are sent.
+    chance: fastrand::Rng,
     journal: Vec<JournalEntry>,
     /// What the hand's own script ordered last; a setpoint from outside ends it.
-    order: Option<Order>,
+    pub(crate) order: Option<Order>,
 }
 
 impl SimHand {
@@ -124,7 +141,9 @@ impl SimHand {
             published_ms: None,
             calibration_due_ms: None,
             saves: VecDeque::new(),
+            id: config.id,
             baud_code: 0,
+            chance: fastrand::Rng::with_seed(config.seed ^ 0x5EED),
             journal: Vec::new(),
             order: None,
         };
@@ -147,7 +166,10 @@ impl SimHand {
     /// [`Refusal`] for runs that leave the memory, or cross the gap on a hand that does not answer there.
     pub fn read(&mut self, span: Span, now: Moment) -> Result<Vec<u8>, Refusal> {
         self.advance_to(now);
-        if !self.config.personality.gap_readable && overlaps(span, GAP) {
+        if self.is_off() {
+            return Err(Refusal::Silent);
+        }
+        if self.config.personality.gap == GapAnswer::Refused && overlaps(span, GAP) {
             return Err(Refusal::Gap);
         }
         self.publish();
@@ -168,21 +190,50 @@ impl SimHand {
         now: Moment,
     ) -> Result<WriteEffect, Refusal> {
         self.advance_to(now);
+        if self.is_off() {
+            return Err(Refusal::Silent);
+        }
         self.record(now, address, bytes);
-        let in_line = self.saves.len();
+        self.refuse_read_only(address)?;
+        let (in_line, id) = (self.saves.len(), self.id);
+        let speeds = PerDof::from_fn(|dof| self.memory.short(&SPEED_SET, element(dof)));
         let changes = self
             .memory
             .write(address, bytes, self.config.personality.out_of_range)?;
         for change in &changes {
-            self.apply(change, now);
+            self.apply(change, &speeds, now);
         }
         self.memory.rearm_triggers();
         self.published_ms = None;
+        let names = |row: &Register| changes.iter().any(|change| change.register == row);
+        let is_change = names(&HAND_ID) || names(&REDU_RATIO);
+        let ack = self.config.personality.change_ack;
         Ok(WriteEffect {
-            ack_id: self.id(),
+            ack_id: match ack {
+                ChangeAck::New if names(&HAND_ID) => self.memory.byte(HAND_ID.address),
+                _ => id,
+            },
+            is_acked: !(is_change && ack == ChangeAck::None),
             taken: changes.len(),
             result_follows: self.saves.len() > in_line,
         })
+    }
+
+    /// How the next answer is sent.
+    pub fn manner(&mut self) -> Manner {
+        let personality = self.config.personality;
+        let usual = Duration::from_micros(self.chance.u64(3_000..=15_000));
+        let rare = self.chance.u32(..RARE_ONE_IN) == 0;
+        let double = self.chance.u32(..DOUBLE_ONE_IN) == 0;
+        let thinks = match personality.thinking {
+            Turnaround::Given => Duration::ZERO,
+            Turnaround::Rarely if rare => RARE_TURNAROUND,
+            Turnaround::Usual | Turnaround::Rarely => usual,
+        };
+        Manner {
+            after: personality.turnaround + thinks,
+            copies: 1 + usize::from(double && personality.doubles == Doubles::Some),
+        }
     }
 
     /// The result of a SAVE, if one is due. Each is given once.
@@ -193,9 +244,11 @@ impl SimHand {
         self.saves.pop_front().map(|(_, frame)| frame)
     }
 
-    /// Takes back the result of the newest SAVE: only serial lines have such a frame.
+    /// Takes back the result of the newest SAVE: only serial lines with the maker's framing have such a frame.
     pub fn cancel_newest_save_result(&mut self) {
-        self.saves.pop_back();
+        let twice = self.config.personality.save_frame == SaveAnswer::Twice;
+        let left = self.saves.len().saturating_sub(1 + usize::from(twice));
+        self.saves.truncate(left);
     }
 
     /// When the next result of a SAVE is due.
@@ -207,9 +260,14 @@ impl SimHand {
     /// Switches the hand off and on. The joints stay where they are.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance_to(now);
+        self.restart();
+    }
+
+    fn restart(&mut self) {
         self.memory.power_cycle();
         self.saves.clear();
         self.calibration_due_ms = None;
+        self.id = self.memory.byte(HAND_ID.address);
         self.baud_code = self.memory.byte(REDU_RATIO.address);
         for dof in Dof::ALL {
             self.body.drive_mut(dof).power_cycle();
@@ -219,11 +277,16 @@ impl SimHand {
 
     /// The id that the hand answers to.
     #[must_use]
-    pub fn id(&self) -> u8 {
-        self.memory.byte(HAND_ID.address)
+    pub const fn id(&self) -> u8 {
+        self.id
     }
 
-    /// The serial speed's code in effect, which is that of the last power-up.
+    /// True while the hand has no power.
+    fn is_off(&self) -> bool {
+        self.config.personality.power == Power::Cut && POWER_OFF_MS.contains(&self.now_ms)
+    }
+
+    /// The serial speed's code in effect, by default that of the last power-up.
     #[must_use]
     pub const fn baud_code(&self) -> u8 {
         self.baud_code
@@ -281,6 +344,12 @@ impl SimHand {
             Scenario::Faults => self.script_faults(),
             Scenario::Idle | Scenario::Extremes => {}
         }
+        if self.is_off() {
+            if self.now_ms == POWER_OFF_MS.start {
+                self.restart();
+            }
+            return;
+        }
         let settings = PerDof::from_fn(|dof| self.setting(dof));
         self.body.step(self.now_ms, &settings, &mut self.rng);
         if self.now_ms.is_multiple_of(SENSOR_MS) {
@@ -303,7 +372,7 @@ impl SimHand {
         Setting {
             speed: match self.config.personality.speed_zero {
                 SpeedZero::Slowest => speed.max(CREEP),
-                SpeedZero::Freeze => speed,
+                SpeedZero::Freeze | SpeedZero::Ignored => speed,
             },
             threshold_g: f64::from(self.memory.short(&FORCE_SET, element(dof))),
         }
@@ -349,83 +418,9 @@ impl SimHand {
         self.order = Some(*order);
     }
 
-    fn go_to_angle(&mut self, dof: Dof, angle: i16) {
+    pub(crate) fn go_to_angle(&mut self, dof: Dof, angle: i16) {
         let goal = Goal::Position(position_of(f64::from(angle)));
         self.body.drive_mut(dof).command(goal, self.now_ms);
-    }
-
-    fn apply(&mut self, change: &Change, now: Moment) {
-        let on = change.value == 1;
-        if (ANGLE_SET.address..=SPEED_SET.address).contains(&change.register.address) {
-            self.order = None;
-        }
-        match change.register.address {
-            a if a == ANGLE_SET.address || a == POS_SET.address => self.apply_target(change),
-            a if a == CLEAR_ERROR.address && on => {
-                for dof in Dof::ALL {
-                    self.body.drive_mut(dof).clear_errors();
-                }
-            }
-            a if a == SAVE.address && on => self.save(now),
-            a if a == RESET_PARA.address && on => self.memory.reset_parameters(),
-            a if a == GESTURE_FORCE_CLB.address && on => {
-                self.calibration_due_ms = Some(self.now_ms + CALIBRATION_MS);
-            }
-            a if a == GESTURE_NO_SET.address => self.take_pose(change.value),
-            a if a == ACTION_SEQ_RUN.address && on => {
-                self.take_pose(i32::from(self.memory.byte(ACTION_SEQ_INDEX.address)));
-            }
-            _ => {}
-        }
-    }
-
-    fn apply_target(&mut self, change: &Change) {
-        let Some(dof) = Dof::ALL.get(usize::from(change.element)).copied() else {
-            return;
-        };
-        let goal = match (change.value, self.config.personality.minus_one_mid_move) {
-            (-1, MinusOne::Ignore) => return,
-            (-1, MinusOne::Freeze) => Goal::Freeze,
-            (value, _) if change.register.address == ANGLE_SET.address => {
-                Goal::Position(position_of(f64::from(value)))
-            }
-            (value, _) => Goal::Position(f64::from(value)),
-        };
-        self.body.drive_mut(dof).command(goal, self.now_ms);
-    }
-
-    fn take_pose(&mut self, number: i32) {
-        let number = u8::try_from(number).unwrap_or_default();
-        let taught = UserGesture::new(number).map(|number| {
-            let first = 6 * u16::from(number.get() - UserGesture::MIN.get());
-            PerDof::from_fn(|dof| self.memory.short(&USER_DEF_ANGLE, first + element(dof)))
-        });
-        let pose = gesture::pose(number).or(taught.ok());
-        for (dof, angle) in pose.iter().flat_map(PerDof::iter) {
-            if *angle >= 0 {
-                self.memory.put_angle_set(element(dof), *angle);
-                self.go_to_angle(dof, *angle);
-            }
-        }
-    }
-
-    fn save(&mut self, now: Moment) {
-        let (command, ok) = match self.config.personality.save_frame {
-            SaveAnswer::Command11 => (0x11, true),
-            SaveAnswer::Command12 => (0x12, true),
-            SaveAnswer::Failed => (0x12, false),
-            SaveAnswer::Never => {
-                self.memory.save();
-                return;
-            }
-        };
-        if ok {
-            self.memory.save();
-        }
-        if self.saves.len() < SAVES_MAX {
-            self.saves
-                .push_back((now.plus(SAVE_TAKES), SaveFrame { command, ok }));
-        }
     }
 
     /// ANGLE_SET says where the joints are; nothing is to be moved.
@@ -435,6 +430,18 @@ impl SimHand {
                 .put_angle_set(element(dof), number::short(drive.angle()));
         }
         self.published_ms = None;
+    }
+
+    /// The check of the fingertip's block at `at`, as this hand reckons it.
+    fn put_check(&mut self, at: u16) {
+        let check = at + CHECK_AT;
+        let sum = u16::from_le_bytes([self.memory.byte(check), self.memory.byte(check + 1)]);
+        let sum = match self.config.personality.tactile_check {
+            TactileCheck::Block => sum,
+            TactileCheck::Sensor => sum.wrapping_add(SENSOR_HEADER_SUM),
+            TactileCheck::Zero => 0,
+        };
+        self.memory.put(check, &sum.to_le_bytes());
     }
 
     /// Puts the live values of this millisecond into the memory.
@@ -451,7 +458,9 @@ impl SimHand {
             let block = self
                 .touch
                 .block(finger, press, slip, number::seconds(measured_ms));
-            self.memory.put(touch_span(finger).address, &block.encode());
+            let at = touch_span(finger).address;
+            self.memory.put(at, &block.encode());
+            self.put_check(at);
         }
         if self.config.scenario == Scenario::Extremes {
             extremes::overlay(&mut self.memory, self.now_ms);

@@ -29,6 +29,21 @@ pub enum Refusal {
     /// This hand does not let the unused bytes be read.
     #[error("this hand does not answer reads of the unused bytes 1558 to 1581")]
     Gap,
+    /// A value outside its range, on a hand that says so.
+    #[error("a value at {address} is out of range")]
+    OutOfRange {
+        /// First byte of the write.
+        address: u16,
+    },
+    /// A register that can only be read, on a hand that says so.
+    #[error("{address} can only be read")]
+    ReadOnly {
+        /// First byte of the write.
+        address: u16,
+    },
+    /// This hand says nothing at all.
+    #[error("the hand is silent")]
+    Silent,
     /// A run without a byte.
     #[error("a run of no bytes at {address}")]
     Empty {
@@ -162,24 +177,13 @@ impl Memory {
     ) -> Result<Vec<Change>, Refusal> {
         let len = u16::try_from(bytes.len()).unwrap_or(u16::MAX);
         check(Span::new(address, len))?;
-        let (mut at, mut rest) = (address, bytes);
-        let mut changes = Vec::new();
-        while let Some((first, after_one)) = rest.split_first() {
-            let row = by_address(at).filter(|row| row.access == Access::ReadWrite);
-            let (value, after) = match (row.map(|row| row.element), rest.split_first_chunk::<2>()) {
-                (Some(Element::Byte), _) => (Some(i32::from(*first)), after_one),
-                (Some(Element::Short), Some((pair, after))) if starts_element(row, at) => {
-                    (Some(i32::from(i16::from_le_bytes(*pair))), after)
-                }
-                _ => (None, after_one),
-            };
-            if let (Some(row), Some(value)) = (row, value) {
-                changes.extend(self.keep(row, at, value, out_of_range));
-            }
-            at = at.saturating_add(if after.len() + 1 == rest.len() { 1 } else { 2 });
-            rest = after;
+        let elements = elements(address, bytes);
+        let fits = |(_, row, value): &(u16, &Register, i32)| row.allows(*value);
+        if out_of_range == OutOfRangeWrite::Exception && !elements.iter().all(fits) {
+            return Err(Refusal::OutOfRange { address });
         }
-        Ok(changes)
+        let kept = |(at, row, value)| self.keep(row, at, value, out_of_range);
+        Ok(elements.into_iter().filter_map(kept).collect())
     }
 
     fn keep(
@@ -192,6 +196,9 @@ impl Memory {
         let value = match (row.allows(value), row.range, out_of_range) {
             (true, ..) => value,
             (false, Some((min, max)), OutOfRangeWrite::Clamp) => value.clamp(min, max),
+            (false, Some((min, max)), OutOfRangeWrite::Wrap) => {
+                min + (value - min).rem_euclid(max - min + 1)
+            }
             _ => return None,
         };
         let element = (at - row.address) / row.element_len();
@@ -245,6 +252,26 @@ impl Memory {
     pub fn put_angle_set(&mut self, element: u16, angle: i16) {
         self.put_short(&ANGLE_SET, element, angle);
     }
+}
+
+/// The whole elements of writable registers among these bytes, with their addresses and values.
+fn elements(address: u16, bytes: &[u8]) -> Vec<(u16, &'static Register, i32)> {
+    let (mut at, mut rest) = (address, bytes);
+    let mut elements = Vec::new();
+    while let Some((first, after_one)) = rest.split_first() {
+        let row = by_address(at).filter(|row| row.access == Access::ReadWrite);
+        let (value, after) = match (row.map(|row| row.element), rest.split_first_chunk::<2>()) {
+            (Some(Element::Byte), _) => (Some(i32::from(*first)), after_one),
+            (Some(Element::Short), Some((pair, after))) if starts_element(row, at) => {
+                (Some(i32::from(i16::from_le_bytes(*pair))), after)
+            }
+            _ => (None, after_one),
+        };
+        elements.extend(row.zip(value).map(|(row, value)| (at, row, value)));
+        at = at.saturating_add(if after.len() + 1 == rest.len() { 1 } else { 2 });
+        rest = after;
+    }
+    elements
 }
 
 fn starts_element(row: Option<&'static Register>, at: u16) -> bool {

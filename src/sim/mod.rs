@@ -8,6 +8,7 @@ pub mod hand;
 mod live;
 pub mod memory;
 mod number;
+mod obey;
 pub mod personality;
 pub mod scenario;
 pub mod serve;
@@ -15,8 +16,13 @@ pub mod touch;
 
 pub use body::{Body, Object};
 pub use drive::Contact;
-pub use hand::{JournalEntry, SaveFrame, SimConfig, SimHand, WriteEffect};
+pub use hand::{JournalEntry, Manner, SaveFrame, SimConfig, SimHand, WriteEffect};
 pub use memory::Refusal;
-pub use personality::{ByteWords, MinusOne, OutOfRangeWrite, Personality, SaveAnswer, SpeedZero};
+pub use personality::{
+    BaudEffect, ByteWords, ChangeAck, ClearError, Doubles, Effect, GapAnswer, InnerAddress,
+    LongRead, MinusOne, NoSwitch, OutOfRangeWrite, Personality, Power, ReadOnlyWrite, ReplyUnit,
+    RtuReplyGap, SWITCHES, SaveAnswer, SingleReply, SpeedZero, Switch, TactileCheck, TcpClients,
+    Turnaround,
+};
 pub use scenario::{Scenario, UnknownScenario};
 pub use serve::{Hands, SharedHand};

@@ -4,9 +4,11 @@ use crate::codec::can::{
     CanFrame, CanId, PIECE_MAX, RECORD_LEN, Record, Way, frame, from_record, to_record,
 };
 use crate::hand::Span;
+use crate::sim::memory::Refusal;
 use crate::sim::serve::hands::Hands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
+use arrayvec::ArrayVec;
 use std::io;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::time::sleep;
@@ -14,6 +16,8 @@ use tokio::time::sleep;
 /// The data byte of the reply to a write.
 // Manual: 2.3.2 gives its length, 1, and not its content.
 const ACK: u8 = 1;
+/// What a hand that says no to a write might put there instead.
+const NAK: u8 = 0;
 
 /// Answers on `wire` until it ends. Silent for other ids, other kinds of frames and runs that the hand refuses.
 ///
@@ -28,7 +32,7 @@ pub async fn serve(hands: impl Into<Hands>, mut wire: impl Wire) -> io::Result<(
             continue;
         };
         for hand in hands.iter() {
-            if let Some(reply) = answer(hand, &asked).await {
+            for reply in answer(hand, &asked).await {
                 wire.write_all(&to_record(&reply)).await?;
                 wire.flush().await?;
             }
@@ -36,14 +40,16 @@ pub async fn serve(hands: impl Into<Hands>, mut wire: impl Wire) -> io::Result<(
     }
 }
 
-/// What one hand says to a frame, after its turnaround.
-pub(crate) async fn answer(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
-    let reply = reply(hand, asked)?;
-    let turnaround = hand.with(|hand, _| hand.personality().turnaround);
-    if !turnaround.is_zero() {
-        sleep(turnaround).await;
+/// What one hand says to a frame, after its turnaround: nothing, or the same once or twice.
+pub(crate) async fn answer(hand: &SharedHand, asked: &CanFrame) -> ArrayVec<CanFrame, 2> {
+    let Some(reply) = reply(hand, asked) else {
+        return ArrayVec::new();
+    };
+    let manner = hand.with(|hand, _| hand.manner());
+    if !manner.after.is_zero() {
+        sleep(manner.after).await;
     }
-    Some(reply)
+    std::iter::repeat_n(reply, manner.copies.min(2)).collect()
 }
 
 fn reply(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
@@ -66,10 +72,17 @@ fn reply(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
                 frame(way, id, address, &bytes)
             }
             (Way::Write, bytes @ [_, ..]) => {
-                let effect = hand.write(address, bytes, now).ok()?;
+                let effect = match hand.write(address, bytes, now) {
+                    Ok(effect) => effect,
+                    Err(Refusal::ReadOnly { .. }) => return frame(way, id, address, &[NAK]),
+                    Err(_) => return None,
+                };
                 // The late frame that tells how a SAVE ended is the serial line's.
                 if effect.result_follows {
                     hand.cancel_newest_save_result();
+                }
+                if !effect.is_acked {
+                    return None;
                 }
                 frame(way, u16::from(effect.ack_id), address, &[ACK])
             }

@@ -3,7 +3,6 @@
 use crate::hand::Moment;
 use crate::sim::hand::SimHand;
 use crate::sim::serve::shared::SharedHand;
-use std::time::Duration;
 
 /// The unit ids of Modbus TCP that mean "whoever is at this address": the manual's (2.5) and the standard's.
 const ANY_UNITS: [u8; 2] = [255, 0];
@@ -43,12 +42,9 @@ impl Hands {
             .find(|hand| hand.with(|hand, _| hand.id()) == unit)
     }
 
-    /// The longest that one of them thinks before it answers.
-    pub(crate) fn turnaround(&self) -> Duration {
-        self.iter()
-            .map(|hand| hand.with(|hand, _| hand.personality().turnaround))
-            .max()
-            .unwrap_or_default()
+    /// The one that is meant where none is named.
+    pub(crate) const fn first(&self) -> &SharedHand {
+        &self.first
     }
 
     /// Does something with each hand, at its time now.

@@ -3,7 +3,6 @@
 pub mod can;
 pub mod hands;
 mod modbus;
-#[cfg(unix)]
 pub mod modbus_rtu;
 pub mod modbus_tcp;
 #[cfg(unix)]

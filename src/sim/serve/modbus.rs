@@ -1,100 +1,178 @@
-//! The simulated hand's memory as Modbus sees it, over a socket or a serial line (manual 2.4, 2.5). Serves nothing.
+//! The simulated hand's memory as Modbus sees it, over a socket or a serial line (manual 2.4, 2.5). Frames nothing.
 
 use crate::hand::Span;
-use crate::hand::register::{ERROR, STATUS, TEMP};
+use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
 use crate::sim::memory::Refusal;
-use crate::sim::personality::ByteWords;
+use crate::sim::personality::{ByteWords, InnerAddress, LongRead, Personality, SingleReply};
 use crate::sim::serve::shared::SharedHand;
-use tokio_modbus::{ExceptionCode, Request, Response};
 
 /// Most words of one read (manual 2.5, function 03).
 const READ_WORDS_MAX: u16 = 125;
 /// Most words of one write (manual 2.5, function 16).
 const WRITE_WORDS_MAX: usize = 0x7B;
-/// Answers requests out of the memory of one hand.
-pub(crate) struct Memory {
-    hand: SharedHand,
+/// Marks a reply that is an exception.
+const EXCEPTION: u8 = 0x80;
+const ILLEGAL_FUNCTION: u8 = 1;
+const ILLEGAL_ADDRESS: u8 = 2;
+const ILLEGAL_VALUE: u8 = 3;
+
+/// Why a request has no good reply.
+enum No {
+    Exception(u8),
+    Silence,
 }
 
-impl Memory {
-    pub(crate) const fn new(hand: SharedHand) -> Self {
-        Self { hand }
-    }
-
-    pub(crate) const fn hand(&self) -> &SharedHand {
-        &self.hand
-    }
-
-    /// Does what the request asks for, at the hand's time now.
-    ///
-    /// # Errors
-    /// Functions other than 03, 06 and 16, runs that the memory refuses, too many words.
-    pub(crate) fn answer(&self, request: &Request<'_>) -> Result<Response, ExceptionCode> {
-        match request {
-            Request::ReadHoldingRegisters(address, count) => self
-                .read(*address, *count)
-                .map(Response::ReadHoldingRegisters),
-            Request::WriteSingleRegister(address, word) => {
-                self.write(*address, &[*word])?;
-                Ok(Response::WriteSingleRegister(*address, *word))
+impl From<Refusal> for No {
+    fn from(refusal: Refusal) -> Self {
+        match refusal {
+            Refusal::Silent => Self::Silence,
+            Refusal::Empty { .. } | Refusal::OutOfRange { .. } => Self::Exception(ILLEGAL_VALUE),
+            Refusal::Unmapped { .. } | Refusal::Gap | Refusal::ReadOnly { .. } => {
+                Self::Exception(ILLEGAL_ADDRESS)
             }
-            Request::WriteMultipleRegisters(address, words) => {
-                self.write(*address, words)?;
-                let count = u16::try_from(words.len()).unwrap_or_default();
-                Ok(Response::WriteMultipleRegisters(*address, count))
-            }
-            _ => Err(ExceptionCode::IllegalFunction),
         }
     }
+}
 
+/// What one hand says to a request, function code and data, at its time now; `None` where it is silent.
+pub(crate) fn answer(hand: &SharedHand, request: &[u8]) -> Option<Vec<u8>> {
+    let personality = hand.with(|hand, _| *hand.personality());
+    let unit = Unit { hand, personality };
+    let (function, body) = request.split_first()?;
+    let done = match (function, body) {
+        (3, [a, b, c, d]) => unit.read(word(*a, *b), word(*c, *d)),
+        (6, [a, b, value @ ..]) if value.len() == 2 => unit.write_one(word(*a, *b), value),
+        (16, [a, b, c, d, len, data @ ..])
+            if usize::from(*len) == data.len() && data.len() == 2 * usize::from(word(*c, *d)) =>
+        {
+            unit.write_many(word(*a, *b), data)
+        }
+        (3 | 6 | 16, _) => Err(No::Exception(ILLEGAL_VALUE)),
+        _ => Err(No::Exception(ILLEGAL_FUNCTION)),
+    };
+    match done {
+        Ok(reply) => Some([&[*function][..], &reply].concat()),
+        Err(No::Exception(code)) => Some(vec![function | EXCEPTION, code]),
+        Err(No::Silence) => None,
+    }
+}
+
+/// One hand while it answers one request.
+struct Unit<'a> {
+    hand: &'a SharedHand,
+    personality: Personality,
+}
+
+impl Unit<'_> {
     // Manual: 2.5 does not say how bytes become words; a word is byte[A] + 256 * byte[A + 1].
-    fn read(&self, address: u16, count: u16) -> Result<Vec<u16>, ExceptionCode> {
-        if !(1..=READ_WORDS_MAX).contains(&count) {
-            return Err(ExceptionCode::IllegalDataValue);
-        }
+    fn read(&self, address: u16, count: u16) -> Result<Vec<u8>, No> {
+        let count = match (count, self.personality.long_read) {
+            (0, _) => return Err(No::Exception(ILLEGAL_VALUE)),
+            (1..=READ_WORDS_MAX, _) => count,
+            (_, LongRead::Exception) => return Err(No::Exception(ILLEGAL_VALUE)),
+            (_, LongRead::Truncate) => READ_WORDS_MAX,
+            (_, LongRead::Silence) => return Err(No::Silence),
+        };
+        let address = self.inner(address)?;
         let span = Span::new(address, 2 * count);
-        let bytes = self
-            .hand
-            .with(|hand, now| hand.read(span, now))
-            .map_err(exception)?;
-        let own_words =
-            self.hand.with(|hand, _| hand.personality().byte_words) == ByteWords::OnePerWord;
-        if own_words && [ERROR.address, STATUS.address, TEMP.address].contains(&address) {
-            return Ok(bytes
-                .iter()
-                .take(usize::from(count))
-                .map(|byte| u16::from(*byte))
-                .collect());
-        }
-        let (pairs, _) = bytes.as_chunks::<2>();
-        Ok(pairs.iter().map(|pair| u16::from_le_bytes(*pair)).collect())
+        let bytes = self.hand.with(|hand, now| hand.read(span, now))?;
+        let data: Vec<u8> = if self.has_own_words(address) {
+            let single = bytes.iter().take(usize::from(count));
+            single.flat_map(|byte| [0, *byte]).collect()
+        } else {
+            let (pairs, _) = bytes.as_chunks::<2>();
+            let at = (address..).step_by(2);
+            at.zip(pairs)
+                .flat_map(|(at, pair)| self.swapped(at, *pair))
+                .collect()
+        };
+        let len = u8::try_from(data.len()).unwrap_or(u8::MAX);
+        Ok([&[len][..], &data].concat())
     }
 
-    fn write(&self, address: u16, words: &[u16]) -> Result<(), ExceptionCode> {
-        if words.is_empty() || words.len() > WRITE_WORDS_MAX {
-            return Err(ExceptionCode::IllegalDataValue);
+    fn write_one(&self, address: u16, value: &[u8]) -> Result<Vec<u8>, No> {
+        self.write(address, value)?;
+        Ok(match self.personality.single_reply {
+            SingleReply::Echo => [&address.to_be_bytes()[..], value].concat(),
+            SingleReply::Zeros => vec![0; 4],
+        })
+    }
+
+    fn write_many(&self, address: u16, data: &[u8]) -> Result<Vec<u8>, No> {
+        let words = data.len() / 2;
+        if !(1..=WRITE_WORDS_MAX).contains(&words) {
+            return Err(No::Exception(ILLEGAL_VALUE));
         }
-        let bytes: Vec<u8> = match words {
-            // Manual: 1000 to 1009 are single bytes side by side; one word there is one of them.
-            [word] if (1000..=1009).contains(&address) => match u8::try_from(*word) {
-                Ok(value) => vec![value],
-                Err(_) => return Ok(()),
-            },
-            _ => words.iter().flat_map(|word| word.to_le_bytes()).collect(),
+        self.write(address, data)?;
+        let count = u16::try_from(words).unwrap_or_default();
+        Ok([address.to_be_bytes(), count.to_be_bytes()].concat())
+    }
+
+    fn write(&self, address: u16, data: &[u8]) -> Result<(), No> {
+        let address = self.inner(address)?;
+        let Some(bytes) = self.memory_of(address, data) else {
+            return Ok(());
         };
         self.hand.with(|hand, now| {
-            let effect = hand.write(address, &bytes, now).map_err(exception)?;
+            let effect = hand.write(address, &bytes, now)?;
             if effect.result_follows {
                 hand.cancel_newest_save_result();
             }
-            Ok(())
+            if effect.is_acked {
+                Ok(())
+            } else {
+                Err(No::Silence)
+            }
         })
+    }
+
+    /// The memory bytes that written words mean; `None` for a word that is no byte where one is wanted.
+    fn memory_of(&self, address: u16, data: &[u8]) -> Option<Vec<u8>> {
+        // Manual: 1000 to 1009 are single bytes side by side; one word there is one of them.
+        let single = data.len() == 2 && (1000..=1009).contains(&address);
+        match (data, self.personality.byte_words) {
+            // The byte meant for this register lands in its neighbour.
+            (_, ByteWords::HighFirst) => {}
+            ([high, low], _) if single => return (*high == 0).then(|| vec![*low]),
+            _ => {}
+        }
+        let (pairs, _) = data.as_chunks::<2>();
+        let at = (address..).step_by(2);
+        Some(
+            at.zip(pairs)
+                .flat_map(|(at, pair)| self.swapped(at, *pair))
+                .collect(),
+        )
+    }
+
+    /// Memory order from and to the order on the wire, where the high byte of a word comes first.
+    fn swapped(&self, at: u16, [first, second]: [u8; 2]) -> [u8; 2] {
+        let is_byte = by_address(at).is_some_and(|row| row.element == Element::Byte);
+        if is_byte && self.personality.byte_words == ByteWords::HighFirst {
+            [first, second]
+        } else {
+            [second, first]
+        }
+    }
+
+    fn has_own_words(&self, address: u16) -> bool {
+        self.personality.byte_words == ByteWords::OnePerWord
+            && [ERROR.address, STATUS.address, TEMP.address].contains(&address)
+    }
+
+    /// Where a request inside a group leads.
+    fn inner(&self, address: u16) -> Result<u16, No> {
+        let Some(row) = by_address(address).filter(|row| row.address != address) else {
+            return Ok(address);
+        };
+        match self.personality.inner_address {
+            InnerAddress::Byte => Ok(address),
+            InnerAddress::Index => Ok(row.address.saturating_add(2 * (address - row.address))),
+            InnerAddress::Exception => Err(No::Exception(ILLEGAL_ADDRESS)),
+        }
     }
 }
 
-const fn exception(refusal: Refusal) -> ExceptionCode {
-    match refusal {
-        Refusal::Unmapped { .. } | Refusal::Gap => ExceptionCode::IllegalDataAddress,
-        Refusal::Empty { .. } => ExceptionCode::IllegalDataValue,
-    }
+const fn word(high: u8, low: u8) -> u16 {
+    u16::from_be_bytes([high, low])
 }

@@ -1,105 +1,125 @@
-//! Simulated hands as a Modbus RTU server (manual 2.4), through tokio-modbus. Opens no port of its own: it is given
-//! a wire. Unix only, because that server takes nothing but a serial port, and one end of a pair of pseudo-terminals is
-//! one.
+//! Simulated hands as a Modbus RTU server (manual 2.4). Opens no port: it is given a wire.
 
+use crate::codec::modbus_rtu::crc16;
+use crate::sim::personality::RtuReplyGap;
 use crate::sim::serve::hands::Hands;
-use crate::sim::serve::modbus::Memory;
+use crate::sim::serve::modbus;
 use crate::transport::Wire;
-use futures::future::BoxFuture;
+use arrayvec::ArrayVec;
 use std::io;
-use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::time::sleep;
-use tokio_modbus::server::Service;
-use tokio_modbus::server::rtu::Server;
-use tokio_modbus::{ExceptionCode, Response, SlaveRequest};
-use tokio_serial::SerialStream;
 
-/// Bytes taken at once: the longest frame.
-const CHUNK: usize = 256;
-/// Silence after which a request that is still unanswered is given up: far longer than any gap inside one.
+/// Bytes taken at once, and kept while a request is not whole: the longest frame, twice.
+const CHUNK: usize = 512;
+/// Silence after which an unfinished request is given up: far longer than any gap inside one.
 const SILENCE: Duration = Duration::from_millis(50);
+/// The pause inside a reply of a hand that makes one: longer than the 1.5 characters that are allowed.
+const PAUSE: Duration = Duration::from_millis(2);
+/// Requests of functions 03 and 06: unit, function, two words, check.
+const SHORT_LEN: usize = 8;
+/// Of function 16 around its data: unit, function, two words, length, check.
+const LONG_FRAMING: usize = 9;
 
 /// Answers on `wire` until the other side hangs up. Silent for other ids and bad frames.
 ///
-/// The server skips noise byte by byte but ends after twenty, and waits without limit for the rest of a frame; both
-/// are met by giving it a fresh line: at its end, and after a silence that no reply broke.
-///
 /// # Errors
-/// The system has no pseudo-terminal to give.
-pub async fn serve(hands: impl Into<Hands>, mut wire: impl Wire) -> io::Result<()> {
-    let hands = hands.into();
-    loop {
-        let (theirs, ours) = SerialStream::pair()?;
-        let units = hands.iter().cloned().map(Memory::new).map(Arc::new);
-        let bus = Line(units.collect());
-        tokio::select! {
-            biased;
-            // Noise ended the server; the next begins with an empty line.
-            _ended = Server::new(theirs).serve_forever(bus) => {}
-            between = carry(&mut wire, ours, hands.turnaround()) => match between {
-                Carried::HungUp => return Ok(()),
-                Carried::Unanswered => {}
+/// None: the end of the wire is the only end there is.
+pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) -> io::Result<()> {
+    let mut line = Line {
+        hands: hands.into(),
+        wire,
+        held: ArrayVec::new(),
+    };
+    let _hung_up = line.run().await;
+    Ok(())
+}
+
+struct Line<W> {
+    hands: Hands,
+    wire: W,
+    held: ArrayVec<u8, CHUNK>,
+}
+
+impl<W: Wire> Line<W> {
+    async fn run(&mut self) -> io::Result<()> {
+        let mut chunk = [0; CHUNK];
+        loop {
+            tokio::select! {
+                biased;
+                read = self.wire.read(&mut chunk) => match read? {
+                    0 => return Ok(()),
+                    len => self.take(chunk.get(..len).unwrap_or_default()).await?,
+                },
+                () = sleep(SILENCE), if !self.held.is_empty() => self.held.clear(),
             }
         }
     }
-}
 
-/// Why bytes are not carried any more.
-enum Carried {
-    HungUp,
-    Unanswered,
-}
+    async fn take(&mut self, mut bytes: &[u8]) -> io::Result<()> {
+        while !bytes.is_empty() {
+            let (now, later) = bytes.split_at(bytes.len().min(self.held.remaining_capacity()));
+            self.held.extend(now.iter().copied());
+            bytes = later;
+            while let Some((frame, used)) = first_request(&self.held) {
+                self.held.drain(..used);
+                self.answer(&frame).await?;
+            }
+            if self.held.is_full() {
+                self.held.clear();
+            }
+        }
+        Ok(())
+    }
 
-/// Carries bytes between the wire and the server's line.
-async fn carry(wire: &mut impl Wire, mut server: SerialStream, turnaround: Duration) -> Carried {
-    let (mut asked, mut answered) = ([0; CHUNK], [0; CHUNK]);
-    let mut unanswered = false;
-    loop {
-        let done = tokio::select! {
-            biased;
-            read = server.read(&mut answered) => {
-                unanswered = false;
-                let len = read.unwrap_or_default();
-                wire.write_all(answered.get(..len).unwrap_or_default()).await
-            }
-            read = wire.read(&mut asked) => {
-                unanswered = true;
-                match read {
-                    Ok(len @ 1..) => server.write_all(asked.get(..len).unwrap_or_default()).await,
-                    Ok(0) | Err(_) => return Carried::HungUp,
-                }
-            }
-            () = sleep(SILENCE + turnaround), if unanswered => return Carried::Unanswered,
+    /// `frame` is a request without its check.
+    async fn answer(&mut self, frame: &[u8]) -> io::Result<()> {
+        let Some((unit, request)) = frame.split_first() else {
+            return Ok(());
         };
-        if done.is_err() {
-            return Carried::HungUp;
+        let mut hands = self.hands.iter();
+        let meant = hands.find(|hand| hand.with(|hand, _| hand.id()) == *unit);
+        let Some(hand) = meant else { return Ok(()) };
+        let Some(reply) = modbus::answer(hand, request) else {
+            return Ok(());
+        };
+        let (manner, gap) = hand.with(|hand, _| (hand.manner(), hand.personality().rtu_reply));
+        let mut reply = [&[*unit][..], &reply].concat();
+        reply.extend(crc16(&reply).to_le_bytes());
+        if !manner.after.is_zero() {
+            sleep(manner.after).await;
         }
+        for _ in 0..manner.copies {
+            let half = match gap {
+                RtuReplyGap::Whole => reply.len(),
+                RtuReplyGap::Split => reply.len() / 2,
+            };
+            let (first, rest) = reply.split_at(half);
+            self.wire.write_all(first).await?;
+            if !rest.is_empty() {
+                self.wire.flush().await?;
+                sleep(PAUSE).await;
+                self.wire.write_all(rest).await?;
+            }
+            self.wire.flush().await?;
+        }
+        Ok(())
     }
 }
 
-/// The hands on the bus.
-struct Line(Vec<Arc<Memory>>);
-
-impl Service for Line {
-    type Request = SlaveRequest<'static>;
-    type Response = Option<Response>;
-    type Exception = ExceptionCode;
-    type Future = BoxFuture<'static, Result<Option<Response>, ExceptionCode>>;
-
-    fn call(&self, asked: Self::Request) -> Self::Future {
-        let mut units = self.0.iter();
-        let meant = units.find(|unit| unit.hand().with(|hand, _| hand.id()) == asked.slave);
-        let meant = meant.map(Arc::clone);
-        Box::pin(async move {
-            let Some(memory) = meant else { return Ok(None) };
-            let turnaround = memory.hand().with(|hand, _| hand.personality().turnaround);
-            let answer = memory.answer(&asked.request);
-            if !turnaround.is_zero() {
-                sleep(turnaround).await;
-            }
-            answer.map(Some)
-        })
-    }
+/// The first whole request, without its check, and the bytes up to its end. What stands before it is noise.
+fn first_request(held: &[u8]) -> Option<(Vec<u8>, usize)> {
+    (0..held.len()).find_map(|at| {
+        let frame = held.get(at..)?;
+        let len = match frame {
+            [_, 3 | 6, ..] => SHORT_LEN,
+            [_, 16, _, _, _, _, count, ..] => LONG_FRAMING + usize::from(*count),
+            // Other functions have requests of their own; those without data are told that they are not known.
+            [_, 1..=0x7F, ..] => SHORT_LEN,
+            _ => return None,
+        };
+        let (body, check) = frame.get(..len)?.split_last_chunk()?;
+        (crc16(body).to_le_bytes() == *check).then(|| (body.to_vec(), at + len))
+    })
 }

@@ -1,18 +1,24 @@
-//! Simulated hands as a Modbus TCP server (manual 2.5). Binds nothing: it is given a listener.
+//! Simulated hands as a Modbus TCP server (manual 2.5). Binds nothing: it is given a listener, or a connection.
 
+use crate::codec::mbap::{Adu, MbapSplitter};
+use crate::sim::personality::{ReplyUnit, TcpClients};
 use crate::sim::serve::hands::Hands;
-use crate::sim::serve::modbus::Memory;
-use std::future::{Ready, ready};
+use crate::sim::serve::modbus;
+use crate::transport::Wire;
 use std::io;
-use std::net::SocketAddr;
-use std::sync::Arc;
-use tokio::net::{TcpListener, TcpStream};
-use tokio_modbus::server::Service;
-use tokio_modbus::server::tcp::Server;
-use tokio_modbus::{ExceptionCode, Response, SlaveRequest};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpListener;
+use tokio::task::JoinSet;
+use tokio::time::sleep;
 
 /// Clients at one time. A hand was seen to take two; more lets tests and viewers look on.
 pub const CLIENTS_MAX: usize = 16;
+/// Bytes taken at once: the longest request.
+const CHUNK: usize = 260;
+/// Bytes of a message before its function code.
+const HEADER_LEN: usize = 7;
+/// What a gateway says whose target is silent.
+const TARGET_SILENT: u8 = 11;
 
 /// Answers every client of `listener` until the future is dropped, which closes all connections too. One hand answers
 /// to every unit id; of several, 255 and 0 mean the first, other units the hand of that id, and a unit that no hand
@@ -22,41 +28,80 @@ pub const CLIENTS_MAX: usize = 16;
 /// The listener's own failures.
 pub async fn serve(hands: impl Into<Hands>, listener: TcpListener) -> io::Result<()> {
     let hands = hands.into();
-    let clients = Arc::new(());
-    let connected = |stream: TcpStream, _peer: SocketAddr| {
-        let service = Client {
-            hands: hands.clone(),
-            _client: Arc::clone(&clients),
-        };
-        // One is ours, one belongs to the client at the door.
-        let full = Arc::strong_count(&clients) > CLIENTS_MAX + 1;
-        async move {
-            if full || stream.set_nodelay(true).is_err() {
-                return Ok(None);
+    let mut clients = JoinSet::new();
+    loop {
+        tokio::select! {
+            biased;
+            Some(_ended) = clients.join_next() => {}
+            accepted = listener.accept() => {
+                let (stream, _peer) = accepted?;
+                let most = match hands.first().with(|hand, _| hand.personality().tcp_clients) {
+                    TcpClients::Many => CLIENTS_MAX,
+                    TcpClients::One => 1,
+                    TcpClients::Newest => {
+                        clients.shutdown().await;
+                        1
+                    }
+                };
+                if clients.len() < most && stream.set_nodelay(true).is_ok() {
+                    clients.spawn(serve_client(hands.clone(), stream));
+                }
             }
-            Ok(Some((service, stream)))
         }
-    };
-    // A client's broken connection ends with that client; the others go on.
-    Server::new(listener).serve(&connected, |_broken| {}).await
-}
-
-/// One client; the clients are counted by what they hold.
-struct Client {
-    hands: Hands,
-    _client: Arc<()>,
-}
-
-impl Service for Client {
-    type Request = SlaveRequest<'static>;
-    type Response = Response;
-    type Exception = ExceptionCode;
-    type Future = Ready<Result<Response, ExceptionCode>>;
-
-    fn call(&self, asked: Self::Request) -> Self::Future {
-        ready(match self.hands.unit(asked.slave) {
-            Some(hand) => Memory::new(hand.clone()).answer(&asked.request),
-            None => Err(ExceptionCode::GatewayTargetDevice),
-        })
     }
+}
+
+/// Answers one client until it hangs up or talks nonsense.
+pub async fn serve_client(hands: impl Into<Hands>, wire: impl Wire) {
+    // A client's broken connection ends with that client; the others go on.
+    let _broken = answer_all(hands.into(), wire).await;
+}
+
+async fn answer_all(hands: Hands, mut wire: impl Wire) -> io::Result<()> {
+    let mut splitter = MbapSplitter::default();
+    let mut chunk = [0; CHUNK];
+    loop {
+        let len = wire.read(&mut chunk).await?;
+        if len == 0 {
+            return Ok(());
+        }
+        let mut bytes = chunk.get(..len).unwrap_or_default();
+        while !bytes.is_empty() {
+            let taken = splitter.push(bytes);
+            bytes = bytes.get(taken..).unwrap_or_default();
+            while let Some(request) = splitter.next().map_err(io::Error::other)? {
+                answer(&hands, &mut wire, &request).await?;
+            }
+        }
+    }
+}
+
+async fn answer(hands: &Hands, wire: &mut impl Wire, asked: &Adu) -> io::Result<()> {
+    let request = asked.bytes.get(HEADER_LEN..).unwrap_or_default();
+    let Some(hand) = hands.unit(asked.unit) else {
+        let refused = [asked.function() | 0x80, TARGET_SILENT];
+        return wire.write_all(&message(asked, asked.unit, &refused)).await;
+    };
+    let Some(reply) = modbus::answer(hand, request) else {
+        return Ok(());
+    };
+    let (manner, unit) = hand.with(|hand, _| (hand.manner(), hand.personality().reply_unit));
+    let unit = match unit {
+        ReplyUnit::Echo => asked.unit,
+        ReplyUnit::Ff => 255,
+        ReplyUnit::Zero => 0,
+    };
+    if !manner.after.is_zero() {
+        sleep(manner.after).await;
+    }
+    for _ in 0..manner.copies {
+        wire.write_all(&message(asked, unit, &reply)).await?;
+    }
+    wire.flush().await
+}
+
+fn message(asked: &Adu, unit: u8, reply: &[u8]) -> Vec<u8> {
+    let len = u16::try_from(reply.len() + 1).unwrap_or(u16::MAX);
+    let head = [asked.transaction, 0, len].map(u16::to_be_bytes);
+    [head.as_flattened(), &[unit], reply].concat()
 }

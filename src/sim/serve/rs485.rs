@@ -4,6 +4,9 @@ use crate::codec::rs485::{
     Frame, READ_LEN_MAX, Request, RequestDecoder, encode_read_reply, encode_save_result,
     encode_write_ack,
 };
+use crate::hand::Span;
+use crate::sim::memory::Refusal;
+use crate::sim::personality::LongRead;
 use crate::sim::serve::hands::Hands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
@@ -14,6 +17,9 @@ use tokio::time::{Instant, sleep, sleep_until};
 
 /// The value in an acknowledgement (manual 2.2.2).
 const ACK: u8 = 1;
+/// What a hand that says no to a write might put there instead.
+// Manual: it has no such answer.
+const NAK: u8 = 0;
 /// Bytes taken at once: more than the longest request.
 const CHUNK: usize = 512;
 /// Silence after which an unfinished request is given up: far longer than any gap between two bytes of one.
@@ -73,11 +79,13 @@ impl<W: Wire> Line<W> {
                 let Some(frame) = answer(hand, &request) else {
                     continue;
                 };
-                let turnaround = hand.with(|hand, _| hand.personality().turnaround);
-                if !turnaround.is_zero() {
-                    sleep(turnaround).await;
+                let manner = hand.with(|hand, _| hand.manner());
+                if !manner.after.is_zero() {
+                    sleep(manner.after).await;
                 }
-                self.wire.write_all(&frame).await?;
+                for _ in 0..manner.copies {
+                    self.wire.write_all(&frame).await?;
+                }
                 self.wire.flush().await?;
             }
         }
@@ -109,13 +117,24 @@ impl<W: Wire> Line<W> {
 
 fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
     hand.with(|hand, now| match request {
-        Request::Read { id, span } if *id == hand.id() && span.len <= READ_LEN_MAX => {
-            let bytes = hand.read(*span, now).ok()?;
+        Request::Read { id, span } if *id == hand.id() => {
+            let cut = hand.personality().long_read == LongRead::Truncate;
+            let len = match span.len {
+                ..=READ_LEN_MAX => span.len,
+                _ if cut => READ_LEN_MAX,
+                _ => return None,
+            };
+            let bytes = hand.read(Span::new(span.address, len), now).ok()?;
             encode_read_reply(*id, span.address, &bytes)
         }
         Request::Write { id, address, bytes } if *id == hand.id() => {
-            let effect = hand.write(*address, bytes, now).ok()?;
-            Some(encode_write_ack(effect.ack_id, *address, ACK))
+            match hand.write(*address, bytes, now) {
+                Ok(effect) => effect
+                    .is_acked
+                    .then(|| encode_write_ack(effect.ack_id, *address, ACK)),
+                Err(Refusal::ReadOnly { .. }) => Some(encode_write_ack(*id, *address, NAK)),
+                Err(_) => None,
+            }
         }
         _ => None,
     })

@@ -87,7 +87,7 @@ impl<W: Wire> Adapter<W> {
         }
         let hands = self.hands.clone();
         for hand in hands.iter() {
-            if let Some(reply) = can::answer(hand, frame).await {
+            for reply in can::answer(hand, frame).await {
                 self.say(&Answer::Frame(reply)).await?;
             }
         }

@@ -1,0 +1,168 @@
+//! What a write sets off in the simulated hand: targets, triggers, codes, SAVE. Takes no byte and knows no wire.
+
+use crate::hand::register::{
+    ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, Access, CLEAR_ERROR, GESTURE_FORCE_CLB,
+    GESTURE_NO_SET, HAND_ID, POS_SET, REDU_RATIO, RESET_PARA, SAVE, SPEED_SET, USER_DEF_ANGLE,
+    by_address,
+};
+use crate::hand::{Dof, Moment, PerDof, UserGesture};
+use crate::sim::drive::{Goal, position_of};
+use crate::sim::gesture;
+use crate::sim::hand::{SaveFrame, SimHand};
+use crate::sim::live::element;
+use crate::sim::memory::{Change, Refusal};
+use crate::sim::personality::{
+    BaudEffect, ClearError, Effect, MinusOne, ReadOnlyWrite, SaveAnswer, SpeedZero,
+};
+use std::time::Duration;
+
+/// From SAVE to its result (manual 2.2.2: about one second).
+const SAVE_TAKES: Duration = Duration::from_secs(1);
+/// From SAVE to its result on a hand that is slow with it.
+const SAVE_TAKES_LATE: Duration = Duration::from_secs(5);
+/// From the result of a SAVE to its double.
+const SAVE_AGAIN: Duration = Duration::from_millis(100);
+/// From GESTURE_FORCE_CLB to the new zero (manual 2.6.6: about six seconds).
+const CALIBRATION_MS: u64 = 6000;
+/// SAVE results under way: one second holds no more of them on any wire we have.
+const SAVES_MAX: usize = 64;
+
+impl SimHand {
+    pub(crate) fn refuse_read_only(&self, address: u16) -> Result<(), Refusal> {
+        let readable = by_address(address).is_some_and(|row| row.access == Access::Read);
+        match self.config.personality.read_only {
+            ReadOnlyWrite::Nak if readable => Err(Refusal::ReadOnly { address }),
+            ReadOnlyWrite::Nothing if readable => Err(Refusal::Silent),
+            _ => Ok(()),
+        }
+    }
+
+    /// What one changed element sets off. `speeds` are those before the write.
+    pub(crate) fn apply(&mut self, change: &Change, speeds: &PerDof<i16>, now: Moment) {
+        let on = change.value == 1;
+        if (ANGLE_SET.address..=SPEED_SET.address).contains(&change.register.address) {
+            self.order = None;
+        }
+        match change.register.address {
+            a if a == ANGLE_SET.address || a == POS_SET.address => self.apply_target(change),
+            a if a == SPEED_SET.address && change.value == 0 => self.apply_no_speed(change, speeds),
+            a if a == HAND_ID.address || a == REDU_RATIO.address => self.take_codes(
+                self.config.personality.id_effect == Effect::Now,
+                self.config.personality.baud_effect == BaudEffect::Now,
+            ),
+            a if a == CLEAR_ERROR.address && on => self.clear_errors(),
+            a if a == SAVE.address && on => self.save(now),
+            a if a == RESET_PARA.address && on => {
+                self.memory.reset_parameters();
+                self.take_codes(
+                    self.config.personality.id_effect != Effect::AfterPower,
+                    self.config.personality.baud_effect != BaudEffect::AfterPower,
+                );
+            }
+            a if a == GESTURE_FORCE_CLB.address && on => {
+                self.calibration_due_ms = Some(self.now_ms + CALIBRATION_MS);
+            }
+            a if a == GESTURE_NO_SET.address => self.take_pose(change.value),
+            a if a == ACTION_SEQ_RUN.address && on => {
+                self.take_pose(i32::from(self.memory.byte(ACTION_SEQ_INDEX.address)));
+            }
+            _ => {}
+        }
+    }
+
+    /// Lets id and serial speed act as they stand in the memory.
+    fn take_codes(&mut self, id: bool, baud: bool) {
+        if id {
+            self.id = self.memory.byte(HAND_ID.address);
+        }
+        if baud {
+            self.baud_code = self.memory.byte(REDU_RATIO.address);
+        }
+    }
+
+    fn apply_no_speed(&mut self, change: &Change, speeds: &PerDof<i16>) {
+        let dof = Dof::ALL.get(usize::from(change.element)).copied();
+        if let (Some(dof), SpeedZero::Ignored) = (dof, self.config.personality.speed_zero) {
+            let former = speeds[dof];
+            self.memory.put_short(&SPEED_SET, change.element, former);
+        }
+    }
+
+    fn clear_errors(&mut self) {
+        for dof in Dof::ALL {
+            let drive = self.body.drive_mut(dof);
+            let was_stopped = !drive.faults().is_empty();
+            drive.clear_errors();
+            if was_stopped && self.config.personality.clear_error == ClearError::Resume {
+                let target = self.memory.short(&ANGLE_SET, element(dof));
+                self.go_to_angle(dof, target);
+            }
+        }
+    }
+
+    fn apply_target(&mut self, change: &Change) {
+        let Some(dof) = Dof::ALL.get(usize::from(change.element)).copied() else {
+            return;
+        };
+        let goal = match (change.value, self.config.personality.minus_one_mid_move) {
+            (-1, MinusOne::Ignore) => return,
+            (-1, MinusOne::Freeze) => Goal::Freeze,
+            (-1, MinusOne::Clamp) => {
+                let most = change.register.range.map_or(0, |(_, max)| max);
+                let most = i16::try_from(most).unwrap_or_default();
+                self.memory.put_short(change.register, change.element, most);
+                self.apply_target(&Change {
+                    value: i32::from(most),
+                    ..*change
+                });
+                return;
+            }
+            (value, _) if change.register.address == ANGLE_SET.address => {
+                Goal::Position(position_of(f64::from(value)))
+            }
+            (value, _) => Goal::Position(f64::from(value)),
+        };
+        self.body.drive_mut(dof).command(goal, self.now_ms);
+    }
+
+    fn take_pose(&mut self, number: i32) {
+        let number = u8::try_from(number).unwrap_or_default();
+        let taught = UserGesture::new(number).map(|number| {
+            let first = 6 * u16::from(number.get() - UserGesture::MIN.get());
+            PerDof::from_fn(|dof| self.memory.short(&USER_DEF_ANGLE, first + element(dof)))
+        });
+        let pose = gesture::pose(number).or(taught.ok());
+        for (dof, angle) in pose.iter().flat_map(PerDof::iter) {
+            if *angle >= 0 {
+                self.memory.put_angle_set(element(dof), *angle);
+                self.go_to_angle(dof, *angle);
+            }
+        }
+    }
+
+    fn save(&mut self, now: Moment) {
+        let answer = self.config.personality.save_frame;
+        let (command, ok) = match answer {
+            SaveAnswer::Command11 => (0x11, true),
+            SaveAnswer::Failed => (0x12, false),
+            _ => (0x12, true),
+        };
+        if ok {
+            self.memory.save();
+            self.take_codes(
+                self.config.personality.id_effect == Effect::AfterSave,
+                self.config.personality.baud_effect == BaudEffect::AfterSave,
+            );
+        }
+        let takes = match answer {
+            SaveAnswer::Never => &[][..],
+            SaveAnswer::Late => &[SAVE_TAKES_LATE],
+            SaveAnswer::Twice => &[SAVE_TAKES, SAVE_TAKES.saturating_add(SAVE_AGAIN)],
+            _ => &[SAVE_TAKES],
+        };
+        let room = SAVES_MAX.saturating_sub(self.saves.len());
+        let frames = takes.iter().take(room);
+        let frames = frames.map(|takes| (now.plus(*takes), SaveFrame { command, ok }));
+        self.saves.extend(frames);
+    }
+}
