@@ -100,7 +100,11 @@ impl Kept for Settings {
 /// # Errors
 /// What the system says.
 pub fn save<K: Kept>(path: &Path, kept: &K) -> std::io::Result<()> {
-    let text = kept.text()?;
+    replace(path, &kept.text()?)
+}
+
+/// Writes a text as [`save`] does.
+pub(crate) fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }

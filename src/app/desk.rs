@@ -68,6 +68,7 @@ impl Desk {
             traffic: Traffic::default(),
             ports: Vec::new(),
             scan: ScanBook::default(),
+            sheet: None,
             settings,
         };
         Self {
@@ -103,6 +104,7 @@ impl Desk {
         self.state.sample = HandSample::default();
         self.state.tare = Tare::default();
         self.state.peaks = ForcePeaks::default();
+        self.state.sheet = None;
         self.state.faults.clear();
         self.state.gestures.another_hand();
         self.state.poses.run = None;

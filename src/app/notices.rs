@@ -2,6 +2,7 @@
 
 use crate::app::faults::FaultKind;
 use crate::app::poses::file::PoseFileError;
+use crate::app::quirk_sheet::Difference;
 use crate::hand::{Dof, Gesture, Moment, UserGesture};
 use crate::link::{ArmRefusal, Disarmed, LinkTrouble, RequestError};
 use std::collections::VecDeque;
@@ -144,6 +145,18 @@ pub enum NoticeKind {
     },
     /// No place was chosen for a file: the dialog was cancelled, or this desktop has none.
     NoFileChosen,
+    /// The hand at this address answers otherwise than the one of last time: it may be another.
+    HandDiffers {
+        /// In what.
+        differences: Vec<Difference>,
+        /// Day of last time.
+        last_seen: String,
+    },
+    /// The quirk sheet could not be read or written.
+    SheetNotKept {
+        /// Why.
+        message: String,
+    },
     /// The remembered hand's spelling means nothing.
     EndpointIgnored {
         /// What the file says.
@@ -178,6 +191,8 @@ impl NoticeKind {
             | Self::NotSaved { .. }
             | Self::SettingsNotSaved { .. }
             | Self::SettingsIgnored { .. }
+            | Self::HandDiffers { .. }
+            | Self::SheetNotKept { .. }
             | Self::EndpointIgnored { .. } => Level::Warn,
         }
     }

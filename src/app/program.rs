@@ -10,6 +10,7 @@ use crate::app::poses::store::{self, Reading};
 use crate::app::save::{self, ChooseFile, Content, Saving};
 use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
+use crate::app::sheet_keeper::SheetKeeper;
 use crate::app::state::{PortChoice, State};
 use crate::hand::Moment;
 use crate::link::{self, Clock, LinkConfig, PollRates, Wake};
@@ -62,6 +63,7 @@ pub struct App {
     saver: Saver<Settings>,
     pose_saver: Saver<Library>,
     reading: Option<Reading>,
+    sheets: SheetKeeper,
     leaving: Option<Leaving>,
     closing: Option<Closing>,
     ports: Option<oneshot::Receiver<Vec<PortFound>>>,
@@ -86,12 +88,14 @@ impl App {
         }
         let pose_saver = Saver::new(pose_path, env.runtime.clone(), library.clone());
         desk.state.poses = PoseBook::new(library);
+        let sheets = SheetKeeper::new(env.settings_path.as_deref(), env.runtime.clone());
         Self {
             env,
             desk,
             saver,
             pose_saver,
             reading: None,
+            sheets,
             leaving: None,
             closing: None,
             ports: None,
@@ -144,6 +148,9 @@ impl App {
             self.tell(end, now);
         }
         self.scanner.drain(&mut self.desk.state.scan);
+        if let Some(told) = self.sheets.tick(&mut self.desk.state) {
+            self.tell(told, now);
+        }
         self.take_poses(now);
         let failed = self.saver.tick(&self.desk.state.settings, now);
         let poses = &self.desk.state.poses.library;

@@ -6,6 +6,7 @@ use crate::app::history::History;
 use crate::app::notices::Notices;
 use crate::app::peaks::ForcePeaks;
 use crate::app::poses::book::PoseBook;
+use crate::app::quirk_sheet::QuirkSheet;
 use crate::app::scan::ScanBook;
 use crate::app::settings::Settings;
 use crate::app::tare::Tare;
@@ -53,6 +54,8 @@ pub struct State {
     pub ports: Vec<PortChoice>,
     /// The newest scan for hands.
     pub scan: ScanBook,
+    /// What is kept about this hand; `None` for the built-in one, and until it was kept.
+    pub sheet: Option<QuirkSheet>,
     /// What is kept from one start to the next.
     pub settings: Settings,
 }

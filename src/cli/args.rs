@@ -3,6 +3,7 @@
 use crate::app::settings::{Language, Theme};
 use crate::cli::ids::HandIds;
 use crate::cli::names;
+use crate::cli::quirks::QuirksArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::sim_quirks::{self, Quirk};
 use crate::hand::Register;
@@ -56,6 +57,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope doctor --hand rs485:/dev/ttyUSB0\n  handscope doctor --hand tcp:192.168.11.210 --for 20 --json\n\nOnly reads are sent, and only the named hand is asked. Exit status 0 if all is well, 1 if something is wrong."
     )]
     Doctor(DoctorArgs),
+    /// Find out, by reading only, what a hand does in its own way
+    #[command(
+        after_help = "Examples:\n  handscope quirks --hand rtu:/dev/ttyUSB0\n  handscope quirks --hand tcp:192.168.11.210 --json\n  handscope quirks --hand rs485:/dev/ttyUSB0 --out left-hand.toml\n\nThe window keeps these sheets by itself, beside its settings."
+    )]
+    Quirks(QuirksArgs),
     /// Be a hand for other programs: on pseudo-terminals, on TCP, on CAN, or on all of them
     #[command(
         after_help = sim_help()

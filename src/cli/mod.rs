@@ -7,6 +7,7 @@ mod ids;
 mod interrupt;
 mod names;
 mod out;
+mod quirks;
 mod read;
 mod registers;
 mod scan;
@@ -55,6 +56,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Read(args) => read::run(&mut out, args),
         Command::Scan(args) => scan::run(&mut out, &args),
         Command::Doctor(args) => doctor::run(&mut out, &args),
+        Command::Quirks(args) => quirks::run(&mut out, &args),
         Command::Sim(args) => sim::run(&mut out, &args),
         Command::Registers(args) => registers::run(&mut out, args.json),
     };

@@ -56,6 +56,22 @@ pub enum TouchDoubt {
     Refused,
 }
 
+/// What a code of REDU_RATIO means by this manual (2.6.2), bits a second; `None` for codes it does not explain.
+///
+/// Manual: other editions number differently. That of August 2024 gives 921600 the code 4 and swaps the two of CAN.
+#[must_use]
+pub const fn baud_of_code(code: u8, is_can: bool) -> Option<u32> {
+    match (code, is_can) {
+        (0, false) => Some(115_200),
+        (1, false) => Some(57_600),
+        (2, false) => Some(19_200),
+        (3, false) => Some(921_600),
+        (0, true) => Some(1_000_000),
+        (1, true) => Some(500_000),
+        _ => None,
+    }
+}
+
 /// Largest force that a fingertip is believed, newtons: five times what the sensor is rated for (manual 1.1).
 const FORCE_MAX_N: f32 = 100.0;
 /// Smallest force other than zero: what two small words of another layout look like as a number is far below.

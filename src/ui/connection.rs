@@ -8,6 +8,7 @@ use crate::transport::{Endpoint, Packing};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::link_figures;
 use crate::ui::look::Pane;
+use crate::ui::quirk_sheet;
 use crate::ui::scan::ScanPanel;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
@@ -116,7 +117,9 @@ impl ConnectionForm {
         if let Some(left) = self.scan.ui(ui, left, height, pane) {
             self.form_ui(ui, left, pane);
         }
-        link_figures::link_ui(ui, right, pane);
+        let (right, sheet) = right.split_top_bottom_at_y(right.bottom() - quirk_sheet::HEIGHT);
+        link_figures::link_ui(ui, right.with_max_y(right.bottom() - theme::GAP), pane);
+        quirk_sheet::sheet_ui(ui, sheet, pane);
     }
 
     fn fill(&mut self, endpoint: Option<&Endpoint>) {

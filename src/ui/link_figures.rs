@@ -1,6 +1,5 @@
 //! How the link goes: state, rates, round trips, counts. Asks for nothing.
 
-use crate::codec::modbus::BytePacking;
 use crate::ui::budget;
 use crate::ui::controls::{self, Label, take_right, take_top};
 use crate::ui::look::Pane;
@@ -90,15 +89,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
             },
         )
     };
-    let packing = pane.state.link.quirks.packing.map(|packing| {
-        let word = match packing {
-            BytePacking::LowFirst => panels::PACKING_LOW,
-            BytePacking::HighFirst => panels::PACKING_HIGH,
-            BytePacking::OnePerWord => panels::PACKING_ONE,
-        };
-        (panels::PACKING, pane.look.say(word).to_owned(), plain)
-    });
-    let mut rates = vec![
+    let rates = vec![
         (panels::STATE_RATE, rate(stats.state_hz), plain),
         (panels::TACTILE_RATE, rate(stats.tactile_hz), plain),
         (panels::RTT_P50, trip(stats.rtt_p50), plain),
@@ -113,7 +104,6 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
             plain,
         ),
     ];
-    rates.extend(packing);
     [
         rates,
         vec![

@@ -29,6 +29,7 @@ mod plots;
 mod pose_editor;
 mod pose_tiles;
 mod pose_view;
+mod quirk_sheet;
 mod scan;
 mod sequence_step;
 mod sequence_view;

@@ -54,6 +54,7 @@ pub fn empty() -> State {
         traffic: Traffic::default(),
         ports: Vec::new(),
         scan: handscope::app::ScanBook::default(),
+        sheet: None,
         settings: Settings::default(),
     }
 }

@@ -6,6 +6,7 @@ pub(crate) mod panels;
 mod phrase;
 pub(crate) mod plots;
 pub(crate) mod poses;
+pub(crate) mod quirks;
 pub(crate) mod scan;
 pub(crate) mod traffic;
 pub(crate) mod words;

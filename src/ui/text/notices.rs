@@ -2,12 +2,13 @@
 
 use crate::app::faults::FaultKind;
 use crate::app::notices::{Asked, NoticeKind};
+use crate::app::quirk_sheet::Difference;
 use crate::app::settings::Language;
 use crate::hand::Words;
 use crate::link::{Disarmed, LinkTrouble, RequestError};
 use crate::ui::format;
 use crate::ui::look::Look;
-use crate::ui::text::{main, panels, poses, traffic, words};
+use crate::ui::text::{main, panels, poses, quirks, traffic, words};
 
 /// Title, cause and advice of what is wrong with a drive.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
@@ -200,8 +201,25 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             format!("{} {}: {message}", said(traffic::NOT_SAVED), path.display())
         }
         NoticeKind::NoFileChosen => said(traffic::NO_FILE),
+        NoticeKind::HandDiffers {
+            differences,
+            last_seen,
+        } => differing(look, differences, last_seen),
+        NoticeKind::SheetNotKept { message } => {
+            format!("{} {message}", said(quirks::NOT_KEPT))
+        }
         NoticeKind::EndpointIgnored { text } => {
             format!("{} {text}", said(panels::NOTICE_ENDPOINT))
         }
     }
+}
+
+fn differing(look: Look, differences: &[Difference], last_seen: &str) -> String {
+    let facts = differences.iter().map(|difference| {
+        let Difference { fact, before, now } = difference;
+        format!("{}: {before} -> {now}", look.say(quirks::fact(*fact)))
+    });
+    let facts: Vec<String> = facts.collect();
+    let intro = look.say(quirks::OTHER_HAND);
+    format!("{intro} ({last_seen}) {}", facts.join("; "))
 }

@@ -176,10 +176,6 @@ texts! {
     SINCE: "for", "已持续";
     ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
     MOVED_TO: "The adapter is now at", "适配器现位于";
-    PACKING: "Bytes in Modbus words", "Modbus 字内字节";
-    PACKING_LOW: "low first", "低字节在前";
-    PACKING_HIGH: "high first", "高字节在前";
-    PACKING_ONE: "one a word", "每字一字节";
     BUDGET: "The line's time", "线路时间分配";
     BUDGET_NOW: "now", "当前";
     BUDGET_SHARE: "share", "占比";

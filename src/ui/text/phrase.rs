@@ -36,7 +36,7 @@ pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::{main, panels, plots, poses, scan, traffic};
+    use crate::ui::text::{main, panels, plots, poses, quirks, scan, traffic};
 
     #[test]
     fn no_sentence_lacks_a_language() {
@@ -46,6 +46,7 @@ mod tests {
             .chain(plots::ALL)
             .chain(scan::ALL)
             .chain(poses::ALL)
+            .chain(quirks::ALL)
             .chain(traffic::ALL)
         {
             assert!(!text.en.is_empty() && !text.zh.is_empty(), "{text:?}");
@@ -65,6 +66,7 @@ mod tests {
             .chain(plots::ALL)
             .chain(scan::ALL)
             .chain(poses::ALL)
+            .chain(quirks::ALL)
             .chain(traffic::ALL);
         for text in all {
             for sign in text

@@ -1,0 +1,118 @@
+//! What was found out about the hand that answers: shown and copied. Asks for nothing, changes nothing.
+
+use crate::app::quirk_sheet::QuirkSheet;
+use crate::link::quirks::baud_of_code;
+use crate::transport::Endpoint;
+use crate::ui::controls::{self, Button, Label, take_left, take_top};
+use crate::ui::look::Pane;
+use crate::ui::text::quirks as text;
+use crate::ui::theme;
+use egui::{Id, Rect, Ui};
+
+/// Height of the card: a title, six lines, and the button.
+pub(crate) const HEIGHT: f32 = 214.0;
+/// Width of the captions.
+const CAPTION: f32 = 150.0;
+const LINE: f32 = 19.0;
+const COPY_WIDTH: f32 = 92.0;
+
+/// Draws the card.
+pub(crate) fn sheet_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let (_, mut body) = controls::titled_card(ui, look, rect, look.say(text::SHEET));
+    let live = pane.state.link.state.is_live();
+    let color = if live {
+        look.palette.text
+    } else {
+        look.palette.faint
+    };
+    for (caption, value) in lines(pane) {
+        let mut row = take_top(&mut body, LINE);
+        body.min.y -= theme::GAP - 2.0;
+        let left = take_left(&mut row, CAPTION);
+        Label::new(look.say(caption), look.palette.muted).put(ui, left);
+        Label::new(&value, color)
+            .named(look.say(caption))
+            .put(ui, row);
+    }
+    body.min.y += theme::GAP;
+    copy_ui(ui, body, pane);
+}
+
+fn lines(pane: &Pane<'_>) -> Vec<(crate::ui::text::Text, String)> {
+    let look = pane.look;
+    let quirks = &pane.state.link.quirks;
+    let said = |text| look.say(text).to_owned();
+    let or_unknown = |value: Option<String>| value.unwrap_or_else(|| said(text::UNKNOWN));
+    let id = quirks.hand_id.map(|id| id.to_string());
+    let mut lines = vec![
+        (text::HAND_ID, or_unknown(id)),
+        (
+            text::BAUD_CODE,
+            or_unknown(quirks.baud_code.map(|code| baud(pane, code))),
+        ),
+    ];
+    if let Some(packing) = packing(pane) {
+        lines.push((text::PACKING, packing));
+    }
+    let gap = quirks.gap.map(|gap| said(text::gap(gap)));
+    let touch = quirks.touch.map(|touch| said(text::touch(touch)));
+    lines.push((text::GAP, or_unknown(gap)));
+    lines.push((text::TOUCH, or_unknown(touch)));
+    if let Some(sheet) = &pane.state.sheet {
+        lines.push((
+            text::SEEN,
+            format!("{} .. {}", sheet.first_seen, sheet.last_seen),
+        ));
+    }
+    lines
+}
+
+/// A code and what it means, never without saying by whose reading.
+fn baud(pane: &Pane<'_>, code: u8) -> String {
+    let is_can = matches!(
+        pane.state.endpoint,
+        Some(Endpoint::Can { .. } | Endpoint::Slcan { .. })
+    );
+    match baud_of_code(code, is_can) {
+        Some(baud) => format!("{code} = {baud}, {}", pane.look.say(text::BAUD_SEED)),
+        None => format!("{code}, {}", pane.look.say(text::BAUD_NONE)),
+    }
+}
+
+/// How bytes stand in words, where the wire has words: found, chosen, or not known.
+fn packing(pane: &Pane<'_>) -> Option<String> {
+    let look = pane.look;
+    let chosen = match pane.state.endpoint.as_ref()? {
+        Endpoint::Tcp { packing, .. } => *packing,
+        Endpoint::Rtu(line) => line.packing,
+        _ => return None,
+    };
+    let found = match pane.state.link.quirks.packing {
+        Some(packing) => text::packing(packing),
+        None => text::PACKING_UNKNOWN,
+    };
+    Some(match chosen {
+        None => look.say(found).to_owned(),
+        Some(chosen) => format!("{} ({chosen}: {})", look.say(found), look.say(text::CHOSEN)),
+    })
+}
+
+fn copy_ui(ui: &mut Ui, mut body: Rect, pane: &Pane<'_>) {
+    let look = pane.look;
+    let mut row = take_top(&mut body, theme::CONTROL);
+    let place = take_left(&mut row, COPY_WIDTH);
+    let endpoint = pane.state.endpoint.as_ref();
+    let live = pane.state.link.state.is_live();
+    let off = (!live || endpoint.is_none()).then(|| look.say(text::COPY_OFF));
+    let button = Button::new(look.say(text::COPY), look.say(text::COPY_TIP)).disabled(off);
+    if button
+        .put(ui, look, place, Id::unique("copy quirks"))
+        .clicked()
+        && let Some(endpoint) = endpoint
+    {
+        let found = || QuirkSheet::new(endpoint, &pane.state.link.quirks, "");
+        let sheet = pane.state.sheet.clone().unwrap_or_else(found);
+        ui.ctx().copy_text(sheet.to_toml());
+    }
+}

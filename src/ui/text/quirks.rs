@@ -1,0 +1,76 @@
+//! Sentences about what a hand was found to do in its own way.
+
+use crate::app::quirk_sheet::Fact;
+use crate::codec::modbus::BytePacking;
+use crate::link::{GapRead, TouchDoubt, TouchVariant};
+use crate::ui::text::phrase::{Text, texts};
+
+texts! {
+    SHEET: "Found out about this hand", "本手识别结果";
+    HAND_ID: "HAND_ID", "HAND_ID";
+    BAUD_CODE: "REDU_RATIO", "REDU_RATIO";
+    PACKING: "Bytes in Modbus words", "Modbus 字内字节";
+    GAP: "Addresses 1558 to 1581", "地址 1558 至 1581";
+    TOUCH: "Fingertips", "指尖";
+    SEEN: "Seen", "连接日期";
+    UNKNOWN: "-", "-";
+    PACKING_UNKNOWN: "unknown, single bytes are not written", "未知，不写入单字节";
+    LOW: "low first", "低字节在前";
+    HIGH: "high first", "高字节在前";
+    ONE: "one a word", "每字一字节";
+    CHOSEN: "as you chose", "手动";
+    THROUGH: "read through", "可读";
+    SPLIT: "refused", "拒绝";
+    CAPACITIVE: "capacitive, 58 bytes each", "电容式，每指 58 字节";
+    RESISTIVE: "resistive zones: not decoded here", "电阻式：本程序不支持";
+    EMPTY: "unknown: all zero", "未知：全为零";
+    FORCE: "unknown: impossible force", "未知：力值无效";
+    DIRECTION: "unknown: impossible direction", "未知：方向无效";
+    CHECK: "unknown: check sum differs", "未知：校验不一致";
+    REFUSED: "unknown: not readable", "未知：无法读取";
+    BAUD_SEED: "by this manual", "按本手册";
+    BAUD_NONE: "no meaning in this manual", "本手册无此值";
+    COPY: "Copy", "复制";
+    COPY_TIP: "Copies this sheet as text, for a report or another computer.", "复制为文本。";
+    COPY_OFF: "No hand has answered yet.", "灵巧手尚未应答。";
+    OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
+    NOT_KEPT: "What was found out about this hand could not be kept:", "本手识别结果无法写入：";
+}
+
+/// What two sheets disagree about.
+pub(crate) const fn fact(fact: Fact) -> Text {
+    match fact {
+        Fact::HandId => HAND_ID,
+        Fact::BaudCode => BAUD_CODE,
+        Fact::Packing => PACKING,
+        Fact::Gap => GAP,
+        Fact::Touch => TOUCH,
+    }
+}
+
+pub(crate) const fn packing(packing: BytePacking) -> Text {
+    match packing {
+        BytePacking::LowFirst => LOW,
+        BytePacking::HighFirst => HIGH,
+        BytePacking::OnePerWord => ONE,
+    }
+}
+
+pub(crate) const fn gap(gap: GapRead) -> Text {
+    match gap {
+        GapRead::Through => THROUGH,
+        GapRead::Split => SPLIT,
+    }
+}
+
+pub(crate) const fn touch(touch: TouchVariant) -> Text {
+    match touch {
+        TouchVariant::Capacitive => CAPACITIVE,
+        TouchVariant::Resistive => RESISTIVE,
+        TouchVariant::Unknown(TouchDoubt::Empty) => EMPTY,
+        TouchVariant::Unknown(TouchDoubt::Force) => FORCE,
+        TouchVariant::Unknown(TouchDoubt::Direction) => DIRECTION,
+        TouchVariant::Unknown(TouchDoubt::Check) => CHECK,
+        TouchVariant::Unknown(TouchDoubt::Refused) => REFUSED,
+    }
+}
