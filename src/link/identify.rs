@@ -2,7 +2,7 @@
 //! time, and cut short by a stop; nothing found here is written anywhere.
 
 use crate::codec::modbus::BytePacking;
-use crate::hand::register::{HAND_ID, REDU_RATIO, TEMP, TOUCH};
+use crate::hand::register::{ANGLE_ACT, HAND_ID, REDU_RATIO, TEMP, TOUCH};
 use crate::hand::{Moment, Span};
 use crate::link::bus::{Bus, BusError, Bytes, id_of};
 use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
@@ -15,8 +15,8 @@ use std::time::Duration;
 const TRIES: u32 = 3;
 /// No question but the first begins later than this after it was answered: a reconnect must not wait for curiosity.
 const WITHIN: Duration = Duration::from_millis(400);
-/// Questions that a refusal by silence takes to be told from a lost reply.
-const GAP_TRIES: u32 = 2;
+/// A question without an answer is asked once more: one lost reply must not look like a quirk.
+const ASKED: u32 = 2;
 
 /// Ways to ask for the id and for the speed's code, each of another length.
 const ID_SHAPES: [Span; 3] = [
@@ -29,12 +29,13 @@ const BAUD_SHAPES: [Span; 3] = [
     Span::new(REDU_RATIO.address, 3),
     Span::new(REDU_RATIO.address, 5),
 ];
-/// From the last joint's ANGLE_ACT across the unused addresses into FORCE_ACT.
+/// From ANGLE_ACT across the unused addresses into FORCE_ACT. It begins at a group's base: what an address inside a group
+/// means over Modbus is open.
 const GAP_SHAPES: [Span; 4] = [
-    Span::new(1556, 28),
-    Span::new(1556, 30),
-    Span::new(1554, 32),
-    Span::new(1554, 34),
+    Span::new(ANGLE_ACT.address, 38),
+    Span::new(ANGLE_ACT.address, 40),
+    Span::new(ANGLE_ACT.address, 42),
+    Span::new(ANGLE_ACT.address, 44),
 ];
 /// One fingertip and a little more, so that no question of the poll plan looks alike; and another fingertip.
 const TOUCH_SHAPES: [Span; 3] = [
@@ -110,29 +111,30 @@ impl Session {
         }))
     }
 
-    /// How single bytes stand in words. Of the two wires that have words, and of others nothing.
+    /// How single bytes stand in words; of wires without words nothing.
     async fn ask_packing(
         &mut self,
         bus: &mut Bus,
         id: Option<&Bytes>,
         until: Moment,
     ) -> Result<Option<BytePacking>, End> {
-        if !bus.has_words() || self.hurried(until) {
-            return Ok(None);
-        }
-        self.take_turn(bus).await?;
-        let limit = self.reply_limit(bus, 2 * BytePacking::OnePerWord.words_per_group());
-        match bus.words(TEMP.address, limit).await {
-            Ok(Some(words)) => {
-                let at_id = id.and_then(|id| id.first_chunk());
-                let words = words.first_chunk();
-                Ok(at_id.zip(words).and_then(|(at_id, words)| {
-                    BytePacking::detect(u16::from_le_bytes(*at_id), words)
-                }))
+        for _ in 0..ASKED {
+            if self.hurried(until) {
+                break;
             }
-            Ok(None) => Ok(None),
-            Err(error) => self.unanswered(bus, error).await.map(|_| None),
+            self.take_turn(bus).await?;
+            let limit = self.reply_limit(bus, 2 * BytePacking::OnePerWord.words_per_group());
+            match bus.words(TEMP.address, limit).await {
+                Ok(Some(words)) => return Ok(judged_packing(id, &words)),
+                Ok(None) => break,
+                Err(error) => {
+                    if let Heard::Refused = self.unanswered(bus, error).await? {
+                        break;
+                    }
+                }
+            }
         }
+        Ok(None)
     }
 
     async fn ask_rest(&mut self, bus: &mut Bus, until: Moment) -> Result<Quirks, End> {
@@ -140,13 +142,7 @@ impl Session {
             Heard::Bytes(bytes) => bytes.first().copied(),
             _ => None,
         };
-        let mut gap = Heard::Unasked;
-        for _ in 0..GAP_TRIES {
-            gap = self.ask(bus, &GAP_SHAPES, until).await?;
-            if !matches!(gap, Heard::Silent) {
-                break;
-            }
-        }
+        let gap = self.ask(bus, &GAP_SHAPES, until).await?;
         let touch = self.ask_touch(bus, until).await?;
         let gap = match gap {
             Heard::Bytes(_) => Some(GapRead::Through),
@@ -178,8 +174,23 @@ impl Session {
         Ok(other.or(first))
     }
 
-    /// One question, and what came of it.
+    /// A question, asked again if nothing came, and how it ended.
     async fn ask(&mut self, bus: &mut Bus, shapes: &[Span], until: Moment) -> Result<Heard, End> {
+        let mut heard = self.ask_once(bus, shapes, until).await?;
+        for _ in 1..ASKED {
+            if matches!(heard, Heard::Silent) {
+                heard = self.ask_once(bus, shapes, until).await?;
+            }
+        }
+        Ok(heard)
+    }
+
+    async fn ask_once(
+        &mut self,
+        bus: &mut Bus,
+        shapes: &[Span],
+        until: Moment,
+    ) -> Result<Heard, End> {
         if self.hurried(until) {
             return Ok(Heard::Unasked);
         }
@@ -234,6 +245,11 @@ fn lost(done: Result<(), BusError>) -> Result<(), End> {
         Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
         _ => Ok(()),
     }
+}
+
+fn judged_packing(id: Option<&Bytes>, words: &[u16]) -> Option<BytePacking> {
+    let at_id = u16::from_le_bytes(*id?.first_chunk()?);
+    BytePacking::detect(at_id, words.first_chunk()?)
 }
 
 fn judged(heard: &Heard) -> Option<TouchVariant> {

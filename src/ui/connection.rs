@@ -107,6 +107,12 @@ impl Default for ConnectionForm {
     }
 }
 
+/// Cuts the sheet's place off below.
+fn below(rect: Rect) -> (Rect, Rect) {
+    let (above, sheet) = rect.split_top_bottom_at_y(rect.bottom() - quirk_sheet::HEIGHT);
+    (above.with_max_y(above.bottom() - theme::GAP), sheet)
+}
+
 impl ConnectionForm {
     /// Draws the form and, beside it, how the link goes.
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
@@ -117,8 +123,8 @@ impl ConnectionForm {
         if let Some(left) = self.scan.ui(ui, left, height, pane) {
             self.form_ui(ui, left, pane);
         }
-        let (right, sheet) = right.split_top_bottom_at_y(right.bottom() - quirk_sheet::HEIGHT);
-        link_figures::link_ui(ui, right.with_max_y(right.bottom() - theme::GAP), pane);
+        let (figures, sheet) = below(right);
+        link_figures::link_ui(ui, figures, pane);
         quirk_sheet::sheet_ui(ui, sheet, pane);
     }
 

@@ -5,14 +5,16 @@ use crate::link::quirks::baud_of_code;
 use crate::transport::Endpoint;
 use crate::ui::controls::{self, Button, Label, take_left, take_top};
 use crate::ui::look::Pane;
-use crate::ui::text::quirks as text;
+use crate::ui::text::{Text, quirks as text};
 use crate::ui::theme;
 use egui::{Id, Rect, Ui};
 
 /// Height of the card: a title, six lines, and the button.
 pub(crate) const HEIGHT: f32 = 214.0;
+/// The edition of the manual by which a code is read; others number differently.
+const EDITION: &str = "V1.0.0";
 /// Width of the captions.
-const CAPTION: f32 = 150.0;
+const CAPTION: f32 = 112.0;
 const LINE: f32 = 19.0;
 const COPY_WIDTH: f32 = 92.0;
 
@@ -39,7 +41,7 @@ pub(crate) fn sheet_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     copy_ui(ui, body, pane);
 }
 
-fn lines(pane: &Pane<'_>) -> Vec<(crate::ui::text::Text, String)> {
+fn lines(pane: &Pane<'_>) -> Vec<(Text, String)> {
     let look = pane.look;
     let quirks = &pane.state.link.quirks;
     let said = |text| look.say(text).to_owned();
@@ -75,8 +77,8 @@ fn baud(pane: &Pane<'_>, code: u8) -> String {
         Some(Endpoint::Can { .. } | Endpoint::Slcan { .. })
     );
     match baud_of_code(code, is_can) {
-        Some(baud) => format!("{code} = {baud}, {}", pane.look.say(text::BAUD_SEED)),
-        None => format!("{code}, {}", pane.look.say(text::BAUD_NONE)),
+        Some(baud) => format!("{code} = {baud} ({EDITION})"),
+        None => format!("{code} = {} ({EDITION})", pane.look.say(text::BAUD_NONE)),
     }
 }
 

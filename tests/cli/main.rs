@@ -20,6 +20,8 @@ mod loss;
 mod pictures;
 mod program;
 #[cfg(unix)]
+mod quirks;
+#[cfg(unix)]
 mod scan;
 #[cfg(unix)]
 mod several;

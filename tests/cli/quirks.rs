@@ -1,0 +1,94 @@
+//! What a hand does in its own way, found out by another process over each wire.
+
+use crate::program::{Running, run, start};
+use serde_json::{Value, json};
+
+/// A simulated hand with these quirks, and its addresses over four wires.
+fn sim(folder: &tempfile::TempDir, quirks: &[&str]) -> (Running, [String; 4]) {
+    let link = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (rs485, rtu, slcan) = (link("rs485"), link("rtu"), link("slcan"));
+    let wires = [
+        "sim",
+        "--tcp",
+        "127.0.0.1:0",
+        "--rs485",
+        &rs485,
+        "--rtu",
+        &rtu,
+        "--slcan",
+        &slcan,
+    ];
+    let quirks = quirks.iter().flat_map(|quirk| ["--quirk", quirk]);
+    let args: Vec<&str> = wires.into_iter().chain(quirks).collect();
+    let mut sim = start(&args);
+    let tcp = sim.line().replace("ready tcp ", "tcp:");
+    for _ in 1..4 {
+        assert!(sim.line().starts_with("ready "));
+    }
+    let others = [
+        format!("rs485:{rs485}"),
+        format!("rtu:{rtu}"),
+        format!("slcan:{slcan}"),
+    ];
+    let [rs485, rtu, slcan] = others;
+    (sim, [tcp, rtu, rs485, slcan])
+}
+
+#[test]
+fn the_same_is_found_over_every_wire() {
+    let folder = tempfile::tempdir().unwrap();
+    for (quirks, packing, gap, touch) in [
+        (&[][..], "low-first", "through", "capacitive"),
+        (
+            &[
+                "byte-words=one-per-word",
+                "gap=refused",
+                "tactile-check=zero",
+            ],
+            "one-per-word",
+            "split",
+            "unknown: check sum differs",
+        ),
+        (
+            &["byte-words=high-first"],
+            "high-first",
+            "through",
+            "capacitive",
+        ),
+    ] {
+        let (_sim, hands) = sim(&folder, quirks);
+        for hand in &hands {
+            let ended = run(&["quirks", "--json", "--hand", hand]).ok();
+            let mut found: Value = ended.lines().remove(0);
+            found.as_object_mut().unwrap().remove("hand");
+            let has_words = hand.starts_with("tcp:") || hand.starts_with("rtu:");
+            let packing = if has_words {
+                json!(packing)
+            } else {
+                Value::Null
+            };
+            let expected = json!({
+                "hand_id": 1, "baud_code": 0, "packing": packing, "gap": gap, "touch": touch,
+            });
+            assert_eq!(found, expected, "{hand} {quirks:?}");
+        }
+    }
+}
+
+#[test]
+fn a_sheet_is_printed_with_whose_reading_it_is_and_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let sheet = folder.path().join("hand.toml");
+    let (_sim, [tcp, ..]) = sim(&folder, &[]);
+    let text = run(&["quirks", "--hand", &tcp, "--out", sheet.to_str().unwrap()])
+        .ok()
+        .out;
+    assert!(
+        text.contains("115200 by the manual PRJ-02-TS-U-001 V1.0.0"),
+        "{text}"
+    );
+    let sheet: toml::Table = std::fs::read_to_string(&sheet).unwrap().parse().unwrap();
+    assert_eq!(sheet["version"].as_integer(), Some(1));
+    assert_eq!(sheet["hand"][0]["packing"].as_str(), Some("low-first"));
+    assert_eq!(sheet["hand"][0]["place"].as_str(), tcp.split('?').next());
+}
