@@ -10,7 +10,7 @@ use crate::ui::link_figures;
 use crate::ui::look::Pane;
 use crate::ui::quirk_sheet;
 use crate::ui::scan::ScanPanel;
-use crate::ui::text::{Text, panels};
+use crate::ui::text::{Text, panels, quirks};
 use crate::ui::theme;
 use egui::{Id, Rect, TextEdit, Ui, pos2, vec2};
 
@@ -82,6 +82,8 @@ pub(crate) struct ConnectionForm {
     interface: String,
     bitrate: String,
     scan: ScanPanel,
+    /// Whether the line's time is shown where the hand's own ways would be.
+    shows_budget: bool,
     /// The endpoint that the fields were filled from, so that a new one fills them again.
     filled_from: Option<Endpoint>,
 }
@@ -102,16 +104,14 @@ impl Default for ConnectionForm {
             interface: "can0".into(),
             bitrate: DEFAULT_BITRATE.to_string(),
             scan: ScanPanel::default(),
+            shows_budget: false,
             filled_from: None,
         }
     }
 }
 
-/// Cuts the sheet's place off below.
-fn below(rect: Rect) -> (Rect, Rect) {
-    let (above, sheet) = rect.split_top_bottom_at_y(rect.bottom() - quirk_sheet::HEIGHT);
-    (above.with_max_y(above.bottom() - theme::GAP), sheet)
-}
+/// Width of the button that swaps the card below the figures.
+const SWAP: f32 = 124.0;
 
 impl ConnectionForm {
     /// Draws the form and, beside it, how the link goes.
@@ -123,9 +123,37 @@ impl ConnectionForm {
         if let Some(left) = self.scan.ui(ui, left, height, pane) {
             self.form_ui(ui, left, pane);
         }
-        let (figures, sheet) = below(right);
-        link_figures::link_ui(ui, figures, pane);
-        quirk_sheet::sheet_ui(ui, sheet, pane);
+        self.link_ui(ui, right, pane);
+    }
+
+    /// How the link goes, and below it what was found out about the hand; or, where there is no room for both, what the
+    /// line's time goes to.
+    fn link_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        let (figures, sheet) = rect.split_top_bottom_at_y(rect.bottom() - quirk_sheet::HEIGHT);
+        let figures = figures.with_max_y(figures.bottom() - theme::GAP);
+        let swaps = link_figures::has_budget(rect) && !link_figures::has_budget(figures);
+        if swaps && self.shows_budget {
+            link_figures::link_ui(ui, rect, pane);
+        } else {
+            link_figures::link_ui(ui, figures, pane);
+            quirk_sheet::sheet_ui(ui, sheet, pane);
+        }
+        if !swaps {
+            return;
+        }
+        let look = pane.look;
+        let (other, tip) = if self.shows_budget {
+            (quirks::SHORT, quirks::SHORT_TIP)
+        } else {
+            (panels::BUDGET, quirks::BUDGET_TIP)
+        };
+        let corner = sheet.right_top() + vec2(-theme::PAD, theme::PAD);
+        let place =
+            Rect::from_min_max(corner - vec2(SWAP, 0.0), corner + vec2(0.0, theme::CONTROL));
+        let swap = Button::new(look.say(other), look.say(tip));
+        if swap.put(ui, look, place, Id::unique("swap")).clicked() {
+            self.shows_budget = !self.shows_budget;
+        }
     }
 
     fn fill(&mut self, endpoint: Option<&Endpoint>) {

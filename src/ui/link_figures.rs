@@ -11,10 +11,15 @@ use egui::{Color32, Rect, Ui, pos2};
 /// From this height on there is room for the line's budget below the figures.
 const WITH_BUDGET: f32 = 640.0;
 
+/// True if the card has room for the line's budget below it.
+pub(crate) fn has_budget(rect: Rect) -> bool {
+    rect.height() >= WITH_BUDGET
+}
+
 /// Draws the card.
 pub(crate) fn link_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
     let look = pane.look;
-    if rect.height() >= WITH_BUDGET {
+    if has_budget(rect) {
         let (above, below) = rect.split_top_bottom_at_y(rect.bottom() - budget::HEIGHT);
         budget::budget_ui(ui, below, pane);
         rect = above.with_max_y(above.bottom() - theme::GAP);

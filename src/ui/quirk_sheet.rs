@@ -10,7 +10,7 @@ use crate::ui::theme;
 use egui::{Id, Rect, Ui};
 
 /// Height of the card: a title, six lines, and the button.
-pub(crate) const HEIGHT: f32 = 214.0;
+pub(crate) const HEIGHT: f32 = 236.0;
 /// The edition of the manual by which a code is read; others number differently.
 const EDITION: &str = "V1.0.0";
 /// Width of the captions.

@@ -321,14 +321,22 @@ fn tap(state: &mut State, wire: usize, bytes: &[u8]) {
 fn words(state: &mut State, bytes: &[u8]) {
     let (pairs, _) = bytes.as_chunks::<2>();
     let words: Vec<u16> = pairs.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
-    let memory = bytes_from_words(&words);
+    let at = words.first().copied().unwrap_or_default();
+    for packing in [BytePacking::HighFirst, BytePacking::OnePerWord] {
+        assert_eq!(
+            bytes_from_words(at, &words, packing).len(),
+            words.len().min(125) * 2
+        );
+    }
+    let memory = bytes_from_words(at, &words, BytePacking::LowFirst);
     assert_eq!(memory.len(), words.len().min(125) * 2);
     let (back, _) = memory.as_chunks::<2>();
     let again = back.iter().map(|pair| u16::from_le_bytes(*pair));
     assert!(again.eq(words.iter().copied().take(125)));
     if let Some(six) = words.first_chunk::<6>() {
-        let packing = BytePacking::detect(six);
-        assert!(packing.group(&words).is_some());
+        if let Some(packing) = BytePacking::detect(1, six) {
+            assert!(packing.group(&words).is_some());
+        }
         state.accepted += 1;
     }
     if let [address, len, ..] = words[..] {

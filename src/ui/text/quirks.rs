@@ -32,6 +32,9 @@ texts! {
     COPY: "Copy", "复制";
     COPY_TIP: "Copies this sheet as text, for a report or another computer.", "复制为文本。";
     COPY_OFF: "No hand has answered yet.", "灵巧手尚未应答。";
+    SHORT: "This hand", "本手";
+    SHORT_TIP: "What was found out about this hand.", "本手识别结果。";
+    BUDGET_TIP: "What the line's time goes to.", "线路时间分配。";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
     NOT_KEPT: "What was found out about this hand could not be kept:", "本手识别结果无法写入：";
 }
