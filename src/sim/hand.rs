@@ -27,7 +27,7 @@ const SENSOR_HEADER_SUM: u16 = 0x55 + 0xAA + 56 + 3 + 1 + 8;
 const CHECK_AT: u16 = 54;
 /// One answer in so many comes twice, or late, on hands that do so.
 const DOUBLE_ONE_IN: u32 = 16;
-const RARE_ONE_IN: u32 = 64;
+const RARE_ONE_IN: u32 = 256;
 const RARE_TURNAROUND: Duration = Duration::from_millis(500);
 /// Speed that a creeping hand takes SPEED_SET 0 for.
 const CREEP: f64 = 5.0;

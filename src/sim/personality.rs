@@ -209,7 +209,7 @@ switches! {
     thinking "thinking" Turnaround {
         "Not at all, or as long as was given." Given "given",
         "3 to 15 ms." Usual "3-15ms",
-        "3 to 15 ms, and half a second once in 64." Rarely "rare-500ms",
+        "3 to 15 ms, and half a second once in 256." Rarely "rare-500ms",
     }
     "Replies that come twice."
     doubles "doubles" Doubles {

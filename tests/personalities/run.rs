@@ -15,7 +15,7 @@ use std::time::Duration;
 use tokio::time::{Instant, sleep_until};
 
 /// A link must be live this soon, even where the power fails meanwhile.
-const LIVE_WITHIN: Duration = Duration::from_secs(6);
+const LIVE_WITHIN: Duration = Duration::from_secs(8);
 /// How long a person lets the hand move before the stop.
 const MOVES: Duration = Duration::from_millis(350);
 /// A stop is confirmed or alarmed within this, and one exchange.
