@@ -19,7 +19,7 @@ const TAGS_MAX: usize = 120;
 /// Width of a number.
 pub(crate) const NUMBER: f32 = 64.0;
 /// Width of what stands before a field.
-const CAPTION: f32 = 96.0;
+const CAPTION: f32 = 88.0;
 
 /// Draws the editor of one pose.
 pub(crate) fn editor_ui(
@@ -99,6 +99,8 @@ fn joint_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, pose: &Pose, dof: D
     let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let label = format!("{name} {text}");
     let button = Button::new(text, look.say(poses::LEAVE_TIP)).named(&label);
+    let room = CAPTION + NUMBER + 3.0 * theme::GAP + width;
+    row.max.x = row.right().min(row.left() + room);
     let place = take_right(&mut row, width);
     let id = Id::unique((pose.id, dof, "leave"));
     if button.choice(leave).put(ui, look, place, id).clicked() {

@@ -102,7 +102,7 @@ impl PoseView {
         if library.poses.is_empty() {
             return empty_ui(ui, body, pane);
         }
-        let width = (body.width() * 0.42).clamp(256.0, 380.0);
+        let width = (body.width() * 0.42).clamp(268.0, 380.0);
         let editor = take_right(&mut body, width);
         let columns = ((body.width() + theme::GAP) / (TILE.x + theme::GAP))
             .floor()

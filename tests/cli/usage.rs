@@ -14,7 +14,7 @@ fn the_register_map_is_printed_for_people_and_scripts() {
     let text = run(&["registers"]).ok().out;
     let json = run(&["registers", "--json"]).ok().out;
     let rows: Vec<Value> = serde_json::from_str(&json).unwrap();
-    assert_eq!(rows.len(), 31);
+    assert_eq!(rows.len(), 32);
     for row in &rows {
         let name = row["name"].as_str().unwrap();
         assert!(text.contains(name), "{name}");

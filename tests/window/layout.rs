@@ -85,6 +85,33 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
     }
 }
 
+/// Poses with one chosen, and a sequence with steps: where most fields of these views are.
+#[test]
+fn no_two_controls_overlap_among_poses_and_steps() {
+    for size in SIZES {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.wait(400);
+        bench.click_first_button("Poses");
+        bench.run(60);
+        bench.click("Capture the pose the hand has now");
+        bench.run(60);
+        for _ in 0..8 {
+            bench.click("Capture");
+            bench.run(60);
+        }
+        check(&bench, size, "STOP", &format!("{size} poses"));
+        bench.click("Sequences");
+        bench.run(60);
+        bench.click("New sequence");
+        bench.run(60);
+        for _ in 0..7 {
+            bench.click("Add");
+            bench.run(60);
+        }
+        check(&bench, size, "STOP", &format!("{size} steps"));
+    }
+}
+
 fn check_all_views(mut bench: Bench, size: Vec2) {
     for names in [&ENGLISH, &CHINESE] {
         for theme in ["first", "second"] {

@@ -153,7 +153,7 @@ fn a_sequence_runs_pauses_resumes_and_finishes() {
     let armed = bench.writes().len();
     bench.click("Start");
     bench.run(600);
-    bench.click("Hold and pause");
+    bench.click("Pause");
     bench.run(100);
     assert_eq!(phase(&bench), Phase::Paused);
     bench.wait(3000);

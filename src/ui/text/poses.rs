@@ -86,7 +86,7 @@ texts! {
     START_TIP: "Runs from the first step. Stop, a fault or a lost link ends it, and nothing starts it again by itself.", "从第一步开始运行。停止、故障或断线都会结束，不会自行恢复。";
     STEP: "Step", "单步";
     STEP_TIP: "Takes one step, then waits.", "执行一步，然后等待。";
-    PAUSE: "Hold and pause", "暂停并保持";
+    PAUSE: "Pause", "暂停";
     PAUSE_TIP: "Holds where the hand is until resumed.", "在当前位置保持，直到继续。";
     RESUME: "Resume", "继续";
     RESUME_TIP: "Goes on where it was paused.", "从暂停处继续。";
