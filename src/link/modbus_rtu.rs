@@ -283,7 +283,7 @@ fn line_time(bytes: u64, baud: u32) -> Duration {
 }
 
 /// Silence between frames: 3.5 characters.
-fn gap(baud: u32) -> Duration {
+pub(crate) fn gap(baud: u32) -> Duration {
     if baud > FIXED_GAP_ABOVE {
         FIXED_GAP
     } else {
