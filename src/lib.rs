@@ -9,7 +9,7 @@
 //! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
-//! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop |
+//! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop; finding hands; what went over the wire |
 //! | 2 | [`sim`] | a hand that answers on the wire |
 //! | 3 | [`app`] | everything the program knows, without drawing |
 //! | 4 | [`ui`] | the window: reads state, returns actions |
@@ -25,7 +25,7 @@
 //! # What always holds
 //!
 //! * Only [`hand::HandCommand::writes`] makes register writes, and none leaves the manual's addresses and ranges.
-//! * Connecting, reconnecting and looking write nothing. Motion passes only while a person armed the hand; stop, faults,
+//! * Connecting, reconnecting, scanning, examining and looking write nothing. Motion passes only while a person armed the hand; stop, faults,
 //!   link loss, old feedback and sleep disarm it.
 //! * A stop is the next thing on the wire, goes out again until feedback shows rest, and raises an alarm if it does not.
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
