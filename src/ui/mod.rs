@@ -20,6 +20,7 @@ mod look;
 mod note_bar;
 mod number;
 mod plot_axes;
+mod plot_bars;
 mod plot_cursors;
 mod plot_head;
 mod plot_panels;

@@ -5,6 +5,7 @@ use crate::hand::PerDof;
 use crate::ui::controls::{self, Label};
 use crate::ui::look::Pane;
 use crate::ui::plot_axes::{self, Band, Extent, TimeAxis};
+use crate::ui::plot_bars;
 use crate::ui::plot_cursors::Cursors;
 use crate::ui::plot_head;
 use crate::ui::plot_panels::{PANELS, Panel, PlotLine};
@@ -63,6 +64,8 @@ enum Form {
     Slopes,
     /// A value stands until the next one: nothing asked a hand for what lies between.
     Steps,
+    /// There are more points than pixels.
+    Bars,
 }
 
 fn steps(points: &[[f64; 2]], out: &mut Vec<[f64; 2]>) {
@@ -74,11 +77,19 @@ fn steps(points: &[[f64; 2]], out: &mut Vec<[f64; 2]>) {
     }
 }
 
+/// One unbroken line.
+#[derive(Debug)]
+struct Curve {
+    stroke: Stroke,
+    form: Form,
+    points: Vec<[f64; 2]>,
+}
+
 /// Curves with their strokes, and what they span. Keeps its memory from plot to plot.
 #[derive(Debug, Default)]
 struct Curves {
     used: usize,
-    pool: Vec<(Stroke, Vec<[f64; 2]>)>,
+    pool: Vec<Curve>,
     extent: Extent,
     decimated: bool,
 }
@@ -92,14 +103,18 @@ impl Curves {
 
     fn push(&mut self, stroke: Stroke, points: &[[f64; 2]], form: Form) {
         if self.used == self.pool.len() {
-            self.pool.push((stroke, Vec::new()));
+            self.pool.push(Curve {
+                stroke,
+                form,
+                points: Vec::new(),
+            });
         }
-        if let Some((kept, slot)) = self.pool.get_mut(self.used) {
-            *kept = stroke;
-            slot.clear();
+        if let Some(curve) = self.pool.get_mut(self.used) {
+            (curve.stroke, curve.form) = (stroke, form);
+            curve.points.clear();
             match form {
-                Form::Slopes => slot.extend_from_slice(points),
-                Form::Steps => steps(points, slot),
+                Form::Steps => steps(points, &mut curve.points),
+                Form::Slopes | Form::Bars => curve.points.extend_from_slice(points),
             }
             self.used += 1;
         }
@@ -108,7 +123,7 @@ impl Curves {
         }
     }
 
-    fn iter(&self) -> impl Iterator<Item = &(Stroke, Vec<[f64; 2]>)> {
+    fn iter(&self) -> impl Iterator<Item = &Curve> {
         self.pool.iter().take(self.used)
     }
 }
@@ -313,6 +328,11 @@ impl PlotView {
             } else {
                 (Stroke::new(theme::LINE, color), Form::Slopes)
             };
+            let form = if self.trace.decimated {
+                Form::Bars
+            } else {
+                form
+            };
             self.curves.decimated |= self.trace.decimated && !line.wished;
             for segment in &self.trace.segments {
                 self.curves.push(stroke, segment, form);
@@ -349,23 +369,27 @@ impl PlotView {
                 painter.extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 4.0));
             }
         }
-        for (stroke, points) in self.curves.iter() {
+        let mut mesh = egui::Mesh::default();
+        for curve in self.curves.iter() {
             let place = |[time_s, value]: &[f64; 2]| {
                 pos2(
                     plot_axes::x_of(rect, span, *time_s),
                     plot_axes::y_of(rect, band, *value),
                 )
             };
-            match points.as_slice() {
+            let places = curve.points.iter().map(place);
+            match (curve.form, curve.points.as_slice()) {
                 // A line of one point has no length: what was measured alone is a dot.
-                [alone] => {
-                    painter.circle_filled(place(alone), stroke.width, stroke.color);
+                (_, [alone]) => {
+                    painter.circle_filled(place(alone), curve.stroke.width, curve.stroke.color);
                 }
-                all => {
-                    painter.line(all.iter().map(place).collect(), *stroke);
+                (Form::Bars, _) => plot_bars::add(&mut mesh, curve.stroke, places),
+                (Form::Slopes | Form::Steps, _) => {
+                    painter.line(places.collect(), curve.stroke);
                 }
             }
         }
+        painter.add(mesh);
     }
 
     /// The lines of all shown plots and joints: what is copied and saved.
