@@ -85,7 +85,7 @@ mod tests {
     fn covered(points: &[(f32, f32)]) -> (Mesh, Rect) {
         let mut mesh = Mesh::default();
         let points = points.iter().map(|(x, y)| pos2(*x, *y));
-        add(&mut mesh, Stroke::new(1.0, Color32::WHITE), points);
+        add(&mut mesh, Stroke::new(1.0, Color32::PLACEHOLDER), points);
         let bounds = mesh.calc_bounds();
         (mesh, bounds)
     }
