@@ -6,7 +6,9 @@ use socketcan::{CanAddr, CanFilter, SocketOptions as _};
 use std::io;
 use std::pin::Pin;
 use std::task::{Context, Poll};
+use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::time::{Interval, interval};
 
 /// Bytes of one frame; a write must be one whole frame, a read gives one if there is room.
 pub const FRAME_LEN: usize = 16;
@@ -16,6 +18,9 @@ const EXTENDED: u32 = 0x8000_0000;
 const REMOTE: u32 = 0x4000_0000;
 /// The part of an identifier that names a node here: its low 14 bits.
 const NODE: u32 = 0x3FFF;
+
+/// Who only listens is not woken when the interface goes down, so it is looked at this often.
+const LOOK_EACH: Duration = Duration::from_millis(500);
 
 // What the kernel says.
 const ENXIO: i32 = 6;
@@ -30,6 +35,8 @@ const ENOBUFS: i32 = 105;
 pub struct CanWire {
     socket: CanSocket,
     place: String,
+    /// When to see next whether the interface is still up.
+    look: Interval,
 }
 
 /// Opens an interface. Comes through: data frames with a 29-bit identifier, of one node if it is given, and error
@@ -50,6 +57,7 @@ pub fn open(interface: &str, node: Option<u32>) -> Result<CanWire, TransportErro
     Ok(CanWire {
         socket,
         place: interface.into(),
+        look: interval(LOOK_EACH),
     })
 }
 
@@ -81,6 +89,11 @@ fn refuse_if_down(interface: &str) -> Result<(), TransportError> {
         .ok()
         .and_then(|text| u32::from_str_radix(text.trim().trim_start_matches("0x"), 16).ok());
     match flags {
+        None if std::path::Path::new("/sys/class/net/lo").exists() => {
+            Err(TransportError::NoInterface {
+                place: interface.into(),
+            })
+        }
         Some(flags) if flags & UP == 0 => Err(TransportError::InterfaceDown {
             place: interface.into(),
         }),
@@ -124,6 +137,11 @@ impl AsyncRead for CanWire {
         buf: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
         let polled = Pin::new(&mut self.socket).poll_read(cx, buf);
+        if polled.is_pending() {
+            while self.look.poll_tick(cx).is_ready() {
+                refuse_if_down(&self.place).map_err(io::Error::other)?;
+            }
+        }
         self.worded(polled)
     }
 }
