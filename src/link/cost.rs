@@ -173,7 +173,8 @@ impl Default for WireCost {
     }
 }
 
-fn byte_time(baud: u32) -> Duration {
+/// Time of one byte on a serial line.
+pub(crate) fn byte_time(baud: u32) -> Duration {
     Duration::from_nanos(BITS * 1_000_000_000 / u64::from(baud.max(1)))
 }
 

@@ -5,7 +5,7 @@ use crate::codec::modbus::{BytePacking, words_for};
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
-use crate::link::cost::WireCost;
+use crate::link::cost::{WireCost, byte_time};
 use crate::link::late::LateReplies;
 use crate::link::lost::lost;
 use crate::link::modbus;
@@ -25,10 +25,8 @@ use tokio_modbus::{Request, Response, Slave};
 const QUIET: Duration = Duration::from_millis(8);
 /// A line that is never quiet is not waited for longer than this.
 const SETTLE_MAX: Duration = Duration::from_millis(60);
-/// Bits of a byte on the line: start, eight, stop.
-const BITS: u64 = 10;
 /// Bytes of a read request, and of a reply's frame around its data.
-const FRAMING: u64 = 8 + 5;
+const FRAMING: u32 = 8 + 5;
 /// Above this baud the silence between frames does not shrink any more (Modbus over serial line 1.02, 2.5.1.1).
 const FIXED_GAP_ABOVE: u32 = 19_200;
 const FIXED_GAP: Duration = Duration::from_micros(1750);
@@ -202,7 +200,7 @@ impl ModbusRtu {
     }
 
     pub(crate) fn wire_time(&self, bytes: u16) -> Duration {
-        line_time(u64::from(bytes) + FRAMING, self.baud) + gap(self.baud)
+        byte_time(self.baud) * (u32::from(bytes) + FRAMING) + gap(self.baud)
     }
 
     pub(crate) fn counts(&self) -> BusCounts {
@@ -278,16 +276,12 @@ const fn seen(span: Span) -> Span {
     Span::new(0, words_for(span).count.saturating_mul(2))
 }
 
-fn line_time(bytes: u64, baud: u32) -> Duration {
-    Duration::from_micros(bytes * BITS * 1_000_000 / u64::from(baud))
-}
-
 /// Silence between frames: 3.5 characters.
 pub(crate) fn gap(baud: u32) -> Duration {
     if baud > FIXED_GAP_ABOVE {
         FIXED_GAP
     } else {
-        line_time(7, baud) / 2
+        byte_time(baud) * 7 / 2
     }
 }
 

@@ -1,39 +1,10 @@
 //! `doctor` against simulated hands in another process.
 
-use crate::program::{Ended, Running, run, start};
+use crate::program::{Ended, run, sim_on_all, start};
 use serde_json::Value;
 
 /// A process that gets no processor for 50 ms is a timeout, and this machine has other work: of a few looks one is well.
 const RUNS: usize = 4;
-
-/// One hand on four wires.
-fn everywhere(folder: &tempfile::TempDir) -> (Running, [String; 4]) {
-    let link = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (rs485, rtu, slcan) = (link("hand"), link("rtu"), link("adapter"));
-    let mut sim = start(&[
-        "sim",
-        "--tcp",
-        "127.0.0.1:0",
-        "--rs485",
-        &rs485,
-        "--rtu",
-        &rtu,
-        "--slcan",
-        &slcan,
-    ]);
-    let tcp = sim.line();
-    let tcp = format!("tcp:{}", tcp.strip_prefix("ready tcp ").expect(&tcp));
-    for _ in 0..3 {
-        sim.line();
-    }
-    let hands = [
-        tcp,
-        format!("rs485:{rs485}"),
-        format!("rtu:{rtu}"),
-        format!("slcan:{slcan}"),
-    ];
-    (sim, hands)
-}
 
 fn well(args: &[&str]) -> Ended {
     let mut last = String::new();
@@ -50,8 +21,8 @@ fn well(args: &[&str]) -> Ended {
 #[test]
 fn a_healthy_hand_is_called_so_on_each_wire_and_the_figures_add_up() {
     let folder = tempfile::tempdir().unwrap();
-    let (_sim, hands) = everywhere(&folder);
-    for hand in &hands {
+    let (_sim, wires) = sim_on_all(folder.path(), &[]);
+    for hand in wires.all() {
         let ended = well(&["doctor", "--for", "0.5", "--json", "--hand", hand]);
         let told = ended.lines().remove(0);
         assert_eq!(
@@ -95,8 +66,8 @@ fn a_healthy_hand_is_called_so_on_each_wire_and_the_figures_add_up() {
 #[test]
 fn the_text_has_a_verdict_and_the_hand_is_only_read() {
     let folder = tempfile::tempdir().unwrap();
-    let (_sim, hands) = everywhere(&folder);
-    for hand in [&hands[0], &hands[1], "sim:"] {
+    let (_sim, wires) = sim_on_all(folder.path(), &[]);
+    for hand in [&wires.tcp, &wires.rs485, "sim:"] {
         let text = well(&["doctor", "--for", "0.3", "--hand", hand]).out;
         for part in [
             "round trips, ms",
@@ -131,8 +102,8 @@ fn what_is_wrong_is_told_in_both_forms_and_by_the_exit_status() {
 #[test]
 fn ctrl_c_ends_the_look_early_and_shows_what_was_measured() {
     let folder = tempfile::tempdir().unwrap();
-    let (_sim, hands) = everywhere(&folder);
-    let doctor = start(&["doctor", "--for", "3600", "--json", "--hand", &hands[1]]);
+    let (_sim, wires) = sim_on_all(folder.path(), &[]);
+    let doctor = start(&["doctor", "--for", "3600", "--json", "--hand", &wires.rs485]);
     std::thread::sleep(std::time::Duration::from_millis(800));
     doctor.signal("INT");
     let ended = doctor.end();

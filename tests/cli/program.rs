@@ -200,6 +200,42 @@ fn sim_on(kind: &str, link: &Path, more: &[&str]) -> (Running, String) {
     (sim, format!("{kind}:{link}"))
 }
 
+/// Endpoints of what one process serves on every wire of a system that has no CAN.
+#[cfg(unix)]
+#[derive(Debug)]
+pub(crate) struct Wires {
+    pub(crate) tcp: String,
+    pub(crate) rs485: String,
+    pub(crate) rtu: String,
+    pub(crate) slcan: String,
+}
+
+#[cfg(unix)]
+impl Wires {
+    pub(crate) fn all(&self) -> [&str; 4] {
+        [&self.tcp, &self.rs485, &self.rtu, &self.slcan]
+    }
+}
+
+/// Simulated hands on every wire of a system that has no CAN.
+#[cfg(unix)]
+pub(crate) fn sim_on_all(folder: &Path, more: &[&str]) -> (Running, Wires) {
+    let link = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (rs485, rtu, slcan) = (link("rs485"), link("rtu"), link("slcan"));
+    let links = ["--rs485", &rs485, "--rtu", &rtu, "--slcan", &slcan];
+    let (mut sim, tcp) = sim_on_tcp(&[&links, more].concat());
+    for _ in links.chunks(2) {
+        assert!(sim.line().starts_with("ready "));
+    }
+    let wires = Wires {
+        tcp,
+        rs485: format!("rs485:{rs485}"),
+        rtu: format!("rtu:{rtu}"),
+        slcan: format!("slcan:{slcan}"),
+    };
+    (sim, wires)
+}
+
 /// The output pipe, for tests that close it.
 pub(crate) fn take_pipe(args: &[&str]) -> (Child, ChildStdout) {
     let mut command = handscope();

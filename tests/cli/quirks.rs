@@ -1,37 +1,12 @@
 //! What a hand does in its own way, found out by another process over each wire.
 
-use crate::program::{Running, run, start};
+use crate::program::{Running, Wires, run, sim_on_all};
 use serde_json::{Value, json};
 
-/// A simulated hand with these quirks, and its addresses over four wires.
-fn sim(folder: &tempfile::TempDir, quirks: &[&str]) -> (Running, [String; 4]) {
-    let link = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (rs485, rtu, slcan) = (link("rs485"), link("rtu"), link("slcan"));
-    let wires = [
-        "sim",
-        "--tcp",
-        "127.0.0.1:0",
-        "--rs485",
-        &rs485,
-        "--rtu",
-        &rtu,
-        "--slcan",
-        &slcan,
-    ];
+/// A simulated hand with these quirks, on four wires.
+fn sim(folder: &tempfile::TempDir, quirks: &[&str]) -> (Running, Wires) {
     let quirks = quirks.iter().flat_map(|quirk| ["--quirk", quirk]);
-    let args: Vec<&str> = wires.into_iter().chain(quirks).collect();
-    let mut sim = start(&args);
-    let tcp = sim.line().replace("ready tcp ", "tcp:");
-    for _ in 1..4 {
-        assert!(sim.line().starts_with("ready "));
-    }
-    let others = [
-        format!("rs485:{rs485}"),
-        format!("rtu:{rtu}"),
-        format!("slcan:{slcan}"),
-    ];
-    let [rs485, rtu, slcan] = others;
-    (sim, [tcp, rtu, rs485, slcan])
+    sim_on_all(folder.path(), &quirks.collect::<Vec<_>>())
 }
 
 #[test]
@@ -56,8 +31,8 @@ fn the_same_is_found_over_every_wire() {
             "capacitive",
         ),
     ] {
-        let (_sim, hands) = sim(&folder, quirks);
-        for hand in &hands {
+        let (_sim, wires) = sim(&folder, quirks);
+        for hand in wires.all() {
             let ended = run(&["quirks", "--json", "--hand", hand]).ok();
             let mut found: Value = ended.lines().remove(0);
             found.as_object_mut().unwrap().remove("hand");
@@ -79,7 +54,7 @@ fn the_same_is_found_over_every_wire() {
 fn a_sheet_is_printed_with_whose_reading_it_is_and_exported() {
     let folder = tempfile::tempdir().unwrap();
     let sheet = folder.path().join("hand.toml");
-    let (_sim, [tcp, ..]) = sim(&folder, &[]);
+    let (_sim, Wires { tcp, .. }) = sim(&folder, &[]);
     let text = run(&["quirks", "--hand", &tcp, "--out", sheet.to_str().unwrap()])
         .ok()
         .out;

@@ -1,38 +1,19 @@
 //! Several simulated hands on one bus: each wire leads to all of them, and each answers only what is meant for it.
 
-use crate::program::{Running, run, start};
+use crate::program::{Running, run, sim_on_all};
 use std::path::Path;
 use std::time::Duration;
 
-/// The hands with these ids on all wires of a system that has no CAN; the endpoint of each wire without an id.
+/// Looks of which one must be undisturbed.
+const RUNS: usize = 6;
+
+/// The hands with these ids on four wires; the endpoint of each wire without an id.
 fn bus(folder: &Path, ids: &str) -> (Running, [String; 4]) {
-    let link = |name: &str| folder.join(name).to_str().unwrap().to_owned();
-    let (rs485, rtu, slcan) = (link("rs485"), link("rtu"), link("slcan"));
-    let mut sim = start(&[
-        "sim",
-        "--tcp",
-        "127.0.0.1:0",
-        "--rs485",
-        &rs485,
-        "--rtu",
-        &rtu,
-        "--slcan",
-        &slcan,
-        "--id",
-        ids,
-    ]);
-    let tcp = sim.line();
-    let tcp = format!("tcp:{}", tcp.strip_prefix("ready tcp ").expect(&tcp));
-    for _ in 0..3 {
-        sim.line();
-    }
-    let hands = [
-        format!("rs485:{rs485}?id="),
-        format!("rtu:{rtu}?id="),
-        format!("slcan:{slcan}?id="),
-        format!("{tcp}?unit="),
-    ];
-    (sim, hands)
+    let (sim, wires) = sim_on_all(folder, &["--id", ids]);
+    let with_id = |wire: &String| format!("{wire}?id=");
+    let serial = [&wires.rs485, &wires.rtu, &wires.slcan].map(with_id);
+    let [rs485, rtu, slcan] = serial;
+    (sim, [rs485, rtu, slcan, format!("{}?unit=", wires.tcp)])
 }
 
 fn id_read(hand: &str) -> serde_json::Value {
@@ -69,6 +50,16 @@ fn an_id_that_no_hand_has_stays_without_answer() {
     }
 }
 
+/// Statistics of a short look, in which nothing may go wrong.
+fn watched(hand: &str) -> serde_json::Value {
+    let ended = run(&["watch", "--hand", hand, "--for", "0.4", "--json"]).ok();
+    let stats = ended.lines().pop().unwrap()["stats"].take();
+    for key in ["checksum_errors", "refusals", "reconnects", "writes"] {
+        assert_eq!(stats[key], 0, "{hand} {key}: {stats}");
+    }
+    stats
+}
+
 #[test]
 fn hands_of_one_bus_are_watched_one_after_another_without_loss() {
     let folder = tempfile::tempdir().unwrap();
@@ -76,12 +67,9 @@ fn hands_of_one_bus_are_watched_one_after_another_without_loss() {
     for wire in &wires {
         for id in [1, 2, 1] {
             let hand = format!("{wire}{id}");
-            let ended = run(&["watch", "--hand", &hand, "--for", "0.4", "--json"]).ok();
-            let stats = ended.lines().pop().unwrap()["stats"].take();
-            assert!(stats["state_reads"].as_u64().unwrap() >= 1, "{stats}");
-            for key in ["checksum_errors", "refusals", "reconnects", "writes"] {
-                assert_eq!(stats[key], 0, "{hand} {key}: {stats}");
-            }
+            // A process that gets no processor reads little, and this machine has other work: of a few looks one is lively.
+            let lively = (0..RUNS).any(|_| watched(&hand)["state_reads"].as_u64().unwrap() > 3);
+            assert!(lively, "{hand}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The simulated hand on a pseudo-terminal and on TCP, read by the other commands: both wires tell the same.
 
-use crate::program::{Ended, Running, run, sim_on_link, sim_on_rtu, sim_on_tcp, start};
+use crate::program::{Ended, Running, run, sim_on_all, sim_on_link, sim_on_rtu, sim_on_tcp, start};
 use serde_json::Value;
 use std::time::Duration;
 
@@ -9,13 +9,8 @@ const RUNS: usize = 6;
 
 /// One hand on both wires: the process and its two endpoints.
 fn both(folder: &tempfile::TempDir) -> (Running, [String; 2]) {
-    let link = folder.path().join("hand");
-    let link = link.to_str().unwrap();
-    let mut sim = start(&["sim", "--tcp", "127.0.0.1:0", "--rs485", link]);
-    let tcp = sim.line();
-    let tcp = format!("tcp:{}", tcp.strip_prefix("ready tcp ").expect(&tcp));
-    assert_eq!(sim.line(), format!("ready rs485 {link}"));
-    (sim, [tcp, format!("rs485:{link}")])
+    let (sim, wires) = sim_on_all(folder.path(), &[]);
+    (sim, [wires.tcp, wires.rs485])
 }
 
 /// Checks a whole `watch --json` and gives its statistics. Timeouts, and the reconnects that come of several in a row,
@@ -189,21 +184,8 @@ fn a_wire_open_to_the_network_is_warned_of() {
 #[test]
 fn modbus_rtu_tells_the_same_as_the_other_wires() {
     let folder = tempfile::tempdir().unwrap();
-    let link = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (rs485, rtu) = (link("hand"), link("hand-rtu"));
-    let mut sim = start(&[
-        "sim",
-        "--tcp",
-        "127.0.0.1:0",
-        "--rs485",
-        &rs485,
-        "--rtu",
-        &rtu,
-    ]);
-    assert!(sim.line().starts_with("ready tcp "));
-    assert_eq!(sim.line(), format!("ready rs485 {rs485}"));
-    assert_eq!(sim.line(), format!("ready rtu {rtu}"));
-    let hands = [format!("rtu:{rtu}"), format!("rs485:{rs485}")];
+    let (_sim, wires) = sim_on_all(folder.path(), &[]);
+    let hands = [wires.rtu, wires.rs485];
     let names = [
         "HAND_ID",
         "REDU_RATIO",
