@@ -34,7 +34,7 @@ use tokio::sync::watch;
 use tokio::task::JoinHandle;
 use tokio::time::{Duration, Instant, sleep, timeout};
 
-/// What the issue asks for.
+/// Longer than this nobody should have to wait.
 const UNPLUG_WITHIN: Duration = Duration::from_millis(100);
 const SILENCE_WITHIN: Duration = Duration::from_millis(300);
 const BACK_WITHIN: Duration = Duration::from_secs(2);
