@@ -463,7 +463,7 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn frames_are_three_and_a_half_characters_apart() {
-        assert_eq!(gap(9600), Duration::from_nanos(3_645_500));
+        assert_eq!(gap(9600), Duration::from_nanos(3_645_831));
         assert_eq!(gap(115_200), FIXED_GAP);
         let (mut bus, mut far) = line();
         far.write_all(&[0]).await.unwrap();
