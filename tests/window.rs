@@ -363,8 +363,8 @@ fn an_unconfirmed_stop_is_an_alarm() {
 fn faults_are_listed_with_advice_and_over_temperature_is_said_to_stay() {
     let harness = open_at(common::faulted(), View::Faults, LARGE);
     harness.get_by_label("Index: Stall");
-    harness.get_by_label_contains("then clear errors.");
-    harness.get_by_label("Over-temperature cannot be cleared.");
+    harness.get_by_label("What to do: Free the finger or open it, then clear errors.");
+    harness.get_by_label_contains("Clear errors cannot end it");
     let mut harness = open(common::faulted());
     harness.get_by_label("Clear errors").click();
     assert_eq!(actions(&mut harness), [Action::ClearErrors]);

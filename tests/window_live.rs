@@ -10,6 +10,8 @@
 
 #[path = "window/bench.rs"]
 mod bench;
+#[path = "window/faults.rs"]
+mod faults;
 #[path = "window/joints.rs"]
 mod joints;
 #[path = "window/layout.rs"]

@@ -1,5 +1,6 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
+use crate::app::faults::FaultKind;
 use crate::app::poses::edit::LibraryEdit;
 use crate::app::poses::library::{PoseId, SequenceId};
 use crate::app::save::Content;
@@ -114,7 +115,11 @@ pub enum Action {
     Scan(ScanWish),
     /// Look no further; what was found stays.
     CancelScan,
-    /// Forget faults that are over.
+    /// This fault was seen by a person.
+    SeenFault(Dof, FaultKind),
+    /// All faults were seen by a person.
+    SeenFaults,
+    /// Forget faults that are over and seen.
     ForgetFaults,
     /// Ask where a file should go, and write it.
     Save(Content),

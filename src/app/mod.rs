@@ -7,6 +7,7 @@ mod act_poses_tests;
 pub mod action;
 pub mod config;
 pub mod connect;
+pub mod cooling;
 mod desk;
 #[cfg(test)]
 mod fake_link;

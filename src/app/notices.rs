@@ -9,8 +9,10 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Notices that are kept: more than a person reads. The oldest go first.
+/// Notices that ask for attention: more than a person reads. The oldest go first.
 pub const NOTICES_MAX: usize = 64;
+/// Entries of the log: a trouble a minute for a working day, with as much room again. The oldest go first.
+pub const LOG_MAX: usize = 1000;
 
 /// How much it matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -219,17 +221,21 @@ pub struct Notice {
     pub count: u32,
 }
 
-/// What a person should read, bounded.
+/// What a person should read, and the log of all that was to be read; both bounded.
 #[derive(Debug, Clone, Default)]
 pub struct Notices {
     kept: VecDeque<Notice>,
+    log: VecDeque<Notice>,
     next: u64,
+    logged: u64,
     dropped: u64,
+    log_dropped: u64,
 }
 
 impl Notices {
     /// Adds one. The same cause again is counted, not added, and counts as the newest.
     pub fn push(&mut self, at: Moment, what: NoticeKind) {
+        self.note(at, &what);
         let known = self
             .kept
             .iter()
@@ -255,12 +261,34 @@ impl Notices {
         self.next += 1;
     }
 
-    /// It was read.
+    /// Writes it into the log. The same cause right again is counted; after something else it is a line of its own.
+    fn note(&mut self, at: Moment, what: &NoticeKind) {
+        if let Some(newest) = self.log.back_mut().filter(|last| last.what.is_same(what)) {
+            newest.at = at;
+            newest.count = newest.count.saturating_add(1);
+            newest.what = what.clone();
+            return;
+        }
+        if self.log.len() >= LOG_MAX {
+            self.log.pop_front();
+            self.log_dropped += 1;
+        }
+        self.log.push_back(Notice {
+            id: self.logged,
+            at,
+            level: what.level(),
+            what: what.clone(),
+            count: 1,
+        });
+        self.logged += 1;
+    }
+
+    /// It was read. The log keeps it.
     pub fn dismiss(&mut self, id: u64) {
         self.kept.retain(|notice| notice.id != id);
     }
 
-    /// Takes away those that are no longer so.
+    /// Takes away those that are no longer so. The log keeps them.
     pub(crate) fn withdraw(&mut self, over: impl Fn(&NoticeKind) -> bool) {
         self.kept.retain(|notice| !over(&notice.what));
     }
@@ -268,6 +296,17 @@ impl Notices {
     /// Newest first.
     pub fn iter(&self) -> impl Iterator<Item = &Notice> {
         self.kept.iter().rev()
+    }
+
+    /// All that was ever to be read, newest first, dismissed or not. Ids are the log's own.
+    pub fn log(&self) -> impl Iterator<Item = &Notice> {
+        self.log.iter().rev()
+    }
+
+    /// Entries of the log that went because there were too many.
+    #[must_use]
+    pub const fn log_dropped(&self) -> u64 {
+        self.log_dropped
     }
 
     /// How many there are.
@@ -333,5 +372,36 @@ mod tests {
         notices.dismiss(newest);
         assert_eq!(notices.len(), NOTICES_MAX - 1);
         assert!(notices.iter().all(|notice| notice.id != newest));
+    }
+
+    #[test]
+    fn the_log_keeps_what_was_dismissed_and_is_bounded_too() {
+        let mut notices = Notices::default();
+        let again = |millis| NoticeKind::HoldConfirmed {
+            after: Duration::from_millis(millis),
+        };
+        for what in [again(1), again(2), NoticeKind::HoldAlarm, again(3)] {
+            notices.push(Moment::ZERO, what);
+        }
+        for id in notices.iter().map(|notice| notice.id).collect::<Vec<_>>() {
+            notices.dismiss(id);
+        }
+        notices.push(Moment::from_micros(9), NoticeKind::HoldAlarm);
+        notices.withdraw(|_| true);
+        assert!(notices.is_empty());
+        let log: Vec<_> = notices
+            .log()
+            .map(|entry| (entry.level, entry.count))
+            .collect();
+        let (info, alarm) = (Level::Info, Level::Alarm);
+        assert_eq!(log, [(alarm, 1), (info, 1), (alarm, 1), (info, 2)]);
+        for number in 0..2000 {
+            let text = number.to_string();
+            notices.push(Moment::ZERO, NoticeKind::EndpointIgnored { text });
+        }
+        assert_eq!(
+            (notices.log().count(), notices.log_dropped()),
+            (LOG_MAX, 1004)
+        );
     }
 }

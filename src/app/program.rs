@@ -190,6 +190,8 @@ impl App {
             Action::CancelScan => self.scanner.cancel(&mut desk.state.scan),
             Action::Tare(finger) => desk.tare(finger),
             Action::UndoTare => desk.state.tare.undo(),
+            Action::SeenFault(dof, what) => desk.state.faults.see_one(dof, what),
+            Action::SeenFaults => desk.state.faults.see_all(),
             Action::ForgetFaults => desk.state.faults.forget(),
             Action::Note(at, words) => desk.note(at, &words),
             Action::Dismiss(id) => desk.state.notices.dismiss(id),

@@ -1,80 +1,114 @@
-//! Faults with words, cause and advice, what each drive says, and messages. Clears nothing by itself.
+//! The view that explains the hand: six drives, what is and was wrong, what to do, and the log. Clears nothing by itself.
 
 use crate::app::action::Action;
-use crate::app::faults::{FaultEntry, FaultKind};
+use crate::app::faults::{FaultEntry, NothingToClear};
 use crate::app::notices::{Level, Notice};
+use crate::app::settings::Language;
 use crate::app::state::Freshness;
-use crate::hand::{Dof, Fault, Status};
-use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right};
+use crate::hand::{Dof, Fault, Status, Words};
+use crate::ui::controls::{self, Button, Label, Weight, take_right, take_top};
+use crate::ui::drive_lamp::DriveWords;
+use crate::ui::drive_tiles;
+use crate::ui::fault_entry::{Depth, entry_ui, seen_all_ui};
+use crate::ui::list::{INDENT, LINE, TITLE_LINE, line_ui, piece, scroll_ui, wrapped_ui};
 use crate::ui::look::Pane;
-use crate::ui::text::{main, notices, panels, words};
+use crate::ui::message_log::MessageLog;
+use crate::ui::text::{faults, main, notices, panels, words};
 use crate::ui::{format, theme};
-use egui::{Color32, Id, Rect, Ui, UiBuilder, pos2, vec2};
+use egui::{Id, Rect, Ui, pos2};
 
-/// Height of a line of text in a list.
-const LINE: f32 = 17.0;
+/// What the view remembers.
+#[derive(Debug, Default)]
+pub(crate) struct FaultsView {
+    /// The joint that is asked about.
+    chosen: Option<Dof>,
+    log: MessageLog,
+}
 
-/// The card of the overview: faults, then messages.
+/// The card of the overview: what asks for attention, and nothing else.
 pub(crate) fn faults_card_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let (mut head, body) = controls::titled_card(ui, look, rect, look.say(panels::FAULTS));
     clear_ui(ui, &mut head, pane);
-    list_ui(ui, body, pane, "faults card", &mut |ui, width, pane| {
-        fault_list_ui(ui, width, pane);
+    scroll_ui(ui, body, "faults card", |ui, width| {
+        let entries: Vec<FaultEntry> = pane.state.faults.iter().copied().collect();
+        let mut open = entries
+            .iter()
+            .filter(|entry| entry.is_active() || !entry.seen)
+            .peekable();
+        if open.peek().is_none() {
+            none_ui(ui, width, pane);
+        }
+        for entry in open {
+            entry_ui(ui, width, pane, entry, Depth::Short);
+        }
         let rule = piece(ui, width, theme::GAP);
         let edge = egui::Stroke::new(1.0, look.palette.grid);
         ui.painter().hline(rule.x_range(), rule.top(), edge);
-        messages_ui(ui, width, pane);
-    });
-}
-
-fn messages_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>) {
-    if pane.state.notices.is_empty() {
-        let look = pane.look;
-        line_ui(
-            ui,
-            width,
-            look.say(panels::MESSAGES_NONE),
-            look.palette.faint,
-        );
-    }
-    for notice in pane.state.notices.iter() {
-        notice_ui(ui, width, pane, notice);
-    }
-}
-
-/// The view of its own: faults and messages left, the drives' statuses right.
-pub(crate) fn faults_view_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    let (left, right) = rect.split_left_right_at_x(rect.left() + rect.width() * 0.56);
-    let left = left.with_max_x(left.right() - theme::GAP);
-    let (upper, lower) = left.split_top_bottom_at_y(left.top() + left.height() * 0.56);
-    let upper = upper.with_max_y(upper.bottom() - theme::GAP);
-    let (mut head, body) = controls::titled_card(ui, look, upper, look.say(panels::FAULTS));
-    clear_ui(ui, &mut head, pane);
-    forget_ui(ui, &mut head, pane);
-    list_ui(ui, body, pane, "faults", &mut fault_list_ui);
-    let (_, body) = controls::titled_card(ui, look, lower, look.say(panels::MESSAGES));
-    list_ui(ui, body, pane, "messages", &mut messages_ui);
-    let (_, body) = controls::titled_card(ui, look, right, look.say(panels::STATUS_LIST));
-    list_ui(ui, body, pane, "statuses", &mut |ui, width, pane| {
-        for dof in Dof::ALL {
-            status_ui(ui, width, pane, dof);
+        if pane.state.notices.is_empty() {
+            line_ui(
+                ui,
+                width,
+                look.say(panels::MESSAGES_NONE),
+                look.palette.faint,
+            );
+        }
+        for notice in pane.state.notices.iter() {
+            notice_ui(ui, width, pane, notice);
         }
     });
 }
 
-type Lines<'a> = &'a mut dyn FnMut(&mut Ui, f32, &mut Pane<'_>);
+impl FaultsView {
+    /// Shows what this joint says, and its faults first; of no joint, all of them alike.
+    pub(crate) const fn choose(&mut self, dof: Option<Dof>) {
+        self.chosen = dof;
+    }
 
-/// A list that scrolls inside its place.
-fn list_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, salt: &str, lines: Lines<'_>) {
-    ui.scope_builder(UiBuilder::new().max_rect(rect).id_salt(salt), |ui| {
-        ui.shrink_clip_rect(rect);
-        ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
-        egui::ScrollArea::vertical()
-            .auto_shrink(false)
-            .show(ui, |ui| lines(ui, rect.width() - theme::GAP, pane));
-    });
+    /// Draws it.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let mut rest = rect;
+        let tiles = take_top(&mut rest, drive_tiles::height(rect));
+        if let Some(pressed) = drive_tiles::tiles_ui(ui, tiles, pane, self.chosen) {
+            self.chosen = (self.chosen != Some(pressed)).then_some(pressed);
+        }
+        let (left, right) = rest.split_left_right_at_fraction(0.54);
+        let left = left.with_max_x(left.right() - theme::GAP / 2.0);
+        let right = right.with_min_x(right.left() + theme::GAP / 2.0);
+        let (mut head, body) = controls::titled_card(ui, look, left, look.say(panels::FAULTS));
+        clear_ui(ui, &mut head, pane);
+        seen_all_ui(ui, &mut head, pane);
+        forget_ui(ui, &mut head, pane);
+        scroll_ui(ui, body, "faults", |ui, width| {
+            self.list_ui(ui, width, pane)
+        });
+        let (_, body) = controls::titled_card(ui, look, right, look.say(faults::LOG));
+        self.log.ui(ui, body, pane);
+    }
+
+    fn list_ui(&mut self, ui: &mut Ui, width: f32, pane: &mut Pane<'_>) {
+        if let Some(dof) = self.chosen {
+            if drive_ui(ui, width, pane, dof) {
+                self.chosen = None;
+            }
+            piece(ui, width, theme::GAP);
+        }
+        let mut entries: Vec<FaultEntry> = pane.state.faults.iter().copied().collect();
+        entries.sort_by_key(|entry| self.chosen.is_some_and(|dof| entry.dof != dof));
+        if entries.is_empty() {
+            none_ui(ui, width, pane);
+        }
+        for entry in &entries {
+            let depth = if self.chosen == Some(entry.dof) {
+                Depth::Chosen
+            } else {
+                Depth::Whole
+            };
+            entry_ui(ui, width, pane, entry, depth);
+        }
+        meanings_ui(ui, width, pane);
+    }
 }
 
 fn clear_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
@@ -82,9 +116,16 @@ fn clear_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
     let text = look.say(panels::CLEAR);
     let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let place = take_right(head, width);
-    let live = pane.state.link.state.is_live();
+    let state = pane.state;
+    let reason = match state.faults.nothing_to_clear() {
+        _ if !state.link.state.is_live() => Some(panels::NOT_LIVE),
+        _ if state.sample.faults.is_none() => Some(faults::CLEAR_UNREAD),
+        Some(NothingToClear::NoFault) => Some(faults::CLEAR_NO_FAULT),
+        Some(NothingToClear::OnlyHeat) => Some(faults::CLEAR_ONLY_HEAT),
+        None => None,
+    };
     let button = Button::new(text, look.say(panels::CLEAR_TIP))
-        .disabled((!live).then(|| look.say(panels::NOT_LIVE)));
+        .disabled(reason.map(|reason| look.say(reason)));
     if button
         .put(ui, look, place, Id::unique("clear errors"))
         .clicked()
@@ -95,13 +136,20 @@ fn clear_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
 
 fn forget_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let text = look.say(panels::FORGET);
+    let text = look.say(faults::FORGET);
     let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+    if width > head.width() {
+        return;
+    }
     let place = take_right(head, width);
-    let any = pane.state.faults.iter().any(|entry| entry.until.is_some());
-    let button = Button::new(text, look.say(panels::FORGET_TIP))
+    let any = pane
+        .state
+        .faults
+        .iter()
+        .any(|entry| !entry.is_active() && entry.seen);
+    let button = Button::new(text, look.say(faults::FORGET_TIP))
         .weight(Weight::Quiet)
-        .disabled((!any).then(|| look.say(panels::FORGET_NONE)));
+        .disabled((!any).then(|| look.say(faults::FORGET_NONE)));
     if button
         .put(ui, look, place, Id::unique("forget faults"))
         .clicked()
@@ -110,132 +158,103 @@ fn forget_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
     }
 }
 
-/// A piece of the list of the given height.
-fn piece(ui: &mut Ui, width: f32, height: f32) -> Rect {
-    ui.allocate_space(vec2(width, height)).1
-}
-
-fn line_ui(ui: &mut Ui, width: f32, text: &str, color: Color32) {
-    let place = piece(ui, width, LINE);
-    Label::new(text, color).small().put(ui, place);
-}
-
-/// Text over as many lines as it needs.
-fn wrapped_ui(ui: &mut Ui, width: f32, indent: f32, text: &str, color: Color32) {
-    let galley = ui
-        .painter()
-        .layout(text.to_owned(), theme::small(), color, width - indent);
-    let place = piece(ui, width, galley.size().y + 2.0);
-    let response = ui.interact(place, ui.next_auto_id().with(text), egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
-    ui.painter()
-        .galley(pos2(place.left() + indent, place.top()), galley, color);
-}
-
-fn fault_list_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>) {
+/// That nothing is wrong, or that nobody knows.
+fn none_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>) {
     let look = pane.look;
-    let entries: Vec<FaultEntry> = pane.state.faults.iter().copied().collect();
-    if entries.is_empty() {
-        let asked = pane.state.sample.faults.map(|faults| faults.asked);
-        let (text, color) = match pane.freshness(asked) {
-            Freshness::Live => (panels::FAULTS_NONE, look.palette.ok),
-            Freshness::Stale => (panels::FAULTS_NONE_OLD, look.palette.faint),
-            Freshness::Unknown => (panels::FAULTS_UNKNOWN, look.palette.faint),
-        };
-        let place = piece(ui, width, LINE + 3.0);
-        controls::lamp(ui, pos2(place.left() + 6.0, place.center().y), color);
-        let place = place.with_min_x(place.left() + 17.0);
-        Label::new(look.say(text), look.palette.muted).put(ui, place);
-        wrapped_ui(
-            ui,
-            width,
-            17.0,
-            look.say(panels::FAULTS_NONE_HINT),
-            look.palette.faint,
-        );
-        piece(ui, width, theme::GAP);
-    }
-    for entry in &entries {
-        fault_ui(ui, width, pane, entry);
-    }
+    let asked = pane.state.sample.faults.map(|faults| faults.asked);
+    let (text, color) = match pane.freshness(asked) {
+        Freshness::Live => (panels::FAULTS_NONE, look.palette.ok),
+        Freshness::Stale => (panels::FAULTS_NONE_OLD, look.palette.faint),
+        Freshness::Unknown => (panels::FAULTS_UNKNOWN, look.palette.faint),
+    };
+    let place = piece(ui, width, TITLE_LINE);
+    controls::lamp(ui, pos2(place.left() + 6.0, place.center().y), color);
+    let place = place.with_min_x(place.left() + INDENT);
+    Label::new(look.say(text), look.palette.muted).put(ui, place);
+    let hint = look.say(panels::FAULTS_NONE_HINT);
+    wrapped_ui(ui, width, INDENT, hint, look.palette.faint);
+    piece(ui, width, theme::GAP);
 }
 
-fn fault_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, entry: &FaultEntry) {
+/// What the chosen drive says, explained. True if it was enough of it.
+fn drive_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, dof: Dof) -> bool {
     let look = pane.look;
     let palette = look.palette;
-    let mut row = piece(ui, width, LINE + 3.0);
-    let now = entry.until.is_none();
-    let color = if now { palette.bad } else { palette.faint };
-    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
-    row.min.x += 17.0;
-    let when = match entry.until {
-        None => {
-            let lasted = format::age(pane.state.now.since(entry.since));
-            format!("{} {lasted}", look.say(panels::FAULT_FOR))
-        }
-        Some(until) => {
-            let ago = format::age(pane.state.now.since(until));
-            format!(
-                "{}, {ago} {}",
-                look.say(panels::FAULT_OVER),
-                look.say(panels::FAULT_AGO)
-            )
-        }
-    };
-    let when_width = controls::text_width(ui, &when, theme::small()) + 1.0;
-    let place = take_right(&mut row, when_width);
-    Label::new(&when, palette.muted)
-        .small()
-        .right()
-        .put(ui, place);
-    let words = notices::fault_kind(entry.what, look.language);
-    let title = format!("{}: {}", look.say(words::dof(entry.dof)), words.title);
-    let title_color = if now { palette.text } else { palette.muted };
-    Label::new(&title, title_color).put(ui, row);
-    if now {
-        let text = format!("{} {}", words.cause, words.advice);
-        wrapped_ui(ui, width, 17.0, &text, palette.muted);
-        if entry.what == FaultKind::Fault(Fault::OverTemperature) {
-            let text = look.say(panels::OVER_TEMPERATURE_STAYS);
-            wrapped_ui(ui, width, 17.0, text, palette.warn);
-        }
-    }
-    piece(ui, width, theme::STEP);
-}
-
-fn status_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, dof: Dof) {
-    let look = pane.look;
-    let palette = look.palette;
-    let group = pane.state.sample.status;
-    let freshness = pane.freshness(group.map(|group| group.asked));
-    let mut row = piece(ui, width, LINE + 3.0);
-    let name = take_left(&mut row, 96.0);
-    Label::new(look.say(words::dof(dof)), palette.dof[dof]).put(ui, name);
-    let Some(status) = group.map(|group| group.value[dof]) else {
-        Label::new(format::UNKNOWN, palette.faint).put(ui, row);
-        return;
-    };
-    let words = words::status(status, look.language);
-    let live = if status.is_protective() {
-        palette.bad
+    let said = DriveWords::of(pane, dof);
+    let mut row = piece(ui, width, theme::CONTROL);
+    let text = look.say(faults::CHOSEN_CLOSE);
+    let button_width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP;
+    let place = take_right(&mut row, button_width);
+    let button = Button::new(text, look.say(faults::DRIVE_TIP)).weight(Weight::Quiet);
+    let closed = button
+        .put(ui, look, place, Id::unique("all drives"))
+        .clicked();
+    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), said.lamp);
+    let row = row.with_min_x(row.left() + INDENT);
+    let verb = if said.freshness == Freshness::Live {
+        faults::SAYS_NOW
     } else {
-        palette.text
+        faults::SAID_LAST
     };
-    let code = take_right(&mut row, 32.0);
-    Label::new(&status.raw().to_string(), palette.faint)
-        .number()
-        .right()
-        .put(ui, code);
-    Label::new(words.title, look.value(freshness, live)).put(ui, row);
-    wrapped_ui(ui, width, 96.0 + theme::GAP, words.cause, palette.muted);
-    let well = matches!(
-        status,
-        Status::Releasing | Status::Grasping | Status::PositionReached
-    );
-    if !well {
-        wrapped_ui(ui, width, 96.0 + theme::GAP, words.advice, palette.muted);
+    let joint = look.say(words::dof(dof));
+    let title = format!("{joint} · {}: {}", look.say(verb), said.title);
+    Label::new(&title, palette.text).put(ui, row);
+    let status = pane.state.sample.status.map(|group| group.value[dof]);
+    // A fault is explained by its entry below; what the status adds to it is said here.
+    if let Some(status) = status {
+        let words = words::status(status, look.language);
+        wrapped_ui(ui, width, INDENT, words.cause, palette.muted);
+        let advice = format!("{} {}", look.say(faults::TODO), words.advice);
+        wrapped_ui(ui, width, INDENT, &advice, palette.text);
     }
-    piece(ui, width, theme::PAD);
+    closed
+}
+
+/// Every code and bit of the manual in words, for those who meet them for the first time.
+fn meanings_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>) {
+    let look = pane.look;
+    let rule = piece(ui, width, theme::GAP);
+    let edge = egui::Stroke::new(1.0, look.palette.grid);
+    ui.painter().hline(rule.x_range(), rule.top(), edge);
+    let place = piece(ui, width, theme::CONTROL);
+    Label::new(look.say(faults::MEANINGS), look.palette.text)
+        .font(theme::title())
+        .put(ui, place);
+    line_ui(
+        ui,
+        width,
+        look.say(faults::MEANINGS_FAULT),
+        look.palette.faint,
+    );
+    for bit in 0..5 {
+        let words = words::fault(Fault::from_bit(bit), look.language);
+        meaning_ui(ui, width, pane, words);
+    }
+    line_ui(
+        ui,
+        width,
+        look.say(faults::MEANINGS_STATUS),
+        look.palette.faint,
+    );
+    for code in [0, 1, 2, 3, 5, 6, 7] {
+        let words = words::status(Status::from_raw(code), look.language);
+        meaning_ui(ui, width, pane, words);
+    }
+}
+
+fn meaning_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, words: Words) {
+    let palette = pane.look.palette;
+    let sep = match pane.look.language {
+        Language::En => ": ",
+        Language::Zh => "：",
+    };
+    let space = match pane.look.language {
+        Language::En => " ",
+        Language::Zh => "",
+    };
+    let text = format!("{}{sep}{}{space}{}", words.title, words.cause, words.advice);
+    wrapped_ui(ui, width, 0.0, &text, palette.muted);
+    piece(ui, width, theme::STEP);
 }
 
 fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
@@ -251,12 +270,12 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
         text = format!("{text} ({} ×)", notice.count);
     }
     // Lamp, age and cross stand beside the text, whatever lines it needs.
-    let (indent, aside) = (17.0, 20.0 + 48.0 + 2.0 * theme::GAP);
+    let aside = 20.0 + 48.0 + 2.0 * theme::GAP;
     let galley = ui.painter().layout(
         text.clone(),
         theme::small(),
         palette.text,
-        (width - indent - aside).max(40.0),
+        (width - INDENT - aside).max(40.0),
     );
     let place = piece(ui, width, (galley.size().y + 6.0).max(LINE + 5.0));
     let mut row = place.with_max_y(place.top() + LINE + 5.0);
@@ -268,7 +287,7 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
     );
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
     ui.painter().galley(
-        pos2(row.left() + indent, row.top() + 3.0),
+        pos2(row.left() + INDENT, row.top() + 3.0),
         galley,
         palette.text,
     );

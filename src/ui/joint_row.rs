@@ -3,11 +3,13 @@
 use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::app::state::Freshness;
-use crate::hand::{Dof, PerDof, Status, Timed, impact};
+use crate::hand::{Dof, PerDof, Timed, impact};
 use crate::ui::controls::{self, Label, Lock, take_left, take_right};
-use crate::ui::look::Pane;
-use crate::ui::text::{Text, main, words};
-use crate::ui::{format, theme};
+use crate::ui::drive_lamp::DriveWords;
+use crate::ui::drive_tiles;
+use crate::ui::look::{Explain, Pane};
+use crate::ui::text::{Text, faults, main, words};
+use crate::ui::theme;
 use egui::{Color32, CornerRadius, Id, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// Rows at least this high show force and speed on lines of their own.
@@ -116,47 +118,32 @@ impl Row {
         self.status_ui(ui, rest, pane);
     }
 
-    fn status_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-        let look = pane.look;
-        let palette = look.palette;
-        let (status, freshness) = newest(pane, self.dof, pane.state.sample.status);
-        let fault = newest(pane, self.dof, pane.state.sample.faults).0;
-        let fault = fault.and_then(|faults| faults.iter().next());
-        let live = match (fault, status) {
-            (Some(_), _) => palette.bad,
-            (None, Some(status)) if status.is_protective() => palette.bad,
-            (None, Some(Status::Releasing | Status::Grasping)) => palette.accent,
-            (None, Some(Status::ForceReached)) => palette.warn,
-            (None, Some(Status::PositionReached)) => palette.ok,
-            (None, _) => palette.faint,
-        };
-        let words = match (fault, status) {
-            (Some(fault), _) => Some(words::fault(fault, look.language)),
-            (None, Some(status)) => Some(words::status(status, look.language)),
-            (None, None) => None,
-        };
-        let color = look.value(freshness, live);
-        controls::lamp(ui, pos2(rect.left() + 6.0, rect.center().y), color);
-        let place = rect.with_min_x(rect.left() + 17.0);
-        let mut title = words
-            .map_or(format::UNKNOWN, |words| words.title)
-            .to_owned();
-        if let (None, Some(Status::Unknown(code))) = (fault, status) {
-            title = format!("{title} ({code})");
+    /// Lamp and words of the drive; a click explains them.
+    fn status_ui(&self, ui: &mut Ui, mut rect: Rect, pane: &mut Pane<'_>) {
+        drive_tiles::unseen_mark_ui(ui, &mut rect, pane, self.dof);
+        let said = DriveWords::of(pane, self.dof);
+        let name = self.named(pane, faults::EXPLAIN);
+        let response = ui.interact(rect, self.id("explain"), Sense::click());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
+        controls::focus_ring(ui, pane.look, &response, rect);
+        if response.clicked() {
+            *pane.explain = Some(Explain::Drive(self.dof));
         }
-        let text_color = if live == palette.bad {
-            color
-        } else {
-            look.value(freshness, palette.muted)
-        };
+        controls::lamp(ui, pos2(rect.left() + 6.0, rect.center().y), said.lamp);
+        let place = rect.with_min_x(rect.left() + 17.0);
         let name = self.named(pane, main::STATUS);
-        let label = Label::new(&title, text_color)
+        Label::new(&said.title, said.text)
             .small()
             .named(&name)
             .put(ui, place);
-        if let Some(words) = words {
-            label.on_hover_text(format!("{}\n{}", words.cause, words.advice));
-        }
+        let tip = pane.look.say(faults::EXPLAIN_TIP);
+        let tip = said.words.map_or_else(
+            || tip.to_owned(),
+            |words| format!("{}\n{}\n{tip}", words.cause, words.advice),
+        );
+        response
+            .on_hover_text(tip)
+            .on_hover_cursor(egui::CursorIcon::PointingHand);
     }
 
     /// A sign where speed and threshold together were measured to go far past the threshold, with the figure.

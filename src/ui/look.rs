@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::app::state::{Freshness, State};
-use crate::hand::Moment;
+use crate::hand::{Dof, Moment};
 use crate::ui::text::Text;
 use crate::ui::theme::Palette;
 use egui::{Color32, Id};
@@ -50,6 +50,17 @@ pub(crate) struct Pane<'a> {
     pub(crate) actions: &'a mut Vec<Action>,
     /// The field being typed into.
     pub(crate) typing: &'a mut Typing,
+    /// Set where an explanation was asked for: it is shown from the next frame on.
+    pub(crate) explain: &'a mut Option<Explain>,
+}
+
+/// What is to be explained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Explain {
+    /// What is and was wrong.
+    Faults,
+    /// What this joint's drive says.
+    Drive(Dof),
 }
 
 impl Pane<'_> {

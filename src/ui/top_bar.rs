@@ -4,8 +4,9 @@ use crate::app::action::Action;
 use crate::app::settings::{Language, Theme};
 use crate::link::{Dialling, LinkState};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right};
-use crate::ui::look::{Look, Pane};
-use crate::ui::text::{Text, main, words};
+use crate::ui::fault_entry;
+use crate::ui::look::{Explain, Look, Pane};
+use crate::ui::text::{Text, faults, main, words};
 use crate::ui::window::View;
 use crate::ui::{format, theme};
 use egui::{Align2, Color32, CornerRadius, Id, Rect, Stroke, Ui, pos2, vec2};
@@ -28,6 +29,7 @@ pub(crate) fn top_bar_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
     rest.max.x -= theme::STEP;
     arm_ui(ui, take_right(&mut rest, ARM_WIDTH), pane);
     rest.max.x -= theme::STEP;
+    unseen_ui(ui, &mut rest, pane);
     badge_ui(ui, &mut rest, pane);
     let asked = link_ui(ui, &mut rest, pane);
     figures_ui(ui, rest, pane);
@@ -71,6 +73,27 @@ fn arm_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     if button.put(ui, look, place, Id::unique("arm")).clicked() {
         pane.actions
             .push(if armed { Action::Disarm } else { Action::Arm });
+    }
+}
+
+/// How many faults nobody has seen yet, from every view; a click opens them.
+fn unseen_ui(ui: &mut Ui, rest: &mut Rect, pane: &mut Pane<'_>) {
+    let Some(color) = fault_entry::unseen_color(pane) else {
+        return;
+    };
+    let look = pane.look;
+    let count = pane.state.faults.unseen().count();
+    let text = format!("{count} {}", look.say(faults::UNSEEN));
+    let width = controls::text_width(ui, &text, theme::body()) + 40.0;
+    let place = controls::middle(take_right(rest, width), theme::CONTROL_LARGE);
+    let button = Button::new(&text, look.say(faults::UNSEEN_TIP));
+    let response = button.ground(ui, look, place, Id::unique("unseen faults"));
+    fault_entry::mark(ui, pos2(place.left() + 16.0, place.center().y), color);
+    let words = place.with_min_x(place.left() + 28.0);
+    let (font, align) = (theme::body(), Align2::LEFT_CENTER);
+    controls::paint_text(ui, words, align, &text, font, look.palette.text);
+    if response.clicked() {
+        *pane.explain = Some(Explain::Faults);
     }
 }
 
@@ -255,18 +278,11 @@ pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut V
                 .rect_filled(under, CornerRadius::same(1), look.palette.accent);
         }
         if tab == View::Faults {
-            fault_dot(ui, place, pane);
+            fault_entry::badge_ui(ui, place.right_top() + vec2(2.0, -2.0), pane);
         }
         if response.clicked() {
             *view = tab;
         }
-    }
-}
-
-fn fault_dot(ui: &Ui, tab: Rect, pane: &Pane<'_>) {
-    if pane.state.sample.has_fault() {
-        let at = pos2(tab.right() - 7.0, tab.top() + 7.0);
-        ui.painter().circle_filled(at, 3.0, pane.look.palette.bad);
     }
 }
 

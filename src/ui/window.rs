@@ -5,9 +5,9 @@ use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
 use crate::ui::banner;
 use crate::ui::connection::ConnectionForm;
-use crate::ui::faults;
+use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
-use crate::ui::look::{Look, Pane, Typing};
+use crate::ui::look::{Explain, Look, Pane, Typing};
 use crate::ui::note_bar::{self, NoteBar};
 use crate::ui::plots::PlotView;
 use crate::ui::pose_tiles;
@@ -92,6 +92,7 @@ pub struct Window {
     typing: Typing,
     joints: JointsView,
     plots: PlotView,
+    faults: FaultsView,
     note: NoteBar,
     poses: PoseView,
     connection: ConnectionForm,
@@ -136,15 +137,27 @@ impl Window {
             self.note.open(state.now);
         }
         let mut typing = std::mem::take(&mut self.typing);
+        let mut explain = None;
         let mut pane = Pane {
             state,
             look: Look::of(state),
             actions: &mut actions,
             typing: &mut typing,
+            explain: &mut explain,
         };
         self.parts_ui(ui, &mut pane);
         self.typing = typing;
+        self.explain(explain);
         stop_first(actions, stopped)
+    }
+
+    fn explain(&mut self, explain: Option<Explain>) {
+        let Some(explain) = explain else { return };
+        self.view = View::Faults;
+        self.faults.choose(match explain {
+            Explain::Drive(dof) => Some(dof),
+            Explain::Faults => None,
+        });
     }
 
     fn install_if_changed(&mut self, ui: &mut Ui, state: &State) {
@@ -192,7 +205,7 @@ impl Window {
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
             View::Touch => self.touch.large_ui(ui, rect, pane),
-            View::Faults => faults::faults_view_ui(ui, rect, pane),
+            View::Faults => self.faults.ui(ui, rect, pane),
             View::Poses => self.poses.ui(ui, rect, pane),
             View::Connection => self.connection.ui(ui, rect, pane),
             View::Traffic => self.traffic.ui(ui, rect, pane),
@@ -230,6 +243,7 @@ impl Window {
             look: Look::of(state),
             actions: &mut actions,
             typing: &mut typing,
+            explain: &mut None,
         };
         let whole = ui.max_rect();
         ui.painter()

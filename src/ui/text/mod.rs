@@ -1,5 +1,6 @@
 //! Every sentence of the window, in English and Chinese. No layout, no numbers.
 
+pub(crate) mod faults;
 pub(crate) mod main;
 pub(crate) mod notices;
 pub(crate) mod panels;

@@ -85,17 +85,9 @@ texts! {
     FAULTS_NONE_HINT: "Faults appear here with their cause and what to do.", "出现故障时，这里会列出原因与处理建议。";
     FAULTS_NONE_OLD: "No faults when last read", "上次读取时没有故障";
     FAULTS_UNKNOWN: "Faults not read yet", "尚未读取故障";
-    FAULT_OVER: "over", "已结束";
-    FAULT_AGO: "ago", "前";
-    FAULT_FOR: "for", "持续";
     CLEAR: "Clear errors", "清除错误";
-    CLEAR_TIP: "Holds the pose, then clears what can be cleared. Over-temperature cannot be cleared: it ends by itself when cool.", "先保持姿态，再清除可清除的故障。过温故障不可清除，温度回落后自动清除。";
-    FORGET: "Forget old", "清空历史";
-    FORGET_TIP: "Takes faults that are over from the list.", "从列表中移除已结束的故障。";
-    FORGET_NONE: "No fault is over.", "没有已结束的故障。";
+    CLEAR_TIP: "Holds the pose, then clears stall, over-current, motor and communication faults. Over-temperature cannot be cleared: it ends by itself when cool.", "先保持姿态，再清除堵转、过流、电机异常和通讯故障。过温故障不可清除，温度回落后自动清除。";
     NOT_LIVE: "There is no live hand.", "没有在线的灵巧手。";
-    OVER_TEMPERATURE_STAYS: "Over-temperature cannot be cleared.", "过温故障不可清除。";
-    MESSAGES: "Messages", "消息";
     MESSAGES_NONE: "No messages", "没有消息";
     NOTICE_LOST: "Link lost.", "连接断开。";
     NOTICE_NO_LINK: "No hand reached.", "未连接到灵巧手。";
@@ -118,7 +110,6 @@ texts! {
     DISARMED_STALE: "Not armed any more: feedback grew old.", "已取消使能：反馈过时。";
     DISARMED_RIVAL: "Not armed any more: another controller talks to this hand. Arm again if you want both.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。";
     DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
-    STATUS_LIST: "Status of the drives", "驱动器状态";
 
     GESTURE: "Gesture", "手势";
     GESTURES_FIXED: "1 to 13 fixed", "1 至 13 固定";

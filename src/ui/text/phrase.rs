@@ -36,12 +36,13 @@ pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::{main, panels, plots, poses, quirks, scan, traffic};
+    use crate::ui::text::{faults, main, panels, plots, poses, quirks, scan, traffic};
 
     #[test]
     fn no_sentence_lacks_a_language() {
         for text in main::ALL
             .iter()
+            .chain(faults::ALL)
             .chain(panels::ALL)
             .chain(plots::ALL)
             .chain(scan::ALL)
@@ -62,6 +63,7 @@ mod tests {
         let known = include_str!("../../../assets/fonts/characters.txt");
         let all = main::ALL
             .iter()
+            .chain(faults::ALL)
             .chain(panels::ALL)
             .chain(plots::ALL)
             .chain(scan::ALL)

@@ -1,0 +1,75 @@
+//! Sentences of the faults, the recordings around them and the message log.
+
+use crate::ui::text::phrase::texts;
+
+texts! {
+    DRIVE: "Drive", "驱动器";
+    DRIVE_TIP: "Shows what this drive says, and its faults first.", "查看该驱动器的状态说明，并把其故障排在最前。";
+    EXPLAIN: "status, explained", "状态说明";
+    EXPLAIN_TIP: "Click: what this means and what to do.", "点击：查看含义与处理建议。";
+    SAYS_NOW: "says now", "当前状态";
+    SAID_LAST: "said last", "上次状态";
+    CHOSEN_CLOSE: "Show all drives", "显示全部驱动器";
+    TODO: "What to do:", "处理：";
+
+    NOW: "now", "当前";
+    OVER_UNSEEN: "over, not seen yet", "已结束，未查看";
+    OVER: "over", "已结束";
+    WHEN_READ: "when last read", "上次读取时";
+    BEGAN: "Began", "开始于";
+    AGO: "ago", "前";
+    LASTED: "lasted", "持续";
+    TIMES: "times", "次";
+    CAME: "came", "共";
+    SEEN: "Seen", "已看";
+    SEEN_TIP: "You have seen this fault. It stays in the list until it is forgotten, and is unseen again if it comes again.", "表示已查看该故障。它仍留在列表中；再次出现时会重新标为未查看。";
+    SEEN_ALL: "All seen", "全部已看";
+    SEEN_ALL_TIP: "You have seen all faults of the list.", "表示已查看列表中的全部故障。";
+    SEEN_NONE: "Every fault was seen.", "没有未查看的故障。";
+    UNSEEN: "unseen", "项未查看";
+    UNSEEN_TIP: "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
+    UNSEEN_MARK: "unseen fault", "未查看的故障";
+    FORGET: "Forget", "清空历史";
+    FORGET_TIP: "Takes faults that are over and seen from the list.", "从列表中移除已结束且已看的故障。";
+    FORGET_NONE: "No fault is over and seen.", "没有已结束且已看的故障。";
+
+    CLEAR_HELPS: "Clear errors can end it.", "可用“清除错误”结束。";
+    CLEAR_CANNOT: "Clear errors cannot end it: it ends by itself when the drive is cool.", "不可清除：温度回落后自动结束。";
+    CLEAR_UNSAID: "The manual does not say whether clear errors ends it.", "手册没有说明能否清除。";
+    CLEAR_FOLLOWS: "It follows from the drive's faults and from the next command.", "随该驱动器的故障与下一条指令而变。";
+    CLEAR_NO_FAULT: "Nothing is wrong that could be cleared.", "没有可清除的故障。";
+    CLEAR_ONLY_HEAT: "Only over-temperature is left: it cannot be cleared and ends when the drive is cool.", "仅剩过温故障：不可清除，温度回落后自动结束。";
+    CLEAR_UNREAD: "Faults were not read yet.", "尚未读取故障。";
+    COOL_NOW: "It has", "当前";
+    COOL_IN: "about", "约";
+    COOL_TO: "more until", "后降至";
+    COOL_LONG: "more than an hour until", "一小时以上降至";
+    COOL_NOT: "no estimate yet: the temperature does not fall.", "尚无法估计：温度没有下降。";
+    COOL_UNKNOWN: "no estimate yet: too few readings.", "尚无法估计：读数太少。";
+    COOL_THERE: "cool enough: the fault should end by itself.", "温度已够低，故障应会自动结束。";
+    COOL_ASSUMED: "The manual gives no temperature at which a drive works again: 70 °C is assumed, and cooling towards 25 °C.", "手册没有给出恢复工作的温度：此处假定 70 °C，并向 25 °C 冷却。";
+    COOL_OBSERVED: "This drive worked again at this temperature before; cooling towards 25 °C is assumed.", "该驱动器曾在此温度恢复工作；假定向 25 °C 冷却。";
+
+    MEANINGS: "What the words mean", "术语说明";
+    MEANINGS_STATUS: "What a drive says it does", "驱动器状态";
+    MEANINGS_FAULT: "What can be wrong with a drive", "驱动器故障";
+
+    LOG: "Messages", "消息";
+    LOG_NONE: "Nothing has happened yet.", "还没有消息。";
+    LOG_NONE_PASS: "No message passes the filter.", "没有符合条件的消息。";
+    LOG_LOST: "older messages were dropped:", "已丢弃的较早消息：";
+    LOG_FILTER: "Filter messages", "筛选消息";
+    LOG_FILTER_HINT: "words", "关键词";
+    LEVEL: "Level", "级别";
+    LEVEL_TIP: "Shows messages of this level and above.", "显示此级别及以上的消息。";
+    LEVEL_ALL: "All", "全部";
+    LEVEL_WARN: "Warnings", "警告";
+    LEVEL_ALARM: "Alarms", "报警";
+    WORD_INFO: "info", "信息";
+    WORD_WARN: "warning", "警告";
+    WORD_ALARM: "alarm", "报警";
+    COPY: "Copy", "复制";
+    COPY_TIP: "Copies the messages that are listed, with seconds since the start of the program.", "复制列出的消息，附程序启动以来的秒数。";
+    COPIED: "Copied", "已复制";
+
+}

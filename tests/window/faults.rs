@@ -1,0 +1,187 @@
+//! Claims about the view that explains the hand: what was missed is shown until seen, words are a click away, the log.
+
+use crate::bench::{Bench, LARGE, Role};
+use handscope::hand::{Dof, Fault};
+use handscope::sim::SimConfig;
+
+/// A stall of the index finger that came and went.
+fn missed() -> Bench {
+    let mut bench = Bench::live();
+    bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
+    bench.wait(1500);
+    bench.hand(|hand, now| {
+        let one = handscope::hand::register::CLEAR_ERROR.address;
+        hand.write(one, &[1], now).map(drop).unwrap();
+    });
+    bench.wait(500);
+    assert!(!bench.shows("FAULT"));
+    bench
+}
+
+#[test]
+fn a_fault_that_went_unseen_is_told_of_everywhere_until_a_person_says_that_they_saw_it() {
+    let mut bench = missed();
+    for view in ["Live", "Poses", "Faults", "Live"] {
+        bench.click_first_button(view);
+        bench.run(60);
+        assert!(
+            bench.shows("1 unseen"),
+            "{view}: opening a view is not seeing"
+        );
+        assert!(bench.shows("Index unseen fault"), "{view}");
+    }
+    bench.click("1 unseen");
+    bench.run(60);
+    assert!(bench.shows("over, not seen yet"));
+    assert!(
+        !bench.texts_with("lasted 1.5 s").is_empty(),
+        "{:?}",
+        bench.texts_with("lasted")
+    );
+    assert!(
+        bench.is_disabled(Role::Button, "Forget"),
+        "not before it was seen"
+    );
+    bench.click("Seen: Index: Stall");
+    bench.run(60);
+    assert!(!bench.shows("1 unseen") && !bench.shows("Index unseen fault"));
+    assert!(bench.shows("over"), "it stays in the list");
+    assert!(bench.is_disabled(Role::Button, "All seen"));
+    bench.click("Forget");
+    bench.run(60);
+    assert!(!bench.shows("over"));
+    assert!(
+        bench.writes().iter().all(|write| write.bytes == [1]),
+        "ours: none"
+    );
+}
+
+#[test]
+fn all_faults_are_seen_at_once_and_unseen_when_they_come_again() {
+    let mut bench = missed();
+    bench.hand(|hand, _| hand.inject_fault(Dof::Ring, Fault::Motor));
+    bench.wait(200);
+    bench.click_button("Faults");
+    bench.run(60);
+    assert!(bench.shows("2 unseen"));
+    bench.click("All seen");
+    bench.run(60);
+    assert!(bench.texts_with("unseen").is_empty());
+    bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
+    bench.wait(200);
+    assert!(bench.shows("1 unseen"));
+    assert!(!bench.texts_with("came 2 times").is_empty());
+}
+
+#[test]
+fn the_status_of_a_joint_is_one_click_away_from_its_explanation() {
+    let mut bench = Bench::live();
+    bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
+    bench.hand(|hand, _| hand.inject_fault(Dof::Ring, Fault::Motor));
+    bench.wait(200);
+    bench.click("Index status, explained");
+    bench.run(60);
+    assert!(bench.shows("Index · says now: Stall"));
+    let labels = bench.all(Role::Label);
+    let top = |text: &str| {
+        labels
+            .iter()
+            .find(|(name, _)| name == text)
+            .unwrap()
+            .1
+            .top()
+    };
+    assert!(
+        top("Index: Stall") < top("Ring: Motor abnormal"),
+        "the asked one first"
+    );
+    bench.click("Drive Ring");
+    bench.run(60);
+    assert!(bench.shows("Ring · says now: Motor abnormal"));
+    bench.click("Show all drives");
+    bench.run(60);
+    assert!(bench.texts_with("says now").is_empty());
+}
+
+#[test]
+fn who_meets_a_word_for_the_first_time_finds_it_explained_without_any_fault() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.wait(500);
+    for (view, stall, language) in [
+        ("Faults", "Stall: ", "Language"),
+        ("故障", "堵转故障：", "语言"),
+    ] {
+        bench.click_first_button(view);
+        bench.run(60);
+        assert_eq!(bench.texts_with(stall).len(), 1, "{stall}");
+        bench.click_first_button(language);
+        bench.run(60);
+    }
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn a_hot_drive_is_said_to_cool_with_a_time_once_it_falls() {
+    let mut bench = Bench::live();
+    bench.hand(|hand, _| {
+        hand.inject_fault(Dof::Middle, Fault::OverTemperature);
+        hand.warm(Dof::Middle, 99.0);
+    });
+    bench.wait(3000);
+    bench.click_button("Faults");
+    bench.run(60);
+    assert!(!bench.texts_with("no estimate yet").is_empty());
+    bench.wait(25_000);
+    let told = bench.texts_with("more until 70 °C");
+    assert_eq!(told.len(), 1, "{:?}", bench.texts_with("°C"));
+    assert!(!bench.texts_with("70 °C is assumed").is_empty());
+    // At 99 °C and towards 25 °C in 60 s, it needs 30 s in all.
+    assert!(
+        told[0].contains("about 5 s") || told[0].contains("about 10 s"),
+        "{told:?}"
+    );
+    bench.wait(12_000);
+    assert!(!bench.shows("FAULT"), "it ended by itself");
+}
+
+#[test]
+fn the_log_keeps_what_was_dismissed_and_is_filtered_and_copied() {
+    let mut bench = missed();
+    bench.click("Arm the hand");
+    bench.run(200);
+    bench.click_button("STOP");
+    bench.wait(1000);
+    bench.click("Close: Index: Stall");
+    bench.run(60);
+    assert!(bench.texts_with("No messages").is_empty());
+    bench.click_button("Faults");
+    bench.run(60);
+    let copy = |bench: &mut Bench| bench.click_to_copy("Copy: Messages").unwrap();
+    let all = copy(&mut bench);
+    assert!(
+        all.contains("warning  Index: Stall") && all.contains("info  Feedback shows rest"),
+        "{all}"
+    );
+    assert!(
+        all.find("Feedback") < all.find("Index: Stall"),
+        "newest first"
+    );
+    bench.click("Level: Warnings");
+    bench.run(60);
+    let some = copy(&mut bench);
+    assert!(
+        some.contains("Stall") && !some.contains("Feedback"),
+        "{some}"
+    );
+    bench.click("Level: All");
+    bench.type_into("Filter messages", "REST");
+    bench.run(60);
+    let some = copy(&mut bench);
+    assert!(
+        !some.contains("Stall") && some.contains("Feedback"),
+        "{some}"
+    );
+    bench.type_into("Filter messages", "nothing like it");
+    bench.run(60);
+    assert!(bench.shows("No message passes the filter."));
+}
