@@ -30,6 +30,7 @@
 //! * A stop is the next thing on the wire, goes out again until feedback shows rest, and raises an alarm if it does not.
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
 //! * Nothing that was asked survives a lost link.
+//! * A fault stays unseen until a person says that they saw it, and what happened around it is kept in memory, bounded.
 
 pub mod app;
 pub mod cli;

@@ -3,6 +3,7 @@
 use crate::app::faults::FaultKind;
 use crate::app::poses::edit::LibraryEdit;
 use crate::app::poses::library::{PoseId, SequenceId};
+use crate::app::recorder::RecordingId;
 use crate::app::save::Content;
 use crate::app::scan::ScanWish;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme};
@@ -119,6 +120,8 @@ pub enum Action {
     SeenFault(Dof, FaultKind),
     /// All faults were seen by a person.
     SeenFaults,
+    /// A recording was looked at.
+    OpenedRecording(RecordingId),
     /// Forget faults that are over and seen.
     ForgetFaults,
     /// Ask where a file should go, and write it.

@@ -6,6 +6,7 @@ use crate::app::history::{History, MarkKind};
 use crate::app::notices::{Asked, NoticeKind, Notices};
 use crate::app::peaks::ForcePeaks;
 use crate::app::poses::book::PoseBook;
+use crate::app::recorder::Recorder;
 use crate::app::scan::ScanBook;
 use crate::app::seam::Link;
 use crate::app::settings::Settings;
@@ -62,6 +63,7 @@ impl Desk {
             joints: PerDof::splat(joint),
             history: History::new(),
             faults: FaultBook::default(),
+            recorder: Recorder::default(),
             notices: Notices::default(),
             gestures,
             poses: PoseBook::default(),
@@ -94,6 +96,10 @@ impl Desk {
             (Some(link), Some(endpoint)) => Traffic::of(link.tap(), endpoint),
             _ => Traffic::default(),
         };
+        let hand = self.state.hand_name();
+        self.state
+            .recorder
+            .another_hand(&self.state.history, &hand, now);
         self.link = link;
         self.state.endpoint = endpoint;
         self.state.link = LinkStatus {
@@ -160,6 +166,7 @@ impl Desk {
             self.state.peaks.update(sample);
         }
         self.state.history.push(sample, fresh);
+        self.state.recorder.sample(sample, fresh, now);
         if self.state.faults.update(sample, fresh, now) {
             self.state.history.mark(now, MarkKind::Fault);
             let begun: Vec<_> = self
@@ -170,6 +177,7 @@ impl Desk {
                 .copied()
                 .collect();
             for entry in begun {
+                self.state.recorder.fault(entry.dof, entry.what, now);
                 self.state.notices.push(
                     now,
                     NoticeKind::Fault {

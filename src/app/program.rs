@@ -7,6 +7,7 @@ use crate::app::notices::NoticeKind;
 use crate::app::poses::book::PoseBook;
 use crate::app::poses::library::Library;
 use crate::app::poses::store::{self, Reading};
+use crate::app::recorder::Deed;
 use crate::app::save::{self, ChooseFile, Content, Saving};
 use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
@@ -137,6 +138,7 @@ impl App {
     /// Takes in what happened since the last call. Runs also while the window is hidden.
     pub fn logic(&mut self, now: Moment) {
         self.desk.drain(now);
+        self.desk.state.record();
         if let Some(leaving) = self.leaving.take_if(|leaving| {
             now.since(leaving.told) >= REST_WITHIN || self.desk.is_at_rest(leaving.told)
         }) {
@@ -162,6 +164,9 @@ impl App {
     /// Carries out one thing that a person asked for.
     pub fn act(&mut self, action: Action, now: Moment) {
         self.desk.state.now = now;
+        if let Some(deed) = Deed::of(&action, &self.desk.state) {
+            self.desk.state.recorder.deed(deed, now);
+        }
         let desk = &mut self.desk;
         match action {
             Action::Stop => desk.stop(now),
@@ -192,6 +197,7 @@ impl App {
             Action::UndoTare => desk.state.tare.undo(),
             Action::SeenFault(dof, what) => desk.state.faults.see_one(dof, what),
             Action::SeenFaults => desk.state.faults.see_all(),
+            Action::OpenedRecording(id) => desk.state.recorder.opened(id),
             Action::ForgetFaults => desk.state.faults.forget(),
             Action::Note(at, words) => desk.note(at, &words),
             Action::Dismiss(id) => desk.state.notices.dismiss(id),

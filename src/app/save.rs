@@ -66,6 +66,8 @@ pub enum Content {
     Traffic(TrafficForm, Vec<Arc<Frame>>),
     /// What the plots show, as comma-separated values.
     Plots(Table),
+    /// What was recorded around a fault, as comma-separated values.
+    Recording(Table),
     /// A finished picture of the plots, as the bytes of a PNG file.
     Picture(Vec<u8>),
     /// Poses and sequences.
@@ -80,6 +82,7 @@ impl Content {
             Self::Traffic(TrafficForm::Csv, _) => "handscope-traffic.csv",
             Self::Traffic(TrafficForm::JsonLines, _) => "handscope-traffic.jsonl",
             Self::Plots(_) => "handscope-plots.csv",
+            Self::Recording(_) => "handscope-fault.csv",
             Self::Picture(_) => "handscope-plots.png",
             Self::Poses(_) => store::FILE_NAME,
         }
@@ -90,7 +93,7 @@ impl Content {
     pub fn len(&self) -> usize {
         match self {
             Self::Traffic(_, frames) => frames.len(),
-            Self::Plots(table) => table.len(),
+            Self::Plots(table) | Self::Recording(table) => table.len(),
             Self::Picture(bytes) => usize::from(!bytes.is_empty()),
             Self::Poses(library) => library.poses.len() + library.sequences.len(),
         }
@@ -105,7 +108,7 @@ impl Content {
     fn bytes(&self) -> std::io::Result<Vec<u8>> {
         Ok(match self {
             Self::Traffic(form, frames) => frame_lines(*form, frames).into_bytes(),
-            Self::Plots(table) => table.csv().into_bytes(),
+            Self::Plots(table) | Self::Recording(table) => table.csv().into_bytes(),
             Self::Picture(bytes) => bytes.clone(),
             Self::Poses(library) => library.text()?.into_bytes(),
         })

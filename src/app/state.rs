@@ -7,6 +7,7 @@ use crate::app::notices::Notices;
 use crate::app::peaks::ForcePeaks;
 use crate::app::poses::book::PoseBook;
 use crate::app::quirk_sheet::QuirkSheet;
+use crate::app::recorder::Recorder;
 use crate::app::scan::ScanBook;
 use crate::app::settings::Settings;
 use crate::app::tare::Tare;
@@ -42,6 +43,8 @@ pub struct State {
     pub history: History,
     /// Faults now and before.
     pub faults: FaultBook,
+    /// What happened around them.
+    pub recorder: Recorder,
     /// What a person should read.
     pub notices: Notices,
     /// Gestures and their names.
@@ -118,6 +121,21 @@ impl State {
         let live = self.freshness(Some(angle.asked)) == Freshness::Live;
         let angles = angle.value.map(crate::hand::AngleReading::hold).all();
         angles.filter(|_| live)
+    }
+
+    /// The hand's name in files and lists; empty without one.
+    #[must_use]
+    pub fn hand_name(&self) -> String {
+        self.endpoint
+            .as_ref()
+            .map(ToString::to_string)
+            .unwrap_or_default()
+    }
+
+    /// Lets the recorder go on.
+    pub(crate) fn record(&mut self) {
+        let hand = self.hand_name();
+        self.recorder.tick(&self.history, &hand, self.now);
     }
 
     /// True while setpoints pass.

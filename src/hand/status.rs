@@ -93,17 +93,21 @@ impl Status {
     #[must_use]
     pub const fn words(self) -> Words {
         match self {
-            Self::Releasing => Words::new("Opening", "The joint moves towards open.", "Nothing."),
-            Self::Grasping => Words::new("Closing", "The joint moves towards bent.", "Nothing."),
+            Self::Releasing => {
+                Words::new("Opening", "The joint moves towards open.", "Nothing to do.")
+            }
+            Self::Grasping => {
+                Words::new("Closing", "The joint moves towards bent.", "Nothing to do.")
+            }
             Self::PositionReached => Words::new(
                 "In position",
                 "The joint reached its target angle.",
-                "Nothing.",
+                "Nothing to do.",
             ),
             Self::ForceReached => Words::new(
                 "Force reached",
                 "The force met its threshold and the drive stopped.",
-                "Nothing. Raise the threshold if the grip is too weak.",
+                "Nothing to do. Raise the threshold if the grip is too weak.",
             ),
             Self::CurrentProtection => Words::new(
                 "Current limit",

@@ -122,13 +122,15 @@ fn figures_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>, dof: Dof) {
     let (heat, heat_age) = newest(pane, dof, sample.temperature);
     let (current, current_age) = newest(pane, dof, sample.current);
     let heat = format::whole(heat.map(|heat| heat.raw().into()), 0);
+    let joint = look.say(words::dof(dof));
+    let name = controls::text_width(ui, joint, theme::body()) + theme::GAP;
     let current = format::whole(current.map(|current| current.raw().into()), 0);
     for (text, age) in [
         (format!("{heat} °C"), heat_age),
         (format!("{current} mA"), current_age),
     ] {
         let width = controls::text_width(ui, &text, theme::number_small()) + 1.0;
-        if head.width() - width < 92.0 {
+        if head.width() - width < name {
             return;
         }
         let place = take_right(head, width);

@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::app::cooling::{self, Course, Goal, Source};
 use crate::app::faults::{FaultEntry, FaultKind};
+use crate::app::recorder::RecordingId;
 use crate::app::state::Freshness;
 use crate::hand::{Dof, Fault};
 use crate::ui::controls::{self, Button, Label, Weight, take_right};
@@ -24,14 +25,14 @@ pub(crate) enum Depth {
     Chosen,
 }
 
-/// Draws one entry of the list.
+/// Draws one entry of the list; the recording of it that is to be opened.
 pub(crate) fn entry_ui(
     ui: &mut Ui,
     width: f32,
     pane: &mut Pane<'_>,
     entry: &FaultEntry,
     depth: Depth,
-) {
+) -> Option<RecordingId> {
     let look = pane.look;
     let palette = look.palette;
     let ground = ui.painter().add(Shape::Noop);
@@ -48,10 +49,11 @@ pub(crate) fn entry_ui(
     if entry.is_active() {
         clear_words_ui(ui, width, pane, entry);
     }
-    let text = times(pane, entry);
-    if depth != Depth::Short && !text.is_empty() {
-        wrapped_ui(ui, width, INDENT, &text, palette.faint);
-    }
+    let asked = if depth == Depth::Short {
+        None
+    } else {
+        foot_ui(ui, width, pane, entry)
+    };
     if depth == Depth::Chosen {
         let place = egui::Rect::from_min_max(
             pos2(left - theme::STEP, top - theme::STEP / 2.0),
@@ -65,6 +67,31 @@ pub(crate) fn entry_ui(
         ui.painter().set(ground, shape);
     }
     piece(ui, width, theme::GAP);
+    asked
+}
+
+/// Times, and the way to the recording of it, if there is one.
+fn foot_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, entry: &FaultEntry) -> Option<RecordingId> {
+    let look = pane.look;
+    let text = times(pane, entry);
+    let recorder = &pane.state.recorder;
+    let Some(recording) = recorder.of(entry.dof, entry.what, entry.since) else {
+        if !text.is_empty() {
+            wrapped_ui(ui, width, INDENT, &text, look.palette.faint);
+        }
+        return None;
+    };
+    let mut row = piece(ui, width, theme::CONTROL);
+    row.min.x += INDENT;
+    let words = look.say(faults::RECORDING);
+    let wide = controls::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
+    let name = format!("{words}: {}", title(pane, entry.dof, entry.what));
+    let button = Button::new(words, look.say(faults::RECORDING_OPEN_TIP)).named(&name);
+    let place = controls::middle(take_right(&mut row, wide), theme::CONTROL - 2.0);
+    let id = Id::unique(("recording of", entry.dof, entry.what));
+    let pressed = button.put(ui, look, place, id).clicked();
+    Label::new(&text, look.palette.faint).small().put(ui, row);
+    pressed.then_some(recording.id)
 }
 
 /// Lamp, joint and fault; whether it lasts; the button of one who has seen it.

@@ -6,13 +6,16 @@ use crate::app::notices::{Level, Notice};
 use crate::app::settings::Language;
 use crate::app::state::Freshness;
 use crate::hand::{Dof, Fault, Status, Words};
-use crate::ui::controls::{self, Button, Label, Weight, take_right, take_top};
+use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::drive_lamp::DriveWords;
 use crate::ui::drive_tiles;
 use crate::ui::fault_entry::{Depth, entry_ui, seen_all_ui};
-use crate::ui::list::{INDENT, LINE, TITLE_LINE, line_ui, piece, scroll_ui, wrapped_ui};
+use crate::ui::list::{
+    INDENT, LINE, TITLE_LINE, line_ui, piece, scroll_ui, titled_text_ui, wrapped_ui,
+};
 use crate::ui::look::Pane;
 use crate::ui::message_log::MessageLog;
+use crate::ui::recordings::RecordingsView;
 use crate::ui::text::{faults, main, notices, panels, words};
 use crate::ui::{format, theme};
 use egui::{Id, Rect, Ui, pos2};
@@ -22,7 +25,17 @@ use egui::{Id, Rect, Ui, pos2};
 pub(crate) struct FaultsView {
     /// The joint that is asked about.
     chosen: Option<Dof>,
+    section: Section,
     log: MessageLog,
+    recordings: RecordingsView,
+}
+
+/// The list beside the faults.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Section {
+    #[default]
+    Log,
+    Recordings,
 }
 
 /// The card of the overview: what asks for attention, and nothing else.
@@ -63,6 +76,7 @@ impl FaultsView {
     /// Shows what this joint says, and its faults first; of no joint, all of them alike.
     pub(crate) const fn choose(&mut self, dof: Option<Dof>) {
         self.chosen = dof;
+        self.recordings.close();
     }
 
     /// Draws it.
@@ -72,6 +86,11 @@ impl FaultsView {
         let tiles = take_top(&mut rest, drive_tiles::height(rect));
         if let Some(pressed) = drive_tiles::tiles_ui(ui, tiles, pane, self.chosen) {
             self.chosen = (self.chosen != Some(pressed)).then_some(pressed);
+            self.recordings.close();
+        }
+        if let Some(recording) = self.recordings.opened(pane) {
+            self.recordings.recording_ui(ui, rest, pane, &recording);
+            return;
         }
         let (left, right) = rest.split_left_right_at_fraction(0.54);
         let left = left.with_max_x(left.right() - theme::GAP / 2.0);
@@ -83,8 +102,35 @@ impl FaultsView {
         scroll_ui(ui, body, "faults", |ui, width| {
             self.list_ui(ui, width, pane)
         });
-        let (_, body) = controls::titled_card(ui, look, right, look.say(faults::LOG));
-        self.log.ui(ui, body, pane);
+        let mut body = controls::card(ui, look, right);
+        self.sections_ui(ui, take_top(&mut body, theme::CONTROL), pane);
+        match self.section {
+            Section::Log => self.log.ui(ui, body, pane),
+            Section::Recordings => self.recordings.list_ui(ui, body, pane),
+        }
+    }
+
+    fn sections_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let count = pane.state.recorder.iter().count();
+        let recordings = match count {
+            0 => look.say(faults::RECORDINGS).to_owned(),
+            count => format!("{} ({count})", look.say(faults::RECORDINGS)),
+        };
+        for (text, section) in [
+            (look.say(faults::LOG), Section::Log),
+            (&recordings, Section::Recordings),
+        ] {
+            let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+            let place = take_left(&mut row, width);
+            row.min.x -= theme::STEP;
+            let button = Button::new(text, look.say(faults::SECTION_TIP));
+            let button = button.choice(self.section == section);
+            let id = Id::unique(("faults section", section == Section::Log));
+            if button.put(ui, look, place, id).clicked() {
+                self.section = section;
+            }
+        }
     }
 
     fn list_ui(&mut self, ui: &mut Ui, width: f32, pane: &mut Pane<'_>) {
@@ -105,7 +151,9 @@ impl FaultsView {
             } else {
                 Depth::Whole
             };
-            entry_ui(ui, width, pane, entry, depth);
+            if let Some(id) = entry_ui(ui, width, pane, entry, depth) {
+                self.recordings.open(id, pane);
+            }
         }
         meanings_ui(ui, width, pane);
     }
@@ -252,8 +300,9 @@ fn meaning_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, words: Words) {
         Language::En => " ",
         Language::Zh => "",
     };
-    let text = format!("{}{sep}{}{space}{}", words.title, words.cause, words.advice);
-    wrapped_ui(ui, width, 0.0, &text, palette.muted);
+    let body = format!("{}{space}{}", words.cause, words.advice);
+    let title = format!("{}{sep}", words.title);
+    titled_text_ui(ui, width, (&title, palette.text), (&body, palette.muted));
     piece(ui, width, theme::STEP);
 }
 

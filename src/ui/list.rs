@@ -2,7 +2,8 @@
 
 use crate::ui::controls::Label;
 use crate::ui::theme;
-use egui::{Color32, Id, Rect, Ui, UiBuilder, pos2, vec2};
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Color32, Id, Rect, Response, Ui, UiBuilder, pos2, vec2};
 
 /// Height of a line of small text.
 pub(crate) const LINE: f32 = 17.0;
@@ -40,16 +41,35 @@ pub(crate) fn wrapped_ui(
     indent: f32,
     text: &str,
     color: Color32,
-) -> egui::Response {
-    let galley = ui
-        .painter()
-        .layout(text.to_owned(), theme::small(), color, width - indent);
+) -> Response {
+    let job = LayoutJob::simple(text.to_owned(), theme::small(), color, width - indent);
+    job_ui(ui, width, indent, job)
+}
+
+/// A word in its own colour and what it means, over as many lines as they need.
+pub(crate) fn titled_text_ui(
+    ui: &mut Ui,
+    width: f32,
+    title: (&str, Color32),
+    text: (&str, Color32),
+) -> Response {
+    let mut job = LayoutJob::default();
+    for (words, color) in [title, text] {
+        job.append(words, 0.0, TextFormat::simple(theme::small(), color));
+    }
+    job.wrap.max_width = width;
+    job_ui(ui, width, 0.0, job)
+}
+
+fn job_ui(ui: &mut Ui, width: f32, indent: f32, job: LayoutJob) -> Response {
+    let text = job.text.clone();
+    let galley = ui.painter().layout_job(job);
     let place = piece(ui, width, galley.size().y + 2.0);
-    let id: Id = ui.next_auto_id().with(text);
+    let id: Id = ui.next_auto_id().with(&text);
     ui.skip_ahead_auto_ids(1);
     let response = ui.interact(place, id, egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
     let at = pos2(place.left() + indent, place.top());
-    ui.painter().galley(at, galley, color);
+    ui.painter().galley(at, galley, Color32::PLACEHOLDER);
     response
 }

@@ -48,6 +48,7 @@ pub fn empty() -> State {
         }),
         history: History::default(),
         faults: FaultBook::default(),
+        recorder: handscope::app::Recorder::default(),
         notices: Notices::default(),
         gestures: GestureBook::default(),
         poses: handscope::app::poses::book::PoseBook::default(),

@@ -185,3 +185,121 @@ fn the_log_keeps_what_was_dismissed_and_is_filtered_and_copied() {
     bench.run(60);
     assert!(bench.shows("No message passes the filter."));
 }
+
+/// A stall in the middle of a movement, with a person's hand on it, and its recording's end.
+fn recorded() -> Bench {
+    let mut bench = Bench::armed();
+    bench.drag("Index angle target", 1.0, 0.3);
+    bench.wait(1500);
+    bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
+    bench.wait(2000);
+    bench.click_button("Faults");
+    bench.run(60);
+    bench.click("Clear errors");
+    bench.wait(500);
+    bench.click("Recordings");
+    bench.run(60);
+    assert!(!bench.texts_with("Recording a fault, ends in").is_empty());
+    bench.wait(13_000);
+    bench
+}
+
+#[test]
+fn what_happened_around_a_fault_can_be_looked_at_and_saved_and_nothing_is_sent() {
+    let mut bench = recorded();
+    let before = bench.writes().len();
+    assert!(bench.shows("Recordings (1)"));
+    bench.click("Open: Index: Stall");
+    bench.run(60);
+    assert!(bench.shows("Recording: Index: Stall"));
+    let texts = bench.texts();
+    let list = texts.iter().position(|text| text == "What happened");
+    let texts = texts.get(list.unwrap()..).unwrap();
+    let place = |part: &str| {
+        let found = texts.iter().position(|text| text.starts_with(part));
+        found.unwrap_or_else(|| panic!("no '{part}' in {texts:?}"))
+    };
+    let story = [
+        "Index target 2",
+        "Index: Stall",
+        "Clear errors",
+        "Index: no fault",
+    ];
+    let story = story.map(place);
+    assert!(story.is_sorted(), "{story:?}");
+    bench.click("5 s around");
+    bench.run(60);
+    bench.click("Save CSV");
+    bench.wait(400);
+    let text = std::fs::read_to_string(bench.folder().join("handscope-fault.csv")).unwrap();
+    let head: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    for column in [
+        "angle_index",
+        "force_index_g",
+        "normal_thumb_N",
+        "target_angle_index",
+        "status_index",
+        "faults_index",
+        "event",
+    ] {
+        assert!(head.contains(&column), "{column}");
+    }
+    for line in ["armed", "target index", "fault", "clear errors"] {
+        assert!(
+            text.lines()
+                .any(|row| row.rsplit(',').next().unwrap().starts_with(line)),
+            "{line}"
+        );
+    }
+    assert!(text.lines().count() > 1500);
+    assert_eq!(
+        bench.writes().len(),
+        before,
+        "nothing is played back to the hand"
+    );
+    bench.click("Back");
+    bench.run(60);
+    assert!(bench.shows("over, not seen yet") && bench.shows("Recordings (1)"));
+}
+
+#[test]
+fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
+    let mut bench = recorded();
+    bench.unplug();
+    bench.wait(1000);
+    bench.click("Recording: Index: Stall");
+    bench.run(60);
+    assert!(bench.shows("Plots of the recording"));
+    let listed: Vec<bool> = bench
+        .state()
+        .recorder
+        .iter()
+        .map(|one| one.opened)
+        .collect();
+    assert_eq!(listed, [true]);
+    assert!(bench.state().recorder.bytes() < 4_000_000);
+    bench.click("Drive Ring");
+    bench.run(60);
+    assert!(!bench.shows("Plots of the recording"), "tiles lead back");
+}
+
+#[test]
+fn no_two_controls_overlap_in_an_opened_recording() {
+    for size in [egui::vec2(1024.0, 640.0), LARGE] {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.wait(400);
+        bench.hand(|hand, _| hand.inject_fault(Dof::ThumbRotate, Fault::OverTemperature));
+        bench.wait(17_000);
+        bench.click_first_button("Faults");
+        bench.run(60);
+        bench.click("Recordings (1)");
+        bench.run(60);
+        crate::layout::check(&bench, size, "STOP", &format!("{size} list"));
+        bench.click("Open: Thumb rotate: Over-temperature");
+        bench.run(60);
+        crate::layout::check(&bench, size, "STOP", &format!("{size} recording"));
+        bench.click_first_button("Language");
+        bench.run(60);
+        crate::layout::check(&bench, size, "停止", &format!("{size} in Chinese"));
+    }
+}

@@ -280,6 +280,25 @@ impl History {
         )
     }
 
+    /// A copy of a stretch of time that stays as it is: all measurements and marks. The work grows with their number.
+    #[must_use]
+    pub fn slice(&self, from_s: f64, to_s: f64) -> Self {
+        let cut = |track: &Track| track.slice(from_s, to_s);
+        let mut marks = Marks::default();
+        for mark in self.marks(from_s, to_s) {
+            marks.push(mark.clone());
+        }
+        Self {
+            angle: cut(&self.angle),
+            force: cut(&self.force),
+            current: cut(&self.current),
+            temperature: cut(&self.temperature),
+            target: cut(&self.target),
+            tips: PerFinger::from_fn(|finger| Box::new(cut(&self.tips[finger]))),
+            marks,
+        }
+    }
+
     /// Measurements of some lines over a stretch of time, without copying them.
     #[must_use]
     pub fn rows(&self, series: &[Series], from_s: f64, to_s: f64) -> usize {

@@ -15,4 +15,5 @@ pub use book::{HISTORY_ROWS, HISTORY_SECONDS, History, Quantity, Series, Touch};
 pub use mark::{MARKS_MAX, Mark, MarkKind, NOTE_MAX};
 pub use reading::{Reading, Summary};
 pub use table::Table;
+pub(crate) use table::TableGroup;
 pub use trace::Trace;

@@ -30,6 +30,14 @@ impl Table {
         Self { groups, marks }
     }
 
+    /// The same with more columns, and more that happened.
+    pub(crate) fn with(mut self, group: TableGroup, marks: Vec<(f64, String)>) -> Self {
+        self.groups.push(group);
+        self.marks.extend(marks);
+        self.marks.sort_by(|one, two| one.0.total_cmp(&two.0));
+        self
+    }
+
     /// Lines of the text after its head. The work grows with the measurements.
     #[must_use]
     pub fn len(&self) -> usize {

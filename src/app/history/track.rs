@@ -158,6 +158,23 @@ impl Track {
         self.columns.get(quantity)?.get(row)
     }
 
+    /// A copy of the rows of a stretch of time, in as much memory as they need.
+    pub(crate) fn slice(&self, from_s: f64, to_s: f64) -> Self {
+        let rows = self.rows_within(from_s, to_s);
+        let mut copy = Self::new(
+            self.number,
+            self.columns.len(),
+            rows.len(),
+            self.gap_after_s,
+        );
+        for row in rows {
+            if let Some(at_s) = self.times.get(row) {
+                copy.add(at_s, self.columns.iter().map(|column| column.get(row)));
+            }
+        }
+        copy
+    }
+
     fn whole(&self) -> Range<usize> {
         self.times.start()..self.times.end()
     }

@@ -72,4 +72,41 @@ texts! {
     COPY_TIP: "Copies the messages that are listed, with seconds since the start of the program.", "复制列出的消息，附程序启动以来的秒数。";
     COPIED: "Copied", "已复制";
 
+
+    RECORDINGS: "Recordings", "故障记录";
+    SECTION_TIP: "Shows this list.", "显示此列表。";
+    RECORDINGS_NONE: "No recordings yet. Around each fault, 45 s before and 15 s after are kept here: everything that was measured, and what was done.", "还没有记录。每次故障前 45 s 与后 15 s 的全部测量与操作会保存在这里。";
+    RECORDINGS_KEPT: "Kept in memory until the program ends, 12 at most: the oldest that was looked at goes first.", "记录保存在内存中，程序退出即清除，最多 12 份；先移除已看过的最早记录。";
+    RECORDINGS_LOST: "Recordings that went unseen:", "未看过即被移除的记录：";
+    RECORDING_RUNS: "Recording a fault, ends in", "正在记录故障，剩余";
+    RECORDING_OPEN: "Open", "打开";
+    RECORDING_OPEN_TIP: "Shows what was measured and done around this fault. Nothing is sent to the hand.", "查看该故障前后的测量与操作，不会向灵巧手发送任何内容。";
+    RECORDING: "Recording", "记录";
+    RECORDING_NEW: "not opened yet", "未看过";
+    RECORDING_MORE: "more", "项其他故障";
+    RECORDING_BACK: "Back", "返回";
+    RECORDING_BACK_TIP: "Back to the faults and the lists.", "返回故障与列表。";
+    RECORDING_SAVE: "Save CSV", "保存 CSV";
+    RECORDING_SAVE_TIP: "Saves everything of this recording as comma-separated values.", "把该记录的全部内容保存为 CSV。";
+    RECORDING_NEAR: "5 s around", "前后 5 s";
+    RECORDING_NEAR_TIP: "Shows the five seconds before and after the fault.", "显示故障前后各 5 秒。";
+    RECORDING_WHOLE: "Whole", "全部";
+    RECORDING_WHOLE_TIP: "Shows the whole recording.", "显示整段记录。";
+    RECORDING_AREA: "Plots of the recording", "记录曲线";
+    RECORDING_PANEL_TIP: "Shows or hides this plot. Strong lines: the joints with the fault.", "显示或隐藏该曲线。粗线为发生故障的自由度。";
+    RECORDING_EVENTS: "What happened", "事件";
+    RECORDING_EVENTS_LOST: "Events that were not kept:", "未保留的事件：";
+    RECORDING_FAULT: "fault", "故障";
+    LANES: "Status of the drives", "驱动器状态";
+
+    DEED_DISARM: "Disarmed", "取消使能";
+    DEED_TARGET: "target", "目标";
+    DEED_FORCE: "threshold, g", "力控阈值 g";
+    DEED_SPEED: "speed", "速度";
+    DEED_ALL: "All", "全部";
+    DEED_LOCK: "locked", "已锁定";
+    DEED_UNLOCK: "unlocked", "已解锁";
+    DEED_ANGLES: "Edited angles", "测试编辑的角度";
+    DEED_SEQUENCE: "Sequence", "序列";
+    NO_FAULT_BITS: "no fault", "无故障";
 }
