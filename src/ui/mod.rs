@@ -39,6 +39,7 @@ mod quirk_sheet;
 mod recording_events;
 mod recording_plot;
 mod recordings;
+mod reorder;
 mod scan;
 mod sequence_step;
 mod sequence_view;

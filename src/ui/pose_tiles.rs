@@ -2,11 +2,13 @@
 
 use crate::app::action::Action;
 use crate::app::gestures::GestureBook;
+use crate::app::poses::edit::{LibraryEdit, PoseEdit};
 use crate::app::poses::library::Pose;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::ui::controls::{self, Button, Weight, take_right};
 use crate::ui::hand_picture;
 use crate::ui::look::{Look, Pane};
+use crate::ui::reorder;
 use crate::ui::text::{main, panels, poses};
 use crate::ui::theme;
 use egui::{Align2, Id, Rect, Ui, Vec2, pos2, vec2};
@@ -76,6 +78,14 @@ pub(crate) fn tile_ui(
     }
     let (top, foot) = rect.split_top_bottom_at_y(rect.bottom() - theme::CONTROL - theme::STEP);
     let response = button.ground(ui, look, top, Id::unique(("pose", pose.id)));
+    if response.clicked() {
+        // So that Alt and the arrow keys move it from here.
+        response.request_focus();
+    }
+    if let Some(way) = reorder::keyed(ui, &response) {
+        let edit = LibraryEdit::Pose(pose.id, PoseEdit::Shift(way));
+        pane.actions.push(Action::Library(edit));
+    }
     let (picture, words) = top.split_top_bottom_at_y(top.bottom() - 36.0);
     hand_picture::pose_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
     let words = words.shrink2(vec2(theme::GAP, 0.0));

@@ -1,7 +1,7 @@
 //! The view of poses: the person's own, sequences of them, and the gestures in the hand. Holds what is chosen, no pose.
 
 use crate::app::action::Action;
-use crate::app::poses::edit::LibraryEdit;
+use crate::app::poses::edit::{LibraryEdit, PoseEdit};
 use crate::app::poses::library::PoseId;
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::gesture_editor::GestureEditor;
@@ -9,6 +9,7 @@ use crate::ui::gestures::GestureView;
 use crate::ui::look::Pane;
 use crate::ui::pose_editor;
 use crate::ui::pose_tiles::{capture_button, tile_ui};
+use crate::ui::reorder::{Along, Reorder};
 use crate::ui::sequence_view::{SequenceView, scrolled};
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
@@ -47,6 +48,7 @@ pub(crate) struct PoseView {
     sequences: SequenceView,
     gestures: GestureView,
     editor: GestureEditor,
+    order: Reorder,
     typed: Option<(Id, String)>,
 }
 
@@ -111,12 +113,22 @@ impl PoseView {
             let width = (room - theme::STEP * (columns - 1.0)) / columns;
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::GAP);
+                self.order.begin();
                 for pose in &library.poses {
                     let size = vec2(width.floor(), TILE.y);
                     let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+                    self.order.place(ui, place, Id::unique(("pose", pose.id)));
                     if tile_ui(ui, place, pane, pose, self.chosen == Some(pose.id)) {
                         self.chosen = Some(pose.id);
                     }
+                }
+                let moved = self.order.end(ui, pane.look, Along::Row);
+                if let Some((from, to)) = moved
+                    && let Some(pose) = library.poses.get(from)
+                {
+                    self.chosen = Some(pose.id);
+                    let edit = LibraryEdit::Pose(pose.id, PoseEdit::Move(to));
+                    pane.actions.push(Action::Library(edit));
                 }
             });
         });

@@ -10,6 +10,7 @@ use crate::ui::look::Pane;
 use crate::ui::number::NumberField;
 use crate::ui::pose_editor::whole;
 use crate::ui::pose_tiles::shares;
+use crate::ui::reorder;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
 use egui::{Id, Rect, Ui, vec2};
@@ -90,12 +91,44 @@ pub(crate) fn step_ui(
     }
     numbers_ui(ui, &mut row, pane, sequence, (at, step));
     let pose = pane.state.poses.library.pose(step.pose);
-    let picture = take_left(&mut row, ROW);
     if let Some(pose) = pose {
+        handle_ui(ui, row, pane, sequence, (at, &pose.name));
+        let picture = take_left(&mut row, ROW);
         hand_picture::pose_ui(ui, look, picture.shrink(2.0), &shares(&pose.angles));
         let text = format!("{number}  {}", pose.name);
         Label::new(&text, look.palette.text).put(ui, row);
     }
+}
+
+/// The part of a row that takes the keyboard and the pointer for putting the step elsewhere.
+fn handle_ui(
+    ui: &Ui,
+    rect: Rect,
+    pane: &mut Pane<'_>,
+    sequence: &Sequence,
+    (at, name): (usize, &str),
+) {
+    let look = pane.look;
+    let id = |at: usize| Id::unique((sequence.id, at, "handle"));
+    let response = ui.interact(rect, id(at), egui::Sense::click());
+    let label = format!("{} {}: {name}", look.say(poses::STEP_NAME), at + 1);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+    controls::focus_ring(ui, look, &response, rect.shrink(2.0));
+    if response.clicked() {
+        response.request_focus();
+    }
+    if let Some(way) = reorder::keyed(ui, &response) {
+        let to = match way {
+            Way::Earlier => at.saturating_sub(1),
+            Way::Later => (at + 1).min(sequence.steps.len().saturating_sub(1)),
+        };
+        // The keyboard goes with the step.
+        ui.memory_mut(|memory| memory.request_focus(id(to)));
+        change(pane, sequence, SequenceEdit::Move(at, to));
+    }
+    response
+        .on_hover_text(look.say(poses::DRAG_TIP))
+        .on_hover_cursor(egui::CursorIcon::Grab);
 }
 
 fn numbers_ui(

@@ -8,6 +8,7 @@ use crate::hand::PerDof;
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::hand_picture;
 use crate::ui::look::Pane;
+use crate::ui::reorder::{Along, Reorder};
 use crate::ui::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::{main, poses};
 use crate::ui::text_field::TextField;
@@ -26,6 +27,7 @@ pub(crate) struct SequenceView {
     chosen: Option<SequenceId>,
     shown: Option<SequenceId>,
     adding: Option<PoseId>,
+    order: Reorder,
 }
 
 impl SequenceView {
@@ -123,10 +125,16 @@ impl SequenceView {
             return;
         }
         scrolled(ui, steps, "steps", |ui, width| {
+            self.order.begin();
             for (at, step) in sequence.steps.iter().enumerate() {
                 let size = vec2(width, ROW);
                 let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+                self.order
+                    .place(ui, place, Id::unique((sequence.id, at, "step")));
                 step_ui(ui, place, pane, sequence, (at, step));
+            }
+            if let Some((from, to)) = self.order.end(ui, pane.look, Along::Column) {
+                change(pane, sequence, SequenceEdit::Move(from, to));
             }
         });
     }

@@ -308,6 +308,39 @@ impl Bench {
         self.harness.step();
     }
 
+    /// Drags one button to the place of another, and lets go.
+    pub fn drag_to(&mut self, name: &str, other: &str) {
+        let from = self.rect(Role::Button, name).center();
+        let to = self.rect(Role::Button, other).center();
+        self.harness.hover_at(from);
+        self.harness.drag_at(from);
+        for step in 1_u8..=10 {
+            let part = f32::from(step) / 10.0;
+            self.harness.hover_at(from.lerp(to, part));
+            self.harness.step();
+        }
+        self.harness.drop_at(to);
+        self.run(60);
+        self.harness.remove_cursor();
+        self.harness.step();
+    }
+
+    /// Drags from one place to another, presses a key there, and then lets go.
+    pub fn drag_and_press(&mut self, from: egui::Pos2, to: egui::Pos2, key: Key) {
+        self.harness.hover_at(from);
+        self.harness.drag_at(from);
+        self.harness.hover_at(to);
+        self.run(60);
+        self.key(key);
+        self.harness.drop_at(to);
+        self.run(60);
+    }
+
+    pub fn key_with(&mut self, modifiers: Modifiers, key: Key) {
+        self.harness.key_press_modifiers(modifiers, key);
+        self.run(60);
+    }
+
     pub fn focus(&mut self, name: &str) {
         self.harness
             .get_by_role_and_label(Role::TextInput, name)

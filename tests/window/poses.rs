@@ -259,3 +259,89 @@ fn an_exported_file_comes_back_and_a_bad_one_changes_nothing() {
     assert_eq!(bench.state().poses.library, before);
     assert_eq!(bench.writes().len(), writes, "files move nothing");
 }
+
+fn pose_names(bench: &Bench) -> Vec<&str> {
+    let poses = bench.state().poses.library.poses.iter();
+    poses.map(|pose| pose.name.as_str()).collect()
+}
+
+fn steps(bench: &Bench) -> Vec<&str> {
+    let library = &bench.state().poses.library;
+    let steps = library.sequences[0].steps.iter();
+    let name = |pose| library.pose(pose).unwrap().name.as_str();
+    steps.map(|step| name(step.pose)).collect()
+}
+
+#[test]
+fn poses_are_put_in_order_by_dragging_and_by_alt_and_arrows_and_nothing_moves() {
+    let mut bench = with_sequence();
+    let before = bench.writes().len();
+    bench.click("My poses");
+    bench.run(60);
+    bench.click("Capture");
+    bench.run(60);
+    assert_eq!(pose_names(&bench), ["Pose", "Pose 2", "Pose 3"]);
+    bench.drag_to("Pose Pose 3", "Pose Pose");
+    assert_eq!(pose_names(&bench), ["Pose 3", "Pose", "Pose 2"]);
+    bench.drag_to("Pose Pose 3", "Pose Pose 2");
+    assert_eq!(pose_names(&bench), ["Pose", "Pose 2", "Pose 3"]);
+    bench.click("Pose Pose 2");
+    bench.run(60);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowRight);
+    assert_eq!(pose_names(&bench), ["Pose", "Pose 3", "Pose 2"]);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowUp);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowLeft);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowLeft);
+    assert_eq!(
+        pose_names(&bench),
+        ["Pose 2", "Pose", "Pose 3"],
+        "the first stays the first"
+    );
+    assert_eq!(bench.writes().len(), before);
+}
+
+#[test]
+fn steps_are_put_in_order_by_dragging_and_by_alt_and_arrows_that_follow_the_step() {
+    let mut bench = with_sequence();
+    let before = bench.writes().len();
+    bench.click("Add");
+    bench.run(60);
+    // All three are the first pose: let the last be the other one.
+    let library = &bench.state().poses.library;
+    assert_eq!(library.sequences[0].steps.len(), 3);
+    enter(&mut bench, "Step 3 speed", "77");
+    let speeds = |bench: &Bench| -> Vec<i16> {
+        let steps = bench.state().poses.library.sequences[0].steps.iter();
+        steps.map(|step| step.speed.get()).collect()
+    };
+    let other = speeds(&bench)[0];
+    assert_eq!(steps(&bench).len(), 3);
+    bench.drag_to("Step 3: Pose", "Step 1: Pose");
+    assert_eq!(speeds(&bench), [77, other, other]);
+    bench.click("Step 1: Pose");
+    bench.run(60);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowDown);
+    assert_eq!(speeds(&bench), [other, 77, other]);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowDown);
+    assert_eq!(
+        speeds(&bench),
+        [other, other, 77],
+        "the keyboard goes with the step"
+    );
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowDown);
+    assert_eq!(speeds(&bench), [other, other, 77]);
+    assert_eq!(bench.writes().len(), before);
+}
+
+#[test]
+fn a_drag_that_is_stopped_by_esc_leaves_the_order() {
+    let mut bench = with_sequence();
+    bench.click("My poses");
+    bench.run(60);
+    let (from, to) = (
+        bench.rect(Role::Button, "Pose Pose"),
+        bench.rect(Role::Button, "Pose Pose 2"),
+    );
+    bench.drag_and_press(from.center(), to.center(), Key::Escape);
+    assert_eq!(pose_names(&bench), ["Pose", "Pose 2"]);
+}

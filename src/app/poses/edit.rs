@@ -32,6 +32,8 @@ pub enum PoseEdit {
     Force(Force),
     /// Another place in the order.
     Shift(Way),
+    /// To this place in the order, 0 for the first; those between make room.
+    Move(usize),
     /// A copy behind it.
     Duplicate,
     /// Away, with the steps that name it.
@@ -51,6 +53,8 @@ pub enum SequenceEdit {
     Remove(usize),
     /// Another place for a step.
     Shift(usize, Way),
+    /// A step from one place to another; those between make room.
+    Move(usize, usize),
     /// Speed of a step.
     Speed(usize, Speed),
     /// Time at the pose of a step.
@@ -142,6 +146,7 @@ impl Library {
         };
         match edit {
             PoseEdit::Shift(way) => shift(&mut self.poses, at, way),
+            PoseEdit::Move(to) => put(&mut self.poses, at, to),
             PoseEdit::Duplicate => self.duplicate(at),
             PoseEdit::Delete => {
                 self.poses.remove(at);
@@ -208,6 +213,7 @@ impl Library {
                 sequence.steps.remove(at);
             }
             SequenceEdit::Shift(at, way) => shift(&mut sequence.steps, at, way),
+            SequenceEdit::Move(from, to) => put(&mut sequence.steps, from, to),
             SequenceEdit::Speed(at, speed) => change(sequence, at, |step| step.speed = speed),
             SequenceEdit::Dwell(at, dwell) => change(sequence, at, |step| step.dwell = dwell),
             SequenceEdit::Limit(at, limit) => change(sequence, at, |step| step.limit = limit),
@@ -254,7 +260,11 @@ fn set(pose: &mut Pose, edit: PoseEdit) {
         PoseEdit::Leave(dof, leave) => pose.leave[dof] = leave,
         PoseEdit::Speed(speed) => pose.speed = speed,
         PoseEdit::Force(force) => pose.force = force,
-        PoseEdit::Rename(_) | PoseEdit::Shift(_) | PoseEdit::Duplicate | PoseEdit::Delete => {}
+        PoseEdit::Rename(_)
+        | PoseEdit::Shift(_)
+        | PoseEdit::Move(_)
+        | PoseEdit::Duplicate
+        | PoseEdit::Delete => {}
     }
 }
 
@@ -276,6 +286,18 @@ fn shift<T>(row: &mut [T], at: usize, way: Way) {
     };
     if let Some(other) = other.filter(|other| (*other).max(at) < row.len()) {
         row.swap(at, other);
+    }
+}
+
+/// Takes one out and puts it in elsewhere. A place that does not exist changes nothing.
+fn put<T>(row: &mut [T], from: usize, to: usize) {
+    let between = from.min(to)..=from.max(to);
+    if let Some(between) = row.get_mut(between) {
+        if from < to {
+            between.rotate_left(1);
+        } else {
+            between.rotate_right(1);
+        }
     }
 }
 

@@ -344,3 +344,32 @@ fn a_dry_run_takes_as_long_as_the_speed_says() {
     assert!((share(&looped, 1600 + 300) - 0.5).abs() < 0.01);
     assert!(!looped.at(ms(1_000_000)).over);
 }
+
+#[test]
+fn a_pose_and_a_step_go_to_a_place_and_those_between_make_room() {
+    let (mut book, a, b, own) = two();
+    book.edit(LibraryEdit::Pose(a, PoseEdit::Duplicate));
+    book.edit(LibraryEdit::Pose(a, PoseEdit::Duplicate));
+    assert_eq!(names(&book), ["A", "A 3", "A 2", "B"]);
+    for (pose, to, want) in [
+        (b, 0, ["B", "A", "A 3", "A 2"]),
+        (b, 3, ["A", "A 3", "A 2", "B"]),
+        (a, 1, ["A 3", "A", "A 2", "B"]),
+        (a, 0, ["A", "A 3", "A 2", "B"]),
+        (a, 0, ["A", "A 3", "A 2", "B"]),
+        (a, 4, ["A", "A 3", "A 2", "B"]),
+    ] {
+        book.edit(LibraryEdit::Pose(pose, PoseEdit::Move(to)));
+        assert_eq!(names(&book), want, "to {to}");
+    }
+    let steps = |book: &PoseBook| -> Vec<PoseId> {
+        let sequence = book.library.sequence(own).unwrap();
+        sequence.steps.iter().map(|step| step.pose).collect()
+    };
+    let before = steps(&book);
+    book.edit(LibraryEdit::Sequence(own, SequenceEdit::Move(0, 2)));
+    let moved = [before[1], before[2], before[0]];
+    assert_eq!(steps(&book), moved);
+    book.edit(LibraryEdit::Sequence(own, SequenceEdit::Move(5, 0)));
+    assert_eq!(steps(&book), moved);
+}
