@@ -23,6 +23,7 @@ fn rigid() -> Drive {
     drive.set_contact(Some(Contact {
         angle: 500.0,
         stiffness: RIGID_G_PER_COUNT,
+        breaks_at_g: None,
     }));
     drive.command(Goal::Position(STROKE), 0);
     drive
@@ -92,6 +93,64 @@ fn a_fast_approach_with_a_slow_contact_hits_softly() {
     }
     let peak = run(&mut drive, 100, 5000, slow);
     assert!(peak < 580.0, "{peak}");
+}
+
+#[test]
+fn after_the_impact_no_current_flows_and_the_grip_relaxes() {
+    let mut drive = rigid();
+    let setting = Setting {
+        speed: 1000.0,
+        threshold_g: 500.0,
+    };
+    let mut now = 0;
+    while drive.status() != Status::ForceReached {
+        drive.step(now, setting);
+        now += 1;
+    }
+    let peak = run(&mut drive, now, 25, setting);
+    assert!(peak > 3000.0, "{peak}");
+    assert!(
+        drive.load_g() > 0.99 * peak,
+        "a reader of 100 a second sees the peak"
+    );
+    run(&mut drive, now + 25, 100, setting);
+    let (half, current) = (drive.load_g(), drive.current_ma());
+    assert!(half < 0.8 * peak && half > 1000.0, "{half}");
+    assert!(current < 1e-9);
+    run(&mut drive, now + 125, 2000, setting);
+    assert!((0.85 * 500.0..1.5 * 500.0).contains(&drive.load_g()));
+}
+
+#[test]
+fn a_fragile_thing_breaks_if_pressed_too_hard_and_is_replaced_when_the_hand_opens() {
+    let cup = Contact {
+        angle: 500.0,
+        stiffness: 20.0,
+        breaks_at_g: Some(700.0),
+    };
+    let mut drive = Drive::new(25.0);
+    drive.set_contact(Some(cup));
+    let gentle = Setting {
+        speed: 25.0,
+        threshold_g: 400.0,
+    };
+    drive.command(Goal::Position(STROKE), 0);
+    run(&mut drive, 0, 14_000, gentle);
+    assert_eq!(drive.status(), Status::ForceReached);
+    assert!(drive.load_g() > 300.0, "held whole");
+    let rough = Setting {
+        speed: 1000.0,
+        threshold_g: 400.0,
+    };
+    drive.command(Goal::Position(0.0), 14_000);
+    run(&mut drive, 14_000, 2000, rough);
+    drive.command(Goal::Position(STROKE), 16_000);
+    run(&mut drive, 16_000, 2000, rough);
+    assert!(drive.load_g() < 1e-9, "broken");
+    assert_eq!(drive.gap(), None);
+    drive.command(Goal::Position(0.0), 18_000);
+    run(&mut drive, 18_000, 2000, rough);
+    assert!(drive.gap().is_some(), "another one");
 }
 
 #[test]

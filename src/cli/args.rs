@@ -76,7 +76,7 @@ pub(crate) struct SnapshotArgs {
     /// The hand to show [default: the built-in one]
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Option<Endpoint>,
-    /// What the built-in hand does: idle, grasp, faults, extremes
+    /// What the built-in hand does: idle, rigid, fragile, grasp, faults, extremes
     #[arg(long, value_name = "NAME", conflicts_with = "hand")]
     pub(crate) scenario: Option<Scenario>,
     /// Seed of the built-in hand
@@ -181,7 +181,7 @@ pub(crate) struct SimArgs {
     /// Seed of everything random in it; of several hands, that of the first, the next has the next number
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// What it does: idle, grasp, faults, extremes
+    /// What it does: idle, rigid, fragile, grasp, faults, extremes
     #[arg(long, value_name = "NAME", default_value = "idle")]
     pub(crate) scenario: Scenario,
     /// How it reads what the manual leaves open, one of the list below; may be given several times

@@ -1,7 +1,9 @@
 //! Six drives, the object between the fingers, and the force sensors' errors. Knows no registers.
 
+use crate::hand::impact::RIGID_G_PER_COUNT;
 use crate::hand::{Dof, Finger, PerDof};
 use crate::sim::drive::{Contact, Drive, Setting};
+use crate::sim::scenario::Scenario;
 
 /// How often the sensors' noise is drawn anew, ms.
 const NOISE_MS: u64 = 10;
@@ -15,7 +17,26 @@ pub struct Object {
     pub contacts: PerDof<Option<Contact>>,
 }
 
+/// Where the block and the cup stand in the way, units of ANGLE_ACT.
+const STANDS_AT: f64 = 500.0;
+/// Stiffness of the cup: half of the block's.
+const CUP_G_PER_COUNT: f64 = RIGID_G_PER_COUNT / 2.0;
+/// What each finger may press the cup with, g.
+pub const CUP_BREAKS_AT_G: f64 = 700.0;
+
 impl Object {
+    /// What waits between the fingers at power-up.
+    #[must_use]
+    pub fn of(scenario: Scenario) -> Self {
+        match scenario {
+            Scenario::Rigid => Self::rigid(STANDS_AT),
+            Scenario::Fragile => Self::cup(STANDS_AT),
+            Scenario::Idle | Scenario::Grasp | Scenario::Faults | Scenario::Extremes => {
+                Self::soft_ball()
+            }
+        }
+    }
+
     /// Nothing between the fingers.
     #[must_use]
     pub const fn none() -> Self {
@@ -40,6 +61,7 @@ impl Object {
                 angle.map(|angle| Contact {
                     angle,
                     stiffness: 4.0,
+                    breaks_at_g: None,
                 })
             }),
         }
@@ -51,7 +73,20 @@ impl Object {
         Self {
             contacts: PerDof::splat(Some(Contact {
                 angle,
-                stiffness: crate::hand::impact::RIGID_G_PER_COUNT,
+                stiffness: RIGID_G_PER_COUNT,
+                breaks_at_g: None,
+            })),
+        }
+    }
+
+    /// A thin cup at one angle for all joints; each breaks its own side of it beyond [`CUP_BREAKS_AT_G`].
+    #[must_use]
+    pub const fn cup(angle: f64) -> Self {
+        Self {
+            contacts: PerDof::splat(Some(Contact {
+                angle,
+                stiffness: CUP_G_PER_COUNT,
+                breaks_at_g: Some(CUP_BREAKS_AT_G),
             })),
         }
     }

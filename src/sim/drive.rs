@@ -37,8 +37,12 @@ const COOLING_S: f64 = 60.0;
 const HOT: f64 = 85.0;
 /// Temperature at which the fault ends by itself, °C.
 const COOL: f64 = 70.0;
-/// Time constant of a grip's relaxing after the stop, s.
+/// How long a drive stays where the impact took it, ms: the peaks of the table were read about 100 times a second.
+const PEAK_MS: u32 = 30;
+/// Time constant of a grip's relaxing after that, s.
 const RELAX_S: f64 = 0.15;
+/// A joint this near to its open end makes room for another object, counts.
+const OPEN_WITHIN: f64 = 20.0;
 
 /// What a joint meets while it bends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +51,8 @@ pub struct Contact {
     pub angle: f64,
     /// Stiffness, g for each position count.
     pub stiffness: f64,
+    /// Force that it does not survive, g; a whole one is put there when the joint is open again.
+    pub breaks_at_g: Option<f64>,
 }
 
 impl Contact {
@@ -78,6 +84,7 @@ enum Phase {
     Rest,
     Moving { to: f64 },
     Coasting { to: f64, relax_to: f64 },
+    Peak { left_ms: u32, relax_to: f64 },
     Relaxing { to: f64 },
 }
 
@@ -96,6 +103,7 @@ pub struct Drive {
     pushing_ms: u32,
     over_current_ms: u32,
     contact: Option<Contact>,
+    broken: bool,
     jam: Option<f64>,
     grip: f64,
 }
@@ -123,6 +131,7 @@ impl Drive {
             pushing_ms: 0,
             over_current_ms: 0,
             contact: None,
+            broken: false,
             jam: None,
             grip: 1.0,
         }
@@ -146,8 +155,13 @@ impl Drive {
         self.load_at(self.position)
     }
 
+    /// What is in its way, unless it broke.
+    fn whole_contact(&self) -> Option<Contact> {
+        self.contact.filter(|_| !self.broken)
+    }
+
     fn load_at(&self, position: f64) -> f64 {
-        self.contact.map_or(0.0, |contact| {
+        self.whole_contact().map_or(0.0, |contact| {
             (position - contact.position()).max(0.0) * contact.stiffness * self.grip
         })
     }
@@ -155,7 +169,7 @@ impl Drive {
     /// Counts between fingertip and object; `None` if nothing is in the way.
     #[must_use]
     pub fn gap(&self) -> Option<f64> {
-        self.contact
+        self.whole_contact()
             .map(|contact| (contact.position() - self.position).max(0.0))
     }
 
@@ -186,6 +200,7 @@ impl Drive {
     /// Puts something in its way, or takes it away.
     pub const fn set_contact(&mut self, contact: Option<Contact>) {
         self.contact = contact;
+        self.broken = false;
     }
 
     /// Blocks the linkage at an angle; the fingertip's sensor feels nothing of it.
@@ -266,6 +281,15 @@ impl Drive {
             Phase::Rest => {}
             Phase::Moving { to } => self.move_on(to, setting),
             Phase::Coasting { to, relax_to } => self.coast(to, relax_to),
+            Phase::Peak { left_ms, relax_to } => {
+                self.phase = match left_ms {
+                    0 => Phase::Relaxing { to: relax_to },
+                    _ => Phase::Peak {
+                        left_ms: left_ms - 1,
+                        relax_to,
+                    },
+                };
+            }
             Phase::Relaxing { to } => {
                 self.position += (to - self.position) * STEP_S / RELAX_S;
                 if (self.position - to).abs() < 0.02 {
@@ -273,7 +297,17 @@ impl Drive {
                 }
             }
         }
+        self.watch_object();
         self.heat();
+    }
+
+    /// What was pressed too hard is broken until the joint is open again.
+    fn watch_object(&mut self) {
+        if self.position < OPEN_WITHIN {
+            self.broken = false;
+        }
+        let most = self.contact.and_then(|contact| contact.breaks_at_g);
+        self.broken |= most.is_some_and(|most| self.load_g() > most);
     }
 
     fn begin(&mut self, goal: Goal) {
@@ -368,7 +402,7 @@ impl Drive {
 
     /// The force met its threshold. The drive runs on by the distance that the table gives.
     fn force_stop(&mut self, threshold_g: f64) {
-        let Some(contact) = self.contact else {
+        let Some(contact) = self.whole_contact() else {
             return;
         };
         let stiffness = (contact.stiffness * self.grip).max(0.01);
@@ -391,7 +425,10 @@ impl Drive {
                 self.position = to;
             }
             self.velocity = 0.0;
-            self.phase = Phase::Relaxing { to: relax_to };
+            self.phase = Phase::Peak {
+                left_ms: PEAK_MS,
+                relax_to,
+            };
             return;
         }
         self.position += step;

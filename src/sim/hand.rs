@@ -128,7 +128,7 @@ impl SimHand {
     #[must_use]
     pub fn new(config: SimConfig) -> Self {
         let mut rng = fastrand::Rng::with_seed(config.seed);
-        let body = Body::new(&Object::soft_ball(), &mut rng);
+        let body = Body::new(&Object::of(config.scenario), &mut rng);
         let mut touch = Touch::new(&mut rng);
         touch.measure(&mut rng);
         let mut hand = Self {
@@ -342,7 +342,7 @@ impl SimHand {
         match self.config.scenario {
             Scenario::Grasp => self.script_grasp(),
             Scenario::Faults => self.script_faults(),
-            Scenario::Idle | Scenario::Extremes => {}
+            Scenario::Idle | Scenario::Rigid | Scenario::Fragile | Scenario::Extremes => {}
         }
         if self.is_off() {
             if self.now_ms == POWER_OFF_MS.start {

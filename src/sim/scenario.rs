@@ -10,6 +10,10 @@ pub enum Scenario {
     /// Nothing; a soft ball waits between the fingers.
     #[default]
     Idle,
+    /// Nothing; a block waits as hard as the one that the overshoot was measured on.
+    Rigid,
+    /// Nothing; a cup waits that breaks if it is pressed too hard, and is replaced when the hand opens.
+    Fragile,
     /// As if another controller grasped the ball again and again.
     Grasp,
     /// Every status code and every fault bit, in turn.
@@ -20,7 +24,7 @@ pub enum Scenario {
 
 /// A scenario's name that does not exist.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("'{got}' is no scenario: choose idle, grasp, faults or extremes")]
+#[error("'{got}' is no scenario: choose idle, rigid, fragile, grasp, faults or extremes")]
 pub struct UnknownScenario {
     /// What was given.
     pub got: String,
@@ -28,13 +32,22 @@ pub struct UnknownScenario {
 
 impl Scenario {
     /// All, with the quiet one first.
-    pub const ALL: [Self; 4] = [Self::Idle, Self::Grasp, Self::Faults, Self::Extremes];
+    pub const ALL: [Self; 6] = [
+        Self::Idle,
+        Self::Rigid,
+        Self::Fragile,
+        Self::Grasp,
+        Self::Faults,
+        Self::Extremes,
+    ];
 
     /// Stable lower-case name, as in endpoints.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Idle => "idle",
+            Self::Rigid => "rigid",
+            Self::Fragile => "fragile",
             Self::Grasp => "grasp",
             Self::Faults => "faults",
             Self::Extremes => "extremes",
