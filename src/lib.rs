@@ -11,7 +11,7 @@
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
 //! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop; finding hands; what went over the wire |
 //! | 2 | [`sim`] | a hand that answers on the wire |
-//! | 3 | [`app`] | everything the program knows, without drawing |
+//! | 3 | [`app`] | everything the program knows, without drawing; grasp trials and what is measured of them |
 //! | 4 | [`ui`] | the window: reads state, returns actions |
 //! | 5 | [`shell`] | program and window as one thing |
 //! | 6 | `desktop`, [`headless`] | the real window; pictures without a display |

@@ -32,6 +32,7 @@ pub mod state;
 pub mod tare;
 #[cfg(test)]
 mod tests;
+pub mod trial;
 
 pub use action::Action;
 pub use connect::SimDial;

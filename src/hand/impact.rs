@@ -16,6 +16,8 @@ const PEAKS: [[f64; 5]; 3] = [
     [36.0, 336.0, 637.0, 1108.0, 1640.0],
     [36.0, 3263.0, 2917.0, 2865.0, 2502.0],
 ];
+/// The same for a fast approach that went on at speed 25 before the contact.
+const TWO_STAGE: [f64; 5] = [2.0, 25.0, 39.0, 71.0, 92.0];
 /// Speeds and the row they fall on. 100 and 500 were measured at 500 g only, and place the speeds between rows.
 const ROWS: [(f64, f64); 5] = [
     (25.0, 0.0),
@@ -40,6 +42,18 @@ pub fn overshoot_g(speed: f64, threshold_g: f64) -> f64 {
     let slower = (speed / 25.0).clamp(0.0, 1.0);
     let lighter = (threshold_g / 100.0).clamp(0.0, 1.0);
     peak * slower * lighter
+}
+
+/// The same where the finger came fast and was slowed down to `speed` before the contact.
+#[must_use]
+pub fn two_stage_overshoot_g(speed: f64, threshold_g: f64) -> f64 {
+    let [(slowest, _), ..] = ROWS;
+    if speed > slowest {
+        return overshoot_g(speed, threshold_g);
+    }
+    let peak = interpolate(THRESHOLDS.into_iter().zip(TWO_STAGE), threshold_g);
+    let lighter = (threshold_g / 100.0).clamp(0.0, 1.0);
+    peak * (speed / slowest).clamp(0.0, 1.0) * lighter
 }
 
 /// An overshoot that a person should know of before it happens: as much again as the gentle threshold.
@@ -111,6 +125,14 @@ mod tests {
         }
         assert!((overshoot_g(100.0, 500.0) - 202.0).abs() < 5.0);
         assert!((overshoot_g(500.0, 500.0) - 2466.0).abs() < 30.0);
+    }
+
+    #[test]
+    fn a_fast_approach_that_ends_slowly_has_a_row_of_its_own() {
+        for (threshold, peak) in [(100.0, 2.0), (500.0, 39.0), (1000.0, 92.0)] {
+            assert!((two_stage_overshoot_g(25.0, threshold) - peak).abs() < 1e-6);
+        }
+        assert!((two_stage_overshoot_g(250.0, 500.0) - 637.0).abs() < 1e-6);
     }
 
     #[test]

@@ -132,6 +132,8 @@ impl Force {
 impl Speed {
     /// Where a person starts: slow enough that the threshold means something.
     pub const GENTLE: Self = Self(200);
+    /// The slowest at which overshoot was measured ([`crate::hand::impact`]): a few grams.
+    pub const SLOWEST_MEASURED: Self = Self(25);
 }
 
 /// What a joint is told to do. There is no default, and "leave alone" is said in words.

@@ -1,6 +1,6 @@
 //! One drive: motion, contact, current, heat, faults, in steps of one millisecond. Knows no registers.
 
-use crate::hand::impact::{RIGID_G_PER_COUNT, overshoot_g};
+use crate::hand::impact::{RIGID_G_PER_COUNT, overshoot_g, two_stage_overshoot_g};
 use crate::hand::{Fault, Faults, Status};
 use arrayvec::ArrayVec;
 
@@ -41,6 +41,8 @@ const COOL: f64 = 70.0;
 const PEAK_MS: u32 = 30;
 /// Time constant of a grip's relaxing after that, s.
 const RELAX_S: f64 = 0.15;
+/// A finger that was so many times faster than it is at the contact was slowed down for it.
+const FAST_APPROACH: f64 = 2.0;
 /// A joint this near to its open end makes room for another object, counts.
 const OPEN_WITHIN: f64 = 20.0;
 
@@ -104,6 +106,8 @@ pub struct Drive {
     over_current_ms: u32,
     contact: Option<Contact>,
     broken: bool,
+    /// The fastest since it closes, counts/s.
+    fastest: f64,
     jam: Option<f64>,
     grip: f64,
 }
@@ -132,6 +136,7 @@ impl Drive {
             over_current_ms: 0,
             contact: None,
             broken: false,
+            fastest: 0.0,
             jam: None,
             grip: 1.0,
         }
@@ -322,6 +327,9 @@ impl Drive {
                 if self.may_move(to) {
                     self.pushing_ms = 0;
                     self.over_current_ms = 0;
+                    if to < self.position {
+                        self.fastest = 0.0;
+                    }
                     self.phase = Phase::Moving { to };
                 }
             }
@@ -346,6 +354,7 @@ impl Drive {
         let wanted = way.signum() * top.min((2.0 * RAMP * way.abs()).sqrt());
         let change = (wanted - self.velocity).clamp(-RAMP * STEP_S, RAMP * STEP_S);
         self.velocity += change;
+        self.fastest = self.fastest.max(self.velocity);
         self.status = if way > 0.0 {
             Status::Grasping
         } else {
@@ -406,7 +415,12 @@ impl Drive {
             return;
         };
         let stiffness = (contact.stiffness * self.grip).max(0.01);
-        let over = overshoot_g(self.velocity / COUNTS_PER_SPEED, threshold_g);
+        let speed = self.velocity / COUNTS_PER_SPEED;
+        let over = if self.fastest >= FAST_APPROACH * self.velocity {
+            two_stage_overshoot_g(speed, threshold_g)
+        } else {
+            overshoot_g(speed, threshold_g)
+        };
         let met = contact.position() + threshold_g / stiffness;
         let rest_g = 0.92 * threshold_g + 0.05 * over * stiffness / RIGID_G_PER_COUNT;
         self.status = Status::ForceReached;

@@ -1,0 +1,208 @@
+//! Which setting is best by a stated criterion, over all trials of it. Pure.
+
+use crate::app::trial::detect::median;
+use crate::app::trial::metrics::JointMetrics;
+use crate::app::trial::plan::Setting;
+use crate::app::trial::series::{Kind, Trial};
+use serde::Serialize;
+
+/// What is wanted of a setting. A setting counts if every trial of it ended well, touched with every joint, and, where
+/// the criterion asks for it, stayed within its bounds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Criterion {
+    /// The least overshoot, with at least this steady force, g.
+    LeastOvershoot {
+        /// Steady force wanted, g.
+        steady_g: f64,
+    },
+    /// The shortest time to the stop, with at most this overshoot and at least this steady force, g.
+    Fastest {
+        /// Overshoot allowed, g.
+        overshoot_g: f64,
+        /// Steady force wanted, g.
+        steady_g: f64,
+    },
+}
+
+/// Middle, lowest and highest of a metric over repeats and joints.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// The median.
+    pub median: f64,
+    /// The lowest.
+    pub min: f64,
+    /// The highest.
+    pub max: f64,
+}
+
+impl Spread {
+    /// Of some values; `None` of nothing.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Option<Self> {
+        Some(Self {
+            median: median(values)?,
+            min: values.iter().copied().reduce(f64::min)?,
+            max: values.iter().copied().reduce(f64::max)?,
+        })
+    }
+}
+
+/// What the trials of one setting come to. Each spread is known only if every joint of every trial told it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Score {
+    /// The setting.
+    pub setting: Setting,
+    /// Trials of it.
+    pub trials: usize,
+    /// Trials of it that ended early.
+    pub aborted: usize,
+    /// Overshoot, g.
+    pub overshoot_g: Option<Spread>,
+    /// Steady force, g.
+    pub steady_force_g: Option<Spread>,
+    /// Time to the stop, s.
+    pub time_to_stop_s: Option<Spread>,
+    /// Whether a peak was beyond the sensor's end.
+    pub clipped: bool,
+}
+
+/// The settings that were tried, in the order of first trial; looking for the contact does not count.
+#[must_use]
+pub fn scores<'a>(trials: impl IntoIterator<Item = &'a Trial>) -> Vec<Score> {
+    let mut by_setting: Vec<(Setting, Vec<&Trial>)> = Vec::new();
+    let tried = trials.into_iter().filter(|trial| trial.kind != Kind::Probe);
+    for trial in tried {
+        match by_setting.iter_mut().find(|(own, _)| *own == trial.setting) {
+            Some((_, all)) => all.push(trial),
+            None => by_setting.push((trial.setting, vec![trial])),
+        }
+    }
+    let score = |(setting, trials): &(Setting, Vec<&Trial>)| score(*setting, trials);
+    by_setting.iter().map(score).collect()
+}
+
+fn score(setting: Setting, trials: &[&Trial]) -> Score {
+    let joints = || trials.iter().flat_map(|trial| &trial.metrics.joints);
+    let spread = |value: fn(&JointMetrics) -> Option<f64>| {
+        let values: Option<Vec<f64>> = joints().map(value).collect();
+        Spread::of(&values?)
+    };
+    Score {
+        setting,
+        trials: trials.len(),
+        aborted: trials
+            .iter()
+            .filter(|trial| trial.aborted.is_some())
+            .count(),
+        overshoot_g: spread(|joint| joint.overshoot_g),
+        steady_force_g: spread(|joint| joint.steady_force_g),
+        time_to_stop_s: spread(|joint| joint.time_to_stop_s),
+        clipped: joints().any(|joint| joint.clipped == Some(true)),
+    }
+}
+
+/// The best setting, judged by the worst of its trials; the gentler one of two that are equal. `None` if none will do.
+#[must_use]
+pub fn best(scores: &[Score], criterion: Criterion) -> Option<&Score> {
+    let rated = scores
+        .iter()
+        .filter_map(|score| Some((score, rate(score, criterion)?)));
+    let least = rated.min_by(|(a, x), (b, y)| x.total_cmp(y).then(a.setting.cmp(&b.setting)));
+    least.map(|(score, _)| score)
+}
+
+/// The number that is to be small; `None` if the setting does not count.
+fn rate(score: &Score, criterion: Criterion) -> Option<f64> {
+    if score.aborted > 0 {
+        return None;
+    }
+    let overshoot = score.overshoot_g?.max;
+    let steady = score.steady_force_g?.min;
+    match criterion {
+        Criterion::LeastOvershoot { steady_g } => (steady >= steady_g).then_some(overshoot),
+        Criterion::Fastest {
+            overshoot_g,
+            steady_g,
+        } => {
+            let fits = steady >= steady_g && overshoot <= overshoot_g && !score.clipped;
+            score.time_to_stop_s.filter(|_| fits).map(|time| time.max)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+    use super::*;
+    use crate::app::trial::curve::JointCurves;
+    use crate::app::trial::metrics::{Span, TrialMetrics, measure_joint};
+    use crate::app::trial::recording::Recording;
+    use crate::app::trial::watch::Abort;
+    use crate::hand::{Dof, Force, Speed};
+
+    fn setting(speed: i16, force: i16) -> Setting {
+        Setting {
+            speed: Speed::nearest(speed),
+            force: Force::nearest(force),
+        }
+    }
+
+    /// A trial with this overshoot, steady force and time to the stop.
+    fn trial(setting: Setting, [overshoot, steady, stop]: [f64; 3]) -> Trial {
+        let span = Span {
+            end_s: 1.0,
+            threshold_g: 0.0,
+        };
+        let mut joint = measure_joint(Dof::Index, &JointCurves::default(), span);
+        joint.overshoot_g = Some(overshoot);
+        joint.steady_force_g = Some(steady);
+        joint.time_to_stop_s = Some(stop);
+        Trial {
+            number: 1,
+            kind: Kind::Trial { repeat: 1 },
+            setting,
+            recording: Recording::default(),
+            metrics: TrialMetrics {
+                joints: vec![joint],
+            },
+            aborted: None,
+        }
+    }
+
+    #[test]
+    fn the_least_overshoot_that_still_holds_wins_by_its_worst_trial() {
+        let trials = [
+            trial(setting(25, 100), [5.0, 90.0, 9.0]),
+            trial(setting(25, 500), [60.0, 460.0, 9.0]),
+            trial(setting(25, 500), [80.0, 450.0, 9.1]),
+            trial(setting(250, 500), [20.0, 500.0, 2.0]),
+            trial(setting(250, 500), [600.0, 500.0, 2.0]),
+        ];
+        let scores = scores(&trials);
+        let least = |steady_g| best(&scores, Criterion::LeastOvershoot { steady_g });
+        assert_eq!(least(0.0).unwrap().setting, setting(25, 100));
+        assert_eq!(least(400.0).unwrap().setting, setting(25, 500));
+        assert_eq!(least(490.0).unwrap().setting, setting(250, 500));
+        assert_eq!(least(900.0), None);
+        let fastest = Criterion::Fastest {
+            overshoot_g: 100.0,
+            steady_g: 400.0,
+        };
+        assert_eq!(best(&scores, fastest).unwrap().setting, setting(25, 500));
+    }
+
+    #[test]
+    fn what_ended_early_or_is_not_known_is_never_the_best() {
+        let mut early = trial(setting(25, 500), [1.0, 500.0, 1.0]);
+        early.aborted = Some(Abort::Person);
+        let mut unknown = trial(setting(50, 500), [1.0, 500.0, 1.0]);
+        unknown.metrics.joints[0].overshoot_g = None;
+        let mut probe = trial(setting(75, 500), [1.0, 500.0, 1.0]);
+        probe.kind = Kind::Probe;
+        let scores = scores(&[early, unknown, probe]);
+        assert_eq!(scores.len(), 2);
+        let all = Criterion::LeastOvershoot { steady_g: 0.0 };
+        assert_eq!(best(&scores, all), None);
+        assert_eq!(scores[1].overshoot_g, None);
+    }
+}

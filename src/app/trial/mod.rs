@@ -1,0 +1,25 @@
+//! Grasp trials: what is to be tried, its running, its recording, what was measured, its files. Draws nothing.
+//!
+//! [`plan`] says what is tried; [`series`] runs it on virtual or real time and gives what to send ([`runner`] one
+//! trial, [`watch`] what ends it); [`recording`] keeps what was read; [`metrics`] computes from it, without looking at
+//! the hand again; [`best`] finds the best setting.
+
+pub mod best;
+pub mod curve;
+pub mod detect;
+pub mod metrics;
+#[cfg(test)]
+mod metrics_tests;
+pub mod plan;
+pub mod recording;
+pub mod runner;
+pub mod series;
+pub mod slip;
+pub mod watch;
+
+pub use best::{Criterion, Score};
+pub use metrics::{JointMetrics, TrialMetrics, measure};
+pub use plan::{Approach, Grid, Limits, PlanError, Setting, TrialPlan, Until};
+pub use recording::{Mark, Recording, What};
+pub use series::{Kind, Order, Series, Trial};
+pub use watch::{Abort, LinkView};
