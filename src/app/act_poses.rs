@@ -11,7 +11,9 @@ use crate::app::poses::player::{End, Pace, Player, cues};
 use crate::app::poses::preview::Preview;
 use crate::app::state::Freshness;
 use crate::hand::command::stored_gesture;
-use crate::hand::{Angle, Dof, Force, HandCommand, Moment, PerDof, Speed, Target, UserGesture};
+use crate::hand::{
+    Angle, Dof, Force, GestureStore, HandCommand, Moment, PerDof, Speed, Target, UserGesture,
+};
 use crate::link::{LinkState, Outcome, Request};
 
 /// Where joints go and within which limits; what is `None` stays as it is.
@@ -234,6 +236,9 @@ impl Desk {
 
     /// Stores six angles under a number of the user's, then reads them back.
     pub(crate) fn store_gesture(&mut self, to: UserGesture, angles: PerDof<Angle>, now: Moment) {
+        if self.store_is_off(now) {
+            return;
+        }
         self.state.gestures.upload = Some(Upload {
             gesture: to,
             wanted: angles,
@@ -245,8 +250,20 @@ impl Desk {
 
     /// Reads what is stored under a number of the user's.
     pub(crate) fn read_gesture(&mut self, gesture: UserGesture, now: Moment) {
+        if self.store_is_off(now) {
+            return;
+        }
         let span = stored_gesture(gesture);
         self.request(Request::Read(span), Asked::ReadGesture(gesture), now);
+    }
+
+    /// Says so if the person wants no address touched that the manual does not list.
+    fn store_is_off(&mut self, now: Moment) -> bool {
+        let off = self.state.settings.gesture_store == GestureStore::Off;
+        if off {
+            self.state.notices.push(now, NoticeKind::GestureStoreOff);
+        }
+        off
     }
 
     /// A gesture was written or read: the next thing to do, or the verdict.

@@ -227,3 +227,24 @@ fn a_stored_gesture_is_written_read_back_and_judged() {
         assert_eq!(verdict(&bench), want);
     }
 }
+
+#[test]
+fn a_gesture_is_neither_stored_nor_read_while_that_is_off() {
+    let mut bench = Bench::monitoring(420);
+    bench.desk.state.settings.gesture_store = crate::hand::GestureStore::Off;
+    let gesture = UserGesture::nearest(14);
+    bench
+        .desk
+        .store_gesture(gesture, PerDof::splat(Angle::MAX), bench.now());
+    bench.desk.read_gesture(gesture, bench.now());
+    assert_eq!(bench.told(), []);
+    assert!(bench.desk.state.gestures.upload.is_none());
+    let told = bench
+        .desk
+        .state
+        .notices
+        .iter()
+        .next()
+        .map(|notice| (notice.what.clone(), notice.count));
+    assert_eq!(told, Some((NoticeKind::GestureStoreOff, 2)));
+}

@@ -8,7 +8,8 @@ use crate::app::save::Content;
 use crate::app::scan::ScanWish;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme};
 use crate::hand::{
-    Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, PerDof, Speed, UserGesture,
+    Angle, Dof, Finger, Force, Gesture, GestureRoute, GestureStore, Moment, PerDof, Speed,
+    UserGesture,
 };
 use crate::transport::Endpoint;
 
@@ -104,6 +105,8 @@ pub enum Action {
     NameGesture(Gesture, String),
     /// How gestures are started.
     GestureRoute(GestureRoute),
+    /// Where the poses of the user's gestures are stored.
+    GestureStore(GestureStore),
     /// Clear what can be cleared; the pose is held first.
     ClearErrors,
     /// Talk to this hand from now on.

@@ -91,6 +91,8 @@ pub enum NoticeKind {
     },
     /// Gestures are switched off. Nothing was sent.
     GesturesOff,
+    /// Storing gestures is switched off. Nothing was sent.
+    GestureStoreOff,
     /// A pose cannot be kept while an angle is unknown or old.
     PoseUnknown,
     /// A file of poses was added.
@@ -186,6 +188,7 @@ impl NoticeKind {
             | Self::RequestFailed { .. }
             | Self::GestureWouldMoveLocked { .. }
             | Self::GesturesOff
+            | Self::GestureStoreOff
             | Self::PoseUnknown
             | Self::PosesRefused { .. }
             | Self::PosesIgnored { .. }

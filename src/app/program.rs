@@ -237,6 +237,7 @@ impl App {
                 gestures.route = route;
                 settings.gesture_route = route;
             }
+            Action::GestureStore(store) => settings.gesture_store = store,
             Action::Theme(theme) => settings.theme = theme,
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,

@@ -1,6 +1,6 @@
 //! What is kept from one start to the next. Never a setpoint.
 
-use crate::hand::GestureRoute;
+use crate::hand::{GestureRoute, GestureStore};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -205,6 +205,8 @@ pub struct Settings {
     pub plots: ShownPlots,
     /// How gestures are started.
     pub gesture_route: GestureRoute,
+    /// Where the poses of the user's gestures are stored.
+    pub gesture_store: GestureStore,
     /// Names that a person gave to gestures, by number.
     pub gesture_names: BTreeMap<String, String>,
     /// Keys of a newer version, kept as they are.

@@ -26,6 +26,20 @@ pub enum GestureRoute {
     Off,
 }
 
+/// Where the poses of the user's gestures are stored, because the manual gives USER_DEF_ANGLE no address (protocol
+/// choice 11).
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum GestureStore {
+    /// At 1066 + (K - 14) * 12, as three independent drivers have it.
+    #[default]
+    Register1066,
+    /// Nowhere: addresses that the manual does not list are neither read nor written.
+    Off,
+}
+
 /// One thing that a person can ask of a hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HandCommand {

@@ -2,7 +2,8 @@
 
 use crate::app::action::Action;
 use crate::app::gestures::Verdict;
-use crate::hand::{Angle, PerDof, UserGesture};
+use crate::hand::command::stored_gesture;
+use crate::hand::{Angle, GestureStore, PerDof, UserGesture};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_top};
 use crate::ui::hand_picture;
 use crate::ui::look::Pane;
@@ -47,6 +48,7 @@ impl GestureEditor {
         self.take_read(pane);
         let mut left = rect;
         self.number_ui(ui, take_top(&mut left, theme::CONTROL), pane);
+        self.store_ui(ui, take_top(&mut left, theme::CONTROL), pane);
         let six = take_top(&mut left, 6.0 * (theme::CONTROL + theme::STEP));
         let picture = six.with_min_x(six.left() + 96.0 + NUMBER + 2.0 * theme::GAP);
         let shares = self
@@ -58,9 +60,63 @@ impl GestureEditor {
         }
         self.fill_ui(ui, take_top(&mut left, theme::CONTROL), pane);
         self.send_ui(ui, take_top(&mut left, theme::CONTROL_LARGE), pane);
-        self.verdict_ui(ui, take_top(&mut left, 2.0 * theme::CONTROL), pane);
-        let text = pane.look.say(poses::USER_GESTURE_UNKNOWN);
-        wrapped(ui, left, pane, text);
+        self.verdict_ui(ui, take_top(&mut left, theme::CONTROL), pane);
+        let text = match pane.state.settings.gesture_store {
+            GestureStore::Register1066 => {
+                let known = pane.look.say(poses::STORE_KNOWN);
+                format!("{known}\n{}", pane.look.say(poses::STORE_UNKNOWN))
+            }
+            GestureStore::Off => pane.look.say(poses::STORE_OFF_TIP).to_owned(),
+        };
+        wrapped(ui, left, pane, &text);
+    }
+
+    /// Where the angles of this gesture lie, and whether such addresses are used at all.
+    fn store_ui(&self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let now = pane.state.settings.gesture_store;
+        let text = look.say(poses::STORE_CAPTION);
+        let place = take_left(&mut row, 96.0);
+        Label::new(text, look.palette.text).put(ui, place);
+        for (text, store) in [
+            (poses::STORE_1066, GestureStore::Register1066),
+            (poses::STORE_OFF, GestureStore::Off),
+        ] {
+            let text = look.say(text);
+            let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP;
+            let place = take_left(&mut row, width);
+            row.min.x -= theme::STEP;
+            let name = format!("{}: {text}", look.say(poses::STORE_NAME));
+            let button = Button::new(text, look.say(poses::STORE_TIP)).named(&name);
+            let button = button.choice(now == store);
+            if button
+                .put(ui, look, place, Id::unique(("gesture store", store)))
+                .clicked()
+            {
+                pane.actions.push(Action::GestureStore(store));
+            }
+        }
+        if now == GestureStore::Register1066 {
+            let span = stored_gesture(self.gesture);
+            let last = span.end().saturating_sub(1);
+            let text = format!("{} {}..{last}", look.say(poses::STORE_AT), span.address);
+            row.min.x += theme::STEP;
+            if controls::text_width(ui, &text, theme::small()) > row.width() {
+                let (_, short) = text.split_once(' ').unwrap_or_default();
+                Label::new(short, look.palette.faint).small().put(ui, row);
+            } else {
+                Label::new(&text, look.palette.faint).small().put(ui, row);
+            }
+        }
+    }
+
+    /// Why the hand's memory of gestures cannot be reached now.
+    fn unreachable(pane: &Pane<'_>) -> Option<&'static str> {
+        let look = pane.look;
+        if pane.state.settings.gesture_store == GestureStore::Off {
+            return Some(look.say(poses::STORE_OFF_TIP));
+        }
+        (!pane.state.link.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE))
     }
 
     fn take_read(&mut self, pane: &Pane<'_>) {
@@ -110,10 +166,9 @@ impl GestureEditor {
         {
             self.angles = now.map(Some);
         }
-        let offline = (!pane.state.link.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
         let read = Button::new(look.say(poses::READ_HAND), look.say(poses::READ_HAND_TIP));
         if read
-            .disabled(offline)
+            .disabled(Self::unreachable(pane))
             .put(ui, look, row, Id::unique("gesture read"))
             .clicked()
         {
@@ -138,9 +193,10 @@ impl GestureEditor {
         {
             pane.actions.push(Action::TryAngles(angles));
         }
-        let offline = (!pane.state.link.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
         let upload = Button::new(look.say(poses::UPLOAD), look.say(poses::UPLOAD_TIP));
-        let upload = upload.disabled(missing.or(offline)).weight(Weight::Strong);
+        let upload = upload
+            .disabled(Self::unreachable(pane).or(missing))
+            .weight(Weight::Strong);
         if upload
             .put(ui, look, row, Id::unique("gesture upload"))
             .clicked()

@@ -2,8 +2,9 @@
 
 use crate::app::action::Action;
 use crate::hand::{Gesture, GestureRoute};
-use crate::ui::controls::{self, Button, Label, Weight, take_right, take_top};
-use crate::ui::look::{Look, Pane};
+use crate::ui::controls::{self, Button, Weight, take_right, take_top};
+use crate::ui::gesture_editor::wrapped;
+use crate::ui::look::Pane;
 use crate::ui::pose_tiles::gesture_tile_ui;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
@@ -37,12 +38,15 @@ const fn route_text(route: GestureRoute) -> Text {
 impl GestureView {
     /// The view of its own: large tiles.
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        let look = pane.look;
         let mut body = rect;
         let mut head = take_top(&mut body, theme::CONTROL);
         self.naming_ui(ui, &mut head, pane);
         route_ui(ui, head, pane);
-        hint_ui(ui, take_top(&mut body, theme::CONTROL), look);
+        hint_ui(
+            ui,
+            take_top(&mut body, 2.0 * theme::CONTROL - theme::GAP),
+            pane,
+        );
         let columns: u8 = if body.width() < 640.0 { 4 } else { 5 };
         let rows = f32::from(Gesture::MAX.get().div_ceil(columns));
         let gap = theme::GAP;
@@ -137,17 +141,21 @@ impl GestureView {
     }
 }
 
-fn hint_ui(ui: &mut Ui, row: Rect, look: Look) {
+/// Which numbers are whose, and what is known of the way they are started.
+fn hint_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    let look = pane.look;
+    let known = match pane.state.settings.gesture_route {
+        GestureRoute::Register1008 => panels::KNOWN_1008,
+        GestureRoute::ActionLibrary => panels::KNOWN_LIBRARY,
+        GestureRoute::Off => panels::KNOWN_OFF,
+    };
     let hint = format!(
-        "{} · {} · {}",
+        "{} · {}. {}",
         look.say(panels::GESTURES_FIXED),
         look.say(panels::GESTURES_USER),
-        look.say(panels::GESTURES_NOT_LISTED)
+        look.say(known)
     );
-    Label::new(&hint, look.palette.faint)
-        .small()
-        .put(ui, row)
-        .on_hover_text(look.say(panels::GESTURES_TIP));
+    wrapped(ui, rect, pane, &hint);
 }
 
 fn grid(
@@ -190,7 +198,11 @@ fn route_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
                 });
             shown
                 .response
-                .on_hover_text(look.say(panels::GESTURE_ROUTE_TIP))
+                .on_hover_text(format!(
+                    "{}\n{}",
+                    look.say(panels::GESTURE_ROUTE_TIP),
+                    look.say(panels::GESTURES_TIP)
+                ))
                 .accessible_name(name);
         },
     );

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::poses::edit::{LibraryEdit, PoseEdit};
-use crate::app::poses::library::PoseId;
+use crate::app::poses::library::{NAME_CHARS_MAX, Pose, PoseId};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::gesture_editor::GestureEditor;
 use crate::ui::gestures::GestureView;
@@ -13,10 +13,13 @@ use crate::ui::reorder::{Along, Reorder};
 use crate::ui::sequence_view::{SequenceView, scrolled};
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Id, Rect, Ui, vec2};
+use egui::{Id, Rect, TextEdit, Ui, vec2};
 
 /// The least size of a tile.
 const TILE: egui::Vec2 = vec2(112.0, 158.0);
+
+/// Width of the field that finds poses.
+const FIND: f32 = 200.0;
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,6 +52,8 @@ pub(crate) struct PoseView {
     gestures: GestureView,
     editor: GestureEditor,
     order: Reorder,
+    /// Only poses with these words are shown.
+    find: String,
     typed: Option<(Id, String)>,
 }
 
@@ -64,7 +69,12 @@ impl PoseView {
         match self.section {
             Section::InHand => self.in_hand_ui(ui, body, pane),
             Section::Mine | Section::Sequences => {
-                tools_ui(ui, take_top(&mut body, theme::CONTROL), pane);
+                let mut row = take_top(&mut body, theme::CONTROL);
+                tools_ui(ui, &mut row, pane);
+                let searched = !pane.state.poses.library.poses.is_empty();
+                if searched && self.section == Section::Mine {
+                    self.find_ui(ui, row, pane);
+                }
                 if self.section == Section::Sequences {
                     self.sequences.ui(ui, body, pane, &mut self.typed);
                 } else {
@@ -98,6 +108,30 @@ impl PoseView {
         self.editor.ui(ui, editor, pane);
     }
 
+    /// The field that finds poses by name and tag, as far as there is room for it.
+    fn find_ui(&mut self, ui: &mut Ui, row: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let place = row.with_max_x(row.right().min(row.left() + FIND));
+        let edit = TextEdit::singleline(&mut self.find)
+            .id(Id::unique("find poses"))
+            .font(theme::body())
+            .hint_text(look.say(poses::FIND_HINT))
+            .char_limit(NAME_CHARS_MAX)
+            .clip_text(true)
+            .align(egui::Align2::LEFT_CENTER)
+            .margin(egui::Margin::symmetric(8, 0))
+            .min_size(place.size())
+            .desired_width(place.width() - 16.0);
+        let response = ui.put(place, edit);
+        let value = self.find.clone();
+        response.widget_info(|| {
+            let name = look.say(poses::FIND);
+            let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, name);
+            info.current_text_value = Some(value.clone());
+            info
+        });
+    }
+
     fn mine_ui(&mut self, ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
         let state = pane.state;
         let library = &state.poses.library;
@@ -109,12 +143,20 @@ impl PoseView {
         let columns = ((body.width() + theme::GAP) / (TILE.x + theme::GAP))
             .floor()
             .max(1.0);
+        let words = self.find.trim().to_lowercase();
+        let poses = library.poses.iter().enumerate();
+        let shown: Vec<(usize, &Pose)> = poses.filter(|(_, pose)| pose.has(&words)).collect();
+        if shown.is_empty() {
+            let text = pane.look.say(poses::FIND_NONE);
+            let place = body.with_max_y(body.top() + theme::CONTROL_LARGE);
+            Label::new(text, pane.look.palette.muted).put(ui, place);
+        }
         scrolled(ui, body, "poses", |ui, room| {
             let width = (room - theme::STEP * (columns - 1.0)) / columns;
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::GAP);
                 self.order.begin();
-                for pose in &library.poses {
+                for (_, pose) in &shown {
                     let size = vec2(width.floor(), TILE.y);
                     let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
                     self.order.place(ui, place, Id::unique(("pose", pose.id)));
@@ -124,10 +166,10 @@ impl PoseView {
                 }
                 let moved = self.order.end(ui, pane.look, Along::Row);
                 if let Some((from, to)) = moved
-                    && let Some(pose) = library.poses.get(from)
+                    && let (Some((_, pose)), Some((to, _))) = (shown.get(from), shown.get(to))
                 {
                     self.chosen = Some(pose.id);
-                    let edit = LibraryEdit::Pose(pose.id, PoseEdit::Move(to));
+                    let edit = LibraryEdit::Pose(pose.id, PoseEdit::Move(*to));
                     pane.actions.push(Action::Library(edit));
                 }
             });
@@ -146,14 +188,14 @@ impl PoseView {
     }
 }
 
-fn tools_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
+fn tools_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let book = &pane.state.poses;
     let nothing = book.library.is_empty().then(|| look.say(poses::NOTHING));
     let no_undo = (!book.can_undo()).then(|| look.say(poses::UNDO_NONE));
     if !book.library.poses.is_empty() {
         let capture = Button::new(look.say(poses::CAPTURE), look.say(poses::CAPTURE_TIP));
-        capture_button(ui, &mut row, pane, capture.weight(Weight::Strong));
+        capture_button(ui, row, pane, capture.weight(Weight::Strong));
     }
     for (text, tip, disabled, action) in [
         (
@@ -173,7 +215,7 @@ fn tools_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
         let words = look.say(text);
         let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
         let button = Button::new(words, look.say(tip)).disabled(disabled);
-        let place = take_right(&mut row, width);
+        let place = take_right(row, width);
         if button
             .put(ui, look, place, Id::unique(("poses", text.en)))
             .clicked()

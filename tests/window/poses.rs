@@ -345,3 +345,54 @@ fn a_drag_that_is_stopped_by_esc_leaves_the_order() {
     bench.drag_and_press(from.center(), to.center(), Key::Escape);
     assert_eq!(pose_names(&bench), ["Pose", "Pose 2"]);
 }
+
+#[test]
+fn storing_gestures_can_be_switched_off_and_what_is_known_is_said_beside_it() {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    bench.click("Stored in the hand");
+    bench.run(60);
+    enter(&mut bench, "User gesture", "20");
+    assert!(bench.shows("bytes 1138..1149"));
+    assert!(
+        !bench
+            .texts_with("Not known: whether this firmware keeps")
+            .is_empty()
+    );
+    bench.click("Where gestures are stored: Off");
+    bench.run(60);
+    for button in ["Upload", "Read"] {
+        assert!(bench.is_disabled(Role::Button, button), "{button}");
+    }
+    assert!(bench.texts_with("1138").is_empty());
+    bench.click("From the hand");
+    bench.run(60);
+    assert!(bench.is_disabled(Role::Button, "Upload"));
+    bench.click("Where gestures are stored: From 1066");
+    bench.run(60);
+    assert!(!bench.is_disabled(Role::Button, "Upload"));
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn poses_are_found_by_name_and_tag_and_put_in_order_among_those_that_are_found() {
+    let mut bench = with_sequence();
+    bench.click("My poses");
+    bench.run(60);
+    bench.click("Capture");
+    bench.run(60);
+    bench.click("Pose Pose");
+    bench.run(60);
+    enter(&mut bench, "Tags", "Pinch, small");
+    bench.click("Pose Pose 3");
+    bench.run(60);
+    enter(&mut bench, "Tags", "pinch");
+    bench.type_into("Find poses", "PINCH");
+    assert!(bench.shows("Pose Pose") && bench.shows("Pose Pose 3") && !bench.shows("Pose Pose 2"));
+    bench.drag_to("Pose Pose 3", "Pose Pose");
+    assert_eq!(pose_names(&bench), ["Pose 3", "Pose", "Pose 2"]);
+    bench.type_into("Find poses", "nowhere");
+    assert!(bench.shows("No pose has these words in its name or tags."));
+    bench.type_into("Find poses", "e 2");
+    assert!(bench.shows("Pose Pose 2") && !bench.shows("Pose Pose 3"));
+}

@@ -100,6 +100,15 @@ pub struct Pose {
 }
 
 impl Pose {
+    /// True if these words, in lower case, stand in its name or in one of its tags. No words stand everywhere.
+    #[must_use]
+    pub fn has(&self, words: &str) -> bool {
+        let names = std::iter::once(&self.name).chain(&self.tags);
+        names
+            .into_iter()
+            .any(|name| name.to_lowercase().contains(words))
+    }
+
     /// Where each joint goes; `None` for those that are left alone.
     #[must_use]
     pub fn targets(&self) -> PerDof<Option<Angle>> {

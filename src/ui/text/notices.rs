@@ -186,6 +186,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             format!("{} {message}", said(poses::NOT_SAVED))
         }
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
+        NoticeKind::GestureStoreOff => said(poses::STORE_OFF_TIP),
         NoticeKind::SettingsNotSaved { message } => {
             format!("{} {message}", said(panels::NOTICE_NOT_SAVED))
         }

@@ -114,7 +114,6 @@ texts! {
     GESTURE: "Gesture", "手势";
     GESTURES_FIXED: "1 to 13 fixed", "1 至 13 固定";
     GESTURES_USER: "14 to 40 user", "14 至 40 用户自定";
-    GESTURES_NOT_LISTED: "address not in the manual's table", "手册寄存器表中没有此地址";
     GESTURES_TIP: "The manual describes gestures but lists no address for them. The route says which address is written.", "手册说明了手势功能，但寄存器表中没有其地址。“方式”决定写入哪个地址。";
     GESTURE_RUN_TIP: "Takes this stored pose at once.", "立即执行该手势。";
     GESTURE_ROUTE: "Gesture route", "手势方式";
@@ -122,6 +121,9 @@ texts! {
     ROUTE_1008: "Write 1008", "写 1008";
     ROUTE_LIBRARY: "Action library 2320", "动作库 2320";
     ROUTE_OFF: "Off", "关闭";
+    KNOWN_1008: "1008: not in the manual's table. Known: four drivers of this family write it. Not known: whether this firmware obeys.", "1008：手册寄存器表中没有。已知：同系列的四个驱动程序写此地址。未知：本固件是否执行。";
+    KNOWN_LIBRARY: "2320, then 2322 = 1: not in the manual's table. Known: the maker's newer demos write it. Not known: whether this firmware moves.", "先写 2320，再写 2322 = 1：手册寄存器表中没有。已知：厂家较新的示例使用此方式。未知：本固件是否动作。";
+    KNOWN_OFF: "Off: no address outside the manual's table is written, and no gesture can be started.", "关闭：不写手册寄存器表以外的地址，也无法启动手势。";
     GESTURES_OFF: "The gesture route is off.", "手势方式已关闭。";
     GESTURE_NAME_EDIT: "Name gestures", "命名手势";
     GESTURE_NAME_EDIT_TIP: "Type names for the numbers. The hand does not tell what its gestures are.", "为编号输入名称。灵巧手不会给出手势名称。";

@@ -112,7 +112,18 @@ texts! {
 
     USER_GESTURE: "User gesture", "用户手势";
     USER_GESTURE_TIP: "The number whose pose is edited, 14 to 40.", "要编辑的手势编号，14 到 40。";
-    USER_GESTURE_UNKNOWN: "The pose of gestures 14 to 40 lies at addresses that are not in the manual's table. Known from other drivers: where. Not known: whether this firmware keeps it, and whether it outlives power-off. Upload, read back, then start it to be sure.", "手势 14 至 40 的姿态地址不在手册寄存器表中。已知：其他驱动程序使用的位置。未知：本固件是否保存、断电后是否保留。请写入、读回，再执行确认。";
+    STORE_NAME: "Where gestures are stored", "手势存储位置";
+    STORE_CAPTION: "Address", "地址";
+    FIND: "Find poses", "查找姿态";
+    FIND_HINT: "name or tag", "名称或标签";
+    FIND_NONE: "No pose has these words in its name or tags.", "没有名称或标签含这些字的姿态。";
+    STORE_TIP: "The manual describes gestures 14 to 40 but lists no address for their angles. Off: none is read or written.", "手册说明了手势 14 至 40，但没有列出其角度的地址。选择关闭则不读写这些地址。";
+    STORE_1066: "From 1066", "自 1066 起";
+    STORE_OFF: "Off", "关闭";
+    STORE_OFF_TIP: "Storing gestures is off: addresses outside the manual's table are not touched.", "手势存储已关闭：不读写手册寄存器表以外的地址。";
+    STORE_AT: "bytes", "字节";
+    STORE_KNOWN: "Known: three drivers of this family keep gesture K at 1066 + 12 x (K - 14), six angles each.", "已知：同系列的三个驱动程序把手势 K 存于 1066 + 12 × (K - 14)，每个六个角度。";
+    STORE_UNKNOWN: "Not known: whether this firmware keeps and plays it, and whether it outlives power-off. Upload, see it read back, start it, and look again after power-off.", "未知：本固件是否保存并执行，断电后是否保留。请写入、读回、执行，并在断电后再次确认。";
     READ_HAND: "Read", "读取";
     READ_HAND_TIP: "Reads what the hand has stored under this number.", "读取灵巧手中该编号的内容。";
     TEST: "Test", "测试";
