@@ -14,7 +14,8 @@
 //! | 3 | [`app`] | everything the program knows, without drawing; grasp trials and what is measured of them |
 //! | 4 | [`ui`] | the window: reads state, returns actions |
 //! | 5 | [`shell`] | program and window as one thing |
-//! | 6 | `desktop`, [`headless`] | the real window; pictures without a display |
+//! | 5 | [`raster`] | what egui drew as pixels, without a GPU |
+//! | 6 | `desktop`, [`headless`] | the real window, with OpenGL or without; pictures without a display |
 //! | 7 | [`cli`] | the command line |
 //!
 //! # Threads
@@ -40,6 +41,7 @@ pub mod desktop;
 pub mod hand;
 pub mod headless;
 pub mod link;
+pub mod raster;
 pub mod shell;
 pub mod sim;
 pub mod transport;

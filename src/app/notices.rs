@@ -121,6 +121,11 @@ pub enum NoticeKind {
         /// The system's words.
         message: String,
     },
+    /// OpenGL did not start, so the program draws its window by itself.
+    DrawnWithoutOpenGl {
+        /// The system's words.
+        reason: String,
+    },
     /// Settings could not be written.
     SettingsNotSaved {
         /// The system's words.
@@ -179,6 +184,7 @@ impl NoticeKind {
             | Self::Acknowledged { .. }
             | Self::Saved { .. }
             | Self::PosesImported { .. }
+            | Self::DrawnWithoutOpenGl { .. }
             | Self::NoFileChosen => Level::Info,
             Self::NoLink(_)
             | Self::Disarmed(_)

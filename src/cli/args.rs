@@ -21,12 +21,27 @@ use std::time::Duration;
 #[derive(Debug, Parser)]
 #[command(name = "handscope", version, args_conflicts_with_subcommands = true, after_help = ENDPOINTS)]
 pub(crate) struct Cli {
+    #[command(flatten)]
+    pub(crate) window: WindowArgs,
+
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+/// How the window opens.
+#[derive(Debug, Default, Args)]
+pub(crate) struct WindowArgs {
     /// The hand to open in the window, for example tcp:192.168.11.210:6000
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Option<Endpoint>,
 
-    #[command(subcommand)]
-    pub(crate) command: Option<Command>,
+    /// Draw the window without OpenGL; taken by itself where OpenGL does not start
+    #[arg(long)]
+    pub(crate) software: bool,
+
+    /// The same, with the reason that the window then tells
+    #[arg(long, value_name = "REASON", hide = true)]
+    pub(crate) software_because: Option<String>,
 }
 
 /// What to do instead of opening the window.

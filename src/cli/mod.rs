@@ -31,9 +31,9 @@ use std::process::ExitCode;
 /// The exit status is 0 when done, 1 if it could not be done; wrong usage ends the process with 2.
 #[must_use]
 pub fn run() -> ExitCode {
-    let Cli { hand, command } = Cli::parse();
+    let Cli { command, window } = Cli::parse();
     let done = match command {
-        None => window::run(hand),
+        None => window::run(window),
         Some(command) => obey(command),
     };
     match done {

@@ -1,26 +1,60 @@
 //! The window, started from the command line; or why there is none. Draws nothing itself.
 
-use crate::transport::Endpoint;
+use crate::cli::args::WindowArgs;
 
-/// Opens the window and runs until it is closed.
+/// Opens the window and runs until it is closed. Where OpenGL does not start, one without it opens.
 #[cfg(feature = "desktop")]
-pub(crate) fn run(endpoint: Option<Endpoint>) -> anyhow::Result<()> {
+pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     use crate::app::config::{Loaded, default_path, load};
-    use crate::desktop::{self, DesktopStart};
+    use crate::desktop::{self, DesktopError, DesktopStart, Drawing};
     let settings_path = default_path();
     let loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
-    desktop::run(DesktopStart {
+    let drawing = match args.software_because {
+        Some(reason) => Drawing::InPlaceOfOpenGl(reason),
+        None if args.software => Drawing::Software,
+        None => Drawing::OpenGl,
+    };
+    let hand = args.hand.as_ref().map(ToString::to_string);
+    let ended = desktop::run(DesktopStart {
         snap: crate::headless::snap::snap,
-        endpoint,
+        endpoint: args.hand,
+        drawing,
         loaded,
         settings_path,
-    })?;
-    Ok(())
+    });
+    match ended {
+        Err(DesktopError::NoOpenGl { cause }) => restart_without_opengl(hand, &cause),
+        ended => Ok(ended?),
+    }
+}
+
+/// A process can have one event loop in its life, so the window without OpenGL opens in a new one.
+#[cfg(feature = "desktop")]
+fn restart_without_opengl(hand: Option<String>, reason: &str) -> anyhow::Result<()> {
+    use anyhow::Context as _;
+    let mut program = std::process::Command::new(std::env::current_exe()?);
+    program.args(["--software-because", reason]);
+    program.args(hand.iter().flat_map(|hand| ["--hand", hand]));
+    let failed = || {
+        format!(
+            "OpenGL does not start ({reason}), and neither does this program anew; start 'handscope --software'"
+        )
+    };
+    #[cfg(unix)]
+    {
+        use std::os::unix::process::CommandExt as _;
+        Err(program.exec()).with_context(failed)
+    }
+    #[cfg(not(unix))]
+    {
+        let ended = program.status().with_context(failed)?;
+        std::process::exit(ended.code().unwrap_or(1))
+    }
 }
 
 /// Says that this program was built without a window.
 #[cfg(not(feature = "desktop"))]
-pub(crate) fn run(_endpoint: Option<Endpoint>) -> anyhow::Result<()> {
+pub(crate) fn run(_args: WindowArgs) -> anyhow::Result<()> {
     anyhow::bail!(
         "this program was built without its window: use 'handscope snapshot' for pictures and 'handscope watch' for values"
     )

@@ -8,7 +8,7 @@ use egui::{Context, RawInput, Rect, Theme, Ui, ViewportId, ViewportInfo, pos2, v
 use serde_json::Value;
 
 use crate::headless::labels::labels_json;
-use crate::headless::raster::Raster;
+use crate::raster::Raster;
 
 /// Passes a picture may take to settle. Layout is final at the second; a live view asks for more for ever.
 const MAX_PASSES: usize = 4;

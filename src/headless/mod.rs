@@ -4,5 +4,4 @@ pub mod canvas;
 pub mod driver;
 pub mod labels;
 pub mod png;
-pub mod raster;
 pub mod snap;

@@ -187,6 +187,9 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         NoticeKind::GestureStoreOff => said(poses::STORE_OFF_TIP),
+        NoticeKind::DrawnWithoutOpenGl { reason } => {
+            format!("{} ({reason})", said(panels::NOTICE_WITHOUT_OPENGL))
+        }
         NoticeKind::SettingsNotSaved { message } => {
             format!("{} {message}", said(panels::NOTICE_NOT_SAVED))
         }

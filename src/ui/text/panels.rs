@@ -103,6 +103,7 @@ texts! {
     NOTICE_NOT_SAVED: "Settings could not be written.", "设置无法写入。";
     NOTICE_SETTINGS: "The settings file could not be read and was put aside.", "设置文件无法读取，已另存。";
     NOTICE_ENDPOINT: "The remembered hand means nothing:", "无法识别上次的连接地址：";
+    NOTICE_WITHOUT_OPENGL: "OpenGL does not start on this computer, so the window is drawn without it.", "这台电脑无法启动 OpenGL，窗口改用软件绘制。";
     DISARMED_STOP: "Not armed any more: stop was pressed.", "已取消使能：按下了停止。";
     DISARMED_PERSON: "Not armed any more.", "已取消使能。";
     DISARMED_FAULT: "Not armed any more: a drive reports a fault.", "已取消使能：驱动器报告故障。";

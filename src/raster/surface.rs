@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use egui::epaint::{ImageDelta, Primitive, Vertex};
 use egui::{ClippedPrimitive, Mesh, Rect, TextureId, TexturesDelta};
 
-use crate::headless::raster::number::{coordinate, floor};
-use crate::headless::raster::texture::Texture;
-use crate::headless::raster::triangle::{Scissor, Strip, paint};
+use crate::raster::number::{coordinate, floor};
+use crate::raster::texture::Texture;
+use crate::raster::triangle::{Scissor, Strip, paint};
 
 /// Threads that share a picture. Two: the smallest machine we build and test on has two cores.
 const THREADS: usize = 2;
@@ -31,15 +31,23 @@ impl Raster {
     /// A transparent picture of `width` x `height` pixels, without textures.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
-        let count = length(width).saturating_mul(length(height));
-        Self {
-            width,
-            height,
-            pixels: vec![[0; 4]; count],
+        let mut raster = Self {
+            width: 0,
+            height: 0,
+            pixels: Vec::new(),
             textures: HashMap::new(),
             returned: Vec::new(),
             threads: THREADS,
-        }
+        };
+        raster.resize(width, height);
+        raster
+    }
+
+    /// Gives the picture another size in pixels; what it shows is undefined until it is drawn.
+    pub fn resize(&mut self, width: u32, height: u32) {
+        let count = length(width).saturating_mul(length(height));
+        self.pixels.resize(count, [0; 4]);
+        (self.width, self.height) = (width, height);
     }
 
     /// Takes over new and changed textures and leaves `delta` empty, as egui demands for every frame, drawn or not.

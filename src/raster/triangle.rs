@@ -3,10 +3,10 @@
 use egui::Color32;
 use egui::epaint::Vertex;
 
-use crate::headless::raster::number::{
+use crate::raster::number::{
     HALF_PIXEL, SUBPIXELS, channel, coordinate, fixed, index, narrow, real,
 };
-use crate::headless::raster::texture::Texture;
+use crate::raster::texture::Texture;
 
 /// Whole pixels that may be painted: `left..right`, `top..bottom`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
