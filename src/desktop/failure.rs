@@ -1,5 +1,7 @@
 //! Why there is no window, each as one sentence with the way out. Opens none.
 
+use crate::desktop::libraries::{self, ALL, OPENGL, Package, install};
+
 /// Why there is no window.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DesktopError {
@@ -54,99 +56,14 @@ pub enum DesktopError {
     },
 }
 
-/// The names of a package in the three large families of distributions.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Package {
-    debian: &'static str,
-    fedora: &'static str,
-    arch: &'static str,
-}
-
-const OPENGL: Package = Package {
-    debian: "libgl1 libgl1-mesa-dri",
-    fedora: "mesa-libGL mesa-dri-drivers",
-    arch: "libglvnd mesa",
-};
-const ALL: Package = Package {
-    debian: "libxcursor1 libxi6 libxkbcommon-x11-0 libgl1",
-    fedora: "libXcursor libXi libxkbcommon-x11 mesa-libGL",
-    arch: "libxcursor libxi libxkbcommon-x11 libglvnd",
-};
-
-/// What a library is called in the words of those who look for it, its file, and where it comes from. The longer names
-/// first: some begin with another.
-static LIBRARIES: [(&str, &str, Package); 9] = [
-    (
-        "xkbcommon-x11",
-        "libxkbcommon-x11.so.0",
-        package("libxkbcommon-x11-0", "libxkbcommon-x11", "libxkbcommon-x11"),
-    ),
-    (
-        "xkbcommon_x11",
-        "libxkbcommon-x11.so.0",
-        package("libxkbcommon-x11-0", "libxkbcommon-x11", "libxkbcommon-x11"),
-    ),
-    (
-        "xkbcommon",
-        "libxkbcommon.so.0",
-        package("libxkbcommon0", "libxkbcommon", "libxkbcommon"),
-    ),
-    (
-        "xcursor",
-        "libXcursor.so.1",
-        package("libxcursor1", "libXcursor", "libxcursor"),
-    ),
-    ("libxi.", "libXi.so.6", package("libxi6", "libXi", "libxi")),
-    (
-        "libx11-xcb",
-        "libX11-xcb.so.1",
-        package("libx11-xcb1", "libX11-xcb", "libx11"),
-    ),
-    (
-        "libx11",
-        "libX11.so.6",
-        package("libx11-6", "libX11", "libx11"),
-    ),
-    (
-        "libwayland-client",
-        "libwayland-client.so.0",
-        package("libwayland-client0", "libwayland-client", "wayland"),
-    ),
-    (
-        "wayland library could not be loaded",
-        "libwayland-client.so.0",
-        package("libwayland-client0", "libwayland-client", "wayland"),
-    ),
-];
-
-const fn package(debian: &'static str, fedora: &'static str, arch: &'static str) -> Package {
-    Package {
-        debian,
-        fedora,
-        arch,
-    }
-}
-
-fn install(package: &Package) -> String {
-    let Package {
-        debian,
-        fedora,
-        arch,
-    } = package;
-    format!(
-        "run 'sudo apt install {debian}' (Debian, Ubuntu), 'sudo dnf install {fedora}' (Fedora) or 'sudo pacman -S {arch}' (Arch)"
-    )
-}
-
 impl DesktopError {
     /// From the words of winit, glutin, or a panic inside them.
     pub(crate) fn of(words: &str) -> Self {
         let cause = cause_of(words);
         let words = cause.to_lowercase();
         let has = |parts: &[&str]| parts.iter().any(|part| words.contains(part));
-        let missing = LIBRARIES.iter().find(|(name, ..)| words.contains(name));
-        if let Some((_, library, package)) = missing {
-            return Self::MissingLibrary { library, package };
+        if let Some(missing) = libraries::named_in(&words) {
+            return missing.into();
         }
         if has(&[
             "wayland_display",
@@ -157,10 +74,25 @@ impl DesktopError {
         ]) {
             return Self::NoDisplay { cause };
         }
+        // Winit does not say which.
+        if words.contains("shared librar")
+            && let Some(missing) = libraries::missing_here()
+        {
+            return missing.into();
+        }
         if has(&["opengl", "glutin", "libgl", "libegl", "glx", "egl "]) {
             return Self::NoOpenGl { cause };
         }
         Self::Refused { cause }
+    }
+}
+
+impl From<&'static libraries::Library> for DesktopError {
+    fn from(missing: &'static libraries::Library) -> Self {
+        Self::MissingLibrary {
+            library: missing.file,
+            package: &missing.package,
+        }
     }
 }
 

@@ -22,14 +22,18 @@ pub(crate) fn run(beginning: &Rc<Beginning>) -> Result<(), DesktopError> {
 fn failed(error: &eframe::Error) -> DesktopError {
     let words = error.to_string();
     match error {
-        eframe::Error::Glutin(_)
-        | eframe::Error::NoGlutinConfigs(..)
-        | eframe::Error::OpenGL(_) => DesktopError::NoOpenGl {
-            cause: cause_of(&words),
-        },
+        // The template of what was looked for says nothing to a person.
+        eframe::Error::NoGlutinConfigs(_, error) => no_opengl(&error.to_string()),
+        eframe::Error::Glutin(_) | eframe::Error::OpenGL(_) => no_opengl(&words),
         eframe::Error::AppCreation(_)
         | eframe::Error::Winit(_)
         | eframe::Error::WinitEventLoop(_) => DesktopError::of(&words),
+    }
+}
+
+fn no_opengl(words: &str) -> DesktopError {
+    DesktopError::NoOpenGl {
+        cause: cause_of(words),
     }
 }
 

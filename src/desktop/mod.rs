@@ -3,6 +3,7 @@
 mod dialog;
 mod failure;
 mod gl;
+mod libraries;
 mod program;
 mod screen;
 mod software;
