@@ -3,8 +3,8 @@
 use crate::ui::look::Look;
 use crate::ui::theme;
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Id, Pos2, Rect, Response, Role, Sense, Stroke,
-    StrokeKind, Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, CornerRadius, Event, FontId, Id, PointerButton, Pos2, Rect, Response, Role,
+    Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// A text at a place. Cut with dots if it is too long, and then whole in its tooltip.
@@ -302,6 +302,25 @@ pub(crate) fn titled_card(ui: &mut Ui, look: Look, rect: Rect, title: &str) -> (
         .put(ui, left);
     let rest = rest.with_min_y(rest.top() + theme::GAP);
     (right.with_min_x(right.left() + theme::GAP), rest)
+}
+
+/// True in the frame in which a place is pressed, or its button clicked by a key or a screen reader. A stop does not
+/// wait for the release, and is not lost where a slow frame sees press, release and a pointer that is gone already.
+pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
+    let down = |event: &Event| match event {
+        Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed: true,
+            ..
+        } => response.rect.contains(*pos),
+        _ => false,
+    };
+    let (went_down, by_pointer) = ui.input(|input| {
+        let went_down = input.events.iter().any(down);
+        (went_down, input.pointer.primary_released())
+    });
+    went_down || response.clicked() && !by_pointer
 }
 
 /// A round lamp.

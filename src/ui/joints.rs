@@ -140,7 +140,8 @@ fn buttons_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         }
     }
     let hold = Button::new(look.say(main::HOLD), look.say(main::HOLD_TIP));
-    if hold.put(ui, look, rest, Id::unique("hold")).clicked() {
+    let response = hold.put(ui, look, rest, Id::unique("hold"));
+    if controls::pressed(ui, &response) {
         pane.actions.push(Action::Stop);
     }
 }

@@ -47,7 +47,7 @@ fn stop_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let keys = pane.look.say(main::STOP_KEYS);
     let weak = strong.gamma_multiply(0.82);
     controls::paint_text(ui, lower, center, keys, theme::tiny(), weak);
-    if response.clicked() {
+    if controls::pressed(ui, &response) {
         pane.actions.push(Action::Stop);
     }
 }

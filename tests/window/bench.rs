@@ -238,6 +238,27 @@ impl Bench {
         self.harness.step();
     }
 
+    /// Pressed, released and left before the next frame is drawn.
+    pub fn click_within_one_frame(&mut self, name: &str) {
+        let at = self.rect(Role::Button, name).center();
+        let events = [
+            egui::Event::PointerMoved(at),
+            primary(at, true),
+            primary(at, false),
+            egui::Event::PointerMoved(egui::pos2(2.0, 2.0)),
+        ];
+        self.harness.input_mut().events.extend(events);
+        self.harness.step();
+    }
+
+    /// Pressed and held down.
+    pub fn press(&mut self, name: &str) {
+        let at = self.rect(Role::Button, name).center();
+        let events = [egui::Event::PointerMoved(at), primary(at, true)];
+        self.harness.input_mut().events.extend(events);
+        self.harness.step();
+    }
+
     /// Where a view has a button of the same name: the one that is drawn first.
     pub fn click_first_button(&mut self, name: &str) {
         let mut all = self.harness.query_all_by_role(Role::Button);
@@ -567,4 +588,13 @@ impl Bench {
 
 fn near(a: Rect, b: Rect) -> bool {
     (a.min - b.min).length() < 4.0 && (a.max - b.max).length() < 4.0
+}
+
+fn primary(pos: egui::Pos2, pressed: bool) -> egui::Event {
+    egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    }
 }
