@@ -46,6 +46,164 @@ const FOREIGN_TO_UI: [(&str, &str); 9] = [
     ("serialport", "port"),
 ];
 
+/// Calls whose arguments are lengths.
+const LENGTH_CALLS: [&str; 26] = [
+    "vec2(",
+    "pos2(",
+    "shrink(",
+    "shrink2(",
+    "expand(",
+    "expand2(",
+    "translate(",
+    "Stroke::new(",
+    "CornerRadius::same(",
+    "Margin::same(",
+    "FontId::proportional(",
+    "FontId::monospace(",
+    "FontId::new(",
+    "circle(",
+    "circle_filled(",
+    "circle_stroke(",
+    "clamp(",
+    "take_left(",
+    "take_right(",
+    "take_top(",
+    "middle(",
+    "split_left_right_at_x(",
+    "split_top_bottom_at_y(",
+    "set_width(",
+    "set_max_width(",
+    "icon_high(",
+];
+/// Halves, wholes and doubles of a length with a name.
+const FREE_NUMBERS: [&str; 7] = ["0.0", "0.5", "1.0", "2.0", "0", "1", "2"];
+/// Files of the window whose lengths have no names in the theme yet. This list only becomes shorter.
+const LENGTHS_WITHOUT_NAMES: [&str; 44] = [
+    "ui/banner.rs",
+    "ui/budget.rs",
+    "ui/connection.rs",
+    "ui/controls.rs",
+    "ui/drive_tiles.rs",
+    "ui/fault_entry.rs",
+    "ui/faults.rs",
+    "ui/fingertip.rs",
+    "ui/frame_menu.rs",
+    "ui/gesture_editor.rs",
+    "ui/gestures.rs",
+    "ui/hand_picture.rs",
+    "ui/joint_readings.rs",
+    "ui/joint_row.rs",
+    "ui/joint_tracks.rs",
+    "ui/joints.rs",
+    "ui/link_figures.rs",
+    "ui/list.rs",
+    "ui/message_log.rs",
+    "ui/note_bar.rs",
+    "ui/number.rs",
+    "ui/plot_axes.rs",
+    "ui/plot_cursors.rs",
+    "ui/plot_head.rs",
+    "ui/plot_reach.rs",
+    "ui/plots.rs",
+    "ui/pose_editor.rs",
+    "ui/pose_tiles.rs",
+    "ui/pose_view.rs",
+    "ui/quirk_sheet.rs",
+    "ui/recording_plot.rs",
+    "ui/recordings.rs",
+    "ui/scan.rs",
+    "ui/sequence_step.rs",
+    "ui/sequence_view.rs",
+    "ui/text_field.rs",
+    "ui/tip_detail.rs",
+    "ui/top_bar.rs",
+    "ui/touch.rs",
+    "ui/touch_heat.rs",
+    "ui/track.rs",
+    "ui/traffic.rs",
+    "ui/traffic_detail.rs",
+    "ui/traffic_list.rs",
+];
+
+/// Lengths that are written as numbers where they are used.
+fn nameless_lengths(code: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for call in LENGTH_CALLS {
+        for at in words(code, call) {
+            let inside = &code[at + call.len()..];
+            let end = closing(inside);
+            found.extend(plain_numbers(&inside[..end]).map(|number| format!("{call}{number}")));
+        }
+    }
+    for at in words(code, "const ") {
+        let line = code[at..].split(';').next().unwrap_or_default();
+        if let Some((_, value)) = line.split_once(": f32 =") {
+            found.extend(plain_numbers(value).map(|number| format!("const of {number}")));
+        }
+    }
+    for sign in [" + ", " - ", " += ", " -= "] {
+        for (at, _) in code.match_indices(sign) {
+            let number = number_at(&code[at + sign.len()..]);
+            if number.contains('.') && !FREE_NUMBERS.contains(&number) {
+                found.push(format!("{}{number}", sign.trim_start()));
+            }
+        }
+    }
+    found.sort();
+    found.dedup();
+    found
+        .into_iter()
+        .map(|what| format!("length without a name: {what}"))
+        .collect()
+}
+
+/// Where the bracket that is open here is closed.
+fn closing(inside: &str) -> usize {
+    let mut depth = 1_i32;
+    for (at, letter) in inside.char_indices() {
+        depth += match letter {
+            '(' | '[' | '{' => 1,
+            ')' | ']' | '}' => -1,
+            _ => 0,
+        };
+        if depth == 0 {
+            return at;
+        }
+    }
+    inside.len()
+}
+
+/// The number that the text begins with, or nothing.
+fn number_at(text: &str) -> &str {
+    let digits = |text: &str| {
+        text.find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(text.len())
+    };
+    let whole = digits(text);
+    let end = match text[whole..].strip_prefix('.') {
+        Some(rest) if whole > 0 && digits(rest) > 0 => whole + 1 + digits(rest),
+        _ => whole,
+    };
+    &text[..end]
+}
+
+/// Numbers that are neither free nor factors of something with a name.
+fn plain_numbers(code: &str) -> impl Iterator<Item = &str> {
+    let starts = code.char_indices().filter(|(at, letter)| {
+        letter.is_ascii_digit() && !code[..*at].ends_with(|c: char| is_word(c) || c == '.')
+    });
+    starts.filter_map(|(at, _)| {
+        let number = number_at(&code[at..]);
+        let before = code[..at].trim_end().chars().next_back();
+        let after = code[at + number.len()..].trim_start();
+        let factor = matches!(before, Some('*' | '/'))
+            || after.starts_with('*')
+            || after.starts_with('/')
+            || after.starts_with("..");
+        (!factor && !FREE_NUMBERS.contains(&number)).then_some(number)
+    })
+}
+
 /// What is wrong with one file; `path` is relative to `src/`, with `/`.
 fn violations(path: &str, text: &str) -> Vec<String> {
     let with_strings = blank(text, Strings::Keep);
@@ -70,10 +228,14 @@ fn violations(path: &str, text: &str) -> Vec<String> {
     if module == "ui" {
         found.extend(foreign_to_ui(&code));
     }
+    let named = path.starts_with("ui/") && !path.starts_with("ui/theme/");
+    if named && !LENGTHS_WITHOUT_NAMES.contains(&path) {
+        found.extend(nameless_lengths(&code[..tests_from]));
+    }
     if !MAY_DRAW.contains(&module) && identifiers(&code).any(is_egui) {
         found.push("egui outside ui, shell, raster, desktop, headless".to_owned());
     }
-    if THEMED.contains(&module) && path != "ui/theme.rs" {
+    if THEMED.contains(&module) && !path.starts_with("ui/theme/") {
         found.extend(colours(&code, &with_strings));
     }
     found
@@ -156,12 +318,12 @@ fn colours(code: &str, with_strings: &str) -> Vec<String> {
             let name = ident_at(&code[at + kind.len()..]);
             let constant = name.len() > 2 && name.chars().all(|c| c.is_uppercase() || c == '_');
             if name.starts_with("from_") || (constant && !COLOURLESS.contains(&name.as_str())) {
-                found.push(format!("colour {kind}{name} outside ui/theme.rs"));
+                found.push(format!("colour {kind}{name} outside ui/theme"));
             }
         }
     }
     if words(code, "hex_color!").next().is_some() {
-        found.push("colour hex_color! outside ui/theme.rs".to_owned());
+        found.push("colour hex_color! outside ui/theme".to_owned());
     }
     for (at, _) in with_strings.match_indices("\"#") {
         let after = &with_strings[at + 2..];
@@ -170,7 +332,7 @@ fn colours(code: &str, with_strings: &str) -> Vec<String> {
                 .trim_start_matches(|c: char| c.is_ascii_hexdigit())
                 .len();
         if after[digits..].starts_with('"') && [3, 4, 6, 8].contains(&digits) {
-            found.push("colour written in hex outside ui/theme.rs".to_owned());
+            found.push("colour written in hex outside ui/theme".to_owned());
         }
     }
     found
@@ -560,10 +722,62 @@ fn colours_come_from_the_theme() {
         ("ui/joint.rs", "fn f(c: Color32) {}", ""),
         ("ui/joint.rs", "let c = hex(\"#ff00aa\");", "hex"),
         ("ui/joint.rs", "let c = \"#1 finger\";", ""),
-        ("ui/theme.rs", "let c = Color32::from_rgb(1, 2, 3);", ""),
+        (
+            "ui/theme/palette.rs",
+            "let c = Color32::from_rgb(1, 2, 3);",
+            "",
+        ),
         ("raster/surface.rs", "let c = Color32::RED;", ""),
     ] {
         check(path, text, wanted);
+    }
+}
+
+#[test]
+fn lengths_have_names_in_the_theme() {
+    for (path, text, wanted) in [
+        (
+            "ui/joint.rs",
+            "fn f() { vec2(theme::GAP, 12.0); }",
+            "vec2(12.0",
+        ),
+        ("ui/joint.rs", "fn f() { vec2(theme::GAP, 0.0); }", ""),
+        ("ui/joint.rs", "fn f() { pos2(x + 3.5, y); }", "length"),
+        (
+            "ui/joint.rs",
+            "fn f() { rect.shrink(theme::GAP / 2.0); }",
+            "",
+        ),
+        ("ui/joint.rs", "fn f() { rect.shrink(3.0); }", "shrink(3.0"),
+        ("ui/joint.rs", "fn f() { pos2(w * 0.38, y); }", ""),
+        ("ui/joint.rs", "fn f() { pos2(0.38 * w, y); }", ""),
+        (
+            "ui/joint.rs",
+            "fn f() { Stroke::new(1.4, c); }",
+            "Stroke::new(1.4",
+        ),
+        ("ui/joint.rs", "fn f() { Stroke::new(theme::LINE, c); }", ""),
+        ("ui/joint.rs", "fn f() { CornerRadius::same(3); }", "same(3"),
+        ("ui/joint.rs", "fn f() { FontId::monospace(9.0); }", "9.0"),
+        (
+            "ui/joint.rs",
+            "fn f() { take_left(&mut rest, width(a) - 84.0); }",
+            "length",
+        ),
+        ("ui/joint.rs", "fn f() { rest.max.x -= 4.5; }", "-= 4.5"),
+        ("ui/joint.rs", "const WIDE: f32 = 84.0;", "const of 84.0"),
+        ("ui/joint.rs", "const WIDE: f32 = 2.0 * theme::GAP;", ""),
+        ("ui/joint.rs", "const COUNT: usize = 84;", ""),
+        ("ui/joint.rs", "fn f() { let a = [1, 84]; }", ""),
+        ("ui/theme/sizes.rs", "const WIDE: f32 = 84.0;", ""),
+        ("headless/canvas.rs", "const WIDE: f32 = 84.0;", ""),
+    ] {
+        let found = violations(path, &format!("//! Doc.\n{text}\n"));
+        let right = match wanted {
+            "" => found.is_empty(),
+            part => !found.is_empty() && found.iter().any(|what| what.contains(part)),
+        };
+        assert!(right, "{path}: {text}: wanted {wanted:?}, got {found:?}");
     }
 }
 

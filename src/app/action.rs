@@ -1,6 +1,7 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
 use crate::app::faults::FaultKind;
+use crate::app::layout::Layout;
 use crate::app::poses::edit::LibraryEdit;
 use crate::app::poses::library::{PoseId, SequenceId};
 use crate::app::recorder::RecordingId;
@@ -138,6 +139,8 @@ pub enum Action {
     Theme(Theme),
     /// English or Chinese.
     Language(Language),
+    /// Divide the window like this.
+    Layout(Layout),
     /// How angles are written and typed.
     AngleUnit(AngleUnit),
     /// Seconds that the plots show.

@@ -14,6 +14,7 @@ mod fake_link;
 pub mod faults;
 pub mod gestures;
 pub mod history;
+pub mod layout;
 #[cfg(test)]
 mod live_tests;
 pub mod notices;

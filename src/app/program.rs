@@ -239,6 +239,7 @@ impl App {
             }
             Action::GestureStore(store) => settings.gesture_store = store,
             Action::Theme(theme) => settings.theme = theme,
+            Action::Layout(layout) => settings.layout = layout,
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,
             Action::PlotWindow(window) => settings.plot_window = window,

@@ -1,5 +1,6 @@
 //! What is kept from one start to the next. Never a setpoint.
 
+use crate::app::layout::Layout;
 use crate::hand::{GestureRoute, GestureStore};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -209,6 +210,8 @@ pub struct Settings {
     pub gesture_store: GestureStore,
     /// Names that a person gave to gestures, by number.
     pub gesture_names: BTreeMap<String, String>,
+    /// How the window is divided.
+    pub layout: Layout,
     /// Keys of a newer version, kept as they are.
     #[serde(flatten)]
     pub others: toml::Table,

@@ -1,7 +1,8 @@
 //! The program behind either window: title, closing with the hand held, when to draw again. Opens no window.
 
+use crate::app::layout::{Layout, WINDOW_LEAST, WindowSize};
 use crate::app::notices::NoticeKind;
-use crate::app::{App, Env, SimDial};
+use crate::app::{Action, App, Env, SimDial};
 use crate::desktop::dialog::NativeDialog;
 use crate::desktop::start::{DesktopStart, Drawing};
 use crate::hand::Moment;
@@ -17,18 +18,14 @@ use std::time::Duration;
 const REPAINT_WITHIN: Duration = Duration::from_millis(16);
 /// Ages and countdowns move on this often when nothing comes in.
 pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
-/// The window as it first opens, in points.
-const FIRST_SIZE: [f32; 2] = [1440.0, 900.0];
-/// The smallest window that shows everything, in points.
-const SMALLEST_SIZE: [f32; 2] = [1024.0, 640.0];
 
 /// How the window is to stand.
-pub(crate) fn viewport() -> ViewportBuilder {
+pub(crate) fn viewport(size: WindowSize) -> ViewportBuilder {
     ViewportBuilder::default()
         .with_title("Handscope")
         .with_app_id("handscope")
-        .with_inner_size(FIRST_SIZE)
-        .with_min_inner_size(SMALLEST_SIZE)
+        .with_inner_size(<[f32; 2]>::from(size))
+        .with_min_inner_size(WINDOW_LEAST)
 }
 
 /// What the program runs on.
@@ -52,6 +49,13 @@ impl Beginning {
             waiting: RefCell::new(Some((start, services))),
             stands,
         }
+    }
+
+    /// The size that the window had last time.
+    pub(crate) fn window_size(&self) -> WindowSize {
+        let waiting = self.waiting.borrow();
+        let settings = waiting.as_ref().map(|(start, _)| &start.loaded.settings);
+        settings.map_or_else(WindowSize::default, |settings| settings.layout.window)
     }
 
     /// The program; `None` if it began before.
@@ -105,6 +109,7 @@ impl Program {
         let now = self.clock.now();
         self.cockpit.logic(now);
         self.title(ctx);
+        self.keep_size(ctx, now);
         self.close(ctx, now);
         ctx.request_repaint_after(REPAINT_AT_LEAST);
     }
@@ -125,6 +130,23 @@ impl Program {
         if self.titled.as_ref() != Some(&title) {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.titled = Some(title);
+        }
+    }
+
+    /// Keeps the size that a person gave the window; what the system made of it full screen is not kept.
+    fn keep_size(&mut self, ctx: &egui::Context, now: Moment) {
+        let shown = ctx.input(|input| {
+            let view = input.viewport();
+            let forced = [view.maximized, view.fullscreen, view.minimized];
+            let own = forced.into_iter().all(|forced| forced != Some(true));
+            view.inner_rect.filter(|_| own)
+        });
+        let Some(shown) = shown else { return };
+        let layout = self.cockpit.state().settings.layout;
+        let window = [shown.width(), shown.height()].into();
+        if layout.window != window {
+            let layout = Layout { window, ..layout };
+            self.cockpit.app().act(Action::Layout(layout), now);
         }
     }
 

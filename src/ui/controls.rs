@@ -1,10 +1,10 @@
 //! The few widgets that everything is made of: placed by rectangle, painted from the theme, named for accessibility.
 
 use crate::ui::look::Look;
-use crate::ui::theme;
+use crate::ui::theme::{self, Icon};
 use egui::{
     Align2, Color32, CornerRadius, Event, FontId, Id, PointerButton, Pos2, Rect, Response, Role,
-    Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+    Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
 };
 
 /// A text at a place. Cut with dots if it is too long, and then whole in its tooltip.
@@ -141,6 +141,8 @@ pub(crate) struct Button<'a> {
     pub(crate) weight: Weight,
     /// On or off, if it is a switch.
     pub(crate) selected: Option<bool>,
+    /// A sign in place of the text, which stays the name.
+    pub(crate) icon: Option<Icon>,
 }
 
 impl<'a> Button<'a> {
@@ -153,6 +155,7 @@ impl<'a> Button<'a> {
             disabled: None,
             weight: Weight::Normal,
             selected: None,
+            icon: None,
         }
     }
 
@@ -185,10 +188,20 @@ impl<'a> Button<'a> {
         self
     }
 
+    /// With a sign in place of its text, which stays its name.
+    pub(crate) const fn icon(mut self, icon: Icon) -> Self {
+        self.icon = Some(icon);
+        self
+    }
+
     /// Draws it and says whether it was pressed.
     pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
         let response = self.ground(ui, look, rect, id);
         let color = self.text_color(look);
+        if let Some(icon) = self.icon {
+            sign(ui, rect, icon, color);
+            return response;
+        }
         let font = match self.weight {
             Weight::Stop => theme::large(),
             _ => theme::body(),
@@ -330,44 +343,28 @@ pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
     painter.circle_filled(center, theme::LAMP, color);
 }
 
-/// A warning sign of the given height: a triangle with a mark in it.
+/// A sign in the middle of a place.
+pub(crate) fn sign(ui: &Ui, rect: Rect, sign: Icon, color: Color32) {
+    let center = Align2::CENTER_CENTER;
+    ui.painter()
+        .text(rect.center(), center, sign, theme::icon(), color);
+}
+
+/// A warning sign of the given height.
 pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
-    let painter = ui.painter();
-    let (top, bottom) = (rect.center_top(), rect.bottom());
-    let points = vec![top, pos2(rect.right(), bottom), pos2(rect.left(), bottom)];
-    painter.add(egui::Shape::closed_line(points, Stroke::new(1.4, color)));
-    let x = rect.center().x;
-    let (from, to) = (
-        rect.top() + rect.height() * 0.38,
-        rect.top() + rect.height() * 0.66,
-    );
-    painter.line_segment([pos2(x, from), pos2(x, to)], Stroke::new(1.4, color));
-    painter.circle_filled(pos2(x, rect.top() + rect.height() * 0.84), 0.9, color);
+    let font = theme::icon_high(rect.height());
+    let center = Align2::CENTER_CENTER;
+    ui.painter()
+        .text(rect.center(), center, theme::WARNING, font, color);
 }
 
 /// A small closed or open padlock.
 pub(crate) fn padlock(ui: &Ui, rect: Rect, color: Color32, closed: Lock) {
-    let painter = ui.painter();
-    let body = Rect::from_center_size(rect.center() + vec2(0.0, 2.5), vec2(10.0, 7.5));
-    let (left, right, top) = (body.left() + 2.0, body.right() - 2.0, body.top() - 4.0);
-    let mut arch = vec![
-        pos2(left, body.top()),
-        pos2(left, top + 1.5),
-        pos2(left + 1.5, top),
-        pos2(right - 1.5, top),
-        pos2(right, top + 1.5),
-    ];
-    match closed {
-        Lock::Closed => {
-            arch.push(pos2(right, body.top()));
-            painter.rect_filled(body, CornerRadius::same(2), color);
-        }
-        Lock::Open => {
-            let stroke = Stroke::new(1.2, color);
-            painter.rect_stroke(body, CornerRadius::same(2), stroke, StrokeKind::Inside);
-        }
-    }
-    painter.line(arch, Stroke::new(1.4, color));
+    let icon = match closed {
+        Lock::Closed => theme::LOCKED,
+        Lock::Open => theme::UNLOCKED,
+    };
+    sign(ui, rect, icon, color);
 }
 
 /// How a padlock is drawn.

@@ -342,7 +342,8 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
     );
     let close = controls::middle(take_right(&mut row, 20.0), 20.0);
     let name = format!("{}: {text}", look.say(main::DISMISS));
-    let button = Button::new("×", look.say(main::DISMISS_TIP))
+    let button = Button::new(look.say(main::DISMISS), look.say(main::DISMISS_TIP))
+        .icon(theme::CLOSE)
         .named(&name)
         .weight(Weight::Quiet);
     let id = Id::unique(("dismiss", notice.id));

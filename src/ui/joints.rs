@@ -8,7 +8,7 @@ use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right};
 use crate::ui::joint_row::Row;
 use crate::ui::joint_tracks::all_joints_ui;
 use crate::ui::look::Pane;
-use crate::ui::text::main;
+use crate::ui::text::{layout, main};
 use crate::ui::{format, theme};
 use egui::{Id, Rect, Ui, pos2, vec2};
 
@@ -60,8 +60,10 @@ impl JointsView {
             pane.actions.push(Action::AngleUnit(unit.next()));
         }
         let text = look.say(main::LINK_FINGERS);
-        let place = take_right(head, button_width(ui, text));
-        let button = Button::new(text, look.say(main::LINK_FINGERS_TIP)).choice(self.linked);
+        let place = take_right(head, theme::ICON_BUTTON);
+        let button = Button::new(text, look.say(main::LINK_FINGERS_TIP))
+            .icon(theme::LINKED)
+            .choice(self.linked);
         if button
             .put(ui, look, place, Id::unique("link fingers"))
             .clicked()
@@ -104,7 +106,9 @@ fn age_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
     let look = pane.look;
     let asked = pane.state.sample.angle.map(|angle| angle.asked);
     let (text, color) = match pane.freshness(asked) {
-        Freshness::Live => return,
+        Freshness::Live if pane.state.is_armed() => return,
+        // A first look must find what comes before moving.
+        Freshness::Live => (look.say(layout::ARM_FIRST).to_owned(), look.palette.accent),
         Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),
         Freshness::Stale => {
             let age = asked.map(|asked| pane.state.now.since(asked));

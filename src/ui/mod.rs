@@ -1,6 +1,7 @@
 //! The window: reads [`crate::app::state::State`], draws it with egui, returns actions. No clock, file, thread or wire.
 
 mod banner;
+mod border;
 mod budget;
 mod connection;
 mod controls;
@@ -14,6 +15,7 @@ mod frame_menu;
 mod gesture_editor;
 mod gestures;
 mod hand_picture;
+mod joint_rail;
 mod joint_readings;
 mod joint_row;
 mod joint_tracks;
@@ -40,6 +42,7 @@ mod recording_events;
 mod recording_plot;
 mod recordings;
 mod reorder;
+mod rooms;
 mod scan;
 mod sequence_step;
 mod sequence_view;
@@ -56,5 +59,6 @@ mod traffic_detail;
 mod traffic_filter;
 mod traffic_list;
 mod window;
+mod window_menu;
 
 pub use window::{View, Window, install};

@@ -72,13 +72,9 @@ fn switch_ui(ui: &mut Ui, place: Rect, look: Look, on: bool) -> bool {
 fn menu_ui(ui: &mut Ui, place: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let button = Button::new(look.say(plots::MORE), look.say(plots::MORE_TIP))
-        .named(look.say(plots::MORE_NAME));
-    let response = button.ground(ui, look, place, Id::unique("more for plots"));
-    for y in [-5.0, 0.0, 5.0] {
-        let center = place.center() + vec2(0.0, y);
-        ui.painter()
-            .circle_filled(center, 1.6, button.text_color(look));
-    }
+        .named(look.say(plots::MORE_NAME))
+        .icon(theme::MORE);
+    let response = button.put(ui, look, place, Id::unique("more for plots"));
     let shown = Popup::menu(&response)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| {
@@ -182,9 +178,8 @@ fn pause_ui(
     button.selected = Some(paused);
     let id = Id::unique("pause plots");
     let response = if icon_width.is_some() {
-        let response = button.ground(ui, look, place, id);
-        bars(ui, place, button.text_color(look));
-        response
+        let icon = if paused { theme::PLAY } else { theme::PAUSE };
+        button.icon(icon).put(ui, look, place, id)
     } else {
         button.put(ui, look, place, id)
     };
@@ -195,14 +190,6 @@ fn pause_ui(
             view.sight.hold();
         }
         pane.actions.push(Action::PausePlots(!paused));
-    }
-}
-
-/// The two bars of "pause".
-fn bars(ui: &Ui, place: Rect, color: Color32) {
-    for x in [-3.5, 3.5] {
-        let bar = Rect::from_center_size(place.center() + vec2(x, 0.0), vec2(3.0, 11.0));
-        ui.painter().rect_filled(bar, CornerRadius::same(1), color);
     }
 }
 

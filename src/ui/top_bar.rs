@@ -8,6 +8,7 @@ use crate::ui::fault_entry;
 use crate::ui::look::{Explain, Look, Pane};
 use crate::ui::text::{Text, faults, main, words};
 use crate::ui::window::View;
+use crate::ui::window_menu;
 use crate::ui::{format, theme};
 use egui::{Align2, Color32, CornerRadius, Id, Rect, Stroke, Ui, pos2, vec2};
 
@@ -67,7 +68,7 @@ fn arm_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let mut button = Button::new(look.say(text), look.say(tip))
         .named(look.say(name))
         .disabled(refusal.as_deref())
-        .weight(if armed { Weight::Armed } else { Weight::Normal });
+        .weight(if armed { Weight::Armed } else { Weight::Strong });
     button.selected = Some(armed);
     let place = controls::middle(rect, theme::CONTROL_LARGE);
     if button.put(ui, look, place, Id::unique("arm")).clicked() {
@@ -253,8 +254,10 @@ fn figure_ui(ui: &mut Ui, place: Rect, look: Look, figure: &Figure<'_>) {
 pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut View) {
     let look = pane.look;
     let mut rest = rect.shrink2(vec2(theme::PAD, 0.0));
+    let menu = take_right(&mut rest, theme::ICON_BUTTON);
+    window_menu::menu_button_ui(ui, controls::middle(menu, theme::CONTROL), pane);
     language_ui(ui, take_right(&mut rest, 56.0), pane);
-    theme_ui(ui, take_right(&mut rest, 56.0), pane);
+    theme_ui(ui, take_right(&mut rest, theme::ICON_BUTTON), pane);
     for tab in View::ALL {
         let text = look.say(tab.title());
         let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
@@ -287,13 +290,17 @@ pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut V
 }
 
 fn theme_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-    let (text, other) = match pane.state.settings.theme {
-        Theme::Dark => (main::THEME_DARK, Theme::Light),
-        Theme::Light => (main::THEME_LIGHT, Theme::Dark),
+    let (icon, other) = match pane.state.settings.theme {
+        Theme::Dark => (theme::DARK, Theme::Light),
+        Theme::Light => (theme::LIGHT, Theme::Dark),
     };
-    let button = Button::new(pane.look.say(text), pane.look.say(main::THEME_TIP))
-        .named(pane.look.say(main::THEME_NAME))
-        .weight(Weight::Quiet);
+    let button = Button::new(
+        pane.look.say(main::THEME_NAME),
+        pane.look.say(main::THEME_TIP),
+    )
+    .icon(icon)
+    .named(pane.look.say(main::THEME_NAME))
+    .weight(Weight::Quiet);
     let place = controls::middle(rect, theme::CONTROL);
     if button
         .put(ui, pane.look, place, Id::unique("theme"))

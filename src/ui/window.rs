@@ -1,26 +1,27 @@
 //! The whole window: where each part stands, which keys act everywhere. Holds view state only, no hand.
 
 use crate::app::action::{Action, Play};
+use crate::app::layout::Room;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
 use crate::ui::banner;
+use crate::ui::border::{border_ui, shut_ui};
 use crate::ui::connection::ConnectionForm;
 use crate::ui::faults::{self, FaultsView};
+use crate::ui::joint_rail;
 use crate::ui::joints::JointsView;
 use crate::ui::look::{Explain, Look, Pane, Typing};
 use crate::ui::note_bar::{self, NoteBar};
 use crate::ui::plots::PlotView;
 use crate::ui::pose_tiles;
 use crate::ui::pose_view::PoseView;
+use crate::ui::rooms::{Body, Overview, Side};
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use crate::ui::top_bar;
 use crate::ui::touch::{self, TouchView};
 use crate::ui::traffic::TrafficView;
 use egui::{Event, Key, Rect, Ui};
-
-/// Height of the overview from which its strip has several rows.
-const ROOMY: f32 = 640.0;
 
 /// The parts of the window that can be looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -195,10 +196,15 @@ impl Window {
         top_bar::tabs_ui(ui, tabs, pane, &mut self.view);
         let body = Rect::from_min_max(body.min, body.max - egui::vec2(theme::GAP, theme::GAP));
         let body = body.with_min_x(body.left() + theme::GAP);
-        let joints_width = (whole.width() * 0.29).clamp(384.0, 560.0).round();
-        let (left, right) = body.split_left_right_at_x(body.left() + joints_width);
-        self.joints.ui(ui, left, pane);
-        self.view_ui(ui, right.with_min_x(right.left() + theme::GAP), pane);
+        let layout = pane.state.settings.layout;
+        let body = Body::of(body, whole.width(), &layout);
+        if layout.joints.shut {
+            joint_rail::rail_ui(ui, body.joints, pane);
+        } else {
+            border_ui(ui, pane, &body.border);
+            self.joints.ui(ui, body.joints, pane);
+        }
+        self.view_ui(ui, body.view, pane);
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
@@ -217,20 +223,35 @@ impl Window {
             self.plots_ui(ui, rect, pane);
             return;
         }
-        let strip_height = if rect.height() < ROOMY { 88.0 } else { 164.0 };
-        let (upper, strip) = rect.split_top_bottom_at_y(rect.bottom() - strip_height);
-        if pose_tiles::strip_ui(ui, strip, pane) {
+        let layout = pane.state.settings.layout;
+        let rooms = Overview::of(rect, &layout, touch::overview_height);
+        for border in &rooms.borders {
+            let shut = layout.room(border.room).shut;
+            let inner = border.room == Room::Tips && (layout.side.shut || layout.faults.shut);
+            if !shut && !inner {
+                border_ui(ui, pane, border);
+            }
+        }
+        if layout.strip.shut {
+            shut_ui(ui, pane, rooms.strip, Room::Strip, Side::Bottom);
+        } else if pose_tiles::strip_ui(ui, rooms.strip, pane) {
             self.view = View::Poses;
         }
-        let upper = upper.with_max_y(upper.bottom() - theme::GAP);
-        let right_width = (rect.width() * 0.4).clamp(288.0, 560.0).round();
-        let (center, right) = upper.split_left_right_at_x(upper.right() - right_width);
-        let center = center.with_max_x(center.right() - theme::GAP);
-        self.plots_ui(ui, center, pane);
-        let touch_height = touch::overview_height(right);
-        let (tips, list) = right.split_top_bottom_at_y(right.top() + touch_height);
-        self.touch.small_ui(ui, tips, pane);
-        faults::faults_card_ui(ui, list.with_min_y(list.top() + theme::GAP), pane);
+        self.plots_ui(ui, rooms.plots, pane);
+        if layout.side.shut {
+            shut_ui(ui, pane, rooms.side, Room::Side, Side::Right);
+            return;
+        }
+        if layout.tips.shut {
+            shut_ui(ui, pane, rooms.tips, Room::Tips, Side::Top);
+        } else {
+            self.touch.small_ui(ui, rooms.tips, pane);
+        }
+        if layout.faults.shut {
+            shut_ui(ui, pane, rooms.faults, Room::Faults, Side::Bottom);
+        } else {
+            faults::faults_card_ui(ui, rooms.faults, pane);
+        }
     }
 
     /// Draws the plots and nothing else, over all of `ui`, into a context of their own: for a picture.

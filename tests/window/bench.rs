@@ -333,6 +333,11 @@ impl Bench {
     pub fn drag_to(&mut self, name: &str, other: &str) {
         let from = self.rect(Role::Button, name).center();
         let to = self.rect(Role::Button, other).center();
+        self.drag_from_to(from, to);
+    }
+
+    /// Drags from one place to another, and lets go.
+    pub fn drag_from_to(&mut self, from: egui::Pos2, to: egui::Pos2) {
         self.harness.hover_at(from);
         self.harness.drag_at(from);
         for step in 1_u8..=10 {

@@ -153,3 +153,99 @@ fn stop_is_free_and_no_two_controls_overlap_with_a_fault_and_a_lost_link() {
         check_all_views(bench, size);
     }
 }
+
+/// Where the joints end and where the fingertips begin.
+fn borders(bench: &Bench) -> (f32, f32) {
+    let joints = bench.rect(Role::Splitter, "Border: Joints").center().x;
+    let side = bench.rect(Role::Splitter, "Border: Fingertips and faults");
+    (joints, side.center().x)
+}
+
+fn drag_border(bench: &mut Bench, name: &str, by: Vec2) {
+    let from = bench.rect(Role::Splitter, name);
+    // Beside the button in its middle.
+    let from = from.lerp_inside(if by.x == 0.0 {
+        vec2(0.2, 0.5)
+    } else {
+        vec2(0.5, 0.2)
+    });
+    bench.drag_from_to(from, from + by);
+    bench.run(60);
+}
+
+#[test]
+fn a_border_is_dragged_is_kept_and_comes_back() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.run(200);
+    let (joints, side) = borders(&bench);
+    drag_border(&mut bench, "Border: Joints", vec2(60.0, 0.0));
+    drag_border(&mut bench, "Border: Fingertips and faults", vec2(50.0, 0.0));
+    let (wide, right) = borders(&bench);
+    assert!((wide - joints - 60.0).abs() <= 2.0, "{joints} {wide}");
+    assert!((right - side - 50.0).abs() <= 2.0, "{side} {right}");
+    let kept = bench.state().settings.layout;
+    assert!(kept.joints.share.is_some() && kept.side.share.is_some());
+    // As far as it goes, and no further.
+    drag_border(&mut bench, "Border: Joints", vec2(-900.0, 0.0));
+    assert_eq!(
+        bench.rect(Role::Splitter, "Border: Joints").center().x,
+        8.0 + 384.0 + 4.0
+    );
+    check(&bench, LARGE, "STOP", "narrow joints");
+    drag_border(&mut bench, "Border: Joints", vec2(900.0, 0.0));
+    check(&bench, LARGE, "STOP", "wide joints");
+    bench.click("Window menu");
+    bench.run(60);
+    bench.click("Reset layout");
+    bench.run(200);
+    assert_eq!(borders(&bench), (joints, side));
+    assert!(
+        bench.writes().is_empty(),
+        "nothing of this reaches the hand"
+    );
+}
+
+#[test]
+fn every_room_but_the_plots_can_be_shut_and_opened_again() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.run(400);
+    let title = "Fingertips and faults";
+    for room in ["Joints", "Fingertips", "Faults", "Poses", title] {
+        bench.click(&format!("Collapse {room}"));
+        bench.run(60);
+        check(&bench, LARGE, "STOP", &format!("{room} shut"));
+        bench.click(&format!("Expand {room}"));
+        bench.run(60);
+        assert_eq!(
+            bench.state().settings.layout,
+            handscope::app::layout::Layout::default()
+        );
+    }
+}
+
+#[test]
+fn shut_joints_still_show_angle_force_and_lamp() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.run(400);
+    bench.click("Collapse Joints");
+    bench.run(60);
+    assert!(bench.all(Role::Slider).is_empty());
+    for joint in [
+        "Little",
+        "Ring",
+        "Middle",
+        "Index",
+        "Thumb bend",
+        "Thumb rotate",
+    ] {
+        assert!(bench.shows(joint), "{joint}");
+        assert!(
+            bench
+                .reading(&format!("{joint} actual angle"))
+                .trim()
+                .parse::<i16>()
+                .is_ok()
+        );
+        assert!(bench.reading(&format!("{joint} live force")).ends_with('g'));
+    }
+}

@@ -74,8 +74,6 @@ texts! {
     TAB_TRAFFIC: "Traffic", "报文";
     TAB_CONNECTION: "Connection", "连接";
     TAB_TIP: "Shows this part of the window. Nothing moves.", "切换到此视图，不会产生动作。";
-    THEME_DARK: "Dark", "深色";
-    THEME_LIGHT: "Light", "浅色";
     THEME_NAME: "Theme", "主题";
     THEME_TIP: "Switches between light on dark and dark on light.", "切换深色与浅色主题。";
     LANGUAGE_NAME: "Language", "语言";

@@ -36,13 +36,14 @@ pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::{faults, main, panels, plots, poses, quirks, scan, traffic};
+    use crate::ui::text::{faults, layout, main, panels, plots, poses, quirks, scan, traffic};
 
     #[test]
     fn no_sentence_lacks_a_language() {
         for text in main::ALL
             .iter()
             .chain(faults::ALL)
+            .chain(layout::ALL)
             .chain(panels::ALL)
             .chain(plots::ALL)
             .chain(scan::ALL)

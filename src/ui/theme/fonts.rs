@@ -1,0 +1,98 @@
+//! Every size of type, and the fonts and icons behind them. No colours.
+
+use egui::{FontFamily, FontId};
+
+/// Labels, hints.
+pub(crate) const fn small() -> FontId {
+    FontId::proportional(11.5)
+}
+
+/// Hints inside a button.
+pub(crate) const fn tiny() -> FontId {
+    FontId::proportional(10.5)
+}
+
+/// Running text and buttons.
+pub(crate) const fn body() -> FontId {
+    FontId::proportional(13.0)
+}
+
+/// Titles of cards.
+pub(crate) const fn title() -> FontId {
+    FontId::proportional(14.5)
+}
+
+/// The stop button, the badge of a state.
+pub(crate) const fn large() -> FontId {
+    FontId::proportional(17.0)
+}
+
+/// Numbers, all digits of one width.
+pub(crate) const fn number() -> FontId {
+    FontId::monospace(12.0)
+}
+
+/// Numbers where room is short.
+pub(crate) const fn number_small() -> FontId {
+    FontId::monospace(10.5)
+}
+
+/// Icons inside buttons.
+pub(crate) fn icon() -> FontId {
+    icon_of(16.0)
+}
+
+/// Icons beside small text.
+pub(crate) fn icon_small() -> FontId {
+    icon_of(12.0)
+}
+
+/// A sign that is about as high as this, points.
+pub(crate) fn icon_high(height: f32) -> FontId {
+    // The signs leave an edge free within their square.
+    icon_of(height * 1.3)
+}
+
+fn icon_of(size: f32) -> FontId {
+    FontId::new(
+        size,
+        FontFamily::Name(egui_material_icons::FONT_FAMILY_OUTLINED.into()),
+    )
+}
+
+/// The fonts: egui's own, then the signs of Hack, then Chinese.
+pub(crate) fn fonts() -> egui::FontDefinitions {
+    const CHINESE: &str = "NotoSansSC";
+    let mut fonts = egui::FontDefinitions::default();
+    let bytes: &'static [u8] = include_bytes!("../../../assets/fonts/NotoSansSC-subset.otf");
+    let mut chinese = egui::FontData::from_static(bytes);
+    // Han signs hang lower than the Latin letters they stand beside.
+    chinese.tweak.y_offset_factor = -0.06;
+    fonts
+        .font_data
+        .insert(CHINESE.into(), std::sync::Arc::new(chinese));
+    for (family, extra) in [
+        (FontFamily::Proportional, &["Hack", CHINESE][..]),
+        (FontFamily::Monospace, &[CHINESE][..]),
+    ] {
+        let names = fonts.families.entry(family).or_default();
+        for name in extra {
+            if !names.iter().any(|known| known == name) {
+                names.push((*name).into());
+            }
+        }
+    }
+    add_icons(&mut fonts);
+    fonts
+}
+
+/// A family of their own: an icon must never stand in for a letter that is missing.
+fn add_icons(fonts: &mut egui::FontDefinitions) {
+    const ICONS: &str = "MaterialSymbols";
+    let insert = egui_material_icons::font_insert();
+    fonts
+        .font_data
+        .insert(ICONS.into(), std::sync::Arc::new(insert.data));
+    let family = FontFamily::Name(egui_material_icons::FONT_FAMILY_OUTLINED.into());
+    fonts.families.insert(family, vec![ICONS.into()]);
+}
