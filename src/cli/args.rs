@@ -49,7 +49,7 @@ pub(crate) struct WindowArgs {
 pub(crate) enum Command {
     /// Draw the window to PNG files, without display, GPU or driver
     #[command(
-        after_help = "Examples:\n  handscope snapshot --scenario grasp --at 3 --view all --out pictures\n  handscope snapshot --view live --size 1024x640 --theme light --lang zh --out pictures\n\nNext to each PNG stands a JSON file that lists what is visible: role, name, value, place."
+        after_help = "Examples:\n  handscope snapshot --scenario grasp --at 3 --view all --out pictures\n  handscope snapshot --view live --size 1024x640 --theme light --lang zh --out pictures\n  handscope snapshot --scenario grasp --view all --theme all --lang all --out pictures\n\nNext to each PNG stands a JSON file that lists what is visible: role, name, value, place. Themes differ in colours only and share one."
     )]
     Snapshot(SnapshotArgs),
     /// Print what the hand says, as it says it
@@ -109,10 +109,10 @@ pub(crate) struct SnapshotArgs {
     /// Pixels a point
     #[arg(long, default_value = "1", value_parser = scale)]
     pub(crate) scale: f32,
-    /// Dark or light
+    /// Colours; with all, the names of light pictures end in -light
     #[arg(long, default_value = "dark")]
     pub(crate) theme: ThemeArg,
-    /// Language of the window
+    /// Language of the window; with all, the names of Chinese pictures end in -zh
     #[arg(long, default_value = "en")]
     pub(crate) lang: LanguageArg,
     /// Folder for the files; made if it is not there
@@ -227,13 +227,16 @@ pub(crate) enum Views {
 pub(crate) enum ThemeArg {
     Dark,
     Light,
+    All,
 }
 
-impl From<ThemeArg> for Theme {
-    fn from(theme: ThemeArg) -> Self {
-        match theme {
-            ThemeArg::Dark => Self::Dark,
-            ThemeArg::Light => Self::Light,
+impl ThemeArg {
+    /// The wanted ones, and what the names of their files end in.
+    pub(crate) const fn each(self) -> &'static [(Theme, &'static str)] {
+        match self {
+            Self::Dark => &[(Theme::Dark, "")],
+            Self::Light => &[(Theme::Light, "")],
+            Self::All => &[(Theme::Dark, ""), (Theme::Light, "-light")],
         }
     }
 }
@@ -243,13 +246,16 @@ impl From<ThemeArg> for Theme {
 pub(crate) enum LanguageArg {
     En,
     Zh,
+    All,
 }
 
-impl From<LanguageArg> for Language {
-    fn from(language: LanguageArg) -> Self {
-        match language {
-            LanguageArg::En => Self::En,
-            LanguageArg::Zh => Self::Zh,
+impl LanguageArg {
+    /// The wanted ones, and what the names of their files end in.
+    pub(crate) const fn each(self) -> &'static [(Language, &'static str)] {
+        match self {
+            Self::En => &[(Language::En, "")],
+            Self::Zh => &[(Language::Zh, "")],
+            Self::All => &[(Language::En, ""), (Language::Zh, "-zh")],
         }
     }
 }

@@ -1,7 +1,9 @@
 //! `snapshot`: pictures of the window and lists of what stands in it, as files. Draws nothing itself.
 
+use crate::app::settings::{Language, Theme};
 use crate::cli::args::{SnapshotArgs, Views};
 use crate::cli::out::{Out, say};
+use crate::headless::canvas::Picture;
 use crate::headless::driver::{Driver, Scene};
 use crate::headless::png;
 use crate::transport::Endpoint;
@@ -20,18 +22,30 @@ pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
         endpoint: endpoint(args),
         size: args.size,
         scale: args.scale,
-        theme: args.theme.into(),
-        language: args.lang.into(),
+        theme: Theme::default(),
+        language: Language::default(),
     })?;
     driver.connect()?;
     driver.run_for(args.at, progress(args.at));
     fs::create_dir_all(&args.out)
         .with_context(|| format!("cannot make the folder {}", args.out.display()))?;
-    for (name, view) in pictures(args.view) {
-        for path in save(&mut driver, view, &args.out.join(name))? {
-            out.line(&path)?;
+    for (language, of_language) in args.lang.each() {
+        for (number, (theme, of_theme)) in args.theme.each().iter().enumerate() {
+            driver.dress(*theme, *language);
+            for (name, view) in pictures(args.view) {
+                let picture = driver.picture(view);
+                let labels = args.out.join(format!("{name}{of_language}.json"));
+                let image = args.out.join(format!("{name}{of_language}{of_theme}.png"));
+                png::save(&image, &picture.rgba, picture.size)?;
+                out.line(&image.display().to_string())?;
+                // What stands where does not depend on colours.
+                if number == 0 {
+                    save_labels(&labels, &picture)?;
+                    out.line(&labels.display().to_string())?;
+                }
+            }
+            out.flush()?;
         }
-        out.flush()?;
     }
     Ok(())
 }
@@ -71,12 +85,7 @@ fn progress(whole: Duration) -> impl FnMut(Duration) {
     }
 }
 
-fn save(driver: &mut Driver, view: View, stem: &Path) -> anyhow::Result<[String; 2]> {
-    let picture = driver.picture(view);
-    let (image, labels) = (stem.with_extension("png"), stem.with_extension("json"));
-    png::save(&image, &picture.rgba, picture.size)?;
+fn save_labels(path: &Path, picture: &Picture) -> anyhow::Result<()> {
     let list = serde_json::to_string_pretty(&picture.labels)?;
-    fs::write(&labels, list + "\n")
-        .with_context(|| format!("cannot write {}", labels.display()))?;
-    Ok([image, labels].map(|path| path.display().to_string()))
+    fs::write(path, list + "\n").with_context(|| format!("cannot write {}", path.display()))
 }

@@ -1,6 +1,7 @@
 //! The whole program without a window: lets time pass and takes pictures. A built-in hand is driven in virtual time,
 //! so that seconds take milliseconds and two runs give equal bytes. Writes no file.
 
+use crate::app::action::Action;
 use crate::app::settings::{Language, Theme};
 use crate::app::{App, Env, NoChoice, Settings, SimDial};
 use crate::hand::Moment;
@@ -111,16 +112,25 @@ impl Driver {
             endpoint: scene.endpoint.clone(),
             runtime,
         };
-        driver.dress();
+        driver.hold_still();
         Ok(driver)
     }
 
     /// The first frame puts fonts and style into the screen; they must hold still after that.
-    fn dress(&mut self) {
+    fn hold_still(&mut self) {
         let now = self.now();
         let cockpit = &mut self.cockpit;
         self.canvas.frame(now.secs(), |ui| cockpit.ui(ui, now));
         self.canvas.hold_still();
+    }
+
+    /// Puts on other colours and another language.
+    pub fn dress(&mut self, theme: Theme, language: Language) {
+        let now = self.now();
+        for wish in [Action::Theme(theme), Action::Language(language)] {
+            self.cockpit.app().act(wish, now);
+        }
+        self.hold_still();
     }
 
     /// The program's time, virtual with a built-in hand.

@@ -95,6 +95,51 @@ fn size_scale_theme_language_and_seed_are_what_was_asked() {
 }
 
 #[test]
+fn one_command_draws_every_theme_and_language() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let draw = |name: &str, more: &[&str]| {
+        let head = [
+            "snapshot", "--at", "0.2", "--view", "live", "--size", "1024x640",
+        ];
+        run(&[&head[..], &["--out", &out(name)], more].concat()).ok()
+    };
+    let all = draw("all", &["--theme", "all", "--lang", "all"]);
+    let files: Vec<_> = all
+        .out
+        .lines()
+        .map(|line| line.rsplit('/').next().unwrap())
+        .collect();
+    let wanted = [
+        "live.png",
+        "live.json",
+        "live-light.png",
+        "live-zh.png",
+        "live-zh.json",
+        "live-zh-light.png",
+    ];
+    assert_eq!(files, wanted);
+    for (file, theme, lang) in [
+        ("live", "dark", "en"),
+        ("live-light", "light", "en"),
+        ("live-zh", "dark", "zh"),
+        ("live-zh-light", "light", "zh"),
+    ] {
+        draw("one", &["--theme", theme, "--lang", lang]);
+        let one = fs::read(folder.path().join("one/live.png")).unwrap();
+        let of_all = fs::read(folder.path().join(format!("all/{file}.png"))).unwrap();
+        assert!(one == of_all, "{file} is as if it were drawn alone");
+    }
+    for list in ["live", "live-zh"] {
+        let of_all = fs::read(folder.path().join(format!("all/{list}.json"))).unwrap();
+        let lang = if list == "live" { "en" } else { "zh" };
+        draw("light", &["--theme", "light", "--lang", lang]);
+        let light = fs::read(folder.path().join("light/live.json")).unwrap();
+        assert!(of_all == light, "{list}: the themes share one list");
+    }
+}
+
+#[test]
 fn a_hand_that_is_not_there_gives_no_picture() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
