@@ -22,6 +22,7 @@ use handscope::app::settings::Language;
 use handscope::hand::{Angle, Dof};
 use handscope::ui::View;
 use program::{Hand, REST, Window};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use twin::Twin;
 
@@ -31,6 +32,9 @@ const TOLERANCE: f64 = 0.02;
 const WITHIN: Duration = Duration::from_secs(30);
 
 const ATTEMPTS: usize = 4;
+
+/// One window at a time: they are slow where the processor draws.
+static ONE: Mutex<()> = Mutex::new(());
 
 struct Session {
     display: Display,
@@ -42,8 +46,13 @@ struct Session {
 
 impl Session {
     fn start(display: Display, more: &[&str]) -> Self {
-        let (hand, other) = (Hand::start(), Hand::start());
+        let hand = Hand::start();
         let window = Window::start(display.name(), &hand, more);
+        Self::with(display, hand, window)
+    }
+
+    fn with(display: Display, hand: Hand, window: Window) -> Self {
+        let other = Hand::start();
         let twin = Twin::start(&other.endpoint);
         Self {
             display,
@@ -107,6 +116,7 @@ impl Session {
 }
 
 fn session(more: &[&str]) {
+    let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(display) = Display::start() else {
         println!("no Xvfb or no xdotool here: the real window was not tried");
         return;
@@ -195,4 +205,22 @@ fn a_session_with_the_mouse_in_the_window_with_opengl() {
 #[test]
 fn a_session_with_the_mouse_in_the_window_without_opengl() {
     session(&["--software"]);
+}
+
+#[test]
+fn where_opengl_does_not_start_the_window_opens_without_it_and_says_so() {
+    let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(display) = Display::start_without_opengl() else {
+        println!("no Xvfb or no xdotool here: the real window was not tried");
+        return;
+    };
+    let hand = Hand::start();
+    let window = Window::start_without_drivers(display.name(), &hand);
+    let mut session = Session::with(display, hand, window);
+    session.looks("without OpenGL", View::Live, Language::En);
+    let arguments = session.window.arguments();
+    assert!(arguments.contains("--software-because"), "{arguments}");
+    assert!(arguments.contains(&session.hand.endpoint), "{arguments}");
+    session.display.close("Handscope");
+    session.window.ends_well();
 }

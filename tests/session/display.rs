@@ -14,6 +14,9 @@ pub(crate) const SIZE: (u32, u32) = (1440, 900);
 /// Between two steps of the mouse a frame passes, as with a hand on a real one.
 const FRAME: Duration = Duration::from_millis(60);
 
+/// So long a pointer stays where it clicked: a hand does not leave within a slow frame.
+const LINGERS: Duration = Duration::from_millis(400);
+
 /// A display that nobody sees. Dropping it ends it.
 pub(crate) struct Display {
     server: Child,
@@ -24,6 +27,15 @@ pub(crate) struct Display {
 impl Display {
     /// `None` where Xvfb or xdotool is not installed.
     pub(crate) fn start() -> Option<Self> {
+        Self::start_with(&[])
+    }
+
+    /// One that offers no OpenGL.
+    pub(crate) fn start_without_opengl() -> Option<Self> {
+        Self::start_with(&["-extension", "GLX"])
+    }
+
+    fn start_with(more: &[&str]) -> Option<Self> {
         let there = |program| Command::new(program).arg("-version").output().is_ok();
         if !there("Xvfb") || !there("xdotool") {
             return None;
@@ -33,6 +45,7 @@ impl Display {
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0"])
             .args([&screen, "-fbdir", folder.path().to_str().unwrap()])
+            .args(more)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -81,6 +94,7 @@ impl Display {
         self.move_to(at);
         self.press();
         self.release();
+        sleep(LINGERS);
         // Away from what shows a tip under the pointer.
         self.move_to([4.0, f64::from(SIZE.1) - 4.0]);
     }

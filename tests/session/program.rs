@@ -115,6 +115,19 @@ pub(crate) struct Window {
 
 impl Window {
     pub(crate) fn start(display: &str, hand: &Hand, more: &[&str]) -> Self {
+        Self::start_in(&[], display, hand, more)
+    }
+
+    /// On a system whose drivers for OpenGL are out of reach.
+    pub(crate) fn start_without_drivers(display: &str, hand: &Hand) -> Self {
+        let hidden = [
+            ("__EGL_VENDOR_LIBRARY_FILENAMES", "/dev/null"),
+            ("LIBGL_DRIVERS_PATH", "/nowhere"),
+        ];
+        Self::start_in(&hidden, display, hand, &[])
+    }
+
+    fn start_in(around: &[(&str, &str)], display: &str, hand: &Hand, more: &[&str]) -> Self {
         let home = tempfile::tempdir().unwrap();
         let process = handscope()
             .args(["--hand", &hand.endpoint])
@@ -122,6 +135,7 @@ impl Window {
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("WAYLAND_SOCKET")
             .env("DISPLAY", display)
+            .envs(around.iter().copied())
             .env("HOME", home.path())
             .env("XDG_CONFIG_HOME", home.path())
             .stderr(Stdio::piped())
@@ -131,6 +145,12 @@ impl Window {
             process,
             _home: home,
         }
+    }
+
+    /// What it was started with, also if it started itself anew.
+    pub(crate) fn arguments(&self) -> String {
+        let file = format!("/proc/{}/cmdline", self.process.id());
+        std::fs::read_to_string(file).unwrap().replace('\0', " ")
     }
 
     /// Waits for its end, which must be without complaint.
