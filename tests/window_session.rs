@@ -26,8 +26,9 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use twin::Twin;
 
-/// Share of pixels that may differ: lines in plots run on, live numbers flicker. Another view differs by more.
-const TOLERANCE: f64 = 0.02;
+/// Share of pixels that may differ: lines in plots run on, live numbers flicker, a list of frames scrolls. Which
+/// view it is, the nearest of all pictures tells.
+const TOLERANCE: f64 = 0.03;
 /// A picture that is not there by then does not come, on a machine with other work.
 const WITHIN: Duration = Duration::from_secs(30);
 
