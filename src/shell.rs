@@ -71,6 +71,12 @@ impl Cockpit {
         self.window.set_view(view);
     }
 
+    /// The view that is shown.
+    #[must_use]
+    pub const fn view(&self) -> View {
+        self.window.view()
+    }
+
     /// Everything the window shows.
     #[must_use]
     pub fn state(&self) -> &State {

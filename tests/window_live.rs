@@ -14,6 +14,8 @@ mod bench;
 mod faults;
 #[path = "window/joints.rs"]
 mod joints;
+#[path = "window/keys.rs"]
+mod keys;
 #[path = "window/layout.rs"]
 mod layout;
 #[path = "window/motion.rs"]

@@ -56,6 +56,12 @@ impl Row {
         Id::unique(("joint", self.dof, part))
     }
 
+    /// Gives the keyboard to the angle, or to the force threshold while the angle cannot be moved.
+    pub(crate) fn focus(&self, ui: &Ui, movable: bool) {
+        let part = if movable { "angle" } else { "force" };
+        ui.memory_mut(|memory| memory.request_focus(self.id(part)));
+    }
+
     /// Draws it.
     pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, linked: bool) {
         let palette = pane.look.palette;

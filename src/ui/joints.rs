@@ -25,6 +25,11 @@ pub(crate) struct JointsView {
 }
 
 impl JointsView {
+    /// Lets the four fingers move together, or not.
+    pub(crate) const fn toggle_link(&mut self) {
+        self.linked = !self.linked;
+    }
+
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
@@ -68,7 +73,7 @@ impl JointsView {
             .put(ui, look, place, Id::unique("link fingers"))
             .clicked()
         {
-            self.linked = !self.linked;
+            self.toggle_link();
         }
         age_ui(ui, head, pane);
     }

@@ -20,6 +20,8 @@ mod joint_readings;
 mod joint_row;
 mod joint_tracks;
 mod joints;
+mod key_list;
+mod keys;
 mod link_figures;
 mod list;
 mod look;

@@ -9,8 +9,8 @@ use crate::ui::plot_axes::clock;
 use crate::ui::text::plots;
 use crate::ui::theme;
 use egui::{
-    CornerRadius, Event, Frame, Id, Key, Margin, Modifiers, Rect, Role, Stroke, StrokeKind,
-    TextEdit, Ui, UiBuilder, WidgetInfo, vec2,
+    CornerRadius, Frame, Id, Key, Margin, Rect, Role, Stroke, StrokeKind, TextEdit, Ui, UiBuilder,
+    WidgetInfo, vec2,
 };
 
 /// A note that is being written.
@@ -20,22 +20,6 @@ pub(crate) struct NoteBar {
     at: Option<Moment>,
     text: String,
     fresh: bool,
-}
-
-/// Takes N out of the input, unless a text field has the keyboard, and says whether it was pressed.
-pub(crate) fn take_note_key(ui: &Ui) -> bool {
-    if ui.ctx().text_edit_focused() {
-        return false;
-    }
-    ui.input_mut(|input| {
-        let pressed = input.consume_key(Modifiers::NONE, Key::N);
-        if pressed {
-            // The same key press must not write its letter into the field that it opens.
-            let letter = |event: &Event| matches!(event, Event::Text(text) if text.eq_ignore_ascii_case("n"));
-            input.events.retain(|event| !letter(event));
-        }
-        pressed
-    })
 }
 
 impl NoteBar {

@@ -184,12 +184,7 @@ fn pause_ui(
         button.put(ui, look, place, id)
     };
     if response.clicked() {
-        if paused {
-            view.sight.follow();
-        } else {
-            view.sight.hold();
-        }
-        pane.actions.push(Action::PausePlots(!paused));
+        pane.actions.push(Action::PausePlots(view.sight.toggle()));
     }
 }
 

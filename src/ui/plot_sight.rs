@@ -59,6 +59,16 @@ impl Sight {
         self.held = Some(self.span());
     }
 
+    /// Holds what follows, and lets follow what holds; true if it holds now.
+    pub(crate) fn toggle(&mut self) -> bool {
+        if self.is_held() {
+            self.follow();
+        } else {
+            self.hold();
+        }
+        self.is_held()
+    }
+
     /// Follows the newest again.
     pub(crate) const fn follow(&mut self) {
         self.held = None;

@@ -6,7 +6,7 @@ use crate::link::{Dialling, LinkState};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right};
 use crate::ui::fault_entry;
 use crate::ui::look::{Explain, Look, Pane};
-use crate::ui::text::{Text, faults, main, words};
+use crate::ui::text::{Text, faults, keys, main, words};
 use crate::ui::window::View;
 use crate::ui::window_menu;
 use crate::ui::{format, theme};
@@ -250,14 +250,19 @@ fn figure_ui(ui: &mut Ui, place: Rect, look: Look, figure: &Figure<'_>) {
         .on_hover_text(look.say(figure.tip));
 }
 
-/// Draws the row of tabs, and the switches for theme and language.
-pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut View) {
+/// Draws the row of tabs, and the switches for theme and language. True if the list of keys was asked for.
+pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut View) -> bool {
     let look = pane.look;
     let mut rest = rect.shrink2(vec2(theme::PAD, 0.0));
     let menu = take_right(&mut rest, theme::ICON_BUTTON);
     window_menu::menu_button_ui(ui, controls::middle(menu, theme::CONTROL), pane);
     language_ui(ui, take_right(&mut rest, 56.0), pane);
     theme_ui(ui, take_right(&mut rest, theme::ICON_BUTTON), pane);
+    let place = controls::middle(take_right(&mut rest, theme::ICON_BUTTON), theme::CONTROL);
+    let list = Button::new("?", look.say(keys::BUTTON_TIP))
+        .named(look.say(keys::BUTTON))
+        .weight(Weight::Quiet);
+    let list = list.put(ui, look, place, Id::unique("keys")).clicked();
     for tab in View::ALL {
         let text = look.say(tab.title());
         let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
@@ -287,12 +292,14 @@ pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut V
             *view = tab;
         }
     }
+    list
 }
 
 fn theme_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-    let (icon, other) = match pane.state.settings.theme {
-        Theme::Dark => (theme::DARK, Theme::Light),
-        Theme::Light => (theme::LIGHT, Theme::Dark),
+    let now = pane.state.settings.theme;
+    let icon = match now {
+        Theme::Dark => theme::DARK,
+        Theme::Light => theme::LIGHT,
     };
     let button = Button::new(
         pane.look.say(main::THEME_NAME),
@@ -306,14 +313,15 @@ fn theme_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         .put(ui, pane.look, place, Id::unique("theme"))
         .clicked()
     {
-        pane.actions.push(Action::Theme(other));
+        pane.actions.push(Action::Theme(now.other()));
     }
 }
 
 fn language_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-    let (text, other) = match pane.state.settings.language {
-        Language::En => ("中文", Language::Zh),
-        Language::Zh => ("English", Language::En),
+    let now = pane.state.settings.language;
+    let text = match now {
+        Language::En => "中文",
+        Language::Zh => "English",
     };
     let button = Button::new(text, pane.look.say(main::LANGUAGE_TIP))
         .named(pane.look.say(main::LANGUAGE_NAME))
@@ -323,6 +331,6 @@ fn language_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         .put(ui, pane.look, place, Id::unique("language"))
         .clicked()
     {
-        pane.actions.push(Action::Language(other));
+        pane.actions.push(Action::Language(now.other()));
     }
 }

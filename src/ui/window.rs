@@ -1,6 +1,6 @@
 //! The whole window: where each part stands, which keys act everywhere. Holds view state only, no hand.
 
-use crate::app::action::{Action, Play};
+use crate::app::action::{Action, Play, Preset};
 use crate::app::layout::Room;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
@@ -9,9 +9,12 @@ use crate::ui::border::{border_ui, shut_ui};
 use crate::ui::connection::ConnectionForm;
 use crate::ui::faults::{self, FaultsView};
 use crate::ui::joint_rail;
+use crate::ui::joint_row::Row;
 use crate::ui::joints::JointsView;
+use crate::ui::key_list::KeyList;
+use crate::ui::keys::{self, Wish};
 use crate::ui::look::{Explain, Look, Pane, Typing};
-use crate::ui::note_bar::{self, NoteBar};
+use crate::ui::note_bar::NoteBar;
 use crate::ui::plots::PlotView;
 use crate::ui::pose_tiles;
 use crate::ui::pose_view::PoseView;
@@ -21,7 +24,7 @@ use crate::ui::theme;
 use crate::ui::top_bar;
 use crate::ui::touch::{self, TouchView};
 use crate::ui::traffic::TrafficView;
-use egui::{Event, Key, Rect, Ui};
+use egui::{Rect, Ui};
 
 /// The parts of the window that can be looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -95,6 +98,7 @@ pub struct Window {
     plots: PlotView,
     faults: FaultsView,
     note: NoteBar,
+    key_list: KeyList,
     poses: PoseView,
     connection: ConnectionForm,
     touch: TouchView,
@@ -133,10 +137,8 @@ impl Window {
     pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
         self.install_if_changed(ui, state);
         let mut actions = Vec::new();
-        let stopped = take_stop_keys(ui);
-        if note_bar::take_note_key(ui) {
-            self.note.open(state.now);
-        }
+        let wishes = keys::take(ui);
+        let stopped = wishes.contains(&Wish::Stop);
         let mut typing = std::mem::take(&mut self.typing);
         let mut explain = None;
         let mut pane = Pane {
@@ -146,10 +148,56 @@ impl Window {
             typing: &mut typing,
             explain: &mut explain,
         };
+        for wish in wishes {
+            self.obey(ui, &mut pane, wish);
+        }
         self.parts_ui(ui, &mut pane);
         self.typing = typing;
         self.explain(explain);
         stop_first(actions, stopped)
+    }
+
+    /// Does what a key asks for, under the same conditions as the control that does it.
+    fn obey(&mut self, ui: &Ui, pane: &mut Pane<'_>, wish: Wish) {
+        let state = pane.state;
+        let armed = state.is_armed();
+        let preset = |preset| armed.then_some(Action::Preset(preset));
+        let action = match wish {
+            // Goes ahead of all others, at the end of the frame.
+            Wish::Stop => None,
+            Wish::ArmOrNot if armed => Some(Action::Disarm),
+            Wish::ArmOrNot => Some(Action::Arm),
+            Wish::Open => preset(Preset::Open),
+            Wish::Half => preset(Preset::Half),
+            Wish::Close => preset(Preset::Close),
+            Wish::AngleUnit => Some(Action::AngleUnit(state.settings.angle_unit.next())),
+            Wish::Tare => state.link.state.is_live().then_some(Action::Tare(None)),
+            Wish::UndoTare => state.tare.can_undo().then_some(Action::UndoTare),
+            Wish::Language => Some(Action::Language(state.settings.language.other())),
+            Wish::Theme => Some(Action::Theme(state.settings.theme.other())),
+            Wish::Pause => Some(Action::PausePlots(self.plots.sight.toggle())),
+            Wish::Joint(dof) => {
+                Row::new(dof, pane).focus(ui, armed && !state.joints[dof].locked);
+                None
+            }
+            Wish::LinkFingers => {
+                self.joints.toggle_link();
+                None
+            }
+            Wish::Note => {
+                self.note.open(state.now);
+                None
+            }
+            Wish::View(view) => {
+                self.view = view;
+                None
+            }
+            Wish::List => {
+                self.key_list.toggle();
+                None
+            }
+        };
+        pane.actions.extend(action);
     }
 
     fn explain(&mut self, explain: Option<Explain>) {
@@ -192,8 +240,11 @@ impl Window {
             self.note.ui(ui, place, pane);
             body = rest;
         }
+        let below = body;
         let (tabs, body) = body.split_top_bottom_at_y(body.top() + theme::TABS);
-        top_bar::tabs_ui(ui, tabs, pane, &mut self.view);
+        if top_bar::tabs_ui(ui, tabs, pane, &mut self.view) {
+            self.key_list.toggle();
+        }
         let body = Rect::from_min_max(body.min, body.max - egui::vec2(theme::GAP, theme::GAP));
         let body = body.with_min_x(body.left() + theme::GAP);
         let layout = pane.state.settings.layout;
@@ -205,6 +256,7 @@ impl Window {
             self.joints.ui(ui, body.joints, pane);
         }
         self.view_ui(ui, body.view, pane);
+        self.key_list.ui(ui, below, pane.look);
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
@@ -280,44 +332,6 @@ impl Window {
     }
 }
 
-/// Takes Space and Esc out of the input before any widget sees them, and says whether one was pressed.
-/// Space belongs to a text field that has the keyboard; Esc never does.
-fn take_stop_keys(ui: &Ui) -> bool {
-    let typing = ui.ctx().text_edit_focused();
-    let is_stop = |event: &Event| match event {
-        Event::Key {
-            key: Key::Escape, ..
-        } => true,
-        Event::Key {
-            key: Key::Space, ..
-        } => !typing,
-        _ => false,
-    };
-    ui.input_mut(|input| {
-        let pressed = |event: &Event| {
-            matches!(
-                event,
-                Event::Key {
-                    pressed: true,
-                    repeat: false,
-                    ..
-                }
-            )
-        };
-        let stop = input
-            .events
-            .iter()
-            .any(|event| is_stop(event) && pressed(event));
-        input.events.retain(|event| match event {
-            Event::Key {
-                key: Key::Space, ..
-            } => typing,
-            _ => true,
-        });
-        stop
-    })
-}
-
 /// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.
 fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
     if !stopped && !actions.contains(&Action::Stop) {
@@ -343,7 +357,6 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::action::Preset;
     use crate::app::poses::library::{PoseId, SequenceId};
     use crate::hand::{Angle, Dof, Gesture, PerDof};
 

@@ -16,6 +16,7 @@ use handscope::sim::{SimConfig, SimHand};
 use handscope::transport::{
     BoxedWire, Dial, Endpoint, FaultPlan, PortFound, TransportError, faulty_pair, pair,
 };
+use handscope::ui::View;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -387,10 +388,40 @@ impl Bench {
         self.run(40);
     }
 
+    /// Opens a view as the program does it.
+    pub fn show(&mut self, view: View) {
+        self.harness.state_mut().cockpit.show(view);
+        self.run(40);
+    }
+
+    pub fn step(&mut self) {
+        self.harness.step();
+    }
+
     // --- what a person sees -------------------------------------------------------------------
 
     pub fn state(&self) -> &State {
         self.harness.state().cockpit.state()
+    }
+
+    pub fn view(&self) -> View {
+        self.harness.state().cockpit.view()
+    }
+
+    /// The name of what has the keyboard.
+    pub fn focused(&self) -> Option<String> {
+        let mut all = self.harness.query_all_by(|node| node.is_focused());
+        all.find_map(|node| node.accesskit_node().label())
+    }
+
+    /// Whether a switch is on.
+    pub fn is_on(&self, name: &str) -> bool {
+        let node = self.harness.get_by_role_and_label(Role::Button, name);
+        node.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
+    }
+
+    pub fn is_focused(&self, name: &str) -> bool {
+        self.focused().as_deref() == Some(name)
     }
 
     pub fn now(&self) -> Moment {

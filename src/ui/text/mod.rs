@@ -1,6 +1,7 @@
 //! Every sentence of the window, in English and Chinese. No layout, no numbers.
 
 pub(crate) mod faults;
+pub(crate) mod keys;
 pub(crate) mod layout;
 pub(crate) mod main;
 pub(crate) mod notices;

@@ -36,21 +36,30 @@ pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::{faults, layout, main, panels, plots, poses, quirks, scan, traffic};
+    use crate::ui::text::phrase::Text;
+    use crate::ui::text::{
+        faults, keys, layout, main, panels, plots, poses, quirks, scan, traffic,
+    };
+
+    fn all() -> impl Iterator<Item = &'static Text> {
+        let lists = [
+            faults::ALL,
+            keys::ALL,
+            layout::ALL,
+            main::ALL,
+            panels::ALL,
+            plots::ALL,
+            poses::ALL,
+            quirks::ALL,
+            scan::ALL,
+            traffic::ALL,
+        ];
+        lists.into_iter().flatten()
+    }
 
     #[test]
     fn no_sentence_lacks_a_language() {
-        for text in main::ALL
-            .iter()
-            .chain(faults::ALL)
-            .chain(layout::ALL)
-            .chain(panels::ALL)
-            .chain(plots::ALL)
-            .chain(scan::ALL)
-            .chain(poses::ALL)
-            .chain(quirks::ALL)
-            .chain(traffic::ALL)
-        {
+        for text in all() {
             assert!(!text.en.is_empty() && !text.zh.is_empty(), "{text:?}");
             assert!(
                 text.en.is_ascii() || text.en.contains(['°', '±']),
@@ -62,21 +71,9 @@ mod tests {
     #[test]
     fn every_chinese_character_is_in_the_font() {
         let known = include_str!("../../../assets/fonts/characters.txt");
-        let all = main::ALL
-            .iter()
-            .chain(faults::ALL)
-            .chain(panels::ALL)
-            .chain(plots::ALL)
-            .chain(scan::ALL)
-            .chain(poses::ALL)
-            .chain(quirks::ALL)
-            .chain(traffic::ALL);
-        for text in all {
-            for sign in text
-                .zh
-                .chars()
-                .filter(|sign| !sign.is_ascii() && *sign != '°')
-            {
+        for text in all() {
+            let signs = text.zh.chars();
+            for sign in signs.filter(|sign| !sign.is_ascii() && *sign != '°') {
                 assert!(known.contains(sign), "{sign} in {}", text.zh);
             }
         }

@@ -71,3 +71,11 @@ pub(crate) const NUDGE: f32 = 16.0;
 pub(crate) const MENU_WIDTH: f32 = 220.0;
 /// Width of a square icon button.
 pub(crate) const ICON_BUTTON: f32 = 32.0;
+/// Width of the list of keys.
+pub(crate) const KEY_LIST_WIDTH: f32 = 640.0;
+/// Height of one of its rows.
+pub(crate) const KEY_ROW: f32 = 24.0;
+/// Width of the keys in a row.
+pub(crate) const KEY_COLUMN: f32 = 112.0;
+/// Room above and below a drawn key.
+pub(crate) const KEY_CAP_MARGIN: f32 = 2.0;

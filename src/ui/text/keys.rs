@@ -1,0 +1,27 @@
+//! Sentences about keys. No layout, no numbers.
+
+use crate::ui::text::phrase::texts;
+
+texts! {
+    TITLE: "Keys", "快捷键";
+    BUTTON: "Keys", "快捷键";
+    BUTTON_TIP: "Shows what each key does.", "显示各个按键的作用。";
+    CLOSE: "Close the list of keys", "关闭快捷键列表";
+    SHUT: "Close", "关闭";
+    STOP: "STOP, from everywhere", "停止（任何时候）";
+    ARM: "Arm or disarm", "使能或取消使能";
+    LINK: "Link the fingers", "四指联动";
+    UNIT: "Unit of angles", "角度单位";
+    UNDO_TARE: "Take taring back", "撤销清零";
+    NOTE: "Write a note", "写备注";
+    PAUSE: "Pause the plots", "暂停曲线";
+    LANGUAGE: "English or Chinese", "中文或英文";
+    THEME: "Dark or light", "深色或浅色";
+    LIST: "This list", "本列表";
+    MOTION: "Motion", "运动";
+    JOINTS: "Joint that the arrows move", "方向键控制的关节";
+    MEASURING: "Measuring", "测量";
+    WINDOW: "Window", "窗口";
+    ON_TRACKS: "On a track: arrows 1 step, with Shift 10; wheel; Tab to the next.", "在滑轨上：方向键走一步，加 Shift 走十步；滚轮；Tab 到下一个。";
+    IN_FIELDS: "In a field: Enter takes the number, Esc stops the hand.", "在输入框里：回车确认数值，Esc 停止手。";
+}
