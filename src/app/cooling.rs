@@ -14,7 +14,7 @@ pub const AMBIENT_C: f32 = 25.0;
 /// How far back the course is looked at: two time constants of a small drive at most, and one heating up is soon behind.
 const LOOK_BACK_S: f64 = 120.0;
 /// Measurements of so many seconds are one point: readings come in whole degrees.
-const POINT_S: f64 = 5.0;
+const POINT_S: f64 = 3.0;
 /// Fewer points say nothing.
 const POINTS_MIN: usize = 4;
 /// A smaller fall over all points is the step from one whole degree to the next.
@@ -91,8 +91,8 @@ pub fn course(history: &History, dof: Dof, now_s: f64, goal: Goal) -> Course {
     extrapolate(&points, goal.celsius.into())
 }
 
-/// From points of (seconds from now, °C), oldest first: an exponential towards [`AMBIENT_C`] through those since the
-/// hottest, by least squares.
+/// From points of (seconds from now, °C), oldest first: an exponential towards [`AMBIENT_C`] through those since it was
+/// hottest last, by least squares.
 #[must_use]
 pub fn extrapolate(points: &[(f64, f64)], goal_c: f64) -> Course {
     let ambient = f64::from(AMBIENT_C);
@@ -100,7 +100,9 @@ pub fn extrapolate(points: &[(f64, f64)], goal_c: f64) -> Course {
         .iter()
         .map(|(_, celsius)| *celsius)
         .fold(f64::MIN, f64::max);
-    let since = points.iter().rposition(|(_, celsius)| *celsius >= hottest);
+    // A drive stays at its hottest for a while before it cools.
+    let nearly = hottest - FALL_MIN_C / 2.0;
+    let since = points.iter().rposition(|(_, celsius)| *celsius >= nearly);
     let fall = since.and_then(|since| points.get(since..)).unwrap_or(&[]);
     match points.last() {
         Some((_, newest)) if *newest <= goal_c => return Course::Reached,
@@ -113,8 +115,15 @@ pub fn extrapolate(points: &[(f64, f64)], goal_c: f64) -> Course {
         .map(|(at_s, celsius)| (*at_s, (celsius - ambient).ln()))
         .collect();
     let Some(line) = Line::through(&excess) else {
-        // The hottest is among the newest points.
-        return Course::NotFalling;
+        // The hottest is among the newest points: it has only begun to fall, or it wavers.
+        let begun = points
+            .last()
+            .is_some_and(|(_, newest)| hottest - newest >= FALL_MIN_C);
+        return if begun {
+            Course::Unknown
+        } else {
+            Course::NotFalling
+        };
     };
     let value = |at_s: f64| line.at_zero + line.slope * at_s;
     let first_s = excess.first().map_or(0.0, |(at_s, _)| *at_s);
@@ -243,12 +252,9 @@ mod tests {
                 Course::NotFalling,
                 "{seed}"
             );
-            let begins = |at: f64| 90.0 - (at - 105.0).max(0.0) / 3.0;
-            assert_eq!(
-                after(110, seed, begins),
-                Course::NotFalling,
-                "too early, {seed}"
-            );
+            let begins = |at: f64| 90.0 - (at - 105.0).max(0.0);
+            let course = after(110, seed, begins);
+            assert_eq!(course, Course::Unknown, "too early, {seed}");
         }
     }
 
@@ -273,13 +279,11 @@ mod tests {
 
     #[test]
     fn little_says_nothing_and_cool_is_cool() {
-        assert_eq!(after(12, 1, |_| 90.0), Course::Unknown);
+        assert_eq!(after(9, 1, |_| 90.0), Course::Unknown);
         assert_eq!(extrapolate(&[], 70.0), Course::Unknown);
         assert_eq!(after(60, 1, |_| 60.0), Course::Reached);
-        let slow = extrapolate(
-            &[(-120.0, 92.0), (-80.0, 91.4), (-40.0, 90.8), (0.0, 90.2)],
-            26.0,
-        );
+        let slow = |step: i32| (f64::from(step - 5) * 40.0, 92.0 - 0.6 * f64::from(step));
+        let slow = extrapolate(&[0, 1, 2, 3, 4, 5].map(slow), 26.0);
         assert_eq!(slow, Course::Falling { left: LONGEST });
     }
 

@@ -242,9 +242,13 @@ pub struct Notices {
 }
 
 impl Notices {
-    /// Adds one. The same cause again is counted, not added, and counts as the newest.
+    /// Adds one. The same cause again is counted, not added, and counts as the newest. A fault is only logged: the list
+    /// of faults asks for attention until it was seen.
     pub fn push(&mut self, at: Moment, what: NoticeKind) {
         self.note(at, &what);
+        if matches!(what, NoticeKind::Fault { .. }) {
+            return;
+        }
         let known = self
             .kept
             .iter()

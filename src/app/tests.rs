@@ -319,12 +319,15 @@ fn holds_and_faults_are_told() {
         });
     }
     bench.step();
-    let told = bench
-        .notices()
-        .iter()
-        .filter(|what| matches!(what, NoticeKind::Fault { .. }))
-        .count();
+    let is_fault = |what: &NoticeKind| matches!(what, NoticeKind::Fault { .. });
+    let log = bench.desk.state.notices.log();
+    let told = log.filter(|notice| is_fault(&notice.what)).count();
     assert_eq!(told, 6, "once a joint");
+    assert_eq!(bench.desk.state.faults.unseen().count(), 6);
+    assert!(
+        !bench.notices().iter().any(is_fault),
+        "the list of faults asks for attention"
+    );
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::ui::controls::{self, Button, Label, Weight, take_right, take_top};
 use crate::ui::drive_lamp::DriveWords;
 use crate::ui::fault_entry;
 use crate::ui::joint_row::newest;
+use crate::ui::list::{INDENT, LAMP_AT, TITLE_LINE};
 use crate::ui::look::Pane;
 use crate::ui::text::{faults, words};
 use crate::ui::{format, theme};
@@ -83,15 +84,15 @@ fn tile_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, dof: Dof, chosen: bool) -> 
     ui.painter()
         .rect_filled(bar, CornerRadius::same(2), palette.dof[dof]);
     let mut inner = rect.shrink2(vec2(theme::GAP, theme::STEP));
-    let mut head = take_top(&mut inner, 20.0);
+    let mut head = take_top(&mut inner, TITLE_LINE);
     inner.min.y -= theme::GAP;
     unseen_mark_ui(ui, &mut head, pane, dof);
     figures_ui(ui, &mut head, pane, dof);
     Label::new(joint, palette.dof[dof]).put(ui, head);
-    let mut line = take_top(&mut inner, 20.0);
+    let mut line = take_top(&mut inner, TITLE_LINE);
     inner.min.y -= theme::GAP;
-    controls::lamp(ui, pos2(line.left() + 6.0, line.center().y), said.lamp);
-    line.min.x += 17.0;
+    controls::lamp(ui, pos2(line.left() + LAMP_AT, line.center().y), said.lamp);
+    line.min.x += INDENT;
     code_ui(ui, &mut line, pane, dof);
     let ink = if said.freshness == Freshness::Live && said.text == palette.muted {
         palette.text

@@ -7,7 +7,7 @@ use crate::app::recorder::RecordingId;
 use crate::app::state::Freshness;
 use crate::hand::{Dof, Fault};
 use crate::ui::controls::{self, Button, Label, Weight, take_right};
-use crate::ui::list::{INDENT, TITLE_LINE, piece, wrapped_ui};
+use crate::ui::list::{INDENT, LAMP_AT, TITLE_LINE, piece, wrapped_ui};
 use crate::ui::look::Pane;
 use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::{format, theme};
@@ -62,7 +62,7 @@ pub(crate) fn entry_ui(
                 ui.cursor().top() + theme::STEP / 2.0,
             ),
         );
-        let fill = palette.wash(palette.dof[entry.dof]);
+        let fill = palette.wash(palette.accent);
         let shape = RectShape::filled(place, CornerRadius::same(theme::ROUND_SMALL), fill);
         ui.painter().set(ground, shape);
     }
@@ -105,7 +105,7 @@ fn title_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, entry: &FaultEntry) {
     };
     let mut row = piece(ui, width, height);
     let (word, color) = stand(pane, entry);
-    let lamp_at = pos2(row.left() + 6.0, row.center().y);
+    let lamp_at = pos2(row.left() + LAMP_AT, row.center().y);
     if entry.is_active() {
         controls::lamp(ui, lamp_at, color);
     } else {

@@ -11,7 +11,7 @@ use crate::ui::drive_lamp::DriveWords;
 use crate::ui::drive_tiles;
 use crate::ui::fault_entry::{Depth, entry_ui, seen_all_ui};
 use crate::ui::list::{
-    INDENT, LINE, TITLE_LINE, line_ui, piece, scroll_ui, titled_text_ui, wrapped_ui,
+    INDENT, LAMP_AT, LINE, TITLE_LINE, line_ui, piece, scroll_ui, titled_text_ui, wrapped_ui,
 };
 use crate::ui::look::Pane;
 use crate::ui::message_log::MessageLog;
@@ -216,7 +216,7 @@ fn none_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>) {
         Freshness::Unknown => (panels::FAULTS_UNKNOWN, look.palette.faint),
     };
     let place = piece(ui, width, TITLE_LINE);
-    controls::lamp(ui, pos2(place.left() + 6.0, place.center().y), color);
+    controls::lamp(ui, pos2(place.left() + LAMP_AT, place.center().y), color);
     let place = place.with_min_x(place.left() + INDENT);
     Label::new(look.say(text), look.palette.muted).put(ui, place);
     let hint = look.say(panels::FAULTS_NONE_HINT);
@@ -237,7 +237,7 @@ fn drive_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, dof: Dof) -> bool {
     let closed = button
         .put(ui, look, place, Id::unique("all drives"))
         .clicked();
-    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), said.lamp);
+    controls::lamp(ui, pos2(row.left() + LAMP_AT, row.center().y), said.lamp);
     let row = row.with_min_x(row.left() + INDENT);
     let verb = if said.freshness == Freshness::Live {
         faults::SAYS_NOW
@@ -249,7 +249,12 @@ fn drive_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, dof: Dof) -> bool {
     Label::new(&title, palette.text).put(ui, row);
     let status = pane.state.sample.status.map(|group| group.value[dof]);
     // A fault is explained by its entry below; what the status adds to it is said here.
-    if let Some(status) = status {
+    let faulty = pane
+        .state
+        .sample
+        .faults
+        .is_some_and(|group| !group.value[dof].is_empty());
+    if let Some(status) = status.filter(|status| !(faulty && status.is_protective())) {
         let words = words::status(status, look.language);
         wrapped_ui(ui, width, INDENT, words.cause, palette.muted);
         let advice = format!("{} {}", look.say(faults::TODO), words.advice);
@@ -328,7 +333,7 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
     );
     let place = piece(ui, width, (galley.size().y + 6.0).max(LINE + 5.0));
     let mut row = place.with_max_y(place.top() + LINE + 5.0);
-    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
+    controls::lamp(ui, pos2(row.left() + LAMP_AT, row.center().y), color);
     let response = ui.interact(
         place,
         Id::unique(("notice", notice.id)),

@@ -9,6 +9,8 @@ use egui::{Color32, Id, Rect, Response, Ui, UiBuilder, pos2, vec2};
 pub(crate) const LINE: f32 = 17.0;
 /// Height of a line with a lamp or a title.
 pub(crate) const TITLE_LINE: f32 = 20.0;
+/// Where the middle of a lamp stands in that room.
+pub(crate) const LAMP_AT: f32 = 6.0;
 /// Room for the lamp before a title.
 pub(crate) const INDENT: f32 = 17.0;
 

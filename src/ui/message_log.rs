@@ -4,7 +4,7 @@ use crate::app::notices::{Level, Notice};
 use crate::app::settings::Language;
 use crate::hand::Moment;
 use crate::ui::controls::{self, Button, Label, take_left, take_right, take_top};
-use crate::ui::list::{INDENT, line_ui, scroll_ui};
+use crate::ui::list::{INDENT, LAMP_AT, line_ui, scroll_ui};
 use crate::ui::look::{Look, Pane};
 use crate::ui::text::{Text, faults, notices};
 use crate::ui::{format, theme};
@@ -15,6 +15,8 @@ use std::fmt::Write as _;
 const FILTER_MAX: usize = 64;
 /// Width of a message's age.
 const AGE: f32 = 52.0;
+/// The filter's field has a row of its own where it would be narrower.
+const FIELD: f32 = 96.0;
 /// Above and below the text of a message.
 const AIR: f32 = 3.0;
 
@@ -63,7 +65,13 @@ impl MessageLog {
     /// Draws the tools and the list.
     pub(crate) fn ui(&mut self, ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
         let look = pane.look;
-        self.tools_ui(ui, take_top(&mut rect, theme::CONTROL), look);
+        let left = self.tools_ui(ui, take_top(&mut rect, theme::CONTROL), look);
+        let field = if left.width() < FIELD {
+            take_top(&mut rect, theme::CONTROL)
+        } else {
+            left
+        };
+        filter_ui(ui, field, look, &mut self.words);
         self.update(ui, rect.width() - theme::GAP, pane);
         if self.lines.is_empty() {
             let any = pane.state.notices.log().next().is_some();
@@ -79,7 +87,8 @@ impl MessageLog {
         self.lines_ui(ui, rect, pane);
     }
 
-    fn tools_ui(&mut self, ui: &mut Ui, mut row: Rect, look: Look) {
+    /// Levels and copying; the room that is left in the row.
+    fn tools_ui(&mut self, ui: &mut Ui, mut row: Rect, look: Look) -> Rect {
         let (text, name) = match self.copied {
             None => (look.say(faults::COPY).to_owned(), look.say(faults::COPY)),
             Some(lines) => (
@@ -114,8 +123,7 @@ impl MessageLog {
                 self.least = least;
             }
         }
-        row.min.x += theme::STEP;
-        filter_ui(ui, row, look, &mut self.words);
+        row.with_min_x(row.left() + theme::STEP)
     }
 
     /// Lays the lines out anew if anything about them has changed.
@@ -205,7 +213,7 @@ fn line_of(ui: &mut Ui, mut row: Rect, pane: &Pane<'_>, line: &Line) {
     let look = pane.look;
     let (_, color) = level_look(look, line.level);
     let first = row.top() + AIR + 7.0;
-    controls::lamp(ui, pos2(row.left() + 6.0, first), color);
+    controls::lamp(ui, pos2(row.left() + LAMP_AT, first), color);
     let age = format::age(pane.state.now.since(line.at));
     let mut place = take_right(&mut row, AGE);
     place.max.y = place.top() + 2.0 * AIR + 14.0;

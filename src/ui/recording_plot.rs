@@ -23,7 +23,9 @@ const LANE: f32 = 8.0;
 /// Height that a number on the vertical axis needs.
 const NUMBER: f32 = 22.0;
 /// A plot less high than this says nothing.
-pub(crate) const LEAST_HEIGHT: f32 = 58.0;
+pub(crate) const LEAST_HEIGHT: f32 = 46.0;
+/// Room for a time on the time axis.
+const TIME: f32 = 60.0;
 /// Steps of the time axis, seconds.
 const STEPS: [f64; 6] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
 
@@ -262,7 +264,10 @@ impl RecordingPlot<'_> {
     fn time_ui(&self, ui: &Ui, ground: Rect, bottom: f32) {
         let look = self.look;
         let (from_s, to_s) = self.span;
-        let step = STEPS.into_iter().find(|step| (to_s - from_s) / step <= 9.0);
+        let most = f64::from((ground.width() / TIME).clamp(2.0, 9.0));
+        let step = STEPS
+            .into_iter()
+            .find(|step| (to_s - from_s) / step <= most);
         let step = step.unwrap_or(30.0);
         let first = ((from_s - self.fault_s) / step).ceil() * step;
         for number in 0..16_u8 {
@@ -274,7 +279,10 @@ impl RecordingPlot<'_> {
             let faint = Stroke::new(1.0, look.palette.grid);
             ui.painter()
                 .vline(x, ground.top() + lanes_height()..=ground.bottom(), faint);
-            let place = Rect::from_center_size(pos2(x, bottom - TIME_AXIS / 2.0), vec2(52.0, 14.0));
+            let place = Rect::from_center_size(
+                pos2(x, bottom - TIME_AXIS / 2.0),
+                vec2(TIME - theme::GAP, 14.0),
+            );
             let over = (place.right() - ground.right()).max(0.0);
             let place = place.translate(vec2(-over, 0.0));
             let text = if ago.abs() < 1e-9 {

@@ -7,7 +7,7 @@ use crate::app::save::Content;
 use crate::app::settings::{Language, ShownPlots, Theme};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::fault_entry;
-use crate::ui::list::{INDENT, LINE, line_ui, piece, scroll_ui, wrapped_ui};
+use crate::ui::list::{INDENT, LAMP_AT, LINE, line_ui, piece, scroll_ui, wrapped_ui};
 use crate::ui::look::{Look, Pane};
 use crate::ui::plot_panels::{PANELS, Panel};
 use crate::ui::recording_events::{self, EventLine};
@@ -75,7 +75,7 @@ impl RecordingsView {
                 let place = piece(ui, width, LINE + theme::STEP);
                 controls::lamp(
                     ui,
-                    pos2(place.left() + 6.0, place.center().y),
+                    pos2(place.left() + LAMP_AT, place.center().y),
                     look.palette.bad,
                 );
                 let text = format!("{} {left}", look.say(faults::RECORDING_RUNS));
@@ -303,7 +303,7 @@ fn row_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, listed: &Listed) -> bool {
     let open = Button::new(text, look.say(faults::RECORDING_OPEN_TIP)).named(&name);
     let id = Id::unique(("open recording", recording.id));
     let pressed = open.put(ui, look, place, id).clicked();
-    let at = pos2(row.left() + 6.0, row.center().y);
+    let at = pos2(row.left() + LAMP_AT, row.center().y);
     if listed.opened {
         fault_entry::mark(ui, at, palette.faint);
     } else {

@@ -84,7 +84,8 @@ fn unseen_ui(ui: &mut Ui, rest: &mut Rect, pane: &mut Pane<'_>) {
     };
     let look = pane.look;
     let count = pane.state.faults.unseen().count();
-    let text = format!("{count} {}", look.say(faults::UNSEEN));
+    let (before, after) = (look.say(faults::UNSEEN_BEFORE), look.say(faults::UNSEEN));
+    let text = format!("{before} {count} {after}");
     let width = controls::text_width(ui, &text, theme::body()) + 40.0;
     let place = controls::middle(take_right(rest, width), theme::CONTROL_LARGE);
     let button = Button::new(&text, look.say(faults::UNSEEN_TIP));

@@ -26,6 +26,7 @@ texts! {
     SEEN_ALL: "All seen", "全部已看";
     SEEN_ALL_TIP: "You have seen all faults of the list.", "表示已查看列表中的全部故障。";
     SEEN_NONE: "Every fault was seen.", "没有未查看的故障。";
+    UNSEEN_BEFORE: "Faults:", "故障";
     UNSEEN: "unseen", "项未查看";
     UNSEEN_TIP: "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
     UNSEEN_MARK: "unseen fault", "未查看的故障";
