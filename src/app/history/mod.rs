@@ -4,6 +4,9 @@ mod book;
 #[cfg(test)]
 mod book_tests;
 mod column;
+mod grid;
+#[cfg(test)]
+mod grid_tests;
 mod mark;
 mod reading;
 mod ring;

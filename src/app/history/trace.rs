@@ -1,53 +1,19 @@
 //! Lines that are ready to draw. How they are made is told elsewhere.
 
-/// The lines of one quantity. Kept by the view and filled again each frame, so that nothing is allocated.
+use crate::app::history::grid::Grid;
+
+/// The lines of one quantity. Kept by the view and filled again each frame, so that nothing is allocated; one that is
+/// kept for the same series is filled faster, as only its newest columns of pixels are new.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
     /// Unbroken lines of (seconds, value), oldest first. None is empty.
     pub segments: Vec<Vec<[f64; 2]>>,
     /// True if each point stands for several measurements: smallest and largest of a column of pixels.
     pub decimated: bool,
-    /// How the rows were cut into columns of pixels. Lines that were read together share it.
-    pub(crate) cut: Cut,
+    /// Columns of pixels that are kept for the next time.
+    pub(crate) grid: Grid,
     spare: Vec<Vec<[f64; 2]>>,
     open: bool,
-}
-
-/// Rows cut into columns of pixels.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Cut {
-    /// What was cut, and how.
-    pub(crate) key: Option<CutKey>,
-    /// The columns, oldest first.
-    pub(crate) stretches: Vec<Stretch>,
-}
-
-/// What makes two cuts equal.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct CutKey {
-    /// Which row of times.
-    pub(crate) track: u8,
-    /// Its length when it was cut.
-    pub(crate) end: usize,
-    /// From, in seconds.
-    pub(crate) from_s: f64,
-    /// To, in seconds.
-    pub(crate) to_s: f64,
-    /// Columns of pixels.
-    pub(crate) columns: u32,
-}
-
-/// The rows of one column of pixels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stretch {
-    /// First row.
-    pub(crate) start: usize,
-    /// After the last row.
-    pub(crate) end: usize,
-    /// Time of the first row.
-    pub(crate) first_s: f64,
-    /// Time of the row in the middle.
-    pub(crate) middle_s: f64,
 }
 
 impl Trace {

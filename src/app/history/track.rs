@@ -1,13 +1,14 @@
 //! Quantities that are read together, over one row of times, and how they become lines. Knows no hand.
 
 use crate::app::history::column::{Column, Extremes};
+use crate::app::history::grid::{Cell, Grid, GridKey};
 use crate::app::history::reading::{Reading, Summary};
 use crate::app::history::ring::Ring;
-use crate::app::history::trace::{Cut, CutKey, Stretch, Trace};
+use crate::app::history::trace::Trace;
 use std::ops::Range;
 
-/// Rows that one trace may look at one by one around gaps; a stretch with more of them is drawn as a break.
-const GAP_ROWS_MAX: usize = 4096;
+/// Rows that one column may look at one by one around gaps; a wider one with gaps stands between two breaks.
+const GAP_ROWS_MAX: usize = 1024;
 /// Columns begin at a whole stretch of the pyramid of which this many fit in: a column then looks at a handful of
 /// stretches, however many rows it is wide, and begins less than half a pixel too early.
 const STRETCHES_A_COLUMN: usize = 2;
@@ -23,6 +24,23 @@ pub(crate) struct Slice {
     pub(crate) to_s: f64,
     /// Columns of pixels, at least 1.
     pub(crate) columns: u32,
+}
+
+/// The rows of one column of pixels, or of an unbroken part of it.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    start: usize,
+    end: usize,
+    first_s: f64,
+    middle_s: f64,
+}
+
+/// A column of the grid by its number, and the rows at which its two neighbours' times begin.
+#[derive(Debug, Clone, Copy)]
+struct Walk {
+    number: i64,
+    before: usize,
+    here: usize,
 }
 
 /// Quantities that are read together.
@@ -106,7 +124,7 @@ impl Track {
         if rows.len() <= most {
             self.each_row(column, rows, out);
         } else {
-            self.each_column(column, rows, slice, out);
+            self.each_column(quantity, rows, slice, out);
         }
         out.end();
     }
@@ -218,50 +236,100 @@ impl Track {
         }
     }
 
-    /// Columns stand on a grid of time that does not move with the window, so that a scrolling line does not flicker.
-    fn each_column(&self, column: &Column, rows: Range<usize>, slice: Slice, out: &mut Trace) {
-        out.decimated = true;
-        let key = CutKey {
-            track: self.number,
-            end: self.times.end(),
-            from_s: slice.from_s,
-            to_s: slice.to_s,
-            columns: slice.columns,
+    /// Columns stand on a grid of time that does not move with the window, so that a scrolling line does not flicker
+    /// and a column that is past never changes.
+    fn each_column(&self, quantity: usize, rows: Range<usize>, slice: Slice, out: &mut Trace) {
+        let Some(column) = self.columns.get(quantity) else {
+            return;
         };
-        let mut cut = std::mem::take(&mut out.cut);
-        if cut.key != Some(key) {
-            self.cut(rows, slice, &mut cut);
-            cut.key = Some(key);
+        out.decimated = true;
+        let key = GridKey {
+            track: self.number,
+            quantity,
+            step_ns: step_ns(slice),
+        };
+        let mut grid = std::mem::take(&mut out.grid);
+        let first = self.first_number(key.step_s(), rows.start);
+        grid.ready(key, first, |cell| {
+            self.times.get(cell.start) == Some(cell.first_s)
+                && column.get(cell.start).map(f32::to_bits) == cell.first_bits
+        });
+        self.fill(column, key.step_s(), rows.end, &mut grid);
+        for point in grid.points_before(rows.end) {
+            if point.value.is_nan() {
+                out.end();
+            } else {
+                out.point(point.time_s, point.value);
+            }
         }
-        let mut budget = GAP_ROWS_MAX;
-        for stretch in &cut.stretches {
-            self.one_column(column, *stretch, &mut budget, out);
-        }
-        out.cut = cut;
+        out.grid = grid;
     }
 
-    fn cut(&self, rows: Range<usize>, slice: Slice, cut: &mut Cut) {
-        cut.stretches.clear();
-        let step_s = (slice.to_s - slice.from_s) / f64::from(slice.columns.max(1));
-        let column_after =
-            |row: usize| (self.times.get(row).unwrap_or(slice.to_s) / step_s).floor() + 1.0;
-        let mut border = column_after(rows.start);
-        let (mut row, mut width) = (rows.start, 1);
-        while row < rows.end {
-            let mut next = self.row_ahead(border * step_s, row, width, rows.end);
-            if next < rows.end {
-                next -= next % whole_rows(next - row);
-            }
-            if next > row {
-                cut.stretches.push(self.stretch(row..next, slice.to_s));
-                width = next - row;
-                row = next;
-                border += 1.0;
+    /// The column of a row, or the next one of which all rows are certainly held.
+    fn first_number(&self, step_s: f64, row: usize) -> i64 {
+        let oldest = self.times.start();
+        let number = self.time_s(row).map_or(0, |at_s| number_at(at_s, step_s));
+        let whole = self.time_s(oldest).filter(|_| oldest > 0);
+        // A column's rows depend on those of the one before it.
+        whole.map_or(number, |at_s| number.max(number_at(at_s, step_s) + 3))
+    }
+
+    /// Adds the columns up to a row.
+    fn fill(&self, column: &Column, step_s: f64, end: usize, grid: &mut Grid) {
+        let mut walk = self.walk_at(grid.next(), step_s);
+        let mut start = self.border(walk);
+        while start < end {
+            let next = self.walk_on(walk, step_s);
+            let finished = next.here < self.times.end();
+            let after = self.border(next);
+            if after > start {
+                let held = grid.len();
+                let stretch = self.stretch(start..after, 0.0);
+                self.one_column(column, stretch, grid);
+                grid.close(Cell {
+                    number: walk.number,
+                    start,
+                    first_s: stretch.first_s,
+                    first_bits: column.get(start).map(f32::to_bits),
+                    finished,
+                    points: grid.len() - held,
+                });
+                (walk, start) = (next, after);
             } else {
                 // Nothing was measured in this column: go to the one of the next row.
-                border = column_after(row);
+                let ahead = self.time_s(start).map_or(0, |at_s| number_at(at_s, step_s));
+                walk = self.walk_at(next.number.max(ahead - 1), step_s);
+                grid.skip_to(walk.number);
             }
         }
+    }
+
+    fn walk_at(&self, number: i64, step_s: f64) -> Walk {
+        let row = |number| self.row_at(begin_s(number, step_s), self.whole());
+        Walk {
+            number,
+            before: row(number - 1),
+            here: row(number),
+        }
+    }
+
+    /// The next column.
+    fn walk_on(&self, walk: Walk, step_s: f64) -> Walk {
+        let number = walk.number + 1;
+        let (width, end) = (walk.here - walk.before, self.times.end());
+        Walk {
+            number,
+            before: walk.here,
+            here: self.row_ahead(begin_s(number, step_s), walk.here, width, end),
+        }
+    }
+
+    /// The first row of a column: one at which a stretch of the pyramid begins.
+    const fn border(&self, walk: Walk) -> usize {
+        if walk.here == self.times.end() {
+            return walk.here;
+        }
+        walk.here - walk.here % whole_rows(walk.here - walk.before)
     }
 
     fn stretch(&self, rows: Range<usize>, else_s: f64) -> Stretch {
@@ -278,43 +346,73 @@ impl Track {
         }
     }
 
-    fn one_column(&self, column: &Column, stretch: Stretch, budget: &mut usize, out: &mut Trace) {
+    fn one_column(&self, column: &Column, stretch: Stretch, grid: &mut Grid) {
         let rows = stretch.start..stretch.end;
         let extremes = column.extremes(rows.clone());
         if extremes.is_empty() {
-            out.end();
+            breaks(stretch, grid);
         } else if !extremes.gap {
-            pair(column, stretch, extremes, out);
-        } else if let Some(rest) = budget.checked_sub(rows.len()) {
-            *budget = rest;
-            self.runs(column, rows, out);
+            pair(column, stretch, extremes, grid);
+        } else if rows.len() <= GAP_ROWS_MAX {
+            self.runs(column, rows, grid);
         } else {
-            // Too many gaps to look at each: both ends of the stretch are breaks.
-            out.end();
-            pair(column, stretch, extremes, out);
-            out.end();
+            breaks(stretch, grid);
+            pair(column, stretch, extremes, grid);
+            breaks(stretch, grid);
         }
     }
 
     /// The unbroken runs of rows between gaps, each by its own extremes.
-    fn runs(&self, column: &Column, rows: Range<usize>, out: &mut Trace) {
+    fn runs(&self, column: &Column, rows: Range<usize>, grid: &mut Grid) {
         let mut begin = rows.start;
         for row in rows.clone() {
             if column.get(row).is_none_or(f32::is_nan) {
-                self.run(column, begin..row, out);
-                out.end();
+                self.run(column, begin..row, grid);
+                breaks(self.stretch(row..row, 0.0), grid);
                 begin = row + 1;
             }
         }
-        self.run(column, begin..rows.end, out);
+        self.run(column, begin..rows.end, grid);
     }
 
-    fn run(&self, column: &Column, rows: Range<usize>, out: &mut Trace) {
-        if let Some(first_s) = self.times.get(rows.start).filter(|_| !rows.is_empty()) {
+    fn run(&self, column: &Column, rows: Range<usize>, grid: &mut Grid) {
+        if !rows.is_empty() {
             let extremes = column.extremes(rows.clone());
-            pair(column, self.stretch(rows, first_s), extremes, out);
+            pair(column, self.stretch(rows, 0.0), extremes, grid);
         }
     }
+}
+
+fn breaks(stretch: Stretch, grid: &mut Grid) {
+    grid.point(stretch.first_s, f32::NAN);
+}
+
+/// Width of a column, in whole nanoseconds.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "clamped to an hour just before"
+)]
+fn step_ns(slice: Slice) -> i64 {
+    let step_s = (slice.to_s - slice.from_s) / f64::from(slice.columns.max(1));
+    (step_s * 1e9).round().clamp(1.0, 3.6e12) as i64
+}
+
+/// The number of the column of a time.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "times are of one run of the program, and a float is cut to the ends of the whole numbers"
+)]
+fn number_at(at_s: f64, step_s: f64) -> i64 {
+    (at_s / step_s).floor() as i64
+}
+
+/// When a column begins, in seconds.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "a day holds far fewer than 2^53 columns"
+)]
+fn begin_s(number: i64, step_s: f64) -> f64 {
+    number as f64 * step_s
 }
 
 /// Rows of the longest stretch of the pyramid of which enough fit into a column of so many rows.
@@ -327,15 +425,15 @@ const fn whole_rows(width: usize) -> usize {
 }
 
 /// Smallest and largest value of a stretch, in the order that follows the line.
-fn pair(column: &Column, stretch: Stretch, extremes: Extremes, out: &mut Trace) {
+fn pair(column: &Column, stretch: Stretch, extremes: Extremes, grid: &mut Grid) {
     let Some(last) = stretch.end.checked_sub(1).filter(|_| !extremes.is_empty()) else {
         return;
     };
     let (min, max) = (extremes.min, extremes.max);
     let rises = column.get(stretch.start) <= column.get(last);
     let (one, two) = if rises { (min, max) } else { (max, min) };
-    out.point(stretch.first_s, one);
+    grid.point(stretch.first_s, one);
     if last > stretch.start {
-        out.point(stretch.middle_s, two);
+        grid.point(stretch.middle_s, two);
     }
 }
