@@ -32,7 +32,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     drop(server);
     pseudo_terminal(report)?;
     // No wire at all: what link and hand cost by themselves. Far too fast for a window to take every sample.
-    let measured = measure(&Endpoint::sim())?;
+    let measured = measure(&Endpoint::sim(), WARM, COUNTED)?;
     let what = "state + tactile over sim:, hand and link on one thread";
     report.row(what, measured.cycles, "cycles/s", Aim::None)
 }
@@ -58,27 +58,43 @@ fn pseudo_terminal(report: &mut Report) -> Result<(), Failure> {
 }
 
 fn row(report: &mut Report, what: &str, endpoint: &Endpoint, aim: f64) -> Result<(), Failure> {
-    let measured = measure(endpoint)?;
+    let measured = measure(endpoint, WARM, COUNTED)?;
     report.row(what, measured.cycles, "cycles/s", Aim::AtLeast(aim))?;
-    let [median, slow] = measured.round_trip_us;
+    let [median, slow] = measured.round_trip_us();
     report.row("  round trip, median", median, "us", Aim::None)?;
     report.row("  round trip, 99 of 100", slow, "us", Aim::None)?;
     let what = "  requests that failed";
-    report.row(what, measured.failed, "", Aim::AtMost(0.0))?;
+    let lost = count(failed(&measured.stats));
+    report.row(what, lost, "", Aim::AtMost(0.0))?;
     // At many times the rate that a window asks for, and more where other programs hold this one up.
     let what = "  samples that the looking thread came too late for";
     report.row(what, measured.dropped, "", Aim::None)
 }
 
-struct Measured {
-    cycles: f64,
-    /// Median, and 99 of 100.
-    round_trip_us: [f64; 2],
-    failed: f64,
+/// What a link did in a while.
+pub(crate) struct Measured {
+    /// Full cycles a second.
+    pub(crate) cycles: f64,
+    /// As it was in the end.
+    pub(crate) stats: LinkStats,
+    /// Samples in that time that nobody took.
     dropped: f64,
 }
 
-fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
+impl Measured {
+    /// Median, and 99 of 100.
+    fn round_trip_us(&self) -> [f64; 2] {
+        [self.stats.rtt_p50, self.stats.rtt_p99]
+            .map(|time| time.unwrap_or_default().as_secs_f64() * 1e6)
+    }
+}
+
+/// Opens a link, lets it settle and counts what it does.
+pub(crate) fn measure(
+    endpoint: &Endpoint,
+    warm: Duration,
+    counted: Duration,
+) -> Result<Measured, Failure> {
     let runtime = Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()
@@ -92,9 +108,9 @@ fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
         wake: Arc::new(|| ()),
     };
     let mut link = open(config, runtime.handle());
-    listen(&mut link, WARM);
+    listen(&mut link, warm);
     let (before, begun) = (link.stats(), Instant::now());
-    listen(&mut link, COUNTED);
+    listen(&mut link, counted);
     let (after, took) = (link.stats(), begun.elapsed());
     if after.state_reads == before.state_reads {
         return Err(format!("{endpoint} gives nothing: {:?}", link.status()).into());
@@ -103,10 +119,8 @@ fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
     let tactile = count(after.tactile_reads - before.tactile_reads);
     Ok(Measured {
         cycles: state.min(tactile) / took.as_secs_f64(),
-        round_trip_us: [after.rtt_p50, after.rtt_p99]
-            .map(|time| time.unwrap_or_default().as_secs_f64() * 1e6),
-        failed: count(failed(&after)),
         dropped: count(after.dropped_events - before.dropped_events),
+        stats: after,
     })
 }
 
@@ -124,7 +138,7 @@ pub(crate) fn count(many: u64) -> f64 {
 }
 
 /// Takes what comes, as the window does.
-pub(crate) fn listen(link: &mut LinkHandle, length: Duration) {
+fn listen(link: &mut LinkHandle, length: Duration) {
     let begun = Instant::now();
     while begun.elapsed() < length {
         while link.try_event().is_some() {}
@@ -149,7 +163,7 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    fn tcp() -> Result<Self, Failure> {
+    pub(crate) fn tcp() -> Result<Self, Failure> {
         let listener = std::net::TcpListener::bind("127.0.0.1:0")?;
         listener.set_nonblocking(true)?;
         let endpoint = Endpoint::Tcp {

@@ -5,10 +5,12 @@ mod clock;
 mod codec;
 mod cycles;
 mod frames;
+mod idle;
 #[cfg(unix)]
 mod line;
 mod memory;
 mod pictures;
+mod plain;
 mod report;
 mod scene;
 mod start;
@@ -29,7 +31,7 @@ mod line {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 8] = [
+const PARTS: [Part; 9] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -37,6 +39,7 @@ const PARTS: [Part; 8] = [
     ("png", pictures::run),
     ("start", start::run),
     ("memory", memory::run),
+    ("idle", idle::run),
     ("waiting", waiting::run),
 ];
 

@@ -1,16 +1,12 @@
 //! How near the link comes to what a serial line can give: full cycles over a pseudo-terminal that keeps the time of a
 //! line, against the sum of the bytes.
 
-use crate::cycles::{Server, count, failed, listen};
+use crate::cycles::{Server, count, failed, measure};
 use crate::report::{Aim, Failure, Report};
-use handscope::app::SimDial;
-use handscope::link::{Clock, LinkConfig, LinkStats, PollRates, open};
 use handscope::sim::serve::pty;
-use handscope::transport::{Endpoint, LinePace};
+use handscope::transport::LinePace;
 use std::path::Path;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
-use tokio::runtime::Builder;
+use std::time::Duration;
 
 /// The hand's own time: the middle of what was measured, 3 to 15 ms.
 const TURNAROUND: Duration = Duration::from_millis(6);
@@ -81,7 +77,7 @@ fn line(report: &mut Report, protocol: Protocol, baud: u32) -> Result<(), Failur
     let folder = tempfile::tempdir()?;
     let server = serve(protocol, &folder.path().join("hand"), baud)?;
     let mut runs = (0..TIMES)
-        .map(|_| measure(&server.endpoint))
+        .map(|_| measure(&server.endpoint, WARM, COUNTED))
         .collect::<Result<Vec<_>, _>>()?;
     runs.sort_by(|a, b| a.cycles.total_cmp(&b.cycles));
     let middle = runs.get(TIMES / 2).ok_or("nothing was measured")?;
@@ -98,40 +94,6 @@ fn line(report: &mut Report, protocol: Protocol, baud: u32) -> Result<(), Failur
     report.row("  line utilisation", used, "%", Aim::None)?;
     let lost = count(failed(&middle.stats));
     report.row("  requests that failed", lost, "", Aim::AtMost(0.0))
-}
-
-struct Measured {
-    cycles: f64,
-    stats: LinkStats,
-}
-
-fn measure(endpoint: &Endpoint) -> Result<Measured, Failure> {
-    let runtime = Builder::new_multi_thread()
-        .worker_threads(1)
-        .enable_all()
-        .build()?;
-    let clock = runtime.block_on(async { Clock::start() });
-    let config = LinkConfig {
-        endpoint: endpoint.clone(),
-        rates: PollRates::FULL,
-        clock,
-        dial: Arc::new(SimDial::new(clock)),
-        wake: Arc::new(|| ()),
-    };
-    let mut link = open(config, runtime.handle());
-    listen(&mut link, WARM);
-    let (before, begun) = (link.stats(), Instant::now());
-    listen(&mut link, COUNTED);
-    let (after, took) = (link.stats(), begun.elapsed());
-    let state = count(after.state_reads - before.state_reads);
-    let tactile = count(after.tactile_reads - before.tactile_reads);
-    if state == 0.0 {
-        return Err(format!("{endpoint} gives nothing: {:?}", link.status()).into());
-    }
-    Ok(Measured {
-        cycles: state.min(tactile) / took.as_secs_f64(),
-        stats: after,
-    })
 }
 
 fn serve(protocol: Protocol, path: &Path, baud: u32) -> Result<Server, Failure> {

@@ -12,6 +12,7 @@ pub(crate) const CHILD: &str = "--one-hour";
 const MINUTES: u32 = 60;
 /// Frames drawn a simulated minute, so that all that a window keeps is there.
 const FRAMES: u32 = 60;
+/// 300 MB.
 const AIM_MIB: f64 = 286.0;
 
 pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {

@@ -13,6 +13,7 @@ use handscope::ui::View;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
+use tokio::sync::Notify;
 
 /// How often the program looks at its link while nothing is drawn.
 const LOOK_EACH: Duration = Duration::from_millis(20);
@@ -26,6 +27,7 @@ pub(crate) enum Time {
 
 /// The program, its window and the screen.
 pub(crate) struct Scene {
+    news: Arc<Notify>,
     cockpit: Cockpit,
     context: Context,
     clock: Clock,
@@ -35,6 +37,17 @@ pub(crate) struct Scene {
 impl Scene {
     /// Starts the program with the built-in hand that grasps.
     pub(crate) fn start(time: Time) -> Result<Self, Failure> {
+        let hand = Endpoint::Sim {
+            seed: 1,
+            scenario: "grasp".into(),
+        };
+        Self::open(time, hand)
+    }
+
+    /// Starts the program with a hand.
+    pub(crate) fn open(time: Time, hand: Endpoint) -> Result<Self, Failure> {
+        let news = Arc::new(Notify::new());
+        let wakes = Arc::clone(&news);
         let runtime = match time {
             Time::Virtual => Builder::new_current_thread()
                 .enable_all()
@@ -51,18 +64,15 @@ impl Scene {
             runtime: runtime.handle().clone(),
             clock,
             dial: Arc::new(SimDial::new(clock)),
-            wake: Arc::new(|| ()),
+            wake: Arc::new(move || wakes.notify_one()),
             files: Arc::new(NoChoice),
             settings_path: None,
         };
         let mut app = App::new(env, Settings::default());
-        let hand = Endpoint::Sim {
-            seed: 1,
-            scenario: "grasp".into(),
-        };
         app.open(Some(hand), clock.now());
         drop(inside);
         Ok(Self {
+            news,
             cockpit: Cockpit::new(app),
             context: Context::default(),
             clock,
@@ -82,6 +92,22 @@ impl Scene {
 
     pub(crate) fn show(&mut self, view: View) {
         self.cockpit.show(view);
+    }
+
+    /// Ends the link by a person's wish.
+    pub(crate) fn disconnect(&mut self) {
+        let now = self.now();
+        let _inside = self.runtime.enter();
+        self.cockpit.app().act(Action::Disconnect, now);
+    }
+
+    /// Waits until the link has news, at most so long.
+    pub(crate) fn wait(&mut self, most: Duration) {
+        let news = Arc::clone(&self.news);
+        // Without news the time is up: both end the waiting.
+        let _late = self
+            .runtime
+            .block_on(async { tokio::time::timeout(most, news.notified()).await });
     }
 
     fn now(&self) -> Moment {

@@ -25,7 +25,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         "start to first frame, without the window system, median",
         Sorted::new(first).median(),
         "ms",
-        Aim::None,
+        Aim::AtMost(400.0),
     )?;
     report.row(
         "  to the first frame with live values, median",
