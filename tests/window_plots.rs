@@ -405,6 +405,106 @@ fn escape_stops_while_a_note_is_written_and_a_letter_in_another_field_opens_none
     assert!(harness.query_by_label("Words of the note").is_none());
 }
 
+/// The numbers beside the plot of force; what a wheel or a drag does to them.
+fn force_scale(harness: &Harness<'static, Bench>) -> Rect {
+    rect(harness, Role::Button, "Value scale: Force, g")
+}
+
+/// The upper and the lower end of the scale of force, as its fields tell.
+fn force_ends(harness: &mut Harness<'static, Bench>) -> [f64; 2] {
+    press(harness, "Value scale: Force, g");
+    let ends = ["Upper end: Force, g", "Lower end: Force, g"].map(|name| {
+        let node = harness.get_by_role_and_label(Role::TextInput, name);
+        node.value().unwrap().parse().unwrap()
+    });
+    // Two presses in short order would be a double click.
+    harness.run_steps(30);
+    press(harness, "Value scale: Force, g");
+    harness.run_steps(30);
+    ends
+}
+
+#[test]
+fn a_value_scale_is_dragged_zoomed_and_automatic_again() {
+    let mut harness = open();
+    assert!(harness.query_by_label("fixed scale").is_none());
+    let [high, low] = force_ends(&mut harness);
+    assert!(high >= 1500.0 && low <= 0.0, "{low} to {high}");
+    let axis = force_scale(&harness);
+    // Half of its height down: the scale moves up by half of what it spans.
+    drag(
+        &mut harness,
+        axis.center_top() + vec2(0.0, axis.height() * 0.3),
+        axis.center_top() + vec2(0.0, axis.height() * 0.8),
+    );
+    harness.get_by_label("fixed scale");
+    assert!(!is_held(&harness), "time goes on");
+    let [moved_high, moved_low] = force_ends(&mut harness);
+    near(moved_high - moved_low, high - low, 1.0);
+    near(moved_high - high, (high - low) * 0.5, (high - low) * 0.1);
+    // New values do not move it.
+    pass(&mut harness, Duration::from_secs(9));
+    near(force_ends(&mut harness)[0], moved_high, 0.1);
+    harness.hover_at(axis.center());
+    harness.step();
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: vec2(0.0, 180.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    harness.remove_cursor();
+    let [zoomed_high, zoomed_low] = force_ends(&mut harness);
+    near(
+        zoomed_high - zoomed_low,
+        (high - low) / 2.0,
+        (high - low) * 0.05,
+    );
+    for _ in 0..2 {
+        harness.drag_at(axis.center());
+        harness.step();
+        harness.drop_at(axis.center());
+        harness.step();
+    }
+    harness.run_steps(30);
+    harness.remove_cursor();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("fixed scale").is_none());
+}
+
+#[test]
+fn the_ends_of_a_value_scale_are_typed_and_one_that_passes_the_other_takes_it_along() {
+    let mut harness = open();
+    press(&mut harness, "Value scale: Force, g");
+    for (name, typed) in [
+        ("Upper end: Force, g", "900"),
+        ("Lower end: Force, g", "-100,5"),
+    ] {
+        let field = harness.get_by_role_and_label(Role::TextInput, name);
+        field.focus();
+        harness.run_steps(2);
+        let field = harness.get_by_role_and_label(Role::TextInput, name);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        field.type_text(typed);
+        harness.run_steps(2);
+        assert_eq!(harness.state().actions, [], "{name}");
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+    }
+    press(&mut harness, "Value scale: Force, g");
+    harness.run_steps(30);
+    let [high, low] = force_ends(&mut harness);
+    near(high, 900.0, 0.01);
+    near(low, -100.5, 0.01);
+    press(&mut harness, "Value scale: Force, g");
+    press(&mut harness, "Automatic");
+    harness.run_steps(30);
+    assert!(force_ends(&mut harness)[0] >= 1500.0);
+    assert_eq!(harness.state().actions, []);
+}
+
 fn copied(harness: &mut Harness<'static, Bench>) -> String {
     harness.get_by_label("Copy as CSV").click();
     let mut text = None;

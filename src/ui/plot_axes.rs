@@ -5,7 +5,7 @@ use crate::ui::look::Look;
 use crate::ui::plots::AXIS;
 use crate::ui::text::panels;
 use crate::ui::theme;
-use egui::{Align2, Rect, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
 /// Smallest and largest of some numbers. Numbers that are none are left out.
 #[derive(Debug, Clone, Copy, Default)]
@@ -107,6 +107,35 @@ pub(crate) fn x_of(rect: Rect, span: (f64, f64), time_s: f64) -> f32 {
     rect.left() + rect.width() * part
 }
 
+/// Where points of a line stand: the same as [`x_of`] and [`y_of`], reckoned once for many of them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Placing {
+    corner: Pos2,
+    origin: [f64; 2],
+    points_per: [f64; 2],
+}
+
+impl Placing {
+    /// Between the ends of a rectangle.
+    pub(crate) fn of(rect: Rect, span: (f64, f64), band: &Band) -> Self {
+        let (width, height) = (f64::from(rect.width()), f64::from(rect.height()));
+        Self {
+            corner: rect.left_bottom(),
+            origin: [span.0, band.low],
+            points_per: [width / (span.1 - span.0), height / (band.high - band.low)],
+        }
+    }
+
+    /// The place of one time and value.
+    #[expect(clippy::cast_possible_truncation, reason = "a place on a screen")]
+    pub(crate) fn at(self, [time_s, value]: &[f64; 2]) -> Pos2 {
+        let [from_s, low] = self.origin;
+        let [per_s, per_unit] = self.points_per;
+        let (right, up) = ((time_s - from_s) * per_s, (value - low) * per_unit);
+        self.corner + vec2(right as f32, -up as f32)
+    }
+}
+
 /// The time at a place; the other way round than [`x_of`].
 pub(crate) fn time_of(rect: Rect, span: (f64, f64), x: f32) -> f64 {
     let part = f64::from(x - rect.left()) / f64::from(rect.width().max(1.0));
@@ -137,6 +166,12 @@ pub(crate) fn clock(time_s: f64, width_s: f64) -> String {
 
 /// The numbers left of a plot.
 pub(crate) fn value_axis_ui(ui: &Ui, ground: Rect, look: Look, band: &Band) {
+    numbers_ui(ui, ground, band, look.palette.faint);
+}
+
+/// The same in a colour.
+pub(crate) fn numbers_ui(ui: &Ui, ground: Rect, band: &Band, color: Color32) {
+    let digits = digits(band.step);
     for value in band.lines() {
         let y = y_of(ground, band, value);
         let y = y.clamp(ground.top() + 6.0, ground.bottom() - 6.0);
@@ -144,11 +179,19 @@ pub(crate) fn value_axis_ui(ui: &Ui, ground: Rect, look: Look, band: &Band) {
             pos2(ground.left() + AXIS / 2.0 - 3.0, y),
             vec2(AXIS - 6.0, 12.0),
         );
-        let digits = usize::from(band.step < 1.0);
-        let text = format!("{value:.digits$}");
-        let (font, color) = (theme::number_small(), look.palette.faint);
+        // No "-0".
+        let text = format!("{:.digits$}", value + 0.0);
+        let font = theme::number_small();
         paint_text(ui, place, Align2::RIGHT_CENTER, &text, font, color);
     }
+}
+
+/// Digits after the point that tell numbers apart which are a step apart.
+fn digits(step: f64) -> usize {
+    [1.0, 0.1, 0.01]
+        .iter()
+        .take_while(|least| step < **least)
+        .count()
 }
 
 /// The time axis of all plots.

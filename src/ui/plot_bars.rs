@@ -1,97 +1,194 @@
-//! Lines with more points than pixels, as one upright bar a pixel: what such a line covers anyway, and far cheaper than
-//! a path whose every corner is cut and smoothed. Knows no hand and no time.
+//! Lines with more points than pixels, as upright bars, one a pixel: what such a line covers anyway, and far cheaper
+//! than a path whose every corner is cut and smoothed. Knows no hand and no time.
 
-use egui::{Color32, Mesh, Pos2, Rect, Stroke, pos2};
+use egui::epaint::{Vertex, WHITE_UV};
+use egui::{Color32, Mesh, Pos2, Stroke, pos2};
 
 /// Points this far apart are joined by a slope, not by bars.
 const JOINED: f32 = 2.0;
+/// Upper and lower edges fade over this, in points.
+const FADE: f32 = 1.0;
+/// Bars whose ends differ by less go on as one: nobody sees a sixteenth of a point.
+const SAME: f32 = 1.0 / 16.0;
+/// A bar lower than this is drawn without a solid core.
+const FLAT: f32 = 0.25;
+/// A slope is thicker upright than across, up to so many times.
+const STEEP_MOST: f32 = 4.0;
 
-/// What a line covers in one column of pixels.
+/// What a line covers in some columns of pixels.
 #[derive(Debug, Clone, Copy)]
 struct Bar {
+    /// From here.
     x: f32,
+    /// To here.
+    end: f32,
     top: f32,
     bottom: f32,
 }
 
+impl Bar {
+    fn alike(self, other: Self) -> bool {
+        self.end == other.x
+            && (self.top - other.top).abs() < SAME
+            && (self.bottom - other.bottom).abs() < SAME
+    }
+}
+
 /// Adds a line of many points to a mesh.
 pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, points: impl Iterator<Item = Pos2>) {
+    let mut wide: Option<Bar> = None;
     let mut bar: Option<Bar> = None;
     let mut before: Option<Pos2> = None;
     for point in points {
+        let x = point.x.floor();
+        if let Some(bar) = bar.as_mut().filter(|bar| bar.x == x) {
+            bar.top = bar.top.min(point.y);
+            bar.bottom = bar.bottom.max(point.y);
+            before = Some(point);
+            continue;
+        }
+        finish(mesh, stroke, &mut wide, bar);
         let far = before.filter(|before| point.x - before.x > JOINED);
         if let Some(before) = far {
             slope(mesh, stroke, before, point);
         }
         // A bar begins where the one before it ended, so that the line has no holes.
-        let from_y = before
-            .filter(|_| far.is_none())
-            .map_or(point.y, |before| before.y);
-        bar = Some(match bar {
-            Some(bar) if bar.x == point.x.floor() => Bar {
-                top: bar.top.min(point.y),
-                bottom: bar.bottom.max(point.y),
-                ..bar
-            },
-            done => {
-                finish(mesh, stroke, done);
-                Bar {
-                    x: point.x.floor(),
-                    top: point.y.min(from_y),
-                    bottom: point.y.max(from_y),
-                }
-            }
+        let near = before.filter(|_| far.is_none());
+        let from_y = near.map_or(point.y, |before| before.y);
+        bar = Some(Bar {
+            // Where a column of pixels is left out, this one is as wide as both.
+            x: bar
+                .filter(|_| near.is_some())
+                .map_or(x, |bar| bar.end.min(x)),
+            end: x + 1.0,
+            top: point.y.min(from_y),
+            bottom: point.y.max(from_y),
         });
         before = Some(point);
     }
-    finish(mesh, stroke, bar);
+    finish(mesh, stroke, &mut wide, bar);
+    if let Some(wide) = wide {
+        paint(mesh, stroke, wide);
+    }
 }
 
-fn finish(mesh: &mut Mesh, stroke: Stroke, bar: Option<Bar>) {
-    if let Some(bar) = bar {
-        let half = stroke.width / 2.0;
-        let rect = Rect::from_min_max(
-            pos2(bar.x + 0.5 - half, bar.top - half),
-            pos2(bar.x + 0.5 + half, bar.bottom + half),
-        );
-        mesh.add_colored_rect(rect, stroke.color);
+/// Joins a bar to the ones before that are like it, and draws those if it is not.
+fn finish(mesh: &mut Mesh, stroke: Stroke, wide: &mut Option<Bar>, bar: Option<Bar>) {
+    let Some(bar) = bar else { return };
+    match wide {
+        Some(wide) if wide.alike(bar) => wide.end = bar.end,
+        _ => {
+            if let Some(done) = wide.replace(bar) {
+                paint(mesh, stroke, done);
+            }
+        }
+    }
+}
+
+fn paint(mesh: &mut Mesh, stroke: Stroke, bar: Bar) {
+    let out = (stroke.width + FADE) / 2.0;
+    let core = (stroke.width - FADE).max(0.0) / 2.0;
+    let (top, bottom) = (bar.top - core, bar.bottom + core);
+    let outer = (bar.top - out, bar.bottom + out);
+    let sides = [bar.x, bar.end];
+    let clear = Color32::TRANSPARENT;
+    if bar.bottom - bar.top < FLAT {
+        let middle = bar.top.midpoint(bar.bottom);
+        let levels = [(outer.0, clear), (middle, stroke.color), (outer.1, clear)];
+        strip(mesh, sides, [levels, levels]);
+    } else {
+        let levels = [
+            (outer.0, clear),
+            (top, stroke.color),
+            (bottom, stroke.color),
+            (outer.1, clear),
+        ];
+        strip(mesh, sides, [levels, levels]);
     }
 }
 
 fn slope(mesh: &mut Mesh, stroke: Stroke, from: Pos2, to: Pos2) {
-    let aside = (to - from).rot90().normalized() * (stroke.width / 2.0);
-    quad(
-        mesh,
-        stroke.color,
-        [from - aside, from + aside, to + aside, to - aside],
-    );
+    let steep = ((to.y - from.y) / (to.x - from.x).max(JOINED)).hypot(1.0);
+    let out = (stroke.width + FADE) / 2.0 * steep.min(STEEP_MOST);
+    let core = (stroke.width - FADE).max(0.0) / 2.0 * steep.min(STEEP_MOST);
+    let clear = Color32::TRANSPARENT;
+    let levels = |y: f32| {
+        [
+            (y - out, clear),
+            (y - core, stroke.color),
+            (y + core, stroke.color),
+            (y + out, clear),
+        ]
+    };
+    strip(mesh, [from.x, to.x], [levels(from.y), levels(to.y)]);
 }
 
-fn quad(mesh: &mut Mesh, color: Color32, corners: [Pos2; 4]) {
-    let Ok(first) = u32::try_from(mesh.vertices.len()) else {
+/// Two columns of as many heights, joined by a band between each two.
+fn strip<const N: usize>(mesh: &mut Mesh, x: [f32; 2], heights: [[(f32, Color32); N]; 2]) {
+    let (Ok(first), Ok(levels)) = (u32::try_from(mesh.vertices.len()), u32::try_from(N)) else {
         return;
     };
-    for corner in corners {
-        mesh.colored_vertex(corner, color);
+    for (x, heights) in x.into_iter().zip(heights) {
+        mesh.vertices.extend(heights.map(|(y, color)| Vertex {
+            pos: pos2(x, y),
+            uv: WHITE_UV,
+            color,
+        }));
     }
-    mesh.add_triangle(first, first + 1, first + 2);
-    mesh.add_triangle(first, first + 2, first + 3);
+    for left in first..first + levels - 1 {
+        let right = left + levels;
+        mesh.indices
+            .extend([left, left + 1, right, right, left + 1, right + 1]);
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use egui::Rect;
+
+    const STROKE: Stroke = Stroke {
+        width: 1.0,
+        color: Color32::PLACEHOLDER,
+    };
 
     fn covered(points: &[(f32, f32)]) -> (Mesh, Rect) {
         let mut mesh = Mesh::default();
         let points = points.iter().map(|(x, y)| pos2(*x, *y));
-        add(&mut mesh, Stroke::new(1.0, Color32::PLACEHOLDER), points);
+        add(&mut mesh, STROKE, points);
         let bounds = mesh.calc_bounds();
+        assert!(mesh.is_valid());
         (mesh, bounds)
     }
 
+    /// Heights at which a column of pixels is solid.
+    fn solid(mesh: &Mesh, x: f32) -> Option<(f32, f32)> {
+        let wide = |corners: &&&[Vertex]| {
+            let (left, right) = corners.split_at(corners.len() / 2);
+            left.iter().all(|one| one.pos.x <= x) && right.iter().all(|one| one.pos.x >= x)
+        };
+        let mut all = Vec::new();
+        let mut rest = mesh.vertices.as_slice();
+        while !rest.is_empty() {
+            // A bar without a core has three heights on each side.
+            let clear = |n: usize| {
+                rest.get(n)
+                    .is_some_and(|one| one.color == Color32::TRANSPARENT)
+            };
+            let (one, after) = rest.split_at(if clear(2) { 6 } else { 8 });
+            all.push(one);
+            rest = after;
+        }
+        let solid = all.iter().filter(wide).flat_map(|corners| corners.iter());
+        let heights = solid.filter(|one| one.color != Color32::TRANSPARENT);
+        heights.map(|one| one.pos.y).fold(None, |all, y| {
+            let (top, bottom) = all.unwrap_or((y, y));
+            Some((y.min(top), y.max(bottom)))
+        })
+    }
+
     #[test]
-    fn a_spike_keeps_its_whole_height_and_costs_one_bar_a_pixel() {
+    fn a_spike_keeps_its_whole_height_over_a_whole_pixel() {
         let line: Vec<(f32, f32)> = (0..4000_u16)
             .map(|n| {
                 let y = if n == 1234 { 5.0 } else { 90.0 };
@@ -99,20 +196,34 @@ mod tests {
             })
             .collect();
         let (mesh, bounds) = covered(&line);
-        assert_eq!(mesh.vertices.len(), 500 * 4);
-        assert!((bounds.top() - 4.5).abs() < 1e-3 && (bounds.bottom() - 90.5).abs() < 1e-3);
+        assert_eq!(solid(&mesh, 154.5), Some((5.0, 90.0)));
+        assert_eq!(solid(&mesh, 150.5), Some((90.0, 90.0)));
+        assert!((bounds.top() - 4.0).abs() < 1e-3 && (bounds.bottom() - 91.0).abs() < 1e-3);
+        // What is alike is one bar.
+        assert_eq!(mesh.vertices.len(), 6 + 8 + 6);
+    }
+
+    #[test]
+    fn a_line_that_never_rests_costs_one_bar_a_pixel() {
+        let line: Vec<(f32, f32)> = (0..4000_u16)
+            .map(|n| (f32::from(n) / 8.0, f32::from(n % 101 * 37 % 101)))
+            .collect();
+        let (mesh, _) = covered(&line);
+        assert!(mesh.vertices.len() <= 500 * 8);
     }
 
     #[test]
     fn neighbouring_bars_touch_and_far_points_are_joined_by_a_slope() {
-        let (mesh, _) = covered(&[(0.2, 10.0), (1.2, 50.0), (9.0, 50.0)]);
-        assert_eq!(mesh.vertices.len(), 4 * 4, "three bars and a slope");
-        // The slope goes in before the bar that it leaves.
-        let second = mesh.vertices.get(8..12).unwrap_or_default();
-        let top = second
-            .iter()
-            .map(|corner| corner.pos.y)
-            .fold(f32::MAX, f32::min);
-        assert!((top - 9.5).abs() < 1e-3, "{top}");
+        let (mesh, _) = covered(&[(0.2, 10.0), (1.2, 50.0), (9.0, 70.0)]);
+        assert_eq!(solid(&mesh, 0.5), Some((10.0, 10.0)));
+        assert_eq!(solid(&mesh, 1.1), Some((10.0, 50.0)));
+        assert_eq!(solid(&mesh, 5.0), Some((50.0, 70.0)));
+        assert_eq!(solid(&mesh, 9.5), Some((70.0, 70.0)));
+    }
+
+    #[test]
+    fn a_column_of_pixels_without_a_point_is_no_hole() {
+        let (mesh, _) = covered(&[(0.9, 10.0), (2.1, 30.0)]);
+        assert_eq!(solid(&mesh, 1.5), Some((10.0, 30.0)));
     }
 }

@@ -1,19 +1,24 @@
-//! The stacked plots over one time axis. Asks the history for as many columns as there are pixels.
+//! The stacked plots over one time axis: where each stands, and what the pointer does in them. Fetches no line.
 
-use crate::app::history::{Mark, MarkKind, Series, Trace};
+use crate::app::history::Series;
+use crate::app::settings::PlotKind;
 use crate::hand::PerDof;
 use crate::ui::controls::{self, Label};
-use crate::ui::look::Pane;
-use crate::ui::plot_axes::{self, Band, Extent, TimeAxis};
-use crate::ui::plot_bars;
+use crate::ui::look::{Look, Pane};
+use crate::ui::plot_axes::{self, Band, Placing, TimeAxis};
 use crate::ui::plot_cursors::Cursors;
+use crate::ui::plot_ends::{self, ENDS};
 use crate::ui::plot_head;
-use crate::ui::plot_panels::{PANELS, Panel, PlotLine};
+use crate::ui::plot_lines::PlotLines;
+use crate::ui::plot_marks;
+use crate::ui::plot_panels::{PANELS, Panel};
+use crate::ui::plot_range::Ranges;
 use crate::ui::plot_reach::{self, Reach};
-use crate::ui::plot_sight::{Sight, Span};
-use crate::ui::text::{Text, panels, plots};
+use crate::ui::plot_sight::Sight;
+use crate::ui::text::{panels, plots};
 use crate::ui::theme;
-use egui::{Align2, Color32, CornerRadius, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{CornerRadius, Painter, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use std::collections::BTreeMap;
 
 /// Room for the numbers of the vertical axis.
 pub(crate) const AXIS: f32 = 40.0;
@@ -25,8 +30,6 @@ const CAPTION: f32 = 18.0;
 const NUMBER: f32 = 22.0;
 /// A plot less high than this says nothing: while figures are read, only the one they are of is shown then.
 const LEAST_HEIGHT: f32 = 62.0;
-/// Characters of a note beside its line; the rest is in the tooltip.
-const NOTE_SHOWN: usize = 24;
 
 /// What the plots need between frames.
 #[derive(Debug, Default)]
@@ -51,81 +54,10 @@ pub(crate) struct PlotView {
     pub(crate) copied: Option<usize>,
     /// The stretch that is being marked to zoom into.
     pub(crate) reach: Reach,
-    /// The points of one curve as the history gives them, reused from curve to curve.
-    trace: Trace,
-    /// The points of one plot, reused from plot to plot.
-    curves: Curves,
-}
-
-/// How points are joined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
-    /// By the straight way.
-    Slopes,
-    /// A value stands until the next one: nothing asked a hand for what lies between.
-    Steps,
-    /// There are more points than pixels.
-    Bars,
-}
-
-fn steps(points: &[[f64; 2]], out: &mut Vec<[f64; 2]>) {
-    let mut before: Option<f64> = None;
-    for [time_s, value] in points {
-        out.extend(before.map(|before| [*time_s, before]));
-        out.push([*time_s, *value]);
-        before = Some(*value);
-    }
-}
-
-/// One unbroken line.
-#[derive(Debug)]
-struct Curve {
-    stroke: Stroke,
-    form: Form,
-    points: Vec<[f64; 2]>,
-}
-
-/// Curves with their strokes, and what they span. Keeps its memory from plot to plot.
-#[derive(Debug, Default)]
-struct Curves {
-    used: usize,
-    pool: Vec<Curve>,
-    extent: Extent,
-    decimated: bool,
-}
-
-impl Curves {
-    fn clear(&mut self) {
-        self.used = 0;
-        self.extent = Extent::default();
-        self.decimated = false;
-    }
-
-    fn push(&mut self, stroke: Stroke, points: &[[f64; 2]], form: Form) {
-        if self.used == self.pool.len() {
-            self.pool.push(Curve {
-                stroke,
-                form,
-                points: Vec::new(),
-            });
-        }
-        if let Some(curve) = self.pool.get_mut(self.used) {
-            (curve.stroke, curve.form) = (stroke, form);
-            curve.points.clear();
-            match form {
-                Form::Steps => steps(points, &mut curve.points),
-                Form::Slopes | Form::Bars => curve.points.extend_from_slice(points),
-            }
-            self.used += 1;
-        }
-        for [_, value] in points {
-            self.extent.include(*value);
-        }
-    }
-
-    fn iter(&self) -> impl Iterator<Item = &Curve> {
-        self.pool.iter().take(self.used)
-    }
+    /// The scales that a person chose.
+    pub(crate) ranges: Ranges,
+    /// The lines of each plot.
+    lines: BTreeMap<PlotKind, PlotLines>,
 }
 
 impl PlotView {
@@ -167,16 +99,18 @@ impl PlotView {
         &mut self,
         ui: &mut Ui,
         stack: Rect,
-        pane: &Pane<'_>,
+        pane: &mut Pane<'_>,
         shown: &[&Panel],
         height: f32,
     ) {
         let look = pane.look;
         let ground = Rect::from_min_max(
             pos2(stack.left() + AXIS, stack.top()),
-            pos2(stack.right(), stack.bottom() - TIME_AXIS),
+            pos2(stack.right() - ENDS, stack.bottom() - TIME_AXIS),
         );
-        let axis = Rect::from_min_max(ground.left_bottom(), stack.right_bottom());
+        let axis = ground
+            .with_min_y(ground.bottom())
+            .with_max_y(stack.bottom());
         let response = ui.interact(
             ground,
             egui::Id::unique("plots over time"),
@@ -205,7 +139,7 @@ impl PlotView {
             let place = Rect::from_min_size(pos2(stack.left(), top), vec2(stack.width(), height));
             let plot_rect = self.panel_ui(ui, place, pane, panel, time_axis, pointer_s);
             if n == 0 {
-                mark_labels(ui, plot_rect, pane, span);
+                plot_marks::words_ui(ui, plot_rect, pane, span);
             }
             top += height;
         }
@@ -215,7 +149,7 @@ impl PlotView {
         if let Some(at) = pointer {
             plot_reach::pointer_ui(ui, ground, at, look, time_axis);
         }
-        let marks = pointer.map(|at| marks_near(pane, ground, span, at.x));
+        let marks = pointer.map(|at| plot_marks::near(pane, ground, span, at.x));
         match marks.filter(|marks| !marks.is_empty()) {
             Some(marks) => response.on_hover_text_at_pointer(marks),
             None => response,
@@ -242,7 +176,7 @@ impl PlotView {
         &mut self,
         ui: &mut Ui,
         rect: Rect,
-        pane: &Pane<'_>,
+        pane: &mut Pane<'_>,
         panel: &Panel,
         time: TimeAxis,
         pointer_s: Option<f64>,
@@ -250,34 +184,55 @@ impl PlotView {
         let look = pane.look;
         let (caption, ground) = rect.split_top_bottom_at_y(rect.top() + CAPTION);
         let ground = ground.with_max_y(ground.bottom() - 2.0);
-        let plot_rect = ground.with_min_x(ground.left() + AXIS);
-        let lines = panel.lines(&self.hidden);
-        self.gather(pane, &lines, time.span, plot_rect.width());
-        self.caption_ui(ui, caption, pane, panel, pointer_s);
-        let mut band = Band::of(panel.least, &self.curves.extent);
+        let plot_rect = ground
+            .with_min_x(ground.left() + AXIS)
+            .with_max_x(ground.right() - ENDS);
+        let history = &pane.state.history;
+        let columns = usize::try_from(pixels(plot_rect.width())).unwrap_or(1);
+        let mut lines = self.lines.remove(&panel.kind).unwrap_or_default();
+        lines.gather(history, &panel.lines(&self.hidden), time.span, columns);
+        let caption = caption.with_min_x(plot_rect.left());
+        self.caption_ui(ui, caption, pane, panel, &lines, pointer_s);
+        let mut band = Band::of(panel.least, &lines.extent);
         if self.shows_thresholds(panel) {
             for (_, joint) in pane.state.joints.iter() {
                 band.include(f64::from(joint.force.get()));
             }
         }
-        let band = band.rounded(panel.steps, plot_rect.height() / NUMBER);
-        plot_axes::value_axis_ui(ui, ground, look, &band);
+        let room = plot_rect.height() / NUMBER;
+        let band = self.ranges.band(panel, band, room);
+        let axis = ground.with_max_x(plot_rect.left());
+        self.ranges.axis_ui(ui, axis, pane, panel, band);
         let round = CornerRadius::same(3);
         ui.painter()
             .rect_filled(plot_rect, round, look.palette.sunken);
         plot_axes::grid(ui, plot_rect, look, &band, time);
-        self.curves_ui(ui, plot_rect, pane, panel, time.span, &band);
-        if self.curves.used == 0 {
-            let text = look.say(panels::PLOT_EMPTY);
-            let width = controls::text_width(ui, text, theme::small()) + theme::PAD;
-            let place = Rect::from_center_size(plot_rect.center(), vec2(width, 16.0));
-            ui.painter().rect_filled(place, round, look.palette.sunken);
-            Label::new(text, look.palette.faint)
-                .small()
-                .center()
-                .put(ui, place);
+        let painter = ui
+            .painter()
+            .with_clip_rect(plot_rect.intersect(ui.clip_rect()));
+        plot_marks::lines_ui(&painter, plot_rect, pane, time.span);
+        if self.shows_thresholds(panel) {
+            self.thresholds_ui(&painter, plot_rect, pane, &band);
         }
+        let placing = Placing::of(plot_rect, time.span, &band);
+        lines.ui(&painter, placing, look.palette);
+        if lines.is_empty() {
+            empty_ui(ui, plot_rect, look);
+        }
+        plot_ends::ends_ui(ui, plot_rect, look, lines.ends(placing));
+        self.lines.insert(panel.kind, lines);
         plot_rect
+    }
+
+    fn thresholds_ui(&self, painter: &Painter, rect: Rect, pane: &Pane<'_>, band: &Band) {
+        let joints = pane.state.joints.iter();
+        for (dof, joint) in joints.filter(|(dof, _)| !self.hidden[*dof]) {
+            let color = pane.look.palette.dof[dof].gamma_multiply(0.7);
+            let y = plot_axes::y_of(rect, band, f64::from(joint.force.get()));
+            let ends = [pos2(rect.left(), y), pos2(rect.right(), y)];
+            let stroke = Stroke::new(1.0, color);
+            painter.extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 4.0));
+        }
     }
 
     /// Title, whether it is decimated, and the values under the pointer; over the curves, never on them.
@@ -287,6 +242,7 @@ impl PlotView {
         mut rect: Rect,
         pane: &Pane<'_>,
         panel: &Panel,
+        lines: &PlotLines,
         pointer_s: Option<f64>,
     ) {
         let look = pane.look;
@@ -298,98 +254,28 @@ impl PlotView {
         let width = controls::text_width(ui, title, theme::small()) + 1.0;
         let (place, rest) = rect.split_left_right_at_x(rect.left() + width.min(rect.width()));
         Label::new(title, look.palette.muted).small().put(ui, place);
-        let text = look.say(plots::DECIMATED);
-        let width = controls::text_width(ui, text, theme::tiny()) + 1.0;
-        let rest = rest.with_min_x(rest.left() + theme::GAP);
-        if self.curves.decimated && width <= rest.width() {
-            Label::new(text, look.palette.faint)
-                .font(theme::tiny())
-                .put(ui, rest.with_max_x(rest.left() + width))
-                .on_hover_text(look.say(plots::DECIMATED_TIP));
+        let fixed = self.ranges.is_chosen(panel.kind);
+        let words = [
+            (lines.decimated, plots::DECIMATED, plots::DECIMATED_TIP),
+            (fixed, plots::RANGE_FIXED, plots::RANGE_TIP),
+        ];
+        let mut rest = rest;
+        for (_, text, tip) in words.into_iter().filter(|(said, ..)| *said) {
+            let text = look.say(text);
+            let width = controls::text_width(ui, text, theme::tiny()) + 1.0;
+            rest = rest.with_min_x(rest.left() + theme::GAP);
+            if width <= rest.width() {
+                Label::new(text, look.palette.faint)
+                    .font(theme::tiny())
+                    .put(ui, rest.with_max_x(rest.left() + width))
+                    .on_hover_text(look.say(tip));
+            }
+            rest = rest.with_min_x(rest.left() + width);
         }
     }
 
     fn shows_thresholds(&self, panel: &Panel) -> bool {
-        use crate::app::settings::PlotKind;
         self.thresholds && panel.kind == PlotKind::Force
-    }
-
-    /// Fetches the curves of one plot, with as many points as the plot is wide.
-    fn gather(&mut self, pane: &Pane<'_>, lines: &[PlotLine], span: Span, width: f32) {
-        let columns = usize::try_from(pixels(width)).unwrap_or(1);
-        self.curves.clear();
-        for line in lines {
-            pane.state
-                .history
-                .trace(line.series, span.0, span.1, columns, &mut self.trace);
-            let color = pane.look.palette.dof[line.dof];
-            let (stroke, form) = if line.wished {
-                (Stroke::new(1.0, color.gamma_multiply(0.45)), Form::Steps)
-            } else {
-                (Stroke::new(theme::LINE, color), Form::Slopes)
-            };
-            let form = if self.trace.decimated {
-                Form::Bars
-            } else {
-                form
-            };
-            self.curves.decimated |= self.trace.decimated && !line.wished;
-            for segment in &self.trace.segments {
-                self.curves.push(stroke, segment, form);
-            }
-        }
-    }
-
-    fn curves_ui(
-        &self,
-        ui: &Ui,
-        rect: Rect,
-        pane: &Pane<'_>,
-        panel: &Panel,
-        span: Span,
-        band: &Band,
-    ) {
-        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-        for mark in pane.state.history.marks(span.0, span.1) {
-            let (_, color) = mark_look(pane, &mark.kind);
-            let x = plot_axes::x_of(rect, span, mark.at.secs());
-            painter.vline(x, rect.y_range(), Stroke::new(1.0, color));
-        }
-        if self.shows_thresholds(panel) {
-            for (dof, joint) in pane
-                .state
-                .joints
-                .iter()
-                .filter(|(dof, _)| !self.hidden[*dof])
-            {
-                let color = pane.look.palette.dof[dof].gamma_multiply(0.7);
-                let y = plot_axes::y_of(rect, band, f64::from(joint.force.get()));
-                let ends = [pos2(rect.left(), y), pos2(rect.right(), y)];
-                let stroke = Stroke::new(1.0, color);
-                painter.extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 4.0));
-            }
-        }
-        let mut mesh = egui::Mesh::default();
-        for curve in self.curves.iter() {
-            let place = |[time_s, value]: &[f64; 2]| {
-                pos2(
-                    plot_axes::x_of(rect, span, *time_s),
-                    plot_axes::y_of(rect, band, *value),
-                )
-            };
-            let places = curve.points.iter().map(place);
-            match (curve.form, curve.points.as_slice()) {
-                // A line of one point has no length: what was measured alone is a dot.
-                (_, [alone]) => {
-                    painter.circle_filled(place(alone), curve.stroke.width, curve.stroke.color);
-                }
-                (Form::Bars, _) => plot_bars::add(&mut mesh, curve.stroke, places),
-                (Form::Slopes | Form::Steps, _) => {
-                    painter.line(places.collect(), curve.stroke);
-                }
-            }
-        }
-        painter.add(mesh);
     }
 
     /// The lines of all shown plots and joints: what is copied and saved.
@@ -401,18 +287,16 @@ impl PlotView {
     }
 }
 
-fn mark_look(pane: &Pane<'_>, kind: &MarkKind) -> (Text, Color32) {
-    let palette = pane.look.palette;
-    match kind {
-        MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
-        MarkKind::Stop => (panels::MARK_STOP, palette.bad),
-        MarkKind::HoldConfirmed => (panels::MARK_HELD, palette.ok),
-        MarkKind::Fault => (panels::MARK_FAULT, palette.warn),
-        MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
-        MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
-        MarkKind::Gesture(_) => (panels::MARK_GESTURE, palette.accent),
-        MarkKind::Note(_) => (panels::MARK_NOTE, palette.text),
-    }
+fn empty_ui(ui: &mut Ui, plot: Rect, look: Look) {
+    let text = look.say(panels::PLOT_EMPTY);
+    let width = controls::text_width(ui, text, theme::small()) + theme::PAD;
+    let place = Rect::from_center_size(plot.center(), vec2(width, 16.0));
+    ui.painter()
+        .rect_filled(place, CornerRadius::same(3), look.palette.sunken);
+    Label::new(text, look.palette.faint)
+        .small()
+        .center()
+        .put(ui, place);
 }
 
 /// A length on the screen as a whole number, at least 1.
@@ -423,52 +307,4 @@ fn mark_look(pane: &Pane<'_>, kind: &MarkKind) -> (Text, Color32) {
 )]
 fn pixels(length: f32) -> u32 {
     length.clamp(1.0, 8192.0) as u32
-}
-
-/// The words of the marks, once, in the topmost plot. Words that would overlap are left out.
-fn mark_labels(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, span: Span) {
-    let mut free_from = rect.left();
-    for mark in pane.state.history.marks(span.0, span.1) {
-        let (_, color) = mark_look(pane, &mark.kind);
-        let text: String = mark_text(pane, mark).chars().take(NOTE_SHOWN).collect();
-        let x = plot_axes::x_of(rect, span, mark.at.secs());
-        let width = controls::text_width(ui, &text, theme::small()) + 1.0;
-        let flipped = x + width + 6.0 > rect.right();
-        let left = if flipped { x - width - 4.0 } else { x + 4.0 };
-        if left < free_from {
-            continue;
-        }
-        let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), vec2(width, 14.0));
-        let ground = pane.look.palette.sunken.gamma_multiply(0.8);
-        let round = CornerRadius::same(2);
-        ui.painter()
-            .rect_filled(place.expand2(vec2(2.0, 0.0)), round, ground);
-        let (font, align) = (theme::small(), Align2::LEFT_CENTER);
-        controls::paint_text(ui, place, align, &text, font, color);
-        free_from = left + width + theme::GAP;
-    }
-}
-
-fn mark_text(pane: &Pane<'_>, mark: &Mark) -> String {
-    let text = pane.look.say(mark_look(pane, &mark.kind).0);
-    match &mark.kind {
-        MarkKind::Gesture(number) => format!("{text} {number}"),
-        MarkKind::Note(words) => words.to_string(),
-        _ => text.to_owned(),
-    }
-}
-
-/// What happened where the pointer is, a line each.
-fn marks_near(pane: &Pane<'_>, ground: Rect, span: Span, x: f32) -> String {
-    /// A line is easily missed by some pixels.
-    const NEAR: f32 = 4.0;
-    let (from, to) = (
-        plot_axes::time_of(ground, span, x - NEAR),
-        plot_axes::time_of(ground, span, x + NEAR),
-    );
-    let lines = pane.state.history.marks(from, to).map(|mark| {
-        let at = plot_axes::clock(mark.at.secs(), span.1 - span.0);
-        format!("{at}  {}", mark_text(pane, mark))
-    });
-    lines.collect::<Vec<_>>().join("\n")
 }
