@@ -5,6 +5,7 @@
 //! photographs: the manual gives none. Manual: which end of the thumb's rotation lies across the palm is open; here 0 does.
 
 use crate::hand::dof::{Dof, Finger, PerDof, PerFinger};
+use std::sync::LazyLock;
 
 /// A point in millimetres: x from the little finger to the thumb, y from wrist to fingertips, z out of the palm.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -96,6 +97,35 @@ pub fn joints(angles: &PerDof<Option<f32>>) -> PerFinger<Option<Bones>> {
     })
 }
 
+/// The way across a finger's pad, to the right of who looks onto it with its tip up: of length 1. `None` where the
+/// thumb's rotation is not known.
+#[must_use]
+pub fn across(angles: &PerDof<Option<f32>>, finger: Finger) -> Option<Point> {
+    if finger != Finger::Thumb {
+        return Some(Point::flat(1.0, 0.0));
+    }
+    let (sin, cos) = swing(bent(angles[Dof::ThumbRotate])?).sin_cos();
+    Some(Point {
+        x: -sin,
+        y: 0.0,
+        z: cos,
+    })
+}
+
+/// Where the fingers get to, in all poses: a picture that holds these holds them all.
+pub static REACH: LazyLock<Vec<Point>> = LazyLock::new(|| {
+    let share = |step: u8| Some(f32::from(step) / 4.0);
+    let mut points = PALM.to_vec();
+    for (bend, turn) in (0..=4).flat_map(|bend| (0..=4).map(move |turn| (bend, turn))) {
+        let mut angles = PerDof::splat(share(bend));
+        angles[Dof::ThumbRotate] = share(turn);
+        for (_, bones) in joints(&angles).iter() {
+            points.extend(bones.iter().flatten());
+        }
+    }
+    points
+});
+
 /// Share of the way from open to bent.
 fn bent(angle: Option<f32>) -> Option<f32> {
     Some(1.0 - angle?.clamp(0.0, 1.0))
@@ -115,7 +145,7 @@ fn straight(finger: Finger, bent: f32) -> Bones {
 
 fn thumb(bent: f32, swung: f32) -> Bones {
     let build = build(Finger::Thumb);
-    let swing = SWING_OPEN + swung * SWING_SPAN;
+    let swing = swing(swung);
     let first = bent * THUMB_SPAN;
     let second = first * THUMB_COUPLING[0];
     let third = second * THUMB_COUPLING[1];
@@ -129,6 +159,11 @@ fn thumb(bent: f32, swung: f32) -> Bones {
             z: lean.sin() * swing.sin(),
         }
     })
+}
+
+/// The thumb's plane, in radians out of that of the palm.
+fn swing(swung: f32) -> f32 {
+    SWING_OPEN + swung * SWING_SPAN
 }
 
 fn chain(build: &Build, turns: &[f32], way: impl Fn(f32) -> Point) -> Bones {
@@ -178,6 +213,38 @@ mod tests {
         angles[Dof::ThumbRotate] = Some(0.0);
         let before = tip(&angles, Finger::Thumb);
         assert!(beside.x > before.x + 20.0 && before.z > beside.z + 20.0);
+    }
+
+    #[test]
+    fn the_way_across_a_pad_is_square_to_its_bone() {
+        let angles = PerDof::splat(Some(0.4));
+        for finger in Finger::ALL {
+            let across = across(&angles, finger).unwrap();
+            let bones = joints(&angles)[finger].clone().unwrap();
+            let (from, to) = (bones[bones.len() - 2], bones[bones.len() - 1]);
+            let along = (to.x - from.x, to.y - from.y, to.z - from.z);
+            let dot = along.0 * across.x + along.1 * across.y + along.2 * across.z;
+            // A finger that leans a little sideways is not quite square to the palm's width.
+            assert!(dot.abs() < 3.0, "{finger:?}: {dot}");
+            let length = across.x.hypot(across.y).hypot(across.z);
+            assert!((length - 1.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn no_pose_leaves_the_reach() {
+        let most = |of: fn(&Point) -> f32| REACH.iter().map(of).fold(f32::MIN, f32::max);
+        for step in 0..=20u8 {
+            let mut angles = PerDof::splat(Some(f32::from(step) / 20.0));
+            angles[Dof::ThumbRotate] = Some(1.0 - f32::from(step) / 20.0);
+            for (_, bones) in joints(&angles).iter() {
+                for point in bones.iter().flatten() {
+                    assert!(point.x <= most(|point| point.x) + 2.0);
+                    assert!(point.y <= most(|point| point.y) + 2.0);
+                    assert!(point.z <= most(|point| point.z) + 2.0);
+                }
+            }
+        }
     }
 
     #[test]

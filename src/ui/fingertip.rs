@@ -17,6 +17,8 @@ const MARGIN_MM: f32 = 1.0;
 const FULL_NORMAL_N: f32 = 20.0;
 /// Tangential force of the longest arrow.
 const FULL_SHEAR_N: f32 = 5.0;
+/// Its length in millimetres.
+const LONGEST_MM: f32 = 9.0;
 /// Proximity at which the halo is strongest. The scale ends near 16 million; contact begins far below.
 const FULL_PROXIMITY: f32 = 2_000_000.0;
 
@@ -74,6 +76,15 @@ impl Scale {
         )
     }
 
+    fn plane(&self) -> Plane {
+        Plane {
+            middle: self.at(0.0, 0.6),
+            up: vec2(0.0, -1.0),
+            right: vec2(1.0, 0.0),
+            per_mm: self.per_mm,
+        }
+    }
+
     fn shape(&self, points: &[(f32, f32)]) -> Vec<Pos2> {
         points.iter().map(|(x, y)| self.at(*x, *y)).collect()
     }
@@ -119,16 +130,7 @@ pub(crate) fn paint(painter: &Painter, look: Look, rect: Rect, tip: &Tip) {
     halo(painter, look, &scale, tip, fade);
     skin(painter, look, &scale);
     pads(painter, look, &scale, tip, fade);
-    let up = vec2(0.0, -1.0);
-    forces(
-        painter,
-        look,
-        scale.at(0.0, 0.6),
-        up,
-        scale.per_mm,
-        tip,
-        fade,
-    );
+    forces(painter, look, &scale.plane(), tip);
 }
 
 fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
@@ -201,47 +203,57 @@ fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
     );
 }
 
-/// The forces of a fingertip that stands elsewhere: `along` points to its tip, `width` is that of the finger in points.
-pub(crate) fn forces_at(
-    painter: &Painter,
-    look: Look,
-    middle: Pos2,
-    along: Vec2,
-    width: f32,
-    tip: &Tip,
-) {
-    let fade = if tip.stale { 0.35 } else { 1.0 };
-    let per_mm = width / (2.0 * HALF_WIDTH_MM);
-    forces(painter, look, middle, along, per_mm, tip, fade);
+/// How a fingertip's own plane lies on the screen: what a step towards its tip and one to its right look like.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plane {
+    /// The middle of its pads.
+    pub(crate) middle: Pos2,
+    /// Towards the tip: of length 1 where nothing is foreshortened.
+    pub(crate) up: Vec2,
+    /// To the right.
+    pub(crate) right: Vec2,
+    /// Points on the screen for a millimetre.
+    pub(crate) per_mm: f32,
 }
 
-fn forces(
-    painter: &Painter,
-    look: Look,
-    middle: Pos2,
-    up: Vec2,
-    per_mm: f32,
-    tip: &Tip,
-    fade: f32,
-) {
+impl Plane {
+    /// A finger of this width in points.
+    pub(crate) fn of_width(middle: Pos2, up: Vec2, right: Vec2, width: f32) -> Self {
+        Self {
+            middle,
+            up,
+            right,
+            per_mm: width / (2.0 * HALF_WIDTH_MM),
+        }
+    }
+
+    /// The end of the arrow of this force and direction in degrees, 0 towards the tip, clockwise.
+    pub(crate) fn end(&self, (shear, direction): (f32, f32)) -> Pos2 {
+        let length = (shear / FULL_SHEAR_N).clamp(0.12, 1.0) * LONGEST_MM * self.per_mm;
+        let (sin, cos) = direction.to_radians().sin_cos();
+        self.middle + (self.up * cos + self.right * sin) * length
+    }
+}
+
+/// Draws normal force as a circle and tangential force as an arrow.
+pub(crate) fn forces(painter: &Painter, look: Look, plane: &Plane, tip: &Tip) {
+    let fade = if tip.stale { 0.35 } else { 1.0 };
     let arrow = look.palette.arrow.gamma_multiply(fade);
     if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
         // Area grows with force, so that twice the force looks twice as much.
         let part = (normal / FULL_NORMAL_N).clamp(0.0, 1.0).sqrt();
-        let radius = part * (HALF_WIDTH_MM - 1.0) * per_mm;
+        let radius = part * (HALF_WIDTH_MM - 1.0) * plane.per_mm;
         painter.circle(
-            middle,
+            plane.middle,
             radius,
             arrow.gamma_multiply(0.14),
             Stroke::new(1.5, arrow),
         );
     }
-    if let Some((shear, direction)) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
-        let length = (shear / FULL_SHEAR_N).clamp(0.12, 1.0) * 9.0 * per_mm;
-        // 0 is towards the tip, and clockwise; the screen's y grows downwards.
-        let (sin, cos) = direction.to_radians().sin_cos();
-        let along = up * cos + vec2(-up.y, up.x) * sin;
-        arrow_shape(painter, middle, along, length, Stroke::new(2.0, arrow));
+    if let Some(shear) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
+        let by = plane.end(shear) - plane.middle;
+        let stroke = Stroke::new(2.0, arrow);
+        arrow_shape(painter, plane.middle, by.normalized(), by.length(), stroke);
     }
 }
 

@@ -151,9 +151,13 @@ impl TouchView {
         let room = rect.height() - small_height(rect.width()) - theme::GAP;
         if room >= HAND_LEAST - 1.0 {
             let picture = controls::take_top(&mut body, room);
-            let clicked = self
-                .hand
-                .ui(ui, picture, pane, &tips, Id::unique("hand, small"));
+            let clicked = self.hand.ui(
+                ui,
+                picture,
+                pane,
+                &tips,
+                (Id::unique("hand, small"), self.detail.finger),
+            );
             self.detail.finger = clicked.unwrap_or(self.detail.finger);
         }
         let captions = LINES.each_ref().map(|line| line.caption);
@@ -174,9 +178,13 @@ impl TouchView {
             left.split_top_bottom_at_y(left.top() + (left.height() * 0.52).round());
         let hand = hand.with_max_y(hand.bottom() - theme::GAP);
         let (_, picture) = controls::titled_card(ui, look, hand, look.say(panels::HAND));
-        let clicked = self
-            .hand
-            .ui(ui, picture, pane, &tips, Id::unique("hand, large"));
+        let clicked = self.hand.ui(
+            ui,
+            picture,
+            pane,
+            &tips,
+            (Id::unique("hand, large"), self.detail.finger),
+        );
         self.detail.finger = clicked.unwrap_or(self.detail.finger);
         self.detail.ui(ui, detail, pane);
         let (head, mut body) = controls::titled_card(ui, look, right, look.say(panels::TOUCH));

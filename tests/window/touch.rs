@@ -77,3 +77,20 @@ fn kept_colours_stay_when_the_grip_lets_go() {
     bench.run(60);
     assert_eq!(end(&bench), kept);
 }
+
+#[test]
+fn a_drawn_finger_says_its_name_and_force_and_is_chosen_by_it() {
+    let mut bench = gripping();
+    for finger in ["Little", "Ring", "Middle", "Index", "Thumb"] {
+        let head = format!("Drawn finger: {finger}: Normal ");
+        let mut names = bench.all(Role::Button).into_iter().map(|(name, _)| name);
+        let name = names.find(|name| name.starts_with(&head)).expect(finger);
+        assert!(
+            !name.contains('-'),
+            "in a grip all forces are known: {name}"
+        );
+        bench.click(&name);
+        bench.run(60);
+        assert!(bench.shows(&format!("Tare {finger}")));
+    }
+}

@@ -11,6 +11,7 @@ pub(crate) mod plots;
 pub(crate) mod poses;
 pub(crate) mod quirks;
 pub(crate) mod scan;
+pub(crate) mod touch;
 pub(crate) mod traffic;
 pub(crate) mod words;
 
