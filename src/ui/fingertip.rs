@@ -15,6 +15,8 @@ const BASE_MM: f32 = -12.6;
 const MARGIN_MM: f32 = 1.0;
 /// Normal force that fills the finger's width (manual 1.2: 20 N grip).
 const FULL_NORMAL_N: f32 = 20.0;
+/// A reading may leave the range by this much without a doubt about it, in newtons.
+const SLACK_N: f32 = 0.5;
 /// Tangential force of the longest arrow.
 const FULL_SHEAR_N: f32 = 5.0;
 /// Its length in millimetres.
@@ -39,6 +41,34 @@ pub(crate) struct Tip {
     pub(crate) proximity: Option<f32>,
     /// Draw pale: the values are old.
     pub(crate) stale: bool,
+    /// Whether its forces can be meant.
+    pub(crate) sense: Sense,
+}
+
+/// Whether the forces of a fingertip can be meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Sense {
+    /// In the manual's range.
+    #[default]
+    Fine,
+    /// A force that is no finite number.
+    NoNumber,
+    /// A force that the sensor cannot measure.
+    Beyond,
+}
+
+impl Sense {
+    /// Of normal and tangential force in newtons, as sent.
+    pub(crate) fn of(normal: f32, tangential: f32) -> Self {
+        let range = -SLACK_N..=FULL_NORMAL_N + SLACK_N;
+        if !normal.is_finite() || !tangential.is_finite() {
+            Self::NoNumber
+        } else if range.contains(&normal) && range.contains(&tangential) {
+            Self::Fine
+        } else {
+            Self::Beyond
+        }
+    }
 }
 
 impl Tip {
@@ -190,6 +220,13 @@ fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
             color(*heat),
             stroke,
         ));
+        if heat.is_none() && tip.heat.iter().any(Option::is_some) {
+            crossed(
+                painter,
+                &scale.shape(pad),
+                palette.warn.gamma_multiply(fade),
+            );
+        }
     }
     // The eighth channel belongs to no pad: a bar beside them.
     let bar = Rect::from_two_pos(scale.at(6.0, 4.6), scale.at(6.8, -4.6));
@@ -201,6 +238,15 @@ fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
         Stroke::new(1.0, palette.edge),
         StrokeKind::Inside,
     );
+}
+
+/// A cross over a pad whose channel says nothing.
+fn crossed(painter: &Painter, pad: &[Pos2], color: Color32) {
+    let box_of = Rect::from_points(pad);
+    let (center, arm) = (box_of.center(), box_of.size().min_elem() * 0.22);
+    for way in [vec2(arm, arm), vec2(arm, -arm)] {
+        painter.line_segment([center - way, center + way], Stroke::new(1.5, color));
+    }
 }
 
 /// How a fingertip's own plane lies on the screen: what a step towards its tip and one to its right look like.
@@ -238,7 +284,18 @@ impl Plane {
 /// Draws normal force as a circle and tangential force as an arrow.
 pub(crate) fn forces(painter: &Painter, look: Look, plane: &Plane, tip: &Tip) {
     let fade = if tip.stale { 0.35 } else { 1.0 };
-    let arrow = look.palette.arrow.gamma_multiply(fade);
+    let arrow = match tip.sense {
+        Sense::Fine => look.palette.arrow.gamma_multiply(fade),
+        Sense::NoNumber | Sense::Beyond => look.palette.warn.gamma_multiply(fade),
+    };
+    if tip.sense == Sense::NoNumber {
+        let radius = (HALF_WIDTH_MM - 1.0) * 0.5 * plane.per_mm;
+        let ring: Vec<Pos2> = (0..=24u8)
+            .map(|step| f32::from(step) / 24.0 * std::f32::consts::TAU)
+            .map(|turn| plane.middle + Vec2::angled(turn) * radius)
+            .collect();
+        painter.extend(Shape::dashed_line(&ring, Stroke::new(1.5, arrow), 3.0, 3.0));
+    }
     if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
         // Area grows with force, so that twice the force looks twice as much.
         let part = (normal / FULL_NORMAL_N).clamp(0.0, 1.0).sqrt();
@@ -264,4 +321,37 @@ fn arrow_shape(painter: &Painter, from: Pos2, along: Vec2, length: f32, stroke: 
     painter.line_segment([from, to - along * head * 0.7], stroke);
     let points = vec![to, to - along * head + side, to - along * head - side];
     painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_and_what_is_out_of_range_are_told_apart() {
+        for (normal, tangential, sense) in [
+            (0.0, 0.0, Sense::Fine),
+            (-0.1, 0.2, Sense::Fine),
+            (20.0, 5.0, Sense::Fine),
+            (f32::NAN, 0.0, Sense::NoNumber),
+            (3.0, f32::INFINITY, Sense::NoNumber),
+            (25.0, 1.0, Sense::Beyond),
+            (-3.0, 1.0, Sense::Beyond),
+            (3.0, 1e20, Sense::Beyond),
+        ] {
+            assert_eq!(
+                Sense::of(normal, tangential),
+                sense,
+                "{normal} {tangential}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_arrow_turns_clockwise_from_the_tip() {
+        let plane = Plane::of_width(Pos2::ZERO, vec2(0.0, -1.0), vec2(1.0, 0.0), 16.0);
+        assert!(plane.end((5.0, 0.0)).y < -5.0);
+        assert!(plane.end((5.0, 90.0)).x > 5.0);
+        assert!(plane.end((5.0, 180.0)).y > 5.0);
+    }
 }

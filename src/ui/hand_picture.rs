@@ -193,7 +193,7 @@ fn heads_ui(
         let place = Rect::from_min_size(egui::pos2(left, row.top()), vec2(width, row.height()));
         let place = place.shrink2(vec2(1.0, 0.0));
         let name = format!("{}: {}", look.say(text::DRAWN), said(pane, finger));
-        let button = Button::new("", look.say(text::DRAWN_TIP))
+        let button = Button::new("", look.say(panels::TIP_TIP))
             .named(&name)
             .choice(finger == chosen);
         if button.ground(ui, look, place, id.with(finger)).clicked() {

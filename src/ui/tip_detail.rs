@@ -1,11 +1,16 @@
-//! One fingertip in detail: how near its grip is to slipping, and its forces over the last seconds.
+//! One fingertip in detail: how near its grip is to slipping, its force in space, its forces and channels over time.
 
 use crate::app::history::{Series, Touch, Trace};
 use crate::app::state::Freshness;
-use crate::hand::{Finger, TactileBlock};
-use crate::ui::controls::{self, Button, Label};
+use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::ui::controls::{self, Label};
+use crate::ui::fingertip::Tip;
+use crate::ui::grip::{Grip, Hold, NEAR};
 use crate::ui::look::{Look, Pane};
-use crate::ui::text::{Text, panels, words};
+use crate::ui::text::{Text, panels, touch as text};
+use crate::ui::tip_channels::{TipChannels, columns};
+use crate::ui::tip_space::{self, Force};
+use crate::ui::touch_table;
 use crate::ui::track::{Actual, Track};
 use crate::ui::{format, theme};
 use egui::{Align2, Id, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2};
@@ -14,10 +19,13 @@ use egui::{Align2, Id, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2}
 const FRICTION_PERCENT: i16 = 50;
 /// The largest friction that can be chosen, in percent.
 const FRICTION_MAX: i16 = 150;
-/// Below this normal force a ratio of forces says nothing, in newtons.
-const CONTACT_N: f32 = 0.2;
-/// Share of the friction from which a grip counts as near to slipping.
-const NEAR: f32 = 0.8;
+/// Width from which the force in space finds room beside the compass, and height from which below it.
+const WIDE: f32 = 760.0;
+const SQUARE_LEAST: f32 = 118.0;
+/// Width of the readings: least and most.
+const READINGS: (f32, f32) = (150.0, 230.0);
+/// Height from which the forces find room over the channels.
+const BOTH_PLOTS: f32 = 270.0;
 /// Seconds of force shown.
 const SECONDS: f64 = 10.0;
 /// The compass ends at this many times the chosen friction.
@@ -26,12 +34,14 @@ const COMPASS_END: f32 = 1.5;
 const FORCE_END: f64 = 1.0;
 
 /// Which fingertip, and what friction is reckoned with.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct TipDetail {
     /// The fingertip.
     pub(crate) finger: Finger,
     friction_percent: i16,
-    trace: Trace,
+    traces: [Trace; 2],
+    holds: PerFinger<Hold>,
+    channels: TipChannels,
 }
 
 impl Default for TipDetail {
@@ -39,37 +49,9 @@ impl Default for TipDetail {
         Self {
             finger: Finger::Index,
             friction_percent: FRICTION_PERCENT,
-            trace: Trace::default(),
-        }
-    }
-}
-
-/// How a grip stands against slipping.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Grip {
-    /// Nothing known.
-    Unknown,
-    /// Too little force to say.
-    Loose,
-    /// Tangential over normal force.
-    Ratio(f32),
-}
-
-impl Grip {
-    fn of(block: Option<&TactileBlock>) -> Self {
-        let forces = block.and_then(|block| block.normal().zip(block.tangential()));
-        match forces {
-            None => Self::Unknown,
-            Some((normal, _)) if normal < CONTACT_N => Self::Loose,
-            Some((normal, tangential)) => Self::Ratio(tangential.abs() / normal),
-        }
-    }
-
-    /// How much of the friction is left, 1 = all, below 0 = more than there is.
-    fn margin(self, friction: f32) -> Option<f32> {
-        match self {
-            Self::Ratio(ratio) if friction > 0.0 => Some(1.0 - ratio / friction),
-            _ => None,
+            traces: Default::default(),
+            holds: PerFinger::default(),
+            channels: TipChannels::default(),
         }
     }
 }
@@ -79,54 +61,57 @@ impl TipDetail {
         f32::from(self.friction_percent) / 100.0
     }
 
-    /// The card.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-        let look = pane.look;
-        let mut body = controls::card(ui, look, rect);
-        let head = controls::take_top(&mut body, theme::CONTROL);
-        self.head_ui(ui, head, look);
-        let size = (body.height() * 0.58).min(body.width() * 0.42).round();
-        let mut upper = controls::take_top(&mut body, size);
-        let compass = controls::take_left(&mut upper, size);
-        self.compass_ui(ui, compass, pane);
-        self.readings_ui(ui, upper, pane);
-        self.forces_ui(ui, body, pane);
+    /// Follows all grips, so that an alarm neither flickers nor waits until its fingertip is chosen.
+    pub(crate) fn follow(&mut self, pane: &Pane<'_>) {
+        for finger in Finger::ALL {
+            let block = pane.state.sample.tactile[finger];
+            let live = pane.freshness(block.map(|block| block.asked)) == Freshness::Live;
+            let block = block.filter(|_| live).map(|block| block.value);
+            self.holds[finger] = self.holds[finger].next(Grip::of(block.as_ref()), self.friction());
+        }
     }
 
-    /// Title and choice of the finger; the choice alone where the room is short.
-    fn head_ui(&mut self, ui: &mut Ui, head: Rect, look: Look) {
-        let title = look.say(panels::TIP);
-        let title_width = controls::text_width(ui, title, theme::title()) + theme::GAP;
-        let widest = Finger::ALL
-            .map(|finger| controls::text_width(ui, look.say(words::finger(finger)), theme::body()))
-            .into_iter()
-            .fold(0.0, f32::max);
-        let wanted = 5.0 * (widest + 2.0 * theme::GAP);
-        let mut row = head;
-        let mut font = theme::small();
-        if head.width() >= title_width + wanted {
-            Label::new(title, look.palette.text)
-                .font(theme::title())
-                .put(ui, head);
-            row.min.x = row.max.x - wanted;
-            font = theme::body();
+    /// How the grip of a fingertip stood when it was looked at last.
+    pub(crate) fn hold(&self, finger: Finger) -> Hold {
+        self.holds[finger]
+    }
+
+    /// Compass, force in space, readings, forces and channels over time: as many as find room.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, tip: Option<&Tip>) {
+        let mut body = rect;
+        let stacked = ((rect.height() - theme::GAP) / 2.0).floor();
+        let is_wide = rect.width() >= WIDE;
+        let size = if stacked >= SQUARE_LEAST {
+            stacked.min(rect.width() * 0.22)
+        } else {
+            rect.height().min(rect.width() * 0.22)
+        };
+        let mut squares = controls::take_left(&mut body, size);
+        let compass = controls::take_top(&mut squares, size);
+        self.compass_ui(ui, compass, pane);
+        let space = if stacked >= SQUARE_LEAST {
+            Some(squares.with_max_y(squares.top() + size))
+        } else {
+            is_wide.then(|| controls::take_left(&mut body, size).with_max_y(rect.top() + size))
+        };
+        if let Some(space) = space {
+            let force = Force {
+                tip,
+                friction: self.friction(),
+                color: self.hold(self.finger).color(pane.look.palette),
+            };
+            tip_space::ui(ui, pane.look, space, Id::unique("force in space"), force);
         }
-        let width = row.width() / 5.0;
-        for (finger, at) in Finger::ALL.into_iter().zip(0u8..) {
-            let left = row.left() + width * f32::from(at);
-            let place = Rect::from_min_size(pos2(left, row.top()), vec2(width, row.height()));
-            let name = look.say(words::finger(finger));
-            let label = format!("{title}: {name}");
-            let button = Button::new(name, look.say(panels::TIP_TIP))
-                .named(&label)
-                .choice(self.finger == finger);
-            let id = Id::unique(("tip", finger));
-            if button.ground(ui, look, place, id).clicked() {
-                self.finger = finger;
-            }
-            let color = button.text_color(look);
-            controls::paint_text(ui, place, Align2::CENTER_CENTER, name, font.clone(), color);
+        let width = (body.width() * 0.28).clamp(READINGS.0, READINGS.1);
+        let readings = controls::take_left(&mut body, width);
+        self.readings_ui(ui, readings, pane);
+        body.min.x += theme::GAP;
+        if body.height() >= BOTH_PLOTS {
+            let forces = body.height() * 0.36;
+            let forces = controls::take_top(&mut body, forces);
+            self.forces_ui(ui, forces, pane);
         }
+        self.channels.ui(ui, body, pane, self.finger);
     }
 
     fn block<'a>(&self, pane: &Pane<'a>) -> (Option<&'a TactileBlock>, Freshness) {
@@ -161,7 +146,7 @@ impl TipDetail {
             palette.wash(palette.ok),
             Stroke::new(1.5, palette.ok),
         );
-        painter.circle_stroke(center, ring * NEAR, Stroke::new(1.0, palette.grid));
+        painter.circle_stroke(center, ring * (1.0 - NEAR), Stroke::new(1.0, palette.grid));
         let up = Rect::from_center_size(center - vec2(0.0, radius - theme::GAP), vec2(40.0, 12.0));
         let text = look.say(panels::TIP_UP);
         controls::paint_text(
@@ -179,20 +164,10 @@ impl TipDetail {
         let Some(degrees) = block.direction_deg() else {
             return;
         };
-        let color = look.value(freshness, self.grip_color(pane));
+        let color = look.value(freshness, self.hold(self.finger).color(palette));
         let (sin, cos) = f32::from(degrees).to_radians().sin_cos();
         let part = (ratio / self.friction().max(0.01)).min(COMPASS_END);
         needle(painter, center, vec2(sin, -cos) * (ring * part), color);
-    }
-
-    fn grip_color(&self, pane: &Pane<'_>) -> egui::Color32 {
-        let palette = pane.look.palette;
-        match Grip::of(self.block(pane).0).margin(self.friction()) {
-            None => palette.faint,
-            Some(margin) if margin <= 0.0 => palette.bad,
-            Some(margin) if margin <= 1.0 - NEAR => palette.warn,
-            Some(_) => palette.ok,
-        }
     }
 
     fn readings_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
@@ -211,7 +186,18 @@ impl TipDetail {
             |margin| format!("{:.0} %", margin * 100.0),
         );
         let plain = look.palette.text;
-        let rows: [(Text, String, egui::Color32); 4] = [
+        let direction = block.map_or_else(
+            || format::UNKNOWN.to_owned(),
+            |block| touch_table::direction(block, look),
+        );
+        let check = block.map(|block| block.check_ok());
+        let (check, check_color) = match check {
+            None => (format::UNKNOWN, plain),
+            Some(true) => (look.say(text::CHECK_OK), plain),
+            Some(false) => (look.say(text::CHECK_DIFFERS), look.palette.warn),
+        };
+        let hold = self.hold(self.finger);
+        let rows: [(Text, String, egui::Color32); 6] = [
             (
                 panels::TIP_NORMAL,
                 newtons(block.map(|block| block.normal_n)),
@@ -222,39 +208,42 @@ impl TipDetail {
                 newtons(block.map(|block| block.tangential_n)),
                 plain,
             ),
+            (text::DIRECTION, direction, plain),
             (panels::TIP_RATIO, ratio, plain),
-            (panels::TIP_MARGIN, margin, self.grip_color(pane)),
+            (text::CHECK, check.to_owned(), check_color),
+            (panels::TIP_MARGIN, margin, hold.color(look.palette)),
         ];
-        let row = (rect.height() / 6.0).min(theme::CONTROL);
+        let row = (rect.height() / 8.0).min(theme::CONTROL);
         for (caption, value, color) in &rows {
             let place = controls::take_top(&mut rest, row);
             rest.min.y -= theme::GAP;
             Label::new(look.say(*caption), look.palette.muted)
                 .small()
                 .put(ui, place);
-            Label::new(value, look.value(freshness, *color))
+            let label = Label::new(value, look.value(freshness, *color))
                 .number()
-                .right()
-                .named(look.say(*caption))
-                .put(ui, place);
+                .right();
+            let response = label.named(look.say(*caption)).put(ui, place);
+            if *caption == text::CHECK {
+                response.on_hover_text(look.say(text::CHECK_TIP));
+            }
         }
-        let said = self.verdict(grip, freshness);
         let place = controls::take_top(&mut rest, row);
         rest.min.y -= theme::GAP;
-        let color = look.value(freshness, self.grip_color(pane));
-        Label::new(look.say(said), color).put(ui, place);
+        self.verdict_ui(ui, place, look);
         self.friction_ui(ui, rest.with_max_y(rest.top() + row), look);
     }
 
-    fn verdict(&self, grip: Grip, freshness: Freshness) -> Text {
-        match (grip, grip.margin(self.friction())) {
-            _ if freshness == Freshness::Unknown => panels::TIP_UNKNOWN,
-            (Grip::Unknown, _) => panels::TIP_UNKNOWN,
-            (Grip::Loose, _) => panels::TIP_LOOSE,
-            (_, Some(margin)) if margin <= 0.0 => panels::TIP_SLIPS,
-            (_, Some(margin)) if margin <= 1.0 - NEAR => panels::TIP_NEAR,
-            _ => panels::TIP_HOLDS,
+    /// How the grip stands, in words; the alarm on a ground of its own.
+    fn verdict_ui(&self, ui: &mut Ui, place: Rect, look: Look) {
+        let hold = self.hold(self.finger);
+        let color = hold.color(look.palette);
+        if hold == Hold::Slips {
+            let ground = place.expand2(vec2(theme::STEP, 0.0));
+            let wash = look.palette.wash(color);
+            ui.painter().rect_filled(ground, theme::STEP, wash);
         }
+        Label::new(look.say(hold.words()), color).put(ui, place);
     }
 
     fn friction_ui(&mut self, ui: &mut Ui, rect: Rect, look: Look) {
@@ -314,44 +303,22 @@ impl TipDetail {
         ui.painter().rect_filled(body, 0.0, palette.sunken);
         let now = pane.state.now.secs();
         let span = (now - SECONDS, now);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "clamped to what a screen has"
-        )]
-        let columns = body.width().clamp(1.0, 8192.0) as usize;
-        let history = &pane.state.history;
         let mut end = FORCE_END;
-        for (touch, _, _) in lines {
-            history.trace(
-                Series::Tip(touch, self.finger),
-                span.0,
-                span.1,
-                columns,
-                &mut self.trace,
-            );
-            end = self
-                .trace
-                .points()
-                .map(|point| point[1])
-                .fold(end, f64::max);
+        for ((touch, _, _), trace) in lines.iter().zip(&mut self.traces) {
+            let series = Series::Tip(*touch, self.finger);
+            let history = &pane.state.history;
+            history.trace(series, span.0, span.1, columns(body), trace);
+            end = trace.points().map(|point| point[1]).fold(end, f64::max);
         }
         let top = Rect::from_min_size(body.min + vec2(theme::STEP, 0.0), vec2(60.0, 14.0));
-        for (touch, _, color) in lines {
-            history.trace(
-                Series::Tip(touch, self.finger),
-                span.0,
-                span.1,
-                columns,
-                &mut self.trace,
-            );
-            for segment in &self.trace.segments {
+        let painter = ui.painter_at(body);
+        for ((_, _, color), trace) in lines.iter().zip(&self.traces) {
+            for segment in &trace.segments {
                 let points = segment
                     .iter()
                     .map(|[at_s, value]| place_of(body, (at_s - span.0) / SECONDS, value / end))
                     .collect();
-                let painter = ui.painter_at(body);
-                painter.add(Shape::line(points, Stroke::new(theme::LINE, color)));
+                painter.add(Shape::line(points, Stroke::new(theme::LINE, *color)));
             }
         }
         Label::new(&format!("{end:.1}"), palette.faint)
@@ -373,33 +340,4 @@ fn place_of(rect: Rect, across: f64, up: f64) -> Pos2 {
         rect.left() + rect.width() * across,
         rect.bottom() - rect.height() * up * 0.94,
     )
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
-    use super::*;
-
-    fn block(normal_n: f32, tangential_n: f32) -> TactileBlock {
-        let mut block = TactileBlock::decode(&[0; 58]).unwrap();
-        block.normal_n = normal_n;
-        block.tangential_n = tangential_n;
-        block
-    }
-
-    #[test]
-    fn the_margin_is_what_friction_leaves() {
-        let grip = Grip::of(Some(&block(4.0, 1.0)));
-        assert_eq!(grip, Grip::Ratio(0.25));
-        assert_eq!(grip.margin(0.5), Some(0.5));
-        assert!(grip.margin(0.2).unwrap() < 0.0);
-        assert_eq!(grip.margin(0.0), None);
-    }
-
-    #[test]
-    fn without_contact_or_sense_there_is_no_margin() {
-        assert_eq!(Grip::of(Some(&block(0.05, 1.0))), Grip::Loose);
-        assert_eq!(Grip::of(Some(&block(f32::NAN, 1.0))), Grip::Unknown);
-        assert_eq!(Grip::of(None).margin(0.5), None);
-    }
 }

@@ -1,108 +1,18 @@
-//! The five fingertips: pictures over a table of numbers, small in the overview and large in their own view.
+//! The five fingertips: small over their numbers in the overview, large in their own view with one of them in detail.
 
 use crate::app::action::Action;
-use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::hand::{Finger, PerFinger};
 use crate::ui::controls::{self, Button, Label};
-use crate::ui::fingertip::{self, Tip};
+use crate::ui::fingertip::{self, Sense, Tip};
+use crate::ui::grip::Hold;
 use crate::ui::hand_picture::HandView;
-use crate::ui::look::{Look, Pane};
-use crate::ui::text::{Text, panels, words};
+use crate::ui::look::Pane;
+use crate::ui::text::{panels, touch as text, words};
 use crate::ui::tip_detail::TipDetail;
 use crate::ui::touch_heat::HeatScale;
+use crate::ui::touch_table::{self, LINES, Sheet, table_ui};
 use crate::ui::{format, theme};
-use egui::{Id, Rect, Ui, pos2, vec2};
-
-/// How the numbers under the pictures are set.
-#[derive(Debug, Clone, Copy)]
-struct Sheet {
-    /// Width of the captions.
-    caption: f32,
-    /// Height of a row.
-    row: f32,
-    /// Large digits.
-    large: bool,
-}
-
-impl Sheet {
-    fn new(ui: &Ui, look: Look, captions: &[Text], row: f32, large: bool) -> Self {
-        let width = |text: &Text| controls::text_width(ui, look.say(*text), theme::small());
-        let widest = captions.iter().map(width).fold(0.0, f32::max);
-        Self {
-            caption: widest + theme::STEP,
-            row,
-            large,
-        }
-    }
-
-    fn font(self) -> egui::FontId {
-        if self.large {
-            theme::number()
-        } else {
-            theme::number_small()
-        }
-    }
-
-    /// The five columns right of the captions.
-    fn columns(self, rect: Rect) -> impl Iterator<Item = (Finger, Rect)> {
-        let left = rect.left() + self.caption;
-        let width = (rect.right() - left) / 5.0;
-        Finger::ALL.into_iter().scan(left, move |x, finger| {
-            let column = Rect::from_min_max(pos2(*x, rect.top()), pos2(*x + width, rect.bottom()));
-            *x += width;
-            Some((finger, column))
-        })
-    }
-}
-
-/// One row of numbers under the pictures.
-struct Line {
-    caption: Text,
-    name: Text,
-    value: fn(&TactileBlock, Look) -> String,
-}
-
-const LINES: [Line; 5] = [
-    Line {
-        caption: panels::TOUCH_NORMAL,
-        name: panels::TOUCH_NORMAL_NAME,
-        value: |block, _| format::newtons(Some(block.normal_n)),
-    },
-    Line {
-        caption: panels::TOUCH_SHEAR,
-        name: panels::TOUCH_SHEAR_NAME,
-        value: |block, _| format::newtons(Some(block.tangential_n)),
-    },
-    Line {
-        caption: panels::TOUCH_DIRECTION,
-        name: panels::TOUCH_DIRECTION_NAME,
-        value: direction,
-    },
-    Line {
-        caption: panels::TOUCH_PROXIMITY,
-        name: panels::TOUCH_PROXIMITY_NAME,
-        value: |block, _| format::counts(Some(block.proximity.into())),
-    },
-    Line {
-        caption: panels::TOUCH_CHECK,
-        name: panels::TOUCH_CHECK_NAME,
-        value: |block, look| {
-            let word = if block.check_ok() {
-                panels::TOUCH_OK
-            } else {
-                panels::TOUCH_DIFFERS
-            };
-            look.say(word).into()
-        },
-    },
-];
-
-fn direction(block: &TactileBlock, look: Look) -> String {
-    match (block.direction_deg(), block.direction_raw) {
-        (Some(degrees), _) => format!("{degrees}°"),
-        (None, u16::MAX) => look.say(panels::TOUCH_NO_CONTACT).into(),
-        (None, raw) => format!("?{raw}"),
-    }
-}
+use egui::{Align2, Id, Rect, Ui, pos2, vec2};
 
 /// Heights of the drawn hand in the overview: less shows nothing, more would take the room of the faults.
 const HAND_LEAST: f32 = 130.0;
@@ -133,12 +43,21 @@ fn small_height(width: f32) -> f32 {
     2.0 * theme::PAD + theme::CONTROL + theme::GAP + 20.0 + picture + theme::STEP + 5.0 * 17.0
 }
 
+/// Part of the view's height that the hand and the fingertips take, by what stands below.
+const UPPER: f32 = 0.48;
+const UPPER_BY_NUMBERS: f32 = 0.46;
+/// Height of a fingertip's name, and of its forces.
+const TITLE: f32 = 18.0;
+const VALUES: f32 = 40.0;
+
 /// What the person chose for the fingertips.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TouchView {
     hand: HandView,
     scale: HeatScale,
     detail: TipDetail,
+    /// All numbers instead of one fingertip.
+    numbers: bool,
 }
 
 impl TouchView {
@@ -168,52 +87,176 @@ impl TouchView {
         table_ui(ui, table, pane, sheet);
     }
 
-    /// The view of its own: the hand, one fingertip in detail, and every channel of all five as a number.
+    /// The view of its own: the hand and five large fingertips over the chosen one in detail, or all numbers.
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
         let tips = self.scale.tips(pane);
-        let (left, right) = rect.split_left_right_at_x(rect.left() + (rect.width() * 0.42).round());
-        let left = left.with_max_x(left.right() - theme::GAP);
-        let (hand, detail) =
-            left.split_top_bottom_at_y(left.top() + (left.height() * 0.52).round());
-        let hand = hand.with_max_y(hand.bottom() - theme::GAP);
+        self.detail.follow(pane);
+        let share = if self.numbers {
+            UPPER_BY_NUMBERS
+        } else {
+            UPPER
+        };
+        let (upper, lower) =
+            rect.split_top_bottom_at_y(rect.top() + (rect.height() * share).round());
+        let upper = upper.with_max_y(upper.bottom() - theme::GAP);
+        let width = (upper.height() * 0.96).min(upper.width() * 0.36).round();
+        let (hand, right) = upper.split_left_right_at_x(upper.left() + width);
+        let hand = hand.with_max_x(hand.right() - theme::GAP);
         let (_, picture) = controls::titled_card(ui, look, hand, look.say(panels::HAND));
-        let clicked = self.hand.ui(
-            ui,
-            picture,
-            pane,
-            &tips,
-            (Id::unique("hand, large"), self.detail.finger),
-        );
+        let place = (Id::unique("hand, large"), self.detail.finger);
+        let clicked = self.hand.ui(ui, picture, pane, &tips, place);
         self.detail.finger = clicked.unwrap_or(self.detail.finger);
-        self.detail.ui(ui, detail, pane);
         let (head, mut body) = controls::titled_card(ui, look, right, look.say(panels::TOUCH));
         self.scale.ui(ui, head, pane);
         let buttons = controls::take_top(&mut body, theme::CONTROL);
         self.tare_ui(ui, buttons, pane);
-        self.sheet_ui(ui, body, pane, &tips);
+        self.tips_ui(ui, body, pane, &tips);
+        self.lower_ui(ui, lower, pane, &tips);
     }
 
-    fn sheet_ui(
+    fn lower_ui(
         &mut self,
         ui: &mut Ui,
-        body: Rect,
+        rect: Rect,
         pane: &Pane<'_>,
         tips: &PerFinger<Option<Tip>>,
     ) {
-        let captions = [panels::TOUCH_DELTA_N, panels::TOUCH_DELTA_T];
-        let wide = body.width() > 760.0;
-        let row = if body.height() > 560.0 { 20.0 } else { 16.0 };
-        let sheet = Sheet::new(ui, pane.look, &captions, row, wide);
-        let height = 15.0 * sheet.row + 2.0 * theme::GAP;
-        let (pictures, mut table) = body.split_top_bottom_at_y(body.bottom() - height);
-        let pictures = pictures.with_max_y(pictures.bottom() - theme::GAP);
-        self.pictures_ui(ui, pictures, pane, sheet, tips);
-        let forces = controls::take_top(&mut table, 5.0 * sheet.row);
-        table_ui(ui, forces, pane, sheet);
-        let deltas = controls::take_top(&mut table, 2.0 * sheet.row);
-        deltas_ui(ui, deltas, pane, sheet);
-        channels_ui(ui, table, pane, sheet);
+        let look = pane.look;
+        let finger = self.detail.finger;
+        let title = format!(
+            "{}: {}",
+            look.say(panels::TIP),
+            look.say(words::finger(finger))
+        );
+        let (mut head, body) = controls::titled_card(ui, look, rect, &title);
+        for (name, tip, numbers) in [
+            (text::NUMBERS, text::NUMBERS_TIP, true),
+            (text::DETAIL, text::DETAIL_TIP, false),
+        ] {
+            let words = look.say(name);
+            let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
+            let place = controls::take_right(&mut head, width);
+            let button = Button::new(words, look.say(tip)).choice(self.numbers == numbers);
+            if button
+                .put(ui, look, place, Id::unique(("lower", numbers)))
+                .clicked()
+            {
+                self.numbers = numbers;
+            }
+        }
+        let rest = pane.state.tare.rest(finger).filter(|rest| rest.chosen);
+        let tared = rest.map_or_else(
+            || look.say(text::NOT_TARED).to_owned(),
+            |rest| {
+                let age = format::age(pane.state.now.since(rest.at));
+                format!("{} {age}", look.say(text::TARED_AGO))
+            },
+        );
+        let (left, right) = head.split_left_right_at_fraction(0.5);
+        Label::new(&tared, look.palette.muted)
+            .small()
+            .named(look.say(text::TARED_NAME))
+            .put(ui, left);
+        Label::new(look.say(text::ASSUMED), look.palette.faint)
+            .small()
+            .right()
+            .put(ui, right)
+            .on_hover_text(look.say(text::ASSUMED_TIP));
+        if self.numbers {
+            touch_table::all_ui(ui, body, pane);
+        } else {
+            self.detail.ui(ui, body, pane, tips[finger].as_ref());
+        }
+    }
+
+    /// Five large fingertips, each a button that chooses it, with its forces.
+    fn tips_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, tips: &PerFinger<Option<Tip>>) {
+        let look = pane.look;
+        let width = rect.width() / 5.0;
+        for (finger, at) in Finger::ALL.into_iter().zip(0u8..) {
+            let left = rect.left() + width * f32::from(at);
+            let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
+            let place = place.shrink2(vec2(1.0, 0.0));
+            let name = look.say(words::finger(finger));
+            let label = format!("{}: {name}", look.say(panels::TIP));
+            let button = Button::new(name, look.say(panels::TOUCH_TIP))
+                .named(&label)
+                .choice(self.detail.finger == finger);
+            let id = Id::unique(("tip", finger));
+            if button.ground(ui, look, place, id).clicked() {
+                self.detail.finger = finger;
+            }
+            self.tip_ui(
+                ui,
+                place.shrink(theme::STEP),
+                pane,
+                finger,
+                tips[finger].as_ref(),
+            );
+        }
+    }
+
+    fn tip_ui(&self, ui: &mut Ui, place: Rect, pane: &Pane<'_>, finger: Finger, tip: Option<&Tip>) {
+        let look = pane.look;
+        let color = look.palette.dof[finger.bend()];
+        let mut column = place;
+        let title = controls::take_top(&mut column, TITLE);
+        let name = look.say(words::finger(finger));
+        controls::paint_text(ui, title, Align2::CENTER_CENTER, name, theme::body(), color);
+        let (picture, values) = column.split_top_bottom_at_y(column.bottom() - VALUES);
+        fingertip::paint(
+            ui.painter(),
+            look,
+            picture,
+            &tip.copied().unwrap_or_default(),
+        );
+        let block = pane.state.sample.tactile[finger];
+        let freshness = pane.freshness(block.map(|block| block.asked));
+        let block = block.map(|block| block.value);
+        let (first, second) = values.split_top_bottom_at_fraction(0.5);
+        let normal = format!("{} N", format::newtons(block.map(|block| block.normal_n)));
+        let sense = tip.map_or(Sense::Fine, |tip| tip.sense);
+        let hold = self.detail.hold(finger);
+        let (below, below_color) = match (sense, hold) {
+            (Sense::NoNumber, _) => (look.say(text::NO_NUMBER).to_owned(), look.palette.warn),
+            (Sense::Beyond, _) => (look.say(text::BEYOND).to_owned(), look.palette.warn),
+            (Sense::Fine, Hold::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
+            (Sense::Fine, _) => {
+                let shear = format::newtons(block.map(|block| block.tangential_n));
+                let way = block.map_or(String::new(), |block| touch_table::direction(&block, look));
+                (format!("{shear} N {way}"), look.palette.muted)
+            }
+        };
+        let strong = if sense == Sense::Fine {
+            look.palette.text
+        } else {
+            look.palette.warn
+        };
+        let tip = match sense {
+            Sense::Beyond => text::BEYOND_TIP,
+            _ => panels::TOUCH_TIP,
+        };
+        let tip = look.say(tip);
+        for (place, words, font, color) in [
+            (first, normal, theme::title(), strong),
+            (second, below, theme::small(), below_color),
+        ] {
+            let name = format!(
+                "{name} {}",
+                look.say(if place == first {
+                    panels::TOUCH_NORMAL_NAME
+                } else {
+                    panels::TOUCH_SHEAR_NAME
+                })
+            );
+            Label::new(&words, look.value(freshness, color))
+                .font(font)
+                .center()
+                .named(&name)
+                .put(ui, place)
+                .on_hover_text(tip);
+        }
     }
 
     /// Taring, and the lock of the colours.
@@ -281,7 +324,8 @@ impl TouchView {
             let color = look.palette.dof[finger.bend()];
             Label::new(name, color).small().center().put(ui, title);
             let place = column.with_min_y(column.top() - theme::STEP);
-            fingertip::paint(ui.painter(), look, place, &tips[finger].unwrap_or_default());
+            let tip = tips[finger].unwrap_or_default();
+            fingertip::paint(ui.painter(), look, place, &tip);
             let response = ui.allocate_rect(place, egui::Sense::click());
             if response
                 .on_hover_text(look.say(panels::TOUCH_TIP))
@@ -295,106 +339,5 @@ impl TouchView {
                     .put(ui, place);
             }
         }
-    }
-}
-
-fn channels_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
-    let look = pane.look;
-    let mut top = rect.top();
-    // Where both numbers find no room, the change says more than the count.
-    let both = controls::text_width(ui, "0.00M +000.0k", sheet.font()) + theme::STEP;
-    let narrow = (rect.width() - sheet.caption) / 5.0 < both;
-    for channel in 0..8usize {
-        let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), sheet.row));
-        let caption = format!("{} {}", look.say(panels::TOUCH_CHANNEL), channel + 1);
-        row_ui(
-            ui,
-            row,
-            pane,
-            sheet,
-            [&caption, &caption],
-            &|finger, block, _| {
-                let raw = block.raw.get(channel).copied().map(i64::from);
-                let rest = pane.state.tare.rest(finger);
-                let rest = rest.and_then(|rest| rest.raw.get(channel).copied());
-                let change = raw.zip(rest).map(|(raw, rest)| raw - i64::from(rest));
-                if narrow {
-                    Signed(change).to_string()
-                } else {
-                    format!("{:>6} {:>7}", format::counts(raw), Signed(change))
-                }
-            },
-        );
-        top += sheet.row;
-    }
-}
-/// A change with its sign, shortened like counts.
-struct Signed(Option<i64>);
-
-impl std::fmt::Display for Signed {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let text = match self.0 {
-            Some(value) if value > 0 => format!("+{}", format::counts(Some(value))),
-            other => format::counts(other),
-        };
-        f.pad(&text)
-    }
-}
-
-fn table_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
-    let look = pane.look;
-    let mut top = rect.top();
-    for line in &LINES {
-        let row = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), sheet.row));
-        let texts = [look.say(line.caption), look.say(line.name)];
-        row_ui(ui, row, pane, sheet, texts, &|_, block, look| {
-            (line.value)(block, look)
-        });
-        top += sheet.row;
-    }
-}
-
-fn deltas_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
-    let look = pane.look;
-    let (first, second) = rect.split_top_bottom_at_fraction(0.5);
-    let text = look.say(panels::TOUCH_DELTA_N);
-    row_ui(ui, first, pane, sheet, [text, text], &|_, block, _| {
-        format::counts(Some(block.normal_delta.into()))
-    });
-    let text = look.say(panels::TOUCH_DELTA_T);
-    row_ui(ui, second, pane, sheet, [text, text], &|_, block, _| {
-        format::counts(Some(block.tangential_delta.into()))
-    });
-}
-
-type Reading<'a> = &'a dyn Fn(Finger, &TactileBlock, Look) -> String;
-
-/// One row: a caption, its longer name for accessibility, and a number for each finger.
-fn row_ui(
-    ui: &mut Ui,
-    row: Rect,
-    pane: &Pane<'_>,
-    sheet: Sheet,
-    [caption, name]: [&str; 2],
-    reading: Reading<'_>,
-) {
-    let look = pane.look;
-    let left = row.with_max_x(row.left() + sheet.caption);
-    Label::new(caption, look.palette.muted)
-        .small()
-        .put(ui, left);
-    for (finger, column) in sheet.columns(row) {
-        let block = pane.state.sample.tactile[finger];
-        let freshness = pane.freshness(block.map(|block| block.asked));
-        let text = block.map_or_else(
-            || format::UNKNOWN.to_owned(),
-            |block| reading(finger, &block.value, look),
-        );
-        let name = format!("{} {name}", look.say(words::finger(finger)));
-        Label::new(&text, look.value(freshness, look.palette.text))
-            .font(sheet.font())
-            .center()
-            .named(&name)
-            .put(ui, column);
     }
 }

@@ -3,7 +3,7 @@
 use crate::app::state::Freshness;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::ui::controls::{self, Label};
-use crate::ui::fingertip::Tip;
+use crate::ui::fingertip::{Sense, Tip};
 use crate::ui::look::Pane;
 use crate::ui::text::panels;
 use crate::ui::{format, theme};
@@ -11,6 +11,8 @@ use egui::{CornerRadius, Rect, Ui, pos2, vec2};
 
 /// Counts above rest at which a pad is hottest, at least: below this, noise would look like touch.
 const HEAT_FLOOR: f32 = 20_000.0;
+/// The scale of the sensor ends here, in counts.
+const MOST_COUNTS: u32 = 1 << 24;
 /// Steps in which the scale's bar is drawn.
 const STEPS: u8 = 16;
 
@@ -81,7 +83,9 @@ fn automatic(pane: &Pane<'_>) -> f32 {
             continue;
         };
         for (raw, rest) in block.value.raw.into_iter().zip(rest.raw) {
-            full = full.max(above(raw, rest));
+            if known(raw) {
+                full = full.max(above(raw, rest));
+            }
         }
     }
     // Steps of a fifth of a decade, so that the colours do not breathe with every reading.
@@ -94,22 +98,28 @@ fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock, full: f32) -> Tip 
     let rest = rest.map_or(block.raw, |rest| rest.raw);
     let mut heat = [None; 8];
     for ((heat, raw), rest) in heat.iter_mut().zip(block.raw).zip(rest) {
-        *heat = Some(above(raw, rest) / full);
+        *heat = known(raw).then(|| above(raw, rest) / full);
     }
     Tip {
         heat,
         normal_n: block.normal(),
         shear: block.tangential().zip(block.direction_deg().map(f32::from)),
-        proximity: Some(small_float(i64::from(block.proximity))),
+        proximity: Some(counts_of(i64::from(block.proximity))),
         stale: false,
+        sense: Sense::of(block.normal_n, block.tangential_n),
     }
 }
 
-fn above(raw: u32, rest: u32) -> f32 {
-    small_float(i64::from(raw) - i64::from(rest)).max(0.0)
+/// Whether a channel says something: a live one rests near 3 million counts and ends below this.
+const fn known(raw: u32) -> bool {
+    raw > 0 && raw <= MOST_COUNTS
 }
 
-fn small_float(value: i64) -> f32 {
+fn above(raw: u32, rest: u32) -> f32 {
+    counts_of(i64::from(raw) - i64::from(rest)).max(0.0)
+}
+
+fn counts_of(value: i64) -> f32 {
     #[expect(
         clippy::cast_precision_loss,
         reason = "only its place on a colour scale matters"
@@ -125,4 +135,15 @@ fn whole(value: f32) -> i64 {
     )]
     let whole = value as i64;
     whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dead_or_overflowing_channel_has_no_heat() {
+        assert!(known(3_000_000) && known(1));
+        assert!(!known(0) && !known(u32::MAX));
+    }
 }

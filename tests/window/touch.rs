@@ -94,3 +94,55 @@ fn a_drawn_finger_says_its_name_and_force_and_is_chosen_by_it() {
         assert!(bench.shows(&format!("Tare {finger}")));
     }
 }
+
+#[test]
+fn all_numbers_stand_there_on_demand() {
+    let mut bench = gripping();
+    assert!(!bench.shows("Channel 8"));
+    bench.click("All numbers");
+    bench.run(60);
+    for finger in ["Little", "Thumb"] {
+        assert_ne!(bench.reading(&format!("{finger} Channel 8")), "-");
+    }
+    bench.click("Detail");
+    bench.run(60);
+    assert!(bench.texts_with("Channel 8").is_empty());
+}
+
+#[test]
+fn a_channel_tells_its_change_and_noise_and_a_taring_its_age() {
+    let mut bench = gripping();
+    let tared = |bench: &Bench| bench.reading("Taring of the chosen fingertip");
+    assert_eq!(tared(&bench), "Not tared");
+    assert!(
+        bench
+            .reading("Change and noise of channel 4")
+            .starts_with('+')
+    );
+    bench.click("Tare Index");
+    bench.wait(1500);
+    assert!(
+        tared(&bench).starts_with("Tared, ago 1."),
+        "{}",
+        tared(&bench)
+    );
+    bench.click("Fingertip: Ring");
+    bench.run(60);
+    assert_eq!(tared(&bench), "Not tared");
+    bench.click("Raw");
+    bench.click("10 min");
+    bench.run(60);
+    assert_ne!(bench.reading("Change and noise of channel 4"), "-");
+}
+
+#[test]
+fn too_little_friction_raises_the_alarm_on_each_fingertip() {
+    let mut bench = gripping();
+    assert!(bench.shows("Holds") || !bench.texts_with("Holds").is_empty());
+    assert!(bench.texts_with("Slip").iter().all(|text| text != "Slip"));
+    bench.drag("Friction, percent", 0.33, 0.01);
+    bench.run(60);
+    assert_eq!(bench.texts_with("Slips at this friction").len(), 1);
+    let slipping = bench.texts().into_iter().filter(|text| text == "Slip");
+    assert!(slipping.count() >= 4, "all fingertips in contact slip");
+}

@@ -1,7 +1,7 @@
 //! The whole history of one hand: which reading goes to which line. How lines are kept is told in the siblings.
 
 use crate::app::history::mark::{Mark, MarkKind, Marks};
-use crate::app::history::reading::{Reading, Summary};
+use crate::app::history::reading::{Reading, Spread, Summary};
 use crate::app::history::table::{Table, TableGroup};
 use crate::app::history::trace::Trace;
 use crate::app::history::track::{Slice, Track};
@@ -14,6 +14,10 @@ pub const HISTORY_SECONDS: u32 = 3600;
 /// Rows kept of each group: an hour at 200 Hz, the most a serial line carries; a faster link holds less time. About
 /// 80 MB with an hour at 100 Hz and fingertips at 30 Hz, and 230 MB when all are full.
 pub const HISTORY_ROWS: usize = 200 * HISTORY_SECONDS as usize;
+/// Rows kept of the fingertips' channels: ten minutes at 30 Hz, in about 5 MB for all five fingertips.
+pub const CHANNEL_ROWS: usize = 30 * 600;
+/// Channels of a fingertip.
+const CHANNELS: usize = 8;
 /// A longer silence than this breaks measured lines.
 const GAP_AFTER_S: f64 = 0.5;
 /// The same for targets, which are read about twice a second.
@@ -66,6 +70,8 @@ pub enum Series {
     Joint(Quantity, Dof),
     /// Of a fingertip.
     Tip(Touch, Finger),
+    /// Counts of one of the eight channels of a fingertip, from 0; kept for [`CHANNEL_ROWS`] only.
+    Channel(u8, Finger),
 }
 
 impl Series {
@@ -73,6 +79,9 @@ impl Series {
     #[must_use]
     pub fn column_name(self) -> String {
         let (what, part, unit) = match self {
+            Self::Channel(channel, finger) => {
+                return format!("channel_{}_{}", channel + 1, finger.name());
+            }
             Self::Joint(Quantity::Angle, dof) => ("angle", dof.name(), ""),
             Self::Joint(Quantity::Force, dof) => ("force", dof.name(), "_g"),
             Self::Joint(Quantity::Current, dof) => ("current", dof.name(), "_mA"),
@@ -90,6 +99,7 @@ impl Series {
             Self::Joint(_, dof) => (self.track(), dof.index()),
             Self::Tip(Touch::Normal, _) => (self.track(), 0),
             Self::Tip(Touch::Tangential, _) => (self.track(), 1),
+            Self::Channel(channel, _) => (self.track(), channel as usize),
         }
     }
 
@@ -106,8 +116,18 @@ impl Series {
             Self::Tip(_, Finger::Middle) => 7,
             Self::Tip(_, Finger::Index) => 8,
             Self::Tip(_, Finger::Thumb) => 9,
+            Self::Channel(_, Finger::Little) => 10,
+            Self::Channel(_, Finger::Ring) => 11,
+            Self::Channel(_, Finger::Middle) => 12,
+            Self::Channel(_, Finger::Index) => 13,
+            Self::Channel(_, Finger::Thumb) => 14,
         }
     }
+}
+
+fn channels(finger: Finger) -> Box<Track> {
+    let number = Series::Channel(0, finger).track();
+    Box::new(Track::new(number, CHANNELS, CHANNEL_ROWS, GAP_AFTER_S))
 }
 
 /// What was measured over the last minutes, by the time it was received.
@@ -119,6 +139,7 @@ pub struct History {
     temperature: Track,
     target: Track,
     tips: PerFinger<Box<Track>>,
+    channels: PerFinger<Box<Track>>,
     marks: Marks,
 }
 
@@ -152,6 +173,7 @@ impl History {
             temperature: joints(Quantity::Temperature, GAP_AFTER_S),
             target: joints(Quantity::TargetAngle, TARGET_GAP_AFTER_S),
             tips: PerFinger::from_fn(tip),
+            channels: PerFinger::from_fn(channels),
             marks: Marks::default(),
         }
     }
@@ -192,6 +214,12 @@ impl History {
                     finite(block.value.tangential()),
                 ];
                 self.tips[finger].push(block.received.secs(), values);
+                #[expect(
+                    clippy::cast_precision_loss,
+                    reason = "exact below 16.7 million counts"
+                )]
+                let counts = block.value.raw.map(|raw| Some(raw as f32));
+                self.channels[finger].push(block.received.secs(), counts);
             }
         }
     }
@@ -208,7 +236,7 @@ impl History {
         ] {
             track.gap(at_s);
         }
-        for (_, track) in self.tips.iter_mut() {
+        for (_, track) in self.tips.iter_mut().chain(self.channels.iter_mut()) {
             track.gap(at_s);
         }
     }
@@ -280,7 +308,23 @@ impl History {
         )
     }
 
-    /// A copy of a stretch of time that stays as it is: all measurements and marks. The work grows with their number.
+    /// Mean and standard deviation of a stretch of time; `None` below two values. The work grows with their number.
+    #[must_use]
+    pub fn spread(&self, series: Series, from_s: f64, to_s: f64) -> Option<Spread> {
+        let (track, place) = (self.track(series), series.place().1);
+        let values = track
+            .rows_within(from_s, to_s)
+            .filter_map(|row| track.value(place, row));
+        Spread::of(values.filter(|value| !value.is_nan()).map(f64::from))
+    }
+
+    /// Memory held by the channels of the fingertips, in bytes.
+    #[must_use]
+    pub fn channel_bytes(&self) -> usize {
+        self.channels.iter().map(|(_, track)| track.bytes()).sum()
+    }
+
+    /// A copy of a stretch of time that stays as it is: all measurements but the channels, and marks. The work grows with their number.
     #[must_use]
     pub fn slice(&self, from_s: f64, to_s: f64) -> Self {
         let cut = |track: &Track| track.slice(from_s, to_s);
@@ -295,6 +339,7 @@ impl History {
             temperature: cut(&self.temperature),
             target: cut(&self.target),
             tips: PerFinger::from_fn(|finger| Box::new(cut(&self.tips[finger]))),
+            channels: PerFinger::from_fn(channels),
             marks,
         }
     }
@@ -331,6 +376,7 @@ impl History {
         match series {
             Series::Joint(quantity, _) => self.joint(quantity),
             Series::Tip(_, finger) => self.tips[finger].as_ref(),
+            Series::Channel(_, finger) => self.channels[finger].as_ref(),
         }
     }
 
@@ -345,7 +391,8 @@ impl History {
     }
 
     fn tracks(&self) -> impl Iterator<Item = &Track> {
-        let tips = self.tips.iter().map(|(_, track)| track.as_ref());
+        let tips = self.tips.iter().chain(self.channels.iter());
+        let tips = tips.map(|(_, track)| track.as_ref());
         Quantity::ALL
             .into_iter()
             .map(|quantity| self.joint(quantity))

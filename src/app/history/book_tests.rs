@@ -11,7 +11,9 @@
     reason = "a test may"
 )]
 
-use crate::app::history::book::{HISTORY_ROWS, HISTORY_SECONDS, History, Quantity, Series, Touch};
+use crate::app::history::book::{
+    CHANNEL_ROWS, HISTORY_ROWS, HISTORY_SECONDS, History, Quantity, Series, Touch,
+};
 use crate::app::history::mark::{MARKS_MAX, MarkKind};
 use crate::app::history::trace::Trace;
 use crate::hand::{
@@ -377,4 +379,35 @@ fn an_hour_at_100_hz_with_fingertips_at_30_hz_fits_in_100_megabytes() {
         "{first}"
     );
     assert!(history.bytes() <= 100_000_000, "{}", history.bytes());
+    let channels = history.channel_bytes();
+    assert!((4_000_000..6_000_000).contains(&channels), "{channels}");
+}
+
+#[test]
+fn channels_are_kept_for_ten_minutes_and_tell_their_mean_and_noise() {
+    let mut history = History::new();
+    let mut touch = Groups::NONE;
+    touch.insert(Group::Tactile(Finger::Ring));
+    let mut block = TactileBlock::decode(&[0; 58]).expect("58 bytes");
+    for tick in 0..30 * 900u64 {
+        let at = Moment::from_micros(tick * 100_000 / 3);
+        block.raw[2] = 3_000_000 + if tick % 2 == 0 { 100 } else { 0 };
+        let mut sample = HandSample::default();
+        sample.tactile[Finger::Ring] = Some(Timed {
+            value: block,
+            asked: at,
+            received: at,
+        });
+        history.push(&sample, touch);
+    }
+    let series = Series::Channel(2, Finger::Ring);
+    let rows = history.rows(&[series], 0.0, 1000.0);
+    assert_eq!(rows, CHANNEL_ROWS);
+    assert!(history.reading(series, 290.0).is_none() && history.reading(series, 310.0).is_some());
+    let spread = history.spread(series, 898.0, 899.0).unwrap();
+    assert!((spread.mean - 3_000_050.0).abs() < 3.0, "{spread:?}");
+    assert!((spread.deviation - 50.0).abs() < 2.0, "{spread:?}");
+    let quiet = history.spread(Series::Channel(0, Finger::Ring), 898.0, 899.0);
+    assert_eq!(quiet.map(|quiet| quiet.deviation), Some(0.0));
+    assert_eq!(history.spread(series, 2000.0, 2001.0), None);
 }

@@ -14,9 +14,9 @@ mod table;
 mod trace;
 mod track;
 
-pub use book::{HISTORY_ROWS, HISTORY_SECONDS, History, Quantity, Series, Touch};
+pub use book::{CHANNEL_ROWS, HISTORY_ROWS, HISTORY_SECONDS, History, Quantity, Series, Touch};
 pub use mark::{MARKS_MAX, Mark, MarkKind, NOTE_MAX};
-pub use reading::{Reading, Summary};
+pub use reading::{Reading, Spread, Summary};
 pub use table::Table;
 pub(crate) use table::TableGroup;
 pub use trace::Trace;
