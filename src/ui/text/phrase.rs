@@ -38,7 +38,7 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        faults, keys, layout, main, panels, plots, poses, quirks, scan, traffic,
+        faults, keys, layout, main, panels, plots, poses, quirks, scan, touch, traffic,
     };
 
     fn all() -> impl Iterator<Item = &'static Text> {
@@ -52,6 +52,7 @@ mod tests {
             poses::ALL,
             quirks::ALL,
             scan::ALL,
+            touch::ALL,
             traffic::ALL,
         ];
         lists.into_iter().flatten()
