@@ -1,4 +1,5 @@
-//! The person's or the system's wish that the program ends: Ctrl-C, and on Unix SIGTERM and SIGHUP. Ends nothing itself.
+//! The person's or the system's wish that the program ends: Ctrl-C, and on Unix SIGTERM and SIGHUP; and that the simulated hand
+//! loses its power: SIGUSR1. Ends nothing itself.
 
 use anyhow::Context as _;
 #[cfg(unix)]
@@ -52,5 +53,40 @@ impl Interrupt {
         {
             std::future::pending::<()>().await;
         }
+    }
+}
+
+/// The person's wish that the simulated hand loses its power for a moment: SIGUSR1, where there are signals.
+pub(crate) struct PowerCut {
+    #[cfg(unix)]
+    signal: Signal,
+}
+
+#[cfg(unix)]
+impl PowerCut {
+    /// Begins to listen. Must be called within a tokio runtime.
+    pub(crate) fn listen() -> anyhow::Result<Self> {
+        let signal = signal(SignalKind::user_defined1()).context("cannot listen for SIGUSR1")?;
+        Ok(Self { signal })
+    }
+
+    /// Resolves at the next wish. May be dropped and called again.
+    pub(crate) async fn wished(&mut self) {
+        if self.signal.recv().await.is_none() {
+            std::future::pending::<()>().await;
+        }
+    }
+}
+
+#[cfg(not(unix))]
+impl PowerCut {
+    /// Nothing to listen for here.
+    pub(crate) fn listen() -> anyhow::Result<Self> {
+        Ok(Self {})
+    }
+
+    /// Never resolves.
+    pub(crate) async fn wished(&mut self) {
+        std::future::pending::<()>().await;
     }
 }

@@ -2,7 +2,7 @@
 //! decided here.
 
 use crate::cli::args::SimArgs;
-use crate::cli::interrupt::Interrupt;
+use crate::cli::interrupt::{Interrupt, PowerCut};
 use crate::cli::out::{Out, say};
 use crate::cli::sim_quirks;
 use crate::sim::serve::modbus_tcp;
@@ -38,6 +38,7 @@ pub(crate) fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
 
 async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
+    let power = PowerCut::listen()?;
     let hands = hands(args).context("no hand to simulate")?;
     let pace = args.baud.map(|baud| LinePace {
         baud,
@@ -97,7 +98,19 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         error = rtu => Err(error),
         error = slcan => Err(error),
         error = can => Err(error),
+        error = lose_power(out, power, &hands) => Err(error),
         () = live(&hands) => Ok(()),
+    }
+}
+
+/// Switches all hands off and on at each wish, and says so once it is done.
+async fn lose_power(out: &mut Out, mut power: PowerCut, hands: &Hands) -> anyhow::Error {
+    loop {
+        power.wished().await;
+        hands.with_each(SimHand::power_cycle);
+        if let Err(error) = out.line("power cycled").and_then(|()| out.flush()) {
+            return error;
+        }
     }
 }
 

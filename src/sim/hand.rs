@@ -113,6 +113,8 @@ pub struct SimHand {
     pub(crate) now_ms: u64,
     published_ms: Option<u64>,
     pub(crate) calibration_due_ms: Option<u64>,
+    /// When the SAVE under way is in flash, on a hand that takes its time.
+    pub(crate) flash_due_ms: Option<u64>,
     pub(crate) saves: VecDeque<(Moment, SaveFrame)>,
     pub(crate) id: u8,
     pub(crate) baud_code: u8,
@@ -140,6 +142,7 @@ impl SimHand {
             now_ms: 0,
             published_ms: None,
             calibration_due_ms: None,
+            flash_due_ms: None,
             saves: VecDeque::new(),
             id: config.id,
             baud_code: 0,
@@ -197,9 +200,10 @@ impl SimHand {
         self.refuse_read_only(address)?;
         let (in_line, id) = (self.saves.len(), self.id);
         let speeds = PerDof::from_fn(|dof| self.memory.short(&SPEED_SET, element(dof)));
+        let bytes = self.as_taken(address, bytes)?;
         let changes = self
             .memory
-            .write(address, bytes, self.config.personality.out_of_range)?;
+            .write(address, &bytes, self.config.personality.out_of_range)?;
         for change in &changes {
             self.apply(change, &speeds, now);
         }
@@ -267,6 +271,7 @@ impl SimHand {
         self.memory.power_cycle();
         self.saves.clear();
         self.calibration_due_ms = None;
+        self.flash_due_ms = None;
         self.id = self.memory.byte(HAND_ID.address);
         self.baud_code = self.memory.byte(REDU_RATIO.address);
         for dof in Dof::ALL {
@@ -354,6 +359,10 @@ impl SimHand {
         self.body.step(self.now_ms, &settings, &mut self.rng);
         if self.now_ms.is_multiple_of(SENSOR_MS) {
             self.touch.measure(&mut self.rng);
+        }
+        if self.flash_due_ms == Some(self.now_ms) {
+            self.flash_due_ms = None;
+            self.write_flash();
         }
         if self.calibration_due_ms == Some(self.now_ms) {
             self.calibration_due_ms = None;

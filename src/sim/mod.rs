@@ -19,10 +19,10 @@ pub use drive::Contact;
 pub use hand::{JournalEntry, Manner, SaveFrame, SimConfig, SimHand, WriteEffect};
 pub use memory::Refusal;
 pub use personality::{
-    BaudEffect, ByteWords, ChangeAck, ClearError, Doubles, Effect, GapAnswer, InnerAddress,
-    LongRead, MinusOne, NoSwitch, OutOfRangeWrite, Personality, Power, ReadOnlyWrite, ReplyUnit,
-    RtuReplyGap, SWITCHES, SaveAnswer, SingleReply, SpeedZero, Switch, TactileCheck, TcpClients,
-    Turnaround,
+    BaudEffect, ByteWords, ChangeAck, ClearError, DefaultsWrite, Doubles, Effect, FlashWrite,
+    GapAnswer, InnerAddress, LongRead, MinusOne, NoSwitch, OutOfRangeWrite, Personality, Power,
+    ReadOnlyWrite, ReplyUnit, RtuReplyGap, SWITCHES, SaveAnswer, SingleReply, SpeedZero, Switch,
+    TactileCheck, TcpClients, Turnaround,
 };
 pub use scenario::{Scenario, UnknownScenario};
 pub use serve::{Hands, SharedHand};

@@ -1,9 +1,9 @@
 //! What a write sets off in the simulated hand: targets, triggers, codes, SAVE. Takes no byte and knows no wire.
 
 use crate::hand::register::{
-    ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, Access, CLEAR_ERROR, GESTURE_FORCE_CLB,
-    GESTURE_NO_SET, HAND_ID, POS_SET, REDU_RATIO, RESET_PARA, SAVE, SPEED_SET, USER_DEF_ANGLE,
-    by_address,
+    ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, Access, CLEAR_ERROR, DEFAULT_FORCE_SET,
+    DEFAULT_SPEED_SET, GESTURE_FORCE_CLB, GESTURE_NO_SET, HAND_ID, POS_SET, REDU_RATIO, RESET_PARA,
+    SAVE, SPEED_SET, USER_DEF_ANGLE, by_address,
 };
 use crate::hand::{Dof, Moment, PerDof, UserGesture};
 use crate::sim::drive::{Goal, position_of};
@@ -12,7 +12,8 @@ use crate::sim::hand::{SaveFrame, SimHand};
 use crate::sim::live::element;
 use crate::sim::memory::{Change, Refusal};
 use crate::sim::personality::{
-    BaudEffect, ClearError, Effect, MinusOne, ReadOnlyWrite, SaveAnswer, SpeedZero,
+    BaudEffect, ClearError, DefaultsWrite, Effect, FlashWrite, MinusOne, ReadOnlyWrite, SaveAnswer,
+    SpeedZero,
 };
 use std::time::Duration;
 
@@ -24,6 +25,10 @@ const SAVE_TAKES_LATE: Duration = Duration::from_secs(5);
 const SAVE_AGAIN: Duration = Duration::from_millis(100);
 /// From GESTURE_FORCE_CLB to the new zero (manual 2.6.6: about six seconds).
 const CALIBRATION_MS: u64 = 6000;
+/// From SAVE to the last byte in flash, on a hand that takes its time.
+const FLASH_TAKES_MS: u64 = 1000;
+/// What a hand that clamps takes for defaults at most.
+const CLAMPS_TO: i16 = 500;
 /// SAVE results under way: one second holds no more of them on any wire we have.
 const SAVES_MAX: usize = 64;
 
@@ -140,6 +145,36 @@ impl SimHand {
         }
     }
 
+    /// The saved parameters are in flash from now on.
+    pub(crate) fn write_flash(&mut self) {
+        self.memory.save();
+        self.take_codes(
+            self.config.personality.id_effect == Effect::AfterSave,
+            self.config.personality.baud_effect == BaudEffect::AfterSave,
+        );
+    }
+
+    /// The bytes of a write as this hand takes them; none if it drops them.
+    pub(crate) fn as_taken(&self, address: u16, bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
+        let is_default = (DEFAULT_SPEED_SET.address
+            ..DEFAULT_FORCE_SET.address + DEFAULT_FORCE_SET.len)
+            .contains(&address);
+        let (pairs, rest) = bytes.as_chunks::<2>();
+        match self.config.personality.defaults {
+            DefaultsWrite::Exception if is_default => Err(Refusal::OutOfRange { address }),
+            // -1 is outside every range there, and what is outside is dropped.
+            DefaultsWrite::Drop if is_default => Ok(vec![u8::MAX; bytes.len()]),
+            DefaultsWrite::Clamp if is_default => {
+                let clamped = pairs.iter().flat_map(|pair| {
+                    let value = i16::from_le_bytes(*pair).min(CLAMPS_TO);
+                    value.to_le_bytes()
+                });
+                Ok(clamped.chain(rest.iter().copied()).collect())
+            }
+            _ => Ok(bytes.to_vec()),
+        }
+    }
+
     fn save(&mut self, now: Moment) {
         let answer = self.config.personality.save_frame;
         let (command, ok) = match answer {
@@ -147,12 +182,10 @@ impl SimHand {
             SaveAnswer::Failed => (0x12, false),
             _ => (0x12, true),
         };
-        if ok {
-            self.memory.save();
-            self.take_codes(
-                self.config.personality.id_effect == Effect::AfterSave,
-                self.config.personality.baud_effect == BaudEffect::AfterSave,
-            );
+        match self.config.personality.flash {
+            _ if !ok => {}
+            FlashWrite::AtOnce => self.write_flash(),
+            FlashWrite::Slowly => self.flash_due_ms = Some(self.now_ms + FLASH_TAKES_MS),
         }
         let takes = match answer {
             SaveAnswer::Never => &[][..],

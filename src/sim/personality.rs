@@ -149,6 +149,18 @@ switches! {
         "Success, and the same again." Twice "twice",
         "Nothing is saved, and the frame says so." Failed "failed",
     }
+    "When a SAVE is in flash."
+    flash "flash" FlashWrite {
+        "At once." AtOnce "at-once",
+        "After a second, if the power stays that long." Slowly "slowly",
+    }
+    "A write to DEFAULT_SPEED_SET or DEFAULT_FORCE_SET."
+    defaults "defaults" DefaultsWrite {
+        "Is taken." Take "take",
+        "Is acknowledged, without effect." Drop "drop",
+        "Is acknowledged, and taken as 500 at most." Clamp "clamp",
+        "Refused: an exception over Modbus, silence elsewhere." Exception "exception",
+    }
     "How single bytes become Modbus words."
     byte_words "byte-words" ByteWords {
         "Two a word, low byte first." Packed "low-first",

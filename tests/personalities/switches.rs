@@ -1,7 +1,7 @@
 //! Each switch does what it says, seen on the wire.
 
 use handscope::codec::modbus_rtu::crc16;
-use handscope::hand::register::{ANGLE_ACT, ANGLE_SET, Register, SPEED_SET};
+use handscope::hand::register::{ANGLE_ACT, ANGLE_SET, DEFAULT_SPEED_SET, Register, SPEED_SET};
 use handscope::hand::{Dof, Fault, Moment, Span, TactileBlock};
 use handscope::sim::serve::{modbus_rtu, modbus_tcp, rs485};
 use handscope::sim::{NoSwitch, Object, Personality, SWITCHES, SharedHand, SimConfig, SimHand};
@@ -238,6 +238,41 @@ fn the_result_of_save_comes_late_twice_never_or_says_no() {
             }
         }
         assert_eq!(came, times, "{value}");
+    }
+}
+
+#[test]
+fn what_is_saved_is_in_flash_at_once_or_after_a_second_with_power() {
+    for (value, cut_at, kept) in [
+        ("at-once", 1, 700),
+        ("slowly", 900, 1000),
+        ("slowly", 1100, 700),
+    ] {
+        let mut hand = hand(&[("flash", value)]);
+        put(&mut hand, &DEFAULT_SPEED_SET, 700, 0);
+        hand.write(1005, &[1], ms(0)).unwrap();
+        hand.power_cycle(ms(cut_at));
+        assert_eq!(
+            first(&mut hand, &DEFAULT_SPEED_SET, cut_at),
+            kept,
+            "{value}"
+        );
+    }
+}
+
+#[tokio::test]
+async fn defaults_are_taken_dropped_clamped_or_refused() {
+    for (value, holds, reply) in [
+        ("take", 700, "10 04 08 00 06"),
+        ("drop", 1000, "10 04 08 00 06"),
+        ("clamp", 500, "10 04 08 00 06"),
+        ("exception", 1000, "90 03"),
+    ] {
+        let request = format!("10 04 08 00 06 0C{}", " 02 BC".repeat(6));
+        assert_eq!(modbus(&[("defaults", value)], &request).await, hex(reply));
+        let mut hand = hand(&[("defaults", value)]);
+        let _refused = hand.write(1032, &[0xBC, 2].repeat(6), ms(0));
+        assert_eq!(first(&mut hand, &DEFAULT_SPEED_SET, 1), holds, "{value}");
     }
 }
 
