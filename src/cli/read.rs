@@ -98,7 +98,7 @@ async fn end_of(link: &mut LinkHandle, asked: Ticket) -> Result<Vec<u8>, Request
             LinkEvent::Done { ticket, result } if ticket == asked => {
                 return match result? {
                     Outcome::Memory { bytes, .. } => Ok(bytes),
-                    Outcome::Acknowledged => Ok(Vec::new()),
+                    _ => Ok(Vec::new()),
                 };
             }
             _ => {}

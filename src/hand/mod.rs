@@ -12,6 +12,7 @@ pub mod reading;
 pub mod register;
 pub mod row;
 pub mod sample;
+pub mod setting;
 pub mod skeleton;
 pub mod status;
 pub mod tactile;
@@ -26,6 +27,7 @@ pub use reading::{
 };
 pub use register::{REGISTERS, Register, Span};
 pub use sample::{Group, Groups, HandSample, Reply};
+pub use setting::Setting;
 pub use status::{Status, Words};
 pub use tactile::TactileBlock;
 pub use units::{

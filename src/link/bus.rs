@@ -1,6 +1,7 @@
 //! One request and its reply, over whichever protocol the endpoint speaks. No plan, no retry.
 
 use crate::codec::modbus::BytePacking;
+use crate::codec::rs485::SaveResult;
 use crate::hand::{RegisterWrite, Span};
 use crate::link::can::Can;
 use crate::link::clock::Clock;
@@ -9,6 +10,7 @@ use crate::link::late::LateReplies;
 use crate::link::modbus_rtu::ModbusRtu;
 use crate::link::modbus_tcp::ModbusTcp;
 use crate::link::rs485::Rs485;
+use crate::link::save_watch::ResultFrame;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use arrayvec::ArrayVec;
 use std::time::Duration;
@@ -194,6 +196,30 @@ impl Bus {
             Self::ModbusRtu(bus) => bus.settle().await,
             Self::ModbusTcp(_) => Ok(()),
             Self::Can(bus) => bus.settle().await,
+        }
+    }
+
+    /// Whether a SAVE is followed by a frame with its result here.
+    pub(crate) const fn save_result_frame(&self) -> ResultFrame {
+        match self {
+            Self::Rs485(_) => ResultFrame::Comes,
+            Self::ModbusTcp(_) | Self::ModbusRtu(_) | Self::Can(_) => ResultFrame::None,
+        }
+    }
+
+    /// A frame with the result of a SAVE that came, the oldest first.
+    pub(crate) fn take_save_result(&mut self) -> Option<SaveResult> {
+        match self {
+            Self::Rs485(bus) => bus.take_save_result(),
+            Self::ModbusTcp(_) | Self::ModbusRtu(_) | Self::Can(_) => None,
+        }
+    }
+
+    /// Asks nothing and takes what comes, until the result of a SAVE is there; never ends where there is none.
+    pub(crate) async fn listen(&mut self) -> Result<(), BusError> {
+        match self {
+            Self::Rs485(bus) => bus.listen().await,
+            Self::ModbusTcp(_) | Self::ModbusRtu(_) | Self::Can(_) => std::future::pending().await,
         }
     }
 

@@ -1,6 +1,7 @@
 //! What comes out of a link and what may be asked of it. Plain values only.
 
-use crate::hand::{Groups, HandCommand, HandSample, Moment, OutOfRange, Span};
+use crate::hand::{Groups, HandCommand, HandSample, Moment, OutOfRange, Setting, Span};
+use crate::link::settled::{Reset, Saved, Written};
 use crate::link::status::{ArmRefusal, LinkState};
 
 /// One thing that happened, in order.
@@ -47,6 +48,12 @@ pub enum Request {
     Command(HandCommand),
     /// Read some memory.
     Read(Span),
+    /// Write one kept group, read it back, and say what came of it.
+    Set(Setting),
+    /// Write the parameters to flash, and say what is known of it.
+    Save,
+    /// Return to the factory's parameters. The hand may be found at another id, speed or address afterwards.
+    Reset,
 }
 
 /// How a request ended well.
@@ -61,6 +68,12 @@ pub enum Outcome {
         /// Its bytes.
         bytes: Vec<u8>,
     },
+    /// What came of a setting.
+    Written(Written),
+    /// What is known of a SAVE.
+    Saved(Saved),
+    /// What came of a return to the factory's parameters.
+    Reset(Reset),
 }
 
 /// How a request failed. Nothing is tried again by itself.

@@ -37,15 +37,16 @@ impl Job {
 }
 
 impl Session {
-    /// True if a request is under way or one was waiting.
+    /// True if a request is under way or one was waiting. Settings have a place of their own.
     pub(crate) fn next_job(&mut self) -> bool {
         // One that is answered at once leaves the turn to the next.
         while self.job.is_none()
+            && self.settling.is_none()
             && let Ok((ticket, request)) = self.ends.requests.try_recv()
         {
             self.take_job(ticket, request);
         }
-        self.job.is_some()
+        self.job.is_some() || self.settling.is_some()
     }
 
     pub(crate) fn take_job(&mut self, ticket: Ticket, request: Request) {
@@ -58,6 +59,10 @@ impl Session {
         };
         match request {
             Request::Read(span) => job.read = Some(span),
+            Request::Set(_) | Request::Save | Request::Reset => {
+                self.take_settling(ticket, request);
+                return;
+            }
             Request::Command(command) => {
                 job.is_motion = command.is_motion();
                 if job.is_motion && self.status.state != LinkState::Armed {
@@ -80,7 +85,7 @@ impl Session {
     /// Sends the next write of the request under way, or its read, and answers when all is done.
     pub(crate) async fn work(&mut self, bus: &mut Bus) -> Result<(), End> {
         let Some(mut job) = self.job.take() else {
-            return Ok(());
+            return self.settle(bus).await;
         };
         if let Some(span) = job.read {
             if !job.cleared && bus.choose(&[span]).is_none() {
@@ -111,7 +116,7 @@ impl Session {
     }
 
     async fn read_for(&mut self, bus: &mut Bus, ticket: Ticket, span: Span) -> Result<(), End> {
-        if bus.choose(&[span]).is_none() {
+        if bus.choose(&[span]).is_none() || self.looks_like_save(span) {
             let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
             self.answer(ticket, Err(RequestError::Ambiguous { address, wait_s }));
             return Ok(());

@@ -2,7 +2,8 @@
 //!
 //! [`handle::open`] starts a session and gives the window's end of it. The session ([`session`], [`serve`])
 //! owns the wire, asks one thing at a time ([`bus`]) and decides by priority what comes next: stop, hold,
-//! setpoints, requests, reads ([`plan`], [`window`], [`cost`]). What went over the wire can be looked at afterwards
+//! setpoints, requests, reads ([`plan`], [`window`], [`cost`]). Settings, SAVE and reset are requests that end in a verdict
+//! ([`settled`]). What went over the wire can be looked at afterwards
 //! ([`tap`], [`traffic`]).
 
 mod bus;
@@ -38,9 +39,14 @@ pub mod quirks;
 mod rival;
 mod rs485;
 mod rtu_line;
+mod save_watch;
+#[cfg(test)]
+mod save_watch_tests;
 pub mod scan;
 mod serve;
 mod session;
+mod settle;
+pub mod settled;
 pub mod stats;
 pub mod status;
 pub mod tap;
@@ -54,6 +60,7 @@ pub use latency::Ticks;
 pub use line_time::line_time;
 pub use plan::PollRates;
 pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
+pub use settled::{Doubt, NotSent, Reset, SaveDoubt, Saved, Verdict, Written};
 pub use stats::{GroupUse, LineUse, LinkStats, PollGroup};
 pub use status::{
     ArmEpoch, ArmRefusal, ArmRequest, Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble,

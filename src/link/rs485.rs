@@ -1,6 +1,7 @@
 //! Requests over the private RS485 framing (manual 2.2). One is open at a time; replies have no number.
 
-use crate::codec::rs485::{Frame, Reply, ReplyDecoder, encode_read, encode_write};
+use crate::codec::rs485::{Frame, Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
+use crate::hand::register::HAND_ID;
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::{BusCounts, BusError, Bytes, id_of};
 use crate::link::clock::Clock;
@@ -9,6 +10,7 @@ use crate::link::echo::Echo;
 use crate::link::late::LateReplies;
 use crate::link::lost::lost;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
+use arrayvec::ArrayVec;
 use futures::FutureExt as _;
 use std::io;
 use std::time::Duration;
@@ -25,6 +27,8 @@ const CHUNK: usize = 512;
 const BITS: u64 = 10;
 /// Bytes of a read request and of a reply's frame around its data.
 const FRAMING: u64 = 9 + 8;
+/// Results of a SAVE that are kept until they are asked for: one, its double, and one more.
+const RESULTS_MAX: usize = 3;
 
 /// The client side of one RS485 line.
 pub(crate) struct Rs485 {
@@ -40,12 +44,18 @@ pub(crate) struct Rs485 {
     sent: Frame,
     echo: Echo,
     foreign_requests: u64,
+    save_results: ArrayVec<SaveResult, RESULTS_MAX>,
 }
 
 /// What an open request waits for.
 enum Expected {
     Bytes(Span),
-    Ack(u16),
+    /// Of a write to this address. Manual: silent on who acknowledges a change of HAND_ID; the older manual shows the new
+    /// id (protocol choice 9).
+    Ack {
+        address: u16,
+        new_id: Option<u8>,
+    },
 }
 
 /// How a reply fits the open request.
@@ -82,6 +92,7 @@ impl Rs485 {
             sent: Frame::new(),
             echo: Echo::default(),
             foreign_requests: 0,
+            save_results: ArrayVec::new(),
         }
     }
 
@@ -107,7 +118,10 @@ impl Rs485 {
         limit: Duration,
     ) -> Result<(), BusError> {
         let frame = encode_write(self.id, write);
-        self.exchange(&frame, &Expected::Ack(write.address()), limit)
+        let address = write.address();
+        let is_id = address == HAND_ID.address;
+        let new_id = write.bytes().first().copied().filter(|_| is_id);
+        self.exchange(&frame, &Expected::Ack { address, new_id }, limit)
             .await?;
         self.late.answered(None);
         Ok(())
@@ -124,6 +138,20 @@ impl Rs485 {
         }
         self.decoder.flush_pending();
         self.drop_foreign();
+        Ok(())
+    }
+
+    /// A frame with the result of a SAVE that came, the oldest first.
+    pub(crate) fn take_save_result(&mut self) -> Option<SaveResult> {
+        self.save_results.pop_at(0)
+    }
+
+    /// Takes what comes until the result of a SAVE is there. Safe to cancel.
+    pub(crate) async fn listen(&mut self) -> Result<(), BusError> {
+        while self.save_results.is_empty() {
+            self.receive().await?;
+            self.drop_foreign();
+        }
         Ok(())
     }
 
@@ -250,13 +278,22 @@ impl Rs485 {
                     address,
                     value: 1,
                 },
-                Expected::Ack(wanted),
-            ) if *id == self.id.get() && address == wanted => Fit::Ack,
+                Expected::Ack {
+                    address: wanted,
+                    new_id,
+                },
+            ) if (*id == self.id.get() || Some(*id) == *new_id) && address == wanted => Fit::Ack,
             _ => Fit::No,
         }
     }
 
     fn foreign_reply(&mut self, reply: &Reply) {
+        if reply.id() == self.id.get()
+            && let Some(result) = reply.save_result()
+        {
+            // Of more than these the oldest tell all there is to tell.
+            let _more = self.save_results.try_push(result);
+        }
         self.foreign += 1;
         if let Reply::Read { address, bytes, .. } = reply
             && let Ok(len) = u16::try_from(bytes.len())

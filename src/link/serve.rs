@@ -1,7 +1,7 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{HandCommand, RegisterWrite};
+use crate::hand::{Dof, HandCommand, RegisterWrite};
 use crate::link::bus::{Bus, BusError};
 use crate::link::event::{LinkEvent, RequestError};
 use crate::link::handle::Wanted;
@@ -82,7 +82,7 @@ impl Session {
         tokio::select! {
             biased;
             _ = wanted.wait_for(Wanted::is_any) => {}
-            Some((ticket, request)) = self.ends.requests.recv(), if self.job.is_none() => self.take_job(ticket, request),
+            Some((ticket, request)) = self.ends.requests.recv(), if self.job.is_none() && self.settling.is_none() => self.take_job(ticket, request),
             () = sleep_until(due) => {}
         }
     }
@@ -121,7 +121,12 @@ impl Session {
         if self.status.armed.is_some() {
             return Ok(());
         }
-        if let Some(reason) = arm_refusal(self.status.state, &self.sample, self.now()) {
+        // While the line is left to a hand that saves, nobody looks where its joints are.
+        let unseen = self
+            .leaves_line()
+            .then_some(ArmRefusal::UnknownPose { dof: Dof::Little });
+        let refusal = arm_refusal(self.status.state, &self.sample, self.now());
+        if let Some(reason) = refusal.or(unseen) {
             self.refuse_arm(reason);
             return Ok(());
         }

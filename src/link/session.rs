@@ -16,6 +16,8 @@ use crate::link::motion::Motion;
 use crate::link::moving::MoveWatch;
 use crate::link::plan::PollPlan;
 use crate::link::rival::Rival;
+use crate::link::save_watch::SaveWatch;
+use crate::link::settle::Settling;
 use crate::link::status::{Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble};
 use crate::link::tap::TappedWire;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
@@ -60,6 +62,8 @@ pub(crate) struct Session {
     pub(crate) motion: Motion,
     pub(crate) moving: MoveWatch,
     pub(crate) job: Option<Job>,
+    pub(crate) settling: Option<Settling>,
+    pub(crate) saving: SaveWatch,
     pub(crate) sleep: SleepWatch,
     silent: u32,
     /// When the first of the unanswered requests in a row was asked.
@@ -88,6 +92,8 @@ impl Session {
             motion: Motion::default(),
             moving: MoveWatch::default(),
             job: None,
+            settling: None,
+            saving: SaveWatch::default(),
             silent: 0,
             silent_since: None,
             follow: Follow::default(),
@@ -222,6 +228,7 @@ impl Session {
         if let Some(job) = self.job.take() {
             self.answer(job.ticket, Err(RequestError::LinkLost));
         }
+        self.lose_settling();
         self.go(LinkState::Offline);
         while let Ok((ticket, _)) = self.ends.requests.try_recv() {
             self.answer(ticket, Err(RequestError::NotConnected));

@@ -1,0 +1,118 @@
+//! What a hand keeps once it is saved, as values to be set: one register group each. Nothing volatile, no trigger, no motion.
+
+use crate::hand::command::HandCommand;
+use crate::hand::dof::PerDof;
+use crate::hand::register::{self, Span};
+use crate::hand::units::{Force, HandId, SerialSpeed, Speed};
+use std::net::Ipv4Addr;
+
+/// The four parts of the IP address (manual 2.6, 1700 to 1703).
+pub const IP_PARTS: Span = Span::new(1700, 4);
+
+/// A kept register group and what it is to hold. Joints that are `None` are left as they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Setting {
+    /// Speeds after power-up (manual 2.6.8).
+    DefaultSpeeds(PerDof<Option<Speed>>),
+    /// Force thresholds after power-up, grams (manual 2.6.9).
+    DefaultForces(PerDof<Option<Force>>),
+    /// The id on the bus (manual 2.6.1).
+    Id(HandId),
+    /// The serial speed (manual 2.6.2).
+    SerialSpeed(SerialSpeed),
+    /// The IP address, which acts from the next power-up (manual 2.6).
+    IpAddress(Ipv4Addr),
+}
+
+impl Setting {
+    /// The command that writes it.
+    #[must_use]
+    pub const fn command(&self) -> HandCommand {
+        match *self {
+            Self::DefaultSpeeds(speeds) => HandCommand::DefaultSpeeds(speeds),
+            Self::DefaultForces(forces) => HandCommand::DefaultForces(forces),
+            Self::Id(id) => HandCommand::Id(id),
+            Self::SerialSpeed(speed) => HandCommand::SerialSpeed(speed),
+            Self::IpAddress(address) => HandCommand::IpAddress(address),
+        }
+    }
+
+    /// The whole group, to be read back.
+    #[must_use]
+    pub const fn span(&self) -> Span {
+        match self {
+            Self::DefaultSpeeds(_) => register::DEFAULT_SPEED_SET.span(),
+            Self::DefaultForces(_) => register::DEFAULT_FORCE_SET.span(),
+            Self::Id(_) => register::HAND_ID.span(),
+            Self::SerialSpeed(_) => register::REDU_RATIO.span(),
+            Self::IpAddress(_) => IP_PARTS,
+        }
+    }
+
+    /// True if the group's bytes hold what was to be set, wherever something was.
+    #[must_use]
+    pub fn is_held_by(&self, bytes: &[u8]) -> bool {
+        let whole = self.span();
+        self.command()
+            .writes()
+            .iter()
+            .all(|write| whole.slice(bytes, write.span()) == Some(write.bytes()))
+    }
+
+    /// True if the hand may be found at another place once it acts: id, serial speed, IP address.
+    #[must_use]
+    pub const fn moves_the_hand_elsewhere(&self) -> bool {
+        matches!(
+            self,
+            Self::Id(_) | Self::SerialSpeed(_) | Self::IpAddress(_)
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::hand::Dof;
+    use crate::hand::register::{Persistence, by_address};
+
+    fn all() -> [Setting; 5] {
+        [
+            Setting::DefaultSpeeds(PerDof::splat(Some(Speed::GENTLE))),
+            Setting::DefaultForces(PerDof::splat(Some(Force::GENTLE))),
+            Setting::Id(HandId::nearest(7)),
+            Setting::SerialSpeed(SerialSpeed::Baud19200),
+            Setting::IpAddress(Ipv4Addr::new(10, 0, 0, 9)),
+        ]
+    }
+
+    #[test]
+    fn a_setting_writes_only_what_is_kept_and_only_inside_its_group() {
+        for setting in all() {
+            assert!(!setting.command().is_motion());
+            for write in setting.command().writes() {
+                assert!(setting.span().covers(write.span()), "{setting:?}");
+                let row = by_address(write.address()).unwrap();
+                assert_eq!(row.persistence, Persistence::Saved, "{row}");
+            }
+        }
+    }
+
+    #[test]
+    fn joints_that_are_not_given_are_not_compared() {
+        let mut speeds = PerDof::splat(None);
+        speeds[Dof::Middle] = Some(Speed::GENTLE);
+        let setting = Setting::DefaultSpeeds(speeds);
+        let mut bytes = [9; 12];
+        assert!(!setting.is_held_by(&bytes));
+        bytes[4] = 200;
+        bytes[5] = 0;
+        assert!(setting.is_held_by(&bytes));
+        assert!(
+            !setting.is_held_by(&bytes[..4]),
+            "what is short holds nothing"
+        );
+        let nothing = Setting::DefaultForces(PerDof::splat(None));
+        assert!(nothing.is_held_by(&bytes));
+    }
+}

@@ -1,0 +1,514 @@
+//! Settings, SAVE and reset over every wire, in virtual time, against a hand and a line that fail in every way: what is said
+//! of a write is true of the hand.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    reason = "a test may"
+)]
+
+use futures::FutureExt as _;
+use futures::future::BoxFuture;
+use handscope::hand::{Dof, HandId, PerDof, Setting, Speed};
+use handscope::hand::{Force, Span, register};
+use handscope::link::{
+    self, Clock, Doubt, LinkConfig, LinkEvent, LinkHandle, LinkState, NotSent, Outcome, PollRates,
+    Request, RequestError, Reset, SaveDoubt, Saved, Verdict, Written,
+};
+use handscope::sim::serve::{can, modbus_rtu, modbus_tcp, rs485};
+use handscope::sim::{
+    DefaultsWrite, FlashWrite, Personality, SaveAnswer, SharedHand, SimConfig, SimHand,
+};
+use handscope::transport::{BoxedWire, Dial, Endpoint, Pipe, TransportError, pair};
+use std::sync::{Arc, Mutex};
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::time::{Duration, Instant, sleep, timeout};
+
+const WIRES: [&str; 4] = ["rs485:x", "rtu:x", "tcp:x", "can:x"];
+const SPEEDS: u16 = register::DEFAULT_SPEED_SET.address;
+const SAVE: u16 = register::SAVE.address;
+
+/// What the line does once the hand took a write to the address in question.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Trouble {
+    None,
+    /// The answer is lost.
+    LoseAnswer,
+    /// It comes so much too late.
+    Late(Duration),
+    /// Nothing is answered any more.
+    Mute,
+    /// The wire breaks before the answer, and can be dialled again.
+    Cut,
+    /// The hand loses its power so long after the write.
+    PowerCut(Duration),
+}
+
+/// A line to one hand, and what happens on it.
+struct Line {
+    hand: SharedHand,
+    address: u16,
+    trouble: Mutex<Trouble>,
+}
+
+impl Line {
+    fn new(personality: Personality, address: u16, trouble: Trouble) -> Arc<Self> {
+        let config = SimConfig {
+            personality,
+            ..SimConfig::default()
+        };
+        Arc::new(Self {
+            hand: SharedHand::new(SimHand::new(config), Instant::now()),
+            address,
+            trouble: Mutex::new(trouble),
+        })
+    }
+
+    fn writes_to(&self, address: u16) -> usize {
+        let is_there = |span: Span| span.covers(Span::new(address, 1));
+        self.hand.with(|hand, _| {
+            let all = hand.journal().iter();
+            all.filter(|entry| {
+                is_there(Span::new(
+                    entry.address,
+                    u16::try_from(entry.bytes.len()).unwrap(),
+                ))
+            })
+            .count()
+        })
+    }
+
+    /// The byte pair at an address after a power cycle.
+    fn wakes_up_with(&self, address: u16) -> i16 {
+        self.hand.with(|hand, now| {
+            hand.power_cycle(now);
+            let bytes = hand.read(Span::new(address, 2), now).unwrap();
+            i16::from_le_bytes([bytes[0], bytes[1]])
+        })
+    }
+
+    async fn carry(self: Arc<Self>, mut ours: Pipe, mut hands: Pipe) {
+        let (mut asked, mut answered) = ([0; 512], [0; 512]);
+        let mut is_mute = false;
+        loop {
+            tokio::select! {
+                biased;
+                read = hands.read(&mut answered) => {
+                    let Ok(len @ 1..) = read else { return };
+                    let struck = self.writes_to(self.address) > 0;
+                    let trouble = if struck {
+                        std::mem::replace(&mut *self.trouble.lock().unwrap(), Trouble::None)
+                    } else {
+                        Trouble::None
+                    };
+                    match trouble {
+                        Trouble::None => {}
+                        Trouble::LoseAnswer => continue,
+                        Trouble::Late(by) => sleep(by).await,
+                        Trouble::Mute => is_mute = true,
+                        Trouble::Cut => return,
+                        Trouble::PowerCut(after) => {
+                            let hand = self.hand.clone();
+                            tokio::spawn(async move {
+                                sleep(after).await;
+                                hand.with(SimHand::power_cycle);
+                            });
+                        }
+                    }
+                    if !is_mute && ours.write_all(&answered[..len]).await.is_err() {
+                        return;
+                    }
+                }
+                read = ours.read(&mut asked) => {
+                    let Ok(len @ 1..) = read else { return };
+                    if hands.write_all(&asked[..len]).await.is_err() {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+}
+
+struct Dialled(Arc<Line>);
+
+impl Dial for Dialled {
+    fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
+        let (near, ours) = pair();
+        let (far, at_hand) = pair();
+        let hand = self.0.hand.clone();
+        match endpoint {
+            Endpoint::Rtu(_) => drop(tokio::spawn(modbus_rtu::serve(hand, at_hand))),
+            Endpoint::Tcp { .. } => drop(tokio::spawn(modbus_tcp::serve_client(hand, at_hand))),
+            Endpoint::Can { .. } => drop(tokio::spawn(can::serve(hand, at_hand))),
+            _ => drop(tokio::spawn(rs485::serve(hand, at_hand))),
+        }
+        tokio::spawn(Arc::clone(&self.0).carry(ours, far));
+        futures::future::ready(Ok(Box::new(near) as BoxedWire)).boxed()
+    }
+}
+
+/// A live link to the hand at the end of a line.
+async fn open(line: &Arc<Line>, wire: &str) -> LinkHandle {
+    let config = LinkConfig {
+        endpoint: wire.parse().unwrap(),
+        rates: PollRates::default(),
+        clock: Clock::start(),
+        dial: Arc::new(Dialled(Arc::clone(line))),
+        wake: Arc::new(|| ()),
+    };
+    let mut link = link::open(config, &tokio::runtime::Handle::current());
+    live(&mut link).await;
+    link
+}
+
+async fn live(link: &mut LinkHandle) {
+    let live = timeout(Duration::from_secs(5), async {
+        while link.status().state != LinkState::Monitoring {
+            while link.try_event().is_some() {}
+            sleep(Duration::from_millis(1)).await;
+        }
+    });
+    live.await.unwrap();
+    pass(link, Duration::from_millis(300)).await;
+}
+
+async fn pass(link: &mut LinkHandle, length: Duration) {
+    let _over = timeout(length, async { while link.event().await.is_some() {} }).await;
+}
+
+async fn ask(link: &mut LinkHandle, request: Request) -> Result<Outcome, RequestError> {
+    let asked = link.ask(request).unwrap();
+    let done = timeout(Duration::from_secs(10), async {
+        loop {
+            if let LinkEvent::Done { ticket, result } = link.event().await.unwrap()
+                && ticket == asked
+            {
+                return result;
+            }
+        }
+    });
+    done.await.expect("every request comes to an end")
+}
+
+async fn set(link: &mut LinkHandle, setting: Setting) -> Written {
+    match ask(link, Request::Set(setting)).await.unwrap() {
+        Outcome::Written(written) => written,
+        other => panic!("{other:?}"),
+    }
+}
+
+async fn save(link: &mut LinkHandle) -> Saved {
+    match ask(link, Request::Save).await.unwrap() {
+        Outcome::Saved(saved) => saved,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn speeds(speed: i16) -> Setting {
+    Setting::DefaultSpeeds(PerDof::splat(Some(Speed::nearest(speed))))
+}
+
+fn shorts(value: i16) -> Vec<u8> {
+    value.to_le_bytes().repeat(6)
+}
+
+#[tokio::test(start_paused = true)]
+async fn whatever_becomes_of_the_answer_the_verdict_is_what_the_hand_holds() {
+    for wire in WIRES {
+        let late = Trouble::Late(Duration::from_millis(130));
+        for trouble in [Trouble::None, Trouble::LoseAnswer, late] {
+            let line = Line::new(Personality::default(), SPEEDS, trouble);
+            let mut link = open(&line, wire).await;
+            let written = set(&mut link, speeds(700)).await;
+            let expected = Written {
+                span: register::DEFAULT_SPEED_SET.span(),
+                verdict: Verdict::Applied,
+                holds: Some(shorts(700)),
+            };
+            assert_eq!(written, expected, "{wire} {trouble:?}");
+            assert_eq!(
+                line.wakes_up_with(SPEEDS),
+                1000,
+                "nothing is saved by itself"
+            );
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_a_hand_drops_clamps_or_refuses_is_told_with_what_it_holds() {
+    for wire in WIRES {
+        for (defaults, holds) in [
+            (DefaultsWrite::Drop, 1000),
+            (DefaultsWrite::Clamp, 500),
+            (DefaultsWrite::Exception, 1000),
+        ] {
+            let personality = Personality {
+                defaults,
+                ..Personality::default()
+            };
+            let line = Line::new(personality, 0, Trouble::None);
+            let mut link = open(&line, wire).await;
+            let written = set(&mut link, speeds(700)).await;
+            assert_eq!(written.holds, Some(shorts(holds)), "{wire} {defaults:?}");
+            let has_no = wire.starts_with("rtu") || wire.starts_with("tcp");
+            match written.verdict {
+                Verdict::Refused { reason } => {
+                    assert!(has_no && defaults == DefaultsWrite::Exception);
+                    assert!(!reason.is_empty());
+                }
+                Verdict::Differs => assert!(!has_no || defaults != DefaultsWrite::Exception),
+                other => panic!("{wire} {defaults:?} {other:?}"),
+            }
+            assert_eq!(link.status().state, LinkState::Monitoring);
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_falls_silent_or_a_wire_that_breaks_leaves_a_setting_unverified() {
+    for wire in WIRES {
+        let late = Trouble::Late(Duration::from_millis(900));
+        for trouble in [Trouble::Mute, Trouble::Cut, late] {
+            let line = Line::new(Personality::default(), SPEEDS, trouble);
+            let mut link = open(&line, wire).await;
+            let written = set(&mut link, speeds(700)).await;
+            let unknown = matches!(
+                written.verdict,
+                Verdict::Unverified {
+                    why: Doubt::LinkLost | Doubt::NotReadBack
+                }
+            );
+            assert!(unknown && written.holds.is_none(), "{wire} {written:?}");
+            // Once it is there again, what it holds can be asked for, and nothing was sent twice.
+            live(&mut link).await;
+            assert_eq!(line.writes_to(SPEEDS), 1, "{wire} {trouble:?}");
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn only_the_joints_that_are_given_are_written() {
+    for wire in WIRES {
+        let line = Line::new(Personality::default(), 0, Trouble::None);
+        let mut link = open(&line, wire).await;
+        let mut forces = PerDof::splat(None);
+        forces[Dof::Ring] = Some(Force::GENTLE);
+        forces[Dof::ThumbRotate] = Some(Force::RATED);
+        let written = set(&mut link, Setting::DefaultForces(forces)).await;
+        let held: Vec<u8> = [1000i16, 500, 1000, 1000, 1000, 2000]
+            .map(i16::to_le_bytes)
+            .concat();
+        assert_eq!(written.verdict, Verdict::Applied, "{wire}");
+        assert_eq!(written.holds, Some(held), "{wire}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_save_is_confirmed_by_its_frame_or_by_reading_back_and_the_hand_wakes_up_so() {
+    for wire in WIRES {
+        let line = Line::new(Personality::default(), 0, Trouble::None);
+        let mut link = open(&line, wire).await;
+        set(&mut link, speeds(700)).await;
+        let began = Instant::now();
+        let saved = save(&mut link).await;
+        let is_rs485 = wire.starts_with("rs485");
+        let expected = if is_rs485 {
+            Saved::Confirmed
+        } else {
+            Saved::ReadBack
+        };
+        assert_eq!(saved, expected, "{wire}");
+        let took = began.elapsed();
+        assert!((Duration::from_secs(1)..Duration::from_secs(2)).contains(&took));
+        assert_eq!(link.status().state, LinkState::Monitoring, "no silence");
+        assert_eq!(line.writes_to(SAVE), 1);
+        assert_eq!(line.wakes_up_with(SPEEDS), 700);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_line_is_left_to_a_hand_that_saves() {
+    let line = Line::new(Personality::default(), 0, Trouble::None);
+    let mut link = open(&line, "rs485:x").await;
+    let before = link.stats().state_reads;
+    link.ask(Request::Save).unwrap();
+    pass(&mut link, Duration::from_millis(900)).await;
+    let during = link.stats().state_reads - before;
+    assert!(during <= 4, "{during} reads while the hand saves");
+    pass(&mut link, Duration::from_millis(900)).await;
+    assert!(
+        link.stats().state_reads > before + 20,
+        "and reading goes on"
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn every_answer_to_a_save_has_its_own_verdict_and_the_next_waits() {
+    for (save_frame, expected) in [
+        (SaveAnswer::Command11, Saved::Confirmed),
+        (SaveAnswer::Twice, Saved::Confirmed),
+        (SaveAnswer::Failed, Saved::Failed { code: 255 }),
+        (
+            SaveAnswer::Never,
+            Saved::Unknown {
+                why: SaveDoubt::NoResult,
+            },
+        ),
+        (
+            SaveAnswer::Late,
+            Saved::Unknown {
+                why: SaveDoubt::NoResult,
+            },
+        ),
+    ] {
+        let personality = Personality {
+            save_frame,
+            ..Personality::default()
+        };
+        let line = Line::new(personality, 0, Trouble::None);
+        let mut link = open(&line, "rs485:x").await;
+        set(&mut link, speeds(700)).await;
+        let began = Instant::now();
+        assert_eq!(save(&mut link).await, expected, "{save_frame:?}");
+        assert!(began.elapsed() < Duration::from_millis(3300));
+        let again = save(&mut link).await;
+        let too_soon = matches!(again, Saved::NotSent(NotSent::TooSoon { .. }));
+        assert!(too_soon, "{again:?}");
+        // The late frame comes while another write waits for its answer, and is not taken for it.
+        for speed in (0..40).map(|n| 600 + n) {
+            let verdict = set(&mut link, speeds(speed)).await.verdict;
+            assert_eq!(verdict, Verdict::Applied, "{save_frame:?}");
+            pass(&mut link, Duration::from_millis(80)).await;
+        }
+        pass(&mut link, Duration::from_secs(3)).await;
+        assert_eq!(line.writes_to(SAVE), 1);
+        assert_eq!(save(&mut link).await, expected, "{save_frame:?}");
+        assert_eq!(line.writes_to(SAVE), 2);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_passes_while_the_hand_saves_and_the_result_is_still_told() {
+    for wire in WIRES {
+        let line = Line::new(Personality::default(), 0, Trouble::None);
+        let mut link = open(&line, wire).await;
+        set(&mut link, speeds(700)).await;
+        let asked = link.ask(Request::Save).unwrap();
+        pass(&mut link, Duration::from_millis(500)).await;
+        assert_eq!(line.writes_to(1486), 0);
+        let pressed = Instant::now();
+        link.stop();
+        while line.writes_to(1486) == 0 {
+            sleep(Duration::from_millis(1)).await;
+        }
+        assert!(pressed.elapsed() <= Duration::from_millis(10), "{wire}");
+        let mut end = None;
+        while end.is_none() {
+            if let LinkEvent::Done { ticket, result } = link.event().await.unwrap() {
+                assert_eq!(ticket, asked);
+                end = Some(result.unwrap());
+            }
+        }
+        let told = matches!(
+            end,
+            Some(Outcome::Saved(Saved::Confirmed | Saved::ReadBack))
+        );
+        assert!(told, "{wire} {end:?}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_is_not_known_of_a_save_is_said() {
+    for wire in WIRES {
+        for (trouble, flash) in [
+            (Trouble::Cut, FlashWrite::AtOnce),
+            (Trouble::Mute, FlashWrite::AtOnce),
+            (
+                Trouble::PowerCut(Duration::from_millis(400)),
+                FlashWrite::Slowly,
+            ),
+        ] {
+            let personality = Personality {
+                flash,
+                ..Personality::default()
+            };
+            let line = Line::new(personality, SAVE, trouble);
+            let mut link = open(&line, wire).await;
+            set(&mut link, speeds(700)).await;
+            let saved = save(&mut link).await;
+            assert!(
+                matches!(saved, Saved::Unknown { .. }),
+                "{wire} {trouble:?} {saved:?}"
+            );
+            assert_eq!(line.writes_to(SAVE), 1, "nothing is sent twice");
+            if flash == FlashWrite::Slowly {
+                assert_eq!(line.wakes_up_with(SPEEDS), 1000, "it was not in flash");
+            }
+        }
+        let line = Line::new(Personality::default(), SAVE, Trouble::LoseAnswer);
+        let mut link = open(&line, wire).await;
+        let saved = save(&mut link).await;
+        if wire.starts_with("rs485") {
+            assert_eq!(saved, Saved::Confirmed, "the result tells all");
+        } else {
+            let why = SaveDoubt::Unanswered;
+            assert_eq!(saved, Saved::Unknown { why }, "{wire}");
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn nothing_is_set_saved_or_reset_while_armed() {
+    let line = Line::new(Personality::default(), 0, Trouble::None);
+    let mut link = open(&line, "rs485:x").await;
+    link.arm(link::ArmRequest {
+        speed: PerDof::splat(Speed::GENTLE),
+        force: PerDof::splat(Force::GENTLE),
+    });
+    while link.status().state != LinkState::Armed {
+        sleep(Duration::from_millis(1)).await;
+    }
+    let armed = NotSent::Armed;
+    assert_eq!(
+        set(&mut link, speeds(700)).await.verdict,
+        Verdict::NotSent(armed)
+    );
+    assert_eq!(save(&mut link).await, Saved::NotSent(armed));
+    let reset = ask(&mut link, Request::Reset).await;
+    assert_eq!(reset, Ok(Outcome::Reset(Reset::NotSent(armed))));
+    assert_eq!(line.writes_to(SPEEDS) + line.writes_to(SAVE), 0);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_reset_returns_to_the_factorys_parameters() {
+    for wire in WIRES {
+        let line = Line::new(Personality::default(), 0, Trouble::None);
+        let mut link = open(&line, wire).await;
+        set(&mut link, speeds(700)).await;
+        let reset = ask(&mut link, Request::Reset).await;
+        assert_eq!(reset, Ok(Outcome::Reset(Reset::Acknowledged)), "{wire}");
+        assert_eq!(line.wakes_up_with(SPEEDS), 1000);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_new_id_may_be_acknowledged_by_the_new_or_by_the_old_one() {
+    use handscope::sim::{ChangeAck, Effect};
+    for change_ack in [ChangeAck::New, ChangeAck::Old] {
+        let personality = Personality {
+            change_ack,
+            id_effect: Effect::AfterSave,
+            ..Personality::default()
+        };
+        let line = Line::new(personality, 0, Trouble::None);
+        let mut link = open(&line, "rs485:x").await;
+        let timeouts = link.stats().timeouts;
+        let written = set(&mut link, Setting::Id(HandId::nearest(7))).await;
+        assert_eq!(written.verdict, Verdict::Applied);
+        assert_eq!(written.holds, Some(vec![7]));
+        assert_eq!(link.stats().timeouts, timeouts, "{change_ack:?}");
+    }
+}
