@@ -9,9 +9,9 @@
 //! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
-//! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop; finding hands; what went over the wire |
+//! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings and SAVE; finding hands; what went over the wire |
 //! | 2 | [`sim`] | a hand that answers on the wire |
-//! | 3 | [`app`] | everything the program knows, without drawing; grasp trials and what is measured of them |
+//! | 3 | [`app`] | everything the program knows, without drawing; grasp trials and what is measured of them; what a hand keeps, in files, compared, backed up |
 //! | 4 | [`ui`] | the window: reads state, returns actions |
 //! | 5 | [`shell`] | program and window as one thing |
 //! | 5 | [`raster`] | what egui drew as pixels, without a GPU |
@@ -29,6 +29,8 @@
 //! * Connecting, reconnecting, scanning, examining and looking write nothing. Motion passes only while a person armed the hand; stop, faults,
 //!   link loss, old feedback and sleep disarm it.
 //! * A stop is the next thing on the wire, goes out again until feedback shows rest, and raises an alarm if it does not.
+//! * What a hand keeps is written at rest and disarmed, read back, and told as applied, refused, otherwise or not known. A SAVE has
+//!   the line for itself, one at a time, and no late frame counts for another write; flash cannot be read, and that is said.
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
 //! * Nothing that was asked survives a lost link.
 //! * A fault stays unseen until a person says that they saw it, and what happened around it is kept in memory, bounded.

@@ -18,6 +18,7 @@ pub mod layout;
 #[cfg(test)]
 mod live_tests;
 pub mod notices;
+pub mod params;
 pub mod peaks;
 pub mod poses;
 pub mod program;

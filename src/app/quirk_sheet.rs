@@ -233,7 +233,7 @@ impl QuirkBook {
 }
 
 /// Where and whom: the endpoint without the id, and the id.
-fn key(endpoint: &Endpoint) -> (String, u16) {
+pub(crate) fn key(endpoint: &Endpoint) -> (String, u16) {
     let place = format!("{}:{}", endpoint.kind(), endpoint.place());
     match endpoint {
         Endpoint::Sim { seed, .. } => (format!("sim:?seed={seed}"), 1),

@@ -3,6 +3,7 @@
 use crate::app::settings::{Language, Theme};
 use crate::cli::ids::HandIds;
 use crate::cli::names;
+use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::sim_quirks::{self, Quirk};
@@ -77,6 +78,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope quirks --hand rtu:/dev/ttyUSB0\n  handscope quirks --hand tcp:192.168.11.210 --json\n  handscope quirks --hand rs485:/dev/ttyUSB0 --out left-hand.toml\n\nThe window keeps these sheets by itself, beside its settings."
     )]
     Quirks(QuirksArgs),
+    /// Read, compare, write, save and reset what a hand keeps
+    #[command(
+        after_help = "Examples:\n  handscope params dump --hand rs485:/dev/ttyUSB0 --out left-hand.toml\n  handscope params apply left-hand.toml --only default_force --hand rs485:/dev/ttyUSB0\n  handscope params save --yes --hand rs485:/dev/ttyUSB0\n  handscope params diff --saved --hand rs485:/dev/ttyUSB0\n\nNothing moves. Only apply, save and reset write to the hand, and each makes a backup first."
+    )]
+    Params(ParamsArgs),
     /// Be a hand for other programs: on pseudo-terminals, on TCP, on CAN, or on all of them
     #[command(
         after_help = sim_help()
@@ -261,7 +267,7 @@ impl LanguageArg {
 }
 
 const SIM_HELP: &str = "\
-Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands.
+Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix SIGUSR1 switches them off and on again, and 'power cycled' is printed: what was not saved is gone.
 On Modbus TCP the unit id says which hand is meant; 255 means the first, and a hand that is alone answers to all.";
 
 fn sim_help() -> String {

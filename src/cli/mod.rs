@@ -7,6 +7,7 @@ mod ids;
 mod interrupt;
 mod names;
 mod out;
+mod params;
 mod quirks;
 mod read;
 mod registers;
@@ -23,8 +24,11 @@ mod wire;
 
 use args::{Cli, Command};
 use clap::Parser as _;
-use out::{Out, ReaderGone, Told};
+use out::{Out, ReaderGone, Told, WrongUsage};
 use std::process::ExitCode;
+
+/// The exit status of wrong usage, as clap gives it.
+const WRONG_USAGE: u8 = 2;
 
 /// Does what the command line asks. Errors go to standard error as one sentence each.
 ///
@@ -40,6 +44,10 @@ pub fn run() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if error.is::<ReaderGone>() => ExitCode::SUCCESS,
         Err(error) if error.is::<Told>() => ExitCode::FAILURE,
+        Err(error) if error.is::<WrongUsage>() => {
+            out::say(&error.to_string());
+            ExitCode::from(WRONG_USAGE)
+        }
         Err(error) => {
             out::say(&format!("{error:#}"));
             ExitCode::FAILURE
@@ -57,6 +65,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Scan(args) => scan::run(&mut out, &args),
         Command::Doctor(args) => doctor::run(&mut out, &args),
         Command::Quirks(args) => quirks::run(&mut out, &args),
+        Command::Params(args) => params::run(&mut out, &args),
         Command::Sim(args) => sim::run(&mut out, &args),
         Command::Registers(args) => registers::run(&mut out, args.json),
     };

@@ -22,6 +22,11 @@ pub(crate) struct ReaderGone;
 #[error("it was said already")]
 pub(crate) struct Told;
 
+/// What was asked needs something else beside it on the command line. Nothing was done.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub(crate) struct WrongUsage(pub(crate) String);
+
 impl Out {
     /// The process's standard output.
     pub(crate) fn stdout() -> Self {

@@ -17,6 +17,8 @@ mod doors;
 mod interop;
 #[cfg(unix)]
 mod loss;
+#[cfg(unix)]
+mod params;
 mod pictures;
 mod program;
 #[cfg(unix)]

@@ -1,0 +1,342 @@
+//! What this program knows of each hand's flash: what it saved last and what came of it, and dated backups. One folder a hand,
+//! all in the form of [`file`](crate::app::params::file). Writes to no hand.
+
+use crate::app::config::replace;
+use crate::app::params::file::{self, ParamsFile, ParamsFileError};
+use crate::app::params::stamp::stamp;
+use crate::app::params::values::Params;
+use crate::app::quirk_sheet::key;
+use crate::link::{SaveDoubt, Saved};
+use crate::transport::Endpoint;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Backups that are kept of one hand; the oldest goes first. A year of saving once a week.
+pub const BACKUPS_MAX: usize = 50;
+/// Names that one second may need: a person, or a loop of a script.
+const SAME_SECOND_MAX: u32 = 100;
+
+/// A hand's folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Record {
+    folder: PathBuf,
+    hand: String,
+}
+
+/// One backup.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Backup {
+    /// Where it lies.
+    pub path: PathBuf,
+    /// When and why it was made, or why it cannot be read.
+    pub about: Result<(String, String), ParamsFileError>,
+}
+
+/// What is known of what is in flash.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Known {
+    /// What this program saved last, as far as the hand confirmed it.
+    pub saved: Option<ParamsFile>,
+    /// A later SAVE of which nobody knows what came.
+    pub doubtful: Option<ParamsFile>,
+}
+
+/// What this program knows of the result of a SAVE, as a stable word for files and JSON.
+#[must_use]
+pub const fn saved_name(saved: &Saved) -> &'static str {
+    match saved {
+        Saved::Confirmed => "confirmed",
+        Saved::ReadBack => "read_back",
+        Saved::Failed { .. } => "failed",
+        Saved::Unknown { why } => match why {
+            SaveDoubt::NoResult => "unknown: no result",
+            SaveDoubt::Unanswered => "unknown: not acknowledged",
+            SaveDoubt::NotReadBack => "unknown: not read back",
+            SaveDoubt::LinkLost => "unknown: link lost",
+        },
+        Saved::Refused { .. } => "refused",
+        Saved::NotSent(_) => "not_sent",
+    }
+}
+
+/// The folder of all records, beside the settings.
+#[must_use]
+pub fn folder_beside(settings: &Path) -> PathBuf {
+    settings.with_file_name("params")
+}
+
+impl Record {
+    /// The record of the hand at an endpoint, told by place and id as quirk sheets are.
+    #[must_use]
+    pub fn new(folder: &Path, hand: &Endpoint) -> Self {
+        let (place, id) = key(hand);
+        let plain = |letter: char| match letter {
+            letter if letter.is_ascii_alphanumeric() || letter == '.' => letter,
+            _ => '_',
+        };
+        let place: String = place.chars().map(plain).collect();
+        Self {
+            folder: folder.join(format!("{place}-id{id}")),
+            hand: hand.to_string(),
+        }
+    }
+
+    /// Where it lies.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// A file with these values, as of now.
+    #[must_use]
+    pub fn file(&self, params: &Params, why: &str, since_1970: Duration) -> ParamsFile {
+        ParamsFile {
+            hand: self.hand.clone(),
+            at: stamp(since_1970),
+            why: why.into(),
+            params: params.clone(),
+            ..ParamsFile::default()
+        }
+    }
+
+    /// Keeps values under the date, and lets the oldest backup go where there are more than [`BACKUPS_MAX`].
+    ///
+    /// # Errors
+    /// What the system says. Then nothing should be written to the hand.
+    pub fn back_up(&self, params: &Params, why: &str, since_1970: Duration) -> io::Result<PathBuf> {
+        let file = self.file(params, why, since_1970);
+        let day_and_time = file.at.replace(':', "-");
+        let why = why.replace(' ', "-");
+        let name = |n: u32| match n {
+            0 => format!("{day_and_time}-{why}.toml"),
+            n => format!("{day_and_time}-{why}-{n}.toml"),
+        };
+        let backups = self.folder.join("backups");
+        let mut free = (0..SAME_SECOND_MAX).map(|n| backups.join(name(n)));
+        let path = free.find(|path| !path.exists());
+        let path = path.ok_or_else(|| io::Error::other("too many backups in one second"))?;
+        replace(&path, &file.to_toml())?;
+        for old in self.backup_paths()?.iter().rev().skip(BACKUPS_MAX) {
+            std::fs::remove_file(old)?;
+        }
+        Ok(path)
+    }
+
+    /// The backups, oldest first.
+    ///
+    /// # Errors
+    /// What the system says; a folder that is not there holds none.
+    pub fn backups(&self) -> io::Result<Vec<Backup>> {
+        let paths = self.backup_paths()?.into_iter();
+        let about = |path: &Path| file::load(path).map(|file| (file.at, file.why));
+        let backups = paths.map(|path| Backup {
+            about: about(&path),
+            path,
+        });
+        Ok(backups.collect())
+    }
+
+    fn backup_paths(&self) -> io::Result<Vec<PathBuf>> {
+        let entries = match std::fs::read_dir(self.folder.join("backups")) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            entries => entries?,
+        };
+        let mut paths = Vec::new();
+        for entry in entries {
+            let path = entry?.path();
+            let is_backup = path.extension().is_some_and(|end| end == "toml");
+            if is_backup && path.is_file() {
+                paths.push(path);
+            }
+        }
+        paths.sort();
+        Ok(paths)
+    }
+
+    /// Notes that a SAVE goes out now, before it does: whatever happens to this program then, the file says that its result
+    /// is not known.
+    ///
+    /// # Errors
+    /// What the system says. Then no SAVE should be sent.
+    pub fn attempt(&self, params: &Params, since_1970: Duration) -> io::Result<()> {
+        let file = ParamsFile {
+            verdict: "unknown: under way".into(),
+            ..self.file(params, "save", since_1970)
+        };
+        replace(&self.attempt_path(), &file.to_toml())
+    }
+
+    /// Notes what came of the SAVE that was noted last.
+    ///
+    /// # Errors
+    /// What the system says, or what is wrong with the note. The SAVE is then noted as of unknown result.
+    pub fn end(&self, saved: &Saved) -> io::Result<()> {
+        let path = self.attempt_path();
+        let mut file = file::load(&path).map_err(io::Error::other)?;
+        file.verdict = saved_name(saved).into();
+        let text = file.to_toml();
+        if matches!(saved, Saved::Confirmed | Saved::ReadBack) {
+            replace(&self.saved_path(), &text)?;
+        }
+        replace(&path, &text)
+    }
+
+    /// The hand was returned to the factory's parameters: nothing that was saved before is in flash any more.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn forget_saved(&self) -> io::Result<()> {
+        for path in [self.saved_path(), self.attempt_path()] {
+            match std::fs::remove_file(path) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// What is known of what is in flash.
+    ///
+    /// # Errors
+    /// What is wrong with the files; one that is missing is no error.
+    pub fn known(&self) -> Result<Known, ParamsFileError> {
+        let optional = |path: PathBuf| match path.exists() {
+            true => file::load(&path).map(Some),
+            false => Ok(None),
+        };
+        let attempt = optional(self.attempt_path())?;
+        Ok(Known {
+            saved: optional(self.saved_path())?,
+            doubtful: attempt.filter(|file| file.verdict.starts_with("unknown")),
+        })
+    }
+
+    /// How long ago the last SAVE was sent, by a clock that both processes share.
+    #[must_use]
+    pub fn since_attempt(&self, now: std::time::SystemTime) -> Option<Duration> {
+        let written = std::fs::metadata(self.attempt_path())
+            .ok()?
+            .modified()
+            .ok()?;
+        now.duration_since(written).ok()
+    }
+
+    fn attempt_path(&self) -> PathBuf {
+        self.folder.join("attempt.toml")
+    }
+
+    fn saved_path(&self) -> PathBuf {
+        self.folder.join("saved.toml")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::app::params::table::{ParamId, Value};
+    use crate::link::NotSent;
+
+    fn record(folder: &tempfile::TempDir) -> Record {
+        let hand = "rtu:/dev/../x?id=7".parse().unwrap();
+        Record::new(folder.path(), &hand)
+    }
+
+    fn params(id: i32) -> Params {
+        let mut params = Params::default();
+        params.put(ParamId::HandId, Value::Number(id));
+        params
+    }
+
+    fn at(seconds: u64) -> Duration {
+        Duration::from_secs(1_795_219_200 + seconds)
+    }
+
+    #[test]
+    fn each_hand_has_one_folder_inside_the_given_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = [
+            "tcp:h",
+            "tcp:h?unit=1",
+            "rtu:/dev/x?id=1",
+            "rs485:/dev/x?id=1",
+            "can:can0",
+        ]
+        .map(|hand| Record::new(folder.path(), &hand.parse().unwrap()).folder);
+        for (nth, name) in names.iter().enumerate() {
+            assert_eq!(name.parent(), Some(folder.path()));
+            assert_eq!(
+                names.iter().filter(|other| *other == name).count(),
+                1,
+                "{nth}"
+            );
+        }
+        assert_eq!(record(&folder).folder.parent(), Some(folder.path()));
+    }
+
+    #[test]
+    fn backups_are_dated_listed_and_bounded() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = record(&folder);
+        assert_eq!(record.backups().unwrap(), []);
+        let first = record.back_up(&params(1), "before save", at(0)).unwrap();
+        assert!(first.ends_with("2026-11-21T00-00-00Z-before-save.toml"));
+        let same_second = record.back_up(&params(2), "before save", at(0)).unwrap();
+        assert_ne!(first, same_second);
+        assert_eq!(file::load(&first).unwrap().params, params(1));
+        for n in 1..u64::try_from(BACKUPS_MAX).unwrap() {
+            record.back_up(&params(3), "before reset", at(n)).unwrap();
+        }
+        let backups = record.backups().unwrap();
+        assert_eq!(backups.len(), BACKUPS_MAX);
+        assert!(!first.exists() && same_second.exists(), "the oldest went");
+        let about = backups.last().unwrap().about.clone().unwrap();
+        assert_eq!(
+            about,
+            ("2026-11-21T00:00:49Z".into(), "before reset".into())
+        );
+    }
+
+    #[test]
+    fn what_is_said_of_flash_follows_the_last_save() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = record(&folder);
+        assert_eq!(record.known().unwrap(), Known::default());
+        let saved = |record: &Record| record.known().unwrap().saved.map(|file| file.params);
+        let doubtful = |record: &Record| record.known().unwrap().doubtful.map(|file| file.params);
+
+        record.attempt(&params(1), at(0)).unwrap();
+        assert_eq!((saved(&record), doubtful(&record)), (None, Some(params(1))));
+        record.end(&Saved::Confirmed).unwrap();
+        assert_eq!((saved(&record), doubtful(&record)), (Some(params(1)), None));
+
+        for (end, doubted) in [
+            (Saved::Failed { code: 255 }, false),
+            (Saved::NotSent(NotSent::Moving), false),
+            (
+                Saved::Unknown {
+                    why: SaveDoubt::NoResult,
+                },
+                true,
+            ),
+        ] {
+            record.attempt(&params(2), at(9)).unwrap();
+            record.end(&end).unwrap();
+            let expected = (Some(params(1)), doubted.then(|| params(2)));
+            assert_eq!((saved(&record), doubtful(&record)), expected, "{end:?}");
+        }
+        record.attempt(&params(3), at(20)).unwrap();
+        record.end(&Saved::ReadBack).unwrap();
+        let known = record.known().unwrap().saved.unwrap();
+        assert_eq!(
+            (known.verdict.as_str(), known.params),
+            ("read_back", params(3))
+        );
+        assert!(
+            record.since_attempt(std::time::SystemTime::now()).unwrap() < Duration::from_secs(60)
+        );
+        record.forget_saved().unwrap();
+        assert_eq!(record.known().unwrap(), Known::default());
+    }
+}
