@@ -164,7 +164,6 @@ fn what_hits_hard_or_moves_the_hand_elsewhere_needs_a_yes_and_says_why() {
             &[],
             "above the rated grip of 2000 g",
         ),
-        ("hand_id = 9", &["--only", "hand_id"], "hand_id becomes 9"),
         (
             "ip_address = \"10.0.0.9\"",
             &["--only", "ip_address"],
@@ -181,6 +180,17 @@ fn what_hits_hard_or_moves_the_hand_elsewhere_needs_a_yes_and_says_why() {
             ended.err
         );
         assert!(ended.err.contains("nothing was written"), "{}", ended.err);
+    }
+    let elsewhere = bench.file("hand_id = 9");
+    let args = ["apply", text(&elsewhere), "--only", "hand_id", "--yes"];
+    for bus in bench.wires.iter().filter(|hand| !hand.starts_with("tcp:")) {
+        let ended = bench.words(bus, &args);
+        assert_eq!(ended.code, Some(1), "{bus}");
+        assert!(
+            ended.err.contains("would not be found there any more"),
+            "{}",
+            ended.err
+        );
     }
     for command in ["save", "reset"] {
         let ended = bench.words(hand, &[command]);

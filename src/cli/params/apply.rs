@@ -3,6 +3,7 @@
 use crate::app::params::danger::worse;
 use crate::app::params::file;
 use crate::app::params::plan::{self, Plan, RowEnd, RowVerdict};
+use crate::app::params::table::ParamId;
 use crate::app::params::values::Params;
 use crate::cli::out::{Out, Told, WrongUsage, say};
 use crate::cli::params::args::ApplyArgs;
@@ -11,6 +12,7 @@ use crate::cli::params::talk::Talk;
 use crate::cli::params::words::{self, or_dash, record, since_1970};
 use crate::cli::session;
 use crate::link::{Verdict, Written};
+use crate::transport::Endpoint;
 use anyhow::{Context as _, anyhow};
 use serde_json::{Value, json};
 
@@ -38,7 +40,21 @@ pub(crate) fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
             path.display()
         ));
     }
+    reachable_after(&args.common.hand, &wanted)?;
     session::runtime()?.block_on(apply(out, args, &file.params, &wanted))
+}
+
+/// Refuses what would leave the person with a hand that does not answer here any more: by these rows it is found on a bus.
+fn reachable_after(hand: &Endpoint, wanted: &Params) -> anyhow::Result<()> {
+    let moves = [ParamId::HandId, ParamId::ReduRatio];
+    let moved = moves.into_iter().find(|id| wanted.get(*id).is_some());
+    match (hand, moved) {
+        (Endpoint::Tcp { .. }, _) | (_, None) => Ok(()),
+        (_, Some(id)) => Err(anyhow!(
+            "{} cannot be changed through {hand}: the hand would not be found there any more. Change it over Modbus TCP, or with the maker's tool; nothing was written",
+            id.name()
+        )),
+    }
 }
 
 async fn apply(
@@ -97,6 +113,11 @@ async fn apply(
         out.line(&format!("backup: {}", backup.display()))?;
     }
     if applied {
+        if plan.rows.get(ParamId::IpAddress).is_some() {
+            say(
+                "ip_address acts once it was saved and the hand was switched off and on; until then the hand answers where it did",
+            );
+        }
         if !common.json {
             out.line("not in flash yet: 'handscope params save' keeps it")?;
         }
