@@ -14,8 +14,6 @@ use std::time::Duration;
 
 /// Backups that are kept of one hand; the oldest goes first. A year of saving once a week.
 pub const BACKUPS_MAX: usize = 50;
-/// Names that one second may need: a person, or a loop of a script.
-const SAME_SECOND_MAX: u32 = 100;
 
 /// A hand's folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -108,14 +106,18 @@ impl Record {
         let file = self.file(params, why, since_1970);
         let day_and_time = file.at.replace(':', "-");
         let why = why.replace(' ', "-");
-        let name = |n: u32| match n {
-            0 => format!("{day_and_time}-{why}.toml"),
-            n => format!("{day_and_time}-{why}-{n}.toml"),
-        };
         let backups = self.folder.join("backups");
-        let mut free = (0..SAME_SECOND_MAX).map(|n| backups.join(name(n)));
-        let path = free.find(|path| !path.exists());
-        let path = path.ok_or_else(|| io::Error::other("too many backups in one second"))?;
+        let earlier = self.backup_paths()?;
+        let is_same_second = |path: &&PathBuf| {
+            let name = path.file_name().and_then(|name| name.to_str());
+            name.is_some_and(|name| name.starts_with(&day_and_time))
+        };
+        // Names sort as they were made: a dot stands behind a hyphen.
+        let name = match earlier.iter().filter(is_same_second).count() {
+            0 => format!("{day_and_time}-{why}.toml"),
+            n => format!("{day_and_time}.{n:03}-{why}.toml"),
+        };
+        let path = backups.join(name);
         replace(&path, &file.to_toml())?;
         for old in self.backup_paths()?.iter().rev().skip(BACKUPS_MAX) {
             std::fs::remove_file(old)?;
