@@ -73,7 +73,7 @@ impl Setting {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
-    use crate::hand::Dof;
+    use crate::hand::dof::Dof;
     use crate::hand::register::{Persistence, by_address};
 
     fn all() -> [Setting; 5] {
