@@ -7,6 +7,7 @@ use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::sim_quirks::{self, Quirk};
+use crate::cli::trial::TrialArgs;
 use crate::hand::Register;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
@@ -83,6 +84,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope params dump --hand rs485:/dev/ttyUSB0 --out left-hand.toml\n  handscope params apply left-hand.toml --only default_force --hand rs485:/dev/ttyUSB0\n  handscope params save --yes --hand rs485:/dev/ttyUSB0\n  handscope params diff --saved --hand rs485:/dev/ttyUSB0\n\nNothing moves. Only apply, save and reset write to the hand, and each makes a backup first."
     )]
     Params(ParamsArgs),
+    /// Close on an object again and again, and measure what comes of it
+    #[command(
+        after_help = "Examples:\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --speed 25 --force 500 --arm\n  handscope trial --hand tcp:192.168.11.210 --joint index,thumb_bend --speed 25,100,250 --force 200,500 --repeat 3 --arm --out egg --best least-overshoot --hold 300\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --approach 1000 --until measured:40 --force 500 --arm --json\n\nIt moves the hand, and only with --arm: nothing but the object may be in its way. The joints go to --start gently, rest half a second, close, hold for --dwell after they stopped, and go back. No joint closes before the hand shows the speed and the threshold that were set. Ctrl-C is a stop, and it is looked after until feedback shows rest; so is the end by a fault, heat, force or a lost link. After a stop the hand keeps what it holds: open it yourself.\n\nExit status: 0 all trials were made, 1 ended early or no setting will do, 2 wrong usage."
+    )]
+    Trial(TrialArgs),
     /// Be a hand for other programs: on pseudo-terminals, on TCP, on CAN, or on all of them
     #[command(
         after_help = sim_help()
@@ -289,7 +295,7 @@ Exit status: 0 done, 1 could not, 2 wrong usage.";
 /// The longest time that can be asked for: a day.
 const SECONDS_MAX: f64 = 86_400.0;
 
-fn seconds(text: &str) -> Result<Duration, String> {
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text
         .parse()
         .map_err(|_not_one| format!("'{text}' is no number of seconds"))?;

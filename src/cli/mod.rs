@@ -17,6 +17,7 @@ mod sim;
 mod sim_quirks;
 mod snapshot;
 mod telemetry;
+mod trial;
 mod value;
 mod watch;
 mod window;
@@ -66,6 +67,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Doctor(args) => doctor::run(&mut out, &args),
         Command::Quirks(args) => quirks::run(&mut out, &args),
         Command::Params(args) => params::run(&mut out, &args),
+        Command::Trial(args) => trial::run(&mut out, &args),
         Command::Sim(args) => sim::run(&mut out, &args),
         Command::Registers(args) => registers::run(&mut out, args.json),
     };

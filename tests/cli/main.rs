@@ -27,6 +27,8 @@ mod quirks;
 mod scan;
 #[cfg(unix)]
 mod several;
+#[cfg(unix)]
+mod trial;
 mod usage;
 #[cfg(unix)]
 mod wire;

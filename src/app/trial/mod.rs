@@ -2,7 +2,7 @@
 //!
 //! [`plan`] says what is tried; [`series`] runs it on virtual or real time and gives what to send ([`runner`] one
 //! trial, [`watch`] what ends it); [`recording`] keeps what was read; [`metrics`] computes from it, without looking at
-//! the hand again; [`best`] finds the best setting.
+//! the hand again; [`session`] keeps all of it in a folder, [`report`] as a page; [`best`] finds the best setting.
 
 pub mod best;
 pub mod curve;
@@ -12,9 +12,14 @@ pub mod metrics;
 mod metrics_tests;
 pub mod plan;
 pub mod recording;
+pub mod report;
 pub mod runner;
 pub mod series;
+pub mod session;
+#[cfg(test)]
+mod session_tests;
 pub mod slip;
+mod svg;
 pub mod watch;
 
 pub use best::{Criterion, Score};

@@ -82,6 +82,9 @@ pub enum Abort {
         /// Where it may begin.
         limit: u8,
     },
+    /// What was read could not be kept or shown.
+    #[error("what was read could not be kept or shown")]
+    NotKept,
     /// The slow trial that should measure the contact felt none.
     #[error("{} felt no contact to be approached", dof.name())]
     NoContact {
