@@ -112,16 +112,18 @@ pub fn across(angles: &PerDof<Option<f32>>, finger: Finger) -> Option<Point> {
     })
 }
 
-/// Where the fingers get to, in all poses: a picture that holds these holds them all.
+/// Steps from bent to open in which the poses are tried.
+const STEPS: u8 = 8;
+
+/// Where the fingers get to, in all poses: a picture that holds these holds them all, but for a millimetre or two.
 pub static REACH: LazyLock<Vec<Point>> = LazyLock::new(|| {
-    let share = |step: u8| Some(f32::from(step) / 4.0);
+    let shares = || (0..=STEPS).map(|step| f32::from(step) / f32::from(STEPS));
     let mut points = PALM.to_vec();
-    for (bend, turn) in (0..=4).flat_map(|bend| (0..=4).map(move |turn| (bend, turn))) {
-        let mut angles = PerDof::splat(share(bend));
-        angles[Dof::ThumbRotate] = share(turn);
-        for (_, bones) in joints(&angles).iter() {
-            points.extend(bones.iter().flatten());
+    for bend in shares() {
+        for finger in [Finger::Little, Finger::Ring, Finger::Middle, Finger::Index] {
+            points.extend(straight(finger, bend));
         }
+        points.extend(shares().flat_map(|swung| thumb(bend, swung)));
     }
     points
 });

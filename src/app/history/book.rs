@@ -14,7 +14,7 @@ pub const HISTORY_SECONDS: u32 = 3600;
 /// Rows kept of each group: an hour at 200 Hz, the most a serial line carries; a faster link holds less time. About
 /// 80 MB with an hour at 100 Hz and fingertips at 30 Hz, and 230 MB when all are full.
 pub const HISTORY_ROWS: usize = 200 * HISTORY_SECONDS as usize;
-/// Rows kept of the fingertips' channels: ten minutes at 30 Hz, in about 5 MB for all five fingertips.
+/// Rows kept of the fingertips' channels: ten minutes at 30 Hz, in about 6 MB for all five fingertips.
 pub const CHANNEL_ROWS: usize = 30 * 600;
 /// Channels of a fingertip.
 const CHANNELS: usize = 8;
