@@ -87,13 +87,23 @@ fn spread(heights: &mut [f32], (top, bottom): (f32, f32)) -> f32 {
 const fn short(series: Series) -> Text {
     use crate::hand::Dof;
     match series {
-        Series::Joint(_, Dof::Little) | Series::Tip(_, Finger::Little) => plots::SHORT_LITTLE,
-        Series::Joint(_, Dof::Ring) | Series::Tip(_, Finger::Ring) => plots::SHORT_RING,
-        Series::Joint(_, Dof::Middle) | Series::Tip(_, Finger::Middle) => plots::SHORT_MIDDLE,
-        Series::Joint(_, Dof::Index) | Series::Tip(_, Finger::Index) => plots::SHORT_INDEX,
+        Series::Joint(_, Dof::Little) => plots::SHORT_LITTLE,
+        Series::Joint(_, Dof::Ring) => plots::SHORT_RING,
+        Series::Joint(_, Dof::Middle) => plots::SHORT_MIDDLE,
+        Series::Joint(_, Dof::Index) => plots::SHORT_INDEX,
         Series::Joint(_, Dof::ThumbBend) => plots::SHORT_BEND,
         Series::Joint(_, Dof::ThumbRotate) => plots::SHORT_ROTATE,
-        Series::Tip(_, Finger::Thumb) => plots::SHORT_THUMB,
+        Series::Tip(_, finger) | Series::Channel(_, finger) => of_finger(finger),
+    }
+}
+
+const fn of_finger(finger: Finger) -> Text {
+    match finger {
+        Finger::Little => plots::SHORT_LITTLE,
+        Finger::Ring => plots::SHORT_RING,
+        Finger::Middle => plots::SHORT_MIDDLE,
+        Finger::Index => plots::SHORT_INDEX,
+        Finger::Thumb => plots::SHORT_THUMB,
     }
 }
 
