@@ -236,6 +236,7 @@ async fn settings_are_kept_and_setpoints_never() {
             "gesture_route",
             "gesture_store",
             "language",
+            "layout",
             "plot_window",
             "plots",
             "theme"
