@@ -15,6 +15,8 @@ pub mod recording;
 pub mod report;
 pub mod runner;
 pub mod series;
+#[cfg(test)]
+mod series_tests;
 pub mod session;
 #[cfg(test)]
 mod session_tests;

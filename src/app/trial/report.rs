@@ -21,8 +21,8 @@ const STYLE: &str = "body{font:14px/1.5 system-ui,sans-serif;margin:2em auto;max
 table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em .7em;border-bottom:1px solid #d8dee4;text-align:right}\
 th{font-weight:600}td:first-child,th:first-child{text-align:left}svg{width:100%;max-width:640px;display:block}\
 svg text{font-size:10px;fill:#57606a}.end{text-anchor:end}.middle{text-anchor:middle}.frame{fill:none;stroke:#d8dee4}\
-polyline{fill:none;stroke-width:1.2}.mark{stroke:#afb8c1;stroke-dasharray:2 3}.level{stroke:#57606a;stroke-dasharray:6 3}\
-.s0{stroke:#0b5fa5}.s1{stroke:#b3470b}.s2{stroke:#2f7d32}.s3{stroke:#7b3fa0}.s4{stroke:#8a6d00}.s5{stroke:#444c56}\
+polyline{fill:none;stroke-width:1.2}.key{border-bottom:3px solid;margin-right:1em}.mark{stroke:#afb8c1;stroke-dasharray:2 3}.level{stroke:#57606a;stroke-dasharray:6 3}\
+.s0{stroke:#0b5fa5;border-color:#0b5fa5}.s1{stroke:#b3470b;border-color:#b3470b}.s2{stroke:#2f7d32;border-color:#2f7d32}.s3{stroke:#7b3fa0;border-color:#7b3fa0}.s4{stroke:#8a6d00;border-color:#8a6d00}.s5{stroke:#444c56;border-color:#444c56}\
 .bad{color:#b3261e}@media print{h2{break-after:avoid}}";
 
 /// The curves of a session, drawn as its trials come.
@@ -59,6 +59,7 @@ impl Page {
         map(&mut out, scores);
         metrics(&mut out, &session.trials);
         out.push_str("<h2>Curves</h2>\n");
+        legend(&mut out, session);
         for (number, curves) in &self.drawn {
             let row = session.trials.iter().find(|row| row.number == *number);
             let title = row.map_or_else(String::new, title);
@@ -325,6 +326,23 @@ fn metric_cells(trial: &TrialRow, joint: &JointMetrics) -> [String; 15] {
         number(joint.rate_hz, 0),
         joint.end_status.clone().unwrap_or("-".into()),
     ]
+}
+
+/// Which stroke is which joint, and what the straight lines are.
+fn legend(out: &mut String, session: &SessionFile) {
+    out.push_str("<p>");
+    let closes = |dof: &Dof| session.plan.close.contains_key(dof.name());
+    for dof in Dof::ALL.into_iter().filter(closes) {
+        let _done = write!(
+            out,
+            "<span class=\"key s{}\">{}</span>",
+            dof.index(),
+            dof.name()
+        );
+    }
+    out.push_str(
+        "Time counts from the closing command. Dashed: the force threshold. Dotted: close, slow, stopped, release, released.</p>\n",
+    );
 }
 
 fn curves(trial: &Trial) -> String {

@@ -173,6 +173,8 @@ fn the_page_is_whole_draws_the_curves_and_takes_no_orders() {
     let page = std::fs::read_to_string(place.join("report.html")).unwrap();
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n"));
     assert_eq!(page.matches("<svg").count(), 2 * 3);
+    assert!(page.contains("<span class=\"key s3\">index</span>"));
+    assert_eq!(page.matches("class=\"key ").count(), 1);
     assert!(page.contains("SIMULATED HAND"));
     assert!(page.contains("Ended early: ended by a person"));
     assert!(page.contains("egg &amp; cup"));
