@@ -13,6 +13,7 @@ mod desk;
 mod fake_link;
 pub mod faults;
 pub mod gestures;
+pub(crate) mod grip;
 pub mod history;
 pub mod layout;
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub mod state;
 pub mod tare;
 #[cfg(test)]
 mod tests;
+pub(crate) mod trails;
 pub mod trial;
 
 pub use action::Action;

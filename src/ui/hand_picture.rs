@@ -1,6 +1,7 @@
 //! The hand as a picture: its fingers bent as they are, fingertips as instruments. Turned by dragging; fingers are chosen.
 
 use crate::app::state::Freshness;
+use crate::app::trails::Trails;
 use crate::hand::skeleton;
 use crate::hand::{Finger, PerDof, PerFinger};
 use crate::ui::controls::{self, Button};
@@ -8,7 +9,6 @@ use crate::ui::fingertip::Tip;
 use crate::ui::hand_scene::{Limb, Scene, Turn};
 use crate::ui::look::{Look, Pane};
 use crate::ui::text::{panels, touch as text, words};
-use crate::ui::tip_trail::Trails;
 use crate::ui::{format, theme};
 use egui::{Align2, Id, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 

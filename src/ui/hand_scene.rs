@@ -1,21 +1,14 @@
 //! The hand in space on its way to the screen: projection, palm, bones, fingertips. Knows no pointer and no choice.
 
+use crate::app::trails::Trails;
 use crate::hand::Moment;
 use crate::hand::skeleton::{self, Bones, Point};
 use crate::hand::{Finger, PerDof, PerFinger};
 use crate::ui::fingertip::{self, Plane, Tip};
 use crate::ui::look::Look;
-use crate::ui::tip_trail::Trails;
+use crate::ui::theme;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 
-/// Thickness of a finger at its knuckle and at its tip, in millimetres.
-const KNUCKLE_MM: f32 = 19.0;
-const TIP_MM: f32 = 14.0;
-/// The thumb is this much thicker.
-const THUMB_MORE: f32 = 1.18;
-/// Rounding of the palm, and half its thickness.
-const PALM_MM: f32 = 14.0;
-const PALM_HALF_MM: f32 = 7.0;
 /// The ball of the thumb: where it begins, and how thick it is there and at the thumb's first joint.
 const BALL: Point = Point {
     x: 8.0,
@@ -23,11 +16,6 @@ const BALL: Point = Point {
     z: 5.0,
 };
 const BALL_MM: (f32, f32) = (34.0, 25.0);
-/// Room around the bones, for halos.
-const MARGIN_MM: f32 = 13.0;
-/// How far in front and behind light and shade go, in millimetres.
-const DEPTH_MM: f32 = 70.0;
-
 /// From where the hand is looked at, in radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Turn {
@@ -86,7 +74,7 @@ impl Scene {
             let (at, _) = scene.turned(*point);
             bounds.extend_with(at.to_pos2());
         }
-        let bounds = bounds.expand(MARGIN_MM);
+        let bounds = bounds.expand(theme::HAND_MARGIN_MM);
         scene.middle = bounds.center().to_vec2();
         scene.per_mm = (rect.width() / bounds.width()).min(rect.height() / bounds.height());
         scene
@@ -128,14 +116,16 @@ impl Scene {
     fn finger<'a>(&'a self, finger: Finger, bones: &'a Bones) -> impl Iterator<Item = Limb> + 'a {
         let count = bones.len().saturating_sub(1).max(1);
         let more = if finger == Finger::Thumb {
-            THUMB_MORE
+            theme::THUMB_MORE
         } else {
             1.0
         };
         #[expect(clippy::cast_precision_loss, reason = "at most three bones")]
         let width = move |joint: usize| {
             let part = joint as f32 / count as f32;
-            (KNUCKLE_MM + (TIP_MM - KNUCKLE_MM) * part) * more * self.per_mm
+            (theme::KNUCKLE_MM + (theme::FINGERTIP_MM - theme::KNUCKLE_MM) * part)
+                * more
+                * self.per_mm
         };
         let pairs = bones.iter().zip(bones.iter().skip(1)).enumerate();
         pairs.map(move |(at, (from, to))| {
@@ -156,13 +146,13 @@ impl Scene {
     /// The palm as a slab, and the ball of the thumb on it.
     pub(crate) fn palm(&self, painter: &Painter, look: Look, fade: f32) {
         let face = |z: f32| skeleton::PALM.map(|corner| self.project(Point { z, ..corner }).0);
-        let (back, front) = (face(-PALM_HALF_MM), face(PALM_HALF_MM));
+        let (back, front) = (face(-theme::PALM_HALF_MM), face(theme::PALM_HALF_MM));
         let palette = look.palette;
         let side = palette.limb.lerp_to_gamma(palette.card, 0.35);
         slab(
             painter,
             &back,
-            PALM_MM * self.per_mm + 2.0,
+            theme::PALM_MM * self.per_mm + 2.0,
             over(look, palette.limb_edge, fade),
         );
         for (at, next) in neighbours(&back).zip(neighbours(&front)) {
@@ -176,20 +166,20 @@ impl Scene {
         slab(
             painter,
             &back,
-            PALM_MM * self.per_mm,
+            theme::PALM_MM * self.per_mm,
             over(look, side, fade),
         );
         slab(
             painter,
             &front,
-            PALM_MM * self.per_mm + 2.0,
+            theme::PALM_MM * self.per_mm + 2.0,
             over(look, palette.limb_edge, fade),
         );
         let lit = palette.limb.lerp_to_gamma(palette.limb_lit, 0.18);
         slab(
             painter,
             &front,
-            PALM_MM * self.per_mm,
+            theme::PALM_MM * self.per_mm,
             over(look, lit, fade),
         );
         let open = skeleton::joints(&PerDof::splat(Some(1.0)));
@@ -217,10 +207,10 @@ impl Scene {
             halo(painter, look, limb, tip, fade);
         }
         // What is near is lit, what is far lies in the shade.
-        let near = (limb.depth / DEPTH_MM).clamp(-1.0, 1.0);
+        let near = (limb.depth / theme::SHADE_MM).clamp(-1.0, 1.0);
         let ground = palette
             .limb
-            .lerp_to_gamma(palette.limb_lit, 0.3 + 0.3 * near);
+            .lerp_to_gamma(palette.limb_lit, 0.3 * (1.0 + near));
         let line = palette.dof[limb.finger.bend()];
         for (grow, color) in [
             (2.5, over(look, line, fade * 0.8)),
@@ -229,7 +219,7 @@ impl Scene {
             let widths = (limb.widths.0 + grow, limb.widths.1 + grow);
             capsule(painter, limb.from, limb.to, widths, color);
         }
-        let light = vec2(-0.16, -0.16);
+        let light = Vec2::splat(-theme::LIGHT_ASIDE);
         let lit = ground.lerp_to_gamma(palette.limb_lit, 0.7);
         capsule(
             painter,
@@ -249,7 +239,7 @@ impl Scene {
     pub(crate) fn unknown(&self, painter: &Painter, look: Look, finger: Finger) {
         let open = skeleton::joints(&PerDof::splat(Some(1.0)));
         let Some(bones) = &open[finger] else { return };
-        let stroke = Stroke::new(1.2, look.palette.faint);
+        let stroke = Stroke::new(theme::THIN, look.palette.faint);
         for limb in self.finger(finger, bones) {
             let mut outline = around(limb.from, limb.to, limb.widths);
             outline.extend(outline.first().copied());
@@ -262,9 +252,9 @@ impl Scene {
         for (finger, bones) in pose.iter() {
             let Some(bones) = bones else { continue };
             let points: Vec<Pos2> = bones.iter().map(|bone| self.project(*bone).0).collect();
-            let stroke = Stroke::new(1.5, look.palette.dof[finger.bend()]);
+            let stroke = Stroke::new(theme::MEANT, look.palette.dof[finger.bend()]);
             if let Some(end) = points.last() {
-                painter.circle_stroke(*end, TIP_MM * self.per_mm * 0.4, stroke);
+                painter.circle_stroke(*end, theme::FINGERTIP_MM * self.per_mm * 0.4, stroke);
             }
             painter.extend(Shape::dashed_line(&points, stroke, 4.0, 3.0));
         }

@@ -18,14 +18,6 @@ const WINDOWS: [(f64, Text); 3] = [
 const NOISE_S: f64 = 1.0;
 /// Smallest height of the plot, in counts: less is noise.
 const LEAST_SPAN: f64 = 2_000.0;
-/// Width from which the list of channels finds room beside the plot, and its own.
-const ROOMY: f32 = 330.0;
-const LIST: f32 = 176.0;
-/// Height of a row of the list, at most.
-const ROW: f32 = 20.0;
-/// Size of an axis number.
-const AXIS: egui::Vec2 = vec2(70.0, 14.0);
-
 /// How the channels are shown.
 #[derive(Debug, Clone)]
 pub(crate) struct TipChannels {
@@ -51,7 +43,7 @@ fn color(look: Look, channel: usize) -> Color32 {
     let joints = palette.dof.as_array();
     let joint = joints.get(channel).copied();
     joint.unwrap_or(if channel == 6 {
-        palette.accent
+        palette.muted
     } else {
         palette.text
     })
@@ -63,7 +55,8 @@ impl TipChannels {
         let mut body = rect;
         let head = controls::take_top(&mut body, theme::CONTROL);
         self.head_ui(ui, head, pane);
-        let list = (body.width() >= ROOMY).then(|| controls::take_right(&mut body, LIST));
+        let list = (body.width() >= theme::CHANNELS_ROOMY)
+            .then(|| controls::take_right(&mut body, theme::CHANNEL_LIST));
         let rest = pane.state.tare.rest(finger).filter(|_| self.tared);
         let offset = |channel: usize| {
             let rest = rest.and_then(|rest| rest.raw.get(channel).copied());
@@ -175,11 +168,11 @@ impl TipChannels {
             }
         }
         let inner = rect.shrink(theme::STEP);
-        let bottom = inner.left_bottom() - vec2(0.0, AXIS.y);
+        let bottom = inner.left_bottom() - vec2(0.0, theme::AXIS_HEIGHT);
         for (corner, value) in [(inner.left_top(), high), (bottom, low)] {
             controls::paint_text(
                 ui,
-                Rect::from_min_size(corner, AXIS),
+                Rect::from_min_size(corner, vec2(theme::AXIS_WIDTH, theme::AXIS_HEIGHT)),
                 egui::Align2::LEFT_CENTER,
                 &format::counts(Some(whole(value))),
                 theme::number_small(),
@@ -192,7 +185,7 @@ impl TipChannels {
 /// Each channel with its change from rest and its noise, over the last second.
 fn list_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, finger: Finger) {
     let look = pane.look;
-    let row = (rect.height() / 9.0).min(ROW);
+    let row = (rect.height() / 9.0).min(theme::CHANNEL_ROW);
     let mut top = rect.top();
     let mut next = || {
         let place = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), row));
@@ -210,7 +203,7 @@ fn list_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, finger: Finger) {
         let place = next();
         let at = usize::from(channel);
         let dash = pos2(place.left(), place.center().y);
-        let stroke = Stroke::new(3.0, color(look, at));
+        let stroke = Stroke::new(theme::BAR, color(look, at));
         ui.painter()
             .line_segment([dash, dash + vec2(theme::PAD, 0.0)], stroke);
         let number = place.with_min_x(place.left() + theme::PAD + theme::STEP);
@@ -269,7 +262,7 @@ pub(crate) fn columns(rect: Rect) -> usize {
         clippy::cast_sign_loss,
         reason = "clamped to what a screen has"
     )]
-    let columns = rect.width().clamp(1.0, 8192.0) as usize;
+    let columns = rect.width().clamp(1.0, theme::COLUMNS_MOST) as usize;
     columns
 }
 

@@ -1,11 +1,11 @@
 //! One fingertip in detail: how near its grip is to slipping, its force in space, its forces and channels over time.
 
+use crate::app::grip::{Grip, Hold, NEAR};
 use crate::app::history::{Series, Touch, Trace};
 use crate::app::state::Freshness;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::ui::controls::{self, Label};
 use crate::ui::fingertip::Tip;
-use crate::ui::grip::{Grip, Hold, NEAR};
 use crate::ui::look::{Look, Pane};
 use crate::ui::text::{Text, panels, touch as text};
 use crate::ui::tip_channels::{TipChannels, columns};
@@ -98,7 +98,7 @@ impl TipDetail {
             let force = Force {
                 tip,
                 friction: self.friction(),
-                color: self.hold(self.finger).color(pane.look.palette),
+                color: color_of(self.hold(self.finger), pane.look.palette),
             };
             tip_space::ui(ui, pane.look, space, Id::unique("force in space"), force);
         }
@@ -164,7 +164,7 @@ impl TipDetail {
         let Some(degrees) = block.direction_deg() else {
             return;
         };
-        let color = look.value(freshness, self.hold(self.finger).color(palette));
+        let color = look.value(freshness, color_of(self.hold(self.finger), palette));
         let (sin, cos) = f32::from(degrees).to_radians().sin_cos();
         let part = (ratio / self.friction().max(0.01)).min(COMPASS_END);
         needle(painter, center, vec2(sin, -cos) * (ring * part), color);
@@ -211,7 +211,7 @@ impl TipDetail {
             (text::DIRECTION, direction, plain),
             (panels::TIP_RATIO, ratio, plain),
             (text::CHECK, check.to_owned(), check_color),
-            (panels::TIP_MARGIN, margin, hold.color(look.palette)),
+            (panels::TIP_MARGIN, margin, color_of(hold, look.palette)),
         ];
         let row = (rect.height() / 8.0).min(theme::CONTROL);
         for (caption, value, color) in &rows {
@@ -237,13 +237,13 @@ impl TipDetail {
     /// How the grip stands, in words; the alarm on a ground of its own.
     fn verdict_ui(&self, ui: &mut Ui, place: Rect, look: Look) {
         let hold = self.hold(self.finger);
-        let color = hold.color(look.palette);
+        let color = color_of(hold, look.palette);
         if hold == Hold::Slips {
             let ground = place.expand2(vec2(theme::STEP, 0.0));
             let wash = look.palette.wash(color);
             ui.painter().rect_filled(ground, theme::STEP, wash);
         }
-        Label::new(look.say(hold.words()), color).put(ui, place);
+        Label::new(look.say(words_of(hold)), color).put(ui, place);
     }
 
     fn friction_ui(&mut self, ui: &mut Ui, rect: Rect, look: Look) {
@@ -324,6 +324,27 @@ impl TipDetail {
         Label::new(&format!("{end:.1}"), palette.faint)
             .font(theme::number_small())
             .put(ui, top);
+    }
+}
+
+/// How a grip stands, in words.
+const fn words_of(hold: Hold) -> Text {
+    match hold {
+        Hold::Unknown => panels::TIP_UNKNOWN,
+        Hold::Loose => panels::TIP_LOOSE,
+        Hold::Firm => panels::TIP_HOLDS,
+        Hold::Near => panels::TIP_NEAR,
+        Hold::Slips => panels::TIP_SLIPS,
+    }
+}
+
+/// The colour of how a grip stands.
+const fn color_of(hold: Hold, palette: &theme::Palette) -> egui::Color32 {
+    match hold {
+        Hold::Unknown | Hold::Loose => palette.faint,
+        Hold::Firm => palette.ok,
+        Hold::Near => palette.warn,
+        Hold::Slips => palette.bad,
     }
 }
 

@@ -6,8 +6,7 @@ use crate::ui::look::Look;
 use crate::ui::text::{panels, touch as text};
 use crate::ui::{format, theme};
 use egui::{
-    Align2, Color32, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
-    vec2,
+    Align2, Color32, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// Half the pads' width and length in the picture, as shares of its force scale.
@@ -16,9 +15,6 @@ const PLANE: (f32, f32) = (0.42, 0.52);
 const ENDS: [f32; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
 /// Corners of the drawn circle.
 const CORNERS: u8 = 36;
-/// What is written at the axes.
-const WRITING: Vec2 = vec2(48.0, 14.0);
-
 /// What is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Force<'a> {
@@ -77,20 +73,20 @@ pub(crate) fn ui(ui: &mut Ui, look: Look, rect: Rect, id: egui::Id, force: Force
     write(
         ui,
         look,
-        space.at(0.0, 0.0, end) + vec2(30.0, 4.0),
+        space.at(0.0, 0.0, end) + vec2(theme::AXIS_ASIDE, theme::STEP),
         &format!("{end:.0} N"),
     );
     write(
         ui,
         look,
-        space.at(0.0, end * (PLANE.1 + 0.16), 0.0),
+        space.at(0.0, end * (PLANE.1 * 1.3), 0.0),
         look.say(panels::TIP_UP),
     );
     let Some(normal) = normal else {
         write(
             ui,
             look,
-            rect.center_top() + vec2(0.0, 12.0),
+            rect.center_top() + vec2(0.0, theme::PAD),
             format::UNKNOWN,
         );
         return;
@@ -107,7 +103,7 @@ pub(crate) fn ui(ui: &mut Ui, look: Look, rect: Rect, id: egui::Id, force: Force
     let (sin, cos) = direction.to_radians().sin_cos();
     let (x, y) = (shear.abs().min(end) * sin, shear.abs().min(end) * cos);
     let (zero, head) = (space.at(0.0, 0.0, 0.0), space.at(x, y, normal));
-    let thin = Stroke::new(1.2, palette.muted.gamma_multiply(fade));
+    let thin = Stroke::new(theme::THIN, palette.muted.gamma_multiply(fade));
     for (from, to) in [
         (space.at(x, y, 0.0), head),
         (space.at(0.0, 0.0, normal), head),
@@ -118,7 +114,7 @@ pub(crate) fn ui(ui: &mut Ui, look: Look, rect: Rect, id: egui::Id, force: Force
         [zero, space.at(x, y, 0.0)],
         Stroke::new(2.0, palette.muted.gamma_multiply(fade)),
     );
-    painter.line_segment([zero, head], Stroke::new(2.5, color));
+    painter.line_segment([zero, head], Stroke::new(theme::NEEDLE, color));
     painter.circle_filled(head, theme::LAMP + 1.0, color);
 }
 
@@ -160,7 +156,7 @@ fn cone(painter: &Painter, look: Look, space: &Space, normal: f32, friction: f32
         .iter()
         .max_by(|a, b| sides(a).total_cmp(&sides(b)))
         .copied();
-    let stroke = Stroke::new(1.2, palette.ok.gamma_multiply(0.8));
+    let stroke = Stroke::new(theme::THIN, palette.ok);
     for side in left.into_iter().chain(right) {
         painter.line_segment([apex, side], stroke);
     }
@@ -168,7 +164,7 @@ fn cone(painter: &Painter, look: Look, space: &Space, normal: f32, friction: f32
 }
 
 fn write(ui: &Ui, look: Look, at: Pos2, words: &str) {
-    let place = Rect::from_center_size(at, WRITING);
+    let place = Rect::from_center_size(at, vec2(theme::AXIS_WIDTH, theme::AXIS_HEIGHT));
     controls::paint_text(
         ui,
         place,

@@ -1,10 +1,10 @@
 //! The five fingertips: small over their numbers in the overview, large in their own view with one of them in detail.
 
 use crate::app::action::Action;
+use crate::app::grip::Hold;
 use crate::hand::{Finger, PerFinger};
 use crate::ui::controls::{self, Button, Label};
 use crate::ui::fingertip::{self, Sense, Tip};
-use crate::ui::grip::Hold;
 use crate::ui::hand_picture::HandView;
 use crate::ui::look::Pane;
 use crate::ui::text::{panels, touch as text, words};

@@ -8,9 +8,6 @@ use crate::ui::tip_channels::signed;
 use crate::ui::{format, theme};
 use egui::{Rect, Ui, pos2, vec2};
 
-/// Height of a row, at most.
-const ROW_MOST: f32 = 24.0;
-
 /// How the numbers under the pictures are set.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sheet {
@@ -139,7 +136,7 @@ fn channels_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sheet: Sheet) {
 pub(crate) fn all_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
     let look = pane.look;
     let captions = [panels::TOUCH_DELTA_N, panels::TOUCH_DELTA_T];
-    let row = (rect.height() / 16.5).clamp(11.0, ROW_MOST);
+    let row = (rect.height() / 16.5).clamp(theme::TABLE_ROW_LEAST, theme::CONTROL);
     let sheet = Sheet::new(ui, look, &captions, row, row > 15.0);
     let mut body = rect;
     let mut take = |rows: f32| {

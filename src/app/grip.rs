@@ -1,9 +1,6 @@
 //! How the grip of a fingertip stands against slipping, for a friction that a person chose. Draws nothing.
 
 use crate::hand::TactileBlock;
-use crate::ui::text::{Text, panels};
-use crate::ui::theme::Palette;
-use egui::Color32;
 
 /// Below this normal force a ratio of forces says nothing, in newtons.
 const CONTACT_N: f32 = 0.2;
@@ -75,27 +72,6 @@ impl Hold {
             Self::Near
         } else {
             Self::Firm
-        }
-    }
-
-    /// Its words.
-    pub(crate) const fn words(self) -> Text {
-        match self {
-            Self::Unknown => panels::TIP_UNKNOWN,
-            Self::Loose => panels::TIP_LOOSE,
-            Self::Firm => panels::TIP_HOLDS,
-            Self::Near => panels::TIP_NEAR,
-            Self::Slips => panels::TIP_SLIPS,
-        }
-    }
-
-    /// Its colour.
-    pub(crate) const fn color(self, palette: &Palette) -> Color32 {
-        match self {
-            Self::Unknown | Self::Loose => palette.faint,
-            Self::Firm => palette.ok,
-            Self::Near => palette.warn,
-            Self::Slips => palette.bad,
         }
     }
 }
