@@ -139,7 +139,9 @@ impl Scene {
         let (logic, ()) = cpu_ms(|| self.cockpit.logic(now));
         let cockpit = &mut self.cockpit;
         let context = &self.context;
-        let (layout, output) = cpu_ms(|| context.run_ui(screen(now), |ui| cockpit.ui(ui, now)));
+        let (layout, mut output) = cpu_ms(|| context.run_ui(screen(now), |ui| cockpit.ui(ui, now)));
+        // There is no screen that would take them.
+        output.textures_delta.clear();
         let (triangles, meshes) =
             cpu_ms(|| context.tessellate(output.shapes, output.pixels_per_point));
         std::hint::black_box(meshes);
