@@ -182,15 +182,10 @@ fn what_hits_hard_or_moves_the_hand_elsewhere_needs_a_yes_and_says_why() {
         assert!(ended.err.contains("nothing was written"), "{}", ended.err);
     }
     let elsewhere = bench.file("hand_id = 9");
-    let args = ["apply", text(&elsewhere), "--only", "hand_id", "--yes"];
     for bus in bench.wires.iter().filter(|hand| !hand.starts_with("tcp:")) {
-        let ended = bench.words(bus, &args);
-        assert_eq!(ended.code, Some(1), "{bus}");
-        assert!(
-            ended.err.contains("would not be found there any more"),
-            "{}",
-            ended.err
-        );
+        let ended = bench.words(bus, &["apply", text(&elsewhere), "--only", "hand_id"]);
+        assert_eq!(ended.code, Some(2), "{bus}");
+        assert!(ended.err.contains("hand_id becomes 9"), "{}", ended.err);
     }
     for command in ["save", "reset"] {
         let ended = bench.words(hand, &[command]);
@@ -333,4 +328,73 @@ fn a_reset_makes_a_backup_that_brings_everything_back() {
             .params(hand, &["diff", text(&bench.path("wanted.toml"))])
             .ok();
     }
+}
+
+#[test]
+fn a_new_id_is_followed_kept_if_saved_and_gone_with_the_power_if_not() {
+    for kind in ["rs485:", "rtu:", "slcan:"] {
+        let mut bench = Bench::new(&[]);
+        let hand = bench.wires.iter().find(|hand| hand.starts_with(kind));
+        let hand = hand.unwrap().clone();
+        let path = bench.file("hand_id = 9");
+        let args = ["apply", text(&path), "--only", "hand_id", "--yes"];
+        let moved = json(&bench.params(&hand, &args).ok());
+        assert_eq!(moved["rows"][0]["verdict"], "moved", "{moved}");
+        let place = moved["answers_at"].as_str().unwrap().to_owned();
+        assert!(place.contains("id=9"), "{place}");
+        bench.power_cycle();
+        bench.params(&hand, &["dump"]).ok();
+        bench.params(&hand, &args).ok();
+        bench.params(&place, &["save", "--yes"]).ok();
+        bench.power_cycle();
+        let kept = json(&bench.params(&place, &["dump"]).ok());
+        assert_eq!(kept["params"]["hand_id"], 9, "{kind}");
+        // The reset brings the factory's id back, and the hand is found there.
+        let reset = json(&bench.params(&place, &["reset", "--yes"]).ok());
+        assert_eq!(reset["params"]["hand_id"], 1, "{kind}");
+        let again = reset["answers_at"].as_str().unwrap();
+        assert!(!again.contains("id=9"), "{again}");
+    }
+}
+
+#[test]
+fn an_id_that_another_hand_has_or_that_waits_for_a_save_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_sim, wires) = sim_on_all(folder.path(), &["--id", "1,9"]);
+    let path = folder.path().join("id.toml");
+    std::fs::write(
+        &path,
+        "format = \"handscope-params\"\nversion = 1\nhand_id = 9\n",
+    )
+    .unwrap();
+    let records = folder.path().join("records");
+    let common = [
+        "--json",
+        "--folder",
+        text(&records),
+        "--only",
+        "hand_id",
+        "--yes",
+    ];
+    let ended = run(&[
+        &["params", "apply", text(&path), "--hand", &wires.rs485][..],
+        &common,
+    ]
+    .concat());
+    assert_eq!(ended.code, Some(1));
+    assert_eq!(json(&ended)["rows"][0]["verdict"], "occupied");
+    assert!(ended.err.contains("another hand answers"), "{}", ended.err);
+    let unchanged = run(&["read", "HAND_ID", "--json", "--hand", &wires.rs485]).ok();
+    assert_eq!(json(&unchanged)["HAND_ID"], 1);
+
+    let bench = Bench::new(&["id-effect=after-save", "change-ack=none"]);
+    let path = bench.file("hand_id = 9");
+    let args = ["apply", text(&path), "--only", "hand_id", "--yes"];
+    let waits = json(&bench.params(bench.rs485(), &args).ok());
+    assert_eq!(waits["rows"][0]["verdict"], "waits", "{waits}");
+    let place = waits["answers_at"].as_str().unwrap();
+    assert!(
+        place.starts_with(bench.rs485()) && !place.contains("id=9"),
+        "{place}"
+    );
 }

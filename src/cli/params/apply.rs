@@ -7,12 +7,12 @@ use crate::app::params::table::ParamId;
 use crate::app::params::values::Params;
 use crate::cli::out::{Out, Told, WrongUsage, say};
 use crate::cli::params::args::ApplyArgs;
+use crate::cli::params::relocate::{self, Change};
 use crate::cli::params::show;
 use crate::cli::params::talk::Talk;
 use crate::cli::params::words::{self, or_dash, record, since_1970};
 use crate::cli::session;
 use crate::link::{Verdict, Written};
-use crate::transport::Endpoint;
 use anyhow::{Context as _, anyhow};
 use serde_json::{Value, json};
 
@@ -40,21 +40,42 @@ pub(crate) fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
             path.display()
         ));
     }
-    reachable_after(&args.common.hand, &wanted)?;
-    session::runtime()?.block_on(apply(out, args, &file.params, &wanted))
+    let change = relocate::wanted_change(&args.common.hand, &wanted)?;
+    session::runtime()?.block_on(async {
+        match change {
+            Some(change) => elsewhere(out, args, &wanted, &change).await,
+            None => apply(out, args, &file.params, &wanted).await,
+        }
+    })
 }
 
-/// Refuses what would leave the person with a hand that does not answer here any more: by these rows it is found on a bus.
-fn reachable_after(hand: &Endpoint, wanted: &Params) -> anyhow::Result<()> {
-    let moves = [ParamId::HandId, ParamId::ReduRatio];
-    let moved = moves.into_iter().find(|id| wanted.get(*id).is_some());
-    match (hand, moved) {
-        (Endpoint::Tcp { .. }, _) | (_, None) => Ok(()),
-        (_, Some(id)) => Err(anyhow!(
-            "{} cannot be changed through {hand}: the hand would not be found there any more. Change it over Modbus TCP, or with the maker's tool; nothing was written",
-            id.name()
-        )),
+/// A row by which the hand is found on this wire.
+async fn elsewhere(
+    out: &mut Out,
+    args: &ApplyArgs,
+    wanted: &Params,
+    change: &Change,
+) -> anyhow::Result<()> {
+    let record = record(&args.common)?;
+    let mut talk = Talk::open(&args.common.hand).await?;
+    let before = talk.read_whole().await?;
+    drop(talk);
+    let plan = plan::plan(wanted, &before);
+    consent(&plan, &before, args)?;
+    if plan.settings.is_empty() {
+        return nothing_to_write(out, args);
     }
+    relocate::run(out, args, &record, &before, change).await
+}
+
+fn nothing_to_write(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
+    if args.common.json {
+        let hand = args.common.hand.to_string();
+        let object =
+            json!({ "hand": hand, "backup": null, "rows": [], "applied": true, "undone": null });
+        return out.line(&object.to_string());
+    }
+    out.line("the hand holds all of it already; nothing was written")
 }
 
 async fn apply(
@@ -81,11 +102,7 @@ async fn apply(
         }
     }
     if plan.settings.is_empty() {
-        if common.json {
-            let object = json!({ "hand": common.hand.to_string(), "backup": null, "rows": [], "applied": true, "undone": null });
-            return out.line(&object.to_string());
-        }
-        return out.line("the hand holds all of it already; nothing was written");
+        return nothing_to_write(out, args);
     }
     let backup = record
         .back_up(&before, "before apply", since_1970())

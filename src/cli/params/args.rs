@@ -22,7 +22,7 @@ pub(crate) enum ParamsCommand {
     Diff(DiffArgs),
     /// Write the rows of a file that differ, read each back, and say what came of it
     #[command(
-        after_help = "A file is taken whole or not at all. Before anything is written, what the hand holds goes into a backup. If a row is not applied, the others are put back, unless --partial is given. Nothing is in flash before 'handscope params save'.\n\nRows that say where a hand is found (hand_id, redu_ratio, ip_address) are left alone unless --only names them; hand_id and redu_ratio are changed over Modbus TCP only, and ip_address acts once it was saved and the hand was switched off and on. Such rows, and speeds and forces that hit harder than before on a stiff object, need --yes."
+        after_help = "A file is taken whole or not at all. Before anything is written, what the hand holds goes into a backup. If a row is not applied, the others are put back, unless --partial is given. Nothing is in flash before 'handscope params save'.\n\nRows that say where a hand is found (hand_id, redu_ratio, ip_address) are left alone unless --only names them; hand_id and redu_ratio are changed one at a time, and the hand is looked for at the new and at the old place; a new id is refused if another hand has it. ip_address acts once it was saved and the hand was switched off and on. Such rows, and speeds and forces that hit harder than before on a stiff object, need --yes."
     )]
     Apply(ApplyArgs),
     /// Write the hand's parameters to its flash, so that it wakes up with them

@@ -6,6 +6,7 @@ mod args;
 mod backups;
 mod diff;
 mod dump;
+mod relocate;
 mod reset;
 mod save;
 mod show;

@@ -79,7 +79,7 @@ async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
 /// Where the hand answers after a reset, and what it holds there: at the factory's id and speed, else where it was.
 async fn found(hand: &Endpoint) -> Option<(Endpoint, Params)> {
     for place in [factory_place(hand), hand.clone()] {
-        let Ok(mut talk) = Talk::open(&place).await else {
+        let Ok(mut talk) = Talk::open_next(&place).await else {
             continue;
         };
         if let Ok((live, _)) = talk.read().await {

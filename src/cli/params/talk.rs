@@ -3,7 +3,7 @@
 use crate::app::params::table::ParamId;
 use crate::app::params::values::{Params, SPANS};
 use crate::cli::session::{self, ANSWER_WITHIN};
-use crate::hand::{Setting, Span};
+use crate::hand::{HandCommand, Setting, Span};
 use crate::link::{
     Clock, LinkEvent, LinkHandle, NotSent, Outcome, PollRates, Request, RequestError, Reset, Saved,
     Ticket, Verdict, Written,
@@ -23,6 +23,8 @@ const ONLY_THE_STATE: PollRates = PollRates {
 const END_WITHIN: Duration = Duration::from_secs(8);
 /// A hand that moves is waited for this long.
 const RESTS_WITHIN: Duration = Duration::from_secs(3);
+/// Between giving up a port and taking it again.
+const PORT_RESTS: Duration = Duration::from_millis(300);
 /// So often it is asked again.
 const AGAIN_EACH: Duration = Duration::from_millis(200);
 /// Tries to read a group: a late answer may have to be waited out, and a lost link comes back.
@@ -43,6 +45,12 @@ impl Talk {
             link,
             hand: hand.clone(),
         })
+    }
+
+    /// The same on a port that another link was just given up on: it takes a moment to be free.
+    pub(crate) async fn open_next(hand: &Endpoint) -> anyhow::Result<Self> {
+        sleep(PORT_RESTS).await;
+        Self::open(hand).await
     }
 
     /// Waits until the hand answers again, if the link was lost.
@@ -118,6 +126,14 @@ impl Talk {
         match self.rested(Request::Set(setting)).await? {
             Outcome::Written(written) => Ok(written),
             other => Err(unexpected(&other)),
+        }
+    }
+
+    /// Tells the hand something once; the reason if it was refused. A missing answer is no refusal.
+    pub(crate) async fn tell(&mut self, command: HandCommand) -> Option<String> {
+        match self.ask(Request::Command(command)).await {
+            Err(RequestError::Refused { reason, .. }) => Some(reason),
+            _ => None,
         }
     }
 
