@@ -78,28 +78,15 @@ const LENGTH_CALLS: [&str; 26] = [
 /// Halves, wholes and doubles of a length with a name.
 const FREE_NUMBERS: [&str; 7] = ["0.0", "0.5", "1.0", "2.0", "0", "1", "2"];
 /// Files of the window whose lengths have no names in the theme yet. This list only becomes shorter.
-const LENGTHS_WITHOUT_NAMES: [&str; 44] = [
-    "ui/banner.rs",
-    "ui/budget.rs",
-    "ui/connection.rs",
-    "ui/controls.rs",
+const LENGTHS_WITHOUT_NAMES: [&str; 27] = [
     "ui/drive_tiles.rs",
     "ui/fault_entry.rs",
     "ui/faults.rs",
     "ui/fingertip.rs",
-    "ui/frame_menu.rs",
     "ui/gesture_editor.rs",
     "ui/gestures.rs",
     "ui/hand_picture.rs",
-    "ui/joint_readings.rs",
-    "ui/joint_row.rs",
-    "ui/joint_tracks.rs",
-    "ui/joints.rs",
-    "ui/link_figures.rs",
-    "ui/list.rs",
     "ui/message_log.rs",
-    "ui/note_bar.rs",
-    "ui/number.rs",
     "ui/plot_axes.rs",
     "ui/plot_cursors.rs",
     "ui/plot_head.rs",
@@ -108,18 +95,14 @@ const LENGTHS_WITHOUT_NAMES: [&str; 44] = [
     "ui/pose_editor.rs",
     "ui/pose_tiles.rs",
     "ui/pose_view.rs",
-    "ui/quirk_sheet.rs",
     "ui/recording_plot.rs",
     "ui/recordings.rs",
     "ui/scan.rs",
     "ui/sequence_step.rs",
     "ui/sequence_view.rs",
-    "ui/text_field.rs",
     "ui/tip_detail.rs",
-    "ui/top_bar.rs",
     "ui/touch.rs",
     "ui/touch_heat.rs",
-    "ui/track.rs",
     "ui/traffic.rs",
     "ui/traffic_detail.rs",
     "ui/traffic_list.rs",
@@ -143,8 +126,10 @@ fn nameless_lengths(code: &str) -> Vec<String> {
     }
     for sign in [" + ", " - ", " += ", " -= "] {
         for (at, _) in code.match_indices(sign) {
-            let number = number_at(&code[at + sign.len()..]);
-            if number.contains('.') && !FREE_NUMBERS.contains(&number) {
+            let rest = &code[at + sign.len()..];
+            let number = number_at(rest);
+            let factor = rest[number.len()..].trim_start().starts_with(['*', '/']);
+            if number.contains('.') && !factor && !FREE_NUMBERS.contains(&number) {
                 found.push(format!("{}{number}", sign.trim_start()));
             }
         }
@@ -199,7 +184,8 @@ fn plain_numbers(code: &str) -> impl Iterator<Item = &str> {
         let factor = matches!(before, Some('*' | '/'))
             || after.starts_with('*')
             || after.starts_with('/')
-            || after.starts_with("..");
+            || after.starts_with("..")
+            || code[..at].ends_with("gamma_multiply(");
         (!factor && !FREE_NUMBERS.contains(&number)).then_some(number)
     })
 }

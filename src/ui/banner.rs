@@ -167,10 +167,12 @@ impl Banner {
             StrokeKind::Inside,
         );
         let mut rest = ground.shrink2(vec2(theme::PAD, 0.0));
-        let sign =
-            Rect::from_center_size(pos2(rest.left() + 8.0, rest.center().y), vec2(16.0, 14.0));
+        let sign = Rect::from_center_size(
+            pos2(rest.left() + theme::SIGN / 2.0, rest.center().y),
+            vec2(theme::SIGN, theme::SIGN_HEIGHT),
+        );
         controls::warning_sign(ui, sign, self.color);
-        rest.min.x += 26.0;
+        rest.min.x += theme::SIGN_ROOM;
         let title = look.say(self.title);
         let width = controls::text_width(ui, title, theme::title()) + 1.0;
         Label::new(title, self.color)

@@ -8,10 +8,10 @@ use crate::ui::{format, theme};
 use egui::{Color32, Rect, Ui};
 
 /// Height of the card: title, head, five groups, writes, and the whole line.
-pub(crate) const HEIGHT: f32 = 236.0;
+pub(crate) const HEIGHT: f32 = theme::FIGURES_CARD;
 /// Widths of the columns, from the right: what the wire could give, share, rate now.
 const COLUMNS: [f32; 3] = [72.0, 60.0, 64.0];
-const ROW: f32 = 18.0;
+const ROW: f32 = theme::FIGURE_ROW;
 
 /// Draws the card.
 pub(crate) fn budget_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {

@@ -15,9 +15,9 @@ use crate::ui::theme;
 use egui::{Id, Rect, TextEdit, Ui, pos2, vec2};
 
 /// Width of the captions of the form.
-const CAPTION: f32 = 112.0;
+const CAPTION: f32 = theme::CAPTION_WIDE;
 /// Height of the longest form, with one row of ports.
-const HEIGHT: f32 = 440.0;
+const HEIGHT: f32 = theme::CONNECTION_CARD;
 /// Rows of ports shown at once.
 const PORTS_MAX: usize = 4;
 
@@ -111,7 +111,7 @@ impl Default for ConnectionForm {
 }
 
 /// Width of the button that swaps the card below the figures.
-const SWAP: f32 = 124.0;
+const SWAP: f32 = theme::SWAP;
 
 impl ConnectionForm {
     /// Draws the form and, beside it, how the link goes.
@@ -407,7 +407,7 @@ fn field_ui(
     text: &mut String,
 ) {
     let look = pane.look;
-    let mut row = take_top(body, 28.0);
+    let mut row = take_top(body, theme::LINE_HIGH);
     let name = look.say(caption);
     let left = take_left(&mut row, CAPTION - theme::GAP);
     Label::new(name, look.palette.muted).put(ui, left);
@@ -418,7 +418,7 @@ fn field_ui(
         .align(egui::Align2::LEFT_CENTER)
         .margin(egui::Margin::symmetric(8, 2))
         .min_size(row.size())
-        .desired_width(row.width() - 16.0);
+        .desired_width(row.width() - theme::FIELD_MARGIN);
     let response = ui.put(row, edit);
     let value = text.clone();
     response.widget_info(|| {
@@ -429,7 +429,7 @@ fn field_ui(
 }
 
 fn caption_value_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, caption: Text, value: &str) {
-    let mut row = take_top(body, 18.0);
+    let mut row = take_top(body, theme::FIGURE_ROW);
     let left = take_left(&mut row, CAPTION - theme::GAP);
     let caption = pane.look.say(caption);
     Label::new(caption, pane.look.palette.muted).put(ui, left);

@@ -286,7 +286,7 @@ impl<'a> Button<'a> {
 pub(crate) fn focus_ring(ui: &Ui, look: Look, response: &Response, rect: Rect) {
     if response.has_focus() {
         let round = CornerRadius::same(theme::ROUND_SMALL + 2);
-        let stroke = Stroke::new(1.5, look.palette.accent);
+        let stroke = Stroke::new(theme::FOCUS_LINE, look.palette.accent);
         ui.painter()
             .rect_stroke(rect.expand(2.0), round, stroke, StrokeKind::Outside);
     }
@@ -339,7 +339,11 @@ pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
 /// A round lamp.
 pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
     let painter = ui.painter();
-    painter.circle_filled(center, theme::LAMP + 2.5, color.gamma_multiply(0.22));
+    painter.circle_filled(
+        center,
+        theme::LAMP + theme::HALO,
+        color.gamma_multiply(0.22),
+    );
     painter.circle_filled(center, theme::LAMP, color);
 }
 

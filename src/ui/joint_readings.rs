@@ -40,7 +40,7 @@ impl Row {
             pane.look.palette.text
         };
         let name = self.named(pane, main::NAME_ANGLE_ACTUAL);
-        let (left, right) = rect.split_left_right_at_x(rect.right() - 52.0);
+        let (left, right) = rect.split_left_right_at_x(rect.right() - theme::FIELD);
         Label::new(&raw, pane.look.value(freshness, live))
             .number()
             .right()
@@ -122,7 +122,7 @@ fn share(value: i16, (low, high): (i16, i16)) -> f32 {
 
 /// A thin bar below a number; an empty rail where the value is not known.
 fn bar(ui: &Ui, pane: &Pane<'_>, rect: Rect, part: (f32, f32), level: Option<f32>, color: Color32) {
-    let middle = rect.center().y + 8.0;
+    let middle = rect.center().y + theme::BELOW_NUMBER;
     let x = |part: f32| rect.left() + rect.width() * part;
     let rail = Rect::from_min_max(pos2(x(part.0), middle), pos2(x(part.1), middle + BAR));
     let round = CornerRadius::same(1);

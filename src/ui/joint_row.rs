@@ -13,9 +13,9 @@ use crate::ui::theme;
 use egui::{Color32, CornerRadius, Id, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// Rows at least this high show force and speed on lines of their own.
-const ROOMY: f32 = 92.0;
+const ROOMY: f32 = theme::ROOMY_ROW;
 /// Width of the readings at the right.
-pub(crate) const READING: f32 = 112.0;
+pub(crate) const READING: f32 = theme::READING;
 /// The newest value of one joint, and how fresh it is.
 pub(crate) fn newest<T: Copy>(
     pane: &Pane<'_>,
@@ -68,12 +68,12 @@ impl Row {
         let roomy = rect.height() >= ROOMY;
         let bar = Rect::from_min_max(
             pos2(rect.left(), rect.top() + theme::STEP),
-            pos2(rect.left() + 3.0, rect.bottom() - theme::STEP),
+            pos2(rect.left() + theme::BAR, rect.bottom() - theme::STEP),
         );
         ui.painter()
             .rect_filled(bar, CornerRadius::same(2), self.color);
         let inner = rect
-            .with_min_x(rect.left() + 12.0)
+            .with_min_x(rect.left() + theme::PAD)
             .shrink2(vec2(0.0, theme::STEP));
         if self.dof != Dof::Little {
             let stroke = egui::Stroke::new(1.0, palette.grid);
@@ -108,15 +108,15 @@ impl Row {
     fn head_ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, roomy: bool) {
         let palette = pane.look.palette;
         let mut rest = rect;
-        let name = take_left(&mut rest, 84.0);
+        let name = take_left(&mut rest, theme::NAME_COLUMN);
         Label::new(self.name, palette.text).put(ui, name);
-        self.lock_ui(ui, take_right(&mut rest, 20.0), pane);
+        self.lock_ui(ui, take_right(&mut rest, theme::SMALL_BUTTON), pane);
         if !roomy {
             rest.max.x += theme::STEP;
-            let drive = take_right(&mut rest, 78.0);
+            let drive = take_right(&mut rest, theme::DRIVE_COLUMN);
             self.drive_reading_ui(ui, drive, pane);
             rest.max.x += theme::STEP;
-            let force = take_right(&mut rest, 40.0);
+            let force = take_right(&mut rest, theme::FORCE_COLUMN);
             self.force_reading_ui(ui, force, pane);
             rest.max.x += theme::STEP;
         }
@@ -135,8 +135,12 @@ impl Row {
         if response.clicked() {
             *pane.explain = Some(Explain::Drive(self.dof));
         }
-        controls::lamp(ui, pos2(rect.left() + 6.0, rect.center().y), said.lamp);
-        let place = rect.with_min_x(rect.left() + 17.0);
+        controls::lamp(
+            ui,
+            pos2(rect.left() + theme::LAMP_AT, rect.center().y),
+            said.lamp,
+        );
+        let place = rect.with_min_x(rect.left() + theme::INDENT);
         let name = self.named(pane, main::STATUS);
         Label::new(&said.title, said.text)
             .small()
@@ -158,8 +162,8 @@ impl Row {
         if impact::rough_from_speed(joint.force).is_none_or(|rough| joint.speed < rough) {
             return;
         }
-        let place = take_right(rest, 16.0);
-        let sign = controls::middle(place, 12.0).shrink2(vec2(1.0, 0.0));
+        let place = take_right(rest, theme::SIGN);
+        let sign = controls::middle(place, theme::SIGN_SMALL).shrink2(vec2(1.0, 0.0));
         controls::warning_sign(ui, sign, pane.look.palette.warn);
         let name = self.named(pane, main::NAME_IMPACT);
         let response = ui.interact(place, self.id("impact"), Sense::hover());
@@ -183,7 +187,7 @@ impl Row {
     fn lock_ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
         let locked = pane.state.joints[self.dof].locked;
-        let place = controls::middle(rect, 20.0);
+        let place = controls::middle(rect, theme::SMALL_BUTTON);
         let response = ui.interact(place, self.id("lock"), Sense::click());
         let name = self.named(pane, main::NAME_LOCK);
         response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, locked, &name));

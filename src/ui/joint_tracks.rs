@@ -15,9 +15,9 @@ use egui::{Color32, Id, Rect, Ui};
 use std::ops::RangeInclusive;
 
 /// Width of a number field.
-const FIELD: f32 = 52.0;
+const FIELD: f32 = theme::FIELD;
 /// Width of a caption.
-const CAPTION: f32 = 36.0;
+const CAPTION: f32 = theme::CAPTION;
 /// Fingers that move together when they are linked. The thumb is apart: its way is another.
 const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
 

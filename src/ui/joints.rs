@@ -13,9 +13,9 @@ use crate::ui::{format, theme};
 use egui::{Id, Rect, Ui, pos2, vec2};
 
 /// No line of a row grows higher than this.
-const LINE_MAX: f32 = 28.0;
+const LINE_MAX: f32 = theme::LINE_HIGH;
 /// No line of a row is lower than this; the list scrolls instead.
-const LINE_MIN: f32 = 19.0;
+const LINE_MIN: f32 = theme::LINE_LOW;
 
 /// The column of joints.
 #[derive(Debug, Clone, Copy, Default)]

@@ -9,7 +9,7 @@ use crate::ui::{format, theme};
 use egui::{Color32, Rect, Ui, pos2};
 
 /// From this height on there is room for the line's budget below the figures.
-const WITH_BUDGET: f32 = 640.0;
+const WITH_BUDGET: f32 = theme::BUDGET_FROM;
 
 /// True if the card has room for the line's budget below it.
 pub(crate) fn has_budget(rect: Rect) -> bool {
@@ -26,21 +26,21 @@ pub(crate) fn link_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
     }
     let (_, mut body) = controls::titled_card(ui, look, rect, look.say(panels::LINK_NOW));
     let (word, color) = link_words(pane);
-    let mut row = take_top(&mut body, 20.0);
-    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), color);
-    row.min.x += 17.0;
+    let mut row = take_top(&mut body, theme::TITLE_LINE);
+    controls::lamp(ui, pos2(row.left() + theme::LAMP_AT, row.center().y), color);
+    row.min.x += theme::INDENT;
     let since = format::age(pane.state.now.since(pane.state.link.since));
     let text = format!("{}, {} {since}", look.say(word), look.say(panels::SINCE));
     Label::new(&text, look.palette.text).put(ui, row);
     if let Some(endpoint) = &pane.state.endpoint {
-        let row = take_top(&mut body, 16.0);
+        let row = take_top(&mut body, theme::TEXT_LINE);
         Label::new(&endpoint.to_string(), look.palette.muted)
             .number()
             .put(ui, row);
     }
     if let Some(port) = &pane.state.link.moved_to {
         let text = format!("{} {port}", look.say(panels::MOVED_TO));
-        Label::new(&text, look.palette.warn).put(ui, take_top(&mut body, 16.0));
+        Label::new(&text, look.palette.warn).put(ui, take_top(&mut body, theme::TEXT_LINE));
     }
     if pane.state.link.echoes {
         paragraph_ui(ui, &mut body, look.say(panels::ECHOES), look.palette.muted);
@@ -52,13 +52,13 @@ pub(crate) fn link_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
     take_top(&mut body, 0.0);
     for group in figures(pane) {
         for (caption, value, color) in group {
-            if body.height() < 18.0 {
+            if body.height() < theme::FIGURE_ROW {
                 return;
             }
-            let mut row = take_top(&mut body, 18.0);
+            let mut row = take_top(&mut body, theme::FIGURE_ROW);
             body.min.y -= theme::GAP - 2.0;
             let caption = look.say(caption);
-            let right = take_right(&mut row, 96.0);
+            let right = take_right(&mut row, theme::COUNT_COLUMN);
             Label::new(caption, look.palette.muted).put(ui, row);
             Label::new(&value, color)
                 .number()

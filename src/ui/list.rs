@@ -6,13 +6,13 @@ use egui::text::{LayoutJob, TextFormat};
 use egui::{Color32, Id, Rect, Response, Ui, UiBuilder, pos2, vec2};
 
 /// Height of a line of small text.
-pub(crate) const LINE: f32 = 17.0;
+pub(crate) const LINE: f32 = theme::LIST_LINE;
 /// Height of a line with a lamp or a title.
-pub(crate) const TITLE_LINE: f32 = 20.0;
+pub(crate) const TITLE_LINE: f32 = theme::TITLE_LINE;
 /// Where the middle of a lamp stands in that room.
-pub(crate) const LAMP_AT: f32 = 6.0;
+pub(crate) const LAMP_AT: f32 = theme::LAMP_AT;
 /// Room for the lamp before a title.
-pub(crate) const INDENT: f32 = 17.0;
+pub(crate) const INDENT: f32 = theme::INDENT;
 
 /// A list at a place. `lines` adds them from top to bottom with [`piece`], in the width that it is given.
 pub(crate) fn scroll_ui(ui: &mut Ui, rect: Rect, salt: &str, lines: impl FnOnce(&mut Ui, f32)) {

@@ -110,7 +110,7 @@ impl NoteBar {
             .frame(frame)
             .min_size(rect.size())
             .align(egui::Align2::LEFT_CENTER)
-            .desired_width(rect.width() - 14.0);
+            .desired_width(rect.width() - theme::FIELD_MARGIN_SMALL);
         let place = UiBuilder::new().max_rect(rect);
         let response = ui.scope_builder(place, |ui| ui.add(edit)).inner;
         let text = self.text.clone();

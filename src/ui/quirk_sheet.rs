@@ -10,13 +10,13 @@ use crate::ui::theme;
 use egui::{Id, Rect, Ui};
 
 /// Height of the card: a title, six lines, and the button.
-pub(crate) const HEIGHT: f32 = 236.0;
+pub(crate) const HEIGHT: f32 = theme::FIGURES_CARD;
 /// The edition of the manual by which a code is read; others number differently.
 const EDITION: &str = "V1.0.0";
 /// Width of the captions.
-const CAPTION: f32 = 112.0;
-const LINE: f32 = 19.0;
-const COPY_WIDTH: f32 = 92.0;
+const CAPTION: f32 = theme::CAPTION_WIDE;
+const LINE: f32 = theme::LINE_LOW;
+const COPY_WIDTH: f32 = theme::COPY_BUTTON;
 
 /// Draws the card.
 pub(crate) fn sheet_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {

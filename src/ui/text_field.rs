@@ -38,7 +38,7 @@ impl TextField<'_> {
             .align(egui::Align2::LEFT_CENTER)
             .margin(Margin::symmetric(6, 0))
             .min_size(rect.size())
-            .desired_width(rect.width() - 12.0);
+            .desired_width(rect.width() - theme::PAD);
         let response = ui.put(rect, edit);
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::TextInput, true, self.name);

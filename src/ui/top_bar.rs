@@ -13,9 +13,9 @@ use crate::ui::{format, theme};
 use egui::{Align2, Color32, CornerRadius, Id, Rect, Stroke, Ui, pos2, vec2};
 
 /// Width of STOP.
-const STOP_WIDTH: f32 = 148.0;
+const STOP_WIDTH: f32 = theme::STOP_WIDTH;
 /// Width of Arm.
-const ARM_WIDTH: f32 = 96.0;
+const ARM_WIDTH: f32 = theme::ARM_WIDTH;
 
 /// Draws the bar. True if the connection was asked for.
 pub(crate) fn top_bar_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
@@ -42,7 +42,7 @@ fn stop_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         Button::new(pane.look.say(main::STOP), pane.look.say(main::STOP_TIP)).weight(Weight::Stop);
     let response = button.ground(ui, pane.look, rect, Id::unique("stop"));
     let (center, strong) = (Align2::CENTER_CENTER, pane.look.palette.on_strong);
-    let (upper, lower) = rect.shrink(3.0).split_top_bottom_at_fraction(0.62);
+    let (upper, lower) = rect.shrink(theme::BAR).split_top_bottom_at_fraction(0.62);
     let word = pane.look.say(main::STOP);
     controls::paint_text(ui, upper, center, word, theme::large(), strong);
     let keys = pane.look.say(main::STOP_KEYS);
@@ -86,12 +86,16 @@ fn unseen_ui(ui: &mut Ui, rest: &mut Rect, pane: &mut Pane<'_>) {
     let count = pane.state.faults.unseen().count();
     let (before, after) = (look.say(faults::UNSEEN_BEFORE), look.say(faults::UNSEEN));
     let text = format!("{before} {count} {after}");
-    let width = controls::text_width(ui, &text, theme::body()) + 40.0;
+    let width = controls::text_width(ui, &text, theme::body()) + theme::LAMP_BUTTON;
     let place = controls::middle(take_right(rest, width), theme::CONTROL_LARGE);
     let button = Button::new(&text, look.say(faults::UNSEEN_TIP));
     let response = button.ground(ui, look, place, Id::unique("unseen faults"));
-    fault_entry::mark(ui, pos2(place.left() + 16.0, place.center().y), color);
-    let words = place.with_min_x(place.left() + 28.0);
+    fault_entry::mark(
+        ui,
+        pos2(place.left() + theme::LAMP_IN_BUTTON, place.center().y),
+        color,
+    );
+    let words = place.with_min_x(place.left() + theme::WORDS_IN_BUTTON);
     let (font, align) = (theme::body(), Align2::LEFT_CENTER);
     controls::paint_text(ui, words, align, &text, font, look.palette.text);
     if response.clicked() {
@@ -113,7 +117,7 @@ fn badge_ui(ui: &mut Ui, rest: &mut Rect, pane: &Pane<'_>) {
     let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let place = controls::middle(take_left(rest, width), theme::CONTROL);
     ui.painter()
-        .rect_filled(place, CornerRadius::same(12), fill);
+        .rect_filled(place, CornerRadius::same(theme::ROUND_PILL), fill);
     let label = Label::new(text, color).center().put(ui, place);
     if simulated {
         label.on_hover_text(look.say(main::SIMULATED_TIP));
@@ -160,15 +164,22 @@ fn link_ui(ui: &mut Ui, rest: &mut Rect, pane: &Pane<'_>) -> bool {
     let look = pane.look;
     let (word, color) = link_words(pane);
     let word = look.say(word);
-    let width = controls::text_width(ui, word, theme::body()) + 40.0;
-    let place = controls::middle(take_left(rest, width.max(116.0)), theme::CONTROL_LARGE);
+    let width = controls::text_width(ui, word, theme::body()) + theme::LAMP_BUTTON;
+    let place = controls::middle(
+        take_left(rest, width.max(theme::LINK_LEAST)),
+        theme::CONTROL_LARGE,
+    );
     let name = format!("{}: {word}", look.say(main::LINK_BUTTON));
     let button = Button::new(word, look.say(main::LINK_TIP))
         .named(&name)
         .weight(Weight::Quiet);
     let response = button.ground(ui, look, place, Id::unique("link"));
-    controls::lamp(ui, pos2(place.left() + 16.0, place.center().y), color);
-    let text = place.with_min_x(place.left() + 29.0);
+    controls::lamp(
+        ui,
+        pos2(place.left() + theme::LAMP_IN_BUTTON, place.center().y),
+        color,
+    );
+    let text = place.with_min_x(place.left() + theme::WORDS_IN_BUTTON);
     let (text_color, align) = (look.palette.text, Align2::LEFT_CENTER);
     controls::paint_text(ui, text, align, word, theme::body(), text_color);
     response.clicked()
@@ -240,7 +251,7 @@ fn figures_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
 }
 
 fn figure_ui(ui: &mut Ui, place: Rect, look: Look, figure: &Figure<'_>) {
-    let place = controls::middle(place, 34.0);
+    let place = controls::middle(place, theme::FIGURE);
     let (top, bottom) = place.split_top_bottom_at_fraction(0.47);
     let caption = look.say(figure.caption);
     Label::new(caption, look.palette.muted).small().put(ui, top);
@@ -257,7 +268,7 @@ pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut V
     let mut rest = rect.shrink2(vec2(theme::PAD, 0.0));
     let menu = take_right(&mut rest, theme::ICON_BUTTON);
     window_menu::menu_button_ui(ui, controls::middle(menu, theme::CONTROL), pane);
-    language_ui(ui, take_right(&mut rest, 56.0), pane);
+    language_ui(ui, take_right(&mut rest, theme::LANGUAGE), pane);
     theme_ui(ui, take_right(&mut rest, theme::ICON_BUTTON), pane);
     let place = controls::middle(take_right(&mut rest, theme::ICON_BUTTON), theme::CONTROL);
     let list = Button::new("?", look.say(keys::BUTTON_TIP))
@@ -280,7 +291,7 @@ pub(crate) fn tabs_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, view: &mut V
         controls::paint_text(ui, place, Align2::CENTER_CENTER, text, theme::body(), color);
         if tab == *view {
             let under = Rect::from_min_max(
-                pos2(place.left() + theme::PAD, rect.bottom() - 4.0),
+                pos2(place.left() + theme::PAD, rect.bottom() - theme::STEP),
                 pos2(place.right() - theme::PAD, rect.bottom() - 2.0),
             );
             ui.painter()

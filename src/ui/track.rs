@@ -2,17 +2,18 @@
 
 use crate::ui::controls::focus_ring;
 use crate::ui::look::Look;
+use crate::ui::theme;
 use egui::{
     Color32, CornerRadius, EventFilter, Id, Key, Rect, Response, Sense, Stroke, StrokeKind, Ui,
     WidgetInfo, accesskit, pos2, vec2,
 };
 
 /// Height of the rail.
-const RAIL: f32 = 6.0;
+const RAIL: f32 = theme::TRACK_RAIL;
 /// Distance of the lines of the rough zone.
-const HATCH: f32 = 5.0;
+const HATCH: f32 = theme::HATCH;
 /// Radius of the handle.
-const HANDLE: f32 = 7.0;
+const HANDLE: f32 = theme::HANDLE;
 
 /// How the actual value is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -193,7 +194,7 @@ impl Track<'_> {
     fn paint(&self, ui: &Ui, look: Look, response: &Response, rail: Rect, shown: Option<i16>) {
         let palette = look.palette;
         let painter = ui.painter();
-        let round = CornerRadius::same(3);
+        let round = CornerRadius::same(theme::ROUND_TRACK);
         let ground = rail.expand2(vec2(HANDLE - 1.0, 0.0));
         painter.rect(
             ground,
@@ -207,7 +208,10 @@ impl Track<'_> {
         }
         if let Some(tick) = self.tick {
             let x = self.x_of(rail, tick);
-            let line = [pos2(x, rail.bottom() + 2.0), pos2(x, rail.bottom() + 5.0)];
+            let line = [
+                pos2(x, rail.bottom() + 2.0),
+                pos2(x, rail.bottom() + theme::TICK),
+            ];
             painter.line_segment(line, Stroke::new(1.0, palette.faint));
         }
         let actual = self.actual.map(|value| self.x_of(rail, value));
@@ -221,7 +225,7 @@ impl Track<'_> {
         if let Some(x) = target {
             self.paint_handle(ui, look, response, rail, x);
         }
-        focus_ring(ui, look, response, ground.expand2(vec2(0.0, 5.0)));
+        focus_ring(ui, look, response, ground.expand2(vec2(0.0, theme::TICK)));
     }
 
     /// Slanted lines on the far end of the rail: more than a colour.
@@ -270,7 +274,10 @@ impl Track<'_> {
                     let gap = self.color.gamma_multiply(0.45);
                     painter.rect_filled(span.shrink2(vec2(0.0, 1.0)), CornerRadius::ZERO, gap);
                 }
-                let marker = Rect::from_center_size(pos2(x, rail.center().y), vec2(4.0, 16.0));
+                let marker = Rect::from_center_size(
+                    pos2(x, rail.center().y),
+                    vec2(theme::STEP, theme::MARKER),
+                );
                 painter.rect_filled(marker, CornerRadius::same(2), self.color);
             }
         }
@@ -283,9 +290,9 @@ impl Track<'_> {
         if self.disabled.is_some() {
             painter.circle(
                 center,
-                HANDLE - 1.5,
+                HANDLE - theme::FOCUS_LINE,
                 palette.card,
-                Stroke::new(1.2, palette.faint),
+                Stroke::new(theme::LINE_THIN, palette.faint),
             );
             if self.draws == Actual::Marker && self.actual.is_some() {
                 painter.circle_filled(center, 2.0, self.color);
@@ -295,12 +302,15 @@ impl Track<'_> {
         let hot = response.hovered() || response.dragged() || response.has_focus();
         let edge = if hot { palette.accent } else { palette.muted };
         painter.circle(center, HANDLE, palette.handle, Stroke::new(2.0, edge));
-        painter.circle_filled(center, 2.5, palette.handle_dot);
+        painter.circle_filled(center, theme::HALO, palette.handle_dot);
     }
 }
 
 /// Points of a touchpad that count as one notch of a wheel.
-const NOTCH: f32 = 16.0;
+const NOTCH: f32 = theme::NOTCH;
+
+/// More steps than this in one frame are not made by a hand.
+const MOST_STEPS: i16 = 100;
 
 /// Whole notches of the wheel, taken out of the input so that nothing scrolls as well.
 fn wheel_steps(input: &mut egui::InputState) -> i16 {
@@ -322,7 +332,7 @@ fn wheel_steps(input: &mut egui::InputState) -> i16 {
         clippy::cast_possible_truncation,
         reason = "clamped to what a hand can turn"
     )]
-    let steps = notches.clamp(-100.0, 100.0) as i16;
+    let steps = notches.clamp(-f32::from(MOST_STEPS), f32::from(MOST_STEPS)) as i16;
     steps
 }
 

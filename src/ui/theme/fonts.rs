@@ -96,3 +96,38 @@ fn add_icons(fonts: &mut egui::FontDefinitions) {
     let family = FontFamily::Name(egui_material_icons::FONT_FAMILY_OUTLINED.into());
     fonts.families.insert(family, vec![ICONS.into()]);
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::ui::theme::{fonts, icons};
+    use egui::epaint::text::{Fonts, TextOptions};
+
+    #[test]
+    fn every_sign_is_in_the_icon_font() {
+        let mut all = Fonts::new(TextOptions::default(), fonts::fonts());
+        let mut view = all.with_pixels_per_point(1.0);
+        for sign in icons::ALL {
+            assert!(view.has_glyphs(&fonts::icon(), sign), "{sign:?}");
+        }
+        assert!(!view.has_glyphs(&fonts::icon(), "\u{1F600}"));
+    }
+
+    #[test]
+    fn digits_signs_and_gaps_of_numbers_are_equally_wide() {
+        let mut all = Fonts::new(TextOptions::default(), fonts::fonts());
+        for scale in [1.0, 1.5, 3.0] {
+            let mut view = all.with_pixels_per_point(scale);
+            for font in [fonts::number(), fonts::number_small()] {
+                let zero = view.glyph_width(&font, '0');
+                assert!(zero > 0.0);
+                for sign in "123456789-+. ".chars() {
+                    let width = view.glyph_width(&font, sign);
+                    assert!(
+                        (width - zero).abs() < 1e-3,
+                        "{sign} at {scale}: {width}, {zero}"
+                    );
+                }
+            }
+        }
+    }
+}

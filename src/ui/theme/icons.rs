@@ -35,3 +35,10 @@ pub(crate) const PAUSE: Icon = icons::ICON_PAUSE.codepoint;
 pub(crate) const PLAY: Icon = icons::ICON_PLAY_ARROW.codepoint;
 /// More of the same.
 pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
+
+/// All of them.
+#[cfg(test)]
+pub(crate) const ALL: [Icon; 15] = [
+    TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, LINKED, WARNING, DARK, LIGHT,
+    CLOSE, PAUSE, PLAY, MORE,
+];

@@ -79,3 +79,104 @@ pub(crate) const KEY_ROW: f32 = 24.0;
 pub(crate) const KEY_COLUMN: f32 = 112.0;
 /// Room above and below a drawn key.
 pub(crate) const KEY_CAP_MARGIN: f32 = 2.0;
+
+/// Corner radius of a badge.
+pub(crate) const ROUND_PILL: u8 = 12;
+/// Corner radius of a rail.
+pub(crate) const ROUND_TRACK: u8 = 3;
+/// Width of the ring around what has the keyboard.
+pub(crate) const FOCUS_LINE: f32 = 1.5;
+/// Width of a thin edge.
+pub(crate) const LINE_THIN: f32 = 1.2;
+/// What a lamp shines beyond its edge; the dot in a handle.
+pub(crate) const HALO: f32 = 2.5;
+/// Width of a sign.
+pub(crate) const SIGN: f32 = 16.0;
+/// Height of a sign in a banner.
+pub(crate) const SIGN_HEIGHT: f32 = 14.0;
+/// Height of a sign in a row.
+pub(crate) const SIGN_SMALL: f32 = 12.0;
+/// Width of a sign with the space after it.
+pub(crate) const SIGN_ROOM: f32 = 26.0;
+/// Where a lamp's middle is in its row.
+pub(crate) const LAMP_AT: f32 = 6.0;
+/// Where the words beside a lamp begin.
+pub(crate) const INDENT: f32 = 17.0;
+/// What lamp and margins add to the words of a button.
+pub(crate) const LAMP_BUTTON: f32 = 40.0;
+/// Where a lamp's middle is in a button.
+pub(crate) const LAMP_IN_BUTTON: f32 = 16.0;
+/// Where the words beside it begin.
+pub(crate) const WORDS_IN_BUTTON: f32 = 29.0;
+/// Width of STOP.
+pub(crate) const STOP_WIDTH: f32 = 148.0;
+/// Width of Arm.
+pub(crate) const ARM_WIDTH: f32 = 96.0;
+/// The least width of the link's state.
+pub(crate) const LINK_LEAST: f32 = 116.0;
+/// Width of the switch of languages.
+pub(crate) const LANGUAGE: f32 = 56.0;
+/// Height of a caption over its figure.
+pub(crate) const FIGURE: f32 = 34.0;
+/// A small square button.
+pub(crate) const SMALL_BUTTON: f32 = 20.0;
+/// Width of a button that copies.
+pub(crate) const COPY_BUTTON: f32 = 92.0;
+/// Width of the choice between two words.
+pub(crate) const SWAP: f32 = 124.0;
+/// A line of a paragraph.
+pub(crate) const TEXT_LINE: f32 = 16.0;
+/// A line of a list.
+pub(crate) const LIST_LINE: f32 = 17.0;
+/// A row of figures.
+pub(crate) const FIGURE_ROW: f32 = 18.0;
+/// The lowest line that a track fits in.
+pub(crate) const LINE_LOW: f32 = 19.0;
+/// The first line of an entry.
+pub(crate) const TITLE_LINE: f32 = 20.0;
+/// The highest line that a track is drawn in.
+pub(crate) const LINE_HIGH: f32 = 28.0;
+/// Height of a card of figures.
+pub(crate) const FIGURES_CARD: f32 = 236.0;
+/// Height of the connection's form.
+pub(crate) const CONNECTION_CARD: f32 = 440.0;
+/// Height from which the budget of the line is shown.
+pub(crate) const BUDGET_FROM: f32 = 640.0;
+/// Width of a caption in a row.
+pub(crate) const CAPTION: f32 = 36.0;
+/// Width of a caption in a form.
+pub(crate) const CAPTION_WIDE: f32 = 112.0;
+/// Width of a number field.
+pub(crate) const FIELD: f32 = 52.0;
+/// What the edges of a field take.
+pub(crate) const FIELD_MARGIN: f32 = 16.0;
+/// What the edges of a number field take.
+pub(crate) const FIELD_MARGIN_SMALL: f32 = 14.0;
+/// Width of the readings of a joint.
+pub(crate) const READING: f32 = 112.0;
+/// Width of a joint's name.
+pub(crate) const NAME_COLUMN: f32 = 84.0;
+/// Width of current and temperature where room is short.
+pub(crate) const DRIVE_COLUMN: f32 = 78.0;
+/// Width of the force where room is short.
+pub(crate) const FORCE_COLUMN: f32 = 40.0;
+/// Width of counts.
+pub(crate) const COUNT_COLUMN: f32 = 96.0;
+/// Height of a joint's row from which force and speed have lines of their own.
+pub(crate) const ROOMY_ROW: f32 = 92.0;
+/// Where the bar below a number begins, from its middle.
+pub(crate) const BELOW_NUMBER: f32 = 8.0;
+/// Height of the rail of a track.
+pub(crate) const TRACK_RAIL: f32 = 6.0;
+/// Radius of a track's handle.
+pub(crate) const HANDLE: f32 = 7.0;
+/// Height of the mark of an actual value.
+pub(crate) const MARKER: f32 = 16.0;
+/// Distance of slanted lines.
+pub(crate) const HATCH: f32 = 5.0;
+/// How far a tick reaches below the rail.
+pub(crate) const TICK: f32 = 5.0;
+/// Points of a touchpad that count as one notch of a wheel.
+pub(crate) const NOTCH: f32 = 16.0;
+/// Width of a menu that shows frames.
+pub(crate) const MENU_WIDE: f32 = 440.0;
