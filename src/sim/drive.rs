@@ -43,6 +43,8 @@ const PEAK_MS: u32 = 30;
 const RELAX_S: f64 = 0.15;
 /// A finger that was so many times faster than it is at the contact was slowed down for it.
 const FAST_APPROACH: f64 = 2.0;
+/// A finger that rested so long begins anew, ms: halting between two stages takes less.
+const BEGINS_ANEW_MS: u32 = 400;
 /// A joint this near to its open end makes room for another object, counts.
 const OPEN_WITHIN: f64 = 20.0;
 
@@ -108,6 +110,7 @@ pub struct Drive {
     broken: bool,
     /// The fastest since it closes, counts/s.
     fastest: f64,
+    rested_ms: u32,
     jam: Option<f64>,
     grip: f64,
 }
@@ -137,6 +140,7 @@ impl Drive {
             contact: None,
             broken: false,
             fastest: 0.0,
+            rested_ms: 0,
             jam: None,
             grip: 1.0,
         }
@@ -282,6 +286,7 @@ impl Drive {
             self.begin(goal);
         }
         self.current_ma = 0.0;
+        self.watch_rest();
         match self.phase {
             Phase::Rest => {}
             Phase::Moving { to } => self.move_on(to, setting),
@@ -304,6 +309,16 @@ impl Drive {
         }
         self.watch_object();
         self.heat();
+    }
+
+    fn watch_rest(&mut self) {
+        self.rested_ms = match self.phase {
+            Phase::Rest => self.rested_ms.saturating_add(1),
+            _ => 0,
+        };
+        if self.rested_ms >= BEGINS_ANEW_MS {
+            self.fastest = 0.0;
+        }
     }
 
     /// What was pressed too hard is broken until the joint is open again.

@@ -5,8 +5,10 @@ use crate::hand::{Dof, Fault, Faults, HandSample, Moment, PerDof, Timed};
 use crate::link::{ArmEpoch, LinkState, LinkStatus};
 use std::time::Duration;
 
-/// Forces, angles and faults older than this are not watched any more, so nothing may go on by them.
+/// Forces and angles older than this are not watched any more, so nothing may go on by them.
 pub const BLIND_AFTER: Duration = Duration::from_millis(600);
+/// On a slow line faults take turns with the fingertips while something moves.
+pub const FAULT_BLIND_AFTER: Duration = Duration::from_secs(2);
 /// Temperatures are read more seldom.
 pub const HEAT_BLIND_AFTER: Duration = Duration::from_secs(3);
 
@@ -151,7 +153,7 @@ fn blind(seen: &Seen<'_>) -> Option<Abort> {
     let groups = [
         ("angle", old(&sample.angle, now, BLIND_AFTER)),
         ("force", old(&sample.force, now, BLIND_AFTER)),
-        ("fault", old(&sample.faults, now, BLIND_AFTER)),
+        ("fault", old(&sample.faults, now, FAULT_BLIND_AFTER)),
         (
             "temperature",
             old(&sample.temperature, now, HEAT_BLIND_AFTER),

@@ -19,11 +19,11 @@ use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::time::{Instant, sleep, timeout};
 
-/// As fast as a serial line goes; on faster wires no faster than ten times the hand's own control. Fingertips twice as
-/// often as their sensors measure. Settings often enough that a trial need not wait for them.
+/// As fast as a serial line goes; on faster wires no faster than ten times the hand's own control. Fingertips a little
+/// more often than their sensors measure, and no more, so that slow lines have turns for forces and faults. Settings often enough that a trial need not wait for them.
 const RATES: PollRates = PollRates {
     state_hz: 500.0,
-    tactile_hz: 100.0,
+    tactile_hz: 60.0,
     settings_hz: 5.0,
 };
 /// How often time is looked at where nothing is read.
