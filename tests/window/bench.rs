@@ -452,15 +452,22 @@ impl Bench {
             .collect()
     }
 
-    /// The text that stands under a name.
+    /// The text that stands under a name: the first, if there are several.
     pub fn reading(&self, name: &str) -> String {
-        let found = self
-            .harness
-            .query_all_by_role(Role::Label)
-            .find(|node| node.accesskit_node().label().as_deref() == Some(name))
-            .and_then(|node| node.value());
-        let text = found.unwrap_or_else(|| panic!("no reading '{name}'"));
-        text.trim().to_owned()
+        let first = self.readings(name).into_iter().next();
+        first.unwrap_or_else(|| panic!("no reading '{name}'"))
+    }
+
+    /// Whether this text stands anywhere under a name.
+    pub fn has_reading(&self, name: &str, text: &str) -> bool {
+        self.readings(name).iter().any(|reading| reading == text)
+    }
+
+    fn readings(&self, name: &str) -> Vec<String> {
+        let labels = self.harness.query_all_by_role(Role::Label);
+        let named = labels.filter(|node| node.accesskit_node().label().as_deref() == Some(name));
+        let texts = named.filter_map(|node| node.value());
+        texts.map(|text| text.trim().to_owned()).collect()
     }
 
     /// Where the handle of a track stands.

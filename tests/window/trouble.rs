@@ -211,10 +211,13 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
     }
     bench.click_button("Touch");
     bench.run(100);
-    assert_eq!(bench.reading("Little normal force"), "NaN");
+    assert_eq!(bench.reading("Little normal force"), "NaN N");
+    bench.click_button("All numbers");
+    bench.run(100);
     assert_eq!(bench.reading("Little direction"), "?360");
-    assert_eq!(bench.reading("Ring normal force"), "+inf");
-    assert_eq!(bench.reading("Ring tangential force"), "-inf");
+    assert_eq!(bench.reading("Ring normal force"), "+inf N");
+    assert_eq!(bench.reading("Ring tangential force"), "not a number");
+    assert!(bench.has_reading("Ring tangential force", "-inf"));
     assert_eq!(bench.reading("Ring check"), "diff");
     bench.click_button("Faults");
     bench.run(100);
