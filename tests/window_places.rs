@@ -23,14 +23,14 @@ struct Bench {
     state: State,
 }
 
-/// Sizes in points, with the scale at which they are looked at.
-const SIZES: [(Vec2, f32); 6] = [
-    (vec2(1024.0, 640.0), 1.0),
-    (vec2(1280.0, 720.0), 3.0),
-    (vec2(1440.0, 900.0), 1.0),
-    (vec2(1920.0, 1080.0), 1.5),
-    (vec2(2560.0, 1440.0), 1.0),
-    (vec2(3840.0, 2160.0), 1.0),
+/// Sizes in points. A scale makes points larger and moves none of them.
+const SIZES: [Vec2; 6] = [
+    vec2(1024.0, 640.0),
+    vec2(1280.0, 720.0),
+    vec2(1440.0, 900.0),
+    vec2(1920.0, 1080.0),
+    vec2(2560.0, 1440.0),
+    vec2(3840.0, 2160.0),
 ];
 /// What can be pressed, moved or typed into.
 const PRESSED: [Role; 5] = [
@@ -93,8 +93,8 @@ fn walk(state: State, what: &str) {
         |ui, bench: &mut Bench| drop(bench.window.ui(ui, &bench.state)),
         bench,
     );
-    for (at, (size, scale)) in SIZES.into_iter().enumerate() {
-        harness.set_size(size).set_pixels_per_point(scale);
+    for (at, size) in SIZES.into_iter().enumerate() {
+        harness.set_size(size);
         for language in [Language::En, Language::Zh] {
             harness.state_mut().state.settings.language = language;
             for (n, view) in View::ALL.into_iter().enumerate() {

@@ -88,7 +88,11 @@ impl PlotView {
         };
         let alone = table_height > 0.0 && room(shown.len()) < LEAST_HEIGHT;
         let shown = if alone { vec![chosen] } else { shown };
-        self.stack_ui(ui, stack, pane, &shown, room(shown.len()));
+        // In a window that was forced to be tiny there is no place to draw in.
+        let fits = room(shown.len()) > CAPTION + 2.0 * NUMBER && stack.width() > 4.0 * AXIS;
+        if fits {
+            self.stack_ui(ui, stack, pane, &shown, room(shown.len()));
+        }
         let table = table.with_min_y(table.top() + theme::GAP);
         if self.cursors.table_ui(ui, table, pane, chosen, &measured) {
             self.chosen = (self.chosen + 1) % pane.state.settings.plots.count().max(1);
