@@ -191,10 +191,11 @@ fn what_no_setting_does_is_said() {
 
 #[test]
 fn ctrl_c_stops_the_hand_and_feedback_shows_it() {
-    let (_sim, hand) = rigid();
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap().to_owned();
     for signal in ["INT", "TERM"] {
+        // A hand that is still where the last stop left it is closed before the trial begins.
+        let (_sim, hand) = rigid();
         let place = format!("{out}/{signal}");
         let slow = [
             "--arm", "--speed", "25", "--repeat", "3", "--out", &place, "--start", "900",
