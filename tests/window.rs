@@ -163,7 +163,7 @@ fn every_control_has_its_name() {
         "Plot window: 5 min",
         "Gesture 1 open",
         "Gesture 14 cup",
-        "Capture",
+        "Save pose",
         "Theme",
         "Language",
         "Link state: Armed",

@@ -1,4 +1,5 @@
-//! Every view in every size, language and state: nothing that can be pressed is cut off or lies on another thing. No hand.
+//! Every view in every size, language, theme and state: nothing that can be pressed is cut off or lies on another thing, and
+//! no text is shortened or cut. No hand. With `HANDSCOPE_PICTURES=folder` the states are drawn into files, to be looked at.
 #![allow(
     clippy::unwrap_used,
     clippy::indexing_slicing,
@@ -10,13 +11,16 @@
 mod common;
 
 use egui::accesskit::Role;
-use egui::{Pos2, Rect, Vec2, vec2};
+use egui::{Pos2, Rect, Shape, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use handscope::app::settings::{Language, Theme};
 use handscope::app::state::State;
+use handscope::headless::canvas::Canvas;
+use handscope::headless::png;
 use handscope::link::Dialling;
 use handscope::ui::{View, Window};
+use std::path::Path;
 
 struct Bench {
     window: Window,
@@ -84,32 +88,98 @@ fn check(harness: &Harness<'static, Bench>, size: Vec2, when: &str) {
     }
 }
 
-fn walk(state: State, what: &str) {
+/// Texts that are written and cannot be read whole: shortened, or beyond the edge of what is shown of them.
+fn unreadable(harness: &Harness<'static, Bench>) -> Vec<String> {
+    let mut found = Vec::new();
+    for clipped in &harness.output().shapes {
+        collect(&clipped.shape, clipped.clip_rect, &mut found);
+    }
+    found
+}
+
+fn collect(shape: &Shape, clip: Rect, found: &mut Vec<String>) {
+    match shape {
+        Shape::Vec(shapes) => {
+            for shape in shapes {
+                collect(shape, clip, found);
+            }
+        }
+        Shape::Text(text) => {
+            let place = shape.visual_bounding_rect();
+            let words = text.galley.text();
+            // What is scrolled away is no more cut than a page that was turned.
+            let seen = place.intersects(clip) && !words.trim().is_empty();
+            let room = clip.expand(1.0).x_range();
+            let whole = room.contains(place.left()) && room.contains(place.right());
+            if seen && (text.galley.elided || !whole) {
+                found.push(format!("{words:?} at {place} in {clip}"));
+            }
+        }
+        _ => {}
+    }
+}
+
+fn bench_at(state: State, scale: f32, size: Vec2) -> Harness<'static, Bench> {
     let bench = Bench {
         window: Window::new(),
         state,
     };
-    let mut harness = Harness::builder().build_ui_state(
-        |ui, bench: &mut Bench| drop(bench.window.ui(ui, &bench.state)),
-        bench,
-    );
-    for (at, size) in SIZES.into_iter().enumerate() {
-        harness.set_size(size);
-        for language in [Language::En, Language::Zh] {
-            harness.state_mut().state.settings.language = language;
-            for (n, view) in View::ALL.into_iter().enumerate() {
-                // Colours move nothing: each size and each view has both themes once.
-                let themes = [Theme::Dark, Theme::Light];
-                harness.state_mut().state.settings.theme = themes[(at + n) % 2];
+    Harness::builder()
+        .with_size(size)
+        .with_pixels_per_point(scale)
+        .build_ui_state(
+            |ui, bench: &mut Bench| drop(bench.window.ui(ui, &bench.state)),
+            bench,
+        )
+}
+
+fn walk_at(harness: &mut Harness<'static, Bench>, size: Vec2, what: &str) {
+    for language in [Language::En, Language::Zh] {
+        harness.state_mut().state.settings.language = language;
+        for theme in [Theme::Dark, Theme::Light] {
+            harness.state_mut().state.settings.theme = theme;
+            for view in View::ALL {
                 harness.state_mut().window.set_view(view);
                 harness.run_steps(3);
-                check(
-                    &harness,
-                    size,
-                    &format!("{what} {size} {language:?} {view:?}"),
-                );
+                let when = format!("{what} {size} {language:?} {theme:?} {view:?}");
+                check(harness, size, &when);
+                let cut = unreadable(harness);
+                assert!(cut.is_empty(), "{when}: {}", cut.join("\n"));
             }
         }
+    }
+}
+
+/// The state as it looks, where somebody wants to see it.
+fn draw(state: &State, what: &str) {
+    let Some(folder) = std::env::var_os("HANDSCOPE_PICTURES") else {
+        return;
+    };
+    for size in [(1024, 640), (1440, 900)] {
+        for (language, theme) in [(Language::En, Theme::Dark), (Language::Zh, Theme::Light)] {
+            for view in View::ALL {
+                let mut state = state.clone();
+                (state.settings.language, state.settings.theme) = (language, theme);
+                let mut window = Window::new();
+                window.set_view(view);
+                let mut canvas = Canvas::new(size, 1.0);
+                canvas.frame(0.0, |ui| drop(window.ui(ui, &state)));
+                canvas.hold_still();
+                let picture = canvas.picture(0.0, |ui| drop(window.ui(ui, &state)));
+                let name = format!("{what}-{}-{}-{language:?}.png", view.name(), size.0);
+                let path = Path::new(&folder).join(name.replace(' ', "-"));
+                png::save(&path, &picture.rgba, picture.size).unwrap();
+            }
+        }
+    }
+}
+
+fn walk(state: State, what: &str) {
+    draw(&state, what);
+    let mut harness = bench_at(state, 1.0, SIZES[0]);
+    for size in SIZES {
+        harness.set_size(size);
+        walk_at(&mut harness, size, what);
     }
 }
 
@@ -141,4 +211,14 @@ fn nothing_is_cut_or_covered_with_a_fault() {
 #[test]
 fn nothing_is_cut_or_covered_while_armed() {
     walk(common::armed(), "armed");
+}
+
+#[test]
+fn nothing_is_cut_or_covered_on_a_fine_display() {
+    for scale in [1.25, 1.5, 2.0, 3.0] {
+        for state in [common::armed(), common::faulted()] {
+            let mut harness = bench_at(state, scale, SIZES[0]);
+            walk_at(&mut harness, SIZES[0], &format!("scale {scale}"));
+        }
+    }
 }

@@ -8,7 +8,14 @@ use crate::ui::look::{Look, Pane};
 use crate::ui::text::{Text, main, notices, words};
 use crate::ui::window::View;
 use crate::ui::{format, theme};
-use egui::{Color32, CornerRadius, Id, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{
+    Align2, Color32, CornerRadius, Galley, Id, Rect, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A hand that answers sooner is there before a word could be read.
+const ANNOUNCE_AFTER: Duration = Duration::from_millis(500);
 
 /// One warning.
 pub(crate) struct Banner {
@@ -28,6 +35,7 @@ pub(crate) fn banners(pane: &Pane<'_>) -> Vec<Banner> {
         faults(pane),
         rival(pane),
         stale(pane),
+        connecting(pane),
         empty(pane),
     ]
     .into_iter()
@@ -142,6 +150,22 @@ fn stale(pane: &Pane<'_>) -> Option<Banner> {
     })
 }
 
+/// A hand that is asked for the first time, and has not said no yet.
+fn connecting(pane: &Pane<'_>) -> Option<Banner> {
+    let link = &pane.state.link;
+    let hand = pane.state.endpoint.as_ref()?;
+    let asks = matches!(link.state, LinkState::Offline | LinkState::Identifying);
+    // One that answers at once is not announced.
+    let waited = pane.state.now.since(link.since) >= ANNOUNCE_AFTER;
+    (asks && waited && link.trouble.is_none()).then(|| Banner {
+        title: main::CONNECTING_TITLE,
+        body: format!("{} {hand}", pane.look.say(main::CONNECTING_BODY)),
+        aside: retry(pane),
+        color: pane.look.palette.accent,
+        opens: Some((View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP)),
+    })
+}
+
 fn empty(pane: &Pane<'_>) -> Option<Banner> {
     pane.state.endpoint.is_none().then(|| Banner {
         title: main::EMPTY_TITLE,
@@ -153,6 +177,28 @@ fn empty(pane: &Pane<'_>) -> Option<Banner> {
 }
 
 impl Banner {
+    /// The height it needs: a sentence that does not fit beside the title takes more lines.
+    pub(crate) fn height(&self, ui: &Ui, width: f32, look: Look) -> f32 {
+        let button = self.opens.map_or(0.0, |(_, text, _)| {
+            controls::text_width(ui, look.say(text), theme::body()) + 2.0 * theme::PAD + theme::GAP
+        });
+        let aside = match self.aside.as_str() {
+            "" => 0.0,
+            aside => controls::text_width(ui, aside, theme::number()) + 1.0 + theme::GAP,
+        };
+        let title = controls::text_width(ui, look.say(self.title), theme::title());
+        let before = theme::GAP + theme::PAD + theme::SIGN_ROOM + title + theme::GAP + theme::STEP;
+        let room = width - before - 1.0 - button - aside - theme::PAD - theme::GAP;
+        let body = self.galley(ui, room, look).size().y;
+        theme::BANNER.max(body + theme::GAP + 2.0 * theme::STEP)
+    }
+
+    fn galley(&self, ui: &Ui, width: f32, look: Look) -> Arc<Galley> {
+        let color = look.palette.text;
+        ui.painter()
+            .layout(self.body.clone(), theme::body(), color, width.max(1.0))
+    }
+
     /// Draws it. The view that was asked for.
     pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, look: Look) -> Option<View> {
         let palette = look.palette;
@@ -171,7 +217,11 @@ impl Banner {
             pos2(rest.left() + theme::SIGN / 2.0, rest.center().y),
             vec2(theme::SIGN, theme::SIGN_HEIGHT),
         );
-        controls::warning_sign(ui, sign, self.color);
+        if self.color == palette.accent {
+            controls::lamp(ui, sign.center(), self.color);
+        } else {
+            controls::warning_sign(ui, sign, self.color);
+        }
         rest.min.x += theme::SIGN_ROOM;
         let title = look.say(self.title);
         let width = controls::text_width(ui, title, theme::title()) + 1.0;
@@ -191,15 +241,18 @@ impl Banner {
             }
         }
         if !self.aside.is_empty() {
-            let wanted = controls::text_width(ui, &self.aside, theme::number()) + 1.0;
-            let width = wanted.min(rest.width() * 0.4);
+            let width = controls::text_width(ui, &self.aside, theme::number()) + 1.0;
             let place = take_right(&mut rest, width);
             Label::new(&self.aside, palette.muted)
                 .number()
                 .right()
                 .put(ui, place);
         }
-        Label::new(&self.body, palette.text).put(ui, rest);
+        let response = ui.allocate_rect(rest, egui::Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &self.body));
+        let galley = self.galley(ui, rest.width(), look);
+        let place = Align2::LEFT_CENTER.align_size_within_rect(galley.size(), rest);
+        ui.painter().galley(place.min, galley, palette.text);
         asked
     }
 }

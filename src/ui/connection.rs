@@ -305,7 +305,9 @@ impl ConnectionForm {
         take_top(&mut body, theme::STEP);
         let spelled = self.spelled();
         let parsed: Result<Endpoint, _> = spelled.parse();
-        caption_value_ui(ui, &mut body, pane, panels::ENDPOINT, &spelled);
+        let caption = (look.say(panels::ENDPOINT), CAPTION - theme::GAP);
+        let value = (spelled.as_str(), theme::number(), look.palette.text);
+        link_figures::fact_ui(ui, &mut body, caption, look.palette.muted, value);
         if let Err(error) = &parsed {
             let text = format!("{} {error}.", look.say(panels::FORM_WRONG));
             link_figures::paragraph_ui(ui, &mut body, &text, look.palette.warn);
@@ -382,8 +384,16 @@ impl ConnectionForm {
                 row.min.x += CAPTION;
             }
             let about = port.about.as_deref().unwrap_or_default();
-            let text = format!("{}  {about}", port.path);
-            let button = Button::new(text.trim(), look.say(panels::PORT_PICK_TIP))
+            let name = format!("{}  {about}", port.path);
+            let whole = controls::text_width(ui, name.trim(), theme::body()) + 2.0 * theme::GAP;
+            let text = if whole > row.width() {
+                &port.path
+            } else {
+                name.trim()
+            };
+            let tip = format!("{}\n{}", name.trim(), look.say(panels::PORT_PICK_TIP));
+            let button = Button::new(text, &tip)
+                .named(name.trim())
                 .choice(port.path == self.port);
             if button.put(ui, look, row, Id::unique(("port", n))).clicked() {
                 self.port.clone_from(&port.path);
@@ -426,17 +436,6 @@ fn field_ui(
         info.current_text_value = Some(value.clone());
         info
     });
-}
-
-fn caption_value_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, caption: Text, value: &str) {
-    let mut row = take_top(body, theme::FIGURE_ROW);
-    let left = take_left(&mut row, CAPTION - theme::GAP);
-    let caption = pane.look.say(caption);
-    Label::new(caption, pane.look.palette.muted).put(ui, left);
-    Label::new(value, pane.look.palette.text)
-        .number()
-        .named(caption)
-        .put(ui, row);
 }
 
 fn connect_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, endpoint: Option<Endpoint>) {

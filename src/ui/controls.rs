@@ -15,6 +15,7 @@ pub(crate) struct Label<'a> {
     color: Color32,
     align: Align2,
     name: Option<&'a str>,
+    shorter: Option<&'a str>,
 }
 
 impl<'a> Label<'a> {
@@ -26,6 +27,7 @@ impl<'a> Label<'a> {
             color,
             align: Align2::LEFT_CENTER,
             name: None,
+            shorter: None,
         }
     }
 
@@ -63,20 +65,35 @@ impl<'a> Label<'a> {
         self
     }
 
+    /// What is drawn where there is no room for the whole text; the whole is told on demand.
+    pub(crate) fn shorter(mut self, text: &'a str) -> Self {
+        self.shorter = Some(text);
+        self
+    }
+
+    /// The text that is drawn in this much room.
+    fn fitting(&self, ui: &Ui, width: f32) -> &'a str {
+        match self.shorter {
+            Some(shorter) if text_width(ui, self.text, self.font.clone()) > width => shorter,
+            _ => self.text,
+        }
+    }
+
     /// Draws it.
     pub(crate) fn put(self, ui: &mut Ui, rect: Rect) -> Response {
         // Not allocated: that would take the list's cursor back to the end of this rectangle.
         let id = ui.next_auto_id();
         ui.skip_ahead_auto_ids(1);
         let mut response = ui.interact(rect, id, Sense::hover());
-        let elided = paint_text(ui, rect, self.align, self.text, self.font, self.color);
+        let drawn = self.fitting(ui, rect.width());
+        let elided = paint_text(ui, rect, self.align, drawn, self.font, self.color);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
         if let Some(name) = self.name {
             ui.ctx().accesskit_node_builder(response.id, |node| {
                 node.set_label(name);
             });
         }
-        if elided {
+        if elided || drawn != self.text {
             response = response.on_hover_text(self.text);
         }
         response

@@ -15,6 +15,8 @@ pub(crate) struct DriveWords {
     pub(crate) text: Color32,
     /// In two or three words, or "-".
     pub(crate) title: String,
+    /// The same where room is short.
+    pub(crate) short: String,
     /// Title, cause and advice, if anything is known.
     pub(crate) words: Option<Words>,
     /// How fresh it is.
@@ -53,6 +55,10 @@ impl DriveWords {
             (None, Some(Status::Unknown(code))) => format!("{title} ({code})"),
             _ => title.to_owned(),
         };
+        let short = fault.map_or_else(
+            || title.clone(),
+            |fault| words::fault_short(fault, look.language).into(),
+        );
         let lamp = look.value(freshness, live);
         let text = if live == palette.bad {
             lamp
@@ -63,6 +69,7 @@ impl DriveWords {
             lamp,
             text,
             title,
+            short,
             words,
             freshness,
         }

@@ -15,9 +15,11 @@ use egui::{CornerRadius, Id, Rect, Ui, pos2, vec2};
 /// Width from which six tiles stand in one row.
 const ONE_ROW: f32 = 840.0;
 /// Height of a tile with its cause, and without.
-const TALL: f32 = 92.0;
+const TALL: f32 = theme::DRIVE_TILE;
 /// Height of a tile without its cause.
 const LOW: f32 = 52.0;
+/// Most lines of a cause.
+const CAUSE_LINES: u8 = 4;
 /// Height of the view from which tiles say the cause, too.
 const ROOMY: f32 = 560.0;
 
@@ -99,7 +101,9 @@ fn tile_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, dof: Dof, chosen: bool) -> 
     } else {
         said.text
     };
-    Label::new(&said.title, ink).put(ui, line);
+    Label::new(&said.title, ink)
+        .shorter(&said.short)
+        .put(ui, line);
     if inner.height() > 26.0
         && let Some(words) = said.words
     {
@@ -107,7 +111,11 @@ fn tile_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, dof: Dof, chosen: bool) -> 
         let (font, ink) = (theme::small(), look.value(said.freshness, palette.muted));
         let mut job =
             egui::text::LayoutJob::simple(words.cause.to_owned(), font, ink, room.width());
-        job.wrap.max_rows = if room.height() > 56.0 { 4 } else { 2 };
+        let line = ui.fonts_mut(|fonts| fonts.row_height(&theme::small()));
+        job.wrap.max_rows = (1..=CAUSE_LINES)
+            .take_while(|lines| f32::from(*lines) * line <= room.height() + 1.0)
+            .last()
+            .map_or(1, usize::from);
         let galley = ui.painter().layout_job(job);
         ui.painter()
             .with_clip_rect(room)

@@ -122,15 +122,21 @@ fn title_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, entry: &FaultEntry) {
         Some(_) => look.say(word).to_owned(),
     };
     let word_width = controls::text_width(ui, &word, theme::small()) + 1.0;
-    let room = row.width() * 0.5;
-    let place = take_right(&mut row, word_width.min(room));
-    Label::new(&word, color).small().right().put(ui, place);
+    let title_width = controls::text_width(ui, &title, theme::body()) + theme::GAP;
+    let beside = title_width + word_width <= row.width();
+    if beside {
+        let place = take_right(&mut row, word_width);
+        Label::new(&word, color).small().right().put(ui, place);
+    }
     let title_color = if entry.is_active() || !entry.seen {
         palette.text
     } else {
         palette.muted
     };
     Label::new(&title, title_color).put(ui, row);
+    if !beside {
+        wrapped_ui(ui, width, INDENT, &word, color);
+    }
 }
 
 fn seen_ui(

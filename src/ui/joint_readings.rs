@@ -24,34 +24,44 @@ const CURRENT_PART: (f32, f32) = (0.18, 0.60);
 const HEAT_PART: (f32, f32) = (0.68, 1.0);
 
 impl Row {
+    /// The angle as the hand says it and in degrees, or in percent.
     pub(crate) fn angle_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-        let (angle, freshness) = newest(pane, self.dof, pane.state.sample.angle);
-        let raw = format::whole(angle.map(|angle| i64::from(angle.raw())), 4);
+        let (left, right) = rect.split_left_right_at_x(rect.right() - theme::FIELD);
+        self.angle_in_ui(ui, left, pane, AngleUnit::Raw);
         let other = match pane.state.settings.angle_unit {
-            AngleUnit::Percent => format::percent(angle.and_then(|angle| angle.documented())),
-            AngleUnit::Raw | AngleUnit::Degrees => {
-                format::degrees(angle.and_then(|angle| angle.degrees(self.dof)))
-            }
+            AngleUnit::Raw => AngleUnit::Degrees,
+            chosen => chosen,
         };
-        let odd = angle.is_some_and(|angle| angle.documented().is_none());
-        let live = if odd {
-            pane.look.palette.warn
-        } else {
-            pane.look.palette.text
+        self.angle_in_ui(ui, right, pane, other);
+    }
+
+    /// Where room is short: the angle in the chosen unit, and the force.
+    pub(crate) fn short_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+        let (left, right) = rect.split_left_right_at_x(rect.right() - theme::FIELD);
+        self.angle_in_ui(ui, left, pane, pane.state.settings.angle_unit);
+        self.force_reading_ui(ui, right, pane);
+    }
+
+    fn angle_in_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, unit: AngleUnit) {
+        let palette = pane.look.palette;
+        let (angle, freshness) = newest(pane, self.dof, pane.state.sample.angle);
+        let documented = angle.and_then(|angle| angle.documented());
+        let text = match unit {
+            AngleUnit::Raw => format::whole(angle.map(|angle| i64::from(angle.raw())), 4),
+            AngleUnit::Percent => format::percent(documented),
+            AngleUnit::Degrees => format::degrees(angle.and_then(|angle| angle.degrees(self.dof))),
         };
         let name = self.named(pane, main::NAME_ANGLE_ACTUAL);
-        let (left, right) = rect.split_left_right_at_x(rect.right() - theme::FIELD);
-        Label::new(&raw, pane.look.value(freshness, live))
+        let (name, live) = match unit {
+            AngleUnit::Raw if angle.is_some() && documented.is_none() => (name, palette.warn),
+            AngleUnit::Raw => (name, palette.text),
+            AngleUnit::Degrees | AngleUnit::Percent => (format!("{name} °"), palette.muted),
+        };
+        Label::new(&text, pane.look.value(freshness, live))
             .number()
             .right()
             .named(&name)
-            .put(ui, left);
-        let degrees_name = format!("{name} °");
-        Label::new(&other, pane.look.value(freshness, pane.look.palette.muted))
-            .number()
-            .right()
-            .named(&degrees_name)
-            .put(ui, right);
+            .put(ui, rect);
     }
 
     pub(crate) fn force_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {

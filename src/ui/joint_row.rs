@@ -87,8 +87,11 @@ impl Row {
             Rect::from_min_max(pos2(inner.left(), top), pos2(inner.right(), top + height))
         };
         self.head_ui(ui, line(0.0), pane, roomy);
-        self.angle_ui(ui, line(1.0), pane, linked);
+        let mut angle = line(1.0);
+        let reading = take_right(&mut angle, READING);
+        self.angle_ui(ui, angle, pane, linked);
         if roomy {
+            self.angle_reading_ui(ui, reading, pane);
             let mut force = line(2.0);
             let reading = take_right(&mut force, READING);
             self.force_reading_ui(ui, reading, pane);
@@ -98,6 +101,7 @@ impl Row {
             self.drive_reading_ui(ui, reading, pane);
             self.speed_ui(ui, speed, pane);
         } else {
+            self.short_reading_ui(ui, reading, pane);
             let mut left = line(2.0);
             let right = take_right(&mut left, (inner.width() - theme::GAP) / 2.0);
             self.force_ui(ui, left, pane);
@@ -115,9 +119,6 @@ impl Row {
             rest.max.x += theme::STEP;
             let drive = take_right(&mut rest, theme::DRIVE_COLUMN);
             self.drive_reading_ui(ui, drive, pane);
-            rest.max.x += theme::STEP;
-            let force = take_right(&mut rest, theme::FORCE_COLUMN);
-            self.force_reading_ui(ui, force, pane);
             rest.max.x += theme::STEP;
         }
         self.impact_ui(ui, &mut rest, pane);
@@ -145,6 +146,7 @@ impl Row {
         Label::new(&said.title, said.text)
             .small()
             .named(&name)
+            .shorter(&said.short)
             .put(ui, place);
         let tip = pane.look.say(faults::EXPLAIN_TIP);
         let tip = said.words.map_or_else(

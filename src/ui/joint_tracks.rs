@@ -5,7 +5,7 @@ use crate::app::settings::AngleUnit;
 use crate::hand::{Angle, Dof, Force, HandCommand, PerDof, Speed, Target, impact};
 use crate::ui::controls::{self, Label, take_left, take_right};
 use crate::ui::frame_menu::frame_menu_ui;
-use crate::ui::joint_row::{READING, Row, newest};
+use crate::ui::joint_row::{Row, newest};
 use crate::ui::look::Pane;
 use crate::ui::number::NumberField;
 use crate::ui::text::{Text, main};
@@ -82,8 +82,6 @@ impl Row {
     pub(crate) fn angle_ui(&self, ui: &mut Ui, mut line: Rect, pane: &mut Pane<'_>, linked: bool) {
         let look = pane.look;
         caption_ui(ui, &mut line, pane, main::ANGLE);
-        let reading = take_right(&mut line, READING);
-        self.angle_reading_ui(ui, reading, pane);
         let field = controls::middle(take_right(&mut line, FIELD), theme::CONTROL);
         let joint = pane.state.joints[self.dof];
         let disabled = if !pane.state.is_armed() {

@@ -112,6 +112,8 @@ fn age_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
     let asked = pane.state.sample.angle.map(|angle| angle.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live if pane.state.is_armed() => return,
+        // The bar says why it cannot be armed.
+        Freshness::Live if pane.state.arm_refusal().is_some() => return,
         // A first look must find what comes before moving.
         Freshness::Live => (look.say(layout::ARM_FIRST).to_owned(), look.palette.accent),
         Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),

@@ -1,12 +1,13 @@
 //! How the link goes: state, rates, round trips, counts. Asks for nothing.
 
 use crate::ui::budget;
-use crate::ui::controls::{self, Label, take_right, take_top};
+use crate::ui::controls::{self, Label, take_left, take_right, take_top};
 use crate::ui::look::Pane;
 use crate::ui::text::{Text, notices, panels};
 use crate::ui::top_bar::link_words;
 use crate::ui::{format, theme};
-use egui::{Color32, Rect, Ui, pos2};
+use egui::text::LayoutJob;
+use egui::{Color32, FontId, Rect, Ui, pos2, vec2};
 
 /// From this height on there is room for the line's budget below the figures.
 const WITH_BUDGET: f32 = theme::BUDGET_FROM;
@@ -33,10 +34,7 @@ pub(crate) fn link_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
     let text = format!("{}, {} {since}", look.say(word), look.say(panels::SINCE));
     Label::new(&text, look.palette.text).put(ui, row);
     if let Some(endpoint) = &pane.state.endpoint {
-        let row = take_top(&mut body, theme::TEXT_LINE);
-        Label::new(&endpoint.to_string(), look.palette.muted)
-            .number()
-            .put(ui, row);
+        endpoint_ui(ui, &mut body, pane, &endpoint.to_string());
     }
     if let Some(port) = &pane.state.link.moved_to {
         let text = format!("{} {port}", look.say(panels::MOVED_TO));
@@ -71,6 +69,14 @@ pub(crate) fn link_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
         ui.painter().hline(body.x_range(), body.top(), stroke);
         body.min.y += theme::STEP + 2.0;
     }
+}
+
+/// Where the hand is, over as many lines as it needs.
+fn endpoint_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, text: &str) {
+    let color = pane.look.palette.muted;
+    let mut job = LayoutJob::simple(text.to_owned(), theme::number(), color, body.width());
+    job.wrap.break_anywhere = true;
+    job_ui(ui, body, job);
 }
 
 type Figures = Vec<(Text, String, Color32)>;
@@ -128,13 +134,50 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     ]
 }
 
+/// A caption, and beside it a value of words over as many lines as it needs.
+pub(crate) fn fact_ui(
+    ui: &mut Ui,
+    body: &mut Rect,
+    (caption, width): (&str, f32),
+    muted: Color32,
+    (value, font, color): (&str, FontId, Color32),
+) {
+    let room = (body.width() - width - theme::GAP).max(1.0);
+    let mut job = LayoutJob::simple(value.to_owned(), font, color, room);
+    // An address has no spaces.
+    job.wrap.break_anywhere = true;
+    let galley = ui.painter().layout_job(job);
+    let height = galley.size().y.max(theme::FIGURE_ROW);
+    let mut row = take_top(body, height);
+    let left = take_left(&mut row, width).with_max_y(row.top() + theme::FIGURE_ROW);
+    Label::new(caption, muted).put(ui, left);
+    let id = ui.next_auto_id();
+    ui.skip_ahead_auto_ids(1);
+    let response = ui.interact(row, id, egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, value));
+    ui.ctx()
+        .accesskit_node_builder(response.id, |node| node.set_label(caption));
+    let lone = galley.size().y < theme::FIGURE_ROW;
+    let down = if lone {
+        (theme::FIGURE_ROW - galley.size().y) / 2.0
+    } else {
+        0.0
+    };
+    ui.painter()
+        .galley(row.min + vec2(0.0, down), galley, color);
+}
+
 /// A text over as many lines as it needs, cut from the top of what is left.
 pub(crate) fn paragraph_ui(ui: &mut Ui, body: &mut Rect, text: &str, color: Color32) {
-    let galley = ui
-        .painter()
-        .layout(text.to_owned(), theme::body(), color, body.width());
+    let job = LayoutJob::simple(text.to_owned(), theme::body(), color, body.width());
+    job_ui(ui, body, job);
+}
+
+fn job_ui(ui: &mut Ui, body: &mut Rect, job: LayoutJob) {
+    let text = job.text.clone();
+    let galley = ui.painter().layout_job(job);
     let place = take_top(body, galley.size().y);
     let response = ui.allocate_rect(place, egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
-    ui.painter().galley(place.min, galley, color);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
+    ui.painter().galley(place.min, galley, Color32::PLACEHOLDER);
 }

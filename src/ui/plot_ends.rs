@@ -10,7 +10,7 @@ use crate::ui::theme;
 use egui::{Align2, Rect, Stroke, Ui, pos2};
 
 /// Room right of the plots.
-pub(crate) const ENDS: f32 = 28.0;
+pub(crate) const ENDS: f32 = 32.0;
 /// From the plot to the name.
 const LEAD: f32 = 5.0;
 /// Where names come closer than their height, every other one stands aside by this.

@@ -5,16 +5,16 @@ use crate::app::gestures::GestureBook;
 use crate::app::poses::edit::{LibraryEdit, PoseEdit};
 use crate::app::poses::library::Pose;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
-use crate::ui::controls::{self, Button, Weight, take_right};
+use crate::ui::controls::{self, Button, Label, Weight, take_right};
 use crate::ui::hand_picture;
 use crate::ui::look::{Look, Pane};
 use crate::ui::reorder;
 use crate::ui::text::{main, panels, poses};
 use crate::ui::theme;
-use egui::{Align2, Id, Rect, Ui, Vec2, pos2, vec2};
+use egui::{Align2, Id, Pos2, Rect, Ui, Vec2, pos2, vec2};
 
-/// The least width and height of a tile in the overview: a finger's breadth.
-const STRIP_TILE: Vec2 = vec2(118.0, 38.0);
+/// Width and least height of a pose in the overview: a finger's breadth.
+const STRIP_TILE: Vec2 = theme::STRIP_TILE;
 
 /// Shares of the way to open.
 pub(crate) fn shares(angles: &PerDof<Angle>) -> PerDof<Option<f32>> {
@@ -131,29 +131,89 @@ pub(crate) fn strip_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
     let wanted = Button::new(look.say(poses::CAPTURE), look.say(poses::CAPTURE_TIP));
     capture_button(ui, &mut head, pane, wanted);
     let gap = theme::STEP;
-    let fit = |room: f32, least: f32| ((room + gap) / (least + gap)).floor().max(1.0);
-    let (columns, rows) = (
-        fit(body.width(), STRIP_TILE.x),
-        fit(body.height(), STRIP_TILE.y),
-    );
-    let size = vec2(
-        (body.width() - gap * (columns - 1.0)) / columns,
-        (body.height() - gap * (rows - 1.0)) / rows,
-    );
-    let places = places(body, size, gap).take(count(columns * rows));
-    let (mut places, state) = (places, pane.state);
+    let rows = ((body.height() + gap) / (STRIP_TILE.y + gap))
+        .floor()
+        .max(1.0);
+    let height = (body.height() - gap * (rows - 1.0)) / rows;
+    let mut flow = Flow::new(body, height, gap);
+    let state = pane.state;
     for pose in &state.poses.library.poses {
-        let Some(place) = places.next() else {
+        let Some(place) = flow.take(STRIP_TILE.x) else {
             return opened;
         };
         small_tile_ui(ui, place, pane, pose);
     }
+    if state.poses.library.poses.is_empty() && rows > 1.0 {
+        let hint = look.say(poses::STRIP_EMPTY);
+        if let Some(place) = flow.take(body.width()) {
+            Label::new(hint, look.palette.faint).put(ui, place);
+        }
+    }
     let (named, others): (Vec<Gesture>, Vec<Gesture>) =
         GestureBook::all().partition(|gesture| state.gestures.name(*gesture).is_some());
-    for (gesture, place) in named.into_iter().chain(others).zip(places) {
+    if rows > 1.0 {
+        flow.next_row();
+    }
+    let caption = look.say(poses::STRIP_GESTURES);
+    let width = controls::text_width(ui, caption, theme::small()) + theme::GAP;
+    if let Some(place) = flow.take(width) {
+        let color = look.palette.muted;
+        Label::new(caption, color).small().put(ui, place);
+    }
+    for gesture in named.into_iter().chain(others) {
+        let name = state.gestures.name(gesture).unwrap_or_default();
+        let Some(place) = flow.take(gesture_width(ui, name)) else {
+            break;
+        };
         gesture_tile_ui(ui, place, pane, gesture);
     }
     opened
+}
+
+/// Places one after another, row by row, until there is no more room.
+struct Flow {
+    body: Rect,
+    at: Pos2,
+    height: f32,
+    gap: f32,
+}
+
+impl Flow {
+    const fn new(body: Rect, height: f32, gap: f32) -> Self {
+        Self {
+            body,
+            at: body.min,
+            height,
+            gap,
+        }
+    }
+
+    /// The next row, unless this one is empty.
+    fn next_row(&mut self) {
+        if self.at.x > self.body.left() {
+            self.at = pos2(self.body.left(), self.at.y + self.height + self.gap);
+        }
+    }
+
+    /// A place of this width; none once there is no room.
+    fn take(&mut self, width: f32) -> Option<Rect> {
+        if self.at.x + width > self.body.right() + 0.5 {
+            self.next_row();
+        }
+        let fits = self.at.y + self.height <= self.body.bottom() + 0.5;
+        let place = Rect::from_min_size(self.at, vec2(width, self.height));
+        self.at.x += width + self.gap;
+        fits.then_some(place)
+    }
+}
+
+/// What a gesture's name and number take; a number alone is a square at least a finger wide.
+fn gesture_width(ui: &Ui, name: &str) -> f32 {
+    if name.is_empty() {
+        return theme::GESTURE_TILE;
+    }
+    let name = controls::text_width(ui, name, theme::body());
+    name + theme::GESTURE_NUMBER + 2.0 * theme::GAP + 1.0
 }
 
 /// Keeps the pose of now.
@@ -172,27 +232,6 @@ pub(crate) fn capture_button(
         let name = look.say(poses::POSE).to_owned();
         pane.actions.push(Action::Capture(name));
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "tiles that fit a window"
-)]
-const fn count(tiles: f32) -> usize {
-    tiles as usize
-}
-
-fn places(body: Rect, size: Vec2, gap: f32) -> impl Iterator<Item = Rect> {
-    let (mut x, mut y) = (body.left(), body.top());
-    std::iter::from_fn(move || {
-        let place = Rect::from_min_size(pos2(x, y), size);
-        x += size.x + gap;
-        if x + size.x > body.right() + 1.0 {
-            (x, y) = (body.left(), y + size.y + gap);
-        }
-        Some(place)
-    })
 }
 
 fn small_tile_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, pose: &Pose) {
@@ -245,7 +284,7 @@ fn gesture_text(ui: &Ui, look: Look, rect: Rect, number: &str, name: &str, color
         controls::paint_text(ui, inner, center, number, theme::number(), color);
         return;
     }
-    let (words, small) = inner.split_left_right_at_x(inner.right() - 18.0);
+    let (words, small) = inner.split_left_right_at_x(inner.right() - theme::GESTURE_NUMBER);
     controls::paint_text(ui, words, left, name, theme::body(), color);
     let font = theme::number_small();
     controls::paint_text(ui, small, right, number, font, look.palette.faint);

@@ -3,7 +3,8 @@
 use crate::app::quirk_sheet::QuirkSheet;
 use crate::link::quirks::baud_of_code;
 use crate::transport::Endpoint;
-use crate::ui::controls::{self, Button, Label, take_left, take_top};
+use crate::ui::controls::{self, Button, take_left, take_top};
+use crate::ui::link_figures;
 use crate::ui::look::Pane;
 use crate::ui::text::{Text, quirks as text};
 use crate::ui::theme;
@@ -15,7 +16,6 @@ pub(crate) const HEIGHT: f32 = theme::FIGURES_CARD;
 const EDITION: &str = "V1.0.0";
 /// Width of the captions.
 const CAPTION: f32 = theme::CAPTION_WIDE;
-const LINE: f32 = theme::LINE_LOW;
 const COPY_WIDTH: f32 = theme::COPY_BUTTON;
 
 /// Draws the card.
@@ -29,13 +29,10 @@ pub(crate) fn sheet_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         look.palette.faint
     };
     for (caption, value) in lines(pane) {
-        let mut row = take_top(&mut body, LINE);
+        let caption = (look.say(caption), CAPTION);
+        let value = (value.as_str(), theme::body(), color);
+        link_figures::fact_ui(ui, &mut body, caption, look.palette.muted, value);
         body.min.y -= theme::GAP - 2.0;
-        let left = take_left(&mut row, CAPTION);
-        Label::new(look.say(caption), look.palette.muted).put(ui, left);
-        Label::new(&value, color)
-            .named(look.say(caption))
-            .put(ui, row);
     }
     body.min.y += theme::GAP;
     copy_ui(ui, body, pane);

@@ -72,6 +72,7 @@ impl HeatScale {
         Label::new(&text, look.palette.faint)
             .small()
             .right()
+            .shorter(look.say(panels::TOUCH_SCALE_SHORT))
             .put(ui, rest);
     }
 }

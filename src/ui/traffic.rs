@@ -191,7 +191,18 @@ impl TrafficView {
     }
 
     fn filter_ui(&mut self, ui: &mut Ui, mut row: Rect, look: Look) {
-        let width = FILTER.min(row.width() * 0.36);
+        let texts = [
+            traffic::WAY_ALL,
+            traffic::WAY_OUT,
+            traffic::WAY_IN,
+            traffic::WRONG_ONLY,
+            traffic::HIDE_POLLING,
+        ];
+        let switches: f32 = texts
+            .map(|text| width_of(ui, look.say(text)) + theme::STEP)
+            .iter()
+            .sum();
+        let width = FILTER.min(row.width() - theme::GAP - switches);
         let field = take_left(&mut row, width);
         filter_field_ui(ui, field, look, &mut self.filter.text);
         for (text, way) in [
@@ -262,19 +273,19 @@ const fn switch(mut button: Button<'_>, on: bool) -> Button<'_> {
     button.weight(if on { Weight::Chosen } else { Weight::Normal })
 }
 
-fn width_of(ui: &Ui, button: &Button<'_>) -> f32 {
-    controls::text_width(ui, button.text, theme::body()) + 2.0 * theme::GAP
+fn width_of(ui: &Ui, text: &str) -> f32 {
+    controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP
 }
 
 fn put_right(ui: &mut Ui, rest: &mut Rect, look: Look, button: Button<'_>, id: Text) -> bool {
-    let place = take_right(rest, width_of(ui, &button));
+    let place = take_right(rest, width_of(ui, button.text));
     rest.max.x += theme::STEP;
     let id = Id::unique(("traffic", id.en));
     button.put(ui, look, place, id).clicked()
 }
 
 fn put_left(ui: &mut Ui, rest: &mut Rect, look: Look, button: Button<'_>, id: Text) -> bool {
-    let place = take_left(rest, width_of(ui, &button));
+    let place = take_left(rest, width_of(ui, button.text));
     rest.min.x -= theme::STEP;
     let id = Id::unique(("traffic", id.en));
     button.put(ui, look, place, id).clicked()

@@ -229,7 +229,8 @@ impl Window {
             self.view = View::Connection;
         }
         for banner in banner::banners(pane) {
-            let (place, rest) = body.split_top_bottom_at_y(body.top() + theme::BANNER);
+            let height = banner.height(ui, body.width(), pane.look);
+            let (place, rest) = body.split_top_bottom_at_y(body.top() + height);
             if let Some(view) = banner.ui(ui, place, pane.look) {
                 self.view = view;
             }

@@ -11,8 +11,8 @@ use handscope::app::settings::PlotWindow;
 use handscope::ui::View;
 use std::time::Duration;
 
-/// Frames of one figure.
-const FRAMES: usize = 200;
+/// Frames of one figure: eight seconds, one whole grasp of the built-in hand, so that each figure has the same in it.
+const FRAMES: usize = 500;
 /// Frames before, until layout and caches are settled.
 const WARM: usize = 20;
 /// A display of 60 Hz.

@@ -93,10 +93,10 @@ fn no_two_controls_overlap_among_poses_and_steps() {
         bench.wait(400);
         bench.click_first_button("Poses");
         bench.run(60);
-        bench.click("Capture the pose the hand has now");
+        bench.click("Save the pose the hand has now");
         bench.run(60);
         for _ in 0..8 {
-            bench.click("Capture");
+            bench.click("Save pose");
             bench.run(60);
         }
         check(&bench, size, "STOP", &format!("{size} poses"));

@@ -33,9 +33,9 @@ fn with_sequence() -> Bench {
     let mut bench = Bench::live();
     open(&mut bench);
     pose(&mut bench, 500);
-    bench.click("Capture the pose the hand has now");
+    bench.click("Save the pose the hand has now");
     pose(&mut bench, 1000);
-    bench.click("Capture");
+    bench.click("Save pose");
     bench.run(60);
     bench.click("Sequences");
     bench.run(60);
@@ -62,7 +62,7 @@ fn a_captured_pose_is_renamed_and_taken_with_speed_and_force_first() {
     assert!(bench.shows("No poses yet"));
     pose(&mut bench, 500);
     let before = bench.writes().len();
-    bench.click("Capture the pose the hand has now");
+    bench.click("Save the pose the hand has now");
     bench.run(100);
     enter(&mut bench, "Name", "Cup");
     enter(&mut bench, "Pose Speed", "300");
@@ -278,7 +278,7 @@ fn poses_are_put_in_order_by_dragging_and_by_alt_and_arrows_and_nothing_moves() 
     let before = bench.writes().len();
     bench.click("My poses");
     bench.run(60);
-    bench.click("Capture");
+    bench.click("Save pose");
     bench.run(60);
     assert_eq!(pose_names(&bench), ["Pose", "Pose 2", "Pose 3"]);
     bench.drag_to("Pose Pose 3", "Pose Pose");
@@ -379,7 +379,7 @@ fn poses_are_found_by_name_and_tag_and_put_in_order_among_those_that_are_found()
     let mut bench = with_sequence();
     bench.click("My poses");
     bench.run(60);
-    bench.click("Capture");
+    bench.click("Save pose");
     bench.run(60);
     bench.click("Pose Pose");
     bench.run(60);

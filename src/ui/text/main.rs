@@ -46,6 +46,8 @@ texts! {
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";
     LOCKED: "This joint is locked.", "该自由度已锁定。";
 
+    CONNECTING_TITLE: "CONNECTING", "正在连接";
+    CONNECTING_BODY: "Asking the hand to answer; nothing is written to it:", "正在等待灵巧手应答，不写入任何数据：";
     EMPTY_TITLE: "NOT CONNECTED", "未连接";
     EMPTY_BODY: "Choose the hand to talk to, or the built-in simulated one.", "请选择要连接的灵巧手，或内置的仿真手。";
     EMPTY_OPEN: "Connection", "连接设置";

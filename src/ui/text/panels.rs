@@ -30,6 +30,7 @@ texts! {
 
     TOUCH: "Fingertips", "指尖触觉";
     TOUCH_SCALE: "Heat: counts above first reading", "热度：相对首次读数的增量";
+    TOUCH_SCALE_SHORT: "Heat", "热度";
     TOUCH_NORMAL: "Normal N", "法向 N";
     TOUCH_SHEAR: "Shear N", "切向 N";
     TOUCH_DIRECTION: "Direction", "方向";

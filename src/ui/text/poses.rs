@@ -10,15 +10,17 @@ texts! {
     POSE: "Pose", "姿态";
     SEQUENCE: "Sequence", "序列";
     STRIP: "Poses and gestures", "姿态与手势";
-    EVERY: "All", "全部";
+    EVERY: "All poses", "全部姿态";
     EVERY_TIP: "Opens all poses, sequences and gestures.", "打开全部姿态、序列与手势。";
 
-    CAPTURE: "Capture", "记录姿态";
+    STRIP_EMPTY: "No poses of your own yet. Bring the hand into one and press Save pose.", "还没有自己的姿态。将灵巧手摆好后按“记录姿态”。";
+    STRIP_GESTURES: "Stored in the hand:", "手内手势：";
+    CAPTURE: "Save pose", "记录姿态";
     CAPTURE_TIP: "Keeps the pose that the hand has now. Nothing is sent.", "保存灵巧手当前的姿态，不发送任何内容。";
     CAPTURE_UNKNOWN: "The pose is not known: an angle is missing or old.", "姿态未知：有角度缺失或已过时。";
     EMPTY_TITLE: "No poses yet", "还没有姿态";
-    EMPTY_BODY: "Bring the hand into a pose, by hand or with the sliders, then capture it. It stays on this computer.", "用手或滑块把灵巧手摆成一个姿态，然后记录。姿态保存在本机。";
-    EMPTY_BUTTON: "Capture the pose the hand has now", "记录灵巧手当前的姿态";
+    EMPTY_BODY: "Bring the hand into a pose, by hand or with the sliders, then save it. It stays on this computer.", "用手或滑块把灵巧手摆成一个姿态，然后记录。姿态保存在本机。";
+    EMPTY_BUTTON: "Save the pose the hand has now", "记录灵巧手当前的姿态";
     IMPORT: "Import", "导入";
     IMPORT_TIP: "Adds the poses and sequences of a file. A file with a mistake changes nothing.", "添加文件中的姿态与序列。文件有误时不做任何更改。";
     EXPORT: "Export", "导出";
@@ -68,7 +70,7 @@ texts! {
     NEW_SEQUENCE_TIP: "Adds a sequence without steps.", "添加一个空序列。";
     SEQUENCE_EMPTY: "No sequence yet", "还没有序列";
     SEQUENCE_EMPTY_BODY: "A sequence takes poses one after the other. It can be tried on the drawn hand first.", "序列依次执行多个姿态，可先在图上试运行。";
-    NEEDS_POSES: "Capture a pose first.", "请先记录姿态。";
+    NEEDS_POSES: "Save a pose first.", "请先记录姿态。";
     STEPS_EMPTY: "No steps yet: add a pose below.", "还没有步骤：请在下方添加姿态。";
     ADD: "Add", "添加";
     ADD_TIP: "Adds this pose as the last step.", "把该姿态添加为最后一步。";

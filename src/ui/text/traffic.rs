@@ -29,7 +29,7 @@ texts! {
     EXPORT_TIP: "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";
     EXPORT_NONE: "The list is empty.", "列表为空。";
     FILTER: "Filter", "筛选";
-    FILTER_HINT: "register name, or bytes in hex", "寄存器名称或十六进制字节";
+    FILTER_HINT: "name or hex bytes", "名称或十六进制字节";
     WAY_ALL: "Both ways", "双向";
     WAY_OUT: "To hand", "发往手";
     WAY_IN: "From hand", "来自手";

@@ -71,6 +71,18 @@ pub(crate) const fn fault(fault: Fault, language: Language) -> Words {
     }
 }
 
+/// A fault's title where room is short.
+pub(crate) const fn fault_short(fault: Fault, language: Language) -> &'static str {
+    match (language, fault) {
+        (Language::En, Fault::OverTemperature) => "Too hot",
+        (Language::En, Fault::Motor) => "Motor",
+        (Language::En, Fault::Communication) => "No contact",
+        (Language::En, Fault::Unknown(_)) => "Unknown",
+        (Language::Zh, Fault::Unknown(_)) => "未知故障",
+        _ => self::fault(fault, language).title,
+    }
+}
+
 const fn status_zh(status: Status) -> Words {
     match status {
         Status::Releasing => Words::new("正在松开", "该自由度正向张开方向运动。", "无需处理。"),

@@ -52,7 +52,7 @@ pub(crate) const UPPER_LEAST: f32 = 300.0;
 /// Height of the strip in a low window, and its least one.
 pub(crate) const STRIP_LEAST: f32 = 88.0;
 /// Height of the strip.
-pub(crate) const STRIP: f32 = 164.0;
+pub(crate) const STRIP: f32 = 144.0;
 /// Height of the overview from which its strip has several rows.
 pub(crate) const STRIP_ROOMY: f32 = 640.0;
 /// The least height of the fingertips.
@@ -152,14 +152,20 @@ pub(crate) const FIELD: f32 = 52.0;
 pub(crate) const FIELD_MARGIN: f32 = 16.0;
 /// What the edges of a number field take.
 pub(crate) const FIELD_MARGIN_SMALL: f32 = 14.0;
+/// Height of a drive's tile with the cause of what it says.
+pub(crate) const DRIVE_TILE: f32 = 112.0;
+/// Width and least height of a pose in the overview.
+pub(crate) const STRIP_TILE: egui::Vec2 = egui::vec2(132.0, 38.0);
+/// Width of a gesture that has no name.
+pub(crate) const GESTURE_TILE: f32 = 40.0;
+/// Room for a gesture's number beside its name.
+pub(crate) const GESTURE_NUMBER: f32 = 18.0;
 /// Width of the readings of a joint.
 pub(crate) const READING: f32 = 112.0;
 /// Width of a joint's name.
 pub(crate) const NAME_COLUMN: f32 = 84.0;
 /// Width of current and temperature where room is short.
 pub(crate) const DRIVE_COLUMN: f32 = 78.0;
-/// Width of the force where room is short.
-pub(crate) const FORCE_COLUMN: f32 = 40.0;
 /// Width of counts.
 pub(crate) const COUNT_COLUMN: f32 = 96.0;
 /// Height of a joint's row from which force and speed have lines of their own.
