@@ -183,6 +183,50 @@ fn walk(state: State, what: &str) {
     }
 }
 
+/// Pixels that a finger needs, on a display that is drawn one and a half times as large.
+const FINGER_PX: f32 = 39.0;
+
+/// The place from which a press hits this target: a press beside it hits it where no other is nearer.
+fn reached(rect: Rect, all: &[(String, Rect)], reach: f32) -> Vec2 {
+    let side = |gap: &dyn Fn(&Rect) -> f32, across: &dyn Fn(&Rect) -> bool| {
+        let near = all.iter().map(|(_, other)| other);
+        let near = near.filter(|other| **other != rect && across(other));
+        near.map(gap)
+            .filter(|gap| *gap > -0.5)
+            .fold(reach, |least, gap| least.min(gap / 2.0))
+    };
+    // Those that only touch are neither beside nor above.
+    let inner = rect.shrink(0.5);
+    let beside = |other: &Rect| other.y_range().intersects(inner.y_range());
+    let over = |other: &Rect| other.x_range().intersects(inner.x_range());
+    rect.size()
+        + vec2(
+            side(&|other| other.left() - rect.right(), &beside)
+                + side(&|other| rect.left() - other.right(), &beside),
+            side(&|other| other.top() - rect.bottom(), &over)
+                + side(&|other| rect.top() - other.bottom(), &over),
+        )
+}
+
+#[test]
+fn every_target_is_as_large_as_a_finger_on_a_touch_display() {
+    // All joints are to be seen, and with no room to spare.
+    let (scale, size) = (1.5, vec2(1280.0, 852.0));
+    for state in [common::armed(), common::faulted()] {
+        let mut harness = bench_at(state, scale, size);
+        for view in View::ALL {
+            harness.state_mut().window.set_view(view);
+            harness.run_steps(3);
+            let reach = harness.ctx.global_style().interaction.interact_radius;
+            let all = pressed(&harness);
+            for (name, rect) in &all {
+                let px = reached(*rect, &all, reach).min_elem() * scale;
+                assert!(px >= FINGER_PX, "{view:?} {name}: {rect} {px} px");
+            }
+        }
+    }
+}
+
 #[test]
 fn nothing_is_cut_or_covered_without_a_hand() {
     walk(common::empty(), "no hand");

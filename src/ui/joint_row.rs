@@ -12,8 +12,6 @@ use crate::ui::text::{Text, faults, main, words};
 use crate::ui::theme;
 use egui::{Color32, CornerRadius, Id, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
-/// Rows at least this high show force and speed on lines of their own.
-const ROOMY: f32 = theme::ROOMY_ROW;
 /// Width of the readings at the right.
 pub(crate) const READING: f32 = theme::READING;
 /// The newest value of one joint, and how fresh it is.
@@ -65,7 +63,8 @@ impl Row {
     /// Draws it.
     pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, linked: bool) {
         let palette = pane.look.palette;
-        let roomy = rect.height() >= ROOMY;
+        let line = theme::least_line(ui.pixels_per_point());
+        let roomy = rect.height() >= 4.0 * line + 2.0 * theme::GAP;
         let bar = Rect::from_min_max(
             pos2(rect.left(), rect.top() + theme::STEP),
             pos2(rect.left() + theme::BAR, rect.bottom() - theme::STEP),
@@ -190,7 +189,7 @@ impl Row {
         let look = pane.look;
         let locked = pane.state.joints[self.dof].locked;
         let place = controls::middle(rect, theme::SMALL_BUTTON);
-        let response = ui.interact(place, self.id("lock"), Sense::click());
+        let response = ui.interact(rect, self.id("lock"), Sense::click());
         let name = self.named(pane, main::NAME_LOCK);
         response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, locked, &name));
         let (kind, color) = match (locked, response.hovered()) {

@@ -14,8 +14,6 @@ use egui::{Id, Rect, Ui, pos2, vec2};
 
 /// No line of a row grows higher than this.
 const LINE_MAX: f32 = theme::LINE_HIGH;
-/// No line of a row is lower than this; the list scrolls instead.
-const LINE_MIN: f32 = theme::LINE_LOW;
 
 /// The column of joints.
 #[derive(Debug, Clone, Copy, Default)]
@@ -79,7 +77,7 @@ impl JointsView {
     }
 
     fn list_ui(&self, ui: &mut Ui, list: Rect, pane: &mut Pane<'_>) {
-        let least = 3.0 * LINE_MIN + theme::GAP;
+        let least = 3.0 * theme::least_line(ui.pixels_per_point()) + theme::GAP;
         let height = list.height() / 6.0;
         if height >= least {
             let height = height.min(4.0 * LINE_MAX + 2.0 * theme::GAP);

@@ -132,6 +132,19 @@ pub(crate) const LIST_LINE: f32 = 17.0;
 pub(crate) const FIGURE_ROW: f32 = 18.0;
 /// The lowest line that a track fits in.
 pub(crate) const LINE_LOW: f32 = 19.0;
+/// The lowest line that a finger can press, at [`TOUCH_SCALE`].
+pub(crate) const LINE_TOUCH: f32 = 30.0;
+/// Pixels a point from which a display is taken for one that is touched.
+pub(crate) const TOUCH_SCALE: f32 = 1.5;
+
+/// The lowest line of a joint's row on a display of this scale.
+pub(crate) const fn least_line(pixels_per_point: f32) -> f32 {
+    if pixels_per_point >= TOUCH_SCALE {
+        LINE_TOUCH
+    } else {
+        LINE_LOW
+    }
+}
 /// The first line of an entry.
 pub(crate) const TITLE_LINE: f32 = 20.0;
 /// The highest line that a track is drawn in.
@@ -168,8 +181,6 @@ pub(crate) const NAME_COLUMN: f32 = 84.0;
 pub(crate) const DRIVE_COLUMN: f32 = 78.0;
 /// Width of counts.
 pub(crate) const COUNT_COLUMN: f32 = 96.0;
-/// Height of a joint's row from which force and speed have lines of their own.
-pub(crate) const ROOMY_ROW: f32 = 92.0;
 /// Where the bar below a number begins, from its middle.
 pub(crate) const BELOW_NUMBER: f32 = 8.0;
 /// Height of the rail of a track.
