@@ -12,24 +12,18 @@ use crate::ui::text::{faults, words};
 use crate::ui::{format, theme};
 use egui::{CornerRadius, Id, Rect, Ui, pos2, vec2};
 
-/// Width from which six tiles stand in one row.
-const ONE_ROW: f32 = 840.0;
 /// Height of a tile with its cause, and without.
 const TALL: f32 = theme::DRIVE_TILE;
-/// Height of a tile without its cause.
-const LOW: f32 = 52.0;
 /// Most lines of a cause.
 const CAUSE_LINES: u8 = 4;
-/// Height of the view from which tiles say the cause, too.
-const ROOMY: f32 = 560.0;
 
 /// The height that the tiles take of a view of this size.
 pub(crate) fn height(view: Rect) -> f32 {
-    match (view.width() >= ONE_ROW, view.height() >= ROOMY) {
+    match (view.width() >= theme::DRIVE_TILES_ROW, view.height() >= theme::DRIVE_TILES_ROOMY) {
         (true, true) => TALL,
-        (true, false) => LOW,
+        (true, false) => theme::DRIVE_TILE_LOW,
         (false, true) => 2.0 * 84.0 + theme::GAP,
-        (false, false) => 2.0 * LOW + theme::GAP,
+        (false, false) => 2.0 * theme::DRIVE_TILE_LOW + theme::GAP,
     }
 }
 
@@ -40,7 +34,7 @@ pub(crate) fn tiles_ui(
     pane: &Pane<'_>,
     chosen: Option<Dof>,
 ) -> Option<Dof> {
-    let (columns, rows) = if rect.width() >= ONE_ROW {
+    let (columns, rows) = if rect.width() >= theme::DRIVE_TILES_ROW {
         (6.0, 1.0)
     } else {
         (3.0, 2.0)

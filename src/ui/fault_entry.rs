@@ -263,8 +263,6 @@ fn rough(left: Duration) -> String {
     }
 }
 
-/// Size of the number on a tab.
-const BADGE: f32 = 16.0;
 
 /// How many faults nobody has seen, as a small badge with its right top corner here.
 pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
@@ -272,9 +270,9 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
         return;
     };
     let count = pane.state.faults.unseen().count().to_string();
-    let width = (controls::text_width(ui, &count, theme::tiny()) + theme::GAP).max(BADGE);
-    let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, BADGE));
-    ui.painter().rect_filled(place, BADGE / 2.0, color);
+    let width = (controls::text_width(ui, &count, theme::tiny()) + theme::GAP).max(theme::FAULT_BADGE);
+    let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, theme::FAULT_BADGE));
+    ui.painter().rect_filled(place, theme::FAULT_BADGE / 2.0, color);
     let (font, ink) = (theme::tiny(), pane.look.palette.window);
     controls::paint_text(ui, place, egui::Align2::CENTER_CENTER, &count, font, ink);
 }

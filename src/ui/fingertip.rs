@@ -22,7 +22,7 @@ const FULL_SHEAR_N: f32 = 5.0;
 /// Its length in millimetres.
 const LONGEST_MM: f32 = 9.0;
 /// Proximity at which the halo is strongest. The scale ends near 16 million; contact begins far below.
-const FULL_PROXIMITY: f32 = 2_000_000.0;
+const FULL_PROXIMITY_COUNTS: f32 = 2_000_000.0;
 
 /// Height of a fingertip with its halo, in widths.
 pub(crate) const HEIGHT_TO_WIDTH: f32 =
@@ -74,7 +74,7 @@ impl Sense {
 impl Tip {
     /// How strong the proximity halo is, 0..=1.
     pub(crate) fn nearness(&self) -> f32 {
-        let level = self.proximity.map_or(0.0, |counts| counts / FULL_PROXIMITY);
+        let level = self.proximity.map_or(0.0, |counts| counts / FULL_PROXIMITY_COUNTS);
         level.clamp(0.0, 1.0)
     }
 }

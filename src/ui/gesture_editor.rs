@@ -8,7 +8,7 @@ use crate::ui::controls::{self, Button, Label, Weight, take_left, take_top};
 use crate::ui::hand_picture;
 use crate::ui::look::Pane;
 use crate::ui::number::NumberField;
-use crate::ui::pose_editor::{NUMBER, six_ui, whole};
+use crate::ui::pose_editor::{six_ui, whole};
 use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
 use egui::{Id, Rect, Ui};
@@ -50,7 +50,7 @@ impl GestureEditor {
         self.number_ui(ui, take_top(&mut left, theme::CONTROL), pane);
         self.store_ui(ui, take_top(&mut left, theme::CONTROL), pane);
         let six = take_top(&mut left, 6.0 * (theme::CONTROL + theme::STEP));
-        let picture = six.with_min_x(six.left() + 96.0 + NUMBER + 2.0 * theme::GAP);
+        let picture = six.with_min_x(six.left() + 96.0 + theme::POSE_NUMBER + 2.0 * theme::GAP);
         let shares = self
             .angles
             .map(|angle| Some(f32::from(angle?.get()) / 1000.0));
@@ -141,7 +141,7 @@ impl GestureEditor {
             range: 14.0..=40.0,
             decimals: 0,
         };
-        let place = take_left(&mut row, NUMBER);
+        let place = take_left(&mut row, theme::POSE_NUMBER);
         let typed = field.put(ui, look, pane.typing, place, Id::unique("user gesture"));
         if let Some(gesture) = typed.and_then(|typed| UserGesture::new(whole(typed)).ok()) {
             self.gesture = gesture;

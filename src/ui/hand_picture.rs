@@ -13,18 +13,14 @@ use crate::ui::{format, theme};
 use egui::{Align2, Id, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 /// Radians of turning for a point of dragging.
-const TURN: f32 = 0.01;
+const TURN_RAD: f32 = 0.01;
 /// How far the picture can be turned to each side, and tipped.
-const YAW_MAX: f32 = 1.4;
-const PITCH_MAX: f32 = 0.9;
+const YAW_MAX_RAD: f32 = 1.4;
+const PITCH_MAX_RAD: f32 = 0.9;
 /// A target nearer than this to the actual angle is not drawn beside it.
 const TARGET_GAP: i16 = 20;
 /// Force from which a number is joined to its fingertip, in newtons.
 const CONTACT_N: f32 = 0.1;
-/// Size from which numbers find room.
-const ROOM_FOR_NUMBERS: (f32, f32) = (240.0, 230.0);
-/// Height of a finger's name with its number.
-const HEAD: f32 = 34.0;
 
 /// How the hand is looked at, and what its fingertips did just now.
 #[derive(Debug, Clone, Default)]
@@ -46,16 +42,16 @@ impl HandView {
         let look = pane.look;
         self.trails.follow(&pane.state.sample, pane.state.now);
         let mut picture = rect;
-        let (width, height) = ROOM_FOR_NUMBERS;
+        let (width, height) = theme::HAND_NUMBERS_ROOM;
         let heads = (rect.width() >= width && rect.height() >= height)
-            .then(|| controls::take_top(&mut picture, HEAD));
+            .then(|| controls::take_top(&mut picture, theme::HAND_HEAD));
         let response = ui.interact(picture, id, Sense::click_and_drag());
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
         if response.dragged() {
-            let by = response.drag_delta() * TURN;
-            self.turn.yaw = (self.turn.yaw + by.x).clamp(-YAW_MAX, YAW_MAX);
-            self.turn.pitch = (self.turn.pitch + by.y).clamp(-PITCH_MAX, PITCH_MAX);
+            let by = response.drag_delta() * TURN_RAD;
+            self.turn.yaw = (self.turn.yaw + by.x).clamp(-YAW_MAX_RAD, YAW_MAX_RAD);
+            self.turn.pitch = (self.turn.pitch + by.y).clamp(-PITCH_MAX_RAD, PITCH_MAX_RAD);
         }
         if response.double_clicked() {
             self.turn = Turn::default();

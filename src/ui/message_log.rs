@@ -13,12 +13,6 @@ use std::fmt::Write as _;
 
 /// Most signs of a filter.
 const FILTER_MAX: usize = 64;
-/// Width of a message's age.
-const AGE: f32 = 52.0;
-/// The filter's field has a row of its own where it would be narrower.
-const FIELD: f32 = 96.0;
-/// Above and below the text of a message.
-const AIR: f32 = 3.0;
 
 /// What decides which lines there are and where.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +60,7 @@ impl MessageLog {
     pub(crate) fn ui(&mut self, ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
         let look = pane.look;
         let left = self.tools_ui(ui, take_top(&mut rect, theme::CONTROL), look);
-        let field = if left.width() < FIELD {
+        let field = if left.width() < theme::MESSAGE_FIELD {
             take_top(&mut rect, theme::CONTROL)
         } else {
             left
@@ -151,9 +145,9 @@ impl MessageLog {
                 continue;
             }
             let ink = Color32::PLACEHOLDER;
-            let room = width - INDENT - AGE - theme::GAP;
+            let room = width - INDENT - theme::MESSAGE_AGE - theme::GAP;
             let galley = ui.painter().layout(text.clone(), theme::small(), ink, room);
-            let height = galley.size().y + 2.0 * AIR;
+            let height = galley.size().y + 2.0 * theme::MESSAGE_AIR;
             self.lines.push(Line {
                 at: notice.at,
                 level: notice.level,
@@ -212,11 +206,11 @@ fn words(look: Look, notice: &Notice) -> String {
 fn line_of(ui: &mut Ui, mut row: Rect, pane: &Pane<'_>, line: &Line) {
     let look = pane.look;
     let (_, color) = level_look(look, line.level);
-    let first = row.top() + AIR + 7.0;
+    let first = row.top() + theme::MESSAGE_AIR + 7.0;
     controls::lamp(ui, pos2(row.left() + LAMP_AT, first), color);
     let age = format::age(pane.state.now.since(line.at));
-    let mut place = take_right(&mut row, AGE);
-    place.max.y = place.top() + 2.0 * AIR + 14.0;
+    let mut place = take_right(&mut row, theme::MESSAGE_AGE);
+    place.max.y = place.top() + 2.0 * theme::MESSAGE_AIR + 14.0;
     let faint = look.palette.faint;
     Label::new(&age, faint).small().right().put(ui, place);
     let id = ui.next_auto_id();
@@ -228,7 +222,7 @@ fn line_of(ui: &mut Ui, mut row: Rect, pane: &Pane<'_>, line: &Line) {
     let galley = ui
         .painter()
         .layout(line.text.clone(), theme::small(), ink, room);
-    let at = pos2(row.left() + INDENT, row.top() + AIR);
+    let at = pos2(row.left() + INDENT, row.top() + theme::MESSAGE_AIR);
     ui.painter().galley(at, galley, ink);
 }
 

@@ -2,7 +2,6 @@
 
 use crate::ui::controls::paint_text;
 use crate::ui::look::Look;
-use crate::ui::plots::AXIS;
 use crate::ui::text::panels;
 use crate::ui::theme;
 use egui::{Align2, Color32, Pos2, Rect, Stroke, Ui, pos2, vec2};
@@ -176,8 +175,8 @@ pub(crate) fn numbers_ui(ui: &Ui, ground: Rect, band: &Band, color: Color32) {
         let y = y_of(ground, band, value);
         let y = y.clamp(ground.top() + 6.0, ground.bottom() - 6.0);
         let place = Rect::from_center_size(
-            pos2(ground.left() + AXIS / 2.0 - 3.0, y),
-            vec2(AXIS - 6.0, 12.0),
+            pos2(ground.left() + theme::PLOT_AXIS / 2.0 - 3.0, y),
+            vec2(theme::PLOT_AXIS - 6.0, 12.0),
         );
         // No "-0".
         let text = format!("{:.digits$}", value + 0.0);

@@ -5,15 +5,15 @@ use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Stroke, pos2};
 
 /// Points this far apart are joined by a slope, not by bars.
-const JOINED: f32 = 2.0;
+const JOINED_PX: f32 = 2.0;
 /// Upper and lower edges fade over this, in points.
-const FADE: f32 = 1.0;
+const FADE_PX: f32 = 1.0;
 /// Bars whose ends differ by less go on as one: nobody sees a sixteenth of a point.
-const SAME: f32 = 1.0 / 16.0;
+const SAME_PX: f32 = 1.0 / 16.0;
 /// A bar lower than this is drawn without a solid core.
-const FLAT: f32 = 0.25;
+const FLAT_PX: f32 = 0.25;
 /// A slope is thicker upright than across, up to so many times.
-const STEEP_MOST: f32 = 4.0;
+const STEEP_MOST_RATIO: f32 = 4.0;
 
 /// What a line covers in some columns of pixels.
 #[derive(Debug, Clone, Copy)]
@@ -29,8 +29,8 @@ struct Bar {
 impl Bar {
     fn alike(self, other: Self) -> bool {
         self.end == other.x
-            && (self.top - other.top).abs() < SAME
-            && (self.bottom - other.bottom).abs() < SAME
+            && (self.top - other.top).abs() < SAME_PX
+            && (self.bottom - other.bottom).abs() < SAME_PX
     }
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, points: impl Iterator<Item = 
             continue;
         }
         finish(mesh, stroke, &mut wide, bar);
-        let far = before.filter(|before| point.x - before.x > JOINED);
+        let far = before.filter(|before| point.x - before.x > JOINED_PX);
         if let Some(before) = far {
             slope(mesh, stroke, before, point);
         }
@@ -86,13 +86,13 @@ fn finish(mesh: &mut Mesh, stroke: Stroke, wide: &mut Option<Bar>, bar: Option<B
 }
 
 fn paint(mesh: &mut Mesh, stroke: Stroke, bar: Bar) {
-    let out = (stroke.width + FADE) / 2.0;
-    let core = (stroke.width - FADE).max(0.0) / 2.0;
+    let out = (stroke.width + FADE_PX) / 2.0;
+    let core = (stroke.width - FADE_PX).max(0.0) / 2.0;
     let (top, bottom) = (bar.top - core, bar.bottom + core);
     let outer = (bar.top - out, bar.bottom + out);
     let sides = [bar.x, bar.end];
     let clear = Color32::TRANSPARENT;
-    if bar.bottom - bar.top < FLAT {
+    if bar.bottom - bar.top < FLAT_PX {
         let middle = bar.top.midpoint(bar.bottom);
         let levels = [(outer.0, clear), (middle, stroke.color), (outer.1, clear)];
         strip(mesh, sides, [levels, levels]);
@@ -108,9 +108,9 @@ fn paint(mesh: &mut Mesh, stroke: Stroke, bar: Bar) {
 }
 
 fn slope(mesh: &mut Mesh, stroke: Stroke, from: Pos2, to: Pos2) {
-    let steep = ((to.y - from.y) / (to.x - from.x).max(JOINED)).hypot(1.0);
-    let out = (stroke.width + FADE) / 2.0 * steep.min(STEEP_MOST);
-    let core = (stroke.width - FADE).max(0.0) / 2.0 * steep.min(STEEP_MOST);
+    let steep = ((to.y - from.y) / (to.x - from.x).max(JOINED_PX)).hypot(1.0);
+    let out = (stroke.width + FADE_PX) / 2.0 * steep.min(STEEP_MOST_RATIO);
+    let core = (stroke.width - FADE_PX).max(0.0) / 2.0 * steep.min(STEEP_MOST_RATIO);
     let clear = Color32::TRANSPARENT;
     let levels = |y: f32| {
         [

@@ -13,12 +13,6 @@ use egui::{
     Align2, CornerRadius, CursorIcon, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-/// Height of a row of the table.
-const ROW: f32 = 15.0;
-/// Height of the table's own line.
-const HEAD: f32 = 22.0;
-/// Width of a cursor's flag.
-const FLAG: f32 = 16.0;
 /// Names of the cursors.
 const NAMES: [(&str, Text); 2] = [("A", plots::CURSOR_A), ("B", plots::CURSOR_B)];
 /// The columns of the table.
@@ -89,7 +83,7 @@ impl Cursors {
     pub(crate) fn table_height(self, lines: usize) -> f32 {
         let lines = u8::try_from(lines).unwrap_or(u8::MAX);
         self.at
-            .map_or(0.0, |_| HEAD + ROW * (f32::from(lines) + 1.0) + theme::GAP)
+            .map_or(0.0, |_| theme::CURSOR_HEAD + theme::CURSOR_ROW * (f32::from(lines) + 1.0) + theme::GAP)
     }
 
     /// The lines through all plots, and the flags under them by which they are moved.
@@ -106,8 +100,8 @@ impl Cursors {
                 let stroke = Stroke::new(1.0, look.palette.accent);
                 ui.painter().vline(x, ground.y_range(), stroke);
             }
-            let x = x.clamp(axis.left() + FLAG / 2.0, axis.right() - FLAG / 2.0);
-            let flag = Rect::from_center_size(pos2(x, axis.top() + 9.0), vec2(FLAG, FLAG));
+            let x = x.clamp(axis.left() + theme::CURSOR_FLAG / 2.0, axis.right() - theme::CURSOR_FLAG / 2.0);
+            let flag = Rect::from_center_size(pos2(x, axis.top() + 9.0), vec2(theme::CURSOR_FLAG, theme::CURSOR_FLAG));
             let response = ui.interact(flag, Id::unique(("cursor", short)), Sense::drag());
             response.widget_info(|| WidgetInfo::slider(true, *at_s, look.say(name)));
             let round = CornerRadius::same(theme::ROUND_SMALL);
@@ -141,7 +135,7 @@ impl Cursors {
     ) -> bool {
         let Some(at) = self.at else { return false };
         let look = pane.look;
-        let (mut head, mut body) = rect.split_top_bottom_at_y(rect.top() + HEAD);
+        let (mut head, mut body) = rect.split_top_bottom_at_y(rect.top() + theme::CURSOR_HEAD);
         let title = look.say(panel.title);
         let width = controls::text_width(ui, title, theme::body()) + 2.0 * theme::GAP;
         let width = width.min(head.width());
@@ -163,7 +157,7 @@ impl Cursors {
             let left = row.left() + name_width + f32::from(n) * column;
             Rect::from_min_size(pos2(left, row.top()), vec2(column - 3.0, row.height()))
         };
-        let (row, mut rest) = body.split_top_bottom_at_y(body.top() + ROW);
+        let (row, mut rest) = body.split_top_bottom_at_y(body.top() + theme::CURSOR_ROW);
         for (n, text) in (0..).zip(COLUMNS) {
             let (font, color) = (theme::tiny(), look.palette.faint);
             let place = cell(row, n);
@@ -171,7 +165,7 @@ impl Cursors {
         }
         for line in lines {
             let row;
-            (row, rest) = rest.split_top_bottom_at_y(rest.top() + ROW);
+            (row, rest) = rest.split_top_bottom_at_y(rest.top() + theme::CURSOR_ROW);
             let name = look.say(words::dof(line.dof));
             Label::new(name, look.palette.dof[line.dof])
                 .small()

@@ -9,16 +9,6 @@ use crate::ui::text::{Text, plots};
 use crate::ui::theme;
 use egui::{Align2, Rect, Stroke, Ui, pos2};
 
-/// Room right of the plots.
-pub(crate) const ENDS: f32 = 32.0;
-/// From the plot to the name.
-const LEAD: f32 = 5.0;
-/// Where names come closer than their height, every other one stands aside by this.
-const ASIDE: f32 = 10.0;
-/// Lines that end this near to each other end together.
-const TOGETHER: f32 = 5.0;
-/// Height of a name; in less room they come closer.
-const NAME: f32 = 11.0;
 
 /// Where a line ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +24,7 @@ pub(crate) fn ends_ui(ui: &Ui, plot: Rect, look: Look, ends: Vec<End>) {
     let ends = ordered(ends);
     let mut heights: Vec<f32> = ends.iter().map(|end| end.y).collect();
     let apart = spread(&mut heights, (plot.top(), plot.bottom()));
-    let aside = if apart < NAME { ASIDE } else { 0.0 };
+    let aside = if apart < theme::END_NAME { theme::END_ASIDE } else { 0.0 };
     for ((end, y), aside) in ends
         .iter()
         .zip(heights)
@@ -42,12 +32,12 @@ pub(crate) fn ends_ui(ui: &Ui, plot: Rect, look: Look, ends: Vec<End>) {
     {
         let color = look.palette.dof[end.line.dof];
         let at = end.y.clamp(plot.top(), plot.bottom());
-        let lead = [pos2(plot.right() + 1.0, at), pos2(plot.right() + LEAD, y)];
+        let lead = [pos2(plot.right() + 1.0, at), pos2(plot.right() + theme::END_LEAD, y)];
         ui.painter().line_segment(lead, Stroke::new(1.0, color));
-        let left = plot.right() + LEAD + 2.0 + aside;
+        let left = plot.right() + theme::END_LEAD + 2.0 + aside;
         let place = Rect::from_min_max(
-            pos2(left, y - NAME / 2.0),
-            pos2(plot.right() + ENDS, y + NAME / 2.0),
+            pos2(left, y - theme::END_NAME / 2.0),
+            pos2(plot.right() + theme::PLOT_ENDS, y + theme::END_NAME / 2.0),
         );
         let (text, font) = (look.say(short(end.line.series)), theme::tiny());
         controls::paint_text(ui, place, Align2::LEFT_CENTER, text, font, color);
@@ -58,18 +48,18 @@ pub(crate) fn ends_ui(ui: &Ui, plot: Rect, look: Look, ends: Vec<End>) {
 fn ordered(ends: Vec<End>) -> Vec<End> {
     let mut sorted: Vec<End> = Vec::with_capacity(ends.len());
     for end in ends {
-        let above = |other: &End| other.y <= end.y + TOGETHER;
+        let above = |other: &End| other.y <= end.y + theme::END_TOGETHER;
         let place = sorted.iter().rposition(above).map_or(0, |last| last + 1);
         sorted.insert(place, end);
     }
     sorted
 }
 
-/// Moves heights apart, as little as it takes, so that names of [`NAME`] do not overlap; closer where there is no room.
+/// Moves heights apart, as little as it takes, so that names of [`theme::END_NAME`] do not overlap; closer where there is no room.
 /// How far apart they are at least.
 fn spread(heights: &mut [f32], (top, bottom): (f32, f32)) -> f32 {
     let count = f32::from(u8::try_from(heights.len()).unwrap_or(u8::MAX).max(1));
-    let apart = NAME.min((bottom - top) / count);
+    let apart = theme::END_NAME.min((bottom - top) / count);
     let mut least = top + apart / 2.0;
     for y in heights.iter_mut() {
         *y = y.max(least);
@@ -145,16 +135,16 @@ mod tests {
             vec![30.0, 60.0],
             vec![-500.0, 700.0],
         ] {
-            assert!(spread(&mut heights, (0.0, 100.0)) >= NAME);
+            assert!(spread(&mut heights, (0.0, 100.0)) >= theme::END_NAME);
             let pairs = heights.iter().zip(heights.iter().skip(1));
             assert!(
-                pairs.clone().all(|(one, two)| two - one > NAME - 0.01),
+                pairs.clone().all(|(one, two)| two - one > theme::END_NAME - 0.01),
                 "{heights:?}"
             );
             assert!(
                 heights
                     .iter()
-                    .all(|y| (NAME / 2.0..=100.0 - NAME / 2.0).contains(y))
+                    .all(|y| (theme::END_NAME / 2.0..=100.0 - theme::END_NAME / 2.0).contains(y))
             );
         }
     }
@@ -169,7 +159,7 @@ mod tests {
     #[test]
     fn in_little_room_names_come_closer_and_stay_inside() {
         let mut heights = vec![10.0; 6];
-        assert!(spread(&mut heights, (0.0, 36.0)) < NAME);
+        assert!(spread(&mut heights, (0.0, 36.0)) < theme::END_NAME);
         let pairs = heights.iter().zip(heights.iter().skip(1));
         assert!(
             pairs.clone().all(|(one, two)| two - one > 5.9),

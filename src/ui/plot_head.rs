@@ -15,20 +15,12 @@ use egui::{
     pos2, vec2,
 };
 
-/// Height of a row of the legend.
-const ROW: f32 = 20.0;
-/// Free room beside the title below which the switches are drawn short.
-const NARROW: f32 = 440.0;
-/// Room that the row of windows needs; in less it becomes a list.
-const WINDOWS: f32 = 270.0;
-/// Width of the menu.
-const MENU: f32 = 250.0;
 /// Rows that go to the clipboard at once: they are made into text within one frame.
 const COPY_ROWS_MAX: usize = 20_000;
 
 /// The switches beside the title.
 pub(crate) fn head_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
-    let narrow = head.width() < NARROW;
+    let narrow = head.width() < theme::PLOT_HEAD_NARROW;
     menu_ui(ui, take_right(&mut head, 26.0), pane, view);
     let look = pane.look;
     let span = view.sight.span();
@@ -49,7 +41,7 @@ pub(crate) fn head_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>, view: &m
         view.note_asked |= pressed;
     }
     pause_ui(ui, &mut head, pane, view, narrow.then_some(28.0));
-    if head.width() < WINDOWS {
+    if head.width() < theme::PLOT_WINDOWS {
         window_list_ui(ui, head, pane, view);
     } else {
         window_ui(ui, head, pane, view);
@@ -87,7 +79,7 @@ fn menu_ui(ui: &mut Ui, place: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
             copy_ui(ui, pane, view);
             save_ui(ui, pane, view);
             ui.separator();
-            ui.set_max_width(MENU);
+            ui.set_max_width(theme::PLOT_MENU);
             let hint = egui::RichText::new(look.say(plots::AREA_TIP));
             ui.label(hint.small().color(look.palette.muted));
         });
@@ -273,7 +265,7 @@ pub(crate) fn legend_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, view: &mu
     let threshold_width = controls::text_width(ui, thresholds, theme::small()) + 26.0;
     let needed: f32 = widths.iter().map(|width| width + theme::STEP).sum();
     let one_row = needed + threshold_width <= body.width();
-    let mut row = take_top(body, ROW);
+    let mut row = take_top(body, theme::PLOT_NAMES_ROW);
     if !one_row {
         body.min.y -= theme::STEP;
     }
@@ -285,7 +277,7 @@ pub(crate) fn legend_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, view: &mu
     threshold_ui(ui, threshold, look, view);
     for (n, (dof, width)) in Dof::ALL.into_iter().zip(widths).enumerate() {
         if n == 3 && !one_row {
-            row = take_top(body, ROW);
+            row = take_top(body, theme::PLOT_NAMES_ROW);
         }
         let column = columns.get(n % 3).copied().unwrap_or(width);
         let width = if one_row { width } else { column };

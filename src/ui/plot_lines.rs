@@ -10,7 +10,7 @@ use crate::ui::theme::{self, Palette};
 use egui::{Mesh, Painter, Stroke};
 
 /// What was asked for is paler than what was measured.
-const WISHED: f32 = 0.45;
+const WISHED_PART: f32 = 0.45;
 
 /// Lines with their points. Kept from frame to frame: of a line that goes on only the newest is fetched.
 #[derive(Debug, Default)]
@@ -75,7 +75,7 @@ impl PlotLines {
         for (line, trace) in self.iter() {
             let color = palette.dof[line.dof];
             let stroke = if line.wished {
-                Stroke::new(1.0, color.gamma_multiply(WISHED))
+                Stroke::new(1.0, color.gamma_multiply(WISHED_PART))
             } else {
                 Stroke::new(theme::LINE, color)
             };

@@ -13,8 +13,6 @@ use egui::{
 };
 use std::collections::BTreeMap;
 
-/// Points of the wheel that halve or double what is shown.
-const WHEEL_DOUBLES: f32 = 180.0;
 /// No end lies beyond: far more than a hand can measure, and still a number of seven digits.
 const MOST: f64 = 100_000.0;
 /// The narrowest scale: a hundredth of what the finest plot tells.
@@ -90,7 +88,7 @@ impl Ranges {
         } else if let Some(at) = response.hover_pos() {
             let scroll = ui.input(|input| input.smooth_scroll_delta.y);
             if scroll != 0.0 {
-                let factor = f64::from(-scroll / WHEEL_DOUBLES).exp2();
+                let factor = f64::from(-scroll / theme::PLOT_WHEEL).exp2();
                 let value = band.low + f64::from(rect.bottom() - at.y) * per_point;
                 let end = |end: f64| value + (end - value) * factor;
                 self.choose(kind, end(band.low), end(band.high));

@@ -6,7 +6,6 @@ use crate::ui::look::{Look, Pane};
 use crate::ui::plot_axes::{self, TimeAxis, clock};
 use crate::ui::plot_panels::{Panel, PlotLine};
 use crate::ui::plot_sight::Sight;
-use crate::ui::plots::TIME_AXIS;
 use crate::ui::text::plots;
 use crate::ui::theme;
 use egui::{
@@ -14,10 +13,6 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-/// Points of the wheel that halve or double the time shown.
-const WHEEL_DOUBLES: f32 = 180.0;
-/// A marked stretch that is narrower was not meant.
-const MARKED_LEAST: f32 = 6.0;
 
 /// A stretch that is being marked, in points.
 #[derive(Debug, Default, Clone, Copy)]
@@ -35,7 +30,7 @@ impl Reach {
         let second_s = |points: f32| f64::from(points / ground.width()) * sight.width_s();
         if let Some(at) = response.hover_pos().filter(|_| !response.dragged()) {
             let at_s = plot_axes::time_of(ground, sight.span(), at.x);
-            let wheel = f64::from(scroll.y / WHEEL_DOUBLES) + f64::from(pinch).log2();
+            let wheel = f64::from(scroll.y / theme::PLOT_WHEEL) + f64::from(pinch).log2();
             let aside = second_s(scroll.x);
             if scroll.x != 0.0 {
                 sight.pan(-aside);
@@ -61,7 +56,7 @@ impl Reach {
             let span = sight.span();
             let time =
                 |x: f32| plot_axes::time_of(ground, span, x.clamp(ground.left(), ground.right()));
-            if (from - to).abs() >= MARKED_LEAST {
+            if (from - to).abs() >= theme::PLOT_MARKED_LEAST {
                 sight.show((time(from.min(to)), time(from.max(to))));
             }
         }
@@ -93,7 +88,7 @@ pub(crate) fn pointer_ui(ui: &Ui, ground: Rect, at: Pos2, look: Look, time: Time
     };
     let center = pos2(
         at.x.clamp(ground.left() + 36.0, ground.right() - 36.0),
-        ground.bottom() + TIME_AXIS / 2.0,
+        ground.bottom() + theme::PLOT_TIME_AXIS / 2.0,
     );
     let place = Rect::from_center_size(center, vec2(72.0, 16.0));
     let round = CornerRadius::same(3);

@@ -7,7 +7,7 @@ use crate::ui::controls::{self, Label};
 use crate::ui::look::{Look, Pane};
 use crate::ui::plot_axes::{self, Band, Placing, TimeAxis};
 use crate::ui::plot_cursors::Cursors;
-use crate::ui::plot_ends::{self, ENDS};
+use crate::ui::plot_ends;
 use crate::ui::plot_head;
 use crate::ui::plot_lines::PlotLines;
 use crate::ui::plot_marks;
@@ -20,16 +20,6 @@ use crate::ui::theme;
 use egui::{CornerRadius, Painter, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use std::collections::BTreeMap;
 
-/// Room for the numbers of the vertical axis.
-pub(crate) const AXIS: f32 = 40.0;
-/// Room for the numbers of the time axis.
-pub(crate) const TIME_AXIS: f32 = 20.0;
-/// Room for a plot's title.
-const CAPTION: f32 = 18.0;
-/// Height that a number on the vertical axis needs.
-const NUMBER: f32 = 22.0;
-/// A plot less high than this says nothing: while figures are read, only the one they are of is shown then.
-const LEAST_HEIGHT: f32 = 62.0;
 
 /// What the plots need between frames.
 #[derive(Debug, Default)]
@@ -84,12 +74,12 @@ impl PlotView {
         let table_height = self.cursors.table_height(measured.len());
         let (stack, table) = body.split_top_bottom_at_y(body.bottom() - table_height);
         let room = |count: usize| {
-            (stack.height() - TIME_AXIS) / f32::from(u8::try_from(count).unwrap_or(u8::MAX).max(1))
+            (stack.height() - theme::PLOT_TIME_AXIS) / f32::from(u8::try_from(count).unwrap_or(u8::MAX).max(1))
         };
-        let alone = table_height > 0.0 && room(shown.len()) < LEAST_HEIGHT;
+        let alone = table_height > 0.0 && room(shown.len()) < theme::PLOT_LEAST;
         let shown = if alone { vec![chosen] } else { shown };
         // In a window that was forced to be tiny there is no place to draw in.
-        let fits = room(shown.len()) > CAPTION + 2.0 * NUMBER && stack.width() > 4.0 * AXIS;
+        let fits = room(shown.len()) > theme::PLOT_CAPTION + 2.0 * theme::PLOT_NUMBER && stack.width() > 4.0 * theme::PLOT_AXIS;
         if fits {
             self.stack_ui(ui, stack, pane, &shown, room(shown.len()));
         }
@@ -109,8 +99,8 @@ impl PlotView {
     ) {
         let look = pane.look;
         let ground = Rect::from_min_max(
-            pos2(stack.left() + AXIS, stack.top()),
-            pos2(stack.right() - ENDS, stack.bottom() - TIME_AXIS),
+            pos2(stack.left() + theme::PLOT_AXIS, stack.top()),
+            pos2(stack.right() - theme::PLOT_ENDS, stack.bottom() - theme::PLOT_TIME_AXIS),
         );
         let axis = ground
             .with_min_y(ground.bottom())
@@ -186,11 +176,11 @@ impl PlotView {
         pointer_s: Option<f64>,
     ) -> Rect {
         let look = pane.look;
-        let (caption, ground) = rect.split_top_bottom_at_y(rect.top() + CAPTION);
+        let (caption, ground) = rect.split_top_bottom_at_y(rect.top() + theme::PLOT_CAPTION);
         let ground = ground.with_max_y(ground.bottom() - 2.0);
         let plot_rect = ground
-            .with_min_x(ground.left() + AXIS)
-            .with_max_x(ground.right() - ENDS);
+            .with_min_x(ground.left() + theme::PLOT_AXIS)
+            .with_max_x(ground.right() - theme::PLOT_ENDS);
         let history = &pane.state.history;
         let columns = usize::try_from(pixels(plot_rect.width())).unwrap_or(1);
         let mut lines = self.lines.remove(&panel.kind).unwrap_or_default();
@@ -203,7 +193,7 @@ impl PlotView {
                 band.include(f64::from(joint.force.get()));
             }
         }
-        let room = plot_rect.height() / NUMBER;
+        let room = plot_rect.height() / theme::PLOT_NUMBER;
         let band = self.ranges.band(panel, band, room);
         let axis = ground.with_max_x(plot_rect.left());
         self.ranges.axis_ui(ui, axis, pane, panel, band);

@@ -16,10 +16,6 @@ use egui::{Id, Rect, Ui, vec2};
 
 /// Characters of all tags.
 const TAGS_MAX: usize = 120;
-/// Width of a number.
-pub(crate) const NUMBER: f32 = 64.0;
-/// Width of what stands before a field.
-const CAPTION: f32 = 88.0;
 
 /// Draws the editor of one pose.
 pub(crate) fn editor_ui(
@@ -69,7 +65,7 @@ fn words_ui(
 ) {
     let look = pane.look;
     let text = look.say(caption);
-    Label::new(text, look.palette.muted).put(ui, take_left(&mut row, CAPTION));
+    Label::new(text, look.palette.muted).put(ui, take_left(&mut row, theme::POSE_CAPTION));
     let tags = pose.tags.join(", ");
     let field = TextField {
         name: text,
@@ -99,7 +95,7 @@ fn joint_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, pose: &Pose, dof: D
     let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let label = format!("{name} {text}");
     let button = Button::new(text, look.say(poses::LEAVE_TIP)).named(&label);
-    let room = CAPTION + NUMBER + 3.0 * theme::GAP + width;
+    let room = theme::POSE_CAPTION + theme::POSE_NUMBER + 3.0 * theme::GAP + width;
     row.max.x = row.right().min(row.left() + room);
     let place = take_right(&mut row, width);
     let id = Id::unique((pose.id, dof, "leave"));
@@ -121,7 +117,7 @@ pub(crate) fn angle_ui(
 ) -> Option<Angle> {
     let look = pane.look;
     let name = look.say(words::dof(dof));
-    Label::new(name, look.palette.dof[dof]).put(ui, take_left(&mut row, CAPTION));
+    Label::new(name, look.palette.dof[dof]).put(ui, take_left(&mut row, theme::POSE_CAPTION));
     let label = format!("{name} {of} {}", look.say(poses::ANGLE));
     let field = NumberField {
         name: &label,
@@ -131,7 +127,7 @@ pub(crate) fn angle_ui(
         range: 0.0..=1000.0,
         decimals: 0,
     };
-    let place = take_left(&mut row, NUMBER);
+    let place = take_left(&mut row, theme::POSE_NUMBER);
     let id = Id::unique((of, dof, "angle"));
     let typed = field.put(ui, look, pane.typing, place, id)?;
     Angle::new(whole(typed)).ok()

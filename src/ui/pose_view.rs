@@ -15,11 +15,7 @@ use crate::ui::text::{Text, poses};
 use crate::ui::theme;
 use egui::{Id, Rect, TextEdit, Ui, vec2};
 
-/// The least size of a tile.
-const TILE: egui::Vec2 = vec2(112.0, 158.0);
 
-/// Width of the field that finds poses.
-const FIND: f32 = 200.0;
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -111,7 +107,7 @@ impl PoseView {
     /// The field that finds poses by name and tag, as far as there is room for it.
     fn find_ui(&mut self, ui: &mut Ui, row: Rect, pane: &Pane<'_>) {
         let look = pane.look;
-        let place = row.with_max_x(row.right().min(row.left() + FIND));
+        let place = row.with_max_x(row.right().min(row.left() + theme::POSE_FIND));
         let edit = TextEdit::singleline(&mut self.find)
             .id(Id::unique("find poses"))
             .font(theme::body())
@@ -140,7 +136,7 @@ impl PoseView {
         }
         let width = (body.width() * 0.42).clamp(268.0, 380.0);
         let editor = take_right(&mut body, width);
-        let columns = ((body.width() + theme::GAP) / (TILE.x + theme::GAP))
+        let columns = ((body.width() + theme::GAP) / (theme::POSE_TILE.x + theme::GAP))
             .floor()
             .max(1.0);
         let words = self.find.trim().to_lowercase();
@@ -157,7 +153,7 @@ impl PoseView {
                 ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::GAP);
                 self.order.begin();
                 for (_, pose) in &shown {
-                    let size = vec2(width.floor(), TILE.y);
+                    let size = vec2(width.floor(), theme::POSE_TILE.y);
                     let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
                     self.order.place(ui, place, Id::unique(("pose", pose.id)));
                     if tile_ui(ui, place, pane, pose, self.chosen == Some(pose.id)) {

@@ -8,7 +8,6 @@ use crate::ui::look::Look;
 use crate::ui::plot_axes::{self, Band, Extent};
 use crate::ui::plot_bars;
 use crate::ui::plot_panels::{Panel, PlotLine};
-use crate::ui::plots::{AXIS, TIME_AXIS};
 use crate::ui::text::{faults, panels, words};
 use crate::ui::theme;
 use egui::{
@@ -16,16 +15,6 @@ use egui::{
     vec2,
 };
 
-/// Room for a plot's title.
-const CAPTION: f32 = 17.0;
-/// Height of one drive's lane, with its gap.
-const LANE: f32 = 8.0;
-/// Height that a number on the vertical axis needs.
-const NUMBER: f32 = 22.0;
-/// A plot less high than this says nothing.
-pub(crate) const LEAST_HEIGHT: f32 = 46.0;
-/// Room for a time on the time axis.
-const TIME: f32 = 60.0;
 /// Steps of the time axis, seconds.
 const STEPS: [f64; 6] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
 
@@ -44,19 +33,19 @@ pub(crate) struct RecordingPlot<'a> {
 /// The height that is left for each of so many plots.
 pub(crate) fn panel_height(rect: Rect, plots: usize) -> f32 {
     let count = f32::from(u8::try_from(plots.max(1)).unwrap_or(u8::MAX));
-    (rect.height() - TIME_AXIS - lanes_height()) / count
+    (rect.height() - theme::PLOT_TIME_AXIS - lanes_height()) / count
 }
 
 const fn lanes_height() -> f32 {
-    CAPTION + 6.0 * LANE + theme::STEP
+    theme::RECORDING_CAPTION + 6.0 * theme::RECORDING_LANE + theme::STEP
 }
 
 impl RecordingPlot<'_> {
     /// Draws all of it.
     pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, shown: &[&Panel], trace: &mut Trace) {
         let ground = Rect::from_min_max(
-            pos2(rect.left() + AXIS, rect.top()),
-            pos2(rect.right(), rect.bottom() - TIME_AXIS),
+            pos2(rect.left() + theme::PLOT_AXIS, rect.top()),
+            pos2(rect.right(), rect.bottom() - theme::PLOT_TIME_AXIS),
         );
         let id = egui::Id::unique("plots of a recording");
         let response = ui.interact(ground, id, Sense::hover());
@@ -91,8 +80,8 @@ impl RecordingPlot<'_> {
     fn lanes_ui(&self, ui: &mut Ui, ground: Rect, pointer_s: Option<f64>) {
         let look = self.look;
         let mut caption = Rect::from_min_size(
-            pos2(ground.left() - AXIS, ground.top()),
-            vec2(ground.width() + AXIS, CAPTION),
+            pos2(ground.left() - theme::PLOT_AXIS, ground.top()),
+            vec2(ground.width() + theme::PLOT_AXIS, theme::RECORDING_CAPTION),
         );
         if let Some(at_s) = pointer_s {
             for dof in Dof::ALL
@@ -113,10 +102,10 @@ impl RecordingPlot<'_> {
             .put(ui, caption);
         for dof in Dof::ALL {
             let row = f32::from(u8::try_from(dof.index()).unwrap_or(0));
-            let top = ground.top() + CAPTION + row * LANE;
+            let top = ground.top() + theme::RECORDING_CAPTION + row * theme::RECORDING_LANE;
             let lane =
-                Rect::from_min_size(pos2(ground.left(), top), vec2(ground.width(), LANE - 2.0));
-            let sign = Rect::from_min_size(lane.min - vec2(10.0, 0.0), vec2(6.0, LANE - 2.0));
+                Rect::from_min_size(pos2(ground.left(), top), vec2(ground.width(), theme::RECORDING_LANE - 2.0));
+            let sign = Rect::from_min_size(lane.min - vec2(10.0, 0.0), vec2(6.0, theme::RECORDING_LANE - 2.0));
             ui.painter().rect_filled(sign, 1.0, look.palette.dof[dof]);
             ui.painter().rect_filled(lane, 1.0, look.palette.sunken);
             let painter = Self::painter(ui, lane);
@@ -164,9 +153,9 @@ impl RecordingPlot<'_> {
         pointer_s: Option<f64>,
     ) {
         let look = self.look;
-        let (mut caption, ground) = rect.split_top_bottom_at_y(rect.top() + CAPTION);
+        let (mut caption, ground) = rect.split_top_bottom_at_y(rect.top() + theme::RECORDING_CAPTION);
         let ground = ground.with_max_y(ground.bottom() - 2.0);
-        let plot = ground.with_min_x(ground.left() + AXIS);
+        let plot = ground.with_min_x(ground.left() + theme::PLOT_AXIS);
         let lines = panel.lines(&PerDof::splat(false));
         if let Some(at_s) = pointer_s {
             let own = lines.iter().rev().filter(|line| !line.wished);
@@ -193,7 +182,7 @@ impl RecordingPlot<'_> {
                 extent.include(all.max.into());
             }
         }
-        let band = Band::of(panel.least, &extent).rounded(panel.steps, plot.height() / NUMBER);
+        let band = Band::of(panel.least, &extent).rounded(panel.steps, plot.height() / theme::PLOT_NUMBER);
         plot_axes::value_axis_ui(ui, ground, look, &band);
         ui.painter()
             .rect_filled(plot, CornerRadius::same(3), look.palette.sunken);
@@ -264,7 +253,7 @@ impl RecordingPlot<'_> {
     fn time_ui(&self, ui: &Ui, ground: Rect, bottom: f32) {
         let look = self.look;
         let (from_s, to_s) = self.span;
-        let most = f64::from((ground.width() / TIME).clamp(2.0, 9.0));
+        let most = f64::from((ground.width() / theme::RECORDING_TIME).clamp(2.0, 9.0));
         let step = STEPS
             .into_iter()
             .find(|step| (to_s - from_s) / step <= most);
@@ -280,8 +269,8 @@ impl RecordingPlot<'_> {
             ui.painter()
                 .vline(x, ground.top() + lanes_height()..=ground.bottom(), faint);
             let place = Rect::from_center_size(
-                pos2(x, bottom - TIME_AXIS / 2.0),
-                vec2(TIME - theme::GAP, 14.0),
+                pos2(x, bottom - theme::PLOT_TIME_AXIS / 2.0),
+                vec2(theme::RECORDING_TIME - theme::GAP, 14.0),
             );
             let over = (place.right() - ground.right()).max(0.0);
             let place = place.translate(vec2(-over, 0.0));

@@ -11,7 +11,7 @@ use crate::ui::list::{INDENT, LAMP_AT, LINE, line_ui, piece, scroll_ui, wrapped_
 use crate::ui::look::{Look, Pane};
 use crate::ui::plot_panels::{PANELS, Panel};
 use crate::ui::recording_events::{self, EventLine};
-use crate::ui::recording_plot::{LEAST_HEIGHT, RecordingPlot, panel_height};
+use crate::ui::recording_plot::{RecordingPlot, panel_height};
 use crate::ui::text::faults;
 use crate::ui::{format, theme};
 use egui::{Id, Rect, Ui, pos2};
@@ -19,8 +19,6 @@ use std::sync::Arc;
 
 /// Seconds shown on both sides of the fault when only its surroundings are.
 const NEAR_S: f64 = 5.0;
-/// Width of a time in the list of events.
-const TIME: f32 = 54.0;
 
 /// What the recordings need between frames.
 #[derive(Debug, Default)]
@@ -138,7 +136,7 @@ impl RecordingsView {
             .iter()
             .filter(|panel| self.shown.shows(panel.kind))
             .collect();
-        while shown.len() > 1 && panel_height(body, shown.len()) < LEAST_HEIGHT {
+        while shown.len() > 1 && panel_height(body, shown.len()) < theme::RECORDING_LEAST {
             shown.pop();
         }
         let plot = RecordingPlot {
@@ -280,7 +278,7 @@ fn event_ui(ui: &mut Ui, mut row: Rect, look: Look, line: &EventLine, fault_s: f
     Label::new(&time, look.palette.faint)
         .font(theme::number_small())
         .right()
-        .put(ui, take_left(&mut row, TIME));
+        .put(ui, take_left(&mut row, theme::RECORDINGS_TIME));
     let at = pos2(row.left() + 2.0, row.center().y);
     ui.painter().circle_filled(at, 2.5, line.color);
     row.min.x += theme::GAP + 2.0;

@@ -11,12 +11,6 @@ use crate::ui::text::{Text, panels, scan};
 use crate::ui::{format, theme};
 use egui::{Color32, Id, Rect, TextEdit, Ui, UiBuilder, pos2, vec2};
 
-/// The scan stands below the form if that leaves it so much: its controls and two hands.
-const HEIGHT_MIN: f32 = 260.0;
-/// Height of one found hand: two lines.
-const HAND_ROW: f32 = 44.0;
-/// Height of the bar that shows how far a scan is.
-const BAR: f32 = 4.0;
 /// Addresses that hands were delivered with: the manual's (1.3.2), and two seen in the field. None is asked unasked.
 const PRESETS: [(&str, Text); 3] = [
     ("192.168.11.210:6000", scan::PRESET_MAKER),
@@ -41,7 +35,7 @@ impl ScanPanel {
         form_height: f32,
         pane: &mut Pane<'_>,
     ) -> Option<Rect> {
-        if rect.height() >= form_height + HEIGHT_MIN {
+        if rect.height() >= form_height + theme::SCAN_LEAST {
             let (upper, lower) = rect.split_top_bottom_at_y(rect.top() + form_height);
             self.card_ui(ui, lower.with_min_y(lower.top() + theme::GAP), pane);
             return Some(upper);
@@ -214,7 +208,7 @@ fn stage_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>) {
         Label::new(&progress_words(look, book), look.palette.text)
             .named(look.say(scan::PROGRESS))
             .put(ui, row);
-        bar_ui(ui, take_top(body, BAR), look, book);
+        bar_ui(ui, take_top(body, theme::SCAN_BAR), look, book);
         return;
     }
     let (text, color) = match ended(look, book) {
@@ -318,7 +312,7 @@ fn results_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
 
 /// One found hand with the button that connects to it.
 fn hand_ui(ui: &mut Ui, width: f32, (nth, found): (usize, &Found), pane: &mut Pane<'_>) {
-    let (whole, _) = ui.allocate_exact_size(vec2(width, HAND_ROW), egui::Sense::hover());
+    let (whole, _) = ui.allocate_exact_size(vec2(width, theme::SCAN_HAND_ROW), egui::Sense::hover());
     if !ui.is_rect_visible(whole) {
         return;
     }

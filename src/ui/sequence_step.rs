@@ -15,8 +15,6 @@ use crate::ui::text::{Text, poses};
 use crate::ui::theme;
 use egui::{Id, Rect, Ui, vec2};
 
-/// Height of a step.
-pub(crate) const ROW: f32 = 40.0;
 
 /// Asks for a change of this sequence.
 pub(crate) fn change(pane: &mut Pane<'_>, sequence: &Sequence, edit: SequenceEdit) {
@@ -93,7 +91,7 @@ pub(crate) fn step_ui(
     let pose = pane.state.poses.library.pose(step.pose);
     if let Some(pose) = pose {
         handle_ui(ui, row, pane, sequence, (at, &pose.name));
-        let picture = take_left(&mut row, ROW);
+        let picture = take_left(&mut row, theme::STEP_ROW);
         hand_picture::pose_ui(ui, look, picture.shrink(2.0), &shares(&pose.angles));
         let text = format!("{number}  {}", pose.name);
         Label::new(&text, look.palette.text).put(ui, row);

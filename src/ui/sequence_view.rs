@@ -9,15 +9,13 @@ use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, ta
 use crate::ui::hand_picture;
 use crate::ui::look::Pane;
 use crate::ui::reorder::{Along, Reorder};
-use crate::ui::sequence_step::{ROW, change, step_now, step_ui};
+use crate::ui::sequence_step::{change, step_now, step_ui};
 use crate::ui::text::{main, poses};
 use crate::ui::text_field::TextField;
 use crate::ui::theme;
 use egui::{Align2, Id, Rect, Ui, UiBuilder, pos2, vec2};
 use std::time::Duration;
 
-/// Width of the list of sequences.
-const LIST: f32 = 148.0;
 /// Time between two pictures of a dry run while nothing else is new.
 const FRAME: Duration = Duration::from_millis(33);
 
@@ -50,7 +48,7 @@ impl SequenceView {
             .chosen
             .filter(|chosen| library.sequence(*chosen).is_some());
         self.chosen = known.or(first);
-        self.list_ui(ui, take_left(&mut rect, LIST), pane);
+        self.list_ui(ui, take_left(&mut rect, theme::SEQUENCE_LIST), pane);
         match self.chosen.and_then(|chosen| library.sequence(chosen)) {
             Some(sequence) => self.sequence_ui(ui, rect, pane, typed, sequence),
             None => empty_ui(ui, rect, pane),
@@ -127,7 +125,7 @@ impl SequenceView {
         scrolled(ui, steps, "steps", |ui, width| {
             self.order.begin();
             for (at, step) in sequence.steps.iter().enumerate() {
-                let size = vec2(width, ROW);
+                let size = vec2(width, theme::STEP_ROW);
                 let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
                 self.order
                     .place(ui, place, Id::unique((sequence.id, at, "step")));

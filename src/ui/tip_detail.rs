@@ -19,17 +19,10 @@ use egui::{Align2, Id, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2}
 const FRICTION_PERCENT: i16 = 50;
 /// The largest friction that can be chosen, in percent.
 const FRICTION_MAX: i16 = 150;
-/// Width from which the force in space finds room beside the compass, and height from which below it.
-const WIDE: f32 = 760.0;
-const SQUARE_LEAST: f32 = 118.0;
-/// Width of the readings: least and most.
-const READINGS: (f32, f32) = (150.0, 230.0);
-/// Height from which the forces find room over the channels.
-const BOTH_PLOTS: f32 = 270.0;
 /// Seconds of force shown.
 const SECONDS: f64 = 10.0;
 /// The compass ends at this many times the chosen friction.
-const COMPASS_END: f32 = 1.5;
+const COMPASS_END_RATIO: f32 = 1.5;
 /// Smallest end of the force axis, in newtons.
 const FORCE_END: f64 = 1.0;
 
@@ -80,8 +73,8 @@ impl TipDetail {
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, tip: Option<&Tip>) {
         let mut body = rect;
         let stacked = ((rect.height() - theme::GAP) / 2.0).floor();
-        let is_wide = rect.width() >= WIDE;
-        let size = if stacked >= SQUARE_LEAST {
+        let is_wide = rect.width() >= theme::TIP_DETAIL_WIDE;
+        let size = if stacked >= theme::TIP_SQUARE_LEAST {
             stacked.min(rect.width() * 0.22)
         } else {
             rect.height().min(rect.width() * 0.22)
@@ -89,7 +82,7 @@ impl TipDetail {
         let mut squares = controls::take_left(&mut body, size);
         let compass = controls::take_top(&mut squares, size);
         self.compass_ui(ui, compass, pane);
-        let space = if stacked >= SQUARE_LEAST {
+        let space = if stacked >= theme::TIP_SQUARE_LEAST {
             Some(squares.with_max_y(squares.top() + size))
         } else {
             is_wide.then(|| controls::take_left(&mut body, size).with_max_y(rect.top() + size))
@@ -102,11 +95,11 @@ impl TipDetail {
             };
             tip_space::ui(ui, pane.look, space, Id::unique("force in space"), force);
         }
-        let width = (body.width() * 0.28).clamp(READINGS.0, READINGS.1);
+        let width = (body.width() * 0.28).clamp(theme::TIP_READINGS.0, theme::TIP_READINGS.1);
         let readings = controls::take_left(&mut body, width);
         self.readings_ui(ui, readings, pane);
         body.min.x += theme::GAP;
-        if body.height() >= BOTH_PLOTS {
+        if body.height() >= theme::TIP_BOTH_PLOTS {
             let forces = body.height() * 0.36;
             let forces = controls::take_top(&mut body, forces);
             self.forces_ui(ui, forces, pane);
@@ -139,7 +132,7 @@ impl TipDetail {
                 Stroke::new(1.0, palette.grid),
             );
         }
-        let ring = radius / COMPASS_END;
+        let ring = radius / COMPASS_END_RATIO;
         painter.circle(
             center,
             ring,
@@ -166,7 +159,7 @@ impl TipDetail {
         };
         let color = look.value(freshness, color_of(self.hold(self.finger), palette));
         let (sin, cos) = f32::from(degrees).to_radians().sin_cos();
-        let part = (ratio / self.friction().max(0.01)).min(COMPASS_END);
+        let part = (ratio / self.friction().max(0.01)).min(COMPASS_END_RATIO);
         needle(painter, center, vec2(sin, -cos) * (ring * part), color);
     }
 

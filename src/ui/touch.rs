@@ -14,18 +14,13 @@ use crate::ui::touch_table::{self, LINES, Sheet, table_ui};
 use crate::ui::{format, theme};
 use egui::{Align2, Id, Rect, Ui, pos2, vec2};
 
-/// Heights of the drawn hand in the overview: less shows nothing, more would take the room of the faults.
-const HAND_LEAST: f32 = 130.0;
-const HAND_MOST: f32 = 340.0;
-/// Height that the faults below keep.
-const FAULTS_LEAST: f32 = 150.0;
 
 /// Height of the overview's card in a column of this size: the drawn hand gets what tips and faults leave.
 pub(crate) fn overview_height(column: Rect) -> f32 {
     let tips = small_height(column.width());
-    let free = column.height() - tips - FAULTS_LEAST - 2.0 * theme::GAP;
-    let hand = if free >= HAND_LEAST {
-        free.min(HAND_MOST) + theme::GAP
+    let free = column.height() - tips - theme::TOUCH_FAULTS_LEAST - 2.0 * theme::GAP;
+    let hand = if free >= theme::HAND_LEAST {
+        free.min(theme::HAND_MOST) + theme::GAP
     } else {
         0.0
     };
@@ -44,11 +39,8 @@ fn small_height(width: f32) -> f32 {
 }
 
 /// Part of the view's height that the hand and the fingertips take, by what stands below.
-const UPPER: f32 = 0.48;
-const UPPER_BY_NUMBERS: f32 = 0.46;
-/// Height of a fingertip's name, and of its forces.
-const TITLE: f32 = 18.0;
-const VALUES: f32 = 40.0;
+const UPPER_PART: f32 = 0.48;
+const UPPER_BY_NUMBERS_PART: f32 = 0.46;
 
 /// What the person chose for the fingertips.
 #[derive(Debug, Clone, Default)]
@@ -68,7 +60,7 @@ impl TouchView {
         self.scale.ui(ui, head, pane);
         let tips = self.scale.tips(pane);
         let room = rect.height() - small_height(rect.width()) - theme::GAP;
-        if room >= HAND_LEAST - 1.0 {
+        if room >= theme::HAND_LEAST - 1.0 {
             let picture = controls::take_top(&mut body, room);
             let clicked = self.hand.ui(
                 ui,
@@ -93,9 +85,9 @@ impl TouchView {
         let tips = self.scale.tips(pane);
         self.detail.follow(pane);
         let share = if self.numbers {
-            UPPER_BY_NUMBERS
+            UPPER_BY_NUMBERS_PART
         } else {
-            UPPER
+            UPPER_PART
         };
         let (upper, lower) =
             rect.split_top_bottom_at_y(rect.top() + (rect.height() * share).round());
@@ -201,10 +193,10 @@ impl TouchView {
         let look = pane.look;
         let color = look.palette.dof[finger.bend()];
         let mut column = place;
-        let title = controls::take_top(&mut column, TITLE);
+        let title = controls::take_top(&mut column, theme::TIP_TITLE);
         let name = look.say(words::finger(finger));
         controls::paint_text(ui, title, Align2::CENTER_CENTER, name, theme::body(), color);
-        let (picture, values) = column.split_top_bottom_at_y(column.bottom() - VALUES);
+        let (picture, values) = column.split_top_bottom_at_y(column.bottom() - theme::TIP_VALUES);
         fingertip::paint(
             ui.painter(),
             look,

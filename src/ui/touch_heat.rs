@@ -10,7 +10,7 @@ use crate::ui::{format, theme};
 use egui::{CornerRadius, Rect, Ui, pos2, vec2};
 
 /// Counts above rest at which a pad is hottest, at least: below this, noise would look like touch.
-const HEAT_FLOOR: f32 = 20_000.0;
+const HEAT_FLOOR_COUNTS: f32 = 20_000.0;
 /// The scale of the sensor ends here, in counts.
 const MOST_COUNTS: u32 = 1 << 24;
 /// Steps in which the scale's bar is drawn.
@@ -78,7 +78,7 @@ impl HeatScale {
 }
 
 fn automatic(pane: &Pane<'_>) -> f32 {
-    let mut full = HEAT_FLOOR;
+    let mut full = HEAT_FLOOR_COUNTS;
     for (finger, block) in pane.state.sample.tactile.iter() {
         let (Some(block), Some(rest)) = (block, pane.state.tare.rest(finger)) else {
             continue;
@@ -91,7 +91,7 @@ fn automatic(pane: &Pane<'_>) -> f32 {
     }
     // Steps of a fifth of a decade, so that the colours do not breathe with every reading.
     let step = 10.0_f32.powf((full.log10() * 5.0).ceil() / 5.0);
-    step.max(HEAT_FLOOR)
+    step.max(HEAT_FLOOR_COUNTS)
 }
 
 fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock, full: f32) -> Tip {

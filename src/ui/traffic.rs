@@ -16,13 +16,9 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// The list's part of the height; the rest is the chosen frame's.
-const LIST_SHARE: f32 = 0.64;
-/// Smallest height of the chosen frame's card.
-const DETAIL_MIN: f32 = 150.0;
+const LIST_PART: f32 = 0.64;
 /// Most signs of a filter.
 const FILTER_MAX: usize = 64;
-/// Width of the filter's field.
-const FILTER: f32 = 220.0;
 
 /// The frames as they were when the list was paused.
 #[derive(Debug)]
@@ -45,7 +41,7 @@ pub(crate) struct TrafficView {
 impl TrafficView {
     /// Draws the list above and the chosen frame below.
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        let detail = (rect.height() * (1.0 - LIST_SHARE)).max(DETAIL_MIN).round();
+        let detail = (rect.height() * (1.0 - LIST_PART)).max(theme::FRAME_DETAIL_LEAST).round();
         let (list, detail) = rect.split_top_bottom_at_y(rect.bottom() - detail);
         let list = list.with_max_y(list.bottom() - theme::GAP);
         self.update(pane);
@@ -202,7 +198,7 @@ impl TrafficView {
             .map(|text| width_of(ui, look.say(text)) + theme::STEP)
             .iter()
             .sum();
-        let width = FILTER.min(row.width() - theme::GAP - switches);
+        let width = theme::TRAFFIC_FILTER.min(row.width() - theme::GAP - switches);
         let field = take_left(&mut row, width);
         filter_field_ui(ui, field, look, &mut self.filter.text);
         for (text, way) in [

@@ -9,12 +9,6 @@ use crate::ui::text::traffic;
 use crate::ui::theme;
 use egui::{Rect, ScrollArea, Ui, UiBuilder, vec2};
 
-/// Height of a field's row.
-const ROW: f32 = 17.0;
-/// Width of the place of a field's bytes in the frame.
-const PLACE: f32 = 58.0;
-/// Width of a field's name.
-const NAME: f32 = 150.0;
 /// Bytes of a field that are shown; the list shows the whole frame.
 const HEX_MAX: usize = 16;
 
@@ -32,7 +26,7 @@ pub(crate) fn detail_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, chosen: &[&Fra
             let hint = look.say(traffic::DETAIL_HINT);
             Label::new(hint, look.palette.faint)
                 .center()
-                .put(ui, controls::middle(body, ROW));
+                .put(ui, controls::middle(body, theme::FIELD_ROW));
         }
         many => {
             let bytes: usize = many.iter().map(|frame| frame.bytes.len()).sum();
@@ -43,7 +37,7 @@ pub(crate) fn detail_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, chosen: &[&Fra
             );
             Label::new(&text, look.palette.muted)
                 .center()
-                .put(ui, controls::middle(body, ROW));
+                .put(ui, controls::middle(body, theme::FIELD_ROW));
         }
     }
 }
@@ -64,7 +58,7 @@ fn head_ui(ui: &mut Ui, rect: Rect, look: Look, frame: &Frame) {
 
 fn fields_ui(ui: &mut Ui, rect: Rect, look: Look, frame: &Frame) {
     let mut rest = rect;
-    let verdict = controls::take_top(&mut rest, ROW);
+    let verdict = controls::take_top(&mut rest, theme::FIELD_ROW);
     verdict_ui(ui, verdict, look, frame);
     let fields = frame.fields();
     let inside = UiBuilder::new().max_rect(rest).id_salt("traffic fields");
@@ -73,9 +67,9 @@ fn fields_ui(ui: &mut Ui, rect: Rect, look: Look, frame: &Frame) {
         ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
         ScrollArea::vertical()
             .auto_shrink(false)
-            .show_rows(ui, ROW, fields.len(), |ui, range| {
+            .show_rows(ui, theme::FIELD_ROW, fields.len(), |ui, range| {
                 for field in fields.get(range).unwrap_or_default() {
-                    let (_, place) = ui.allocate_space(vec2(rest.width() - theme::GAP, ROW));
+                    let (_, place) = ui.allocate_space(vec2(rest.width() - theme::GAP, theme::FIELD_ROW));
                     field_ui(ui, place, look, frame, field);
                 }
             });
@@ -110,13 +104,13 @@ fn field_ui(ui: &mut Ui, mut rect: Rect, look: Look, frame: &Frame, field: &Fiel
     } else {
         format!("{}-{last}", field.at.start)
     };
-    let left = take_left(&mut rect, PLACE);
+    let left = take_left(&mut rect, theme::FIELD_PLACE);
     Label::new(&place, palette.faint).number().put(ui, left);
     let name = match &field.register {
         Some(register) => register.as_str(),
         None => look.say(traffic::field(field.name)),
     };
-    let left = take_left(&mut rect, NAME);
+    let left = take_left(&mut rect, theme::FIELD_NAME);
     Label::new(name, palette.muted).put(ui, left);
     let bytes = frame.bytes.get(field.at.clone()).unwrap_or_default();
     let mut shown = hex(bytes.get(..HEX_MAX.min(bytes.len())).unwrap_or_default());

@@ -13,20 +13,6 @@ use egui::{
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-/// Height of a row.
-const ROW: f32 = 19.0;
-/// Height of the head.
-const HEAD: f32 = 20.0;
-/// Width of the time: hours in seconds with three digits.
-const TIME: f32 = 78.0;
-/// Width of the arrow.
-const ARROW: f32 = 16.0;
-/// Width of the kind.
-const KIND: f32 = 92.0;
-/// Width of the scroll bar.
-const BAR: f32 = 12.0;
-/// Room for the sign that something is wrong.
-const SIGN: f32 = 16.0;
 
 /// The chosen frames, by number, and where the choice began.
 #[derive(Debug, Default)]
@@ -77,10 +63,10 @@ struct Columns {
 impl Columns {
     fn of(row: Rect) -> Self {
         let mut rest = row.shrink2(vec2(theme::STEP, 0.0));
-        let time = controls::take_left(&mut rest, TIME);
-        let arrow = controls::take_left(&mut rest, ARROW);
-        let kind = controls::take_left(&mut rest, KIND);
-        let sign = controls::take_left(&mut rest, SIGN);
+        let time = controls::take_left(&mut rest, theme::FRAME_TIME);
+        let arrow = controls::take_left(&mut rest, theme::FRAME_ARROW);
+        let kind = controls::take_left(&mut rest, theme::FRAME_KIND);
+        let sign = controls::take_left(&mut rest, theme::FRAME_SIGN);
         let (meaning, bytes) = rest.split_left_right_at_x(rest.left() + rest.width() * 0.56);
         Self {
             time,
@@ -112,7 +98,7 @@ pub(crate) fn list_ui(
     sight: Sight,
 ) -> Sight {
     let look = pane.look;
-    let (head, body) = rect.split_top_bottom_at_y(rect.top() + HEAD);
+    let (head, body) = rect.split_top_bottom_at_y(rect.top() + theme::FRAME_HEAD);
     head_ui(ui, head, look);
     // The scroll area draws a little past its edge.
     let body = body.with_min_y(body.top() + theme::STEP);
@@ -131,9 +117,9 @@ pub(crate) fn list_ui(
             .auto_shrink(false)
             .animated(false)
             .stick_to_bottom(sight == Sight::Newest);
-        area.show_rows(ui, ROW, frames.len(), |ui, range| {
+        area.show_rows(ui, theme::FRAME_ROW, frames.len(), |ui, range| {
             for frame in frames.range(range.start..range.end.min(frames.len())) {
-                let size = vec2(body.width(), ROW);
+                let size = vec2(body.width(), theme::FRAME_ROW);
                 let (_, place) = ui.allocate_space(size);
                 let chosen = choice.numbers.contains(&frame.number);
                 if row_ui(ui, place, look, frame, chosen) {
@@ -155,13 +141,13 @@ fn scrolls(ui: &Ui, body: Rect) -> bool {
     ui.rect_contains_pointer(body)
         && ui.input(|input| {
             let at = input.pointer.interact_pos();
-            let on_bar = at.is_some_and(|at| at.x > body.right() - BAR);
+            let on_bar = at.is_some_and(|at| at.x > body.right() - theme::FRAME_BAR);
             input.smooth_scroll_delta().y > 0.0 || on_bar && input.pointer.primary_down()
         })
 }
 
 fn rows_height(rows: usize) -> f32 {
-    f32::from(u16::try_from(rows).unwrap_or(u16::MAX)) * ROW
+    f32::from(u16::try_from(rows).unwrap_or(u16::MAX)) * theme::FRAME_ROW
 }
 
 /// Up and down move a choice while no field and no track has the keyboard.

@@ -1,0 +1,82 @@
+//! Lengths of the single views in points: tiles, columns, rows. No colours, no fonts.
+
+/// Width from which six tiles stand in one row.
+pub(crate) const DRIVE_TILES_ROW: f32 = 840.0;
+/// Height of a tile without its cause.
+pub(crate) const DRIVE_TILE_LOW: f32 = 52.0;
+/// Height of the view from which tiles say the cause, too.
+pub(crate) const DRIVE_TILES_ROOMY: f32 = 560.0;
+/// Size of the number on a tab.
+pub(crate) const FAULT_BADGE: f32 = 16.0;
+/// Height of a finger's name with its number.
+pub(crate) const HAND_HEAD: f32 = 34.0;
+/// Size from which numbers find room.
+pub(crate) const HAND_NUMBERS_ROOM: (f32, f32) = (240.0, 230.0);
+/// Width of a message's age.
+pub(crate) const MESSAGE_AGE: f32 = 52.0;
+/// The filter's field has a row of its own where it would be narrower.
+pub(crate) const MESSAGE_FIELD: f32 = 96.0;
+/// Above and below the text of a message.
+pub(crate) const MESSAGE_AIR: f32 = 3.0;
+/// Width of a number.
+pub(crate) const POSE_NUMBER: f32 = 64.0;
+/// Width of what stands before a field.
+pub(crate) const POSE_CAPTION: f32 = 88.0;
+/// The least size of a tile.
+pub(crate) const POSE_TILE: egui::Vec2 = egui::vec2(112.0, 158.0);
+/// Width of the field that finds poses.
+pub(crate) const POSE_FIND: f32 = 200.0;
+/// Width of a time in the list of events.
+pub(crate) const RECORDINGS_TIME: f32 = 54.0;
+/// The scan stands below the form if that leaves it so much: its controls and two hands.
+pub(crate) const SCAN_LEAST: f32 = 260.0;
+/// Height of one found hand: two lines.
+pub(crate) const SCAN_HAND_ROW: f32 = 44.0;
+/// Height of the bar that shows how far a scan is.
+pub(crate) const SCAN_BAR: f32 = 4.0;
+/// Height of a step.
+pub(crate) const STEP_ROW: f32 = 40.0;
+/// Width of the list of sequences.
+pub(crate) const SEQUENCE_LIST: f32 = 148.0;
+/// Width from which the force in space finds room beside the compass, and height from which below it.
+pub(crate) const TIP_DETAIL_WIDE: f32 = 760.0;
+/// Least side of the force seen from the side.
+pub(crate) const TIP_SQUARE_LEAST: f32 = 118.0;
+/// Width of the readings: least and most.
+pub(crate) const TIP_READINGS: (f32, f32) = (150.0, 230.0);
+/// Height from which the forces find room over the channels.
+pub(crate) const TIP_BOTH_PLOTS: f32 = 270.0;
+/// Heights of the drawn hand in the overview: less shows nothing, more would take the room of the faults.
+pub(crate) const HAND_LEAST: f32 = 130.0;
+/// Greatest width of the drawn hand.
+pub(crate) const HAND_MOST: f32 = 340.0;
+/// Height that the faults below keep.
+pub(crate) const TOUCH_FAULTS_LEAST: f32 = 150.0;
+/// Height of a fingertip's name, and of its forces.
+pub(crate) const TIP_TITLE: f32 = 18.0;
+/// Height of the two values below a fingertip.
+pub(crate) const TIP_VALUES: f32 = 40.0;
+/// Smallest height of the chosen frame's card.
+pub(crate) const FRAME_DETAIL_LEAST: f32 = 150.0;
+/// Width of the filter's field.
+pub(crate) const TRAFFIC_FILTER: f32 = 220.0;
+/// Height of a field's row.
+pub(crate) const FIELD_ROW: f32 = 17.0;
+/// Width of the place of a field's bytes in the frame.
+pub(crate) const FIELD_PLACE: f32 = 58.0;
+/// Width of a field's name.
+pub(crate) const FIELD_NAME: f32 = 150.0;
+/// Height of a row.
+pub(crate) const FRAME_ROW: f32 = 19.0;
+/// Height of the head.
+pub(crate) const FRAME_HEAD: f32 = 20.0;
+/// Width of the time: hours in seconds with three digits.
+pub(crate) const FRAME_TIME: f32 = 78.0;
+/// Width of the arrow.
+pub(crate) const FRAME_ARROW: f32 = 16.0;
+/// Width of the kind.
+pub(crate) const FRAME_KIND: f32 = 92.0;
+/// Width of the scroll bar.
+pub(crate) const FRAME_BAR: f32 = 12.0;
+/// Room for the sign that something is wrong.
+pub(crate) const FRAME_SIGN: f32 = 16.0;
