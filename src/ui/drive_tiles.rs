@@ -19,7 +19,10 @@ const CAUSE_LINES: u8 = 4;
 
 /// The height that the tiles take of a view of this size.
 pub(crate) fn height(view: Rect) -> f32 {
-    match (view.width() >= theme::DRIVE_TILES_ROW, view.height() >= theme::DRIVE_TILES_ROOMY) {
+    match (
+        view.width() >= theme::DRIVE_TILES_ROW,
+        view.height() >= theme::DRIVE_TILES_ROOMY,
+    ) {
         (true, true) => TALL,
         (true, false) => theme::DRIVE_TILE_LOW,
         (false, true) => 2.0 * 84.0 + theme::GAP,
@@ -75,7 +78,7 @@ fn tile_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, dof: Dof, chosen: bool) -> 
     let response = button.ground(ui, look, rect, Id::unique(("drive", dof)));
     let bar = Rect::from_min_size(
         rect.min + vec2(0.0, theme::STEP),
-        vec2(3.0, rect.height() - theme::GAP),
+        vec2(theme::BAR, rect.height() - theme::GAP),
     );
     ui.painter()
         .rect_filled(bar, CornerRadius::same(2), palette.dof[dof]);
@@ -168,7 +171,7 @@ pub(crate) fn unseen_mark_ui(ui: &mut Ui, line: &mut Rect, pane: &Pane<'_>, dof:
     } else {
         palette.warn
     };
-    let place = take_right(line, 12.0);
+    let place = take_right(line, theme::UNSEEN_MARK);
     fault_entry::mark(ui, place.center(), color);
     let joint = pane.look.say(words::dof(dof));
     let name = format!("{joint} {}", pane.look.say(faults::UNSEEN_MARK));

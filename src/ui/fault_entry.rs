@@ -182,7 +182,7 @@ fn stand(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
 
 /// A ring: something was wrong and is not any more.
 pub(crate) fn mark(ui: &Ui, center: egui::Pos2, color: egui::Color32) {
-    let stroke = egui::Stroke::new(1.6, color);
+    let stroke = egui::Stroke::new(theme::RING_LINE, color);
     ui.painter()
         .circle_stroke(center, theme::LAMP - 0.5, stroke);
 }
@@ -263,16 +263,18 @@ fn rough(left: Duration) -> String {
     }
 }
 
-
 /// How many faults nobody has seen, as a small badge with its right top corner here.
 pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
     let Some(color) = unseen_color(pane) else {
         return;
     };
     let count = pane.state.faults.unseen().count().to_string();
-    let width = (controls::text_width(ui, &count, theme::tiny()) + theme::GAP).max(theme::FAULT_BADGE);
-    let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, theme::FAULT_BADGE));
-    ui.painter().rect_filled(place, theme::FAULT_BADGE / 2.0, color);
+    let width =
+        (controls::text_width(ui, &count, theme::tiny()) + theme::GAP).max(theme::FAULT_BADGE);
+    let place =
+        egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, theme::FAULT_BADGE));
+    ui.painter()
+        .rect_filled(place, theme::FAULT_BADGE / 2.0, color);
     let (font, ink) = (theme::tiny(), pane.look.palette.window);
     controls::paint_text(ui, place, egui::Align2::CENTER_CENTER, &count, font, ink);
 }

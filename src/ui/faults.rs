@@ -324,15 +324,19 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
         text = format!("{text} ({} ×)", notice.count);
     }
     // Lamp, age and cross stand beside the text, whatever lines it needs.
-    let aside = 20.0 + 48.0 + 2.0 * theme::GAP;
+    let aside = theme::SMALL_BUTTON + theme::MESSAGE_AGE_SHORT + 2.0 * theme::GAP;
     let galley = ui.painter().layout(
         text.clone(),
         theme::small(),
         palette.text,
         (width - INDENT - aside).max(40.0),
     );
-    let place = piece(ui, width, (galley.size().y + 6.0).max(LINE + 5.0));
-    let mut row = place.with_max_y(place.top() + LINE + 5.0);
+    let place = piece(
+        ui,
+        width,
+        (galley.size().y + theme::MESSAGE_MARGIN).max(LINE + theme::MESSAGE_LEAD),
+    );
+    let mut row = place.with_max_y(place.top() + LINE + theme::MESSAGE_LEAD);
     controls::lamp(ui, pos2(row.left() + LAMP_AT, row.center().y), color);
     let response = ui.interact(
         place,
@@ -341,11 +345,14 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
     );
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
     ui.painter().galley(
-        pos2(row.left() + INDENT, row.top() + 3.0),
+        pos2(row.left() + INDENT, row.top() + theme::MESSAGE_TEXT_TOP),
         galley,
         palette.text,
     );
-    let close = controls::middle(take_right(&mut row, 20.0), 20.0);
+    let close = controls::middle(
+        take_right(&mut row, theme::SMALL_BUTTON),
+        theme::SMALL_BUTTON,
+    );
     let name = format!("{}: {text}", look.say(main::DISMISS));
     let button = Button::new(look.say(main::DISMISS), look.say(main::DISMISS_TIP))
         .icon(theme::CLOSE)
@@ -356,7 +363,7 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
         pane.actions.push(Action::Dismiss(notice.id));
     }
     let age = format::age(pane.state.now.since(notice.at));
-    let place = take_right(&mut row, 48.0);
+    let place = take_right(&mut row, theme::MESSAGE_AGE_SHORT);
     Label::new(&age, palette.faint)
         .small()
         .right()

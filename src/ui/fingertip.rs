@@ -1,6 +1,7 @@
 //! One fingertip as a picture: skin, seven pads and the eighth channel as heat, force circle, shear arrow, proximity halo.
 
 use crate::ui::look::Look;
+use crate::ui::theme;
 use egui::{
     Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2,
 };
@@ -13,6 +14,11 @@ const TIP_MM: f32 = 13.4;
 const BASE_MM: f32 = -12.6;
 /// Room around the skin for the halo.
 const MARGIN_MM: f32 = 1.0;
+/// Skin beside the sensing area, and at the tip.
+const EDGE_MM: f32 = 0.6;
+const TIP_EDGE_MM: f32 = 0.4;
+/// The shortest arrow, as a part of the longest.
+const LEAST_SHEAR_PART: f32 = 0.12;
 /// Normal force that fills the finger's width (manual 1.2: 20 N grip).
 const FULL_NORMAL_N: f32 = 20.0;
 /// A reading may leave the range by this much without a doubt about it, in newtons.
@@ -74,7 +80,9 @@ impl Sense {
 impl Tip {
     /// How strong the proximity halo is, 0..=1.
     pub(crate) fn nearness(&self) -> f32 {
-        let level = self.proximity.map_or(0.0, |counts| counts / FULL_PROXIMITY_COUNTS);
+        let level = self
+            .proximity
+            .map_or(0.0, |counts| counts / FULL_PROXIMITY_COUNTS);
         level.clamp(0.0, 1.0)
     }
 }
@@ -164,9 +172,9 @@ pub(crate) fn paint(painter: &Painter, look: Look, rect: Rect, tip: &Tip) {
 }
 
 fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
-    let half = HALF_WIDTH_MM - 0.6 + grow_mm;
+    let half = HALF_WIDTH_MM - EDGE_MM + grow_mm;
     let rect = Rect::from_two_pos(
-        scale.at(-half, TIP_MM - 0.4 + grow_mm),
+        scale.at(-half, TIP_MM - TIP_EDGE_MM + grow_mm),
         scale.at(half, BASE_MM - grow_mm),
     );
     let round = |mm: f32| {
@@ -175,7 +183,7 @@ fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
             clippy::cast_sign_loss,
             reason = "clamped to a byte"
         )]
-        let points = (mm * scale.per_mm).clamp(0.0, 255.0) as u8;
+        let points = (mm * scale.per_mm).clamp(0.0, f32::from(u8::MAX)) as u8;
         points
     };
     let (tip, base) = (round(half * 0.94), round(2.0 + grow_mm));
@@ -245,7 +253,10 @@ fn crossed(painter: &Painter, pad: &[Pos2], color: Color32) {
     let box_of = Rect::from_points(pad);
     let (center, arm) = (box_of.center(), box_of.size().min_elem() * 0.22);
     for way in [vec2(arm, arm), vec2(arm, -arm)] {
-        painter.line_segment([center - way, center + way], Stroke::new(1.5, color));
+        painter.line_segment(
+            [center - way, center + way],
+            Stroke::new(theme::FOCUS_LINE, color),
+        );
     }
 }
 
@@ -275,7 +286,7 @@ impl Plane {
 
     /// The end of the arrow of this force and direction in degrees, 0 towards the tip, clockwise.
     pub(crate) fn end(&self, (shear, direction): (f32, f32)) -> Pos2 {
-        let length = (shear / FULL_SHEAR_N).clamp(0.12, 1.0) * LONGEST_MM * self.per_mm;
+        let length = (shear / FULL_SHEAR_N).clamp(LEAST_SHEAR_PART, 1.0) * LONGEST_MM * self.per_mm;
         let (sin, cos) = direction.to_radians().sin_cos();
         self.middle + (self.up * cos + self.right * sin) * length
     }
@@ -294,7 +305,12 @@ pub(crate) fn forces(painter: &Painter, look: Look, plane: &Plane, tip: &Tip) {
             .map(|step| f32::from(step) / 24.0 * std::f32::consts::TAU)
             .map(|turn| plane.middle + Vec2::angled(turn) * radius)
             .collect();
-        painter.extend(Shape::dashed_line(&ring, Stroke::new(1.5, arrow), 3.0, 3.0));
+        painter.extend(Shape::dashed_line(
+            &ring,
+            Stroke::new(theme::FOCUS_LINE, arrow),
+            3.0,
+            3.0,
+        ));
     }
     if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
         // Area grows with force, so that twice the force looks twice as much.
@@ -304,7 +320,7 @@ pub(crate) fn forces(painter: &Painter, look: Look, plane: &Plane, tip: &Tip) {
             plane.middle,
             radius,
             arrow.gamma_multiply(0.14),
-            Stroke::new(1.5, arrow),
+            Stroke::new(theme::FOCUS_LINE, arrow),
         );
     }
     if let Some(shear) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
@@ -315,7 +331,7 @@ pub(crate) fn forces(painter: &Painter, look: Look, plane: &Plane, tip: &Tip) {
 }
 
 fn arrow_shape(painter: &Painter, from: Pos2, along: Vec2, length: f32, stroke: Stroke) {
-    let head = (length * 0.4).clamp(3.0, 8.0);
+    let head = (length * 0.4).clamp(theme::ARROW_HEAD.0, theme::ARROW_HEAD.1);
     let to = from + along * length;
     let side = along.rot90() * head * 0.5;
     painter.line_segment([from, to - along * head * 0.7], stroke);

@@ -50,7 +50,9 @@ impl GestureEditor {
         self.number_ui(ui, take_top(&mut left, theme::CONTROL), pane);
         self.store_ui(ui, take_top(&mut left, theme::CONTROL), pane);
         let six = take_top(&mut left, 6.0 * (theme::CONTROL + theme::STEP));
-        let picture = six.with_min_x(six.left() + 96.0 + theme::POSE_NUMBER + 2.0 * theme::GAP);
+        let picture = six.with_min_x(
+            six.left() + theme::GESTURE_CAPTION + theme::POSE_NUMBER + 2.0 * theme::GAP,
+        );
         let shares = self
             .angles
             .map(|angle| Some(f32::from(angle?.get()) / 1000.0));
@@ -76,7 +78,7 @@ impl GestureEditor {
         let look = pane.look;
         let now = pane.state.settings.gesture_store;
         let text = look.say(poses::STORE_CAPTION);
-        let place = take_left(&mut row, 96.0);
+        let place = take_left(&mut row, theme::GESTURE_CAPTION);
         Label::new(text, look.palette.text).put(ui, place);
         for (text, store) in [
             (poses::STORE_1066, GestureStore::Register1066),
@@ -132,7 +134,7 @@ impl GestureEditor {
     fn number_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
         let text = look.say(poses::USER_GESTURE);
-        Label::new(text, look.palette.text).put(ui, take_left(&mut row, 96.0));
+        Label::new(text, look.palette.text).put(ui, take_left(&mut row, theme::GESTURE_CAPTION));
         let field = NumberField {
             name: text,
             tip: look.say(poses::USER_GESTURE_TIP),

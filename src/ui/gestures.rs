@@ -52,7 +52,8 @@ impl GestureView {
         let gap = theme::GAP;
         let size = vec2(
             (body.width() - gap * (f32::from(columns) - 1.0)) / f32::from(columns),
-            ((body.height() - gap * (rows - 1.0)) / rows).clamp(22.0, 72.0),
+            ((body.height() - gap * (rows - 1.0)) / rows)
+                .clamp(theme::GESTURE_HEIGHTS.0, theme::GESTURE_HEIGHTS.1),
         );
         for (gesture, place) in grid(body, size, gap, columns) {
             self.tile_ui(ui, place, pane, gesture, self.naming);
@@ -119,7 +120,7 @@ impl GestureView {
             .align(egui::Align2::LEFT_CENTER)
             .margin(egui::Margin::symmetric(4, 0))
             .min_size(rect.size())
-            .desired_width(rect.width() - 8.0);
+            .desired_width(rect.width() - theme::GAP);
         let response = ui.put(rect, edit);
         let name = format!("{} {}", look.say(panels::GESTURE_NAME), gesture.get());
         response.widget_info(|| {

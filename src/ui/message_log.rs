@@ -206,11 +206,11 @@ fn words(look: Look, notice: &Notice) -> String {
 fn line_of(ui: &mut Ui, mut row: Rect, pane: &Pane<'_>, line: &Line) {
     let look = pane.look;
     let (_, color) = level_look(look, line.level);
-    let first = row.top() + theme::MESSAGE_AIR + 7.0;
+    let first = row.top() + theme::MESSAGE_AIR + theme::MESSAGE_FIRST;
     controls::lamp(ui, pos2(row.left() + LAMP_AT, first), color);
     let age = format::age(pane.state.now.since(line.at));
     let mut place = take_right(&mut row, theme::MESSAGE_AGE);
-    place.max.y = place.top() + 2.0 * theme::MESSAGE_AIR + 14.0;
+    place.max.y = place.top() + 2.0 * theme::MESSAGE_AIR + theme::MESSAGE_LINE;
     let faint = look.palette.faint;
     Label::new(&age, faint).small().right().put(ui, place);
     let id = ui.next_auto_id();
@@ -236,7 +236,7 @@ fn filter_ui(ui: &mut Ui, rect: Rect, look: Look, text: &mut String) {
         .align(egui::Align2::LEFT_CENTER)
         .margin(egui::Margin::symmetric(8, 0))
         .min_size(rect.size())
-        .desired_width(rect.width() - 16.0);
+        .desired_width(rect.width() - theme::FIELD_MARGIN);
     let response = ui.put(rect, edit);
     let value = text.clone();
     response.widget_info(|| {

@@ -6,6 +6,9 @@ use crate::ui::text::panels;
 use crate::ui::theme;
 use egui::{Align2, Color32, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
+/// Fewest and most numbers of a value axis.
+pub(crate) const NUMBERS_COUNTS: (f32, f32) = (2.0, 5.0);
+
 /// Smallest and largest of some numbers. Numbers that are none are left out.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Extent(Option<(f64, f64)>);
@@ -54,7 +57,7 @@ impl Band {
 
     /// Rounded outwards to a step that gives no more lines than there is room for, and no more than five.
     pub(crate) fn rounded(self, steps: [f64; 8], room: f32) -> Self {
-        let most = f64::from(room.clamp(2.0, 5.0) - 1.0);
+        let most = f64::from(room.clamp(NUMBERS_COUNTS.0, NUMBERS_COUNTS.1) - 1.0);
         let span = self.high - self.low;
         let fits = |step: &f64| span / step <= most;
         let last = steps.last().copied().unwrap_or(1.0);
@@ -173,10 +176,16 @@ pub(crate) fn numbers_ui(ui: &Ui, ground: Rect, band: &Band, color: Color32) {
     let digits = digits(band.step);
     for value in band.lines() {
         let y = y_of(ground, band, value);
-        let y = y.clamp(ground.top() + 6.0, ground.bottom() - 6.0);
+        let y = y.clamp(
+            ground.top() + theme::AXIS_MARGIN,
+            ground.bottom() - theme::AXIS_MARGIN,
+        );
         let place = Rect::from_center_size(
-            pos2(ground.left() + theme::PLOT_AXIS / 2.0 - 3.0, y),
-            vec2(theme::PLOT_AXIS - 6.0, 12.0),
+            pos2(
+                ground.left() + theme::PLOT_AXIS / 2.0 - theme::AXIS_MARGIN / 2.0,
+                y,
+            ),
+            vec2(theme::PLOT_AXIS - theme::AXIS_MARGIN, theme::AXIS_NUMBER),
         );
         // No "-0".
         let text = format!("{:.digits$}", value + 0.0);
@@ -276,7 +285,7 @@ pub(crate) fn time_axis_ui(ui: &Ui, rect: Rect, look: Look, time: TimeAxis) {
         } else {
             time.text(time_s)
         };
-        let place = Rect::from_center_size(pos2(x, rect.center().y), vec2(64.0, 14.0));
+        let place = Rect::from_center_size(pos2(x, rect.center().y), theme::AXIS_TIME);
         let place = place.translate(vec2((rect.right() - place.right()).min(0.0), 0.0));
         let align = if is_now {
             Align2::RIGHT_CENTER

@@ -82,8 +82,9 @@ impl Cursors {
     /// Height of the table for so many lines; 0 while the cursors are off.
     pub(crate) fn table_height(self, lines: usize) -> f32 {
         let lines = u8::try_from(lines).unwrap_or(u8::MAX);
-        self.at
-            .map_or(0.0, |_| theme::CURSOR_HEAD + theme::CURSOR_ROW * (f32::from(lines) + 1.0) + theme::GAP)
+        self.at.map_or(0.0, |_| {
+            theme::CURSOR_HEAD + theme::CURSOR_ROW * (f32::from(lines) + 1.0) + theme::GAP
+        })
     }
 
     /// The lines through all plots, and the flags under them by which they are moved.
@@ -100,8 +101,14 @@ impl Cursors {
                 let stroke = Stroke::new(1.0, look.palette.accent);
                 ui.painter().vline(x, ground.y_range(), stroke);
             }
-            let x = x.clamp(axis.left() + theme::CURSOR_FLAG / 2.0, axis.right() - theme::CURSOR_FLAG / 2.0);
-            let flag = Rect::from_center_size(pos2(x, axis.top() + 9.0), vec2(theme::CURSOR_FLAG, theme::CURSOR_FLAG));
+            let x = x.clamp(
+                axis.left() + theme::CURSOR_FLAG / 2.0,
+                axis.right() - theme::CURSOR_FLAG / 2.0,
+            );
+            let flag = Rect::from_center_size(
+                pos2(x, axis.top() + theme::CURSOR_FLAG_AT),
+                vec2(theme::CURSOR_FLAG, theme::CURSOR_FLAG),
+            );
             let response = ui.interact(flag, Id::unique(("cursor", short)), Sense::drag());
             response.widget_info(|| WidgetInfo::slider(true, *at_s, look.say(name)));
             let round = CornerRadius::same(theme::ROUND_SMALL);
@@ -151,11 +158,14 @@ impl Cursors {
             .named(look.say(plots::APART))
             .put(ui, head);
         body.min.y += 2.0;
-        let name_width = (body.width() * 0.2).clamp(44.0, 110.0);
+        let name_width = (body.width() * 0.2).clamp(theme::CURSOR_NAMES.0, theme::CURSOR_NAMES.1);
         let column = (body.width() - name_width) / 7.0;
         let cell = |row: Rect, n: u8| {
             let left = row.left() + name_width + f32::from(n) * column;
-            Rect::from_min_size(pos2(left, row.top()), vec2(column - 3.0, row.height()))
+            Rect::from_min_size(
+                pos2(left, row.top()),
+                vec2(column - theme::CURSOR_COLUMN_GAP, row.height()),
+            )
         };
         let (row, mut rest) = body.split_top_bottom_at_y(body.top() + theme::CURSOR_ROW);
         for (n, text) in (0..).zip(COLUMNS) {

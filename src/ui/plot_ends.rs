@@ -9,7 +9,6 @@ use crate::ui::text::{Text, plots};
 use crate::ui::theme;
 use egui::{Align2, Rect, Stroke, Ui, pos2};
 
-
 /// Where a line ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct End {
@@ -24,7 +23,11 @@ pub(crate) fn ends_ui(ui: &Ui, plot: Rect, look: Look, ends: Vec<End>) {
     let ends = ordered(ends);
     let mut heights: Vec<f32> = ends.iter().map(|end| end.y).collect();
     let apart = spread(&mut heights, (plot.top(), plot.bottom()));
-    let aside = if apart < theme::END_NAME { theme::END_ASIDE } else { 0.0 };
+    let aside = if apart < theme::END_NAME {
+        theme::END_ASIDE
+    } else {
+        0.0
+    };
     for ((end, y), aside) in ends
         .iter()
         .zip(heights)
@@ -32,7 +35,10 @@ pub(crate) fn ends_ui(ui: &Ui, plot: Rect, look: Look, ends: Vec<End>) {
     {
         let color = look.palette.dof[end.line.dof];
         let at = end.y.clamp(plot.top(), plot.bottom());
-        let lead = [pos2(plot.right() + 1.0, at), pos2(plot.right() + theme::END_LEAD, y)];
+        let lead = [
+            pos2(plot.right() + 1.0, at),
+            pos2(plot.right() + theme::END_LEAD, y),
+        ];
         ui.painter().line_segment(lead, Stroke::new(1.0, color));
         let left = plot.right() + theme::END_LEAD + 2.0 + aside;
         let place = Rect::from_min_max(
@@ -138,7 +144,9 @@ mod tests {
             assert!(spread(&mut heights, (0.0, 100.0)) >= theme::END_NAME);
             let pairs = heights.iter().zip(heights.iter().skip(1));
             assert!(
-                pairs.clone().all(|(one, two)| two - one > theme::END_NAME - 0.01),
+                pairs
+                    .clone()
+                    .all(|(one, two)| two - one > theme::END_NAME - 0.01),
                 "{heights:?}"
             );
             assert!(

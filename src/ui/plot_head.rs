@@ -11,8 +11,7 @@ use crate::ui::plots::PlotView;
 use crate::ui::text::{Text, panels, plots, words};
 use crate::ui::theme;
 use egui::{
-    Align2, Color32, CornerRadius, Id, Popup, PopupCloseBehavior, Rect, Stroke, Ui, UiBuilder,
-    pos2, vec2,
+    Align2, Color32, CornerRadius, Id, Popup, PopupCloseBehavior, Rect, Stroke, Ui, UiBuilder, pos2,
 };
 
 /// Rows that go to the clipboard at once: they are made into text within one frame.
@@ -21,12 +20,17 @@ const COPY_ROWS_MAX: usize = 20_000;
 /// The switches beside the title.
 pub(crate) fn head_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
     let narrow = head.width() < theme::PLOT_HEAD_NARROW;
-    menu_ui(ui, take_right(&mut head, 26.0), pane, view);
+    menu_ui(
+        ui,
+        take_right(&mut head, theme::PLOT_MENU_BUTTON),
+        pane,
+        view,
+    );
     let look = pane.look;
     let span = view.sight.span();
     if switch_ui(
         ui,
-        take_right(&mut head, 34.0),
+        take_right(&mut head, theme::PLOT_CURSOR_BUTTON),
         look,
         view.cursors.at.is_some(),
     ) {
@@ -159,7 +163,7 @@ fn pause_ui(
     } else {
         panels::PAUSE
     });
-    let place = take_right(head, icon_width.unwrap_or(64.0));
+    let place = take_right(head, icon_width.unwrap_or(theme::PLOT_BUTTON));
     let mut button = Button::new(text, look.say(panels::PAUSE_TIP))
         .named(look.say(panels::PAUSE_NAME))
         .weight(if paused {
@@ -262,7 +266,8 @@ pub(crate) fn legend_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, view: &mu
     let look = pane.look;
     let widths = Dof::ALL.map(|dof| item_width(ui, look, dof));
     let thresholds = look.say(panels::THRESHOLDS);
-    let threshold_width = controls::text_width(ui, thresholds, theme::small()) + 26.0;
+    let threshold_width =
+        controls::text_width(ui, thresholds, theme::small()) + theme::LEGEND_DASHES;
     let needed: f32 = widths.iter().map(|width| width + theme::STEP).sum();
     let one_row = needed + threshold_width <= body.width();
     let mut row = take_top(body, theme::PLOT_NAMES_ROW);
@@ -273,7 +278,14 @@ pub(crate) fn legend_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, view: &mu
         let width = |n: usize| widths.get(n).copied().unwrap_or_default();
         width(n).max(width(n + 3))
     });
-    let threshold = take_right(&mut row, if one_row { threshold_width } else { 20.0 });
+    let threshold = take_right(
+        &mut row,
+        if one_row {
+            threshold_width
+        } else {
+            theme::LEGEND_MARK
+        },
+    );
     threshold_ui(ui, threshold, look, view);
     for (n, (dof, width)) in Dof::ALL.into_iter().zip(widths).enumerate() {
         if n == 3 && !one_row {
@@ -288,7 +300,7 @@ pub(crate) fn legend_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, view: &mu
 }
 
 fn item_width(ui: &Ui, look: Look, dof: Dof) -> f32 {
-    controls::text_width(ui, look.say(words::dof(dof)), theme::small()) + 21.0
+    controls::text_width(ui, look.say(words::dof(dof)), theme::small()) + theme::LEGEND_NAME
 }
 
 fn item_ui(ui: &mut Ui, place: Rect, look: Look, dof: Dof, view: &mut PlotView) {
@@ -300,8 +312,10 @@ fn item_ui(ui: &mut Ui, place: Rect, look: Look, dof: Dof, view: &mut PlotView) 
         .named(&named);
     button.selected = Some(shown);
     let response = button.ground(ui, look, place, Id::unique(("legend", dof)));
-    let swatch =
-        Rect::from_center_size(pos2(place.left() + 9.0, place.center().y), vec2(10.0, 3.0));
+    let swatch = Rect::from_center_size(
+        pos2(place.left() + theme::LEGEND_MARK_AT, place.center().y),
+        theme::LEGEND_LINE,
+    );
     let palette = look.palette;
     let (line, text) = if shown {
         (palette.dof[dof], palette.text)
@@ -330,10 +344,11 @@ fn threshold_ui(ui: &mut Ui, place: Rect, look: Look, view: &mut PlotView) {
     let y = place.center().y;
     for (from, to) in [(4.0, 8.0), (11.0, 15.0)] {
         let line = [pos2(place.left() + from, y), pos2(place.left() + to, y)];
-        ui.painter().line_segment(line, Stroke::new(1.5, color));
+        ui.painter()
+            .line_segment(line, Stroke::new(theme::FOCUS_LINE, color));
     }
     if place.width() > 24.0 {
-        legend_text(ui, place, 20.0, text, color);
+        legend_text(ui, place, theme::LEGEND_MARK, text, color);
     }
     if response.clicked() {
         view.thresholds = !view.thresholds;

@@ -29,12 +29,19 @@ pub(crate) fn words_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, span: Span) {
         let text: String = mark_text(pane, mark).chars().take(NOTE_SHOWN).collect();
         let x = plot_axes::x_of(rect, span, mark.at.secs());
         let width = controls::text_width(ui, &text, theme::small()) + 1.0;
-        let flipped = x + width + 6.0 > rect.right();
-        let left = if flipped { x - width - 4.0 } else { x + 4.0 };
+        let flipped = x + width + theme::MARK_MARGIN > rect.right();
+        let left = if flipped {
+            x - width - theme::STEP
+        } else {
+            x + theme::STEP
+        };
         if left < free_from {
             continue;
         }
-        let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), vec2(width, 14.0));
+        let place = Rect::from_min_size(
+            pos2(left, rect.top() + 2.0),
+            vec2(width, theme::MESSAGE_LINE),
+        );
         let ground = pane.look.palette.sunken.gamma_multiply(0.8);
         let round = CornerRadius::same(2);
         ui.painter()
@@ -71,7 +78,7 @@ fn mark_text(pane: &Pane<'_>, mark: &Mark) -> String {
 /// What happened where the pointer is, a line each.
 pub(crate) fn near(pane: &Pane<'_>, ground: Rect, span: Span, x: f32) -> String {
     /// A line is easily missed by some pixels.
-    const NEAR: f32 = 4.0;
+    const NEAR: f32 = theme::STEP;
     let (from, to) = (
         plot_axes::time_of(ground, span, x - NEAR),
         plot_axes::time_of(ground, span, x + NEAR),

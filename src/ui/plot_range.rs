@@ -4,12 +4,12 @@ use crate::app::settings::PlotKind;
 use crate::ui::controls;
 use crate::ui::look::{Look, Pane};
 use crate::ui::number::NumberField;
-use crate::ui::plot_axes::{self, Band};
+use crate::ui::plot_axes::{self, Band, NUMBERS_COUNTS};
 use crate::ui::plot_panels::Panel;
 use crate::ui::text::plots;
 use crate::ui::theme;
 use egui::{
-    CursorIcon, Id, Popup, PopupCloseBehavior, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2,
+    CursorIcon, Id, Popup, PopupCloseBehavior, Rect, Response, Role, Sense, Ui, WidgetInfo,
 };
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ const MOST: f64 = 100_000.0;
 /// The narrowest scale: a hundredth of what the finest plot tells.
 const NARROWEST: f64 = 0.01;
 /// Size of a field for an end.
-const FIELD: egui::Vec2 = vec2(96.0, theme::CONTROL);
+const FIELD: egui::Vec2 = theme::RANGE_FIELD;
 
 /// The scales that a person chose; others follow their values.
 #[derive(Debug, Default)]
@@ -36,7 +36,9 @@ impl Ranges {
             Some((low, high)) => Band {
                 low: *low,
                 high: *high,
-                step: round_step((high - low) / f64::from(room.clamp(2.0, 5.0) - 1.0)),
+                step: round_step(
+                    (high - low) / f64::from(room.clamp(NUMBERS_COUNTS.0, NUMBERS_COUNTS.1) - 1.0),
+                ),
             },
             None => auto.rounded(panel.steps, room),
         }

@@ -10,9 +10,8 @@ use crate::ui::text::plots;
 use crate::ui::theme;
 use egui::{
     Align2, CornerRadius, Id, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, Ui,
-    WidgetInfo, pos2, vec2,
+    WidgetInfo, pos2,
 };
-
 
 /// A stretch that is being marked, in points.
 #[derive(Debug, Default, Clone, Copy)]
@@ -87,11 +86,14 @@ pub(crate) fn pointer_ui(ui: &Ui, ground: Rect, at: Pos2, look: Look, time: Time
         None => clock(at_s, time.span.1 - time.span.0),
     };
     let center = pos2(
-        at.x.clamp(ground.left() + 36.0, ground.right() - 36.0),
+        at.x.clamp(
+            ground.left() + theme::REACH_NOTE.x / 2.0,
+            ground.right() - theme::REACH_NOTE.x / 2.0,
+        ),
         ground.bottom() + theme::PLOT_TIME_AXIS / 2.0,
     );
-    let place = Rect::from_center_size(center, vec2(72.0, 16.0));
-    let round = CornerRadius::same(3);
+    let place = Rect::from_center_size(center, theme::REACH_NOTE);
+    let round = CornerRadius::same(theme::ROUND_TRACK);
     ui.painter().rect_filled(place, round, palette.control);
     let align = Align2::CENTER_CENTER;
     let font = theme::number_small();

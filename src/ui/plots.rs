@@ -20,6 +20,8 @@ use crate::ui::theme;
 use egui::{CornerRadius, Painter, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use std::collections::BTreeMap;
 
+/// Most columns that a plot is drawn in.
+pub(crate) const COLUMNS_PX: f32 = 8192.0;
 
 /// What the plots need between frames.
 #[derive(Debug, Default)]
@@ -74,12 +76,14 @@ impl PlotView {
         let table_height = self.cursors.table_height(measured.len());
         let (stack, table) = body.split_top_bottom_at_y(body.bottom() - table_height);
         let room = |count: usize| {
-            (stack.height() - theme::PLOT_TIME_AXIS) / f32::from(u8::try_from(count).unwrap_or(u8::MAX).max(1))
+            (stack.height() - theme::PLOT_TIME_AXIS)
+                / f32::from(u8::try_from(count).unwrap_or(u8::MAX).max(1))
         };
         let alone = table_height > 0.0 && room(shown.len()) < theme::PLOT_LEAST;
         let shown = if alone { vec![chosen] } else { shown };
         // In a window that was forced to be tiny there is no place to draw in.
-        let fits = room(shown.len()) > theme::PLOT_CAPTION + 2.0 * theme::PLOT_NUMBER && stack.width() > 4.0 * theme::PLOT_AXIS;
+        let fits = room(shown.len()) > theme::PLOT_CAPTION + 2.0 * theme::PLOT_NUMBER
+            && stack.width() > 4.0 * theme::PLOT_AXIS;
         if fits {
             self.stack_ui(ui, stack, pane, &shown, room(shown.len()));
         }
@@ -100,7 +104,10 @@ impl PlotView {
         let look = pane.look;
         let ground = Rect::from_min_max(
             pos2(stack.left() + theme::PLOT_AXIS, stack.top()),
-            pos2(stack.right() - theme::PLOT_ENDS, stack.bottom() - theme::PLOT_TIME_AXIS),
+            pos2(
+                stack.right() - theme::PLOT_ENDS,
+                stack.bottom() - theme::PLOT_TIME_AXIS,
+            ),
         );
         let axis = ground
             .with_min_y(ground.bottom())
@@ -197,7 +204,7 @@ impl PlotView {
         let band = self.ranges.band(panel, band, room);
         let axis = ground.with_max_x(plot_rect.left());
         self.ranges.axis_ui(ui, axis, pane, panel, band);
-        let round = CornerRadius::same(3);
+        let round = CornerRadius::same(theme::ROUND_TRACK);
         ui.painter()
             .rect_filled(plot_rect, round, look.palette.sunken);
         plot_axes::grid(ui, plot_rect, look, &band, time);
@@ -284,9 +291,12 @@ impl PlotView {
 fn empty_ui(ui: &mut Ui, plot: Rect, look: Look) {
     let text = look.say(panels::PLOT_EMPTY);
     let width = controls::text_width(ui, text, theme::small()) + theme::PAD;
-    let place = Rect::from_center_size(plot.center(), vec2(width, 16.0));
-    ui.painter()
-        .rect_filled(place, CornerRadius::same(3), look.palette.sunken);
+    let place = Rect::from_center_size(plot.center(), vec2(width, theme::TEXT_LINE));
+    ui.painter().rect_filled(
+        place,
+        CornerRadius::same(theme::ROUND_TRACK),
+        look.palette.sunken,
+    );
     Label::new(text, look.palette.faint)
         .small()
         .center()
@@ -300,5 +310,5 @@ fn empty_ui(ui: &mut Ui, plot: Rect, look: Look) {
     reason = "a length in pixels, clamped"
 )]
 fn pixels(length: f32) -> u32 {
-    length.clamp(1.0, 8192.0) as u32
+    length.clamp(1.0, COLUMNS_PX) as u32
 }

@@ -30,7 +30,7 @@ pub(crate) fn editor_ui(
     let fields = rows * (theme::CONTROL + theme::STEP) + theme::CONTROL_LARGE;
     let picture = take_top(
         &mut left,
-        (rect.height() - fields - theme::GAP).clamp(48.0, 320.0),
+        (rect.height() - fields - theme::GAP).clamp(theme::POSE_PICTURE.0, theme::POSE_PICTURE.1),
     );
     hand_picture::pose_ui(ui, pane.look, picture, &shares(&pose.angles));
     let mut row = || {
@@ -157,7 +157,7 @@ fn limits_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, pose: &Pose) {
             range: 0.0..=max,
             decimals: 0,
         };
-        let place = take_left(&mut row, 56.0);
+        let place = take_left(&mut row, theme::POSE_FIELD);
         field.put(
             ui,
             look,

@@ -86,7 +86,7 @@ pub(crate) fn tile_ui(
         let edit = LibraryEdit::Pose(pose.id, PoseEdit::Shift(way));
         pane.actions.push(Action::Library(edit));
     }
-    let (picture, words) = top.split_top_bottom_at_y(top.bottom() - 36.0);
+    let (picture, words) = top.split_top_bottom_at_y(top.bottom() - theme::POSE_WORDS);
     hand_picture::pose_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
     let words = words.shrink2(vec2(theme::GAP, 0.0));
     let (upper, lower) = words.split_top_bottom_at_fraction(0.5);

@@ -15,8 +15,6 @@ use crate::ui::text::{Text, poses};
 use crate::ui::theme;
 use egui::{Id, Rect, TextEdit, Ui, vec2};
 
-
-
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Section {
@@ -98,7 +96,7 @@ impl PoseView {
     }
 
     fn in_hand_ui(&mut self, ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
-        let width = (body.width() * 0.42).clamp(244.0, 340.0);
+        let width = (body.width() * 0.42).clamp(theme::POSE_SIDE.0, theme::POSE_SIDE.1);
         let editor = take_right(&mut body, width);
         self.gestures.large_ui(ui, body, pane);
         self.editor.ui(ui, editor, pane);
@@ -117,7 +115,7 @@ impl PoseView {
             .align(egui::Align2::LEFT_CENTER)
             .margin(egui::Margin::symmetric(8, 0))
             .min_size(place.size())
-            .desired_width(place.width() - 16.0);
+            .desired_width(place.width() - theme::FIELD_MARGIN);
         let response = ui.put(place, edit);
         let value = self.find.clone();
         response.widget_info(|| {
@@ -134,7 +132,7 @@ impl PoseView {
         if library.poses.is_empty() {
             return empty_ui(ui, body, pane);
         }
-        let width = (body.width() * 0.42).clamp(268.0, 380.0);
+        let width = (body.width() * 0.42).clamp(theme::GESTURE_SIDE.0, theme::GESTURE_SIDE.1);
         let editor = take_right(&mut body, width);
         let columns = ((body.width() + theme::GAP) / (theme::POSE_TILE.x + theme::GAP))
             .floor()
@@ -223,8 +221,11 @@ fn tools_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>) {
 
 fn empty_ui(ui: &mut Ui, body: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let mut rows = Rect::from_center_size(body.center(), vec2(body.width().min(560.0), 250.0));
-    let picture = take_top(&mut rows, 120.0);
+    let mut rows = Rect::from_center_size(
+        body.center(),
+        vec2(body.width().min(theme::POSE_EMPTY.x), theme::POSE_EMPTY.y),
+    );
+    let picture = take_top(&mut rows, theme::POSE_EMPTY_PICTURE);
     let open = crate::hand::PerDof::splat(Some(1.0));
     crate::ui::hand_picture::pose_ui(ui, look, picture, &open);
     Label::new(look.say(poses::EMPTY_TITLE), look.palette.text)

@@ -8,6 +8,7 @@ use crate::ui::look::Look;
 use crate::ui::plot_axes::{self, Band, Extent};
 use crate::ui::plot_bars;
 use crate::ui::plot_panels::{Panel, PlotLine};
+use crate::ui::plots::COLUMNS_PX;
 use crate::ui::text::{faults, panels, words};
 use crate::ui::theme;
 use egui::{
@@ -17,6 +18,9 @@ use egui::{
 
 /// Steps of the time axis, seconds.
 const STEPS: [f64; 6] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
+
+/// Fewest and most times that are written below.
+const TIMES_COUNTS: (f32, f32) = (2.0, 9.0);
 
 /// What is drawn.
 pub(crate) struct RecordingPlot<'a> {
@@ -103,9 +107,14 @@ impl RecordingPlot<'_> {
         for dof in Dof::ALL {
             let row = f32::from(u8::try_from(dof.index()).unwrap_or(0));
             let top = ground.top() + theme::RECORDING_CAPTION + row * theme::RECORDING_LANE;
-            let lane =
-                Rect::from_min_size(pos2(ground.left(), top), vec2(ground.width(), theme::RECORDING_LANE - 2.0));
-            let sign = Rect::from_min_size(lane.min - vec2(10.0, 0.0), vec2(6.0, theme::RECORDING_LANE - 2.0));
+            let lane = Rect::from_min_size(
+                pos2(ground.left(), top),
+                vec2(ground.width(), theme::RECORDING_LANE - 2.0),
+            );
+            let sign = Rect::from_min_size(
+                lane.min - vec2(theme::LANE_SIGN_AT, 0.0),
+                vec2(theme::LANE_SIGN, theme::RECORDING_LANE - 2.0),
+            );
             ui.painter().rect_filled(sign, 1.0, look.palette.dof[dof]);
             ui.painter().rect_filled(lane, 1.0, look.palette.sunken);
             let painter = Self::painter(ui, lane);
@@ -153,7 +162,8 @@ impl RecordingPlot<'_> {
         pointer_s: Option<f64>,
     ) {
         let look = self.look;
-        let (mut caption, ground) = rect.split_top_bottom_at_y(rect.top() + theme::RECORDING_CAPTION);
+        let (mut caption, ground) =
+            rect.split_top_bottom_at_y(rect.top() + theme::RECORDING_CAPTION);
         let ground = ground.with_max_y(ground.bottom() - 2.0);
         let plot = ground.with_min_x(ground.left() + theme::PLOT_AXIS);
         let lines = panel.lines(&PerDof::splat(false));
@@ -182,10 +192,14 @@ impl RecordingPlot<'_> {
                 extent.include(all.max.into());
             }
         }
-        let band = Band::of(panel.least, &extent).rounded(panel.steps, plot.height() / theme::PLOT_NUMBER);
+        let band =
+            Band::of(panel.least, &extent).rounded(panel.steps, plot.height() / theme::PLOT_NUMBER);
         plot_axes::value_axis_ui(ui, ground, look, &band);
-        ui.painter()
-            .rect_filled(plot, CornerRadius::same(3), look.palette.sunken);
+        ui.painter().rect_filled(
+            plot,
+            CornerRadius::same(theme::ROUND_TRACK),
+            look.palette.sunken,
+        );
         for value in band.lines() {
             let y = plot_axes::y_of(plot, &band, value);
             let stroke = Stroke::new(1.0, look.palette.grid);
@@ -224,7 +238,7 @@ impl RecordingPlot<'_> {
         let strong = self.is_of_fault(line.dof);
         let color = self.look.palette.dof[line.dof];
         let (width, share) = match (strong, line.wished) {
-            (true, false) => (theme::LINE + 0.4, 1.0),
+            (true, false) => (theme::LINE_STRONG, 1.0),
             (true, true) => (1.0, 0.6),
             (false, false) => (1.0, 0.35),
             (false, true) => (1.0, 0.15),
@@ -253,7 +267,9 @@ impl RecordingPlot<'_> {
     fn time_ui(&self, ui: &Ui, ground: Rect, bottom: f32) {
         let look = self.look;
         let (from_s, to_s) = self.span;
-        let most = f64::from((ground.width() / theme::RECORDING_TIME).clamp(2.0, 9.0));
+        let most = f64::from(
+            (ground.width() / theme::RECORDING_TIME).clamp(TIMES_COUNTS.0, TIMES_COUNTS.1),
+        );
         let step = STEPS
             .into_iter()
             .find(|step| (to_s - from_s) / step <= most);
@@ -270,7 +286,7 @@ impl RecordingPlot<'_> {
                 .vline(x, ground.top() + lanes_height()..=ground.bottom(), faint);
             let place = Rect::from_center_size(
                 pos2(x, bottom - theme::PLOT_TIME_AXIS / 2.0),
-                vec2(theme::RECORDING_TIME - theme::GAP, 14.0),
+                vec2(theme::RECORDING_TIME - theme::GAP, theme::MESSAGE_LINE),
             );
             let over = (place.right() - ground.right()).max(0.0);
             let place = place.translate(vec2(-over, 0.0));
@@ -294,7 +310,7 @@ impl RecordingPlot<'_> {
 /// One reading under the pointer, cut from the right of a caption.
 fn value_ui(ui: &mut Ui, caption: &mut Rect, text: &str, color: Color32) {
     let width = controls::text_width(ui, text, theme::number_small()) + 1.0;
-    if caption.width() < width + 90.0 {
+    if caption.width() < width + theme::RECORDING_WORDS {
         return;
     }
     let place = take_right(caption, width);
@@ -321,5 +337,5 @@ fn steps(places: impl Iterator<Item = Pos2>) -> Vec<Pos2> {
     reason = "a width in pixels"
 )]
 fn columns(plot: Rect) -> usize {
-    plot.width().clamp(1.0, 8192.0) as usize
+    plot.width().clamp(1.0, COLUMNS_PX) as usize
 }

@@ -115,7 +115,7 @@ impl RecordingsView {
         let mut body = controls::card(ui, pane.look, rect);
         self.head_ui(ui, take_top(&mut body, theme::CONTROL), pane, recording);
         self.tools_ui(ui, take_top(&mut body, theme::CONTROL), pane.look);
-        let width = (body.width() * 0.3).clamp(168.0, 300.0);
+        let width = (body.width() * 0.3).clamp(theme::RECORDINGS_LIST.0, theme::RECORDINGS_LIST.1);
         let events = take_right(&mut body, width);
         let fault_s = recording
             .fault()
@@ -280,7 +280,7 @@ fn event_ui(ui: &mut Ui, mut row: Rect, look: Look, line: &EventLine, fault_s: f
         .right()
         .put(ui, take_left(&mut row, theme::RECORDINGS_TIME));
     let at = pos2(row.left() + 2.0, row.center().y);
-    ui.painter().circle_filled(at, 2.5, line.color);
+    ui.painter().circle_filled(at, theme::HALO, line.color);
     row.min.x += theme::GAP + 2.0;
     Label::new(&line.text, look.palette.text)
         .small()

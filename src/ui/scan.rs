@@ -107,7 +107,7 @@ impl ScanPanel {
 
     fn address_ui(&mut self, ui: &mut Ui, body: &mut Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let mut row = take_top(body, 28.0);
+        let mut row = take_top(body, theme::LINE_HIGH);
         let text = look.say(scan::SCAN_HOST);
         let place = take_right(&mut row, width_of(ui, text));
         self.field_ui(ui, row, look);
@@ -145,7 +145,7 @@ impl ScanPanel {
             .align(egui::Align2::LEFT_CENTER)
             .margin(egui::Margin::symmetric(8, 2))
             .min_size(row.size())
-            .desired_width(row.width() - 16.0);
+            .desired_width(row.width() - theme::FIELD_MARGIN);
         let response = ui.put(row, edit);
         let value = self.address.clone();
         response.widget_info(|| {
@@ -204,7 +204,7 @@ fn stage_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>) {
     ui.painter().hline(body.x_range(), body.top(), stroke);
     body.min.y += theme::GAP;
     if book.is_running() {
-        let row = take_top(body, 18.0);
+        let row = take_top(body, theme::FIGURE_ROW);
         Label::new(&progress_words(look, book), look.palette.text)
             .named(look.say(scan::PROGRESS))
             .put(ui, row);
@@ -312,7 +312,8 @@ fn results_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
 
 /// One found hand with the button that connects to it.
 fn hand_ui(ui: &mut Ui, width: f32, (nth, found): (usize, &Found), pane: &mut Pane<'_>) {
-    let (whole, _) = ui.allocate_exact_size(vec2(width, theme::SCAN_HAND_ROW), egui::Sense::hover());
+    let (whole, _) =
+        ui.allocate_exact_size(vec2(width, theme::SCAN_HAND_ROW), egui::Sense::hover());
     if !ui.is_rect_visible(whole) {
         return;
     }
@@ -340,8 +341,12 @@ fn hand_ui(ui: &mut Ui, width: f32, (nth, found): (usize, &Found), pane: &mut Pa
     if clicked && !is_now {
         pane.actions.push(Action::Connect(found.endpoint.clone()));
     }
-    controls::lamp(ui, pos2(row.left() + 6.0, row.center().y), look.palette.ok);
-    row.min.x += 18.0;
+    controls::lamp(
+        ui,
+        pos2(row.left() + theme::LAMP_AT, row.center().y),
+        look.palette.ok,
+    );
+    row.min.x += theme::FIGURE_ROW;
     let (upper, lower) = row.split_top_bottom_at_y(row.center().y + 1.0);
     Label::new(&title(look, found), look.palette.text).put(ui, upper);
     Label::new(&place_words(found), look.palette.muted)

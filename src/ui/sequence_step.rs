@@ -15,7 +15,6 @@ use crate::ui::text::{Text, poses};
 use crate::ui::theme;
 use egui::{Id, Rect, Ui, vec2};
 
-
 /// Asks for a change of this sequence.
 pub(crate) fn change(pane: &mut Pane<'_>, sequence: &Sequence, edit: SequenceEdit) {
     let edit = LibraryEdit::Sequence(sequence.id, edit);
@@ -81,7 +80,7 @@ pub(crate) fn step_ui(
     ] {
         let label = format!("{} {number}", look.say(caption));
         let button = Button::new(text, look.say(tip)).named(&label);
-        let place = controls::middle(take_right(&mut row, 22.0), theme::CONTROL);
+        let place = controls::middle(take_right(&mut row, theme::STEP_HANDLE), theme::CONTROL);
         row.max.x += theme::STEP;
         if button.put(ui, look, place, id(caption.en)).clicked() {
             change(pane, sequence, edit);
@@ -142,7 +141,7 @@ fn numbers_ui(
     let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, value: f64, max: f64| {
         let text = look.say(caption);
         let label = format!("{} {} {text}", look.say(poses::STEP), at + 1);
-        let (words, place) = take_right(row, 58.0).split_top_bottom_at_fraction(0.4);
+        let (words, place) = take_right(row, theme::STEP_FIGURE).split_top_bottom_at_fraction(0.4);
         row.max.x += theme::STEP;
         Label::new(text, look.palette.faint).small().put(ui, words);
         let field = NumberField {

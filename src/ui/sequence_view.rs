@@ -108,7 +108,8 @@ impl SequenceView {
             sequence,
         );
         timeline_ui(ui, take_top(&mut rect, theme::CONTROL), pane, sequence);
-        let height = (rect.height() * 0.4).clamp(96.0, 360.0);
+        let height =
+            (rect.height() * 0.4).clamp(theme::SEQUENCE_PICTURE.0, theme::SEQUENCE_PICTURE.1);
         picture_ui(ui, take_top(&mut rect, height), pane, sequence);
         let mut foot = rect.with_min_y(rect.bottom() - theme::CONTROL_LARGE);
         controls_ui(ui, &mut foot, pane, sequence);
@@ -147,7 +148,7 @@ impl SequenceView {
             .and_then(|pose| library.pose(pose))
             .map(|pose| pose.name.as_str());
         let button = Button::new(look.say(poses::ADD), look.say(poses::ADD_TIP));
-        let place = take_right(&mut row, 88.0);
+        let place = take_right(&mut row, theme::SEQUENCE_ADD);
         if button
             .put(ui, look, place, Id::unique("add step"))
             .clicked()
@@ -173,7 +174,7 @@ impl SequenceView {
 
 fn empty_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
     let look = pane.look;
-    let rows = Rect::from_center_size(rect.center(), vec2(rect.width(), 64.0));
+    let rows = Rect::from_center_size(rect.center(), vec2(rect.width(), theme::SEQUENCE_EMPTY));
     let (title, body) = rows.split_top_bottom_at_fraction(0.5);
     Label::new(look.say(poses::SEQUENCE_EMPTY), look.palette.text)
         .font(theme::title())
@@ -208,7 +209,7 @@ fn head_ui(
 ) {
     let look = pane.look;
     let delete = Button::new(look.say(poses::DELETE), look.say(poses::DELETE_TIP));
-    let place = take_right(&mut row, 72.0);
+    let place = take_right(&mut row, theme::SEQUENCE_BUTTON);
     if delete
         .put(ui, look, place, Id::unique("delete sequence"))
         .clicked()
@@ -216,7 +217,7 @@ fn head_ui(
         change(pane, sequence, SequenceEdit::Delete);
     }
     let looped = Button::new(look.say(poses::LOOP), look.say(poses::LOOP_TIP));
-    let place = take_right(&mut row, 72.0);
+    let place = take_right(&mut row, theme::SEQUENCE_BUTTON);
     let looped = looped.choice(sequence.looped);
     if looped.put(ui, look, place, Id::unique("loop")).clicked() {
         change(pane, sequence, SequenceEdit::Loop(!sequence.looped));

@@ -137,10 +137,11 @@ impl TipDetail {
             center,
             ring,
             palette.wash(palette.ok),
-            Stroke::new(1.5, palette.ok),
+            Stroke::new(theme::FOCUS_LINE, palette.ok),
         );
         painter.circle_stroke(center, ring * (1.0 - NEAR), Stroke::new(1.0, palette.grid));
-        let up = Rect::from_center_size(center - vec2(0.0, radius - theme::GAP), vec2(40.0, 12.0));
+        let up =
+            Rect::from_center_size(center - vec2(0.0, radius - theme::GAP), theme::COMPASS_WORD);
         let text = look.say(panels::TIP_UP);
         controls::paint_text(
             ui,
@@ -269,7 +270,7 @@ impl TipDetail {
         let look = pane.look;
         let palette = look.palette;
         let mut body = rect;
-        let legend = controls::take_top(&mut body, 14.0);
+        let legend = controls::take_top(&mut body, theme::MESSAGE_LINE);
         body.min.y -= theme::STEP;
         let lines = [
             (
@@ -303,7 +304,7 @@ impl TipDetail {
             history.trace(series, span.0, span.1, columns(body), trace);
             end = trace.points().map(|point| point[1]).fold(end, f64::max);
         }
-        let top = Rect::from_min_size(body.min + vec2(theme::STEP, 0.0), vec2(60.0, 14.0));
+        let top = Rect::from_min_size(body.min + vec2(theme::STEP, 0.0), theme::CHANNEL_WORD);
         let painter = ui.painter_at(body);
         for ((_, _, color), trace) in lines.iter().zip(&self.traces) {
             for segment in &trace.segments {
@@ -342,7 +343,7 @@ const fn color_of(hold: Hold, palette: &theme::Palette) -> egui::Color32 {
 }
 
 fn needle(painter: &Painter, from: Pos2, by: Vec2, color: egui::Color32) {
-    painter.line_segment([from, from + by], Stroke::new(2.5, color));
+    painter.line_segment([from, from + by], Stroke::new(theme::ARROW_LINE, color));
     painter.circle_filled(from + by, theme::LAMP + 1.0, color);
 }
 

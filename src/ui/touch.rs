@@ -14,7 +14,6 @@ use crate::ui::touch_table::{self, LINES, Sheet, table_ui};
 use crate::ui::{format, theme};
 use egui::{Align2, Id, Rect, Ui, pos2, vec2};
 
-
 /// Height of the overview's card in a column of this size: the drawn hand gets what tips and faults leave.
 pub(crate) fn overview_height(column: Rect) -> f32 {
     let tips = small_height(column.width());
@@ -34,8 +33,15 @@ pub(crate) fn overview_height(column: Rect) -> f32 {
 
 /// Height of the card at this width without the drawn hand: as much as the pictures can fill.
 fn small_height(width: f32) -> f32 {
-    let picture = (width - 2.0 * theme::PAD - 44.0) / 5.0 * fingertip::HEIGHT_TO_WIDTH;
-    2.0 * theme::PAD + theme::CONTROL + theme::GAP + 20.0 + picture + theme::STEP + 5.0 * 17.0
+    let picture =
+        (width - 2.0 * theme::PAD - theme::TIP_NUMBERS_CAPTION) / 5.0 * fingertip::HEIGHT_TO_WIDTH;
+    2.0 * theme::PAD
+        + theme::CONTROL
+        + theme::GAP
+        + theme::TITLE_LINE
+        + picture
+        + theme::STEP
+        + 5.0 * theme::LIST_LINE
 }
 
 /// Part of the view's height that the hand and the fingertips take, by what stands below.
@@ -312,7 +318,7 @@ impl TouchView {
         let look = pane.look;
         for (finger, mut column) in sheet.columns(rect) {
             let name = look.say(words::finger(finger));
-            let title = controls::take_top(&mut column, 16.0);
+            let title = controls::take_top(&mut column, theme::TEXT_LINE);
             let color = look.palette.dof[finger.bend()];
             Label::new(name, color).small().center().put(ui, title);
             let place = column.with_min_y(column.top() - theme::STEP);

@@ -53,7 +53,10 @@ impl HeatScale {
             .right()
             .named(look.say(panels::TOUCH_SCALE_END))
             .put(ui, end_place);
-        let bar = controls::middle(controls::take_right(&mut rest, 64.0), 8.0);
+        let bar = controls::middle(
+            controls::take_right(&mut rest, theme::HEAT_BAR.x),
+            theme::HEAT_BAR.y,
+        );
         let width = bar.width() / f32::from(STEPS);
         for step in 0..STEPS {
             let left = bar.left() + width * f32::from(step);

@@ -41,7 +41,9 @@ pub(crate) struct TrafficView {
 impl TrafficView {
     /// Draws the list above and the chosen frame below.
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        let detail = (rect.height() * (1.0 - LIST_PART)).max(theme::FRAME_DETAIL_LEAST).round();
+        let detail = (rect.height() * (1.0 - LIST_PART))
+            .max(theme::FRAME_DETAIL_LEAST)
+            .round();
         let (list, detail) = rect.split_top_bottom_at_y(rect.bottom() - detail);
         let list = list.with_max_y(list.bottom() - theme::GAP);
         self.update(pane);
@@ -253,7 +255,7 @@ fn filter_field_ui(ui: &mut Ui, rect: Rect, look: Look, text: &mut String) {
         .align(egui::Align2::LEFT_CENTER)
         .margin(egui::Margin::symmetric(8, 2))
         .min_size(rect.size())
-        .desired_width(rect.width() - 16.0);
+        .desired_width(rect.width() - theme::FIELD_MARGIN);
     let response = ui.put(rect, edit);
     let value = text.clone();
     response.widget_info(|| {

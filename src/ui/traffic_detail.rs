@@ -65,14 +65,18 @@ fn fields_ui(ui: &mut Ui, rect: Rect, look: Look, frame: &Frame) {
     ui.scope_builder(inside, |ui| {
         ui.shrink_clip_rect(rest);
         ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
-        ScrollArea::vertical()
-            .auto_shrink(false)
-            .show_rows(ui, theme::FIELD_ROW, fields.len(), |ui, range| {
+        ScrollArea::vertical().auto_shrink(false).show_rows(
+            ui,
+            theme::FIELD_ROW,
+            fields.len(),
+            |ui, range| {
                 for field in fields.get(range).unwrap_or_default() {
-                    let (_, place) = ui.allocate_space(vec2(rest.width() - theme::GAP, theme::FIELD_ROW));
+                    let (_, place) =
+                        ui.allocate_space(vec2(rest.width() - theme::GAP, theme::FIELD_ROW));
                     field_ui(ui, place, look, frame, field);
                 }
-            });
+            },
+        );
     });
 }
 
@@ -86,7 +90,7 @@ fn verdict_ui(ui: &mut Ui, mut rect: Rect, look: Look, frame: &Frame) {
     } else {
         look.palette.warn
     };
-    let sign = controls::middle(take_left(&mut rect, 13.0), 12.0);
+    let sign = controls::middle(take_left(&mut rect, theme::WRONG_SIGN), theme::SIGN_SMALL);
     controls::warning_sign(ui, sign, color);
     Label::new(&traffic::wrong(look, wrong), color).put(ui, rect);
 }
@@ -120,7 +124,7 @@ fn field_ui(ui: &mut Ui, mut rect: Rect, look: Look, frame: &Frame, field: &Fiel
     let (bytes, mut value) = rect.split_left_right_at_x(rect.left() + rect.width() * 0.5);
     Label::new(&shown, color).number().put(ui, bytes);
     if field.wrong.is_some() {
-        let sign = controls::middle(take_left(&mut value, 13.0), 12.0);
+        let sign = controls::middle(take_left(&mut value, theme::WRONG_SIGN), theme::SIGN_SMALL);
         controls::warning_sign(ui, sign, color);
     }
     if !field.value.is_empty() {

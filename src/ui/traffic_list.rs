@@ -13,7 +13,6 @@ use egui::{
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-
 /// The chosen frames, by number, and where the choice began.
 #[derive(Debug, Default)]
 pub(crate) struct Choice {
@@ -210,7 +209,7 @@ fn row_ui(ui: &mut Ui, rect: Rect, look: Look, frame: &Frame, chosen: bool) -> b
         Color32::TRANSPARENT
     };
     ui.painter()
-        .rect_filled(rect, CornerRadius::same(3), ground);
+        .rect_filled(rect, CornerRadius::same(theme::ROUND_TRACK), ground);
     let columns = Columns::of(rect);
     paint_row(ui, &columns, look, frame, &said);
     response.clicked()
@@ -234,7 +233,7 @@ fn paint_row(ui: &Ui, columns: &Columns, look: Look, frame: &Frame, said: &str) 
     let kind = look.say(traffic::kind(frame.kind));
     controls::paint_text(ui, columns.kind, left, kind, theme::body(), strong);
     if frame.wrong.is_some() {
-        let sign = Rect::from_center_size(columns.sign.center(), vec2(12.0, 11.0));
+        let sign = Rect::from_center_size(columns.sign.center(), theme::FRAME_WRONG);
         controls::warning_sign(ui, sign, strong);
     }
     let color = if frame.wrong.is_some() {
@@ -282,23 +281,23 @@ fn color_of(look: Look, frame: &Frame) -> Color32 {
 /// To the hand points right, from it left; changes of the wire itself have a bar.
 fn arrow(ui: &Ui, rect: Rect, look: Look, frame: &Frame) {
     let color = look.palette.muted;
-    let stroke = egui::Stroke::new(1.4, color);
+    let stroke = egui::Stroke::new(theme::LINE, color);
     let (center, half) = (rect.center(), 6.0);
     let line = [
         pos2(center.x - half, center.y),
         pos2(center.x + half, center.y),
     ];
     if frame.bytes.is_empty() {
-        let bar = egui::Stroke::new(1.4, look.palette.faint);
+        let bar = egui::Stroke::new(theme::LINE, look.palette.faint);
         ui.painter().line_segment(line, bar);
         return;
     }
     ui.painter().line_segment(line, stroke);
     let (tip, back) = match frame.direction {
-        Direction::ToHand => (center.x + half, center.x + half - 4.0),
-        Direction::FromHand => (center.x - half, center.x - half + 4.0),
+        Direction::ToHand => (center.x + half, center.x + half - theme::STEP),
+        Direction::FromHand => (center.x - half, center.x - half + theme::STEP),
     };
-    for y in [center.y - 3.0, center.y + 3.0] {
+    for y in [center.y - theme::BAR, center.y + theme::BAR] {
         let wing = [pos2(back, y), pos2(tip, center.y)];
         ui.painter().line_segment(wing, stroke);
     }

@@ -46,3 +46,45 @@ pub(crate) const RECORDING_LANE: f32 = 8.0;
 pub(crate) const RECORDING_LEAST: f32 = 46.0;
 /// Room for a time on the time axis.
 pub(crate) const RECORDING_TIME: f32 = 60.0;
+/// Room above, below and beside a number of a value axis.
+pub(crate) const AXIS_MARGIN: f32 = 6.0;
+/// Height of a number of a value axis.
+pub(crate) const AXIS_NUMBER: f32 = 12.0;
+/// Room of a number of the time axis.
+pub(crate) const AXIS_TIME: egui::Vec2 = egui::vec2(64.0, 14.0);
+/// Where the middle of a cursor's flag is below the plots.
+pub(crate) const CURSOR_FLAG_AT: f32 = 9.0;
+/// Least and greatest width of the names in the cursors' table.
+pub(crate) const CURSOR_NAMES: (f32, f32) = (44.0, 110.0);
+/// Room between its columns.
+pub(crate) const CURSOR_COLUMN_GAP: f32 = 3.0;
+/// Width of the button of the plots' menu.
+pub(crate) const PLOT_MENU_BUTTON: f32 = 26.0;
+/// Width of the button of the cursors.
+pub(crate) const PLOT_CURSOR_BUTTON: f32 = 34.0;
+/// Width of a button with a word at the plots' head.
+pub(crate) const PLOT_BUTTON: f32 = 64.0;
+/// What the dashes add to the words beside them.
+pub(crate) const LEGEND_DASHES: f32 = 26.0;
+/// Room of a line's mark before its name.
+pub(crate) const LEGEND_MARK: f32 = 20.0;
+/// What mark and margin add to a name.
+pub(crate) const LEGEND_NAME: f32 = 21.0;
+/// Where the middle of a mark is.
+pub(crate) const LEGEND_MARK_AT: f32 = 9.0;
+/// A piece of a line before its name.
+pub(crate) const LEGEND_LINE: egui::Vec2 = egui::vec2(10.0, 3.0);
+/// Room that the words of an event keep from the edge.
+pub(crate) const MARK_MARGIN: f32 = 6.0;
+/// A field for the end of a value axis.
+pub(crate) const RANGE_FIELD: egui::Vec2 = egui::vec2(96.0, 24.0);
+/// What tells the reach of a marked time.
+pub(crate) const REACH_NOTE: egui::Vec2 = egui::vec2(72.0, 16.0);
+/// Where the sign of a lane begins, left of it.
+pub(crate) const LANE_SIGN_AT: f32 = 10.0;
+/// Width of the sign of a lane.
+pub(crate) const LANE_SIGN: f32 = 6.0;
+/// Width of the line that a recording is of.
+pub(crate) const LINE_STRONG: f32 = 1.8;
+/// Room that a plot's caption leaves to the words beside it.
+pub(crate) const RECORDING_WORDS: f32 = 90.0;

@@ -80,3 +80,67 @@ pub(crate) const FRAME_KIND: f32 = 92.0;
 pub(crate) const FRAME_BAR: f32 = 12.0;
 /// Room for the sign that something is wrong.
 pub(crate) const FRAME_SIGN: f32 = 16.0;
+/// Room of a mark for what nobody has seen yet.
+pub(crate) const UNSEEN_MARK: f32 = 12.0;
+/// Width of a ring.
+pub(crate) const RING_LINE: f32 = 1.6;
+/// Width of the age of a message in the overview.
+pub(crate) const MESSAGE_AGE_SHORT: f32 = 48.0;
+/// What a message keeps from the next.
+pub(crate) const MESSAGE_MARGIN: f32 = 6.0;
+/// What the first line of a message has more than others.
+pub(crate) const MESSAGE_LEAD: f32 = 5.0;
+/// Where its words begin below its upper edge.
+pub(crate) const MESSAGE_TEXT_TOP: f32 = 3.0;
+/// Where the middle of the first line of a message is.
+pub(crate) const MESSAGE_FIRST: f32 = 7.0;
+/// Height of a line of small words.
+pub(crate) const MESSAGE_LINE: f32 = 14.0;
+/// Least and greatest length of the head of an arrow.
+pub(crate) const ARROW_HEAD: (f32, f32) = (3.0, 8.0);
+/// Width of the line of a force.
+pub(crate) const ARROW_LINE: f32 = 2.5;
+/// Width of a caption beside a gesture.
+pub(crate) const GESTURE_CAPTION: f32 = 96.0;
+/// Least and greatest height of a gesture's tile.
+pub(crate) const GESTURE_HEIGHTS: (f32, f32) = (22.0, 72.0);
+/// Least and greatest height of the picture of a pose that is edited.
+pub(crate) const POSE_PICTURE: (f32, f32) = (48.0, 320.0);
+/// Width of a field of a pose.
+pub(crate) const POSE_FIELD: f32 = 56.0;
+/// Height of name and tags below the picture of a pose.
+pub(crate) const POSE_WORDS: f32 = 36.0;
+/// Least and greatest width of the pose that is edited.
+pub(crate) const POSE_SIDE: (f32, f32) = (244.0, 340.0);
+/// Least and greatest width of the gesture that is edited.
+pub(crate) const GESTURE_SIDE: (f32, f32) = (268.0, 380.0);
+/// What stands where there are no poses.
+pub(crate) const POSE_EMPTY: egui::Vec2 = egui::vec2(560.0, 250.0);
+/// Height of the picture in it.
+pub(crate) const POSE_EMPTY_PICTURE: f32 = 120.0;
+/// Least and greatest width of the list of recordings.
+pub(crate) const RECORDINGS_LIST: (f32, f32) = (168.0, 300.0);
+/// Width of what a step of a sequence is dragged by.
+pub(crate) const STEP_HANDLE: f32 = 22.0;
+/// Width of a figure of a step.
+pub(crate) const STEP_FIGURE: f32 = 58.0;
+/// Least and greatest height of the picture of a sequence.
+pub(crate) const SEQUENCE_PICTURE: (f32, f32) = (96.0, 360.0);
+/// Width of the button that adds a step.
+pub(crate) const SEQUENCE_ADD: f32 = 88.0;
+/// Height of the words where there are no steps.
+pub(crate) const SEQUENCE_EMPTY: f32 = 64.0;
+/// Width of a button that plays a sequence.
+pub(crate) const SEQUENCE_BUTTON: f32 = 72.0;
+/// Room of the word that says where the fingertip's end is.
+pub(crate) const COMPASS_WORD: egui::Vec2 = egui::vec2(40.0, 12.0);
+/// Room of a word in the plot of channels.
+pub(crate) const CHANNEL_WORD: egui::Vec2 = egui::vec2(60.0, 14.0);
+/// Width of the captions beside the fingertips' numbers.
+pub(crate) const TIP_NUMBERS_CAPTION: f32 = 44.0;
+/// The bar of the heat scale.
+pub(crate) const HEAT_BAR: egui::Vec2 = egui::vec2(64.0, 8.0);
+/// Room of a sign before a wrong field of a frame.
+pub(crate) const WRONG_SIGN: f32 = 13.0;
+/// The sign of a frame with something wrong.
+pub(crate) const FRAME_WRONG: egui::Vec2 = egui::vec2(12.0, 11.0);
