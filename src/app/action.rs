@@ -1,7 +1,9 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
+use crate::app::device::wish::DeviceWish;
 use crate::app::faults::FaultKind;
 use crate::app::layout::Layout;
+use crate::app::params::table::{ParamId, Value};
 use crate::app::poses::edit::LibraryEdit;
 use crate::app::poses::library::{PoseId, SequenceId};
 use crate::app::recorder::RecordingId;
@@ -151,6 +153,10 @@ pub enum Action {
     Note(Moment, String),
     /// Count the channels of these fingertips from now: one, or all.
     Tare(Option<Finger>),
+    /// What a kept row is to hold once it is applied, or nothing any more. Writes nothing.
+    Stage(ParamId, Option<Value>),
+    /// Read, write and save what the hand keeps.
+    Device(DeviceWish),
     /// Take the last taring back.
     UndoTare,
     /// Let the plots stand still; nothing is lost meanwhile.

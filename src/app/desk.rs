@@ -1,5 +1,7 @@
 //! The state, the link behind it, and what comes in over the link. What a person asks for is in `act`; no file, no thread.
 
+use crate::app::device::book::DeviceBook;
+use crate::app::device::work::DeviceWork;
 use crate::app::faults::FaultBook;
 use crate::app::gestures::{GestureBook, GestureProgress, Verdict};
 use crate::app::history::{History, MarkKind};
@@ -37,6 +39,8 @@ pub(crate) struct Desk {
     pub(crate) disarmed_at: Option<Moment>,
     /// Something was sent on this connection that may move the hand.
     pub(crate) commanded: bool,
+    /// What is read and written of what the hand keeps.
+    pub(crate) work: DeviceWork,
     asked: Vec<(Ticket, Asked)>,
     /// Angles received before this belong to a connection that is gone.
     seen_from: Option<Moment>,
@@ -67,6 +71,7 @@ impl Desk {
             notices: Notices::default(),
             gestures,
             poses: PoseBook::default(),
+            device: DeviceBook::default(),
             traffic: Traffic::default(),
             ports: Vec::new(),
             scan: ScanBook::default(),
@@ -79,6 +84,7 @@ impl Desk {
             following: PerDof::splat(true),
             disarmed_at: None,
             commanded: false,
+            work: DeviceWork::default(),
             asked: Vec::new(),
             seen_from: None,
             was_live: false,
@@ -114,6 +120,7 @@ impl Desk {
         self.state.faults.clear();
         self.state.gestures.another_hand();
         self.state.poses.run = None;
+        self.device_replaced();
         self.state.history.gap(now);
         self.state
             .notices
@@ -146,6 +153,7 @@ impl Desk {
         self.status(status, now);
         self.follow();
         self.tick_sequence(now);
+        self.tick_device(now);
     }
 
     fn event(&mut self, event: LinkEvent, now: Moment) {
@@ -190,6 +198,9 @@ impl Desk {
     }
 
     fn done(&mut self, ticket: Ticket, result: Result<Outcome, RequestError>, now: Moment) {
+        if self.device_done(ticket, &result, now) {
+            return;
+        }
         let Some(index) = self.asked.iter().position(|(asked, _)| *asked == ticket) else {
             return;
         };
@@ -290,6 +301,7 @@ impl Desk {
         self.was_live = true;
         self.seen_from = Some(now);
         self.commanded = false;
+        self.state.device.link_lost(now);
         self.state.history.gap(now);
         self.state.history.mark(now, MarkKind::LinkLost);
         if let Some(trouble) = trouble {

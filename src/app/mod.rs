@@ -9,6 +9,7 @@ pub mod config;
 pub mod connect;
 pub mod cooling;
 mod desk;
+pub mod device;
 #[cfg(test)]
 mod fake_link;
 pub mod faults;

@@ -1,6 +1,7 @@
 //! What a person should read, as typed causes. The words, in every language, are the views'.
 
 use crate::app::faults::FaultKind;
+use crate::app::params::file::ParamsFileError;
 use crate::app::poses::file::PoseFileError;
 use crate::app::quirk_sheet::Difference;
 use crate::hand::{Dof, Gesture, Moment, UserGesture};
@@ -109,6 +110,13 @@ pub enum NoticeKind {
         /// Where and why.
         error: PoseFileError,
     },
+    /// A file of parameters was not taken, not even in part.
+    ParamsRefused {
+        /// The file.
+        path: PathBuf,
+        /// The field and what is wrong with it.
+        error: ParamsFileError,
+    },
     /// The kept poses could not be read; their file is left as it was, under another name.
     PosesIgnored {
         /// Where and why.
@@ -197,6 +205,7 @@ impl NoticeKind {
             | Self::GestureStoreOff
             | Self::PoseUnknown
             | Self::PosesRefused { .. }
+            | Self::ParamsRefused { .. }
             | Self::PosesIgnored { .. }
             | Self::PosesNotSaved { .. }
             | Self::NotSaved { .. }

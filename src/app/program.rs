@@ -3,7 +3,11 @@
 use crate::app::action::Action;
 use crate::app::config::Saver;
 use crate::app::desk::Desk;
+use crate::app::device::keeper::{DeviceKeeper, since_1970};
+use crate::app::device::wish::DeviceWish;
 use crate::app::notices::NoticeKind;
+use crate::app::params::file::ParamsFile;
+use crate::app::params::stamp::stamp;
 use crate::app::poses::book::PoseBook;
 use crate::app::poses::library::Library;
 use crate::app::poses::store::{self, Reading};
@@ -65,6 +69,7 @@ pub struct App {
     pose_saver: Saver<Library>,
     reading: Option<Reading>,
     sheets: SheetKeeper,
+    params: DeviceKeeper,
     leaving: Option<Leaving>,
     closing: Option<Closing>,
     ports: Option<oneshot::Receiver<Vec<PortFound>>>,
@@ -90,6 +95,11 @@ impl App {
         let pose_saver = Saver::new(pose_path, env.runtime.clone(), library.clone());
         desk.state.poses = PoseBook::new(library);
         let sheets = SheetKeeper::new(env.settings_path.as_deref(), env.runtime.clone());
+        let params = DeviceKeeper::new(
+            env.settings_path.as_deref(),
+            env.runtime.clone(),
+            Arc::clone(&env.wake),
+        );
         Self {
             env,
             desk,
@@ -97,6 +107,7 @@ impl App {
             pose_saver,
             reading: None,
             sheets,
+            params,
             leaving: None,
             closing: None,
             ports: None,
@@ -153,6 +164,9 @@ impl App {
         if let Some(told) = self.sheets.tick(&mut self.desk.state) {
             self.tell(told, now);
         }
+        if let Some(told) = self.params.tick(&mut self.desk) {
+            self.tell(told, now);
+        }
         self.take_poses(now);
         let failed = self.saver.tick(&self.desk.state.settings, now);
         let poses = &self.desk.state.poses.library;
@@ -203,8 +217,36 @@ impl App {
             Action::Dismiss(id) => desk.state.notices.dismiss(id),
             Action::ImportPoses => self.import_poses(),
             Action::ExportPoses => self.save(Content::Poses(self.desk.state.poses.library.clone())),
+            Action::Stage(id, value) => desk.stage(id, value),
+            Action::Device(wish) => self.device(wish, now),
             action => self.act_on_poses(action, now),
         }
+    }
+
+    /// What is done with files is begun here, all else at the desk.
+    fn device(&mut self, wish: DeviceWish, now: Moment) {
+        match wish {
+            DeviceWish::Dump => self.dump(),
+            DeviceWish::Open => self.params.open(self.env.files.as_ref()),
+            DeviceWish::OpenBackup(path) => self.params.open_backup(path),
+            wish => self.desk.device(&wish, now),
+        }
+    }
+
+    /// Asks where the rows should go that were read.
+    fn dump(&mut self) {
+        let params = self.desk.state.device.live_params();
+        if params.is_empty() {
+            return;
+        }
+        let file = ParamsFile {
+            hand: self.desk.state.hand_name(),
+            at: stamp(since_1970()),
+            why: "dump".into(),
+            params,
+            ..ParamsFile::default()
+        };
+        self.save(Content::Params(Box::new(file)));
     }
 
     /// Poses, sequences, and what the hand itself has stored.

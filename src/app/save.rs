@@ -1,8 +1,10 @@
 //! Saving to a file that a person chooses: how the place is asked for, and what is written there. Never blocks the window.
 
 use crate::app::config::Kept;
+use crate::app::device::keeper;
 use crate::app::history::Table;
 use crate::app::notices::NoticeKind;
+use crate::app::params::file::ParamsFile;
 use crate::app::poses::library::Library;
 use crate::app::poses::store;
 use crate::link::Traffic;
@@ -72,6 +74,8 @@ pub enum Content {
     Picture(Vec<u8>),
     /// Poses and sequences.
     Poses(Library),
+    /// What a hand keeps, as it was read.
+    Params(Box<ParamsFile>),
 }
 
 impl Content {
@@ -85,6 +89,7 @@ impl Content {
             Self::Recording(_) => "handscope-fault.csv",
             Self::Picture(_) => "handscope-plots.png",
             Self::Poses(_) => store::FILE_NAME,
+            Self::Params(_) => keeper::FILE_NAME,
         }
     }
 
@@ -96,6 +101,7 @@ impl Content {
             Self::Plots(table) | Self::Recording(table) => table.len(),
             Self::Picture(bytes) => usize::from(!bytes.is_empty()),
             Self::Poses(library) => library.poses.len() + library.sequences.len(),
+            Self::Params(file) => file.params.iter().count(),
         }
     }
 
@@ -111,6 +117,7 @@ impl Content {
             Self::Plots(table) | Self::Recording(table) => table.csv().into_bytes(),
             Self::Picture(bytes) => bytes.clone(),
             Self::Poses(library) => library.text()?.into_bytes(),
+            Self::Params(file) => file.to_toml().into_bytes(),
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Everything the window shows, as plain values. Changed only by `update`; draws nothing, opens nothing.
 
+use crate::app::device::book::DeviceBook;
 use crate::app::faults::FaultBook;
 use crate::app::gestures::GestureBook;
 use crate::app::history::History;
@@ -51,6 +52,8 @@ pub struct State {
     pub gestures: GestureBook,
     /// The person's own poses and sequences.
     pub poses: PoseBook,
+    /// What the hand keeps, and what of it is to be changed.
+    pub device: DeviceBook,
     /// What went over the wire, as far as it was looked at.
     pub traffic: Traffic,
     /// Serial ports found when last looked.

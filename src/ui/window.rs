@@ -1,6 +1,7 @@
 //! The whole window: where each part stands, which keys act everywhere. Holds view state only, no hand.
 
 use crate::app::action::{Action, Play, Preset};
+use crate::app::device::wish::DeviceWish;
 use crate::app::layout::Room;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
@@ -348,6 +349,9 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
                 | Action::Gesture(_)
                 | Action::Recall(_)
                 | Action::TryAngles(_)
+                | Action::Device(
+                    DeviceWish::Apply | DeviceWish::Undo | DeviceWish::Save | DeviceWish::Agree
+                )
                 | Action::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
         )
     });
@@ -374,6 +378,10 @@ mod tests {
                 Action::Play(Play::Start(SequenceId(1))),
                 Action::Play(Play::Step(SequenceId(1))),
                 Action::Play(Play::Resume),
+                Action::Device(DeviceWish::Apply),
+                Action::Device(DeviceWish::Undo),
+                Action::Device(DeviceWish::Save),
+                Action::Device(DeviceWish::Agree),
                 Action::FindPorts,
             ]
         };

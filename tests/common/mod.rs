@@ -52,6 +52,7 @@ pub fn empty() -> State {
         notices: Notices::default(),
         gestures: GestureBook::default(),
         poses: handscope::app::poses::book::PoseBook::default(),
+        device: handscope::app::device::book::DeviceBook::default(),
         traffic: Traffic::default(),
         ports: Vec::new(),
         scan: handscope::app::ScanBook::default(),

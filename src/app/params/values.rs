@@ -51,6 +51,11 @@ impl Params {
         self.0.insert(id, value);
     }
 
+    /// Takes a row away.
+    pub fn forget(&mut self, id: ParamId) {
+        self.0.remove(&id);
+    }
+
     /// The rows that are known, in their order.
     pub fn iter(&self) -> impl Iterator<Item = (ParamId, Value)> + '_ {
         self.0.iter().map(|(id, value)| (*id, *value))

@@ -8,7 +8,7 @@ use crate::hand::Words;
 use crate::link::{Disarmed, LinkTrouble, RequestError};
 use crate::ui::format;
 use crate::ui::look::Look;
-use crate::ui::text::{main, panels, poses, quirks, traffic, words};
+use crate::ui::text::{device, main, panels, poses, quirks, traffic, words};
 
 /// Title, cause and advice of what is wrong with a drive.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
@@ -116,6 +116,11 @@ fn latency_timer(look: Look, port: &str, ms: Option<u16>) -> String {
     format!("{said} {cure}")
 }
 
+fn place(path: Option<&std::path::Path>) -> String {
+    path.map(|path| path.display().to_string())
+        .unwrap_or_default()
+}
+
 /// A message as one or two sentences.
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
@@ -174,13 +179,12 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::PosesRefused { path, error } => {
             format!("{} {}: {error}", said(poses::REFUSED), path.display())
         }
+        NoticeKind::ParamsRefused { path, error } => {
+            format!("{} {}: {error}", said(device::REFUSED), path.display())
+        }
         NoticeKind::PosesIgnored { error, kept_as } => {
-            let kept = kept_as.as_ref().map(|path| path.display().to_string());
-            format!(
-                "{} {error} {}",
-                said(poses::IGNORED),
-                kept.unwrap_or_default()
-            )
+            let kept = place(kept_as.as_deref());
+            format!("{} {error} {kept}", said(poses::IGNORED))
         }
         NoticeKind::PosesNotSaved { message } => {
             format!("{} {message}", said(poses::NOT_SAVED))
@@ -194,8 +198,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             format!("{} {message}", said(panels::NOTICE_NOT_SAVED))
         }
         NoticeKind::SettingsIgnored { message, kept_as } => {
-            let kept = kept_as.as_ref().map(|path| path.display().to_string());
-            let kept = kept.unwrap_or_default();
+            let kept = place(kept_as.as_deref());
             format!("{} {message} {kept}", said(panels::NOTICE_SETTINGS))
         }
         NoticeKind::Saved { path, entries } => {

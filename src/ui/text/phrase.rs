@@ -38,11 +38,12 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        faults, keys, layout, main, panels, plots, poses, quirks, scan, touch, traffic,
+        device, faults, keys, layout, main, panels, plots, poses, quirks, scan, touch, traffic,
     };
 
     fn all() -> impl Iterator<Item = &'static Text> {
         let lists = [
+            device::ALL,
             faults::ALL,
             keys::ALL,
             layout::ALL,
