@@ -1,7 +1,7 @@
 //! How near the link comes to what a serial line can give: full cycles over a pseudo-terminal that keeps the time of a
 //! line, against the sum of the bytes.
 
-use crate::cycles::{Server, count, failed, measure};
+use crate::cycles::{Server, measure};
 use crate::report::{Aim, Failure, Report};
 use handscope::sim::serve::pty;
 use handscope::transport::LinePace;
@@ -92,8 +92,7 @@ fn line(report: &mut Report, protocol: Protocol, baud: u32) -> Result<(), Failur
     report.row("  share of that", share, "%", Aim::AtLeast(SHARE))?;
     let used = middle.stats.line.utilisation * 100.0;
     report.row("  line utilisation", used, "%", Aim::None)?;
-    let lost = count(failed(&middle.stats));
-    report.row("  requests that failed", lost, "", Aim::AtMost(0.0))
+    report.row("  requests that failed", middle.failed, "", Aim::AtMost(0.0))
 }
 
 fn serve(protocol: Protocol, path: &Path, baud: u32) -> Result<Server, Failure> {
