@@ -47,7 +47,7 @@ const FOREIGN_TO_UI: [(&str, &str); 9] = [
 ];
 
 /// Calls whose arguments are lengths.
-const LENGTH_CALLS: [&str; 26] = [
+const LENGTH_CALLS: [&str; 27] = [
     "vec2(",
     "pos2(",
     "shrink(",
@@ -74,6 +74,7 @@ const LENGTH_CALLS: [&str; 26] = [
     "set_width(",
     "set_max_width(",
     "icon_high(",
+    "symmetric(",
 ];
 /// Halves, wholes and doubles of a length with a name.
 const FREE_NUMBERS: [&str; 7] = ["0.0", "0.5", "1.0", "2.0", "0", "1", "2"];

@@ -101,7 +101,7 @@ fn tile_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, dof: Dof, chosen: bool) -> 
     Label::new(&said.title, ink)
         .shorter(&said.short)
         .put(ui, line);
-    if inner.height() > 26.0
+    if inner.height() > theme::CAUSE_LEAST
         && let Some(words) = said.words
     {
         let room = inner.shrink2(vec2(0.0, 2.0));

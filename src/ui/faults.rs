@@ -329,7 +329,7 @@ fn notice_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, notice: &Notice) {
         text.clone(),
         theme::small(),
         palette.text,
-        (width - INDENT - aside).max(40.0),
+        (width - INDENT - aside).max(theme::MESSAGE_LEAST),
     );
     let place = piece(
         ui,

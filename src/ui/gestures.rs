@@ -47,7 +47,11 @@ impl GestureView {
             take_top(&mut body, 2.0 * theme::CONTROL - theme::GAP),
             pane,
         );
-        let columns: u8 = if body.width() < 640.0 { 4 } else { 5 };
+        let columns: u8 = if body.width() < theme::GESTURES_FIVE {
+            4
+        } else {
+            5
+        };
         let rows = f32::from(Gesture::MAX.get().div_ceil(columns));
         let gap = theme::GAP;
         let size = vec2(
@@ -118,7 +122,7 @@ impl GestureView {
             .char_limit(NAME_MAX)
             .clip_text(true)
             .align(egui::Align2::LEFT_CENTER)
-            .margin(egui::Margin::symmetric(4, 0))
+            .margin(theme::NAME_INSET)
             .min_size(rect.size())
             .desired_width(rect.width() - theme::GAP);
         let response = ui.put(rect, edit);

@@ -234,7 +234,7 @@ fn filter_ui(ui: &mut Ui, rect: Rect, look: Look, text: &mut String) {
         .char_limit(FILTER_MAX)
         .clip_text(true)
         .align(egui::Align2::LEFT_CENTER)
-        .margin(egui::Margin::symmetric(8, 0))
+        .margin(theme::FIELD_INSET_LOW)
         .min_size(rect.size())
         .desired_width(rect.width() - theme::FIELD_MARGIN);
     let response = ui.put(rect, edit);

@@ -9,7 +9,7 @@ use crate::ui::plot_axes::clock;
 use crate::ui::text::plots;
 use crate::ui::theme;
 use egui::{
-    CornerRadius, Frame, Id, Key, Margin, Rect, Role, Stroke, StrokeKind, TextEdit, Ui, UiBuilder,
+    CornerRadius, Frame, Id, Key, Rect, Role, Stroke, StrokeKind, TextEdit, Ui, UiBuilder,
     WidgetInfo, vec2,
 };
 
@@ -103,7 +103,7 @@ impl NoteBar {
             .fill(palette.sunken)
             .stroke(Stroke::new(1.0, palette.edge))
             .corner_radius(theme::ROUND_SMALL)
-            .inner_margin(Margin::symmetric(6, 0));
+            .inner_margin(theme::NUMBER_INSET);
         let edit = TextEdit::singleline(&mut self.text)
             .id(Id::unique("note field"))
             .char_limit(NOTE_MAX)

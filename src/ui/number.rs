@@ -3,9 +3,7 @@
 use crate::ui::format::UNKNOWN;
 use crate::ui::look::{Look, Typing};
 use crate::ui::theme;
-use egui::{
-    Align2, Id, Key, Margin, Rect, Role, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, vec2,
-};
+use egui::{Align2, Id, Key, Rect, Role, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
 use std::ops::RangeInclusive;
 
 /// Characters that fit in a field.
@@ -107,7 +105,7 @@ impl NumberField<'_> {
             })
             .stroke(Stroke::new(1.0, edge))
             .corner_radius(theme::ROUND_SMALL)
-            .inner_margin(Margin::symmetric(6, 0));
+            .inner_margin(theme::NUMBER_INSET);
         let edit = TextEdit::singleline(text)
             .id(id)
             .font(theme::number())

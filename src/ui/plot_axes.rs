@@ -292,7 +292,7 @@ pub(crate) fn time_axis_ui(ui: &Ui, rect: Rect, look: Look, time: TimeAxis) {
         } else {
             Align2::CENTER_CENTER
         };
-        if x - rect.left() > 20.0 || is_now {
+        if x - rect.left() > theme::AXIS_TIME_LEAST || is_now {
             paint_text(ui, place, align, &text, font.clone(), color);
         }
     }

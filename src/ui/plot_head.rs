@@ -44,7 +44,13 @@ pub(crate) fn head_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>, view: &m
         let pressed = button.put(ui, look, place, Id::unique("note")).clicked();
         view.note_asked |= pressed;
     }
-    pause_ui(ui, &mut head, pane, view, narrow.then_some(28.0));
+    pause_ui(
+        ui,
+        &mut head,
+        pane,
+        view,
+        narrow.then_some(theme::PLOT_ICON_BUTTON),
+    );
     if head.width() < theme::PLOT_WINDOWS {
         window_list_ui(ui, head, pane, view);
     } else {
@@ -188,7 +194,7 @@ fn pause_ui(
 fn window_list_ui(ui: &mut Ui, head: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
     let now = pane.state.settings.plot_window;
     let mut chosen = now;
-    let width = head.width().min(84.0);
+    let width = head.width().min(theme::PLOT_WINDOW_CHOICE);
     let place = controls::middle(head.with_min_x(head.right() - width), theme::CONTROL);
     ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
         let shown = egui::ComboBox::from_id_salt("plot window")
@@ -218,7 +224,7 @@ fn choose_window(pane: &mut Pane<'_>, view: &mut PlotView, window: PlotWindow) {
 fn window_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let now = pane.state.settings.plot_window;
-    let each = (head.width() / 8.0).min(52.0);
+    let each = (head.width() / 8.0).min(theme::PLOT_WINDOW_BUTTON);
     let mut row = take_right(&mut head, each * 8.0);
     let round = CornerRadius::same(theme::ROUND_SMALL);
     ui.painter().rect_filled(row, round, look.palette.sunken);
@@ -227,7 +233,11 @@ fn window_ui(ui: &mut Ui, mut head: Rect, pane: &mut Pane<'_>, view: &mut PlotVi
         row = rest;
         let (text, short) = window_text(window);
         let name = format!("{}: {text}", look.say(panels::WINDOW_NAME));
-        let shown = if each < 46.0 { short } else { text };
+        let shown = if each < theme::PLOT_WINDOW_SHORT {
+            short
+        } else {
+            text
+        };
         let as_wide = (view.sight.width_s() - window.seconds()).abs() < 1e-3;
         let button = Button::new(shown, look.say(panels::WINDOW_TIP))
             .choice(window == now && as_wide)
@@ -324,7 +334,7 @@ fn item_ui(ui: &mut Ui, place: Rect, look: Look, dof: Dof, view: &mut PlotView) 
     };
     ui.painter()
         .rect_filled(swatch, CornerRadius::same(1), line);
-    legend_text(ui, place, 17.0, name, text);
+    legend_text(ui, place, theme::LEGEND_WORDS, name, text);
     if response.clicked() {
         view.hidden[dof] = shown;
     }
@@ -342,12 +352,12 @@ fn threshold_ui(ui: &mut Ui, place: Rect, look: Look, view: &mut PlotView) {
         palette.faint
     };
     let y = place.center().y;
-    for (from, to) in [(4.0, 8.0), (11.0, 15.0)] {
+    for (from, to) in theme::LEGEND_DASH {
         let line = [pos2(place.left() + from, y), pos2(place.left() + to, y)];
         ui.painter()
             .line_segment(line, Stroke::new(theme::FOCUS_LINE, color));
     }
-    if place.width() > 24.0 {
+    if place.width() > theme::LEGEND_LEAST {
         legend_text(ui, place, theme::LEGEND_MARK, text, color);
     }
     if response.clicked() {

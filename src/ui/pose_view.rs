@@ -113,7 +113,7 @@ impl PoseView {
             .char_limit(NAME_CHARS_MAX)
             .clip_text(true)
             .align(egui::Align2::LEFT_CENTER)
-            .margin(egui::Margin::symmetric(8, 0))
+            .margin(theme::FIELD_INSET_LOW)
             .min_size(place.size())
             .desired_width(place.width() - theme::FIELD_MARGIN);
         let response = ui.put(place, edit);

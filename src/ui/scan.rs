@@ -143,7 +143,7 @@ impl ScanPanel {
             .hint_text(name)
             .char_limit(128)
             .align(egui::Align2::LEFT_CENTER)
-            .margin(egui::Margin::symmetric(8, 2))
+            .margin(theme::FIELD_INSET)
             .min_size(row.size())
             .desired_width(row.width() - theme::FIELD_MARGIN);
         let response = ui.put(row, edit);

@@ -1,7 +1,7 @@
 //! A line of text that counts when it is left, and not when it is left with Esc. Knows nothing of what it names.
 
 use crate::ui::theme;
-use egui::{Id, Key, Margin, Rect, Role, TextEdit, Ui, WidgetInfo};
+use egui::{Id, Key, Rect, Role, TextEdit, Ui, WidgetInfo};
 
 /// A text field at a place.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +36,7 @@ impl TextField<'_> {
             .char_limit(self.max)
             .clip_text(true)
             .align(egui::Align2::LEFT_CENTER)
-            .margin(Margin::symmetric(6, 0))
+            .margin(theme::NUMBER_INSET)
             .min_size(rect.size())
             .desired_width(rect.width() - theme::PAD);
         let response = ui.put(rect, edit);

@@ -23,7 +23,7 @@ pub(crate) fn overview_height(column: Rect) -> f32 {
     } else {
         0.0
     };
-    let most = (column.height() * 0.68).max(200.0);
+    let most = (column.height() * 0.68).max(theme::TIPS_LEAST);
     if hand > 0.0 {
         (tips + hand).round()
     } else {

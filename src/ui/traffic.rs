@@ -253,7 +253,7 @@ fn filter_field_ui(ui: &mut Ui, rect: Rect, look: Look, text: &mut String) {
         .hint_text(look.say(traffic::FILTER_HINT))
         .char_limit(FILTER_MAX)
         .align(egui::Align2::LEFT_CENTER)
-        .margin(egui::Margin::symmetric(8, 2))
+        .margin(theme::FIELD_INSET)
         .min_size(rect.size())
         .desired_width(rect.width() - theme::FIELD_MARGIN);
     let response = ui.put(rect, edit);

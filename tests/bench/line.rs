@@ -92,7 +92,12 @@ fn line(report: &mut Report, protocol: Protocol, baud: u32) -> Result<(), Failur
     report.row("  share of that", share, "%", Aim::AtLeast(SHARE))?;
     let used = middle.stats.line.utilisation * 100.0;
     report.row("  line utilisation", used, "%", Aim::None)?;
-    report.row("  requests that failed", middle.failed, "", Aim::AtMost(0.0))
+    report.row(
+        "  requests that failed",
+        middle.failed,
+        "",
+        Aim::AtMost(0.0),
+    )
 }
 
 fn serve(protocol: Protocol, path: &Path, baud: u32) -> Result<Server, Failure> {

@@ -88,3 +88,19 @@ pub(crate) const LANE_SIGN: f32 = 6.0;
 pub(crate) const LINE_STRONG: f32 = 1.8;
 /// Room that a plot's caption leaves to the words beside it.
 pub(crate) const RECORDING_WORDS: f32 = 90.0;
+/// Width of a button with an icon at the plots' head.
+pub(crate) const PLOT_ICON_BUTTON: f32 = 28.0;
+/// Width of the choice of the time that is shown, where there is no room for buttons.
+pub(crate) const PLOT_WINDOW_CHOICE: f32 = 84.0;
+/// Greatest width of one of its buttons.
+pub(crate) const PLOT_WINDOW_BUTTON: f32 = 52.0;
+/// Below this width its words are short.
+pub(crate) const PLOT_WINDOW_SHORT: f32 = 46.0;
+/// Where the name of a line begins.
+pub(crate) const LEGEND_WORDS: f32 = 17.0;
+/// From where to where the dashes of a threshold go.
+pub(crate) const LEGEND_DASH: [(f32, f32); 2] = [(4.0, 8.0), (11.0, 15.0)];
+/// Below this width a mark has no name.
+pub(crate) const LEGEND_LEAST: f32 = 24.0;
+/// Times nearer to the left edge are left out.
+pub(crate) const AXIS_TIME_LEAST: f32 = 20.0;

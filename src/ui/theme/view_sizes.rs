@@ -144,3 +144,17 @@ pub(crate) const HEAT_BAR: egui::Vec2 = egui::vec2(64.0, 8.0);
 pub(crate) const WRONG_SIGN: f32 = 13.0;
 /// The sign of a frame with something wrong.
 pub(crate) const FRAME_WRONG: egui::Vec2 = egui::vec2(12.0, 11.0);
+/// Room inside a number field.
+pub(crate) const NUMBER_INSET: egui::Margin = egui::Margin::symmetric(6, 0);
+/// Room inside a text field.
+pub(crate) const FIELD_INSET: egui::Margin = egui::Margin::symmetric(8, 2);
+/// Room inside a text field in a low row.
+pub(crate) const FIELD_INSET_LOW: egui::Margin = egui::Margin::symmetric(8, 0);
+/// Room inside the field of a gesture's name.
+pub(crate) const NAME_INSET: egui::Margin = egui::Margin::symmetric(4, 0);
+/// Width from which gestures stand in five columns.
+pub(crate) const GESTURES_FIVE: f32 = 640.0;
+/// Height from which a drive's tile says the cause.
+pub(crate) const CAUSE_LEAST: f32 = 26.0;
+/// Least width of a message.
+pub(crate) const MESSAGE_LEAST: f32 = 40.0;
