@@ -29,6 +29,8 @@ mod scan;
 mod several;
 #[cfg(unix)]
 mod trial;
+#[cfg(unix)]
+mod tune;
 mod usage;
 #[cfg(unix)]
 mod wire;
