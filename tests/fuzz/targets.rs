@@ -2,6 +2,8 @@
 //! this folder run the same functions. Each panics where a promise is broken.
 
 use handscope::app::Settings;
+use handscope::app::params;
+use handscope::app::poses;
 use handscope::codec::can::{self, Record, from_record, to_record};
 use handscope::codec::mbap::{self, MbapSplitter};
 use handscope::codec::modbus::{BytePacking, bytes_from_words, words_for};
@@ -37,7 +39,7 @@ pub const WIRES: [(&str, Target); 9] = [
 ];
 
 /// Everything else that reads what it was not asked to trust.
-pub const OTHERS: [(&str, Target); 10] = [
+pub const OTHERS: [(&str, Target); 12] = [
     ("tap_rs485", |state, bytes| tap(state, 0, bytes)),
     ("tap_rtu", |state, bytes| tap(state, 1, bytes)),
     ("tap_tcp", |state, bytes| tap(state, 2, bytes)),
@@ -48,6 +50,8 @@ pub const OTHERS: [(&str, Target); 10] = [
     ("values", register_values),
     ("endpoint", endpoint),
     ("settings", settings),
+    ("parameter_file", parameter_file),
+    ("pose_file", pose_file),
 ];
 
 /// Decoders that live on from one input to the next, as they do on a wire.
@@ -395,6 +399,38 @@ fn settings(state: &mut State, bytes: &[u8]) {
     );
 }
 
+/// Any file is one of parameters or says what is wrong; what is taken may be written, and is read back as it was.
+fn parameter_file(state: &mut State, bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let file = match params::file::read(&text) {
+        Ok(file) => file,
+        Err(why) => return assert!(!why.to_string().is_empty()),
+    };
+    state.accepted += 1;
+    assert!(!file.params.is_empty());
+    for (id, value) in file.params.iter() {
+        assert!(id.allows(value), "{text}");
+    }
+    assert_eq!(params::file::read(&file.to_toml()).unwrap(), file, "{text}");
+}
+
+/// Any file is one of poses or says what is wrong; what is taken is read back as it was.
+fn pose_file(state: &mut State, bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let library = match poses::file::read(&text) {
+        Ok(library) => library,
+        Err(why) => return assert!(!why.to_string().is_empty()),
+    };
+    state.accepted += 1;
+    let written = poses::file::write(&library).unwrap();
+    assert_eq!(poses::file::read(&written).unwrap(), library, "{text}");
+}
+
+/// A file of poses.
+const POSES: &str = "format = \"handscope-poses\"\nversion = 1\nmood = \"calm\"\n[[pose]]\nname = \"Pinch\"\ntags = [\"a\"]\n\
+    speed = 300\nforce = 800\nleave = [\"little\"]\n[pose.angles]\nlittle = 1000\nring = 1000\nmiddle = 1000\n\
+    index = 420\nthumb_bend = 420\nthumb_rotate = 0\n";
+
 /// Valid inputs of every target, for mutation.
 pub fn seeds(target: &str) -> Vec<Vec<u8>> {
     let block: Vec<u8> = (0..58).collect();
@@ -452,6 +488,11 @@ pub fn seeds(target: &str) -> Vec<Vec<u8>> {
             b"theme = \"light\"\nlanguage = \"zh\"\nendpoint = \"sim:\"\n".to_vec(),
             b"plot_window = \"s30\"\n[gesture_names]\n1 = \"open\"\n[new]\nkey = [1, 2]\n".to_vec(),
         ],
+        "parameter_file" => vec![
+            b"format = \"handscope-params\"\nversion = 1\nhand_id = 7\nip_address = \"10.0.0.9\"\n[new]\nkey = 1\n".to_vec(),
+            b"format = \"handscope-params\"\nversion = 1\n[default_speed]\nindex = 150\n[default_force]\nring = 300\n".to_vec(),
+        ],
+        "pose_file" => vec![POSES.as_bytes().to_vec()],
         _ => vec![vec![1, 2, 3, 4], (0..24).collect()],
     }
 }
