@@ -48,6 +48,9 @@ impl Cockpit {
         if self.window.view() == View::Traffic {
             self.app.read_traffic(now);
         }
+        if self.window.view() == View::Device {
+            self.app.look_at_device(now);
+        }
         for action in self.window.ui(ui, self.app.state()) {
             match action {
                 Action::SavePicture(size) => self.save_picture(size, now),

@@ -10,6 +10,8 @@
 
 #[path = "window/bench.rs"]
 mod bench;
+#[path = "window/device.rs"]
+mod device;
 #[path = "window/faults.rs"]
 mod faults;
 #[path = "window/joints.rs"]

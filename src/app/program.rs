@@ -330,6 +330,13 @@ impl App {
         save::read_on(&mut self.desk.state.traffic, now);
     }
 
+    /// Reads what the hand keeps because somebody looks at it. Called while they do; asks only when it is due. Writes nothing.
+    pub fn look_at_device(&mut self, now: Moment) {
+        if self.desk.state.device.look(now) {
+            self.desk.device(&DeviceWish::Read, now);
+        }
+    }
+
     /// One file at a time: while a dialog is open, another is not opened.
     fn save(&mut self, content: Content) {
         if self.saving.is_some() {

@@ -2,6 +2,7 @@
 //! so that seconds take milliseconds and two runs give equal bytes. Writes no file.
 
 use crate::app::action::Action;
+use crate::app::device::wish::DeviceWish;
 use crate::app::settings::{Language, Theme};
 use crate::app::{App, Env, NoChoice, Settings, SimDial};
 use crate::hand::Moment;
@@ -192,8 +193,27 @@ impl Driver {
         }
     }
 
-    /// The whole window with this view open, as it is now. Time stands still.
+    /// Reads what the hand keeps, and waits for it.
+    fn read_rows(&mut self) {
+        let now = self.now();
+        if !self.cockpit.state().device.is_due(now) {
+            return;
+        }
+        let inside = self.runtime.enter();
+        let read = Action::Device(DeviceWish::Read);
+        self.cockpit.app().act(read, now);
+        drop(inside);
+        while self.cockpit.state().device.is_busy() && self.now().since(now) < ANSWER_WITHIN {
+            self.step(STEP);
+        }
+    }
+
+    /// The whole window with this view open, as it is now. Time stands still, but for a view that reads from the hand when it is
+    /// opened: that is waited for.
     pub fn picture(&mut self, view: View) -> Picture {
+        if view == View::Device {
+            self.read_rows();
+        }
         let now = self.now();
         self.cockpit.show(view);
         let _inside = self.runtime.enter();

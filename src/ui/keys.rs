@@ -65,7 +65,7 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [Row; 28] = [
+pub(crate) static ROWS: [Row; 29] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
@@ -76,8 +76,9 @@ pub(crate) static ROWS: [Row; 28] = [
     row(COMMAND, Key::Num2, Wish::View(View::Touch)),
     row(COMMAND, Key::Num3, Wish::View(View::Faults)),
     row(COMMAND, Key::Num4, Wish::View(View::Poses)),
-    row(COMMAND, Key::Num5, Wish::View(View::Connection)),
-    row(COMMAND, Key::Num6, Wish::View(View::Traffic)),
+    row(COMMAND, Key::Num5, Wish::View(View::Device)),
+    row(COMMAND, Key::Num6, Wish::View(View::Connection)),
+    row(COMMAND, Key::Num7, Wish::View(View::Traffic)),
     row(NONE, Key::Num1, Wish::Joint(Dof::Little)),
     row(NONE, Key::Num2, Wish::Joint(Dof::Ring)),
     row(NONE, Key::Num3, Wish::Joint(Dof::Middle)),

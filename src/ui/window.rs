@@ -8,6 +8,7 @@ use crate::app::state::State;
 use crate::ui::banner;
 use crate::ui::border::{border_ui, shut_ui};
 use crate::ui::connection::ConnectionForm;
+use crate::ui::device::DeviceView;
 use crate::ui::faults::{self, FaultsView};
 use crate::ui::joint_rail;
 use crate::ui::joint_row::Row;
@@ -39,6 +40,8 @@ pub enum View {
     Faults,
     /// The person's poses, sequences of them, and the gestures in the hand.
     Poses,
+    /// What the hand keeps: live, staged, saved; its flash.
+    Device,
     /// The link and its settings.
     Connection,
     /// What goes over the wire, frame by frame.
@@ -47,11 +50,12 @@ pub enum View {
 
 impl View {
     /// All, in the order of the tabs.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Live,
         Self::Touch,
         Self::Faults,
         Self::Poses,
+        Self::Device,
         Self::Connection,
         Self::Traffic,
     ];
@@ -64,6 +68,7 @@ impl View {
             Self::Touch => "touch",
             Self::Faults => "faults",
             Self::Poses => "poses",
+            Self::Device => "device",
             Self::Connection => "connection",
             Self::Traffic => "traffic",
         }
@@ -83,6 +88,7 @@ impl View {
             Self::Touch => main::TAB_TOUCH,
             Self::Faults => main::TAB_FAULTS,
             Self::Poses => main::TAB_POSES,
+            Self::Device => main::TAB_DEVICE,
             Self::Connection => main::TAB_CONNECTION,
             Self::Traffic => main::TAB_TRAFFIC,
         }
@@ -101,6 +107,7 @@ pub struct Window {
     note: NoteBar,
     key_list: KeyList,
     poses: PoseView,
+    device: DeviceView,
     connection: ConnectionForm,
     touch: TouchView,
     traffic: TrafficView,
@@ -267,6 +274,7 @@ impl Window {
             View::Touch => self.touch.large_ui(ui, rect, pane),
             View::Faults => self.faults.ui(ui, rect, pane),
             View::Poses => self.poses.ui(ui, rect, pane),
+            View::Device => self.device.ui(ui, rect, pane),
             View::Connection => self.connection.ui(ui, rect, pane),
             View::Traffic => self.traffic.ui(ui, rect, pane),
         }

@@ -77,6 +77,13 @@ impl Dial for Socket {
     }
 }
 
+/// Whether settings and records are kept on disk.
+#[derive(Debug, Clone, Copy)]
+enum Keeps {
+    Nothing,
+    Records,
+}
+
 /// What the frames are drawn from.
 struct Room {
     runtime: Runtime,
@@ -90,7 +97,7 @@ struct Room {
 }
 
 impl Room {
-    fn new(config: SimConfig, settings: Settings) -> Self {
+    fn new(config: SimConfig, settings: Settings, keeps: Keeps) -> Self {
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .start_paused(true)
@@ -114,7 +121,10 @@ impl Room {
             dial: Arc::clone(&socket) as Arc<dyn Dial>,
             wake: Arc::new(|| {}),
             files: Arc::new(InFolder(folder.path().into())),
-            settings_path: None,
+            settings_path: match keeps {
+                Keeps::Nothing => None,
+                Keeps::Records => Some(folder.path().join("kept/settings.toml")),
+            },
         };
         let mut app = App::new(env, settings);
         app.open(None, clock.now());
@@ -172,7 +182,18 @@ pub struct Bench {
 
 impl Bench {
     pub fn open(config: SimConfig, size: Vec2) -> Self {
-        let room = Room::new(config, Settings::default());
+        Self::begin(Room::new(config, Settings::default(), Keeps::Nothing), size)
+    }
+
+    /// A program that keeps settings and records in its folder, one second after its start.
+    pub fn keeping(config: SimConfig) -> Self {
+        let room = Room::new(config, Settings::default(), Keeps::Records);
+        let mut bench = Self::begin(room, LARGE);
+        bench.wait(1000);
+        bench
+    }
+
+    fn begin(room: Room, size: Vec2) -> Self {
         let frame_s = Duration::from_millis(FRAME_MS).as_secs_f32();
         let harness = Harness::builder()
             .with_size(size)

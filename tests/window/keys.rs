@@ -101,8 +101,9 @@ fn switches_of_the_window_have_keys() {
         (Key::Num2, "touch"),
         (Key::Num3, "faults"),
         (Key::Num4, "poses"),
-        (Key::Num5, "connection"),
-        (Key::Num6, "traffic"),
+        (Key::Num5, "device"),
+        (Key::Num6, "connection"),
+        (Key::Num7, "traffic"),
         (Key::Num1, "live"),
     ] {
         bench.key_with(Modifiers::COMMAND, key);

@@ -19,6 +19,9 @@ pub const OLD_AFTER: Duration = Duration::from_secs(60);
 /// A person who goes from view to view does not make the hand read the same again so soon.
 pub const READ_AGAIN_AFTER: Duration = Duration::from_secs(2);
 
+/// Whoever did not look for so long comes to look anew.
+const LOOKED_AWAY: Duration = Duration::from_millis(500);
+
 /// What is being done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Doing {
@@ -80,6 +83,7 @@ pub struct DeviceBook {
     /// Whether a reading was begun since the hand was found.
     pub(crate) is_asked: bool,
     lost_at: Option<Moment>,
+    looked_at: Option<Moment>,
     /// What is being done.
     pub doing: Doing,
     /// Why the last reading is not whole.
@@ -164,7 +168,15 @@ impl DeviceBook {
         others.iter().flatten().any(differs)
     }
 
-    /// True if the rows should be read because a person looks at them.
+    /// Notes that a person looks at the rows; true if they should be read for it: when they come to look, and when a hand is found
+    /// while they do.
+    pub(crate) fn look(&mut self, now: Moment) -> bool {
+        let before = self.looked_at.replace(now);
+        let comes = before.is_none_or(|at| now.since(at) > LOOKED_AWAY);
+        !self.is_asked || comes && self.is_due(now)
+    }
+
+    /// True if the rows are worth reading again.
     #[must_use]
     pub fn is_due(&self, now: Moment) -> bool {
         let young = |at: Moment| now.since(at) < READ_AGAIN_AFTER;

@@ -74,6 +74,7 @@ texts! {
     TAB_FAULTS: "Faults", "故障";
     TAB_POSES: "Poses", "姿态";
     TAB_TRAFFIC: "Traffic", "报文";
+    TAB_DEVICE: "Device", "参数";
     TAB_CONNECTION: "Connection", "连接";
     TAB_TIP: "Shows this part of the window. Nothing moves.", "切换到此视图，不会产生动作。";
     THEME_NAME: "Theme", "主题";

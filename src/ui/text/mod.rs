@@ -14,6 +14,7 @@ pub(crate) mod quirks;
 pub(crate) mod scan;
 pub(crate) mod touch;
 pub(crate) mod traffic;
+pub(crate) mod verdicts;
 pub(crate) mod words;
 
 pub(crate) use phrase::Text;

@@ -47,7 +47,7 @@ pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
 }
 
 /// How a request failed.
-fn request_error(look: Look, error: &RequestError) -> String {
+pub(crate) fn request_error(look: Look, error: &RequestError) -> String {
     if look.language == Language::En {
         return format::sentence(&error.to_string());
     }

@@ -1,0 +1,197 @@
+//! What came of writes and of SAVE, why something cannot be done, and what could hurt, as sentences in the window's language.
+
+use crate::app::device::book::{Doing, SaveEnd};
+use crate::app::device::refusal::Refusal;
+use crate::app::params::danger::Danger;
+use crate::app::params::plan::{RowEnd, RowVerdict};
+use crate::app::params::table::ParamId;
+use crate::link::{Doubt, NotSent, SaveDoubt, Saved};
+use crate::ui::look::Look;
+use crate::ui::text::notices::request_error;
+use crate::ui::text::phrase::Text;
+use crate::ui::text::{device, words};
+
+/// Why it cannot be done now.
+pub(crate) const fn refusal(why: Refusal) -> Text {
+    match why {
+        Refusal::NoHand => device::WHY_NO_HAND,
+        Refusal::Armed => device::WHY_ARMED,
+        Refusal::Holding => device::WHY_HOLDING,
+        Refusal::Moving => device::WHY_MOVING,
+        Refusal::Busy => device::WHY_BUSY,
+        Refusal::NothingStaged => device::WHY_NOTHING_STAGED,
+        Refusal::NothingToUndo => device::WHY_NOTHING_TO_UNDO,
+        Refusal::NoFolder => device::WHY_NO_FOLDER,
+        Refusal::NothingRead => device::WHY_NOTHING_READ,
+    }
+}
+
+/// What is going on; none where nothing is.
+pub(crate) const fn doing(doing: Doing) -> Option<Text> {
+    match doing {
+        Doing::Nothing => None,
+        Doing::Reading => Some(device::READING),
+        Doing::Applying => Some(device::APPLYING),
+        Doing::BackingUp => Some(device::BACKING_UP),
+        Doing::Saving => Some(device::SAVING),
+    }
+}
+
+/// A row's own name, in its group.
+pub(crate) const fn name(id: ParamId) -> Text {
+    match id {
+        ParamId::HandId => device::HAND_ID,
+        ParamId::ReduRatio => device::REDU_RATIO,
+        ParamId::IpAddress => device::IP_ADDRESS,
+        ParamId::DefaultSpeed(dof) | ParamId::DefaultForce(dof) => words::dof(dof),
+    }
+}
+
+/// A row's name alone: `Index speed`.
+pub(crate) fn whole_name(look: Look, id: ParamId) -> String {
+    let own = look.say(name(id));
+    match id {
+        ParamId::DefaultSpeed(_) => format!("{own} {}", look.say(device::SPEED)),
+        ParamId::DefaultForce(_) => format!("{own} {}", look.say(device::FORCE)),
+        _ => own.to_owned(),
+    }
+}
+
+/// What a row does.
+pub(crate) const fn about(id: ParamId) -> Text {
+    match id {
+        ParamId::HandId => device::ABOUT_HAND_ID,
+        ParamId::ReduRatio => device::ABOUT_REDU_RATIO,
+        ParamId::IpAddress => device::ABOUT_IP,
+        ParamId::DefaultSpeed(_) => device::ABOUT_SPEED,
+        ParamId::DefaultForce(_) => device::ABOUT_FORCE,
+    }
+}
+
+/// What came of a row.
+pub(crate) fn row_end(look: Look, end: &RowEnd) -> String {
+    let say = |text| look.say(text);
+    match &end.verdict {
+        RowVerdict::Applied => say(device::APPLIED).into(),
+        RowVerdict::Refused { reason } => format!(
+            "{}: {reason} ({} {})",
+            say(device::NOT_TAKEN),
+            say(device::WANTED),
+            end.wanted
+        ),
+        RowVerdict::Dropped => format!(
+            "{} ({} {})",
+            say(device::DROPPED),
+            say(device::WANTED),
+            end.wanted
+        ),
+        RowVerdict::Altered => format!("{} {}", say(device::ALTERED), end.wanted),
+        RowVerdict::Unverified(doubt) => {
+            let why = match doubt {
+                Doubt::NotReadBack => device::DOUBT_NOT_READ,
+                Doubt::Ambiguous => device::DOUBT_AMBIGUOUS,
+                Doubt::LinkLost => device::DOUBT_LINK,
+            };
+            format!("{}: {}", say(device::UNVERIFIED), say(why))
+        }
+        RowVerdict::NotSent(why) => {
+            format!("{}: {}", say(device::NOT_WRITTEN), not_sent(look, *why))
+        }
+    }
+}
+
+fn not_sent(look: Look, why: NotSent) -> String {
+    let text = match why {
+        NotSent::Armed => device::WHY_ARMED,
+        NotSent::Holding => device::WHY_HOLDING,
+        NotSent::Moving => device::WHY_MOVING,
+        NotSent::TooSoon { wait } => {
+            let wait = wait.as_secs_f64().ceil();
+            return format!("{} {wait} s", look.say(device::TOO_SOON));
+        }
+    };
+    look.say(text).into()
+}
+
+/// How a SAVE ended.
+pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
+    match end {
+        SaveEnd::Told(told) => saved(look, told),
+        SaveEnd::NoBackup { message } => {
+            format!("{} {message}", look.say(device::SAVE_NO_BACKUP))
+        }
+        SaveEnd::NotAsked(error) => format!(
+            "{} {}",
+            look.say(device::SAVE_NOT_SENT),
+            request_error(look, error)
+        ),
+        SaveEnd::NotNoted(told, message) => format!(
+            "{} {} {message}",
+            saved(look, told),
+            look.say(device::SAVE_NOT_NOTED)
+        ),
+    }
+}
+
+/// True if what was to be saved is saved, as far as the wire can tell.
+pub(crate) const fn is_saved(end: &SaveEnd) -> bool {
+    matches!(end, SaveEnd::Told(Saved::Confirmed | Saved::ReadBack))
+}
+
+fn saved(look: Look, saved: &Saved) -> String {
+    let say = |text| look.say(text);
+    match saved {
+        Saved::Confirmed => say(device::SAVE_CONFIRMED).into(),
+        Saved::ReadBack => say(device::SAVE_READ_BACK).into(),
+        Saved::Failed { code } => format!("{} ({code})", say(device::SAVE_FAILED)),
+        Saved::Unknown { why } => {
+            let why = match why {
+                SaveDoubt::NoResult => device::SAVE_NO_RESULT,
+                SaveDoubt::Unanswered => device::SAVE_UNANSWERED,
+                SaveDoubt::NotReadBack => device::SAVE_NOT_READ,
+                SaveDoubt::LinkLost => device::SAVE_LINK,
+            };
+            format!(
+                "{} {} {}",
+                say(device::SAVE_UNKNOWN),
+                say(why),
+                say(device::SAVE_UNKNOWN_ADVICE)
+            )
+        }
+        Saved::Refused { reason } => format!("{} {reason}", say(device::SAVE_REFUSED)),
+        Saved::NotSent(why) => {
+            format!("{} {}", say(device::SAVE_NOT_SENT), not_sent(look, *why))
+        }
+    }
+}
+
+/// What could hurt: a joint, how it would wake up, and what it was measured to press.
+pub(crate) fn danger(look: Look, danger: &Danger) -> String {
+    let say = |text| look.say(text);
+    let rated = match danger.is_above_rated() {
+        true => format!(", {}", say(device::DANGER_RATED)),
+        false => String::new(),
+    };
+    format!(
+        "{}: {} {}, {} {} g{rated}: +{:.0} g {}",
+        say(words::dof(danger.dof)),
+        say(device::SPEED),
+        danger.speed,
+        say(device::FORCE),
+        danger.force_g,
+        danger.overshoot_g,
+        say(device::DANGER_OVER)
+    )
+}
+
+/// Why a file was written; unknown words as they stand there.
+pub(crate) fn why(look: Look, why: &str) -> String {
+    let known = [
+        device::WHY_DUMP,
+        device::WHY_BEFORE_SAVE,
+        device::WHY_BEFORE_APPLY,
+        device::WHY_BEFORE_RESET,
+    ];
+    let known = known.into_iter().find(|text| text.en == why);
+    known.map_or_else(|| why.to_owned(), |text| look.say(text).to_owned())
+}
