@@ -41,15 +41,15 @@ impl DeviceView {
         device_flash::flash_ui(ui, flash, pane);
         let mut body = controls::card(ui, pane.look, table);
         let state = pane.state;
+        if let Some(question) = &state.device.question {
+            question_ui(ui, &mut body, pane, question);
+        }
         if let Some(compared) = &state.device.compared {
             return device_file::file_ui(ui, body, pane, compared);
         }
         self.find_ui(ui, take_top(&mut body, theme::CONTROL), pane);
         tools_ui(ui, take_top(&mut body, theme::CONTROL), pane);
         status_ui(ui, take_top(&mut body, theme::TEXT_LINE), pane);
-        if let Some(question) = &state.device.question {
-            question_ui(ui, &mut body, pane, question);
-        }
         device_table::table_ui(ui, body, pane, &self.shown, &mut self.typed);
     }
 

@@ -1,6 +1,7 @@
 //! What is known of the hand's flash: SAVE and what came of it, what was saved last, backups, files. Every change is an action.
 
 use crate::app::action::Action;
+use crate::app::device::book::Doing;
 use crate::app::device::refusal::Refusal;
 use crate::app::device::wish::DeviceWish;
 use crate::app::params::record::Backup;
@@ -59,6 +60,9 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     let (look, book) = (pane.look, &pane.state.device);
     let palette = look.palette;
     let mut lines = Vec::new();
+    if let Some(doing) = verdicts::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
+        lines.push((look.say(doing).to_owned(), palette.accent));
+    }
     if let Some((end, _)) = &book.save {
         let color = match verdicts::is_saved(end) {
             true => palette.ok,
@@ -66,7 +70,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
         };
         lines.push((verdicts::save_end(look, end), color));
     }
-    if let Some(reason) = reason {
+    if let Some(reason) = reason.filter(|_| !book.is_busy()) {
         lines.push((reason.to_owned(), palette.muted));
     }
     if let Some(file) = &book.known.doubtful {

@@ -180,7 +180,7 @@ fn trouble(pane: &Pane<'_>, id: ParamId) -> bool {
 
 fn head_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>) {
     let look = pane.look;
-    let columns = Columns::of(row);
+    let columns = Columns::of(row.shrink2(egui::vec2(theme::STEP, 0.0)));
     for (place, text) in [
         (columns.name, device::NAME),
         (columns.live, device::LIVE),
@@ -218,13 +218,10 @@ fn row_ui(
 ) {
     let palette = pane.look.palette;
     if pane.state.device.staged(id).is_some() {
-        let ground = row
-            .shrink2(egui::vec2(0.0, 1.0))
-            .expand2(egui::vec2(theme::STEP, 0.0));
         ui.painter()
-            .rect_filled(ground, theme::ROUND_SMALL, palette.wash(palette.accent));
+            .rect_filled(row, theme::ROUND_SMALL, palette.wash(palette.accent));
     }
-    let mut row = row;
+    let mut row = row.shrink2(egui::vec2(theme::STEP, 0.0));
     if trouble(pane, id) {
         let (upper, lower) = row.split_top_bottom_at_y(row.bottom() - theme::LIST_LINE);
         row = upper;

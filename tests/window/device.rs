@@ -308,9 +308,13 @@ fn a_save_that_failed_or_gave_no_result_is_told_so_and_is_not_the_last_saved() {
 fn dangerous_defaults_are_asked_about_before_they_are_saved() {
     let mut bench = Bench::keeping(SimConfig::default());
     open(&mut bench);
+    bench.click("Dump to file");
+    bench.run(400);
+    bench.click("Open file");
+    bench.run(400);
     bench.click("Save to flash");
     settle(&mut bench);
-    assert!(bench.shows("Hard on what it touches"));
+    assert!(bench.shows("Hard on what it touches"), "beside a file too");
     assert!(!bench.addresses().contains(&SAVE));
     bench.click("Save all the same");
     settle(&mut bench);

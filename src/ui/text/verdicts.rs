@@ -195,3 +195,41 @@ pub(crate) fn why(look: Look, why: &str) -> String {
     let known = known.into_iter().find(|text| text.en == why);
     known.map_or_else(|| why.to_owned(), |text| look.say(text).to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::settings::{Language, Theme};
+    use crate::ui::theme::Palette;
+    use std::time::Duration;
+
+    #[test]
+    fn only_what_the_wire_can_tell_is_said_of_a_save() {
+        let look = Look {
+            palette: Palette::of(Theme::Dark),
+            language: Language::En,
+        };
+        let why = SaveDoubt::NoResult;
+        let wait = Duration::from_millis(2100);
+        for (saved, words, is_ok) in [
+            (
+                Saved::Confirmed,
+                "the hand says that its parameters are in flash",
+                true,
+            ),
+            (Saved::ReadBack, "Only the next power-up shows", true),
+            (Saved::Failed { code: 255 }, "Not saved", false),
+            (
+                Saved::Unknown { why },
+                "no result within 3 s. Switch the hand off",
+                false,
+            ),
+            (Saved::NotSent(NotSent::TooSoon { wait }), "wait 3 s", false),
+        ] {
+            let end = SaveEnd::Told(saved);
+            let told = save_end(look, &end);
+            assert!(told.contains(words), "{told}");
+            assert_eq!(is_saved(&end), is_ok, "{told}");
+        }
+    }
+}
