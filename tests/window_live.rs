@@ -10,6 +10,8 @@
 
 #[path = "window/bench.rs"]
 mod bench;
+#[path = "window/compare.rs"]
+mod compare;
 #[path = "window/device.rs"]
 mod device;
 #[path = "window/faults.rs"]
@@ -36,3 +38,5 @@ mod touch;
 mod traffic;
 #[path = "window/trouble.rs"]
 mod trouble;
+#[path = "window/tune.rs"]
+mod tune;

@@ -6,6 +6,7 @@ use crate::app::gestures::{GestureProgress, LastGesture};
 use crate::app::history::MarkKind;
 use crate::app::notices::{Asked, NoticeKind};
 use crate::app::state::Freshness;
+use crate::app::trial::Abort;
 use crate::hand::{
     Angle, Dof, Finger, Force, Gesture, GestureRoute, HandCommand, Moment, Speed, Target,
 };
@@ -17,6 +18,7 @@ impl Desk {
         if let Some(link) = &self.link {
             link.stop();
         }
+        self.end_trials(Abort::Person, now);
         self.state.history.mark(now, MarkKind::Stop);
         self.put_down(LinkState::Holding, now);
     }

@@ -290,6 +290,6 @@ impl Desk {
 
     /// True for joints that a recall of this pose would move.
     pub(crate) fn is_free(&self, dof: Dof) -> bool {
-        self.state.is_armed() && !self.state.joints[dof].locked
+        self.state.is_armed() && !self.state.tuner.is_running() && !self.state.joints[dof].locked
     }
 }

@@ -10,6 +10,7 @@ use crate::app::recorder::RecordingId;
 use crate::app::save::Content;
 use crate::app::scan::ScanWish;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme};
+use crate::app::tuner::TrialWish;
 use crate::hand::{
     Angle, Dof, Finger, Force, Gesture, GestureRoute, GestureStore, Moment, PerDof, Speed,
     UserGesture,
@@ -100,6 +101,8 @@ pub enum Action {
     TryAngles(PerDof<Angle>),
     /// Run a sequence, pause it, end it.
     Play(Play),
+    /// What is asked about grasp trials.
+    Trial(TrialWish),
     /// Ask for a file of poses and add what it holds.
     ImportPoses,
     /// Ask where the poses should go, and write them.
@@ -161,4 +164,33 @@ pub enum Action {
     UndoTare,
     /// Let the plots stand still; nothing is lost meanwhile.
     PausePlots(bool),
+}
+
+impl Action {
+    /// True for what would come between a series of trials and the hand. It is refused while one runs.
+    #[must_use]
+    pub const fn disturbs_series(&self) -> bool {
+        match self {
+            Self::Arm
+            | Self::Target(..)
+            | Self::Force(..)
+            | Self::Speed(..)
+            | Self::Lock(..)
+            | Self::Preset(_)
+            | Self::ForceOfAll(_)
+            | Self::SpeedOfAll(_)
+            | Self::Gesture(_)
+            | Self::StoreGesture(..)
+            | Self::ReadGesture(_)
+            | Self::Recall(_)
+            | Self::TryAngles(_)
+            | Self::ClearErrors => true,
+            Self::Device(wish) => matches!(
+                wish,
+                DeviceWish::Apply | DeviceWish::Undo | DeviceWish::Save | DeviceWish::Agree
+            ),
+            Self::Play(play) => !matches!(play, Play::Dry(_) | Play::EndDry),
+            _ => false,
+        }
+    }
 }

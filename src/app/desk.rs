@@ -14,6 +14,8 @@ use crate::app::seam::Link;
 use crate::app::settings::Settings;
 use crate::app::state::{Joint, State};
 use crate::app::tare::Tare;
+use crate::app::trial::Abort;
+use crate::app::tuner::TunerBook;
 use crate::hand::{Dof, Force, Group, Groups, HandSample, Moment, PerDof, Speed, Status};
 use crate::link::{
     Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus, LinkTrouble, Outcome,
@@ -72,6 +74,7 @@ impl Desk {
             gestures,
             poses: PoseBook::default(),
             device: DeviceBook::default(),
+            tuner: TunerBook::default(),
             traffic: Traffic::default(),
             ports: Vec::new(),
             scan: ScanBook::default(),
@@ -98,6 +101,7 @@ impl Desk {
         link: Option<Box<dyn Link>>,
         now: Moment,
     ) {
+        self.end_trials(Abort::LinkLost, now);
         self.state.traffic = match (&link, &endpoint) {
             (Some(link), Some(endpoint)) => Traffic::of(link.tap(), endpoint),
             _ => Traffic::default(),
@@ -140,6 +144,7 @@ impl Desk {
         let Some(link) = self.link.as_mut() else {
             self.follow();
             self.tick_sequence(now);
+            self.tick_trials(now);
             return;
         };
         let status = link.status();
@@ -154,6 +159,7 @@ impl Desk {
         self.follow();
         self.tick_sequence(now);
         self.tick_device(now);
+        self.tick_trials(now);
     }
 
     fn event(&mut self, event: LinkEvent, now: Moment) {
@@ -195,6 +201,7 @@ impl Desk {
                 );
             }
         }
+        self.take_trials(sample, fresh, now);
     }
 
     fn done(&mut self, ticket: Ticket, result: Result<Outcome, RequestError>, now: Moment) {

@@ -38,6 +38,7 @@ pub mod tare;
 mod tests;
 pub(crate) mod trails;
 pub mod trial;
+pub mod tuner;
 
 pub use action::Action;
 pub use connect::SimDial;
@@ -52,3 +53,4 @@ pub use save::{ChooseFile, Content, InFolder, NoChoice, TrafficForm};
 pub use scan::{ScanBook, ScanWish};
 pub use settings::Settings;
 pub use state::State;
+pub use tuner::{TrialWish, TunerBook};

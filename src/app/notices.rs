@@ -4,6 +4,7 @@ use crate::app::faults::FaultKind;
 use crate::app::params::file::ParamsFileError;
 use crate::app::poses::file::PoseFileError;
 use crate::app::quirk_sheet::Difference;
+use crate::app::trial::Abort;
 use crate::hand::{Dof, Gesture, Moment, UserGesture};
 use crate::link::{ArmRefusal, Disarmed, LinkTrouble, RequestError};
 use std::collections::VecDeque;
@@ -129,6 +130,29 @@ pub enum NoticeKind {
         /// The system's words.
         message: String,
     },
+    /// A series of trials is over.
+    SeriesEnded {
+        /// Trials that were measured.
+        trials: usize,
+        /// Why it ended early.
+        aborted: Option<Abort>,
+    },
+    /// Something else was asked of the hand while a series runs. Nothing was sent.
+    SeriesRuns,
+    /// A session was read.
+    SessionOpened {
+        /// Where it lies.
+        path: PathBuf,
+        /// Trials in it.
+        trials: usize,
+    },
+    /// A session could not be read, not even in part.
+    SessionRefused {
+        /// The file that was chosen.
+        path: PathBuf,
+        /// Where and why.
+        message: String,
+    },
     /// OpenGL did not start, so the program draws its window by itself.
     DrawnWithoutOpenGl {
         /// The system's words.
@@ -192,6 +216,8 @@ impl NoticeKind {
             | Self::Acknowledged { .. }
             | Self::Saved { .. }
             | Self::PosesImported { .. }
+            | Self::SeriesEnded { aborted: None, .. }
+            | Self::SessionOpened { .. }
             | Self::DrawnWithoutOpenGl { .. }
             | Self::NoFileChosen => Level::Info,
             Self::NoLink(_)
@@ -208,6 +234,9 @@ impl NoticeKind {
             | Self::ParamsRefused { .. }
             | Self::PosesIgnored { .. }
             | Self::PosesNotSaved { .. }
+            | Self::SeriesEnded { .. }
+            | Self::SeriesRuns
+            | Self::SessionRefused { .. }
             | Self::NotSaved { .. }
             | Self::SettingsNotSaved { .. }
             | Self::SettingsIgnored { .. }

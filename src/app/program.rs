@@ -17,12 +17,14 @@ use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
 use crate::app::sheet_keeper::SheetKeeper;
 use crate::app::state::{PortChoice, State};
+use crate::app::tuner::TrialWish;
+use crate::app::tuner::files::Files;
 use crate::hand::Moment;
 use crate::link::{self, Clock, LinkConfig, PollRates, Wake};
 use crate::transport::{Dial, Endpoint, PortFound, ports};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::sync::oneshot;
 
 /// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the
@@ -74,6 +76,7 @@ pub struct App {
     closing: Option<Closing>,
     ports: Option<oneshot::Receiver<Vec<PortFound>>>,
     saving: Option<Saving>,
+    sessions: Option<Files>,
     scanner: Scanner,
 }
 
@@ -112,6 +115,7 @@ impl App {
             closing: None,
             ports: None,
             saving: None,
+            sessions: None,
             scanner: Scanner::default(),
         }
     }
@@ -160,6 +164,7 @@ impl App {
             self.saving = None;
             self.tell(end, now);
         }
+        self.take_session(now);
         self.scanner.drain(&mut self.desk.state.scan);
         if let Some(told) = self.sheets.tick(&mut self.desk.state) {
             self.tell(told, now);
@@ -178,6 +183,10 @@ impl App {
     /// Carries out one thing that a person asked for.
     pub fn act(&mut self, action: Action, now: Moment) {
         self.desk.state.now = now;
+        if self.desk.state.tuner.is_running() && action.disturbs_series() {
+            self.tell(NoticeKind::SeriesRuns, now);
+            return;
+        }
         if let Some(deed) = Deed::of(&action, &self.desk.state) {
             self.desk.state.recorder.deed(deed, now);
         }
@@ -215,6 +224,7 @@ impl App {
             Action::ForgetFaults => desk.state.faults.forget(),
             Action::Note(at, words) => desk.note(at, &words),
             Action::Dismiss(id) => desk.state.notices.dismiss(id),
+            Action::Trial(wish) => self.act_on_trials(wish, now),
             Action::ImportPoses => self.import_poses(),
             Action::ExportPoses => self.save(Content::Poses(self.desk.state.poses.library.clone())),
             Action::Stage(id, value) => desk.stage(id, value),
@@ -345,6 +355,33 @@ impl App {
         let (files, wake) = (&self.env.files, Arc::clone(&self.env.wake));
         let saving = Saving::start(content, files.as_ref(), &self.env.runtime, wake);
         self.saving = Some(saving);
+    }
+
+    fn act_on_trials(&mut self, wish: TrialWish, now: Moment) {
+        let (files, runtime) = (self.env.files.as_ref(), &self.env.runtime);
+        let wake = Arc::clone(&self.env.wake);
+        match wish {
+            TrialWish::Open | TrialWish::Save(..) if self.sessions.is_some() => {}
+            TrialWish::Open => self.sessions = Some(Files::open(files, runtime, wake)),
+            TrialWish::Save(id, criterion) => {
+                let session = self.desk.state.tuner.session(id);
+                let save = |session| Files::save(session, criterion, files, runtime, wake);
+                self.sessions = session.and_then(save);
+            }
+            wish => {
+                let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
+                self.desk
+                    .trial_wish(wish, since_1970.unwrap_or_default(), now);
+            }
+        }
+    }
+
+    fn take_session(&mut self, now: Moment) {
+        if let Some(end) = self.sessions.as_mut().and_then(Files::ended) {
+            self.sessions = None;
+            let told = self.desk.state.tuner.take(end);
+            self.tell(told, now);
+        }
     }
 
     fn import_poses(&mut self) {

@@ -22,6 +22,9 @@ pub trait ChooseFile: Send + Sync + 'static {
 
     /// Resolves to a file that is there, to be read; `None` if there was no choice.
     fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>>;
+
+    /// Resolves to a folder that is there, to put another into; `None` if there was no choice.
+    fn folder(&self) -> BoxFuture<'static, Option<PathBuf>>;
 }
 
 /// Where nobody can be asked: nothing is ever chosen.
@@ -34,6 +37,10 @@ impl ChooseFile for NoChoice {
     }
 
     fn open(&self, _suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        Box::pin(std::future::ready(None))
+    }
+
+    fn folder(&self) -> BoxFuture<'static, Option<PathBuf>> {
         Box::pin(std::future::ready(None))
     }
 }
@@ -49,6 +56,10 @@ impl ChooseFile for InFolder {
 
     fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
         self.choose(suggested)
+    }
+
+    fn folder(&self) -> BoxFuture<'static, Option<PathBuf>> {
+        Box::pin(std::future::ready(Some(self.0.clone())))
     }
 }
 

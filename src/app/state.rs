@@ -12,6 +12,7 @@ use crate::app::recorder::Recorder;
 use crate::app::scan::ScanBook;
 use crate::app::settings::Settings;
 use crate::app::tare::Tare;
+use crate::app::tuner::TunerBook;
 use crate::hand::{Angle, Force, HandSample, Moment, PerDof, Speed};
 use crate::link::motion::arm_refusal;
 use crate::link::{ArmRefusal, LinkState, LinkStats, LinkStatus, Traffic};
@@ -54,6 +55,8 @@ pub struct State {
     pub poses: PoseBook,
     /// What the hand keeps, and what of it is to be changed.
     pub device: DeviceBook,
+    /// Grasp trials.
+    pub tuner: TunerBook,
     /// What went over the wire, as far as it was looked at.
     pub traffic: Traffic,
     /// Serial ports found when last looked.

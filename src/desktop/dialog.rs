@@ -18,6 +18,11 @@ impl ChooseFile for NativeDialog {
         let asked = asking(suggested).pick_file();
         Box::pin(async move { asked.await.map(|file| file.path().to_path_buf()) })
     }
+
+    fn folder(&self) -> BoxFuture<'static, Option<PathBuf>> {
+        let asked = rfd::AsyncFileDialog::new().pick_folder();
+        Box::pin(async move { asked.await.map(|folder| folder.path().to_path_buf()) })
+    }
 }
 
 fn asking(suggested: &str) -> rfd::AsyncFileDialog {

@@ -87,6 +87,16 @@ pub(crate) fn age(value: Duration) -> String {
     }
 }
 
+/// How long something takes: 45 s, 4 min 20 s, 2 h 5 min.
+pub(crate) fn duration(value: Duration) -> String {
+    let seconds = value.as_secs();
+    match seconds {
+        0..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
 /// An error's text as a sentence: capital letter first, unless it begins with the name of a port or an address, and a
 /// full stop last.
 pub(crate) fn sentence(text: &str) -> String {

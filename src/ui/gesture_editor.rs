@@ -184,7 +184,7 @@ impl GestureEditor {
         let half = (row.width() - theme::GAP) / 2.0;
         let angles = self.angles.all();
         let missing = angles.is_none().then(|| look.say(poses::FIRST_ANGLES));
-        let unarmed = (!pane.state.is_armed()).then(|| look.say(main::NOT_ARMED));
+        let unarmed = pane.unready();
         let test = Button::new(look.say(poses::TEST), look.say(poses::TEST_TIP));
         let place = take_left(&mut row, half);
         let test = test.disabled(missing.or(unarmed));

@@ -84,11 +84,8 @@ impl Row {
         caption_ui(ui, &mut line, pane, main::ANGLE);
         let field = controls::middle(take_right(&mut line, FIELD), theme::CONTROL);
         let joint = pane.state.joints[self.dof];
-        let disabled = if !pane.state.is_armed() {
-            Some(look.say(main::NOT_ARMED))
-        } else {
-            joint.locked.then(|| look.say(main::LOCKED))
-        };
+        let locked = joint.locked.then(|| look.say(main::LOCKED));
+        let disabled = pane.unready().or(locked);
         let (angle, freshness) = newest(pane, self.dof, pane.state.sample.angle);
         let track = Track {
             name: &self.named(pane, main::NAME_ANGLE_TARGET),

@@ -134,7 +134,7 @@ fn buttons_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let width = (rect.width() - 3.0 * theme::GAP) / 4.0;
     let mut rest = rect;
-    let not_armed = (!pane.state.is_armed()).then(|| look.say(main::NOT_ARMED));
+    let not_armed = pane.unready();
     let presets = [
         (main::OPEN, main::OPEN_TIP, Preset::Open),
         (main::HALF, main::HALF_TIP, Preset::Half),

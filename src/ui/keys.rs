@@ -65,7 +65,7 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [Row; 29] = [
+pub(crate) static ROWS: [Row; 31] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
@@ -79,6 +79,8 @@ pub(crate) static ROWS: [Row; 29] = [
     row(COMMAND, Key::Num5, Wish::View(View::Device)),
     row(COMMAND, Key::Num6, Wish::View(View::Connection)),
     row(COMMAND, Key::Num7, Wish::View(View::Traffic)),
+    row(COMMAND, Key::Num8, Wish::View(View::Tune)),
+    row(COMMAND, Key::Num9, Wish::View(View::Compare)),
     row(NONE, Key::Num1, Wish::Joint(Dof::Little)),
     row(NONE, Key::Num2, Wish::Joint(Dof::Ring)),
     row(NONE, Key::Num3, Wish::Joint(Dof::Middle)),
@@ -162,6 +164,34 @@ impl Wish {
 pub(crate) fn take(ui: &Ui) -> Vec<Wish> {
     let typing = ui.ctx().text_edit_focused();
     ui.input_mut(|input| take_from(input, typing))
+}
+
+/// While a series of trials runs any key is a stop: all are taken out of the input. A key that was held down before does
+/// not count, and Esc goes on to close what is open.
+pub(crate) fn take_any(ui: &Ui) -> Vec<Wish> {
+    ui.input_mut(take_any_from)
+}
+
+fn take_any_from(input: &mut InputState) -> Vec<Wish> {
+    let mut wishes = Vec::new();
+    input.events.retain(|event| match event {
+        Event::Key {
+            key,
+            pressed: true,
+            repeat: false,
+            ..
+        } => {
+            wishes = vec![Wish::Stop];
+            *key == Key::Escape
+        }
+        Event::Text(_) | Event::Ime(_) | Event::Paste(_) | Event::Cut | Event::Copy => {
+            wishes = vec![Wish::Stop];
+            false
+        }
+        Event::Key { .. } => false,
+        _ => true,
+    });
+    wishes
 }
 
 fn take_from(input: &mut InputState, typing: bool) -> Vec<Wish> {
@@ -266,6 +296,27 @@ mod tests {
                 row.modifiers == SHIFT && row.key != Key::T,
                 "{row:?}"
             );
+        }
+    }
+
+    #[test]
+    fn while_trials_run_any_key_is_a_stop_and_a_held_one_is_not() {
+        let press = |repeat| row(NONE, Key::F7, Wish::List).pressed(repeat);
+        for (events, wishes) in [
+            (vec![press(false)], vec![Wish::Stop]),
+            (vec![press(true)], vec![]),
+            (vec![Event::Text("x".into())], vec![Wish::Stop]),
+            (vec![Event::PointerGone], vec![]),
+        ] {
+            let mut input = InputState::default();
+            input.events.clone_from(&events);
+            assert_eq!(take_any_from(&mut input), wishes, "{events:?}");
+        }
+    }
+
+    impl Row {
+        fn pressed(self, repeat: bool) -> Event {
+            event(self, repeat)
         }
     }
 

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::app::state::{Freshness, State};
 use crate::hand::{Dof, Moment};
-use crate::ui::text::Text;
+use crate::ui::text::{Text, main, tune};
 use crate::ui::theme::Palette;
 use egui::{Color32, Id};
 
@@ -64,6 +64,14 @@ pub(crate) enum Explain {
 }
 
 impl Pane<'_> {
+    /// Why nothing that moves the hand can be asked for now.
+    pub(crate) fn unready(&self) -> Option<&'static str> {
+        if self.state.tuner.is_running() {
+            return Some(self.look.say(tune::RUNS));
+        }
+        (!self.state.is_armed()).then(|| self.look.say(main::NOT_ARMED))
+    }
+
     /// How fresh something asked for at `asked` is.
     pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
         self.state.freshness(asked)

@@ -3,6 +3,9 @@
 mod banner;
 mod border;
 mod budget;
+mod compare;
+mod compare_best;
+mod compare_table;
 mod connection;
 mod controls;
 mod device;
@@ -72,6 +75,10 @@ mod traffic;
 mod traffic_detail;
 mod traffic_filter;
 mod traffic_list;
+mod trial_plot;
+mod tune;
+mod tune_form;
+mod tune_live;
 mod window;
 mod window_menu;
 

@@ -23,8 +23,8 @@ pub(crate) fn shares(angles: &PerDof<Angle>) -> PerDof<Option<f32>> {
 
 /// Why this pose cannot be taken now.
 pub(crate) fn refusal(pane: &Pane<'_>, pose: &Pose) -> Option<&'static str> {
-    if !pane.state.is_armed() {
-        return Some(pane.look.say(main::NOT_ARMED));
+    if let Some(unready) = pane.unready() {
+        return Some(unready);
     }
     let moves = |dof: Dof| !pose.leave[dof] && !pane.state.joints[dof].locked;
     let any = Dof::ALL.into_iter().any(moves);
@@ -36,7 +36,7 @@ pub(crate) fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
     if pane.state.settings.gesture_route == GestureRoute::Off {
         return Some(pane.look.say(panels::GESTURES_OFF));
     }
-    (!pane.state.is_armed()).then(|| pane.look.say(main::NOT_ARMED))
+    pane.unready()
 }
 
 /// A button that takes a pose.

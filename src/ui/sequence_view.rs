@@ -10,7 +10,7 @@ use crate::ui::hand_picture;
 use crate::ui::look::Pane;
 use crate::ui::reorder::{Along, Reorder};
 use crate::ui::sequence_step::{change, step_now, step_ui};
-use crate::ui::text::{main, poses};
+use crate::ui::text::poses;
 use crate::ui::text_field::TextField;
 use crate::ui::theme;
 use egui::{Align2, Id, Rect, Ui, UiBuilder, pos2, vec2};
@@ -362,7 +362,7 @@ fn controls_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>, sequence: &Sequ
         .as_ref()
         .is_some_and(|preview| preview.sequence == id);
     let empty = sequence.steps.is_empty().then(|| look.say(poses::NO_STEPS));
-    let unarmed = (!pane.state.is_armed()).then(|| look.say(main::NOT_ARMED));
+    let unarmed = pane.unready();
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
     let cannot = empty.or(unarmed);
     let go_on = if paused {

@@ -5,8 +5,10 @@ use crate::app::device::wish::DeviceWish;
 use crate::app::layout::Room;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
+use crate::app::tuner::TrialWish;
 use crate::ui::banner;
 use crate::ui::border::{border_ui, shut_ui};
+use crate::ui::compare::CompareView;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::device::DeviceView;
 use crate::ui::faults::{self, FaultsView};
@@ -21,11 +23,12 @@ use crate::ui::plots::PlotView;
 use crate::ui::pose_tiles;
 use crate::ui::pose_view::PoseView;
 use crate::ui::rooms::{Body, Overview, Side};
-use crate::ui::text::{Text, main};
+use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
 use crate::ui::top_bar;
 use crate::ui::touch::{self, TouchView};
 use crate::ui::traffic::TrafficView;
+use crate::ui::tune::TuneView;
 use egui::{Rect, Ui};
 
 /// The parts of the window that can be looked at.
@@ -36,6 +39,10 @@ pub enum View {
     Live,
     /// The fingertips, large.
     Touch,
+    /// The plan of grasp trials, and the series that runs.
+    Tune,
+    /// What trials came to.
+    Compare,
     /// Faults, statuses and messages.
     Faults,
     /// The person's poses, sequences of them, and the gestures in the hand.
@@ -50,9 +57,11 @@ pub enum View {
 
 impl View {
     /// All, in the order of the tabs.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Live,
         Self::Touch,
+        Self::Tune,
+        Self::Compare,
         Self::Faults,
         Self::Poses,
         Self::Device,
@@ -66,6 +75,8 @@ impl View {
         match self {
             Self::Live => "live",
             Self::Touch => "touch",
+            Self::Tune => "tune",
+            Self::Compare => "compare",
             Self::Faults => "faults",
             Self::Poses => "poses",
             Self::Device => "device",
@@ -86,6 +97,8 @@ impl View {
         match self {
             Self::Live => main::TAB_LIVE,
             Self::Touch => main::TAB_TOUCH,
+            Self::Tune => tune::TAB,
+            Self::Compare => tune::TAB_COMPARE,
             Self::Faults => main::TAB_FAULTS,
             Self::Poses => main::TAB_POSES,
             Self::Device => main::TAB_DEVICE,
@@ -111,6 +124,8 @@ pub struct Window {
     connection: ConnectionForm,
     touch: TouchView,
     traffic: TrafficView,
+    tune: TuneView,
+    compare: CompareView,
 }
 
 /// Puts fonts and style into a context. The window does it itself when the settings change.
@@ -145,7 +160,11 @@ impl Window {
     pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
         self.install_if_changed(ui, state);
         let mut actions = Vec::new();
-        let wishes = keys::take(ui);
+        let wishes = if state.tuner.is_running() {
+            keys::take_any(ui)
+        } else {
+            keys::take(ui)
+        };
         let stopped = wishes.contains(&Wish::Stop);
         let mut typing = std::mem::take(&mut self.typing);
         let mut explain = None;
@@ -272,6 +291,12 @@ impl Window {
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
             View::Touch => self.touch.large_ui(ui, rect, pane),
+            View::Tune => {
+                if let Some(view) = self.tune.ui(ui, rect, pane) {
+                    self.view = view;
+                }
+            }
+            View::Compare => self.compare.ui(ui, rect, pane),
             View::Faults => self.faults.ui(ui, rect, pane),
             View::Poses => self.poses.ui(ui, rect, pane),
             View::Device => self.device.ui(ui, rect, pane),
@@ -360,6 +385,7 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
                 | Action::Device(
                     DeviceWish::Apply | DeviceWish::Undo | DeviceWish::Save | DeviceWish::Agree
                 )
+                | Action::Trial(TrialWish::Start)
                 | Action::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
         )
     });
@@ -383,6 +409,7 @@ mod tests {
                 Action::Gesture(Gesture::MIN),
                 Action::Recall(PoseId(1)),
                 Action::TryAngles(PerDof::splat(Angle::MAX)),
+                Action::Trial(TrialWish::Start),
                 Action::Play(Play::Start(SequenceId(1))),
                 Action::Play(Play::Step(SequenceId(1))),
                 Action::Play(Play::Resume),

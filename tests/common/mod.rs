@@ -53,6 +53,7 @@ pub fn empty() -> State {
         gestures: GestureBook::default(),
         poses: handscope::app::poses::book::PoseBook::default(),
         device: handscope::app::device::book::DeviceBook::default(),
+        tuner: handscope::app::TunerBook::default(),
         traffic: Traffic::default(),
         ports: Vec::new(),
         scan: handscope::app::ScanBook::default(),

@@ -66,23 +66,44 @@ pub struct Score {
     pub clipped: bool,
 }
 
+/// What counts of one trial.
+#[derive(Debug, Clone, Copy)]
+pub struct Tally<'a> {
+    /// The setting.
+    pub setting: Setting,
+    /// Whether it ended early.
+    pub aborted: bool,
+    /// What was measured.
+    pub joints: &'a [JointMetrics],
+}
+
 /// The settings that were tried, in the order of first trial; looking for the contact does not count.
 #[must_use]
 pub fn scores<'a>(trials: impl IntoIterator<Item = &'a Trial>) -> Vec<Score> {
-    let mut by_setting: Vec<(Setting, Vec<&Trial>)> = Vec::new();
     let tried = trials.into_iter().filter(|trial| trial.kind != Kind::Probe);
-    for trial in tried {
+    tallies(tried.map(|trial| Tally {
+        setting: trial.setting,
+        aborted: trial.aborted.is_some(),
+        joints: &trial.metrics.joints,
+    }))
+}
+
+/// The settings of these trials, in the order of first trial.
+#[must_use]
+pub fn tallies<'a>(trials: impl IntoIterator<Item = Tally<'a>>) -> Vec<Score> {
+    let mut by_setting: Vec<(Setting, Vec<Tally<'_>>)> = Vec::new();
+    for trial in trials {
         match by_setting.iter_mut().find(|(own, _)| *own == trial.setting) {
             Some((_, all)) => all.push(trial),
             None => by_setting.push((trial.setting, vec![trial])),
         }
     }
-    let score = |(setting, trials): &(Setting, Vec<&Trial>)| score(*setting, trials);
+    let score = |(setting, trials): &(Setting, Vec<Tally<'_>>)| score(*setting, trials);
     by_setting.iter().map(score).collect()
 }
 
-fn score(setting: Setting, trials: &[&Trial]) -> Score {
-    let joints = || trials.iter().flat_map(|trial| &trial.metrics.joints);
+fn score(setting: Setting, trials: &[Tally<'_>]) -> Score {
+    let joints = || trials.iter().flat_map(|trial| trial.joints);
     let spread = |value: fn(&JointMetrics) -> Option<f64>| {
         let values: Option<Vec<f64>> = joints().map(value).collect();
         Spread::of(&values?)
@@ -90,10 +111,7 @@ fn score(setting: Setting, trials: &[&Trial]) -> Score {
     Score {
         setting,
         trials: trials.len(),
-        aborted: trials
-            .iter()
-            .filter(|trial| trial.aborted.is_some())
-            .count(),
+        aborted: trials.iter().filter(|trial| trial.aborted).count(),
         overshoot_g: spread(|joint| joint.overshoot_g),
         steady_force_g: spread(|joint| joint.steady_force_g),
         time_to_stop_s: spread(|joint| joint.time_to_stop_s),

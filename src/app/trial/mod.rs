@@ -7,10 +7,12 @@
 pub mod best;
 pub mod curve;
 pub mod detect;
+pub mod estimate;
 pub mod metrics;
 #[cfg(test)]
 mod metrics_tests;
 pub mod plan;
+pub mod read;
 pub mod recording;
 pub mod report;
 pub mod runner;
@@ -28,5 +30,6 @@ pub use best::{Criterion, Score};
 pub use metrics::{JointMetrics, TrialMetrics, measure};
 pub use plan::{Approach, Grid, Limits, PlanError, Setting, TrialPlan, Until};
 pub use recording::{Mark, Recording, What};
+pub use runner::Stage;
 pub use series::{Kind, Order, Series, Trial};
 pub use watch::{Abort, LinkView};

@@ -119,7 +119,23 @@ impl Recording {
 
     /// Keeps what happened.
     pub fn mark(&mut self, at: Moment, what: What) {
-        self.marks.push(Mark { at, what });
+        self.push_mark(Mark { at, what });
+    }
+
+    /// The same.
+    pub(crate) fn push_mark(&mut self, mark: Mark) {
+        self.marks.push(mark);
+    }
+
+    /// The same with its events and without its rows, which count as lost.
+    #[must_use]
+    pub fn without_rows(&self) -> Self {
+        let rows = u64::try_from(self.rows.len()).unwrap_or(u64::MAX);
+        Self {
+            rows: Vec::new(),
+            marks: self.marks.clone(),
+            lost: self.lost.saturating_add(rows),
+        }
     }
 
     /// All rows.
@@ -158,7 +174,8 @@ impl Recording {
     /// quantity, four a fingertip, and `event`. What was not read in that moment is an empty cell.
     #[must_use]
     pub fn csv(&self) -> String {
-        let mut text = head();
+        let mut text = columns().join(",");
+        text.push('\n');
         let zero = self.zero();
         let mut marks = self.marks.iter().peekable();
         for row in &self.rows {
@@ -191,21 +208,21 @@ const OF_JOINTS: [&str; 6] = [
 ];
 const OF_TIPS: [&str; 4] = ["normal_n", "tangential_n", "direction_deg", "proximity"];
 
-fn head() -> String {
-    let mut text = String::from("time_s");
-    for quantity in OF_JOINTS {
-        for dof in Dof::ALL {
-            // Writing to a string cannot fail.
-            let _done = write!(text, ",{quantity}_{}", dof.name());
-        }
-    }
-    for quantity in OF_TIPS {
-        for finger in Finger::ALL {
-            let _done = write!(text, ",{quantity}_{}", finger.name());
-        }
-    }
-    text.push_str(",event\n");
-    text
+/// The names of the columns.
+pub(crate) fn columns() -> Vec<String> {
+    let of_joints = OF_JOINTS.into_iter().flat_map(|quantity| {
+        Dof::ALL
+            .into_iter()
+            .map(move |dof| format!("{quantity}_{}", dof.name()))
+    });
+    let of_tips = OF_TIPS.into_iter().flat_map(|quantity| {
+        Finger::ALL
+            .into_iter()
+            .map(move |finger| format!("{quantity}_{}", finger.name()))
+    });
+    let first = std::iter::once("time_s".to_owned());
+    let all = first.chain(of_joints).chain(of_tips);
+    all.chain(std::iter::once("event".to_owned())).collect()
 }
 
 fn mark_line(text: &mut String, zero: Moment, mark: &Mark) {

@@ -55,6 +55,25 @@ enum Phase {
     Over,
 }
 
+/// What the hand does in a series, for a person.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// Between two trials: it rests, or cools.
+    Resting,
+    /// It goes to its start.
+    Preparing,
+    /// It is still, and its limits are being confirmed.
+    Quiet,
+    /// It closes.
+    Closing,
+    /// It holds.
+    Dwelling,
+    /// It opens.
+    Releasing,
+    /// Nothing any more.
+    Over,
+}
+
 /// How a trial ended.
 pub type Ending = Result<(), Abort>;
 
@@ -129,6 +148,19 @@ impl Runner {
     #[must_use]
     pub const fn recording(&self) -> &Recording {
         &self.recording
+    }
+
+    /// What the hand does now.
+    #[must_use]
+    pub const fn stage(&self) -> Stage {
+        match self.phase {
+            Phase::Begin | Phase::Preparing { .. } => Stage::Preparing,
+            Phase::Quiet { .. } => Stage::Quiet,
+            Phase::Closing { .. } => Stage::Closing,
+            Phase::Dwelling { .. } => Stage::Dwelling,
+            Phase::Releasing { .. } | Phase::After { .. } => Stage::Releasing,
+            Phase::Over => Stage::Over,
+        }
     }
 
     /// How it ended, once it has.

@@ -3,7 +3,7 @@
 use crate::app::trial::metrics::{TrialMetrics, measure};
 use crate::app::trial::plan::{Approach, PlanError, Setting, TrialPlan, Until};
 use crate::app::trial::recording::Recording;
-use crate::app::trial::runner::Runner;
+use crate::app::trial::runner::{Runner, Stage};
 use crate::app::trial::watch::{Abort, LinkView, warmest};
 use crate::hand::{Angle, Groups, HandSample, Moment, PerDof, Speed};
 use crate::link::{ArmEpoch, Setpoints};
@@ -59,7 +59,7 @@ struct Cell {
     setting: Setting,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum Phase {
     Waiting { since: Moment, rest: Duration },
     Running(Box<Runner>, Cell),
@@ -67,7 +67,7 @@ enum Phase {
 }
 
 /// A series on its way.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Series {
     plan: TrialPlan,
     epoch: ArmEpoch,
@@ -120,6 +120,45 @@ impl Series {
     #[must_use]
     pub const fn progress(&self) -> (usize, usize) {
         (self.number, self.total)
+    }
+
+    /// What the hand does now.
+    #[must_use]
+    pub fn stage(&self) -> Stage {
+        match &self.phase {
+            Phase::Waiting { .. } => Stage::Resting,
+            Phase::Running(runner, _) => runner.stage(),
+            Phase::Over => Stage::Over,
+        }
+    }
+
+    /// The setting of the trial of now; `None` between two.
+    #[must_use]
+    pub const fn setting(&self) -> Option<Setting> {
+        match &self.phase {
+            Phase::Running(_, cell) => Some(cell.setting),
+            Phase::Waiting { .. } | Phase::Over => None,
+        }
+    }
+
+    /// Whether the trial of now looks for the contact.
+    #[must_use]
+    pub fn is_probing(&self) -> bool {
+        matches!(&self.phase, Phase::Running(_, cell) if cell.kind == Kind::Probe)
+    }
+
+    /// What was read in the trial of now; `None` between two.
+    #[must_use]
+    pub fn recording(&self) -> Option<&Recording> {
+        match &self.phase {
+            Phase::Running(runner, _) => Some(runner.recording()),
+            Phase::Waiting { .. } | Phase::Over => None,
+        }
+    }
+
+    /// The settings of the trials that did not begin yet.
+    pub fn ahead(&self) -> impl Iterator<Item = Setting> {
+        self.queue.iter().map(|cell| cell.setting)
     }
 
     /// The next trial that is over. Each is given once.

@@ -14,6 +14,8 @@ pub(crate) mod quirks;
 pub(crate) mod scan;
 pub(crate) mod touch;
 pub(crate) mod traffic;
+pub(crate) mod trials;
+pub(crate) mod tune;
 pub(crate) mod verdicts;
 pub(crate) mod words;
 

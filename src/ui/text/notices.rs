@@ -8,7 +8,8 @@ use crate::hand::Words;
 use crate::link::{Disarmed, LinkTrouble, RequestError};
 use crate::ui::format;
 use crate::ui::look::Look;
-use crate::ui::text::{device, main, panels, poses, quirks, traffic, words};
+use crate::ui::text::phrase::Text;
+use crate::ui::text::{device, main, panels, poses, quirks, traffic, trials, words};
 
 /// Title, cause and advice of what is wrong with a drive.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
@@ -167,28 +168,15 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             )
         }
         NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
-        NoticeKind::PosesImported {
-            poses: count,
-            sequences,
-        } => format!(
-            "{} {count} {}, {sequences} {}",
-            said(poses::IMPORTED),
-            said(poses::COUNT_POSES),
-            said(poses::COUNT_SEQUENCES)
-        ),
-        NoticeKind::PosesRefused { path, error } => {
-            format!("{} {}: {error}", said(poses::REFUSED), path.display())
-        }
-        NoticeKind::ParamsRefused { path, error } => {
-            format!("{} {}: {error}", said(device::REFUSED), path.display())
-        }
-        NoticeKind::PosesIgnored { error, kept_as } => {
-            let kept = place(kept_as.as_deref());
-            format!("{} {error} {kept}", said(poses::IGNORED))
-        }
-        NoticeKind::PosesNotSaved { message } => {
-            format!("{} {message}", said(poses::NOT_SAVED))
-        }
+        NoticeKind::PosesImported { .. }
+        | NoticeKind::PosesRefused { .. }
+        | NoticeKind::ParamsRefused { .. }
+        | NoticeKind::PosesIgnored { .. }
+        | NoticeKind::PosesNotSaved { .. } => of_files(look, what),
+        NoticeKind::SeriesEnded { .. }
+        | NoticeKind::SeriesRuns
+        | NoticeKind::SessionOpened { .. }
+        | NoticeKind::SessionRefused { .. } => trials::notice(look, what),
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         NoticeKind::GestureStoreOff => said(poses::STORE_OFF_TIP),
         NoticeKind::DrawnWithoutOpenGl { reason } => {
@@ -218,6 +206,36 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::EndpointIgnored { text } => {
             format!("{} {text}", said(panels::NOTICE_ENDPOINT))
         }
+    }
+}
+
+/// What became of files of poses and parameters; empty for everything else.
+fn of_files(look: Look, what: &NoticeKind) -> String {
+    let said = |text: Text| look.say(text).to_owned();
+    match what {
+        NoticeKind::PosesImported {
+            poses: count,
+            sequences,
+        } => format!(
+            "{} {count} {}, {sequences} {}",
+            said(poses::IMPORTED),
+            said(poses::COUNT_POSES),
+            said(poses::COUNT_SEQUENCES)
+        ),
+        NoticeKind::PosesRefused { path, error } => {
+            format!("{} {}: {error}", said(poses::REFUSED), path.display())
+        }
+        NoticeKind::ParamsRefused { path, error } => {
+            format!("{} {}: {error}", said(device::REFUSED), path.display())
+        }
+        NoticeKind::PosesIgnored { error, kept_as } => {
+            let kept = place(kept_as.as_deref());
+            format!("{} {error} {kept}", said(poses::IGNORED))
+        }
+        NoticeKind::PosesNotSaved { message } => {
+            format!("{} {message}", said(poses::NOT_SAVED))
+        }
+        _ => String::new(),
     }
 }
 

@@ -39,6 +39,7 @@ mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
         device, faults, keys, layout, main, panels, plots, poses, quirks, scan, touch, traffic,
+        tune,
     };
 
     fn all() -> impl Iterator<Item = &'static Text> {
@@ -55,6 +56,7 @@ mod tests {
             scan::ALL,
             touch::ALL,
             traffic::ALL,
+            tune::ALL,
         ];
         lists.into_iter().flatten()
     }

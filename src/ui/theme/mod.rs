@@ -7,6 +7,7 @@ mod palette;
 mod plot_sizes;
 mod sizes;
 mod style;
+mod trial_sizes;
 mod view_sizes;
 
 pub(crate) use fonts::*;
@@ -16,4 +17,5 @@ pub(crate) use palette::Palette;
 pub(crate) use plot_sizes::*;
 pub(crate) use sizes::*;
 pub(crate) use style::style;
+pub(crate) use trial_sizes::*;
 pub(crate) use view_sizes::*;

@@ -164,6 +164,15 @@ impl Palette {
         }
     }
 
+    /// Text on the heat scale; `bright` where the colour is.
+    pub(crate) fn on_heat(&self, bright: bool) -> Color32 {
+        if self.dark == bright {
+            self.on_armed
+        } else {
+            self.on_strong
+        }
+    }
+
     /// A weak wash of a colour over a card.
     pub(crate) fn wash(&self, color: Color32) -> Color32 {
         color.gamma_multiply(if self.dark { 0.16 } else { 0.12 })

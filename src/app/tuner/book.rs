@@ -1,0 +1,245 @@
+//! What was tried, and the series that runs now. Sends nothing, reads no clock and no file.
+
+use crate::app::trial::best::{Score, Tally, tallies};
+use crate::app::trial::estimate;
+use crate::app::trial::recording::Recording;
+use crate::app::trial::session::Head;
+use crate::app::trial::{Abort, Kind, Series, Setting, Trial, TrialMetrics, TrialPlan};
+use crate::app::tuner::draft::Draft;
+use crate::app::tuner::lines::Lines;
+use crate::hand::Moment;
+use crate::link::ArmEpoch;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Rows that are kept in memory for saving, over all trials: some hundred megabytes. The oldest trials let go of theirs.
+pub const ROWS_MAX: usize = 600_000;
+/// Sessions in the list. The oldest that is kept in files, or else the oldest, makes room.
+pub const SESSIONS_MAX: usize = 24;
+
+/// Which session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SessionId(pub u64);
+
+/// Why something ended early.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ended {
+    /// As it was seen here.
+    Here(Abort),
+    /// In the words of a file.
+    Told(String),
+}
+
+/// Where a session comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Origin {
+    /// It was run in this window.
+    Here {
+        /// What was planned.
+        plan: Box<TrialPlan>,
+        /// Where it was saved last.
+        saved: Option<PathBuf>,
+    },
+    /// It was read from a folder.
+    Folder(PathBuf),
+}
+
+/// One trial that is over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tried {
+    /// 1 the first.
+    pub number: usize,
+    /// How often this setting was tried, this one included; `None` = it looked for the contact.
+    pub repeat: Option<usize>,
+    /// Speed and threshold.
+    pub setting: Setting,
+    /// What was measured.
+    pub metrics: TrialMetrics,
+    /// Why it ended early.
+    pub ended: Option<Ended>,
+    /// What is drawn of it.
+    pub lines: Lines,
+    /// All of it, to be saved; `None` if it came from a file.
+    pub whole: Option<Arc<Trial>>,
+}
+
+impl Tried {
+    /// Of a trial that was run here.
+    #[must_use]
+    pub fn of(trial: Trial) -> Self {
+        Self {
+            number: trial.number,
+            repeat: match trial.kind {
+                Kind::Probe => None,
+                Kind::Trial { repeat } => Some(repeat),
+            },
+            setting: trial.setting,
+            metrics: trial.metrics.clone(),
+            ended: trial.aborted.map(Ended::Here),
+            lines: Lines::of(&trial.recording, &trial.metrics),
+            whole: Some(Arc::new(trial)),
+        }
+    }
+
+    fn rows(&self) -> usize {
+        let whole = self.whole.as_ref();
+        whole.map_or(0, |trial| trial.recording.rows().len())
+    }
+
+    fn let_go(&mut self) {
+        if let Some(trial) = self.whole.take() {
+            let mut bare = Trial {
+                recording: Recording::default(),
+                ..Trial::clone(&trial)
+            };
+            bare.recording = trial.recording.without_rows();
+            self.whole = Some(Arc::new(bare));
+        }
+    }
+}
+
+/// One series, whole or so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Session {
+    /// Which.
+    pub id: SessionId,
+    /// The hand, the day, note and tags.
+    pub head: Head,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// What was tried, in its order.
+    pub trials: Vec<Tried>,
+    /// Why it ended early.
+    pub ended: Option<Ended>,
+}
+
+impl Session {
+    /// What its settings come to; looking for the contact does not count.
+    #[must_use]
+    pub fn scores(&self) -> Vec<Score> {
+        let tried = self.trials.iter().filter(|tried| tried.repeat.is_some());
+        tallies(tried.map(|tried| Tally {
+            setting: tried.setting,
+            aborted: tried.ended.is_some(),
+            joints: &tried.metrics.joints,
+        }))
+    }
+
+    /// Trials whose samples are not in memory any more.
+    #[must_use]
+    pub fn without_samples(&self) -> usize {
+        let lost = |tried: &&Tried| tried.whole.is_some() && tried.rows() == 0;
+        self.trials.iter().filter(lost).count()
+    }
+}
+
+/// A series on its way.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// What runs.
+    pub series: Series,
+    /// Its arming.
+    pub epoch: ArmEpoch,
+    /// Where its trials go.
+    pub session: SessionId,
+    /// The plan.
+    pub plan: TrialPlan,
+    /// When the trial of now began, or the wait for it.
+    pub since: Moment,
+    /// Trials that had begun by then.
+    pub begun: usize,
+}
+
+impl Run {
+    /// About how long the rest of it takes, if nothing ends it.
+    #[must_use]
+    pub fn left(&self, now: Moment) -> Duration {
+        let ahead = self.series.ahead();
+        let ahead: Duration = ahead
+            .map(|setting| estimate::trial(&self.plan, setting))
+            .sum();
+        let of_now = self.series.setting();
+        let of_now = of_now.map_or(Duration::ZERO, |own| estimate::trial(&self.plan, own));
+        ahead + of_now.saturating_sub(now.since(self.since))
+    }
+}
+
+/// Everything about trials that the window shows.
+#[derive(Debug, Clone, Default)]
+pub struct TunerBook {
+    /// The plan that is being written.
+    pub draft: Draft,
+    /// What runs now.
+    pub run: Option<Run>,
+    /// What was tried here or opened, the oldest first.
+    pub sessions: Vec<Session>,
+    /// The series that ended last, until the next begins.
+    pub last: Option<SessionId>,
+    newest: u64,
+}
+
+impl TunerBook {
+    /// True while a series may send something.
+    #[must_use]
+    pub const fn is_running(&self) -> bool {
+        self.run.is_some()
+    }
+
+    /// One session.
+    #[must_use]
+    pub fn session(&self, id: SessionId) -> Option<&Session> {
+        self.sessions.iter().find(|session| session.id == id)
+    }
+
+    /// The same, to be changed.
+    pub fn session_mut(&mut self, id: SessionId) -> Option<&mut Session> {
+        self.sessions.iter_mut().find(|session| session.id == id)
+    }
+
+    /// Adds a session.
+    pub fn add(&mut self, head: Head, origin: Origin, trials: Vec<Tried>) -> SessionId {
+        if self.sessions.len() >= SESSIONS_MAX {
+            let kept = |session: &Session| match &session.origin {
+                Origin::Here { saved, .. } => saved.is_some(),
+                Origin::Folder(_) => true,
+            };
+            let at = self.sessions.iter().position(kept).unwrap_or(0);
+            self.sessions.remove(at);
+        }
+        self.newest += 1;
+        let id = SessionId(self.newest);
+        self.sessions.push(Session {
+            id,
+            head,
+            origin,
+            trials,
+            ended: None,
+        });
+        id
+    }
+
+    /// Takes a session out of the list. The one that runs stays.
+    pub fn forget(&mut self, id: SessionId) {
+        if self.run.as_ref().is_none_or(|run| run.session != id) {
+            self.sessions.retain(|session| session.id != id);
+        }
+    }
+
+    /// Keeps a trial, and no more rows than there is room for.
+    pub fn keep(&mut self, id: SessionId, trial: Trial) {
+        if let Some(session) = self.session_mut(id) {
+            session.trials.push(Tried::of(trial));
+        }
+        let all = || self.sessions.iter().flat_map(|session| &session.trials);
+        let mut rows: usize = all().map(Tried::rows).sum();
+        let trials = self.sessions.iter_mut().flat_map(|own| &mut own.trials);
+        for tried in trials.filter(|tried| tried.rows() > 0) {
+            if rows <= ROWS_MAX {
+                break;
+            }
+            rows -= tried.rows();
+            tried.let_go();
+        }
+    }
+}

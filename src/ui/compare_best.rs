@@ -1,0 +1,217 @@
+//! The map of overshoot over speed and threshold, and the best setting by what a person wants. Writes nothing.
+
+use crate::app::action::Action;
+use crate::app::params::table::{ParamId, Value};
+use crate::app::trial::Criterion;
+use crate::app::trial::best::Score;
+use crate::app::tuner::Session;
+use crate::hand::Dof;
+use crate::ui::compare::{best_of, choice_ui};
+use crate::ui::compare_table::setting_words;
+use crate::ui::controls::{self, Button, Label, take_left, take_right, take_top};
+use crate::ui::look::Pane;
+use crate::ui::number::NumberField;
+use crate::ui::text::tune;
+use crate::ui::theme;
+use egui::{Align2, CornerRadius, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+
+/// Overshoot that the fastest may have, g.
+const OVERSHOOT_G: f64 = 100.0;
+/// The overshoot that is as hot as can be, g.
+const HOTTEST_G: f64 = 1000.0;
+
+/// What is best.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Wanted {
+    #[default]
+    LeastOvershoot,
+    Fastest,
+}
+
+/// What is wanted of the best.
+#[derive(Debug, Default)]
+pub(crate) struct BestView {
+    wanted: Wanted,
+    steady_g: f64,
+}
+
+impl BestView {
+    /// What is best.
+    pub(crate) fn criterion(&self) -> Criterion {
+        let steady_g = self.steady_g;
+        match self.wanted {
+            Wanted::LeastOvershoot => Criterion::LeastOvershoot { steady_g },
+            Wanted::Fastest => Criterion::Fastest {
+                overshoot_g: OVERSHOOT_G,
+                steady_g,
+            },
+        }
+    }
+
+    /// Draws the choice, the best, and the map.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, mut rect: Rect, pane: &mut Pane<'_>, own: &Session) {
+        let look = pane.look;
+        let mut row = take_top(&mut rect, theme::CONTROL);
+        for (wanted, text) in [
+            (Wanted::LeastOvershoot, tune::LEAST_OVER),
+            (Wanted::Fastest, tune::FASTEST),
+        ] {
+            let texts = (look.say(text), look.say(tune::BEST_TIP));
+            if choice_ui(ui, &mut row, pane, texts, self.wanted == wanted) {
+                self.wanted = wanted;
+            }
+        }
+        self.hold_ui(ui, take_top(&mut rect, theme::CONTROL), pane);
+        self.best_ui(ui, take_top(&mut rect, theme::CONTROL), pane, own);
+        map_ui(ui, rect, pane, own, best_of(own, self.criterion()));
+    }
+
+    fn hold_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let name = look.say(tune::HOLD_AT_LEAST);
+        let place = take_left(&mut row, theme::PLAN_CAPTION);
+        Label::new(name, look.palette.muted).small().put(ui, place);
+        let field = NumberField {
+            name,
+            tip: look.say(tune::HOLD_TIP),
+            disabled: None,
+            value: Some(self.steady_g),
+            range: 0.0..=4000.0,
+            decimals: 0,
+        };
+        let place = take_left(&mut row, theme::PLAN_ANGLE);
+        let id = Id::unique("trial hold");
+        if let Some(steady_g) = field.put(ui, look, pane.typing, place, id) {
+            self.steady_g = steady_g;
+        }
+    }
+
+    fn best_ui(&self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, own: &Session) {
+        let look = pane.look;
+        let best = best_of(own, self.criterion());
+        let none = look.say(tune::BEST_NONE);
+        let words = look.say(tune::PROMOTE);
+        let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
+        let place = take_right(&mut row, width);
+        let button = Button::new(words, look.say(tune::PROMOTE_TIP));
+        let button = button.disabled(best.is_none().then_some(none));
+        let clicked = button.put(ui, look, place, Id::unique("promote"));
+        if let Some(setting) = best.filter(|_| clicked.clicked()) {
+            for dof in joints(own) {
+                let speed = Value::Number(setting.speed.get().into());
+                let force = Value::Number(setting.force.get().into());
+                pane.actions
+                    .push(Action::Stage(ParamId::DefaultSpeed(dof), Some(speed)));
+                pane.actions
+                    .push(Action::Stage(ParamId::DefaultForce(dof), Some(force)));
+            }
+        }
+        let text = best.map_or_else(|| none.to_owned(), setting_words);
+        let color = if best.is_some() {
+            look.palette.ok
+        } else {
+            look.palette.muted
+        };
+        Label::new(&text, color)
+            .named(look.say(tune::BEST))
+            .put(ui, row);
+    }
+}
+
+/// The joints that a session tried.
+fn joints(session: &Session) -> Vec<Dof> {
+    let tried = |dof: &Dof| {
+        let mut all = session.trials.iter().flat_map(|own| &own.metrics.joints);
+        all.any(|joint| joint.dof == *dof)
+    };
+    Dof::ALL.into_iter().filter(tried).collect()
+}
+
+/// Overshoot as colours with numbers: speeds below each other, thresholds side by side.
+fn map_ui(
+    ui: &mut Ui,
+    mut rect: Rect,
+    pane: &Pane<'_>,
+    session: &Session,
+    best: Option<crate::app::trial::Setting>,
+) {
+    let look = pane.look;
+    let place = take_top(&mut rect, theme::LIST_LINE);
+    let title = look.say(tune::MAP);
+    Label::new(title, look.palette.muted).small().put(ui, place);
+    let scores = session.scores();
+    let mut speeds: Vec<i16> = scores.iter().map(|own| own.setting.speed.get()).collect();
+    let mut forces: Vec<i16> = scores.iter().map(|own| own.setting.force.get()).collect();
+    for list in [&mut speeds, &mut forces] {
+        list.sort_unstable();
+        list.dedup();
+    }
+    let count = |list: &[i16]| f32::from(u8::try_from(list.len().max(1)).unwrap_or(u8::MAX));
+    let room = (rect.width() - theme::MAP_HEAD) / count(&forces);
+    let width = room.clamp(theme::MAP_CELL_LEAST, theme::MAP_CELL_MOST);
+    let height = (rect.height() / (count(&speeds) + 1.0)).min(theme::MAP_CELL);
+    let size = vec2(width, height);
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    let number = |center, text: String, color| {
+        painter.text(
+            center,
+            Align2::CENTER_CENTER,
+            text,
+            theme::number_small(),
+            color,
+        )
+    };
+    let mut top = rect.min + vec2(theme::MAP_HEAD, 0.0);
+    for force in &forces {
+        let cell = Rect::from_min_size(top, size);
+        number(cell.center(), format!("{force} g"), look.palette.faint);
+        top.x += width;
+    }
+    for (at, speed) in (1_u8..).zip(&speeds) {
+        let mut corner = rect.min + vec2(0.0, height * f32::from(at));
+        let head = Rect::from_min_size(corner, vec2(theme::MAP_HEAD, height));
+        number(head.center(), speed.to_string(), look.palette.faint);
+        corner.x += theme::MAP_HEAD;
+        for force in &forces {
+            let cell = Rect::from_min_size(corner, size).shrink(1.0);
+            corner.x += width;
+            let is_own = |score: &&Score| {
+                score.setting.speed.get() == *speed && score.setting.force.get() == *force
+            };
+            let score = scores.iter().find(is_own);
+            let chosen = score.is_some_and(|score| Some(score.setting) == best);
+            cell_ui(ui, cell.intersect(rect), pane, score, chosen);
+        }
+    }
+}
+
+fn cell_ui(ui: &Ui, cell: Rect, pane: &Pane<'_>, score: Option<&Score>, best: bool) {
+    let look = pane.look;
+    let Some(score) = score.filter(|_| cell.is_positive()) else {
+        return;
+    };
+    let over = score.overshoot_g.map(|spread| spread.max);
+    let text = over.map_or_else(|| "-".to_owned(), |over| format!("{over:.0}"));
+    let name = format!("{}: {text} g", setting_words(score.setting));
+    let id = Id::unique(("trial map", score.setting));
+    let response = ui.interact(cell, id, Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
+    response.on_hover_text(&name);
+    #[expect(clippy::cast_possible_truncation, reason = "a share of a colour scale")]
+    let level = over.map(|over| (over / HOTTEST_G).clamp(0.0, 1.0) as f32);
+    let ground = level.map_or(look.palette.sunken, |level| look.palette.heat(level));
+    let round = CornerRadius::same(theme::ROUND_TINY);
+    ui.painter().rect_filled(cell, round, ground);
+    let ink = match level {
+        Some(level) => look.palette.on_heat(level >= theme::HEAT_BRIGHT),
+        None => look.palette.muted,
+    };
+    let font = theme::number_small();
+    ui.painter()
+        .text(cell.center(), Align2::CENTER_CENTER, text, font, ink);
+    if best {
+        let stroke = Stroke::new(theme::STRONG, look.palette.accent);
+        ui.painter()
+            .rect_stroke(cell, round, stroke, StrokeKind::Inside);
+    }
+}

@@ -1,0 +1,52 @@
+//! Lengths of the views of grasp trials, points. No colours, no fonts.
+
+/// Width of the plan as a share of its view, and between which widths.
+pub(crate) const PLAN_SHARE: f32 = 0.44;
+/// Its least width: every joint with two angles.
+pub(crate) const PLAN_LEAST: f32 = 292.0;
+/// Its greatest width.
+pub(crate) const PLAN_MOST: f32 = 420.0;
+/// Width of a joint's button in the plan.
+pub(crate) const PLAN_JOINT: f32 = 108.0;
+/// Width of an angle in the plan.
+pub(crate) const PLAN_ANGLE: f32 = 72.0;
+/// Width of what stands before a field of the plan.
+pub(crate) const PLAN_CAPTION: f32 = 116.0;
+/// Width of what stands before the second field of a row.
+pub(crate) const PLAN_CAPTION_SHORT: f32 = 64.0;
+/// Least height of the force while a series runs.
+pub(crate) const TRIAL_PLOT_LEAST: f32 = 96.0;
+/// Height of a number beside a plot of trials.
+pub(crate) const TRIAL_NUMBER: f32 = 22.0;
+/// Room for a time below a plot of trials.
+pub(crate) const TRIAL_TIME: f32 = 56.0;
+/// Height of the bar that shows how far a series is.
+pub(crate) const TRIAL_BAR: f32 = 6.0;
+/// Height of a row of the table of trials.
+pub(crate) const TRIAL_ROW: f32 = 20.0;
+/// Least width of a column of the table of trials.
+pub(crate) const TRIAL_COLUMN: f32 = 62.0;
+/// Width of the first column of the table of trials.
+pub(crate) const TRIAL_FIRST_COLUMN: f32 = 150.0;
+/// Width of the sign of a line's colour in the table.
+pub(crate) const TRIAL_SWATCH: f32 = 10.0;
+/// Height of a cell of the map.
+pub(crate) const MAP_CELL: f32 = 26.0;
+/// Least width of a cell of the map.
+pub(crate) const MAP_CELL_LEAST: f32 = 40.0;
+/// Greatest width of a cell of the map.
+pub(crate) const MAP_CELL_MOST: f32 = 84.0;
+/// Width of the map's own numbers.
+pub(crate) const MAP_HEAD: f32 = 52.0;
+/// Width of the map as a share of its view.
+pub(crate) const MAP_SHARE: f32 = 0.36;
+/// Least width of the map.
+pub(crate) const MAP_LEAST: f32 = 240.0;
+/// Greatest width of the map.
+pub(crate) const MAP_MOST: f32 = 440.0;
+/// Share of the height that the curves get.
+pub(crate) const CURVES_SHARE: f32 = 0.48;
+/// How strong the curves behind the chosen one are.
+pub(crate) const CURVE_BEHIND: f32 = 0.3;
+/// From this share of the heat on its colour is strong.
+pub(crate) const HEAT_BRIGHT: f32 = 0.6;

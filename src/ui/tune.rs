@@ -1,0 +1,180 @@
+//! The view of grasp trials: the plan at the left, what it means and the series that runs at the right. Holds text in
+//! progress only.
+
+use crate::app::action::Action;
+use crate::app::trial::estimate;
+use crate::app::tuner::{Session, StartRefusal, TrialWish};
+use crate::hand::impact::NOTABLE_G;
+use crate::ui::controls::{self, Button, Label, Weight, take_left, take_top};
+use crate::ui::format;
+use crate::ui::list;
+use crate::ui::look::Pane;
+use crate::ui::text::{trials, tune, words};
+use crate::ui::theme;
+use crate::ui::tune_form::TuneForm;
+use crate::ui::tune_live;
+use crate::ui::window::View;
+use egui::{Id, Rect, Ui};
+
+/// What the view needs between frames.
+#[derive(Debug, Default)]
+pub(crate) struct TuneView {
+    form: TuneForm,
+}
+
+impl TuneView {
+    /// Draws the view. The view that was asked for, if one was.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> Option<View> {
+        let look = pane.look;
+        let width = (rect.width() * theme::PLAN_SHARE).clamp(theme::PLAN_LEAST, theme::PLAN_MOST);
+        let mut rest = rect;
+        let plan = take_left(&mut rest, width);
+        let (_, body) = controls::titled_card(ui, look, plan, look.say(tune::PLAN));
+        self.form.ui(ui, body, pane);
+        let (_, body) = controls::titled_card(ui, look, rest, look.say(tune::SERIES));
+        series_ui(ui, body, pane)
+    }
+}
+
+fn series_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) -> Option<View> {
+    if pane.state.tuner.run.is_some() {
+        tune_live::live_ui(ui, body, pane);
+        return None;
+    }
+    start_ui(ui, take_top(&mut body, theme::CONTROL_LARGE), pane);
+    let mut asked = None;
+    list::scroll_ui(ui, body, "trial series", |ui, width| {
+        let look = pane.look;
+        if let Some(reason) = refusal(pane) {
+            list::wrapped_ui(ui, width, 0.0, &reason, look.palette.warn);
+            list::piece(ui, width, theme::STEP);
+        }
+        meaning_ui(ui, width, pane);
+        list::piece(ui, width, theme::GAP);
+        asked = last_ui(ui, width, pane);
+    });
+    asked
+}
+
+/// Why the series cannot begin, in words.
+fn refusal(pane: &Pane<'_>) -> Option<String> {
+    let look = pane.look;
+    let state = pane.state;
+    if !state.link.state.is_live() {
+        return Some(look.say(tune::NEED_HAND).into());
+    }
+    if state.tuner.draft.plan().check().is_err() {
+        return Some(look.say(tune::PLAN_WRONG).into());
+    }
+    state.start_refusal().map(|why| match why {
+        StartRefusal::NotArmed => look.say(tune::NEED_ARM).into(),
+        StartRefusal::Runs => look.say(tune::RUNS).into(),
+        StartRefusal::Locked(dof) => {
+            let joint = look.say(words::dof(dof));
+            format!("{joint} {}", look.say(tune::NEED_FREE))
+        }
+    })
+}
+
+fn start_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let reason = refusal(pane);
+    let button = Button::new(
+        look.say(tune::START_BUTTON),
+        look.say(tune::START_BUTTON_TIP),
+    )
+    .disabled(reason.as_deref())
+    .weight(Weight::Strong);
+    if button
+        .put(ui, look, rect, Id::unique("start trials"))
+        .clicked()
+    {
+        pane.actions.push(Action::Trial(TrialWish::Start));
+    }
+}
+
+/// What will happen, and how hard it may hit.
+fn meaning_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>) {
+    let look = pane.look;
+    let draft = &pane.state.tuner.draft;
+    let plan = draft.plan();
+    if plan.check().is_err() {
+        return;
+    }
+    let (count, time) = estimate::series(&plan);
+    let joints: Vec<&str> = plan.joints().map(|dof| look.say(words::dof(dof))).collect();
+    let text = format!(
+        "{} {}. {} {count}, {} {}.",
+        look.say(tune::WILL_CLOSE),
+        joints.join(", "),
+        look.say(tune::WILL),
+        look.say(tune::WILL_TAKE),
+        format::duration(time)
+    );
+    list::wrapped_ui(ui, width, 0.0, &text, look.palette.text);
+    if count > plan.grid.settings().len() {
+        let probe = look.say(tune::WILL_PROBE);
+        list::wrapped_ui(ui, width, 0.0, probe, look.palette.muted);
+    }
+    if let Some((setting, peak)) = draft.expected() {
+        let rough = peak >= NOTABLE_G;
+        let color = if rough {
+            look.palette.warn
+        } else {
+            look.palette.muted
+        };
+        let text = format!(
+            "{} {peak:.0} g ({} {}, {} {} g).",
+            look.say(tune::EXPECT),
+            look.say(tune::SPEED),
+            setting.speed.get(),
+            look.say(tune::THRESHOLD),
+            setting.force.get()
+        );
+        list::wrapped_ui(ui, width, 0.0, &text, color);
+        if rough {
+            let why = look.say(tune::EXPECT_WHY);
+            list::wrapped_ui(ui, width, 0.0, why, look.palette.muted);
+        }
+    }
+    list::wrapped_ui(ui, width, 0.0, look.say(tune::ANY_KEY), look.palette.muted);
+}
+
+/// What became of the last series; before the first one, what to do.
+fn last_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>) -> Option<View> {
+    let look = pane.look;
+    let tuner = &pane.state.tuner;
+    let Some(session) = tuner.last.and_then(|id| tuner.session(id)) else {
+        let title = list::piece(ui, width, theme::TITLE_LINE);
+        Label::new(look.say(tune::IDLE_TITLE), look.palette.text).put(ui, title);
+        let body = look.say(tune::IDLE_BODY);
+        list::wrapped_ui(ui, width, 0.0, body, look.palette.muted);
+        return None;
+    };
+    let (text, color) = outcome(pane, session);
+    list::wrapped_ui(ui, width, 0.0, &text, color);
+    list::piece(ui, width, theme::STEP);
+    let mut row = list::piece(ui, width, theme::CONTROL);
+    let words = look.say(tune::SEE_COMPARE);
+    let room = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
+    let button = Button::new(words, look.say(tune::SEE_COMPARE_TIP));
+    let button = button.named(look.say(tune::SEE_COMPARE_TIP));
+    let place = take_left(&mut row, room);
+    let clicked = button.put(ui, look, place, Id::unique("see compare"));
+    clicked.clicked().then_some(View::Compare)
+}
+
+fn outcome(pane: &Pane<'_>, session: &Session) -> (String, egui::Color32) {
+    let look = pane.look;
+    let last = look.say(tune::LAST);
+    match &session.ended {
+        None => {
+            let done = look.say(tune::ALL_DONE);
+            (format!("{last} {done}"), look.palette.ok)
+        }
+        Some(why) => {
+            let why = trials::ended(look, why);
+            (format!("{last} {why}"), look.palette.warn)
+        }
+    }
+}

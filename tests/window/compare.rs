@@ -1,0 +1,168 @@
+//! Claims about comparing trials: what was measured on the simulated hand is shown, sorted, saved, read back, promoted.
+
+use crate::bench::{Bench, Role};
+use crate::tune::{arm, enter, finish, on_block, short};
+use handscope::app::params::table::{ParamId, Value};
+use handscope::app::tuner::Origin;
+use handscope::hand::Dof;
+use handscope::ui::View;
+use std::path::PathBuf;
+
+/// Two speeds, tried on the block, on the view that compares them.
+fn tried() -> Bench {
+    let mut bench = on_block();
+    short(&mut bench);
+    enter(&mut bench, "Speeds to try", "25, 250");
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    bench.show(View::Compare);
+    bench
+}
+
+fn over(bench: &Bench, number: usize) -> f64 {
+    bench.reading(&format!("{number} Over, g")).parse().unwrap()
+}
+
+/// The folder that the session was saved to.
+fn save(bench: &mut Bench) -> PathBuf {
+    bench.click("Save session");
+    bench.until(5000, |bench| {
+        let session = &bench.state().tuner.sessions[0];
+        matches!(&session.origin, Origin::Here { saved: Some(_), .. })
+    });
+    match &bench.state().tuner.sessions[0].origin {
+        Origin::Here { saved, .. } => saved.clone().unwrap(),
+        Origin::Folder(_) => panic!("it was run here"),
+    }
+}
+
+#[test]
+fn before_anything_was_tried_it_says_what_to_do() {
+    let mut bench = on_block();
+    bench.show(View::Compare);
+    assert!(bench.shows("Nothing tried yet: run trials in Tune, or open an earlier session."));
+    assert!(bench.is_disabled(Role::Button, "Save session"));
+    assert!(!bench.is_disabled(Role::Button, "Open"));
+}
+
+#[test]
+fn what_was_measured_stands_in_the_table_and_sorts() {
+    let mut bench = tried();
+    assert!(over(&bench, 1) < 150.0 && over(&bench, 2) > 350.0);
+    assert!(bench.reading("1 Peak, g").parse::<f64>().unwrap() > 450.0);
+    let rows = |bench: &Bench| -> Vec<String> {
+        bench
+            .all(Role::Row)
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect()
+    };
+    assert!(rows(&bench)[0].starts_with("1  25 / 500 g"));
+    bench.click("Over, g");
+    bench.click("Over, g");
+    bench.run(60);
+    assert!(rows(&bench)[0].starts_with("2  250 / 500 g"));
+    bench.click_row("1  25 / 500 g");
+    for quantity in ["Angle", "Current, mA", "Touch, N", "Force, g"] {
+        bench.click_button(quantity);
+        bench.run(60);
+        assert!(!bench.shows("No samples to draw"), "{quantity}");
+    }
+    bench.click("From contact");
+    bench.run(60);
+    assert!(!bench.shows("No samples to draw"));
+}
+
+#[test]
+fn the_gentle_setting_is_best_until_it_must_hold_more() {
+    let mut bench = tried();
+    assert_eq!(bench.reading("Best"), "25 / 500 g");
+    enter(&mut bench, "Holds at least, g", "4000");
+    assert_eq!(bench.reading("Best"), "No setting will do.");
+    assert!(bench.is_disabled(Role::Button, "Stage as defaults"));
+}
+
+#[test]
+fn promoting_stages_the_best_and_writes_nothing() {
+    let mut bench = tried();
+    let writes = bench.writes().len();
+    bench.click("Stage as defaults");
+    bench.run(100);
+    let staged = |id| bench.state().device.staged(id);
+    let number = |number| Some(Value::Number(number));
+    assert_eq!(staged(ParamId::DefaultSpeed(Dof::Index)), number(25));
+    assert_eq!(staged(ParamId::DefaultForce(Dof::Index)), number(500));
+    assert_eq!(staged(ParamId::DefaultSpeed(Dof::Ring)), None);
+    assert_eq!(bench.writes().len(), writes);
+}
+
+#[test]
+fn a_saved_session_is_read_back_with_its_curves() {
+    let mut bench = tried();
+    enter(&mut bench, "Note", "a block");
+    let folder = save(&mut bench);
+    for file in [
+        "session.toml",
+        "trial-001.csv",
+        "trial-002.csv",
+        "report.html",
+    ] {
+        assert!(folder.join(file).is_file(), "{file}");
+    }
+    let own: Vec<f64> = vec![over(&bench, 1), over(&bench, 2)];
+    for file in std::fs::read_dir(&folder).unwrap() {
+        let file = file.unwrap();
+        std::fs::copy(file.path(), bench.folder().join(file.file_name())).unwrap();
+    }
+    bench.click("Open");
+    bench.until(5000, |bench| bench.state().tuner.sessions.len() == 2);
+    bench.run(60);
+    let read = &bench.state().tuner.sessions[1];
+    assert_eq!(read.head.note, "a block");
+    assert_eq!(
+        read.trials[0].lines,
+        bench.state().tuner.sessions[0].trials[0].lines
+    );
+    assert_eq!(vec![over(&bench, 1), over(&bench, 2)], own);
+    assert!(
+        bench.is_disabled(Role::Button, "Save session"),
+        "it has its files"
+    );
+    bench.click("Session 1");
+    bench.run(60);
+    assert!(!bench.is_disabled(Role::Button, "Save session"));
+}
+
+#[test]
+fn a_bad_session_is_refused_whole_with_one_sentence() {
+    let mut bench = tried();
+    let folder = save(&mut bench);
+    for file in ["session.toml", "trial-001.csv"] {
+        std::fs::copy(folder.join(file), bench.folder().join(file)).unwrap();
+    }
+    let table = bench.folder().join("trial-001.csv");
+    let text = std::fs::read_to_string(&table).unwrap();
+    std::fs::write(&table, text.replacen(",close", ",shut", 1)).unwrap();
+    let toml = bench.folder().join("session.toml");
+    for (spoilt, words) in [(false, "'shut' is no event"), (true, "session.toml")] {
+        if spoilt {
+            std::fs::write(&toml, "format = 7").unwrap();
+        }
+        bench.click("Open");
+        bench.run(400);
+        let told: Vec<String> = bench
+            .state()
+            .notices
+            .iter()
+            .map(|one| format!("{:?}", one.what))
+            .collect();
+        let refused = told.iter().rev().find(|told| told.contains("Refused"));
+        assert!(refused.is_some_and(|told| told.contains(words)), "{told:?}");
+        assert_eq!(
+            bench.state().tuner.sessions.len(),
+            1,
+            "nothing of it is taken"
+        );
+    }
+}
