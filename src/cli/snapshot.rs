@@ -6,6 +6,7 @@ use crate::cli::out::{Out, say};
 use crate::headless::canvas::Picture;
 use crate::headless::driver::{Driver, Scene};
 use crate::headless::png;
+use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::View;
 use anyhow::Context as _;
@@ -27,6 +28,9 @@ pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
     })?;
     driver.connect()?;
     driver.run_for(args.at, progress(args.at));
+    if args.hand.is_none() && shows_trials(args) {
+        driver.try_grasps();
+    }
     fs::create_dir_all(&args.out)
         .with_context(|| format!("cannot make the folder {}", args.out.display()))?;
     for (language, of_language) in args.lang.each() {
@@ -55,6 +59,15 @@ fn endpoint(args: &SnapshotArgs) -> Endpoint {
         seed: args.seed,
         scenario: args.scenario.unwrap_or_default().name().into(),
     })
+}
+
+/// Trials are tried only where nothing else was asked for: on a hand that does nothing by itself.
+fn shows_trials(args: &SnapshotArgs) -> bool {
+    let still = matches!(
+        args.scenario.unwrap_or_default(),
+        Scenario::Idle | Scenario::Rigid | Scenario::Fragile
+    );
+    still && matches!(args.view, Views::One(View::Tune | View::Compare))
 }
 
 /// Names and views of the wanted pictures.

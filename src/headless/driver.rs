@@ -4,8 +4,11 @@
 use crate::app::action::Action;
 use crate::app::device::wish::DeviceWish;
 use crate::app::settings::{Language, Theme};
+use crate::app::trial::Limits;
+use crate::app::tuner::{Draft, TrialWish};
 use crate::app::{App, Env, NoChoice, Settings, SimDial};
 use crate::hand::Moment;
+use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::headless::canvas::{Canvas, Picture};
 use crate::headless::snap::snap;
 use crate::link::{Clock, LinkTrouble};
@@ -18,6 +21,10 @@ use tokio::runtime::{Builder, Runtime};
 
 /// Time between two looks at the link, as the window has between two frames at 50 Hz.
 pub const STEP: Duration = Duration::from_millis(20);
+/// Arming takes less.
+const ARM_WITHIN: Duration = Duration::from_millis(400);
+/// A small grid of grasps takes less.
+const GRASPS_WITHIN: Duration = Duration::from_secs(300);
 /// A hand that is there answers long before.
 pub const ANSWER_WITHIN: Duration = Duration::from_secs(3);
 
@@ -204,6 +211,36 @@ impl Driver {
         self.cockpit.app().act(read, now);
         drop(inside);
         while self.cockpit.state().device.is_busy() && self.now().since(now) < ANSWER_WITHIN {
+            self.step(STEP);
+        }
+    }
+
+    /// Tries a small grid of grasps on a built-in hand, and lets it run to its end: real trials, in virtual time.
+    pub fn try_grasps(&mut self) {
+        let draft = Draft {
+            start: PerDof::from_fn(|dof| (dof == Dof::Index).then_some(Angle::nearest(620))),
+            close: PerDof::splat(Angle::nearest(300)),
+            speeds: [25, 100, 250].map(Speed::nearest).into(),
+            forces: [250, 500].map(Force::nearest).into(),
+            repeats: 2,
+            limits: Limits {
+                ceiling_g: 4000,
+                ..Limits::default()
+            },
+            ..Draft::default()
+        };
+        let wishes = [
+            Action::Arm,
+            Action::Trial(TrialWish::Draft(Box::new(draft))),
+            Action::Trial(TrialWish::Start),
+        ];
+        for wish in wishes {
+            let now = self.now();
+            self.cockpit.app().act(wish, now);
+            self.run_for(ARM_WITHIN, |_| ());
+        }
+        let begun = self.now();
+        while self.cockpit.state().tuner.is_running() && self.now().since(begun) < GRASPS_WITHIN {
             self.step(STEP);
         }
     }
