@@ -10,11 +10,13 @@
 
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
+use handscope::app::params::record::Record;
+use handscope::app::params::values::Params;
 use handscope::hand::{Dof, HandId, PerDof, Setting, Speed};
 use handscope::hand::{Force, Span, register};
 use handscope::link::{
-    self, Clock, Doubt, LinkConfig, LinkEvent, LinkHandle, LinkState, NotSent, Outcome, PollRates,
-    Request, RequestError, Reset, SaveDoubt, Saved, Verdict, Written,
+    self, ArmRequest, Calibrated, Clock, Doubt, LinkConfig, LinkEvent, LinkHandle, LinkState,
+    NotSent, Outcome, PollRates, Request, RequestError, Reset, SaveDoubt, Saved, Verdict, Written,
 };
 use handscope::sim::serve::{can, modbus_rtu, modbus_tcp, rs485};
 use handscope::sim::{
@@ -510,5 +512,231 @@ async fn a_new_id_may_be_acknowledged_by_the_new_or_by_the_old_one() {
         assert_eq!(written.verdict, Verdict::Applied);
         assert_eq!(written.holds, Some(vec![7]));
         assert_eq!(link.stats().timeouts, timeouts, "{change_ack:?}");
+    }
+}
+
+/// What is said in a schedule of faults, as a word for the count.
+fn word(written: &Written, saved: Option<&Saved>) -> &'static str {
+    match (&written.verdict, saved) {
+        (Verdict::NotSent(_), _) => "not sent",
+        (Verdict::Refused { .. }, _) => "refused",
+        (Verdict::Differs, _) => "differs",
+        (Verdict::Unverified { .. }, _) => "unverified",
+        (Verdict::Applied, None) => "applied",
+        (Verdict::Applied, Some(Saved::Confirmed)) => "confirmed",
+        (Verdict::Applied, Some(Saved::ReadBack)) => "read back",
+        (Verdict::Applied, Some(Saved::Failed { .. })) => "failed",
+        (Verdict::Applied, Some(Saved::Unknown { .. })) => "unknown",
+        (Verdict::Applied, Some(_)) => "save not sent",
+    }
+}
+
+fn some_trouble(rng: &mut fastrand::Rng) -> Trouble {
+    let ms = |rng: &mut fastrand::Rng, most| Duration::from_millis(rng.u64(1..most));
+    match rng.u8(..7) {
+        0 | 1 => Trouble::None,
+        2 => Trouble::LoseAnswer,
+        3 => Trouble::Late(ms(rng, 400)),
+        4 => Trouble::Mute,
+        5 => Trouble::Cut,
+        _ => Trouble::PowerCut(ms(rng, 1200)),
+    }
+}
+
+fn some_personality(rng: &mut fastrand::Rng) -> Personality {
+    Personality {
+        defaults: [
+            DefaultsWrite::Take,
+            DefaultsWrite::Take,
+            DefaultsWrite::Drop,
+            DefaultsWrite::Clamp,
+            DefaultsWrite::Exception,
+        ][rng.usize(..5)],
+        flash: [FlashWrite::AtOnce, FlashWrite::Slowly][rng.usize(..2)],
+        save_frame: [
+            SaveAnswer::Command12,
+            SaveAnswer::Command11,
+            SaveAnswer::Late,
+            SaveAnswer::Never,
+            SaveAnswer::Twice,
+            SaveAnswer::Failed,
+        ][rng.usize(..6)],
+        ..Personality::default()
+    }
+}
+
+/// Writes one group and saves it, while one thing of everything goes wrong; then compares what was said, the file and the hand.
+async fn schedule(seed: u64) -> &'static str {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let wire = WIRES[rng.usize(..WIRES.len())];
+    let trouble = some_trouble(&mut rng);
+    let strikes_save = rng.bool();
+    let address = if strikes_save { SAVE } else { SPEEDS };
+    let personality = some_personality(&mut rng);
+    let case = format!("seed {seed}: {wire} {trouble:?} at {address} {personality:?}");
+    let line = Line::new(personality, address, trouble);
+    let mut link = open(&line, wire).await;
+    let written = set(&mut link, speeds(700)).await;
+    let loses_power = matches!(trouble, Trouble::PowerCut(_));
+    let now_holds = |line: &Line| {
+        line.hand
+            .with(|hand, now| hand.read(register::DEFAULT_SPEED_SET.span(), now).unwrap())
+    };
+    if let Some(holds) = written
+        .holds
+        .clone()
+        .filter(|_| strikes_save || !loses_power)
+    {
+        assert_eq!(holds, now_holds(&line), "{case}");
+        assert_eq!(
+            holds == shorts(700),
+            written.verdict == Verdict::Applied,
+            "{case}"
+        );
+    }
+    assert_eq!(
+        written.holds.is_none(),
+        matches!(written.verdict, Verdict::Unverified { .. }),
+        "{case}: what was not read is not said"
+    );
+    if written.verdict != Verdict::Applied {
+        drop(link);
+        assert_eq!(
+            line.wakes_up_with(SPEEDS),
+            1000,
+            "{case}: nothing is saved by itself"
+        );
+        return word(&written, None);
+    }
+    // As the program does it: the file says that it is not known before SAVE goes out.
+    let folder = tempfile::tempdir().unwrap();
+    let record = Record::new(folder.path(), &wire.parse().unwrap());
+    let mut params = Params::default();
+    params.take(register::DEFAULT_SPEED_SET.span(), &shorts(700));
+    record.attempt(&params, Duration::from_secs(1)).unwrap();
+    let saved = match link.ask(Request::Save) {
+        Err(_) => return "save not sent",
+        Ok(_) if !link.status().state.is_live() => return "save not sent",
+        Ok(asked) => loop {
+            if let LinkEvent::Done { ticket, result } = link.event().await.unwrap()
+                && ticket == asked
+            {
+                break match result {
+                    Ok(Outcome::Saved(saved)) => saved,
+                    Err(RequestError::NotConnected | RequestError::LinkLost) => {
+                        return "save not sent";
+                    }
+                    other => panic!("{case}: {other:?}"),
+                };
+            }
+        },
+    };
+    record.end(&saved).unwrap();
+    pass(&mut link, Duration::from_secs(2)).await;
+    let told = record.known().unwrap();
+    let in_flash = line.wakes_up_with(SPEEDS);
+    match &saved {
+        Saved::Confirmed if !loses_power => assert_eq!(in_flash, 700, "{case}"),
+        Saved::Failed { .. } | Saved::Refused { .. } | Saved::NotSent(_) => {
+            assert_eq!(in_flash, 1000, "{case} {saved:?}");
+        }
+        _ => {}
+    }
+    let is_taken = matches!(saved, Saved::Confirmed | Saved::ReadBack);
+    let is_unknown = matches!(saved, Saved::Unknown { .. });
+    assert_eq!(told.saved.is_some(), is_taken, "{case} {saved:?}");
+    assert_eq!(told.doubtful.is_some(), is_unknown, "{case} {saved:?}");
+    if in_flash == 700 {
+        assert!(is_taken || is_unknown, "{case}: nobody is told {saved:?}");
+    }
+    word(&written, Some(&saved))
+}
+
+#[tokio::test(start_paused = true)]
+async fn after_every_fault_what_is_said_the_file_and_the_hand_agree_or_it_is_said_to_be_unknown() {
+    let mut seen = std::collections::BTreeMap::new();
+    for seed in 0..600 {
+        *seen.entry(schedule(seed).await).or_insert(0) += 1;
+    }
+    for kind in [
+        "refused",
+        "differs",
+        "unverified",
+        "confirmed",
+        "read back",
+        "failed",
+        "unknown",
+    ] {
+        assert!(
+            seen.get(kind).is_some_and(|count| *count >= 5),
+            "{kind}: {seen:?}"
+        );
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_calibration_is_told_by_its_frame_or_by_quiet_and_nothing_arms_meanwhile() {
+    for wire in WIRES {
+        let line = Line::new(Personality::default(), 0, Trouble::None);
+        let mut link = open(&line, wire).await;
+        let asked = link.ask(Request::Calibrate).unwrap();
+        pass(&mut link, Duration::from_secs(1)).await;
+        link.arm(ArmRequest {
+            speed: PerDof::splat(Speed::GENTLE),
+            force: PerDof::splat(Force::GENTLE),
+        });
+        pass(&mut link, Duration::from_secs(1)).await;
+        assert_ne!(link.status().state, LinkState::Armed, "{wire}");
+        assert_eq!(line.writes_to(register::SPEED_SET.address), 0, "{wire}");
+        link.stop();
+        while line.writes_to(register::ANGLE_SET.address) == 0 {
+            sleep(Duration::from_millis(1)).await;
+        }
+        let mut end = None;
+        while end.is_none() {
+            if let LinkEvent::Done { ticket, result } = link.event().await.unwrap() {
+                assert_eq!(ticket, asked);
+                end = Some(result.unwrap());
+            }
+        }
+        let expected = if wire == "rs485:x" {
+            Calibrated::Finished
+        } else {
+            Calibrated::Quiet
+        };
+        assert_eq!(end, Some(Outcome::Calibrated(expected)), "{wire}");
+        assert_eq!(
+            line.writes_to(register::GESTURE_FORCE_CLB.address),
+            1,
+            "{wire}"
+        );
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_is_not_known_of_a_calibration_is_said() {
+    let clb = register::GESTURE_FORCE_CLB.address;
+    for wire in WIRES {
+        for (trouble, why) in [
+            (Trouble::Cut, SaveDoubt::LinkLost),
+            (Trouble::Mute, SaveDoubt::Unanswered),
+        ] {
+            let line = Line::new(Personality::default(), clb, trouble);
+            let mut link = open(&line, wire).await;
+            let end = ask(&mut link, Request::Calibrate).await;
+            let unknown = Calibrated::Unknown { why };
+            assert_eq!(end, Ok(Outcome::Calibrated(unknown)), "{wire} {trouble:?}");
+        }
+        let line = Line::new(Personality::default(), 0, Trouble::None);
+        let mut link = open(&line, wire).await;
+        link.arm(ArmRequest {
+            speed: PerDof::splat(Speed::GENTLE),
+            force: PerDof::splat(Force::GENTLE),
+        });
+        pass(&mut link, Duration::from_millis(500)).await;
+        let end = ask(&mut link, Request::Calibrate).await;
+        let refused = Calibrated::NotSent(NotSent::Armed);
+        assert_eq!(end, Ok(Outcome::Calibrated(refused)), "{wire}");
+        assert_eq!(line.writes_to(clb), 0);
     }
 }

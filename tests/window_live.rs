@@ -10,6 +10,8 @@
 
 #[path = "window/bench.rs"]
 mod bench;
+#[path = "window/cards.rs"]
+mod cards;
 #[path = "window/compare.rs"]
 mod compare;
 #[path = "window/device.rs"]

@@ -2,6 +2,7 @@
 
 use crate::app::device::wish::DeviceWish;
 use crate::app::faults::FaultKind;
+use crate::app::guard::GuardStep;
 use crate::app::layout::Layout;
 use crate::app::params::table::{ParamId, Value};
 use crate::app::poses::edit::LibraryEdit;
@@ -115,6 +116,14 @@ pub enum Action {
     GestureStore(GestureStore),
     /// Clear what can be cleared; the pose is held first.
     ClearErrors,
+    /// Change what the hand is found by: its id, serial speed or IP address. Asks first, under a card.
+    ChangePlace(ParamId, Value),
+    /// Return to the factory's parameters. Asks first, under a card.
+    FactoryReset,
+    /// Calibrate the force sensors. Checks first, under a card.
+    CalibrateForce,
+    /// What a person decides on such a card.
+    Guard(GuardStep),
     /// Talk to this hand from now on.
     Connect(Endpoint),
     /// Talk to no hand.

@@ -18,7 +18,7 @@ use crate::app::trial::Abort;
 use crate::app::tuner::TunerBook;
 use crate::hand::{Dof, Force, Group, Groups, HandSample, Moment, PerDof, Speed, Status};
 use crate::link::{
-    Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus, LinkTrouble, Outcome,
+    Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus, LinkTrouble, Outcome, Request,
     RequestError, Ticket, Traffic,
 };
 use crate::transport::Endpoint;
@@ -44,6 +44,8 @@ pub(crate) struct Desk {
     /// What is read and written of what the hand keeps.
     pub(crate) work: DeviceWork,
     asked: Vec<(Ticket, Asked)>,
+    /// The one request of what is done under a card, and how it ended.
+    own: Option<(Ticket, Option<Result<Outcome, RequestError>>)>,
     /// Angles received before this belong to a connection that is gone.
     seen_from: Option<Moment>,
     was_live: bool,
@@ -79,6 +81,7 @@ impl Desk {
             ports: Vec::new(),
             scan: ScanBook::default(),
             sheet: None,
+            guard: None,
             settings,
         };
         Self {
@@ -89,6 +92,7 @@ impl Desk {
             commanded: false,
             work: DeviceWork::default(),
             asked: Vec::new(),
+            own: None,
             seen_from: None,
             was_live: false,
         }
@@ -133,6 +137,7 @@ impl Desk {
         self.disarmed_at = None;
         self.commanded = false;
         self.asked.clear();
+        self.own = None;
         self.seen_from = Some(now);
         self.was_live = false;
         self.follow();
@@ -204,7 +209,24 @@ impl Desk {
         self.take_trials(sample, fresh, now);
     }
 
+    /// Asks one thing for what is done under a card.
+    pub(crate) fn ask_own(&mut self, request: Request) -> Result<(), RequestError> {
+        let link = self.link.as_ref().ok_or(RequestError::NotConnected)?;
+        self.own = Some((link.ask(request)?, None));
+        Ok(())
+    }
+
+    /// How that ended, once.
+    pub(crate) fn take_own(&mut self) -> Option<Result<Outcome, RequestError>> {
+        let (_, end) = self.own.take_if(|(_, end)| end.is_some())?;
+        end
+    }
+
     fn done(&mut self, ticket: Ticket, result: Result<Outcome, RequestError>, now: Moment) {
+        if let Some((_, end)) = self.own.as_mut().filter(|(own, _)| *own == ticket) {
+            *end = Some(result);
+            return;
+        }
         if self.device_done(ticket, &result, now) {
             return;
         }

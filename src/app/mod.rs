@@ -5,6 +5,7 @@ mod act_poses;
 #[cfg(test)]
 mod act_poses_tests;
 pub mod action;
+pub mod calibration;
 pub mod config;
 pub mod connect;
 pub mod cooling;
@@ -15,6 +16,7 @@ mod fake_link;
 pub mod faults;
 pub mod gestures;
 pub(crate) mod grip;
+pub mod guard;
 pub mod history;
 pub mod layout;
 #[cfg(test)]

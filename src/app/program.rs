@@ -5,6 +5,7 @@ use crate::app::config::Saver;
 use crate::app::desk::Desk;
 use crate::app::device::keeper::{DeviceKeeper, since_1970};
 use crate::app::device::wish::DeviceWish;
+use crate::app::guard::keeper::Guarding;
 use crate::app::notices::NoticeKind;
 use crate::app::params::file::ParamsFile;
 use crate::app::params::stamp::stamp;
@@ -72,6 +73,7 @@ pub struct App {
     reading: Option<Reading>,
     sheets: SheetKeeper,
     params: DeviceKeeper,
+    guarding: Guarding,
     leaving: Option<Leaving>,
     closing: Option<Closing>,
     ports: Option<oneshot::Receiver<Vec<PortFound>>>,
@@ -103,7 +105,13 @@ impl App {
             env.runtime.clone(),
             Arc::clone(&env.wake),
         );
+        let guarding = Guarding::new(
+            env.settings_path.as_deref(),
+            env.runtime.clone(),
+            Wake::clone(&env.wake),
+        );
         Self {
+            guarding,
             env,
             desk,
             saver,
@@ -159,6 +167,9 @@ impl App {
         }) {
             self.go(leaving.to, now);
         }
+        if let Some(place) = self.guarding.tick(&mut self.desk, now) {
+            self.go(Some(place), now);
+        }
         self.take_ports();
         if let Some(end) = self.saving.as_mut().and_then(Saving::ended) {
             self.saving = None;
@@ -195,6 +206,8 @@ impl App {
             Action::Stop => desk.stop(now),
             // A hand that is being left is not set in motion again.
             Action::Arm if self.leaving.is_some() || self.closing.is_some() => {}
+            // Nor is one that something is done to under a card.
+            Action::Arm | Action::ClearErrors if desk.state.guard.is_some() => {}
             Action::Arm => desk.arm(now),
             Action::Disarm => desk.disarm(now),
             Action::Target(dof, angle) => desk.target(dof, angle),
@@ -206,8 +219,15 @@ impl App {
             Action::SpeedOfAll(speed) => desk.speed_of_all(speed),
             Action::Gesture(gesture) => desk.gesture(gesture, now),
             Action::ClearErrors => desk.clear_errors(now),
+            Action::ChangePlace(id, wanted) => self.guarding.change(desk, id, wanted),
+            Action::FactoryReset => self.guarding.reset(desk),
+            Action::CalibrateForce => self.guarding.calibrate(desk),
+            Action::Guard(step) => self.guarding.step(desk, step, now),
             Action::Connect(endpoint) => self.connect(endpoint, now),
-            Action::Disconnect => self.leave(None, now),
+            Action::Disconnect => {
+                self.guarding.leave(desk);
+                self.leave(None, now);
+            }
             Action::FindPorts => self.find_ports(),
             Action::Save(content) => self.save(content),
             Action::Scan(wish) => {
@@ -302,6 +322,7 @@ impl App {
     }
 
     fn connect(&mut self, endpoint: Endpoint, now: Moment) {
+        self.guarding.leave(&mut self.desk);
         // A scan may still ask further ids on the port that is wanted.
         self.scanner.cancel(&mut self.desk.state.scan);
         self.desk.state.settings.endpoint = Some(endpoint.to_string());

@@ -3,6 +3,7 @@
 use crate::app::device::book::DeviceBook;
 use crate::app::faults::FaultBook;
 use crate::app::gestures::GestureBook;
+use crate::app::guard::Guarded;
 use crate::app::history::History;
 use crate::app::notices::Notices;
 use crate::app::peaks::ForcePeaks;
@@ -65,6 +66,8 @@ pub struct State {
     pub scan: ScanBook,
     /// What is kept about this hand; `None` for the built-in one, and until it was kept.
     pub sheet: Option<QuirkSheet>,
+    /// What is done under a card now.
+    pub guard: Option<Guarded>,
     /// What is kept from one start to the next.
     pub settings: Settings,
 }

@@ -215,6 +215,14 @@ impl Bus {
         }
     }
 
+    /// True if the frame came that ends a calibration; once.
+    pub(crate) fn take_calibration_end(&mut self) -> bool {
+        match self {
+            Self::Rs485(bus) => bus.take_calibration_end(),
+            Self::ModbusTcp(_) | Self::ModbusRtu(_) | Self::Can(_) => false,
+        }
+    }
+
     /// Asks nothing and takes what comes, until the result of a SAVE is there; never ends where there is none.
     pub(crate) async fn listen(&mut self) -> Result<(), BusError> {
         match self {

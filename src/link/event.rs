@@ -1,7 +1,7 @@
 //! What comes out of a link and what may be asked of it. Plain values only.
 
 use crate::hand::{Groups, HandCommand, HandSample, Moment, OutOfRange, Setting, Span};
-use crate::link::settled::{Reset, Saved, Written};
+use crate::link::settled::{Calibrated, Reset, Saved, Written};
 use crate::link::status::{ArmRefusal, LinkState};
 
 /// One thing that happened, in order.
@@ -54,6 +54,8 @@ pub enum Request {
     Save,
     /// Return to the factory's parameters. The hand may be found at another id, speed or address afterwards.
     Reset,
+    /// Calibrate the force sensors. The line is left to the hand, and nothing arms, until that is over.
+    Calibrate,
 }
 
 /// How a request ended well.
@@ -74,6 +76,8 @@ pub enum Outcome {
     Saved(Saved),
     /// What came of a return to the factory's parameters.
     Reset(Reset),
+    /// What came of a calibration.
+    Calibrated(Calibrated),
 }
 
 /// How a request failed. Nothing is tried again by itself.

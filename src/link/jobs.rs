@@ -59,7 +59,7 @@ impl Session {
         };
         match request {
             Request::Read(span) => job.read = Some(span),
-            Request::Set(_) | Request::Save | Request::Reset => {
+            Request::Set(_) | Request::Save | Request::Reset | Request::Calibrate => {
                 self.take_settling(ticket, request);
                 return;
             }

@@ -7,6 +7,7 @@
 //! ([`tap`], [`traffic`]).
 
 mod bus;
+mod calibrate;
 mod can;
 mod can_port;
 pub mod clock;
@@ -60,7 +61,7 @@ pub use latency::Ticks;
 pub use line_time::line_time;
 pub use plan::PollRates;
 pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
-pub use settled::{Doubt, NotSent, Reset, SaveDoubt, Saved, Verdict, Written};
+pub use settled::{Calibrated, Doubt, NotSent, Reset, SaveDoubt, Saved, Verdict, Written};
 pub use stats::{GroupUse, LineUse, LinkStats, PollGroup};
 pub use status::{
     ArmEpoch, ArmRefusal, ArmRequest, Dialling, Disarmed, Hold, LinkState, LinkStatus, LinkTrouble,

@@ -45,6 +45,7 @@ pub(crate) struct Rs485 {
     echo: Echo,
     foreign_requests: u64,
     save_results: ArrayVec<SaveResult, RESULTS_MAX>,
+    is_calibrated: bool,
 }
 
 /// What an open request waits for.
@@ -93,6 +94,7 @@ impl Rs485 {
             echo: Echo::default(),
             foreign_requests: 0,
             save_results: ArrayVec::new(),
+            is_calibrated: false,
         }
     }
 
@@ -146,9 +148,14 @@ impl Rs485 {
         self.save_results.pop_at(0)
     }
 
-    /// Takes what comes until the result of a SAVE is there. Safe to cancel.
+    /// True if the frame came that ends a calibration; once.
+    pub(crate) const fn take_calibration_end(&mut self) -> bool {
+        std::mem::replace(&mut self.is_calibrated, false)
+    }
+
+    /// Takes what comes until the result of a SAVE or the end of a calibration is there. Safe to cancel.
     pub(crate) async fn listen(&mut self) -> Result<(), BusError> {
-        while self.save_results.is_empty() {
+        while self.save_results.is_empty() && !self.is_calibrated {
             self.receive().await?;
             self.drop_foreign();
         }
@@ -294,6 +301,7 @@ impl Rs485 {
             // Of more than these the oldest tell all there is to tell.
             let _more = self.save_results.try_push(result);
         }
+        self.is_calibrated |= reply.id() == self.id.get() && reply.is_calibration_end();
         self.foreign += 1;
         if let Reply::Read { address, bytes, .. } = reply
             && let Ok(len) = u16::try_from(bytes.len())

@@ -4,11 +4,12 @@
 use crate::hand::register::{DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, SAVE};
 use crate::hand::{HandCommand, Moment, RegisterWrite, Setting, Span, Writes};
 use crate::link::bus::{Bus, BusError};
+use crate::link::calibrate::Calibrating;
 use crate::link::event::{Outcome, Request, RequestError, Ticket};
 use crate::link::handle::Wanted;
 use crate::link::save_watch::{Ack, Next, ResultFrame};
 use crate::link::session::{End, Session};
-use crate::link::settled::{Doubt, NotSent, Reset, Saved, Verdict, Written};
+use crate::link::settled::{Calibrated, Doubt, NotSent, Reset, SaveDoubt, Saved, Verdict, Written};
 use crate::link::status::LinkState;
 use std::sync::Arc;
 use std::time::Duration;
@@ -50,6 +51,7 @@ enum Work {
         before: Option<Vec<u8>>,
     },
     Reset,
+    Calibrate(Calibrating),
 }
 
 /// How a read ended.
@@ -77,6 +79,7 @@ impl Session {
                 before: None,
             },
             Request::Reset => Work::Reset,
+            Request::Calibrate => Work::Calibrate(Calibrating::default()),
             Request::Command(_) | Request::Read(_) => return,
         };
         if let Some(why) = self.may_not_settle(&work) {
@@ -106,12 +109,13 @@ impl Session {
         }
     }
 
-    /// True if the line is left to a hand that saves.
+    /// True if the line is left to a hand that saves or calibrates.
     pub(crate) const fn leaves_line(&self) -> bool {
         matches!(
             &self.settling,
             Some(Settling {
-                work: Work::Save { is_sent: true, .. },
+                work: Work::Save { is_sent: true, .. }
+                    | Work::Calibrate(Calibrating { sent: Some(_), .. }),
                 ..
             })
         )
@@ -132,6 +136,29 @@ impl Session {
                 self.settled(ticket, Outcome::Reset(end?));
                 Ok(())
             }
+            Work::Calibrate(run) => {
+                let run = *run;
+                self.settling = Some(settling);
+                self.settle_calibration(bus, run).await
+            }
+        }
+    }
+
+    /// What is under way stands so now.
+    pub(crate) fn keep_calibrating(&mut self, run: Calibrating) {
+        if let Some(Settling {
+            work: Work::Calibrate(kept),
+            ..
+        }) = &mut self.settling
+        {
+            *kept = run;
+        }
+    }
+
+    /// What is under way has come to its end.
+    pub(crate) fn calibrated(&mut self, calibrated: Calibrated) {
+        if let Some(ticket) = self.settling.as_ref().map(|settling| settling.ticket) {
+            self.settled(ticket, Outcome::Calibrated(calibrated));
         }
     }
 
@@ -304,7 +331,11 @@ impl Session {
         }
     }
 
-    async fn trigger(&mut self, bus: &mut Bus, command: &HandCommand) -> Result<(), BusError> {
+    pub(crate) async fn trigger(
+        &mut self,
+        bus: &mut Bus,
+        command: &HandCommand,
+    ) -> Result<(), BusError> {
         let write: Option<RegisterWrite> = command.writes().into_iter().next();
         match write {
             Some(write) => self.write(bus, &write).await,
@@ -313,7 +344,7 @@ impl Session {
     }
 
     /// Leaves the line to the hand: takes what comes, asks nothing, and ends early for a wish of the window.
-    async fn listen(&mut self, bus: &mut Bus, until: Moment) -> Result<(), End> {
+    pub(crate) async fn listen(&mut self, bus: &mut Bus, until: Moment) -> Result<(), End> {
         let now = self.now();
         let until = until.min(now.plus(LISTEN_FOR));
         // A stop that feedback does not confirm goes on meanwhile.
@@ -400,6 +431,9 @@ impl Session {
             })),
             Work::Save { .. } => saved.map(Outcome::Saved).ok_or(RequestError::LinkLost),
             Work::Reset => Ok(Outcome::Reset(Reset::Unanswered)),
+            Work::Calibrate(_) => Ok(Outcome::Calibrated(Calibrated::Unknown {
+                why: SaveDoubt::LinkLost,
+            })),
         };
         self.answer(settling.ticket, result);
     }
@@ -420,6 +454,7 @@ impl Work {
             }),
             Self::Save { .. } => Outcome::Saved(Saved::NotSent(why)),
             Self::Reset => Outcome::Reset(Reset::NotSent(why)),
+            Self::Calibrate(_) => Outcome::Calibrated(Calibrated::NotSent(why)),
         }
     }
 }

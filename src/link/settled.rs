@@ -128,3 +128,24 @@ pub enum Reset {
     /// It was not sent.
     NotSent(NotSent),
 }
+
+/// What came of a calibration of the force sensors.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Calibrated {
+    /// The hand's second frame says that it is finished (RS485 only).
+    Finished,
+    /// Acknowledged, and the line was left alone for longer than it takes. No frame said so.
+    Quiet,
+    /// The hand said no.
+    Refused {
+        /// The protocol's word for it.
+        reason: String,
+    },
+    /// Whether the sensors were calibrated is not known.
+    Unknown {
+        /// Why.
+        why: SaveDoubt,
+    },
+    /// It was not sent.
+    NotSent(NotSent),
+}

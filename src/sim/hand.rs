@@ -116,6 +116,8 @@ pub struct SimHand {
     /// When the SAVE under way is in flash, on a hand that takes its time.
     pub(crate) flash_due_ms: Option<u64>,
     pub(crate) saves: VecDeque<(Moment, SaveFrame)>,
+    /// When a serial line with the maker's framing hears that a calibration is finished.
+    pub(crate) calibration_end: Option<Moment>,
     pub(crate) id: u8,
     pub(crate) baud_code: u8,
     /// Chance of what is not the body's: how answers are sent.
@@ -144,6 +146,7 @@ impl SimHand {
             calibration_due_ms: None,
             flash_due_ms: None,
             saves: VecDeque::new(),
+            calibration_end: None,
             id: config.id,
             baud_code: 0,
             chance: fastrand::Rng::with_seed(config.seed ^ 0x5EED),
@@ -261,6 +264,17 @@ impl SimHand {
         self.saves.front().map(|(due, _)| *due)
     }
 
+    /// When the end of a calibration is to be told.
+    #[must_use]
+    pub const fn next_calibration_end(&self) -> Option<Moment> {
+        self.calibration_end
+    }
+
+    /// True if the end of a calibration is to be told now; once.
+    pub fn late_calibration_end(&mut self, now: Moment) -> bool {
+        self.calibration_end.take_if(|due| *due <= now).is_some()
+    }
+
     /// Switches the hand off and on. The joints stay where they are.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance_to(now);
@@ -271,6 +285,7 @@ impl SimHand {
         self.memory.power_cycle();
         self.saves.clear();
         self.calibration_due_ms = None;
+        self.calibration_end = None;
         self.flash_due_ms = None;
         self.id = self.memory.byte(HAND_ID.address);
         self.baud_code = self.memory.byte(REDU_RATIO.address);

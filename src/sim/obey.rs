@@ -66,6 +66,7 @@ impl SimHand {
             }
             a if a == GESTURE_FORCE_CLB.address && on => {
                 self.calibration_due_ms = Some(self.now_ms + CALIBRATION_MS);
+                self.calibration_end = Some(now.plus(Duration::from_millis(CALIBRATION_MS)));
             }
             a if a == GESTURE_NO_SET.address => self.take_pose(change.value),
             a if a == ACTION_SEQ_RUN.address && on => {

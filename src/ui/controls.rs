@@ -139,6 +139,8 @@ pub(crate) enum Weight {
     Quiet,
     /// Setpoints pass.
     Armed,
+    /// What cannot simply be taken back.
+    Danger,
     /// Stop.
     Stop,
 }
@@ -230,7 +232,7 @@ impl<'a> Button<'a> {
 
     /// The button without its text, for those that paint their own.
     pub(crate) fn ground(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
-        let enabled = self.disabled.is_none();
+        let enabled = self.disabled.is_none() && ui.is_enabled();
         let sense = if enabled {
             Sense::click()
         } else {
@@ -273,6 +275,7 @@ impl<'a> Button<'a> {
             (None, Weight::Quiet) => palette.muted,
             (None, Weight::Strong | Weight::Stop) => palette.on_strong,
             (None, Weight::Armed) => palette.on_armed,
+            (None, Weight::Danger) => palette.bad,
         }
     }
 
@@ -293,6 +296,8 @@ impl<'a> Button<'a> {
             Weight::Chosen => (palette.wash(palette.accent), palette.accent),
             Weight::Strong => (palette.accent, palette.accent),
             Weight::Armed => (palette.armed, palette.armed),
+            Weight::Danger if hot => (palette.wash(palette.bad), palette.bad),
+            Weight::Danger => (palette.control, palette.bad),
             Weight::Stop if hot => (palette.stop_hover, palette.stop_edge),
             Weight::Stop => (palette.stop, palette.stop_edge),
         }
@@ -337,6 +342,9 @@ pub(crate) fn titled_card(ui: &mut Ui, look: Look, rect: Rect, title: &str) -> (
 /// True in the frame in which a place is pressed, or its button clicked by a key or a screen reader. A stop does not
 /// wait for the release, and is not lost where a slow frame sees press, release and a pointer that is gone already.
 pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
+    if !ui.is_enabled() {
+        return false;
+    }
     let down = |event: &Event| match event {
         Event::PointerButton {
             pos,

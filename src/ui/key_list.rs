@@ -22,6 +22,11 @@ impl KeyList {
         self.fresh = self.open;
     }
 
+    /// Shows it no more.
+    pub(crate) fn hide(&mut self) {
+        self.open = false;
+    }
+
     /// Draws it in the middle of a place, if it is shown. A click beside it hides it.
     pub(crate) fn ui(&mut self, ui: &Ui, place: Rect, look: Look) {
         if !self.open {

@@ -3,6 +3,10 @@
 mod banner;
 mod border;
 mod budget;
+mod calibration;
+mod card;
+#[cfg(test)]
+mod card_tests;
 mod compare;
 mod compare_best;
 mod compare_table;
@@ -21,6 +25,7 @@ mod format;
 mod frame_menu;
 mod gesture_editor;
 mod gestures;
+mod guard;
 mod hand_picture;
 mod hand_scene;
 mod joint_rail;

@@ -17,8 +17,8 @@ const STOP_WIDTH: f32 = theme::STOP_WIDTH;
 /// Width of Arm.
 const ARM_WIDTH: f32 = theme::ARM_WIDTH;
 
-/// Draws the bar. True if the connection was asked for.
-pub(crate) fn top_bar_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
+/// Draws the ground of the bar and STOP; the place of everything else. STOP can be pressed whatever card is open.
+pub(crate) fn stop_first_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> Rect {
     let palette = pane.look.palette;
     ui.painter()
         .rect_filled(rect, CornerRadius::ZERO, palette.card);
@@ -28,6 +28,11 @@ pub(crate) fn top_bar_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> bool {
     let mut rest = rect.shrink2(vec2(theme::PAD, theme::GAP));
     stop_ui(ui, take_right(&mut rest, STOP_WIDTH), pane);
     rest.max.x -= theme::STEP;
+    rest
+}
+
+/// Draws the rest of the bar. True if the connection was asked for.
+pub(crate) fn top_bar_ui(ui: &mut Ui, mut rest: Rect, pane: &mut Pane<'_>) -> bool {
     arm_ui(ui, take_right(&mut rest, ARM_WIDTH), pane);
     rest.max.x -= theme::STEP;
     unseen_ui(ui, &mut rest, pane);

@@ -2,16 +2,19 @@
 
 use crate::app::action::{Action, Play, Preset};
 use crate::app::device::wish::DeviceWish;
+use crate::app::guard::GuardStep;
 use crate::app::layout::Room;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
 use crate::app::tuner::TrialWish;
 use crate::ui::banner;
 use crate::ui::border::{border_ui, shut_ui};
+use crate::ui::card::{Card, CardView};
 use crate::ui::compare::CompareView;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::device::DeviceView;
 use crate::ui::faults::{self, FaultsView};
+use crate::ui::guard;
 use crate::ui::joint_rail;
 use crate::ui::joint_row::Row;
 use crate::ui::joints::JointsView;
@@ -119,6 +122,7 @@ pub struct Window {
     faults: FaultsView,
     note: NoteBar,
     key_list: KeyList,
+    cards: CardView,
     poses: PoseView,
     device: DeviceView,
     connection: ConnectionForm,
@@ -160,20 +164,24 @@ impl Window {
     pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
         self.install_if_changed(ui, state);
         let mut actions = Vec::new();
-        let wishes = if state.tuner.is_running() {
+        let mut wishes = if state.tuner.is_running() {
             keys::take_any(ui)
         } else {
             keys::take(ui)
         };
+        if self.is_covered(state) {
+            wishes.retain(|wish| *wish == Wish::Stop);
+        }
         let stopped = wishes.contains(&Wish::Stop);
         let mut typing = std::mem::take(&mut self.typing);
-        let mut explain = None;
+        let (mut explain, mut ask) = (None, None);
         let mut pane = Pane {
             state,
             look: Look::of(state),
             actions: &mut actions,
             typing: &mut typing,
             explain: &mut explain,
+            ask: &mut ask,
         };
         for wish in wishes {
             self.obey(ui, &mut pane, wish);
@@ -181,7 +189,21 @@ impl Window {
         self.parts_ui(ui, &mut pane);
         self.typing = typing;
         self.explain(explain);
+        if let Some(card) = ask {
+            self.ask(card);
+        }
         stop_first(actions, stopped)
+    }
+
+    /// Shows a card until it is answered.
+    pub(crate) fn ask(&mut self, card: Card) {
+        self.key_list.hide();
+        self.cards.ask(card);
+    }
+
+    /// True while a card covers the body of the window.
+    const fn is_covered(&self, state: &State) -> bool {
+        self.cards.is_asking() || state.guard.is_some()
     }
 
     /// Does what a key asks for, under the same conditions as the control that does it.
@@ -252,6 +274,12 @@ impl Window {
         ui.painter()
             .rect_filled(whole, 0.0, pane.look.palette.window);
         let (bar, mut body) = whole.split_top_bottom_at_y(whole.top() + theme::TOP_BAR);
+        let covered = body;
+        let bar = top_bar::stop_first_ui(ui, bar, pane);
+        if self.is_covered(pane.state) {
+            self.key_list.hide();
+            ui.disable();
+        }
         if top_bar::top_bar_ui(ui, bar, pane) {
             self.view = View::Connection;
         }
@@ -285,6 +313,9 @@ impl Window {
         }
         self.view_ui(ui, body.view, pane);
         self.key_list.ui(ui, below, pane.look);
+        let own = guard::card_of(pane.state, pane.look);
+        let asked = self.cards.ui(ui, covered, pane.look, own);
+        pane.actions.extend(asked);
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
@@ -352,6 +383,7 @@ impl Window {
             actions: &mut actions,
             typing: &mut typing,
             explain: &mut None,
+            ask: &mut None,
         };
         let whole = ui.max_rect();
         ui.painter()
@@ -386,6 +418,7 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
                     DeviceWish::Apply | DeviceWish::Undo | DeviceWish::Save | DeviceWish::Agree
                 )
                 | Action::Trial(TrialWish::Start)
+                | Action::Guard(GuardStep::Begin | GuardStep::Save)
                 | Action::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
         )
     });
@@ -408,6 +441,7 @@ mod tests {
                 Action::Preset(Preset::Open),
                 Action::Gesture(Gesture::MIN),
                 Action::Recall(PoseId(1)),
+                Action::Guard(GuardStep::Begin),
                 Action::TryAngles(PerDof::splat(Angle::MAX)),
                 Action::Trial(TrialWish::Start),
                 Action::Play(Play::Start(SequenceId(1))),

@@ -58,6 +58,7 @@ pub fn empty() -> State {
         ports: Vec::new(),
         scan: handscope::app::ScanBook::default(),
         sheet: None,
+        guard: None,
         settings: Settings::default(),
     }
 }

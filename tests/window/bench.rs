@@ -5,6 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use futures::future::BoxFuture;
 use handscope::app::InFolder;
+use handscope::app::action::Action;
 use handscope::app::program::{App, Env};
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
@@ -200,6 +201,22 @@ impl Bench {
             .with_step_dt(frame_s)
             .build_ui_state(|ui, room: &mut Room| room.frame(ui), room);
         Self { harness }
+    }
+
+    /// A start with a hand that is remembered, and everything kept in the folder of saved files.
+    pub fn kept(config: SimConfig, endpoint: &str, size: Vec2) -> Self {
+        let settings = Settings {
+            endpoint: Some(endpoint.into()),
+            ..Settings::default()
+        };
+        Self::begin(Room::new(config, settings, Keeps::Records), size)
+    }
+
+    /// Asks for something as a view does that is not open.
+    pub fn act(&mut self, action: Action) {
+        let room = self.harness.state_mut();
+        let _inside = room.runtime.enter();
+        room.cockpit.app().act(action, room.clock.now());
     }
 
     /// The first start, one second later.

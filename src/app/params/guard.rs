@@ -69,6 +69,8 @@ pub struct Guard {
     wanted: Value,
     step: Step,
     rounds: u8,
+    /// Whether a change can act at once, so that the hand is looked for at the new place after the write.
+    is_followed: bool,
     is_written: bool,
     refused: Option<String>,
 }
@@ -85,6 +87,21 @@ impl Guard {
             wanted,
             step,
             rounds: ROUNDS,
+            is_followed: true,
+            is_written: false,
+            refused: None,
+        }
+    }
+
+    /// Begins a change that cannot act before the next power-up, or that this wire does not find the hand by: only the
+    /// place where the hand is now is looked at.
+    #[must_use]
+    pub const fn staying(wanted: Value) -> Self {
+        Self {
+            wanted,
+            step: Step::Write,
+            rounds: ROUNDS,
+            is_followed: false,
             is_written: false,
             refused: None,
         }
@@ -100,8 +117,8 @@ impl Guard {
     pub fn wrote(&mut self, refused: Option<String>) {
         self.is_written = true;
         self.step = Step::Look(match refused {
-            Some(_) => Place::Old,
-            None => Place::New,
+            None if self.is_followed => Place::New,
+            _ => Place::Old,
         });
         self.refused = refused;
     }
@@ -125,7 +142,8 @@ impl Guard {
                 self.rounds -= 1;
                 match self.rounds {
                     0 => Step::Over(Moved::Nowhere),
-                    _ => Step::Look(Place::New),
+                    _ if self.is_followed => Step::Look(Place::New),
+                    _ => Step::Look(Place::Old),
                 }
             }
         };
@@ -251,6 +269,24 @@ mod tests {
             }
         }
         assert_eq!(ends, 81);
+    }
+
+    #[test]
+    fn a_change_that_waits_for_power_is_looked_for_only_where_the_hand_is() {
+        for (holds, expected) in [
+            (Some(NEW), Moved::Waits),
+            (Some(OLD), Moved::Stayed),
+            (None, Moved::Nowhere),
+        ] {
+            let mut guard = Guard::staying(NEW);
+            assert_eq!(*guard.step(), Step::Write);
+            guard.wrote(None);
+            while !matches!(guard.step(), Step::Over(_)) {
+                assert_eq!(*guard.step(), Step::Look(Place::Old));
+                guard.heard(holds);
+            }
+            assert_eq!(*guard.step(), Step::Over(expected));
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The asking half of the framing: requests out, replies in. The device half is in `device`.
 
 use crate::codec::rs485::framing::{
-    self, Frame, Framer, NoiseCounts, Parts, Payload, READ_LEN_MAX, WRITE, Way,
+    self, CALIBRATION_END, Frame, Framer, NoiseCounts, Parts, Payload, READ_LEN_MAX, WRITE, Way,
 };
 use crate::hand::register::SAVE;
 use crate::hand::{HandId, RegisterWrite, Span};
@@ -97,6 +97,13 @@ impl Reply {
         match self {
             Self::Read { address, .. } | Self::WriteAck { address, .. } => *address,
         }
+    }
+
+    /// True if this can be the frame that ends a calibration of the force sensors. Only meaningful while one is awaited.
+    // Manual: silent; the older manual of this family shows `90 EB 01 04 11 02 00 00 18`, about six seconds later.
+    #[must_use]
+    pub fn is_calibration_end(&self) -> bool {
+        matches!(self, Self::Read { address: CALIBRATION_END, bytes, .. } if bytes.as_slice() == [0])
     }
 
     /// The result of a SAVE, if this can be the late frame that carries it.

@@ -1,7 +1,7 @@
 //! The answering half of the framing, for the simulated hand: requests in, replies out. The asking half is in `client`.
 
 use crate::codec::rs485::framing::{
-    self, Frame, Framer, NoiseCounts, Parts, Payload, READ, WRITE, Way,
+    self, CALIBRATION_END, Frame, Framer, NoiseCounts, Parts, Payload, READ, WRITE, Way,
 };
 use crate::hand::Span;
 use crate::hand::register::SAVE;
@@ -67,6 +67,12 @@ pub fn encode_read_reply(id: u8, address: u16, bytes: &[u8]) -> Option<Frame> {
 #[must_use]
 pub fn encode_write_ack(id: u8, address: u16, value: u8) -> Frame {
     framing::build_short(Way::Reply, id, WRITE, address, value)
+}
+
+/// The late frame that tells that a calibration of the force sensors is finished.
+#[must_use]
+pub fn encode_calibration_end(id: u8) -> Frame {
+    framing::build_short(Way::Reply, id, READ, CALIBRATION_END, 0)
 }
 
 /// The late frame that tells how a SAVE ended (manual 2.2.2), with command byte 0x11 or 0x12.

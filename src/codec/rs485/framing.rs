@@ -19,6 +19,9 @@ pub(super) const READ: u8 = 0x11;
 /// Command byte of a write.
 pub(super) const WRITE: u8 = 0x12;
 
+/// What stands in the place of the address in the frame that ends a calibration.
+pub(super) const CALIBRATION_END: u16 = 2;
+
 const REQUEST_HEADER: [u8; 2] = [0xEB, 0x90];
 const REPLY_HEADER: [u8; 2] = [0x90, 0xEB];
 /// Header, id and length byte before, checksum after what the length byte counts.

@@ -7,7 +7,8 @@ pub mod inspect;
 
 pub use client::{Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
 pub use device::{
-    Request, RequestDecoder, encode_read_reply, encode_save_result, encode_write_ack,
+    Request, RequestDecoder, encode_calibration_end, encode_read_reply, encode_save_result,
+    encode_write_ack,
 };
 pub use framing::{BUFFER_LEN, Frame, NoiseCounts, Payload, READ_LEN_MAX};
 

@@ -1,8 +1,8 @@
 //! Simulated hands on a serial wire, private framing (manual 2.2). Opens no port.
 
 use crate::codec::rs485::{
-    Frame, READ_LEN_MAX, Request, RequestDecoder, encode_read_reply, encode_save_result,
-    encode_write_ack,
+    Frame, READ_LEN_MAX, Request, RequestDecoder, encode_calibration_end, encode_read_reply,
+    encode_save_result, encode_write_ack,
 };
 use crate::hand::Span;
 use crate::sim::memory::Refusal;
@@ -46,11 +46,11 @@ impl<W: Wire> Line<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {
-            let due = self.next_save_result();
+            let due = self.next_late_frame();
             tokio::select! {
                 biased;
                 () = sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => {
-                    self.send_save_results().await?;
+                    self.send_late_frames().await?;
                 }
                 read = self.wire.read(&mut chunk) => match read? {
                     0 => return Ok(()),
@@ -92,15 +92,18 @@ impl<W: Wire> Line<W> {
         Ok(())
     }
 
-    fn next_save_result(&self) -> Option<Instant> {
+    fn next_late_frame(&self) -> Option<Instant> {
         let due = self.hands.iter().filter_map(|hand| {
-            let due = hand.with(|hand, _| hand.next_save_result())?;
+            let due = hand.with(|hand, _| {
+                let two = [hand.next_save_result(), hand.next_calibration_end()];
+                two.into_iter().flatten().min()
+            })?;
             Some(hand.instant(due))
         });
         due.min()
     }
 
-    async fn send_save_results(&mut self) -> io::Result<()> {
+    async fn send_late_frames(&mut self) -> io::Result<()> {
         for hand in self.hands.iter() {
             let frame = hand.with(|hand, now| {
                 let result = hand.late_save_result(now)?;
@@ -108,6 +111,11 @@ impl<W: Wire> Line<W> {
             });
             if let Some(frame) = frame {
                 self.wire.write_all(&frame).await?;
+                self.wire.flush().await?;
+            }
+            let ended = hand.with(|hand, now| hand.late_calibration_end(now).then(|| hand.id()));
+            if let Some(id) = ended {
+                self.wire.write_all(&encode_calibration_end(id)).await?;
                 self.wire.flush().await?;
             }
         }

@@ -38,12 +38,13 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        device, faults, keys, layout, main, panels, plots, poses, quirks, scan, touch, traffic,
-        tune,
+        cards, device, faults, keys, layout, main, panels, plots, poses, quirks, scan, touch,
+        traffic, tune,
     };
 
     fn all() -> impl Iterator<Item = &'static Text> {
         let lists = [
+            cards::ALL,
             device::ALL,
             faults::ALL,
             keys::ALL,

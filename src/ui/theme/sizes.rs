@@ -197,3 +197,11 @@ pub(crate) const TICK: f32 = 5.0;
 pub(crate) const NOTCH: f32 = 16.0;
 /// Width of a menu that shows frames.
 pub(crate) const MENU_WIDE: f32 = 440.0;
+/// Width of a card over the window.
+pub(crate) const CARD_WIDTH: f32 = 560.0;
+/// Space inside it.
+pub(crate) const CARD_PAD: f32 = 20.0;
+/// The least width of its buttons.
+pub(crate) const CARD_BUTTON: f32 = 96.0;
+/// Width of a cell of its tables.
+pub(crate) const CARD_CELL: f32 = 96.0;
