@@ -9,6 +9,7 @@ use crate::cli::scan::ScanArgs;
 use crate::cli::sim_quirks::{self, Quirk};
 use crate::cli::trial::TrialArgs;
 use crate::hand::Register;
+use crate::headless::driver::SceneCard;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::View;
@@ -115,6 +116,9 @@ pub(crate) struct SnapshotArgs {
     /// One view (live, touch, faults, poses, connection, traffic), the window as it opens, or all of them
     #[arg(long, value_name = "NAME", default_value = "window", value_parser = views)]
     pub(crate) view: Views,
+    /// A card over the view, which then names the files
+    #[arg(long)]
+    pub(crate) card: Option<CardArg>,
     /// Width x height in points
     #[arg(long, value_name = "WxH", default_value = "1440x900", value_parser = size)]
     pub(crate) size: (u32, u32),
@@ -232,6 +236,25 @@ pub(crate) enum Views {
     One(View),
     /// Each view, and the window as it opens.
     All,
+}
+
+/// A card that can be shown.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum CardArg {
+    Reset,
+    Calibrate,
+    Address,
+}
+
+impl CardArg {
+    /// The card, and what its files are called.
+    pub(crate) const fn card(self) -> (SceneCard, &'static str) {
+        match self {
+            Self::Reset => (SceneCard::Reset, "card-reset"),
+            Self::Calibrate => (SceneCard::Calibrate, "card-calibrate"),
+            Self::Address => (SceneCard::Address, "card-address"),
+        }
+    }
 }
 
 /// The window's colours.

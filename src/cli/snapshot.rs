@@ -1,7 +1,7 @@
 //! `snapshot`: pictures of the window and lists of what stands in it, as files. Draws nothing itself.
 
 use crate::app::settings::{Language, Theme};
-use crate::cli::args::{SnapshotArgs, Views};
+use crate::cli::args::{CardArg, SnapshotArgs, Views};
 use crate::cli::out::{Out, say};
 use crate::headless::canvas::Picture;
 use crate::headless::driver::{Driver, Scene};
@@ -31,12 +31,17 @@ pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
     if args.hand.is_none() && shows_trials(args) {
         driver.try_grasps();
     }
+    let card = args.card.map(CardArg::card);
+    if let Some((card, _)) = card {
+        driver.open_card(card);
+    }
     fs::create_dir_all(&args.out)
         .with_context(|| format!("cannot make the folder {}", args.out.display()))?;
     for (language, of_language) in args.lang.each() {
         for (number, (theme, of_theme)) in args.theme.each().iter().enumerate() {
             driver.dress(*theme, *language);
             for (name, view) in pictures(args.view) {
+                let name = card.map_or(name, |(_, name)| name);
                 let picture = driver.picture(view);
                 let labels = args.out.join(format!("{name}{of_language}.json"));
                 let image = args.out.join(format!("{name}{of_language}{of_theme}.png"));

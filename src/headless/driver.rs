@@ -3,6 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::device::wish::DeviceWish;
+use crate::app::params::table::{ParamId, Value};
 use crate::app::settings::{Language, Theme};
 use crate::app::trial::Limits;
 use crate::app::tuner::{Draft, TrialWish};
@@ -15,6 +16,7 @@ use crate::link::{Clock, LinkTrouble};
 use crate::shell::Cockpit;
 use crate::transport::Endpoint;
 use crate::ui::View;
+use std::net::Ipv4Addr;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
@@ -42,6 +44,22 @@ pub struct Scene {
     /// Language of the window.
     pub language: Language,
 }
+
+/// A card that can be shown over the view. Opening it asks nothing of the hand but to be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SceneCard {
+    /// The question before the factory's parameters.
+    Reset,
+    /// The checks before a calibration of the force sensors.
+    Calibrate,
+    /// The question before another IP address.
+    Address,
+}
+
+/// An address of this computer, so that the way to it is the same everywhere.
+const OTHER_ADDRESS: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 20);
+/// A calibration wants the force steady for two seconds.
+const CHECKED_WITHIN: Duration = Duration::from_millis(2600);
 
 /// Why there is nothing to show.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -243,6 +261,24 @@ impl Driver {
         while self.cockpit.state().tuner.is_running() && self.now().since(begun) < GRASPS_WITHIN {
             self.step(STEP);
         }
+    }
+
+    /// Opens a card, and lets its checks be made. Nothing is decided on it.
+    pub fn open_card(&mut self, card: SceneCard) {
+        let action = match card {
+            SceneCard::Reset => Action::FactoryReset,
+            SceneCard::Calibrate => Action::CalibrateForce,
+            SceneCard::Address => {
+                self.read_rows();
+                Action::ChangePlace(ParamId::IpAddress, Value::Address(OTHER_ADDRESS))
+            }
+        };
+        let now = self.now();
+        let inside = self.runtime.enter();
+        self.cockpit.app().act(action, now);
+        drop(inside);
+        self.run_for(CHECKED_WITHIN, |_| ());
+        self.hold_still();
     }
 
     /// The whole window with this view open, as it is now. Time stands still, but for a view that reads from the hand when it is
