@@ -473,20 +473,27 @@ fn copy_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, dof: Dof) {
     }
 }
 
-/// A row that says where the hand is found is not written from the table.
-fn change_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, id: ParamId) {
+/// A row that says where the hand is found is not written from the table: it is changed under a card, with a way back.
+fn change_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let label = format!(
         "{} {}",
         look.say(device::CHANGE),
         verdicts::whole_name(look, id)
     );
-    let reason = match pane.state.device.staged(id) {
-        None => device::CHANGE_NONE,
-        Some(_) => device::CHANGE_LATER,
+    let live = pane.state.device.live(id).map(|(value, _)| value);
+    let wanted = pane.state.device.staged(id);
+    let wanted = wanted.filter(|wanted| Some(*wanted) != live);
+    let reason = match wanted {
+        None => Some(device::CHANGE_NONE),
+        Some(_) if pane.state.is_simulated() => Some(device::CHANGE_SIM),
+        Some(_) => pane.state.write_refusal().map(verdicts::refusal),
     };
     let button = Button::new(look.say(device::CHANGE), look.say(device::CHANGE_TIP))
         .named(&label)
-        .disabled(Some(look.say(reason)));
-    button.put(ui, look, rect, Id::unique((id, "change")));
+        .disabled(reason.map(|reason| look.say(reason)));
+    let pressed = button.put(ui, look, rect, Id::unique((id, "change")));
+    if let Some(wanted) = wanted.filter(|_| pressed.clicked()) {
+        pane.actions.push(Action::ChangePlace(id, wanted));
+    }
 }

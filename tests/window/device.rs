@@ -131,7 +131,6 @@ fn apply_writes_only_staged_rows_and_undo_puts_them_back() {
         "1",
         "where the hand is stays"
     );
-    assert!(bench.is_disabled(Role::Button, "Change... Hand id"));
     let applied = bench.addresses().len();
     let elements = DEFAULTS[0]..DEFAULTS[0] + 12;
     assert!(
@@ -144,6 +143,24 @@ fn apply_writes_only_staged_rows_and_undo_puts_them_back() {
     settle(&mut bench);
     assert_eq!(bench.reading("Index speed live"), "100");
     assert!(bench.addresses().len() > applied);
+}
+
+#[test]
+fn where_the_hand_is_found_changes_only_under_a_card() {
+    let mut bench = Bench::kept(SimConfig::default(), "rs485:/dev/hand?id=1", LARGE);
+    bench.wait(1500);
+    open(&mut bench);
+    assert!(bench.is_disabled(Role::Button, "Change... Hand id"));
+    stage(&mut bench, "Hand id staged", "7");
+    assert!(bench.is_disabled(Role::Button, "Apply"));
+    bench.click("Change... Hand id");
+    bench.run(100);
+    assert_eq!(bench.writes(), [], "the card asks first");
+    assert!(
+        bench.shows("Change the id of the hand?"),
+        "{:?}",
+        bench.texts()
+    );
 }
 
 #[test]

@@ -29,7 +29,8 @@ texts! {
     CHANGE: "Change...", "更改...";
     CHANGE_TIP: "Changes where the hand is found, step by step and with a way back.", "分步更改灵巧手的位置，并保留退路。";
     CHANGE_NONE: "Type another value first.", "请先输入另一个值。";
-    CHANGE_LATER: "This row is not written from here: use 'handscope params apply --only'.", "此行不在这里写入：请用 handscope params apply --only。";
+
+    CHANGE_SIM: "The simulated hand is always found here.", "仿真手总在此处。";
 
     NAME: "Name", "名称";
     LIVE: "Live", "实际值";
