@@ -182,7 +182,7 @@ impl Pass<'_, '_> {
             range: 0.0..=1000.0,
             decimals: 0,
         };
-        let room = row.width().min(theme::PLAN_ANGLE);
+        let room = row.width().min(theme::PLAN_WAY);
         let place = take_left(row, room);
         let id = Id::unique(("trial angle", dof, side));
         let typed = field.put(ui, look, self.pane.typing, place, id)?;

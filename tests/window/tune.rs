@@ -320,3 +320,18 @@ fn nothing_moves_by_opening_the_view_or_by_arming() {
     assert!(bench.state().tuner.run.is_none());
     assert_eq!(bench.angle(Dof::Index), 1000);
 }
+
+#[test]
+fn start_and_target_of_a_joint_have_room_in_the_smallest_window() {
+    let mut bench = Bench::open(SimConfig::default(), egui::vec2(1024.0, 640.0));
+    bench.wait(1000);
+    bench.show(View::Tune);
+    for field in ["Index from", "Index to"] {
+        assert!(
+            bench.rect(Role::TextInput, field).width() >= 48.0,
+            "{field}"
+        );
+    }
+    enter(&mut bench, "Index to", "300");
+    assert_eq!(draft(&bench).close[Dof::Index].get(), 300);
+}
