@@ -4,11 +4,14 @@ use crate::program::run;
 use serde_json::Value;
 use std::fs;
 
-const VIEWS: [&str; 7] = [
+const VIEWS: [&str; 10] = [
     "live",
     "touch",
+    "tune",
+    "compare",
     "faults",
     "poses",
+    "device",
     "connection",
     "traffic",
     "window",
