@@ -124,8 +124,13 @@ impl CompareView {
     /// Whose hand it was, note and tags.
     fn words_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, session: &Session) {
         let look = pane.look;
-        let day = crate::app::quirk_sheet::day(session.head.begun);
-        let about = format!("{day}  {}", session.head.hand);
+        // What was tried on the built-in hand belongs to no day.
+        let about = if session.head.simulated {
+            session.head.hand.clone()
+        } else {
+            let day = crate::app::quirk_sheet::day(session.head.begun);
+            format!("{day}  {}", session.head.hand)
+        };
         let width = row.width() * theme::MAP_SHARE;
         let place = take_left(&mut row, width);
         Label::new(&about, look.palette.muted)

@@ -2,12 +2,13 @@
 
 use crate::app::trial::{JointMetrics, Setting};
 use crate::app::tuner::Session;
+use crate::hand::Status;
 use crate::ui::compare::color;
 use crate::ui::controls::{self, Button, Label, take_left};
 use crate::ui::list;
-use crate::ui::look::Pane;
+use crate::ui::look::{Look, Pane};
 use crate::ui::text::{Text, trials, tune, words};
-use crate::ui::theme;
+use crate::ui::{format, theme};
 use egui::{Align2, Color32, CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo};
 
 /// One column.
@@ -99,7 +100,7 @@ fn rows<'a>(pane: &Pane<'_>, session: &'a Session) -> Vec<Row<'a>> {
             };
             let end = match &tried.ended {
                 Some(why) => trials::ended(look, why),
-                None => joint.end_status.clone().unwrap_or_else(|| "-".into()),
+                None => end_words(look, joint.end_status.as_deref()),
             };
             rows.push(Row {
                 number: tried.number,
@@ -115,6 +116,20 @@ fn rows<'a>(pane: &Pane<'_>, session: &'a Session) -> Vec<Row<'a>> {
         }
     }
     rows
+}
+
+/// What the drive said in the end, in words; a name that this program does not know stays as it is.
+fn end_words(look: Look, name: Option<&str>) -> String {
+    let Some(name) = name else {
+        return format::UNKNOWN.to_owned();
+    };
+    let mut known = (0..=u8::MAX).map(Status::from_raw);
+    known
+        .find(|status| !matches!(status, Status::Unknown(_)) && status.name() == name)
+        .map_or_else(
+            || name.to_owned(),
+            |status| words::status(status, look.language).title.to_owned(),
+        )
 }
 
 /// Speed and threshold.
@@ -142,7 +157,7 @@ fn sorted(mut rows: Vec<Row<'_>>, sorting: Sorting) -> Vec<Row<'_>> {
 
 fn cells(row: Rect) -> (Rect, Rect, f32) {
     let (first, rest) = row.split_left_right_at_x(row.left() + theme::TRIAL_FIRST_COLUMN);
-    (first, rest, rest.width() / 11.0)
+    (first, rest, rest.width() / theme::TRIAL_COLUMNS)
 }
 
 fn head_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, sorting: &mut Sorting) {

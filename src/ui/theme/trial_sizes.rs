@@ -1,5 +1,7 @@
 //! Lengths of the views of grasp trials, points. No colours, no fonts.
 
+/// Columns of numbers in the table of trials, with the room of the end in their widths.
+pub(crate) const TRIAL_COLUMNS: f32 = 11.6;
 /// Width of the plan as a share of its view, and between which widths.
 pub(crate) const PLAN_SHARE: f32 = 0.44;
 /// Its least width: every joint with two angles.
