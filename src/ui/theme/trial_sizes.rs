@@ -5,11 +5,11 @@ pub(crate) const TRIAL_COLUMNS: f32 = 11.6;
 /// Width of the plan as a share of its view, and between which widths.
 pub(crate) const PLAN_SHARE: f32 = 0.44;
 /// Its least width: every joint with two angles.
-pub(crate) const PLAN_LEAST: f32 = 308.0;
+pub(crate) const PLAN_LEAST: f32 = 318.0;
 /// Its greatest width.
 pub(crate) const PLAN_MOST: f32 = 420.0;
 /// Width of a joint's button in the plan.
-pub(crate) const PLAN_JOINT: f32 = 84.0;
+pub(crate) const PLAN_JOINT: f32 = 94.0;
 /// Width of the start or target of a joint.
 pub(crate) const PLAN_WAY: f32 = 52.0;
 /// Width of a number in the plan.
