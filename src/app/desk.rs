@@ -18,8 +18,8 @@ use crate::app::trial::Abort;
 use crate::app::tuner::TunerBook;
 use crate::hand::{Dof, Force, Group, Groups, HandSample, Moment, PerDof, Speed, Status};
 use crate::link::{
-    Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus, LinkTrouble, Outcome, Request,
-    RequestError, Ticket, Traffic,
+    Disarmed, Hold, LinkEvent, LinkState, LinkStats, LinkStatus, LinkTrouble, Outcome, PollRates,
+    Request, RequestError, Ticket, Traffic,
 };
 use crate::transport::Endpoint;
 
@@ -43,6 +43,8 @@ pub(crate) struct Desk {
     pub(crate) commanded: bool,
     /// What is read and written of what the hand keeps.
     pub(crate) work: DeviceWork,
+    /// How the link was told to read.
+    pub(crate) rates: PollRates,
     asked: Vec<(Ticket, Asked)>,
     /// The one request of what is done under a card, and how it ended.
     own: Option<(Ticket, Option<Result<Outcome, RequestError>>)>,
@@ -91,6 +93,7 @@ impl Desk {
             disarmed_at: None,
             commanded: false,
             work: DeviceWork::default(),
+            rates: PollRates::default(),
             asked: Vec::new(),
             own: None,
             seen_from: None,
@@ -136,6 +139,7 @@ impl Desk {
         self.following = PerDof::splat(true);
         self.disarmed_at = None;
         self.commanded = false;
+        self.rates = PollRates::default();
         self.asked.clear();
         self.own = None;
         self.seen_from = Some(now);
@@ -165,6 +169,7 @@ impl Desk {
         self.tick_sequence(now);
         self.tick_device(now);
         self.tick_trials(now);
+        self.read_at_need();
     }
 
     fn event(&mut self, event: LinkEvent, now: Moment) {

@@ -10,8 +10,8 @@ use crate::hand::{
     Angle, AngleReading, Dof, Faults, Group, Groups, HandSample, Moment, PerDof, Timed,
 };
 use crate::link::{
-    ArmEpoch, ArmRequest, LinkEvent, LinkState, LinkStats, LinkStatus, Request, RequestError,
-    Setpoints, Ticket, WireTap,
+    ArmEpoch, ArmRequest, LinkEvent, LinkState, LinkStats, LinkStatus, PollRates, Request,
+    RequestError, Setpoints, Ticket, WireTap,
 };
 use crate::transport::Endpoint;
 use std::cell::RefCell;
@@ -25,6 +25,7 @@ pub(super) enum Told {
     Arm(ArmRequest),
     Disarm,
     Set(Setpoints),
+    ReadAt(PollRates),
     Ask(Request),
 }
 
@@ -39,6 +40,10 @@ pub(super) struct Wire {
 pub(super) struct FakeLink(Rc<RefCell<Wire>>);
 
 impl FakeLink {
+    pub(super) const fn on(wire: Rc<RefCell<Wire>>) -> Self {
+        Self(wire)
+    }
+
     pub(super) fn note(&self, told: Told) {
         self.0.borrow_mut().told.push(told);
     }
@@ -62,6 +67,9 @@ impl Link for FakeLink {
     }
     fn set(&self, setpoints: &Setpoints) {
         self.note(Told::Set(*setpoints));
+    }
+    fn read_at(&self, rates: PollRates) {
+        self.note(Told::ReadAt(rates));
     }
     fn ask(&self, request: Request) -> Result<Ticket, RequestError> {
         self.note(Told::Ask(request));

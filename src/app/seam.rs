@@ -1,8 +1,8 @@
 //! What the program needs of a link, so that its rules can be proven without a wire.
 
 use crate::link::{
-    ArmRequest, LinkEvent, LinkHandle, LinkStats, LinkStatus, Request, RequestError, Setpoints,
-    Ticket, WireTap,
+    ArmRequest, LinkEvent, LinkHandle, LinkStats, LinkStatus, PollRates, Request, RequestError,
+    Setpoints, Ticket, WireTap,
 };
 
 /// One open link. Dropping it closes it.
@@ -19,6 +19,8 @@ pub(crate) trait Link {
     fn disarm(&self);
     /// Sets targets and limits.
     fn set(&self, setpoints: &Setpoints);
+    /// Reads at other rates.
+    fn read_at(&self, rates: PollRates);
     /// Asks for one thing.
     fn ask(&self, request: Request) -> Result<Ticket, RequestError>;
     /// The next event, if one waits.
@@ -50,6 +52,10 @@ impl Link for LinkHandle {
 
     fn set(&self, setpoints: &Setpoints) {
         Self::set(self, setpoints);
+    }
+
+    fn read_at(&self, rates: PollRates) {
+        Self::read_at(self, rates);
     }
 
     fn ask(&self, request: Request) -> Result<Ticket, RequestError> {

@@ -95,13 +95,15 @@ pub(crate) struct Wanted {
     pub(crate) disarm: bool,
     pub(crate) arm: Option<ArmRequest>,
     pub(crate) setpoints: Option<Setpoints>,
+    pub(crate) rates: Option<PollRates>,
     pub(crate) closed: bool,
 }
 
 impl Wanted {
     /// True if the window wants anything at all.
     pub(crate) const fn is_any(&self) -> bool {
-        self.stop || self.disarm || self.closed || self.arm.is_some() || self.setpoints.is_some()
+        let moves = self.arm.is_some() || self.setpoints.is_some();
+        self.stop || self.disarm || self.closed || moves || self.rates.is_some()
     }
 }
 
@@ -201,6 +203,11 @@ impl LinkHandle {
                 Some(older) => older.merge(setpoints),
                 none => *none = Some(*setpoints),
             });
+    }
+
+    /// Reads at other rates from now on, reconnects included. Only what is asked for changes; nothing is written.
+    pub fn read_at(&self, rates: PollRates) {
+        self.wanted.send_modify(|wanted| wanted.rates = Some(rates));
     }
 
     /// Asks for one thing. The answer is an event with the ticket.

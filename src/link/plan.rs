@@ -126,6 +126,14 @@ impl PollPlan {
         }
     }
 
+    /// Reads at other rates: what is wanted more often than before waits one of its new periods at most.
+    pub(crate) fn change_rates(&mut self, rates: PollRates, now: Moment) {
+        for due in &mut self.parts {
+            due.period = period(rates.of(due.part));
+            due.next = due.next.min(now.plus(due.period));
+        }
+    }
+
     /// The wire's cost model.
     pub(crate) const fn cost(&self) -> &WireCost {
         &self.cost

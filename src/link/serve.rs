@@ -104,6 +104,10 @@ impl Session {
         if wishes.disarm {
             self.disarm(Disarmed::Person);
         }
+        if let Some(rates) = wishes.rates {
+            self.config.rates = rates;
+            self.plan.change_rates(rates, self.now());
+        }
         if let Some(setpoints) = wishes.setpoints {
             self.motion.want(&setpoints, self.status.armed);
         }

@@ -236,7 +236,7 @@ impl Session {
         self.ends.stats.send_replace(self.counters.stats);
     }
 
-    /// Empties the slot of wishes, but not the wish to close.
+    /// Empties the slot of wishes, but not the wish to close and how often to read.
     pub(crate) fn forget_wishes(&self) {
         self.forget_wishes_but(|_| false);
     }
@@ -246,6 +246,7 @@ impl Session {
             *wanted = Wanted {
                 closed: wanted.closed,
                 stop: stop(wanted),
+                rates: wanted.rates,
                 ..Wanted::default()
             };
             false

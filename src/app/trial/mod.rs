@@ -26,6 +26,8 @@ pub mod slip;
 mod svg;
 pub mod watch;
 
+use crate::link::PollRates;
+
 pub use best::{Criterion, Score};
 pub use metrics::{JointMetrics, TrialMetrics, measure};
 pub use plan::{Approach, Grid, Limits, PlanError, Setting, TrialPlan, Until};
@@ -33,3 +35,12 @@ pub use recording::{Mark, Recording, What};
 pub use runner::Stage;
 pub use series::{Kind, Order, Series, Trial};
 pub use watch::{Abort, LinkView};
+
+/// How a hand is read during a series: as fast as a serial line goes; on faster wires no faster than ten times the
+/// hand's own control. Fingertips a little more often than their sensors measure, and no more, so that slow lines have
+/// turns for forces and faults. Settings often enough that a trial need not wait for them.
+pub const RATES: PollRates = PollRates {
+    state_hz: 500.0,
+    tactile_hz: 60.0,
+    settings_hz: 5.0,
+};

@@ -4,11 +4,12 @@ use crate::app::desk::Desk;
 use crate::app::notices::NoticeKind;
 use crate::app::quirk_sheet::{QuirkSheet, day};
 use crate::app::trial::session::Head;
-use crate::app::trial::{Abort, LinkView, Order, Series};
+use crate::app::trial::{self, Abort, LinkView, Order, Series};
 use crate::app::tuner::book::{Ended, Origin, Run, SessionId};
 use crate::app::tuner::draft::tags;
 use crate::app::tuner::wish::TrialWish;
 use crate::hand::{Dof, Groups, HandSample, Moment, PerDof};
+use crate::link::PollRates;
 use std::time::Duration;
 
 /// Why a series cannot begin, besides its plan.
@@ -135,6 +136,22 @@ impl Desk {
             None => {}
         }
         self.gather_trials(now);
+    }
+
+    /// Reads as fast as trials want while they run, and as a window wants at all other times.
+    pub(crate) fn read_at_need(&mut self) {
+        let rates = if self.state.tuner.is_running() {
+            trial::RATES
+        } else {
+            PollRates::default()
+        };
+        if self.rates == rates {
+            return;
+        }
+        self.rates = rates;
+        if let Some(link) = &self.link {
+            link.read_at(rates);
+        }
     }
 
     /// Ends the series, if one runs. The stop itself is the caller's.

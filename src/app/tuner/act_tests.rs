@@ -7,8 +7,8 @@
     reason = "a test may"
 )]
 
-use crate::app::fake_link::{Bench, Told};
-use crate::app::trial::{Abort, Stage};
+use crate::app::fake_link::{Bench, FakeLink, Told};
+use crate::app::trial::{self, Abort, Stage};
 use crate::app::tuner::act::StartRefusal;
 use crate::app::tuner::book::{Ended, Session, SessionId};
 use crate::app::tuner::draft::Draft;
@@ -17,7 +17,7 @@ use crate::hand::{
     Angle, AngleReading, Dof, Fault, Faults, ForceReading, Group, Groups, HandSample, Moment,
     PerDof, Speed, Status, TemperatureReading, Timed,
 };
-use crate::link::{LinkEvent, LinkState};
+use crate::link::{LinkEvent, LinkState, PollRates};
 use std::time::Duration;
 
 /// What a well hand says; each test spoils one thing.
@@ -146,6 +146,7 @@ fn the_orders_of_a_trial_go_over_the_link_and_closing_comes_last() {
     let told = bench.told();
     let sets: Vec<_> = told
         .iter()
+        .filter(|told| **told != Told::ReadAt(trial::RATES))
         .map(|told| match told {
             Told::Set(set) => (
                 set.speed[Dof::Index],
@@ -183,7 +184,36 @@ fn a_stop_goes_out_first_and_ends_it_by_a_person() {
     assert_eq!(ended_by(&bench), Some(Ended::Here(Abort::Person)));
     assert_eq!(session(&bench).trials.len(), 1, "what was read is kept");
     say(&mut bench, WELL);
-    assert_eq!(bench.told(), []);
+    assert_eq!(bench.told(), [Told::ReadAt(PollRates::default())]);
+}
+
+#[test]
+fn the_hand_is_read_at_full_rate_exactly_while_a_series_runs() {
+    let mut bench = Bench::armed(1000);
+    let at_rates = |bench: &Bench| -> Vec<_> {
+        let told = bench.told().into_iter();
+        told.filter(|told| matches!(told, Told::ReadAt(_)))
+            .collect()
+    };
+    say(&mut bench, WELL);
+    assert_eq!(at_rates(&bench), [], "an armed hand alone is no reason");
+    start(&mut bench);
+    say(&mut bench, WELL);
+    say(&mut bench, WELL);
+    assert_eq!(at_rates(&bench), [Told::ReadAt(trial::RATES)], "told once");
+    say(&mut bench, Said { faults: 1, ..WELL });
+    assert_eq!(at_rates(&bench), [Told::ReadAt(PollRates::default())]);
+}
+
+#[test]
+fn another_hand_begins_at_the_rates_of_a_window() {
+    let mut bench = running();
+    let wire = std::rc::Rc::clone(&bench.wire);
+    let link = Box::new(FakeLink::on(wire));
+    bench.told();
+    bench.desk.replace(None, Some(link), bench.now());
+    bench.step();
+    assert_eq!(bench.told(), [], "a new link has them from its opening");
 }
 
 #[test]

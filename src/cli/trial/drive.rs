@@ -4,14 +4,14 @@
 use crate::app::QuirkSheet;
 use crate::app::quirk_sheet::day;
 use crate::app::trial::session::{Head, Keeper};
-use crate::app::trial::{Abort, LinkView, Order, Series, Trial, TrialPlan};
+use crate::app::trial::{self, Abort, LinkView, Order, Series, Trial, TrialPlan};
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
 use crate::cli::trial::{Outcome, Stop, told};
 use crate::hand::{Force, HandSample, PerDof, Speed};
-use crate::link::{ArmEpoch, ArmRequest, Clock, Hold, LinkEvent, LinkHandle, PollRates};
+use crate::link::{ArmEpoch, ArmRequest, Clock, Hold, LinkEvent, LinkHandle};
 use anyhow::{Context as _, anyhow, bail};
 use std::path::Path;
 use std::sync::mpsc;
@@ -19,13 +19,6 @@ use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::time::{Instant, sleep, timeout};
 
-/// As fast as a serial line goes; on faster wires no faster than ten times the hand's own control. Fingertips a little
-/// more often than their sensors measure, and no more, so that slow lines have turns for forces and faults. Settings often enough that a trial need not wait for them.
-const RATES: PollRates = PollRates {
-    state_hz: 500.0,
-    tactile_hz: 60.0,
-    settings_hz: 5.0,
-};
 /// How often time is looked at where nothing is read.
 const TICK: Duration = Duration::from_millis(5);
 /// How long the hand may take to tell of itself, and to acknowledge its limits.
@@ -43,7 +36,7 @@ pub(crate) async fn drive(
 ) -> anyhow::Result<Outcome> {
     let mut interrupt = Interrupt::listen()?;
     let clock = Clock::start();
-    let link = session::open(&args.hand, RATES, clock);
+    let link = session::open(&args.hand, trial::RATES, clock);
     let mut bench = Bench {
         link,
         clock,

@@ -1,0 +1,128 @@
+//! An open link reads faster when it is told to, and slower again, without writing anything; also after a loss. All in
+//! virtual time.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+
+use futures::FutureExt as _;
+use futures::future::BoxFuture;
+use handscope::hand::Group;
+use handscope::link::{self, Clock, LinkConfig, LinkEvent, LinkHandle, LinkState, PollRates};
+use handscope::sim::serve::rs485;
+use handscope::sim::{SharedHand, SimConfig, SimHand};
+use handscope::transport::{BoxedWire, Dial, Endpoint, PortFound, TransportError, pair};
+use std::sync::{Arc, Mutex};
+use tokio::task::JoinHandle;
+use tokio::time::{Duration, Instant, sleep};
+
+const FAST: PollRates = PollRates {
+    state_hz: 500.0,
+    tactile_hz: 60.0,
+    settings_hz: 5.0,
+};
+
+/// A hand on an endless row of wires.
+struct Hand {
+    hand: SharedHand,
+    wire: Mutex<Option<JoinHandle<()>>>,
+}
+
+impl Hand {
+    fn new() -> Arc<Self> {
+        let hand = SharedHand::new(SimHand::new(SimConfig::default()), Instant::now());
+        let wire = Mutex::default();
+        Arc::new(Self { hand, wire })
+    }
+
+    fn hang_up(&self) {
+        self.wire.lock().unwrap().take().unwrap().abort();
+    }
+}
+
+impl Dial for Hand {
+    fn dial(&self, _: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
+        let (near, far) = pair();
+        let wire = tokio::spawn(rs485::serve(self.hand.clone(), far));
+        *self.wire.lock().unwrap() = Some(wire);
+        futures::future::ready(Ok(Box::new(near) as BoxedWire)).boxed()
+    }
+
+    fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
+        futures::future::ready(Vec::new()).boxed()
+    }
+}
+
+fn open(hand: &Arc<Hand>) -> LinkHandle {
+    let config = LinkConfig {
+        endpoint: "rs485:/dev/ttyT0".parse().unwrap(),
+        rates: PollRates::default(),
+        clock: Clock::start(),
+        dial: Arc::clone(hand) as Arc<dyn Dial>,
+        wake: Arc::new(|| ()),
+    };
+    link::open(config, &tokio::runtime::Handle::current())
+}
+
+async fn live(link: &mut LinkHandle) {
+    while link.status().state != LinkState::Monitoring {
+        sleep(Duration::from_millis(5)).await;
+    }
+    sleep(Duration::from_millis(50)).await;
+}
+
+/// Readings of angles and of the thumb's fingertip in a second.
+async fn in_a_second(link: &mut LinkHandle) -> (u32, u32) {
+    while link.try_event().is_some() {}
+    let end = Instant::now() + Duration::from_secs(1);
+    let mut counts = (0, 0);
+    while Instant::now() < end {
+        while let Some(event) = link.try_event() {
+            let LinkEvent::Sample { fresh, .. } = event else {
+                continue;
+            };
+            counts.0 += u32::from(fresh.contains(Group::Angle));
+            counts.1 += u32::from(fresh.contains(Group::Tactile(handscope::hand::Finger::Thumb)));
+        }
+        sleep(Duration::from_millis(5)).await;
+    }
+    counts
+}
+
+fn check((angles, tips): (u32, u32), rates: PollRates) {
+    let near = |count: u32, hz: f64| (f64::from(count) - hz).abs() <= (hz * 0.03).max(1.0);
+    assert!(near(angles, rates.state_hz), "{angles} of {rates:?}");
+    assert!(near(tips, rates.tactile_hz), "{tips} of {rates:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_open_link_reads_at_the_rates_it_was_told_last_and_writes_nothing() {
+    let hand = Hand::new();
+    let mut link = open(&hand);
+    live(&mut link).await;
+    check(in_a_second(&mut link).await, PollRates::default());
+    link.read_at(FAST);
+    sleep(Duration::from_millis(50)).await;
+    check(in_a_second(&mut link).await, FAST);
+    link.read_at(PollRates::default());
+    sleep(Duration::from_millis(50)).await;
+    check(in_a_second(&mut link).await, PollRates::default());
+    let writes = hand.hand.with(|hand, _| hand.journal().len());
+    assert_eq!(writes, 0);
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_rates_outlast_a_lost_wire_and_may_change_while_it_is_lost() {
+    let hand = Hand::new();
+    let mut link = open(&hand);
+    live(&mut link).await;
+    link.read_at(FAST);
+    sleep(Duration::from_millis(50)).await;
+    hand.hang_up();
+    sleep(Duration::from_millis(50)).await;
+    live(&mut link).await;
+    check(in_a_second(&mut link).await, FAST);
+    hand.hang_up();
+    sleep(Duration::from_millis(50)).await;
+    assert_ne!(link.status().state, LinkState::Monitoring);
+    link.read_at(PollRates::default());
+    live(&mut link).await;
+    check(in_a_second(&mut link).await, PollRates::default());
+}
