@@ -8,6 +8,9 @@ use crate::hand::units::{Force, Speed};
 /// Stiffness of the block that the table was measured on, g for each position count.
 pub const RIGID_G_PER_COUNT: f64 = 40.0;
 
+/// The slowest speed that was measured: the cure for an overshoot that is too large.
+pub const SLOWEST: f64 = 25.0;
+
 /// Thresholds of the table's columns, g.
 const THRESHOLDS: [f64; 5] = [100.0, 250.0, 500.0, 750.0, 1000.0];
 /// Median peak above the threshold in g; rows are speeds 25, 250 and 1000.
@@ -20,7 +23,7 @@ const PEAKS: [[f64; 5]; 3] = [
 const TWO_STAGE: [f64; 5] = [2.0, 25.0, 39.0, 71.0, 92.0];
 /// Speeds and the row they fall on. 100 and 500 were measured at 500 g only, and place the speeds between rows.
 const ROWS: [(f64, f64); 5] = [
-    (25.0, 0.0),
+    (SLOWEST, 0.0),
     (100.0, 0.24),
     (250.0, 1.0),
     (500.0, 1.8),
@@ -39,7 +42,7 @@ pub fn overshoot_g(speed: f64, threshold_g: f64) -> f64 {
     ];
     let peak = interpolate(rows, interpolate(ROWS, speed));
     // Below the slowest that was measured, the peak goes to zero with the speed.
-    let slower = (speed / 25.0).clamp(0.0, 1.0);
+    let slower = (speed / SLOWEST).clamp(0.0, 1.0);
     let lighter = (threshold_g / 100.0).clamp(0.0, 1.0);
     peak * slower * lighter
 }
@@ -47,13 +50,12 @@ pub fn overshoot_g(speed: f64, threshold_g: f64) -> f64 {
 /// The same where the finger came fast and was slowed down to `speed` before the contact.
 #[must_use]
 pub fn two_stage_overshoot_g(speed: f64, threshold_g: f64) -> f64 {
-    let [(slowest, _), ..] = ROWS;
-    if speed > slowest {
+    if speed > SLOWEST {
         return overshoot_g(speed, threshold_g);
     }
     let peak = interpolate(THRESHOLDS.into_iter().zip(TWO_STAGE), threshold_g);
     let lighter = (threshold_g / 100.0).clamp(0.0, 1.0);
-    peak * (speed / slowest).clamp(0.0, 1.0) * lighter
+    peak * (speed / SLOWEST).clamp(0.0, 1.0) * lighter
 }
 
 /// An overshoot that a person should know of before it happens: as much again as the gentle threshold.

@@ -25,7 +25,7 @@ pub(crate) enum Manner {
     Danger,
 }
 
-/// One button of a card. Pressing it closes a card that a view asked for; one of the program's own closes when it is over.
+/// One button of a card. Pressing it closes nothing by itself: the card is there for as long as what it is about.
 #[derive(Debug, Clone)]
 pub(crate) struct Choice {
     text: Text,
@@ -36,7 +36,7 @@ pub(crate) struct Choice {
 }
 
 impl Choice {
-    /// A button that only closes the card.
+    /// A button that asks for nothing yet.
     pub(crate) const fn new(text: Text, tip: Text, manner: Manner) -> Self {
         Self {
             text,
@@ -107,33 +107,21 @@ pub(crate) struct Card {
 /// What the window remembers of its card.
 #[derive(Debug, Default)]
 pub(crate) struct CardView {
-    asked: Option<Card>,
     typed: String,
     /// The title and the buttons of the card that is shown: another one begins anew.
     shown: Option<(String, usize)>,
 }
 
 impl CardView {
-    /// Shows a card that a view asked for, until it is answered.
-    pub(crate) fn ask(&mut self, card: Card) {
-        self.asked = Some(card);
-    }
-
-    /// True if a view's card waits for an answer.
-    pub(crate) const fn is_asking(&self) -> bool {
-        self.asked.is_some()
-    }
-
-    /// Draws the program's own card, else the one that a view asked for; what the person asked for in it.
+    /// Draws the card, if there is one; what the person asked for in it.
     pub(crate) fn ui(
         &mut self,
         ui: &Ui,
         place: Rect,
         look: Look,
-        own: Option<Card>,
+        card: Option<Card>,
     ) -> Vec<Action> {
-        let is_own = own.is_some();
-        let Some(card) = own.or_else(|| self.asked.clone()) else {
+        let Some(card) = card else {
             self.shown = None;
             return Vec::new();
         };
@@ -154,13 +142,8 @@ impl CardView {
             ui.ctx().move_to_top(shown.response.layer_id);
             first_focus(ui.ctx(), &card);
         }
-        let Some(choice) = shown.inner.and_then(|index| card.choices.get(index)) else {
-            return Vec::new();
-        };
-        if !is_own {
-            self.asked = None;
-        }
-        choice.does.clone()
+        let pressed = shown.inner.and_then(|index| card.choices.get(index));
+        pressed.map_or_else(Vec::new, |choice| choice.does.clone())
     }
 
     /// The button that was pressed.

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
 use crate::app::action::Action;
+use crate::app::device::wish::DeviceWish;
 use crate::app::settings::{Language, Theme};
 use crate::ui::card::{Card, CardView, Choice, Line, Manner, Progress};
 use crate::ui::controls::{Button, pressed};
@@ -24,7 +25,7 @@ const fn sized(width: f32, height: f32) -> Vec2 {
 
 struct Room {
     cards: CardView,
-    own: Option<Card>,
+    card: Option<Card>,
     asked: Vec<Action>,
     stops: u32,
     below: u32,
@@ -47,13 +48,17 @@ fn frame(ui: &mut Ui, room: &mut Room) {
     let (bar, body) = ui.max_rect().split_top_bottom_at_y(theme::TOP_BAR);
     let stop = Button::new("STOP", "tip").put(ui, look, bar, Id::unique("stop"));
     room.stops += u32::from(pressed(ui, &stop));
-    if room.own.is_some() || room.cards.is_asking() {
+    if room.card.is_some() {
         ui.disable();
     }
     let below = Button::new("Below", "tip").put(ui, look, body, Id::unique("below"));
     room.below += u32::from(below.clicked());
-    let own = room.own.clone();
-    room.asked.extend(room.cards.ui(ui, body, look, own));
+    let card = room.card.clone();
+    let asked = room.cards.ui(ui, body, look, card);
+    if !asked.is_empty() {
+        room.card = None;
+    }
+    room.asked.extend(asked);
 }
 
 const fn text(en: &'static str) -> Text {
@@ -77,7 +82,7 @@ fn card() -> Card {
         }),
         word: None,
         choices: vec![
-            Choice::cancel(),
+            Choice::cancel().does(Action::Device(DeviceWish::Decline)),
             Choice::new(text("Other"), cards::CANCEL_TIP, Manner::Plain),
             Choice::new(text("Best"), cards::CANCEL_TIP, Manner::Main)
                 .disabled(Some("not yet".into())),
@@ -87,16 +92,15 @@ fn card() -> Card {
 }
 
 fn open(card: Card, size: Vec2) -> Harness<'static, Room> {
-    let mut room = Room {
+    let room = Room {
         cards: CardView::default(),
-        own: None,
+        card: Some(card),
         asked: Vec::new(),
         stops: 0,
         below: 0,
         language: Language::En,
         installed: false,
     };
-    room.cards.ask(card);
     let mut harness = Harness::builder()
         .with_size(size)
         .build_ui_state(frame, room);
@@ -127,7 +131,7 @@ fn nothing_below_a_card_is_pressed_and_stop_is() {
     click(&mut harness, "STOP");
     let room = harness.state();
     assert_eq!((room.below, room.stops), (0, 1));
-    assert!(room.cards.is_asking(), "a stop closes nothing by itself");
+    assert!(room.card.is_some(), "a stop closes nothing by itself");
     click(&mut harness, "Cancel");
     click(&mut harness, "Below");
     assert_eq!(
@@ -143,7 +147,8 @@ fn enter_does_what_is_safe_and_never_what_is_dangerous() {
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     let room = harness.state();
-    assert!(!room.cards.is_asking() && room.asked.is_empty());
+    assert!(room.card.is_none());
+    assert_eq!(room.asked, [Action::Device(DeviceWish::Decline)]);
 
     let mut harness = open(card(), LARGE);
     harness.get_by_role_and_label(Role::Button, DANGER).focus();
@@ -155,12 +160,12 @@ fn enter_does_what_is_safe_and_never_what_is_dangerous() {
     harness.run_steps(3);
     let room = harness.state();
     assert_eq!((room.asked.len(), room.stops), (0, 1), "Space stops");
-    assert!(room.cards.is_asking());
+    assert!(room.card.is_some());
     click(&mut harness, "Best");
-    assert!(harness.state().cards.is_asking(), "it is disabled");
+    assert!(harness.state().card.is_some(), "it is disabled");
     click(&mut harness, DANGER);
     assert_eq!(harness.state().asked, [Action::Disarm]);
-    assert!(!harness.state().cards.is_asking());
+    assert!(harness.state().card.is_none());
 }
 
 #[test]
@@ -169,7 +174,7 @@ fn escape_stops_and_closes_only_what_is_safe_to_close() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     let room = harness.state();
-    assert_eq!((room.stops, room.cards.is_asking()), (1, false));
+    assert_eq!((room.stops, room.card.is_some()), (1, false));
 
     let mut without = card();
     without.choices.remove(0);
@@ -177,7 +182,7 @@ fn escape_stops_and_closes_only_what_is_safe_to_close() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     let room = harness.state();
-    assert_eq!((room.stops, room.cards.is_asking()), (1, true));
+    assert_eq!((room.stops, room.card.is_some()), (1, true));
 }
 
 #[test]
@@ -266,7 +271,7 @@ fn another_card_begins_with_an_empty_field() {
         .get_by_role_and_label(Role::TextInput, field)
         .type_text("RESET");
     harness.run_steps(3);
-    harness.state_mut().own = Some(with_word("Two"));
+    harness.state_mut().card = Some(with_word("Two"));
     harness.run_steps(3);
     let danger = harness.get_by_role_and_label(Role::Button, DANGER);
     assert!(danger.accesskit_node().is_disabled());

@@ -2,7 +2,6 @@
 //! filtered; every change is an action.
 
 use crate::app::action::Action;
-use crate::app::device::book::{Question, Wanted};
 use crate::app::device::wish::DeviceWish;
 use crate::app::state::State;
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
@@ -10,7 +9,6 @@ use crate::ui::device_file;
 use crate::ui::device_flash;
 use crate::ui::device_table::{self, Shown};
 use crate::ui::format;
-use crate::ui::list;
 use crate::ui::look::Pane;
 use crate::ui::text::{Text, device, verdicts};
 use crate::ui::theme;
@@ -41,9 +39,6 @@ impl DeviceView {
         device_flash::flash_ui(ui, flash, pane);
         let mut body = controls::card(ui, pane.look, table);
         let state = pane.state;
-        if let Some(question) = &state.device.question {
-            question_ui(ui, &mut body, pane, question);
-        }
         if let Some(compared) = &state.device.compared {
             return device_file::file_ui(ui, body, pane, compared);
         }
@@ -185,54 +180,6 @@ fn status(pane: &Pane<'_>) -> (String, Color32) {
                 look.say(device::AGO)
             );
             (words, look.palette.muted)
-        }
-    }
-}
-
-/// What could hurt, and whether it is meant. Nothing was written yet.
-fn question_ui(ui: &mut Ui, body: &mut Rect, pane: &mut Pane<'_>, question: &Question) {
-    let look = pane.look;
-    let palette = look.palette;
-    let (why, agree) = match question.what {
-        Wanted::Apply(_) => (device::DANGER_APPLY, device::AGREE_APPLY),
-        Wanted::Save => (device::DANGER_SAVE, device::AGREE_SAVE),
-    };
-    let lines = 1 + question.dangers.len();
-    let lines = u16::try_from(lines).map_or(theme::LIST_LINE, |n| f32::from(n) * theme::LIST_LINE);
-    let height = lines + theme::CONTROL + theme::TITLE_LINE + 2.0 * theme::PAD + theme::STEP;
-    let place = take_top(body, height);
-    ui.painter().rect(
-        place,
-        theme::ROUND_SMALL,
-        palette.wash(palette.warn),
-        egui::Stroke::new(theme::LINE_THIN, palette.warn),
-        egui::StrokeKind::Inside,
-    );
-    let mut inner = place.shrink(theme::PAD);
-    let mut title = take_top(&mut inner, theme::TITLE_LINE);
-    inner.min.y -= theme::GAP;
-    let sign = take_left(&mut title, theme::SIGN);
-    controls::warning_sign(ui, controls::middle(sign, theme::SIGN_HEIGHT), palette.warn);
-    Label::new(look.say(device::DANGER_TITLE), palette.text)
-        .font(theme::title())
-        .put(ui, title);
-    let (row, mut buttons) = inner.split_top_bottom_at_y(inner.bottom() - theme::CONTROL);
-    list::scroll_ui(ui, row, "dangers", |ui, width| {
-        list::line_ui(ui, width, look.say(why), palette.muted);
-        for danger in &question.dangers {
-            list::line_ui(ui, width, &verdicts::danger(look, danger), palette.text);
-        }
-    });
-    let refusal = pane.state.write_refusal();
-    let refusal = refusal.map(|why| look.say(verdicts::refusal(why)));
-    let leave = Button::new(look.say(device::DECLINE), look.say(device::DECLINE_TIP));
-    let go = Button::new(look.say(agree), look.say(device::AGREE_TIP)).disabled(refusal);
-    for (button, wish) in [(leave, DeviceWish::Decline), (go, DeviceWish::Agree)] {
-        let width = controls::text_width(ui, button.text, theme::body()) + 2.0 * theme::PAD;
-        let place = take_left(&mut buttons, width);
-        let id = Id::unique(("question", button.text));
-        if button.put(ui, look, place, id).clicked() {
-            pane.actions.push(Action::Device(wish));
         }
     }
 }

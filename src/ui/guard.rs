@@ -11,8 +11,9 @@ use crate::app::state::State;
 use crate::link::Saved;
 use crate::ui::calibration;
 use crate::ui::card::{Card, Choice, Line, Manner, Progress};
+use crate::ui::device_card;
 use crate::ui::look::Look;
-use crate::ui::text::{Text, cards};
+use crate::ui::text::{Text, cards, device};
 
 /// The word that a return to the factory's parameters wants typed, in every language.
 pub(crate) const RESET_WORD: &str = "RESET";
@@ -178,20 +179,7 @@ fn change_card(state: &State, look: Look, guarded: &Guarded, change: &Change) ->
                 ..Card::default()
             }
         }
-        Stage::Offering(_) => Card {
-            title: look.say(cards::OFFER_TITLE).into(),
-            lines: vec![Line::Words(at(look, cards::OFFER, guarded, Place::Old))],
-            choices: vec![
-                step(
-                    cards::UNSAVED,
-                    cards::UNSAVED_TIP,
-                    Manner::Safe,
-                    GuardStep::LeaveUnsaved,
-                ),
-                step(cards::SAVE, cards::SAVE_TIP, Manner::Main, GuardStep::Save),
-            ],
-            ..Card::default()
-        },
+        Stage::Offering(_) => offer_card(look, guarded),
         Stage::Saving(_) => under_way(look, cards::OFFER_TITLE, look.say(cards::SAVING), 0.8),
         Stage::Going(_) | Stage::Finding { .. } | Stage::Returning(..) => {
             let is_back = !matches!(change.stage(), Stage::Going(_));
@@ -208,6 +196,34 @@ fn change_card(state: &State, look: Look, guarded: &Guarded, change: &Change) ->
             under_way(look, title, &words, part)
         }
         Stage::Over(end) => change_over(look, guarded, end),
+    }
+}
+
+/// SAVE writes all that the hand holds: what could hurt among it is told before.
+fn offer_card(look: Look, guarded: &Guarded) -> Card {
+    let unsaved = step(
+        cards::UNSAVED,
+        cards::UNSAVED_TIP,
+        Manner::Safe,
+        GuardStep::LeaveUnsaved,
+    );
+    let mut lines = vec![Line::Words(at(look, cards::OFFER, guarded, Place::Old))];
+    let (text, manner) = match guarded.dangers.is_empty() {
+        true => (cards::SAVE, Manner::Main),
+        false => {
+            lines.push(Line::Words(look.say(cards::OFFER_ALL).into()));
+            lines.extend(device_card::lines(look, &guarded.dangers));
+            (device::AGREE_SAVE, Manner::Danger)
+        }
+    };
+    Card {
+        title: look.say(cards::OFFER_TITLE).into(),
+        lines,
+        choices: vec![
+            unsaved,
+            step(text, cards::SAVE_TIP, manner, GuardStep::Save),
+        ],
+        ..Card::default()
     }
 }
 

@@ -4,7 +4,6 @@ use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::app::state::{Freshness, State};
 use crate::hand::{Dof, Moment};
-use crate::ui::card::Card;
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme::Palette;
 use egui::{Color32, Id};
@@ -53,9 +52,6 @@ pub(crate) struct Pane<'a> {
     pub(crate) typing: &'a mut Typing,
     /// Set where an explanation was asked for: it is shown from the next frame on.
     pub(crate) explain: &'a mut Option<Explain>,
-    /// Set where a person is to be asked first: the card is shown from the next frame on.
-    #[expect(dead_code, reason = "the views that ask with a card come next")]
-    pub(crate) ask: &'a mut Option<Card>,
 }
 
 /// What is to be explained.

@@ -13,6 +13,7 @@ mod compare_table;
 mod connection;
 mod controls;
 mod device;
+mod device_card;
 mod device_file;
 mod device_flash;
 mod device_table;

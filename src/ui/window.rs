@@ -9,10 +9,11 @@ use crate::app::state::State;
 use crate::app::tuner::TrialWish;
 use crate::ui::banner;
 use crate::ui::border::{border_ui, shut_ui};
-use crate::ui::card::{Card, CardView};
+use crate::ui::card::CardView;
 use crate::ui::compare::CompareView;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::device::DeviceView;
+use crate::ui::device_card;
 use crate::ui::faults::{self, FaultsView};
 use crate::ui::guard;
 use crate::ui::joint_rail;
@@ -169,19 +170,18 @@ impl Window {
         } else {
             keys::take(ui)
         };
-        if self.is_covered(state) {
+        if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
         }
         let stopped = wishes.contains(&Wish::Stop);
         let mut typing = std::mem::take(&mut self.typing);
-        let (mut explain, mut ask) = (None, None);
+        let mut explain = None;
         let mut pane = Pane {
             state,
             look: Look::of(state),
             actions: &mut actions,
             typing: &mut typing,
             explain: &mut explain,
-            ask: &mut ask,
         };
         for wish in wishes {
             self.obey(ui, &mut pane, wish);
@@ -189,21 +189,7 @@ impl Window {
         self.parts_ui(ui, &mut pane);
         self.typing = typing;
         self.explain(explain);
-        if let Some(card) = ask {
-            self.ask(card);
-        }
         stop_first(actions, stopped)
-    }
-
-    /// Shows a card until it is answered.
-    pub(crate) fn ask(&mut self, card: Card) {
-        self.key_list.hide();
-        self.cards.ask(card);
-    }
-
-    /// True while a card covers the body of the window.
-    const fn is_covered(&self, state: &State) -> bool {
-        self.cards.is_asking() || state.guard.is_some()
     }
 
     /// Does what a key asks for, under the same conditions as the control that does it.
@@ -276,7 +262,7 @@ impl Window {
         let (bar, mut body) = whole.split_top_bottom_at_y(whole.top() + theme::TOP_BAR);
         let covered = body;
         let bar = top_bar::stop_first_ui(ui, bar, pane);
-        if self.is_covered(pane.state) {
+        if is_covered(pane.state) {
             self.key_list.hide();
             ui.disable();
         }
@@ -313,8 +299,9 @@ impl Window {
         }
         self.view_ui(ui, body.view, pane);
         self.key_list.ui(ui, below, pane.look);
-        let own = guard::card_of(pane.state, pane.look);
-        let asked = self.cards.ui(ui, covered, pane.look, own);
+        let card = guard::card_of(pane.state, pane.look);
+        let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
+        let asked = self.cards.ui(ui, covered, pane.look, card);
         pane.actions.extend(asked);
     }
 
@@ -383,7 +370,6 @@ impl Window {
             actions: &mut actions,
             typing: &mut typing,
             explain: &mut None,
-            ask: &mut None,
         };
         let whole = ui.max_rect();
         ui.painter()
@@ -397,6 +383,11 @@ impl Window {
             self.note.open(pane.state.now);
         }
     }
+}
+
+/// True while a card covers the body of the window.
+const fn is_covered(state: &State) -> bool {
+    state.guard.is_some() || state.device.question.is_some()
 }
 
 /// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.

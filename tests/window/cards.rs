@@ -77,7 +77,11 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
     );
     bench.click_button("Keep");
     assert!(bench.shows("Save it in the hand?"));
-    bench.click_button("Save");
+    assert!(
+        bench.has_reading("Index", "+2502"),
+        "SAVE takes the hard defaults of the factory along"
+    );
+    bench.click_button("Save anyway");
     bench.until(10_000, |bench| {
         bench.shows("The hand says that it is in flash.")
     });
@@ -170,7 +174,7 @@ fn a_speed_that_waits_for_power_is_kept_with_both_places_shown() {
         matches!(keeping, Some(Flow::Change(run)) if matches!(run.stage(), change::Stage::Keeping { .. }))
     );
     bench.click_button("Keep");
-    bench.click_button("Save");
+    bench.click_button("Save anyway");
     bench.until(10_000, |bench| bench.shows("Connect: new place"));
     assert!(bench.shows("Connect: former place"));
 }
@@ -315,4 +319,19 @@ fn the_cards_fit_the_smallest_window_in_both_languages() {
             assert!(bench.texts().iter().all(|text| !text.ends_with('\u{2026}')));
         }
     }
+}
+
+#[test]
+fn with_gentle_defaults_there_is_nothing_to_warn_of_before_a_save() {
+    let mut bench = on_a_line(Personality::default());
+    let bytes = 100_i16.to_le_bytes().repeat(12);
+    bench.hand(|hand, now| hand.write(1032, &bytes, now).unwrap());
+    change_id(&mut bench, 7);
+    bench.until(20_000, |bench| bench.shows("Keep the change?"));
+    bench.click_button("Keep");
+    assert!(bench.shows("Save it in the hand?"));
+    bench.click_button("Save");
+    bench.until(10_000, |bench| {
+        bench.shows("The hand says that it is in flash.")
+    });
 }

@@ -2,9 +2,12 @@
 
 use crate::bench::{Bench, LARGE, Role, SPEED_SET};
 use egui::{Key, Modifiers, vec2};
+use handscope::app::action::Action;
 use handscope::app::device::book::{Doing, SaveEnd};
+use handscope::app::device::wish::DeviceWish;
 use handscope::app::notices::NoticeKind;
 use handscope::app::params::table::{ParamId, Value};
+use handscope::app::settings::Language;
 use handscope::hand::Dof;
 use handscope::link::{SaveDoubt, Saved};
 use handscope::sim::SimConfig;
@@ -227,38 +230,116 @@ fn an_armed_hand_is_not_written_and_the_reason_is_said() {
     );
 }
 
+/// Stages hard defaults for the index finger and asks for them.
+fn ask_for_hard_defaults(bench: &mut Bench) {
+    defaults(bench, 100);
+    open(bench);
+    stage(bench, "Index speed staged", "1000");
+    stage(bench, "Index force staged", "1000");
+    bench.click("Apply");
+    settle(bench);
+}
+
+fn default_writes(bench: &Bench) -> usize {
+    let all = DEFAULTS[0]..DEFAULTS[1] + 12;
+    let written = bench.addresses().into_iter();
+    written.filter(|address| all.contains(address)).count()
+}
+
 #[test]
-fn what_could_hurt_is_asked_about_before_it_is_written_and_stop_stays() {
+fn what_could_hurt_is_asked_about_on_a_card_with_the_measured_figures() {
     let mut bench = Bench::live();
-    defaults(&mut bench, 100);
-    open(&mut bench);
-    stage(&mut bench, "Index speed staged", "1000");
-    stage(&mut bench, "Index force staged", "1000");
-    let before = bench.writes().len();
-    bench.click("Apply");
-    settle(&mut bench);
-    assert!(bench.shows("Hard on what it touches"));
+    ask_for_hard_defaults(&mut bench);
+    let before = default_writes(&bench);
+    assert_eq!(bench.all(Role::AlertDialog).len(), 1);
+    assert!(bench.shows("Apply defaults that hit hard?"));
+    for figure in ["1000", "+2502", "3502"] {
+        assert!(bench.has_reading("Index", figure), "{figure}");
+    }
     assert!(
-        !bench
-            .texts_with("Index: speed 1000, force 1000 g: +2502 g over")
-            .is_empty()
+        !bench.has_reading("Ring", "+2502"),
+        "only the joints that are meant"
     );
-    assert_eq!(bench.writes().len(), before);
-    bench.click("Leave it");
-    bench.run(60);
-    assert!(!bench.shows("Hard on what it touches"));
-    bench.click("Apply");
+    assert!(
+        bench.shows("With speed 25 the same thresholds were passed by at most +69 g"),
+        "what to do about it"
+    );
+    bench.show(handscope::ui::View::Live);
+    assert!(
+        bench.shows("Apply defaults that hit hard?"),
+        "over every view"
+    );
+    bench.click_button("Apply anyway");
     settle(&mut bench);
-    bench.press("STOP");
+    open(&mut bench);
+    assert_eq!(bench.reading("Index force live"), "1000");
+    assert_eq!(default_writes(&bench), before + 2);
+}
+
+#[test]
+fn no_key_agrees_to_what_could_hurt_and_what_is_staged_stays() {
+    let mut bench = Bench::live();
+    ask_for_hard_defaults(&mut bench);
+    let before = default_writes(&bench);
+    assert!(bench.is_focused("Back"));
+    bench.key(Key::Tab);
+    bench.key(Key::Enter);
     bench.run(100);
+    assert!(bench.shows("Apply defaults that hit hard?"));
+    bench.key(Key::Escape);
+    settle(&mut bench);
+    assert!(!bench.shows("Apply defaults that hit hard?"));
     assert!(
         bench.addresses().contains(&crate::bench::ANGLE_SET),
-        "a stop passes"
+        "the key stops the hand, as everywhere"
     );
+    assert_eq!(staged(&bench, INDEX), Some(Value::Number(1000)));
+    assert_eq!(default_writes(&bench), before);
+}
+
+#[test]
+fn a_stop_passes_a_card_and_nothing_is_written_until_it_is_confirmed() {
+    let mut bench = Bench::live();
+    ask_for_hard_defaults(&mut bench);
+    bench.press("STOP");
+    bench.run(40);
+    assert!(bench.addresses().contains(&crate::bench::ANGLE_SET));
+    assert!(bench.is_disabled(Role::Button, "Apply anyway"));
     bench.wait(1500);
-    bench.click("Apply all the same");
-    settle(&mut bench);
-    assert_eq!(bench.reading("Index force live"), "1000");
+    assert!(!bench.is_disabled(Role::Button, "Apply anyway"));
+    bench.unplug();
+    bench.wait(1000);
+    assert!(bench.is_disabled(Role::Button, "Apply anyway"));
+    bench.click_button("Back");
+    bench.run(60);
+    assert_eq!(bench.state().device.question, None);
+}
+
+#[test]
+fn the_card_of_hard_defaults_fits_the_least_window_in_both_languages() {
+    let least = vec2(1024.0, 640.0);
+    for language in [Language::En, Language::Zh] {
+        let mut bench = Bench::open(SimConfig::default(), least);
+        bench.wait(1000);
+        defaults(&mut bench, 100);
+        for dof in Dof::ALL {
+            for id in [ParamId::DefaultSpeed(dof), ParamId::DefaultForce(dof)] {
+                let (_, most) = id.range().unwrap();
+                bench.act(Action::Stage(id, Some(Value::Number(most))));
+            }
+        }
+        bench.act(Action::Language(language));
+        bench.act(Action::Device(DeviceWish::Apply));
+        settle(&mut bench);
+        let dialog = bench.all(Role::AlertDialog);
+        assert_eq!(dialog.len(), 1, "{language:?}");
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, least);
+        for (name, rect) in bench.all(Role::Button) {
+            assert!(window.contains_rect(rect), "{name} {rect:?}");
+        }
+        let cut = bench.texts_with("\u{2026}");
+        assert!(cut.is_empty(), "{cut:?}");
+    }
 }
 
 #[test]
@@ -331,9 +412,12 @@ fn dangerous_defaults_are_asked_about_before_they_are_saved() {
     bench.run(400);
     bench.click("Save to flash");
     settle(&mut bench);
-    assert!(bench.shows("Hard on what it touches"), "beside a file too");
+    assert!(
+        bench.shows("Save defaults that hit hard?"),
+        "beside a file too"
+    );
     assert!(!bench.addresses().contains(&SAVE));
-    bench.click("Save all the same");
+    bench.click("Save anyway");
     settle(&mut bench);
     assert!(bench.addresses().contains(&SAVE));
 }

@@ -3,6 +3,7 @@
 use crate::app::calibration::Calibration;
 use crate::app::guard::change::Change;
 use crate::app::guard::reset::FactoryReset;
+use crate::app::params::danger::Danger;
 use crate::app::params::guard::Place;
 use crate::app::params::table::{ParamId, Value};
 use crate::app::state::{Freshness, State};
@@ -82,6 +83,8 @@ pub struct Guarded {
     pub backup: Option<PathBuf>,
     /// This computer's way to a new address.
     pub way: Option<WayTo>,
+    /// What a SAVE would make last besides: it writes all that the hand holds.
+    pub dangers: Vec<Danger>,
 }
 
 impl Guarded {

@@ -9,6 +9,7 @@ use crate::app::guard::guarded::{
     Doing, Flow, GuardStep, Guarded, WayTo, command, held_now, not_now,
 };
 use crate::app::guard::reset::{FactoryReset, ResetStage, factory_place};
+use crate::app::params::danger::worse;
 use crate::app::params::guard::new_place;
 use crate::app::params::record::{Record, folder_beside};
 use crate::app::params::table::{ParamId, Value};
@@ -117,6 +118,7 @@ impl Guarding {
             new,
             backup: None,
             way: None,
+            dangers: Vec::new(),
         });
     }
 
@@ -205,6 +207,9 @@ impl Guarding {
             return None;
         }
         let Some(span) = self.unread.first().copied() else {
+            let saved = desk.state.device.known.saved.as_ref();
+            let saved = saved.map(|file| file.params.clone()).unwrap_or_default();
+            guarded.dangers = worse(&saved, &self.params);
             self.begin_backup(guarded);
             return None;
         };

@@ -20,7 +20,8 @@ pub struct Danger {
 
 impl Danger {
     /// What the finger presses at the peak, grams.
-    fn peak_g(&self) -> f64 {
+    #[must_use]
+    pub fn peak_g(&self) -> f64 {
         f64::from(self.force_g) + self.overshoot_g
     }
 

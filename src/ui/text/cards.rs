@@ -45,6 +45,7 @@ texts! {
     GO_BACK_TIP: "Writes the former value again.", "重新写入原来的值。";
     OFFER_TITLE: "Save it in the hand?", "保存到灵巧手？";
     OFFER: "Without SAVE the hand forgets the change when it is switched off, and is found here again:", "不保存的话，断电后灵巧手会忘记更改，并回到：";
+    OFFER_ALL: "SAVE writes everything that the hand holds, these defaults too:", "保存会写入灵巧手的全部参数，包括以下默认值：";
     UNSAVED: "Until power off", "断电前有效";
     UNSAVED_TIP: "Writes nothing into flash.", "不写入闪存。";
     SAVE: "Save", "保存";

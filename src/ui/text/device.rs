@@ -89,18 +89,23 @@ texts! {
     DOUBT_LINK: "the link was lost", "连接断开";
     TOO_SOON: "The last SAVE was just now: wait", "刚刚保存过：请等待";
 
-    DANGER_TITLE: "Hard on what it touches", "可能造成冲击";
-    DANGER_APPLY: "The hand would wake up like this once it is saved. Measured on a rigid block:", "一旦保存，灵巧手上电后即如此。在刚性物体上实测：";
-    DANGER_SAVE: "The hand would wake up like this every time. Measured on a rigid block:", "灵巧手今后每次上电都将如此。在刚性物体上实测：";
-    DANGER_OVER: "over its threshold", "超过阈值";
-    DANGER_RATED: "above the rated grip of 2000 g", "高于额定抓握力 2000 g";
+    DANGER_APPLY: "Apply defaults that hit hard?", "应用会造成冲击的默认值？";
+    DANGER_SAVE: "Save defaults that hit hard?", "保存会造成冲击的默认值？";
+    DANGER_LATE: "A drive stops late: closing at this speed, the finger presses far beyond its force threshold before it stops. Once in flash, the hand wakes up like this every time.", "电机停止有滞后：以此速度合拢时，手指会远超力阈值才停下。写入闪存后，灵巧手每次上电都将如此。";
+    DANGER_RATED: "Above the rated grip of 2000 g:", "高于额定抓握力 2000 g：";
+    DANGER_SPEED: "Speed", "速度";
+    DANGER_FORCE: "Threshold, g", "阈值 g";
+    DANGER_OVER: "Overshoot, g", "超出 g";
+    DANGER_PEAK: "Peak, g", "峰值 g";
+    DANGER_MEASURED: "Measured on one hand of the family: index finger on a rigid block, median of the peaks. Soft objects are pressed less.", "在同系列一只手上实测：食指接触刚性物体，取峰值的中位数。柔软物体受力较小。";
+    DANGER_SLOWLY: "With speed 25 the same thresholds were passed by at most", "速度为 25 时，同样的阈值最多超出";
     SPEED: "speed", "速度";
     FORCE: "force", "力";
-    AGREE_APPLY: "Apply all the same", "仍然应用";
-    AGREE_SAVE: "Save all the same", "仍然保存";
+    AGREE_APPLY: "Apply anyway", "仍然应用";
+    AGREE_SAVE: "Save anyway", "仍然保存";
     AGREE_TIP: "Goes on with what is listed here.", "按所列内容继续。";
-    DECLINE: "Leave it", "放弃";
-    DECLINE_TIP: "Writes nothing.", "不写入任何内容。";
+    DECLINE: "Back", "返回";
+    DECLINE_TIP: "Writes nothing. What is staged stays staged.", "不写入任何内容，暂存值保留。";
 
     FLASH: "Flash", "闪存";
     FLASH_BODY: "Flash itself cannot be read. \"Last saved\" is what this program saved.", "闪存本身无法读取。“上次保存”是本程序所保存的内容。";

@@ -2,7 +2,6 @@
 
 use crate::app::device::book::{Doing, SaveEnd};
 use crate::app::device::refusal::Refusal;
-use crate::app::params::danger::Danger;
 use crate::app::params::plan::{RowEnd, RowVerdict};
 use crate::app::params::table::ParamId;
 use crate::link::{Doubt, NotSent, SaveDoubt, Saved};
@@ -163,25 +162,6 @@ fn saved(look: Look, saved: &Saved) -> String {
             format!("{} {}", say(device::SAVE_NOT_SENT), not_sent(look, *why))
         }
     }
-}
-
-/// What could hurt: a joint, how it would wake up, and what it was measured to press.
-pub(crate) fn danger(look: Look, danger: &Danger) -> String {
-    let say = |text| look.say(text);
-    let rated = match danger.is_above_rated() {
-        true => format!(", {}", say(device::DANGER_RATED)),
-        false => String::new(),
-    };
-    format!(
-        "{}: {} {}, {} {} g{rated}: +{:.0} g {}",
-        say(words::dof(danger.dof)),
-        say(device::SPEED),
-        danger.speed,
-        say(device::FORCE),
-        danger.force_g,
-        danger.overshoot_g,
-        say(device::DANGER_OVER)
-    )
 }
 
 /// Why a file was written; unknown words as they stand there.
