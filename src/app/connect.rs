@@ -19,6 +19,8 @@ pub struct SimDial {
     clock: Clock,
     system: SystemDial,
     built: Mutex<Option<Built>>,
+    /// The built-in hand that every RS485 line ends at, if they do.
+    at_lines: Option<Endpoint>,
 }
 
 impl SimDial {
@@ -29,6 +31,18 @@ impl SimDial {
             clock,
             system: SystemDial,
             built: Mutex::new(None),
+            at_lines: None,
+        }
+    }
+
+    /// As [`SimDial::new`], and every RS485 line ends at this built-in hand: for pictures of what only a line has.
+    #[must_use]
+    pub const fn at_lines(clock: Clock, hand: Endpoint) -> Self {
+        Self {
+            clock,
+            system: SystemDial,
+            built: Mutex::new(None),
+            at_lines: Some(hand),
         }
     }
 
@@ -65,7 +79,11 @@ impl SimDial {
 
 impl Dial for SimDial {
     fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
-        let Endpoint::Sim { seed, scenario } = endpoint else {
+        let hand = match (&self.at_lines, endpoint) {
+            (Some(hand), Endpoint::Rs485(_)) => hand,
+            _ => endpoint,
+        };
+        let Endpoint::Sim { seed, scenario } = hand else {
             return self.system.dial(endpoint);
         };
         let hand = self.hand(*seed, scenario);

@@ -9,7 +9,7 @@ use crate::cli::scan::ScanArgs;
 use crate::cli::sim_quirks::{self, Quirk};
 use crate::cli::trial::TrialArgs;
 use crate::hand::Register;
-use crate::headless::driver::SceneCard;
+use crate::headless::cards::SceneCard;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::View;
@@ -116,7 +116,7 @@ pub(crate) struct SnapshotArgs {
     /// One view (live, touch, faults, poses, connection, traffic), the window as it opens, or all of them
     #[arg(long, value_name = "NAME", default_value = "window", value_parser = views)]
     pub(crate) view: Views,
-    /// A card over the view, which then names the files
+    /// A card over the view, which then names the files; keep and danger only with the built-in hand
     #[arg(long)]
     pub(crate) card: Option<CardArg>,
     /// Width x height in points
@@ -244,6 +244,8 @@ pub(crate) enum CardArg {
     Reset,
     Calibrate,
     Address,
+    Keep,
+    Danger,
 }
 
 impl CardArg {
@@ -253,6 +255,8 @@ impl CardArg {
             Self::Reset => (SceneCard::Reset, "card-reset"),
             Self::Calibrate => (SceneCard::Calibrate, "card-calibrate"),
             Self::Address => (SceneCard::Address, "card-address"),
+            Self::Keep => (SceneCard::Keep, "card-keep"),
+            Self::Danger => (SceneCard::Danger, "card-danger"),
         }
     }
 }

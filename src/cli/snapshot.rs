@@ -2,8 +2,9 @@
 
 use crate::app::settings::{Language, Theme};
 use crate::cli::args::{CardArg, SnapshotArgs, Views};
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, WrongUsage, say};
 use crate::headless::canvas::Picture;
+use crate::headless::cards::SceneCard;
 use crate::headless::driver::{Driver, Scene};
 use crate::headless::png;
 use crate::sim::Scenario;
@@ -19,19 +20,13 @@ const TELL_EACH: Duration = Duration::from_secs(1);
 
 /// Draws the pictures and prints the name of each file.
 pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
-    let mut driver = Driver::start(&Scene {
-        endpoint: endpoint(args),
-        size: args.size,
-        scale: args.scale,
-        theme: Theme::default(),
-        language: Language::default(),
-    })?;
+    let card = args.card.map(CardArg::card);
+    let mut driver = start(args, card.map(|(card, _)| card))?;
     driver.connect()?;
     driver.run_for(args.at, progress(args.at));
     if args.hand.is_none() && shows_trials(args) {
         driver.try_grasps();
     }
-    let card = args.card.map(CardArg::card);
     if let Some((card, _)) = card {
         driver.open_card(card);
     }
@@ -57,6 +52,24 @@ pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
         }
     }
     Ok(())
+}
+
+fn start(args: &SnapshotArgs, card: Option<SceneCard>) -> anyhow::Result<Driver> {
+    let scene = Scene {
+        endpoint: endpoint(args),
+        size: args.size,
+        scale: args.scale,
+        theme: Theme::default(),
+        language: Language::default(),
+    };
+    if card.is_some_and(SceneCard::wants_built_in) && !scene.endpoint.is_sim() {
+        let why = "this card is shown only with the built-in hand: a hand would be written to";
+        return Err(WrongUsage(why.into()).into());
+    }
+    Ok(match card.and_then(SceneCard::line) {
+        Some(line) => Driver::start_on_line(&scene, line)?,
+        None => Driver::start(&scene)?,
+    })
 }
 
 fn endpoint(args: &SnapshotArgs) -> Endpoint {

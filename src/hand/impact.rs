@@ -12,7 +12,9 @@ pub const RIGID_G_PER_COUNT: f64 = 40.0;
 pub const SLOWEST: f64 = 25.0;
 
 /// Thresholds of the table's columns, g.
-const THRESHOLDS: [f64; 5] = [100.0, 250.0, 500.0, 750.0, 1000.0];
+const THRESHOLDS: [f64; 5] = [100.0, 250.0, 500.0, 750.0, HIGHEST_G];
+/// The highest threshold that was measured, g: above it the table is flat.
+pub const HIGHEST_G: f64 = 1000.0;
 /// Median peak above the threshold in g; rows are speeds 25, 250 and 1000.
 const PEAKS: [[f64; 5]; 3] = [
     [7.0, 29.0, 64.0, 73.0, 69.0],

@@ -1,10 +1,10 @@
 //! The whole program without a window: lets time pass and takes pictures. A built-in hand is driven in virtual time,
-//! so that seconds take milliseconds and two runs give equal bytes. Writes no file.
+//! so that seconds take milliseconds and two runs give equal bytes. Leaves no file behind.
 
 use crate::app::action::Action;
 use crate::app::device::wish::DeviceWish;
-use crate::app::params::table::{ParamId, Value};
 use crate::app::settings::{Language, Theme};
+use crate::app::state::State;
 use crate::app::trial::Limits;
 use crate::app::tuner::{Draft, TrialWish};
 use crate::app::{App, Env, NoChoice, Settings, SimDial};
@@ -16,9 +16,9 @@ use crate::link::{Clock, LinkTrouble};
 use crate::shell::Cockpit;
 use crate::transport::Endpoint;
 use crate::ui::View;
-use std::net::Ipv4Addr;
 use std::sync::Arc;
 use std::time::Duration;
+use tempfile::TempDir;
 use tokio::runtime::{Builder, Runtime};
 
 /// Time between two looks at the link, as the window has between two frames at 50 Hz.
@@ -45,28 +45,18 @@ pub struct Scene {
     pub language: Language,
 }
 
-/// A card that can be shown over the view. Opening it asks nothing of the hand but to be read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SceneCard {
-    /// The question before the factory's parameters.
-    Reset,
-    /// The checks before a calibration of the force sensors.
-    Calibrate,
-    /// The question before another IP address.
-    Address,
-}
-
-/// An address of this computer, so that the way to it is the same everywhere.
-const OTHER_ADDRESS: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 20);
-/// A calibration wants the force steady for two seconds.
-const CHECKED_WITHIN: Duration = Duration::from_millis(2600);
-
 /// Why there is nothing to show.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DriveError {
     /// The runtime could not be made.
     #[error("the program cannot start its runtime: {cause}")]
     Runtime {
+        /// The system's words.
+        cause: String,
+    },
+    /// There is no room for what is kept meanwhile.
+    #[error("the program cannot make a folder for backups: {cause}")]
+    NoFolder {
         /// The system's words.
         cause: String,
     },
@@ -98,6 +88,8 @@ pub struct Driver {
     clock: Clock,
     endpoint: Endpoint,
     runtime: Runtime,
+    /// What a program without a home of its own keeps; it goes with the driver.
+    _kept: Option<TempDir>,
 }
 
 impl Driver {
@@ -106,6 +98,22 @@ impl Driver {
     /// # Errors
     /// [`DriveError::Runtime`].
     pub fn start(scene: &Scene) -> Result<Self, DriveError> {
+        Self::begin(scene, scene.endpoint.clone(), None)
+    }
+
+    /// As [`Driver::start`] with a built-in hand, which stands at the end of this line, and with a folder for backups, which is
+    /// removed at the end.
+    ///
+    /// # Errors
+    /// [`DriveError::Runtime`], [`DriveError::NoFolder`].
+    pub fn start_on_line(scene: &Scene, line: Endpoint) -> Result<Self, DriveError> {
+        let kept = TempDir::new().map_err(|error| DriveError::NoFolder {
+            cause: error.to_string(),
+        })?;
+        Self::begin(scene, line, Some(kept))
+    }
+
+    fn begin(scene: &Scene, endpoint: Endpoint, kept: Option<TempDir>) -> Result<Self, DriveError> {
         let runtime = Builder::new_current_thread()
             .enable_all()
             .start_paused(scene.endpoint.is_sim())
@@ -115,13 +123,18 @@ impl Driver {
             })?;
         let inside = runtime.enter();
         let clock = Clock::start();
+        let dial = match kept {
+            None => SimDial::new(clock),
+            Some(_) => SimDial::at_lines(clock, scene.endpoint.clone()),
+        };
+        let settings_path = kept.as_ref().map(|kept| kept.path().join("settings.toml"));
         let env = Env {
             runtime: runtime.handle().clone(),
             clock,
-            dial: Arc::new(SimDial::new(clock)),
+            dial: Arc::new(dial),
             wake: Arc::new(|| ()),
             files: Arc::new(NoChoice),
-            settings_path: None,
+            settings_path,
         };
         let settings = Settings {
             theme: scene.theme,
@@ -129,21 +142,22 @@ impl Driver {
             ..Settings::default()
         };
         let mut app = App::new(env, settings);
-        app.open(Some(scene.endpoint.clone()), clock.now());
+        app.open(Some(endpoint.clone()), clock.now());
         drop(inside);
         let mut driver = Self {
             cockpit: Cockpit::new(app).with_snap(snap),
             canvas: Canvas::new(scene.size, scene.scale),
             clock,
-            endpoint: scene.endpoint.clone(),
+            endpoint,
             runtime,
+            _kept: kept,
         };
         driver.hold_still();
         Ok(driver)
     }
 
     /// The first frame puts fonts and style into the screen; they must hold still after that.
-    fn hold_still(&mut self) {
+    pub(crate) fn hold_still(&mut self) {
         let now = self.now();
         let cockpit = &mut self.cockpit;
         self.canvas.frame(now.secs(), |ui| cockpit.ui(ui, now));
@@ -152,9 +166,8 @@ impl Driver {
 
     /// Puts on other colours and another language.
     pub fn dress(&mut self, theme: Theme, language: Language) {
-        let now = self.now();
         for wish in [Action::Theme(theme), Action::Language(language)] {
-            self.cockpit.app().act(wish, now);
+            self.act(wish);
         }
         self.hold_still();
     }
@@ -172,7 +185,7 @@ impl Driver {
     }
 
     /// Lets one [`STEP`] pass, or what is left if that is less.
-    fn step(&mut self, left: Duration) {
+    pub(crate) fn step(&mut self, left: Duration) {
         // A timer can be made only inside the runtime.
         self.runtime
             .block_on(async { tokio::time::sleep(left.min(STEP)).await });
@@ -218,19 +231,29 @@ impl Driver {
         }
     }
 
+    /// Asks for something as a person does.
+    pub(crate) fn act(&mut self, action: Action) {
+        let now = self.now();
+        let _inside = self.runtime.enter();
+        self.cockpit.app().act(action, now);
+    }
+
+    /// Lets time pass until something is so, or for so long at most.
+    pub(crate) fn until(&mut self, within: Duration, so: impl Fn(&State) -> bool) {
+        let begun = self.now();
+        while !so(self.cockpit.state()) && self.now().since(begun) < within {
+            self.step(STEP);
+        }
+    }
+
     /// Reads what the hand keeps, and waits for it.
-    fn read_rows(&mut self) {
+    pub(crate) fn read_rows(&mut self) {
         let now = self.now();
         if !self.cockpit.state().device.is_due(now) {
             return;
         }
-        let inside = self.runtime.enter();
-        let read = Action::Device(DeviceWish::Read);
-        self.cockpit.app().act(read, now);
-        drop(inside);
-        while self.cockpit.state().device.is_busy() && self.now().since(now) < ANSWER_WITHIN {
-            self.step(STEP);
-        }
+        self.act(Action::Device(DeviceWish::Read));
+        self.until(ANSWER_WITHIN, |state| !state.device.is_busy());
     }
 
     /// Tries a small grid of grasps on a built-in hand, and lets it run to its end: real trials, in virtual time.
@@ -253,32 +276,10 @@ impl Driver {
             Action::Trial(TrialWish::Start),
         ];
         for wish in wishes {
-            let now = self.now();
-            self.cockpit.app().act(wish, now);
+            self.act(wish);
             self.run_for(ARM_WITHIN, |_| ());
         }
-        let begun = self.now();
-        while self.cockpit.state().tuner.is_running() && self.now().since(begun) < GRASPS_WITHIN {
-            self.step(STEP);
-        }
-    }
-
-    /// Opens a card, and lets its checks be made. Nothing is decided on it.
-    pub fn open_card(&mut self, card: SceneCard) {
-        let action = match card {
-            SceneCard::Reset => Action::FactoryReset,
-            SceneCard::Calibrate => Action::CalibrateForce,
-            SceneCard::Address => {
-                self.read_rows();
-                Action::ChangePlace(ParamId::IpAddress, Value::Address(OTHER_ADDRESS))
-            }
-        };
-        let now = self.now();
-        let inside = self.runtime.enter();
-        self.cockpit.app().act(action, now);
-        drop(inside);
-        self.run_for(CHECKED_WITHIN, |_| ());
-        self.hold_still();
+        self.until(GRASPS_WITHIN, |state| !state.tuner.is_running());
     }
 
     /// The whole window with this view open, as it is now. Time stands still, but for a view that reads from the hand when it is

@@ -84,7 +84,7 @@ fn over(look: Look, run: &Calibration) -> Card {
 
 fn head(look: Look, columns: &[Text]) -> Line {
     let all = [cards::JOINT].into_iter().chain(columns.iter().copied());
-    Line::Cells(all.map(|text| look.say(text).to_owned()).collect())
+    Line::Head(all.map(|text| look.say(text).to_owned()).collect())
 }
 
 fn row(look: Look, dof: Dof, columns: &[Option<Offsets>]) -> Line {

@@ -76,6 +76,8 @@ pub(crate) enum Line {
     Warning(String),
     /// Something that must be so, and whether it is; `None` = not known.
     Check(Option<bool>, String),
+    /// What the columns of a table hold.
+    Head(Vec<String>),
     /// Cells of a table, the first one wide.
     Cells(Vec<String>),
 }
@@ -318,7 +320,7 @@ fn words(line: &Line, look: Look) -> (&str, Color32, f32) {
         Line::Warning(text) => (text, palette.warn, theme::SIGN_ROOM),
         Line::Check(Some(true), text) => (text, palette.muted, theme::SIGN_ROOM),
         Line::Check(_, text) => (text, palette.text, theme::SIGN_ROOM),
-        Line::Cells(_) => ("", palette.text, 0.0),
+        Line::Head(_) | Line::Cells(_) => ("", palette.text, 0.0),
     }
 }
 
@@ -330,7 +332,7 @@ fn galley(ui: &Ui, width: f32, look: Look, line: &Line) -> std::sync::Arc<egui::
 
 fn line_height(ui: &Ui, width: f32, look: Look, line: &Line) -> f32 {
     match line {
-        Line::Cells(_) | Line::Check(..) => theme::CONTROL,
+        Line::Head(_) | Line::Cells(_) | Line::Check(..) => theme::CONTROL,
         line => galley(ui, width, look, line).size().y + theme::GAP,
     }
 }
@@ -340,6 +342,7 @@ fn line_ui(ui: &mut Ui, width: f32, look: Look, line: &Line) {
     let palette = look.palette;
     let sign = place.with_max_x(place.left() + theme::SIGN);
     match line {
+        Line::Head(cells) => return head_ui(ui, place, look, cells),
         Line::Cells(cells) => return cells_ui(ui, place, look, cells),
         Line::Check(known, text) => {
             let color = match known {
@@ -358,7 +361,8 @@ fn line_ui(ui: &mut Ui, width: f32, look: Look, line: &Line) {
             return;
         }
         Line::Warning(_) => {
-            let top = sign.with_max_y(sign.top() + theme::SIGN);
+            let above = sign.top() + theme::GAP / 2.0;
+            let top = sign.with_min_y(above).with_max_y(above + theme::SIGN);
             controls::warning_sign(ui, controls::middle(top, theme::SIGN_HEIGHT), palette.warn);
         }
         Line::Words(_) | Line::Note(_) => {}
@@ -368,9 +372,22 @@ fn line_ui(ui: &mut Ui, width: f32, look: Look, line: &Line) {
     ui.skip_ahead_auto_ids(1);
     let response = ui.interact(place, id, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
-    let at = place.min + vec2(indent, 0.0);
-    ui.painter()
-        .galley(at, galley(ui, width, look, line), color);
+    let galley = galley(ui, width, look, line);
+    let text = controls::middle(place, galley.size().y);
+    let at = text.min + vec2(indent, 0.0);
+    ui.painter().galley(at, galley, color);
+}
+
+fn head_ui(ui: &mut Ui, mut place: Rect, look: Look, cells: &[String]) {
+    let Some((first, others)) = cells.split_first() else {
+        return;
+    };
+    let muted = look.palette.muted;
+    for text in others.iter().rev() {
+        let cell = take_right(&mut place, theme::CARD_CELL);
+        Label::new(text, muted).small().right().put(ui, cell);
+    }
+    Label::new(first, muted).small().put(ui, place);
 }
 
 fn cells_ui(ui: &mut Ui, mut place: Rect, look: Look, cells: &[String]) {

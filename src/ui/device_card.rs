@@ -65,11 +65,14 @@ pub(crate) fn lines(look: Look, dangers: &[Danger]) -> Vec<Line> {
         device::DANGER_PEAK,
     ];
     let head = head.map(|text| look.say(text).to_owned());
-    lines.push(Line::Cells(head.into()));
+    lines.push(Line::Head(head.into()));
     lines.extend(dangers.iter().map(|danger| row(look, danger)));
     lines.push(Line::Note(look.say(device::DANGER_MEASURED).into()));
+    if dangers.iter().any(|danger| danger.is_beyond_measured()) {
+        lines.push(Line::Note(look.say(device::DANGER_BEYOND).into()));
+    }
     if let Some(peak) = slowly {
-        let words = format!("{} +{peak:.0} g", look.say(device::DANGER_SLOWLY));
+        let words = format!("{} {peak:.0} g", look.say(device::DANGER_SLOWLY));
         lines.push(Line::Note(words));
     }
     lines

@@ -94,15 +94,20 @@ fn at(look: Look, caption: Text, guarded: &Guarded, place: Place) -> String {
     format!("{} {}", look.say(caption), guarded.endpoint(place))
 }
 
-fn ask_change(state: &State, look: Look, guarded: &Guarded, change: &Change) -> Card {
+/// What is changed, from what to what.
+fn from_to(look: Look, change: &Change) -> Line {
     let name = match change.id {
         ParamId::HandId => cards::FROM_TO_ID,
         ParamId::IpAddress => cards::FROM_TO_IP,
         _ => cards::FROM_TO_BAUD,
     };
     let (from, to) = (change.before, change.wanted);
+    Line::Words(format!("{}: {from} -> {to}", look.say(name)))
+}
+
+fn ask_change(state: &State, look: Look, guarded: &Guarded, change: &Change) -> Card {
     let mut lines = vec![
-        Line::Words(format!("{}: {from} -> {to}", look.say(name))),
+        from_to(look, change),
         Line::Note(at(look, cards::NOW_AT, guarded, Place::Old)),
     ];
     if guarded.new != guarded.old {
@@ -160,6 +165,7 @@ fn change_card(state: &State, look: Look, guarded: &Guarded, change: &Change) ->
             Card {
                 title: look.say(cards::KEEP_TITLE).into(),
                 lines: vec![
+                    from_to(look, change),
                     Line::Words(look.say(words).into()),
                     Line::Note(at(look, cards::NOW_AT, guarded, *place)),
                 ],

@@ -143,6 +143,55 @@ fn one_command_draws_every_theme_and_language() {
 }
 
 #[test]
+fn a_card_is_drawn_over_the_view_the_same_in_every_run() {
+    let folder = tempfile::tempdir().unwrap();
+    for (card, words) in [
+        ("keep", ["Keep the change?", "Goes back by itself in 13 s"]),
+        ("danger", ["Apply defaults that hit hard?", "Apply anyway"]),
+    ] {
+        let draw = |name: &str| {
+            let out = folder.path().join(name).to_str().unwrap().to_owned();
+            let args = [
+                "snapshot",
+                "--scenario",
+                "idle",
+                "--at",
+                "1",
+                "--view",
+                "device",
+                "--size",
+                "1024x640",
+                "--card",
+                card,
+                "--out",
+                &out,
+            ];
+            run(&args).ok();
+            let read = |kind: &str| fs::read(format!("{out}/card-{card}.{kind}")).unwrap();
+            (read("png"), String::from_utf8(read("json")).unwrap())
+        };
+        let (one, list) = draw("one");
+        for words in words {
+            assert!(list.contains(words), "{words}");
+        }
+        assert!(draw("other") == (one, list), "{card}");
+    }
+}
+
+#[test]
+fn a_card_that_would_write_to_a_real_hand_is_not_drawn_over_one() {
+    for card in ["keep", "danger"] {
+        let hand = "rs485:/nowhere/hand";
+        let args = [
+            "snapshot", "--hand", hand, "--card", card, "--out", "/nowhere",
+        ];
+        let ended = run(&args);
+        assert_eq!(ended.code, Some(2), "{}", ended.err);
+        assert!(ended.err.contains("only with the built-in hand"));
+    }
+}
+
+#[test]
 fn a_hand_that_is_not_there_gives_no_picture() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");

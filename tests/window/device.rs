@@ -261,7 +261,7 @@ fn what_could_hurt_is_asked_about_on_a_card_with_the_measured_figures() {
         "only the joints that are meant"
     );
     assert!(
-        bench.shows("With speed 25 the same thresholds were passed by at most +69 g"),
+        bench.shows("With speed 25 the same thresholds were passed by at most 69 g"),
         "what to do about it"
     );
     bench.show(handscope::ui::View::Live);

@@ -140,7 +140,10 @@ impl Desk {
         let book = &mut self.state.device;
         book.is_asked = true;
         book.trouble = None;
-        book.question = None;
+        // What was asked about is still meant when the rows are only read again; before a write it is judged anew.
+        if matches!(then, Then::Write(..)) {
+            book.question = None;
+        }
         book.doing = match &then {
             Then::Nothing => Doing::Reading,
             Then::Write(Wanted::Save, _) => Doing::BackingUp,

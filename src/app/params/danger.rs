@@ -2,7 +2,7 @@
 
 use crate::app::params::table::{ParamId, Value};
 use crate::app::params::values::Params;
-use crate::hand::impact::{NOTABLE_G, overshoot_g};
+use crate::hand::impact::{HIGHEST_G, NOTABLE_G, overshoot_g};
 use crate::hand::{Dof, Force};
 
 /// A joint whose defaults a person should know of before they are written or saved.
@@ -23,6 +23,12 @@ impl Danger {
     #[must_use]
     pub fn peak_g(&self) -> f64 {
         f64::from(self.force_g) + self.overshoot_g
+    }
+
+    /// True if no threshold as high was measured: the figure is that of the highest.
+    #[must_use]
+    pub fn is_beyond_measured(&self) -> bool {
+        f64::from(self.force_g) > HIGHEST_G
     }
 
     /// True if already the threshold is above the rated grip.
