@@ -1,0 +1,315 @@
+//! From the plan of trials to a hand that wakes up tuned, by a person with a mouse: on a cup that breaks, over each wire,
+//! the hand in another process, in real time. What the window then says, other programs read from the hand.
+#![cfg(unix)]
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    reason = "a test may"
+)]
+
+#[path = "cli/program.rs"]
+mod program;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use handscope::app::params::table::{ParamId, Value};
+use handscope::app::program::{App, Env};
+use handscope::app::settings::Settings;
+use handscope::app::state::State;
+use handscope::app::{InFolder, SimDial};
+use handscope::hand::Dof;
+use handscope::link::{Clock, LinkState};
+use handscope::shell::Cockpit;
+use handscope::ui::View;
+use program::{Running, run, sim_on_all};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tokio::runtime::Runtime;
+
+const FRAME: Duration = Duration::from_millis(20);
+/// Many times what anything here takes on an idle machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// A series that other work on this machine held up may be run again.
+const RUNS: usize = 3;
+/// What the cup is held with at least, g, and may be pressed with beyond the threshold.
+const HOLD_G: f64 = 100.0;
+const OVERSHOOT_G: f64 = 100.0;
+
+struct Room {
+    runtime: Runtime,
+    clock: Clock,
+    cockpit: Cockpit,
+}
+
+impl Room {
+    fn open(endpoint: &str, folder: &Path) -> Self {
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()
+            .unwrap();
+        let inside = runtime.enter();
+        let clock = Clock::start();
+        let env = Env {
+            runtime: runtime.handle().clone(),
+            clock,
+            dial: Arc::new(SimDial::new(clock)),
+            wake: Arc::new(|| {}),
+            files: Arc::new(InFolder(folder.into())),
+            settings_path: Some(folder.join("settings.toml")),
+        };
+        let mut app = App::new(env, Settings::default());
+        app.open(Some(endpoint.parse().unwrap()), clock.now());
+        drop(inside);
+        let cockpit = Cockpit::new(app);
+        Self {
+            runtime,
+            clock,
+            cockpit,
+        }
+    }
+
+    fn frame(&mut self, ui: &mut egui::Ui) {
+        let _inside = self.runtime.enter();
+        self.cockpit.logic(self.clock.now());
+        self.cockpit.ui(ui, self.clock.now());
+    }
+}
+
+/// A person at the window. Everything is found by its name and pressed with the pointer.
+struct Person {
+    harness: Harness<'static, Room>,
+}
+
+impl Person {
+    fn at(endpoint: &str, folder: &Path) -> Self {
+        let harness = Harness::builder()
+            .with_size(vec2(1440.0, 900.0))
+            .with_step_dt(FRAME.as_secs_f32())
+            .build_ui_state(
+                |ui, room: &mut Room| room.frame(ui),
+                Room::open(endpoint, folder),
+            );
+        let mut person = Self { harness };
+        person.until("a live hand", |state| {
+            state.link.state == LinkState::Monitoring && state.stats.tactile_reads > 2
+        });
+        person
+    }
+
+    fn state(&self) -> &State {
+        self.harness.state().cockpit.state()
+    }
+
+    fn look(&mut self) {
+        std::thread::sleep(FRAME);
+        self.harness.step();
+    }
+
+    fn until(&mut self, what: &str, so: impl Fn(&State) -> bool) {
+        let begun = Instant::now();
+        while !so(self.state()) {
+            assert!(begun.elapsed() < PATIENCE, "{what} does not come");
+            self.look();
+        }
+        self.look();
+    }
+
+    fn press(&mut self, name: &str) {
+        self.harness
+            .get_by_role_and_label(Role::Button, name)
+            .click();
+        self.harness.step();
+        self.harness.remove_cursor();
+        self.look();
+    }
+
+    fn open(&mut self, tab: &str, view: View) {
+        self.press(tab);
+        assert_eq!(self.harness.state().cockpit.view(), view);
+    }
+
+    fn shows(&self, name: &str) -> bool {
+        self.harness.query_all_by_label(name).next().is_some()
+    }
+
+    fn enter(&mut self, field: &str, text: &str) {
+        let input = |harness: &Harness<'static, Room>| {
+            harness
+                .get_by_role_and_label(Role::TextInput, field)
+                .focus();
+        };
+        input(&self.harness);
+        self.look();
+        self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.look();
+        self.harness
+            .get_by_role_and_label(Role::TextInput, field)
+            .type_text(text);
+        self.look();
+        self.harness.key_press(Key::Enter);
+        self.look();
+    }
+
+    /// What stands under a name.
+    fn reading(&self, name: &str) -> String {
+        let labels = self.harness.query_all_by_role(Role::Label);
+        let mut named =
+            labels.filter(|node| node.accesskit_node().label().as_deref() == Some(name));
+        let found = named.next().and_then(|node| node.value());
+        found.unwrap_or_else(|| panic!("no reading '{name}'"))
+    }
+}
+
+/// Writes the plan: the index closes onto the cup at two speeds.
+fn plan(person: &mut Person) {
+    person.open("Tune", View::Tune);
+    for (field, text) in [
+        ("Index from", "600"),
+        ("Index to", "300"),
+        ("Speeds to try", "25, 250"),
+        ("Force thresholds to try", "200"),
+        ("Hold, s", "0.5"),
+        ("Rest, s", "0"),
+        ("Force, g", "1500"),
+    ] {
+        person.enter(field, text);
+    }
+}
+
+/// Runs the series in an arming of its own; whether it was left alone until its end.
+fn tried(person: &mut Person) -> bool {
+    person.press("Arm the hand");
+    person.until("the arming", State::is_armed);
+    person.press("Start trials");
+    assert!(person.state().tuner.is_running());
+    person.until("the end of the series", |state| !state.tuner.is_running());
+    person.until("disarming", |state| !state.is_armed());
+    let last = person.state().tuner.sessions.last().unwrap();
+    last.ended.is_none()
+}
+
+/// The quickest setting that spares the cup, as the window names it, and its overshoot.
+fn chosen(person: &mut Person) -> (i32, i32) {
+    person.open("Compare", View::Compare);
+    person.press("Fastest within 100 g");
+    person.enter("Holds at least, g", &format!("{HOLD_G}"));
+    let best = person.reading("Best");
+    let (speed, force) = best.trim().split_once(" / ").expect(&best);
+    let force = force.trim_end_matches(" g").parse().unwrap();
+    (speed.parse().unwrap(), force)
+}
+
+fn check_gentle(state: &State, speed: i32) {
+    let session = state.tuner.sessions.last().unwrap();
+    let tried = session.trials.iter();
+    let tried: Vec<_> = tried
+        .filter(|tried| i32::from(tried.setting.speed.get()) == speed)
+        .collect();
+    assert!(!tried.is_empty());
+    for joint in tried.iter().flat_map(|tried| &tried.metrics.joints) {
+        let over = joint.overshoot_g.expect("it was measured");
+        let steady = joint.steady_force_g.expect("it was measured");
+        assert!(over < OVERSHOOT_G, "{over}");
+        assert!(steady >= HOLD_G, "{steady}");
+    }
+}
+
+/// Stages the best as defaults, applies, and saves to flash.
+fn keep(person: &mut Person) {
+    person.press("Stage as defaults");
+    person.open("Device", View::Device);
+    person.until("the rows", |state| state.device.read_at.is_some());
+    person.press("Apply");
+    person.until("applied rows", |state| {
+        !state.device.is_busy()
+            && state
+                .device
+                .staged(ParamId::DefaultSpeed(Dof::Index))
+                .is_none()
+    });
+    person.press("Save to flash");
+    // The joints that were not tried still have the defaults of the factory.
+    person.until("the question", |state| state.device.question.is_some());
+    person.press("Save all the same");
+    person.until("the end of SAVE", |state| {
+        !state.device.is_busy() && state.device.save.is_some()
+    });
+}
+
+fn power_cycle(sim: &mut Running, person: &mut Person) {
+    sim.signal("USR1");
+    sim.until(|line| line == "power cycled");
+    person.until("the hand again", |state| {
+        state.link.state == LinkState::Monitoring && state.sample.speed_set.is_some()
+    });
+}
+
+#[test]
+fn a_person_finds_a_setting_that_spares_a_cup_and_the_hand_wakes_up_with_it_over_each_wire() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut sim, wires) = sim_on_all(folder.path(), &["--scenario", "fragile"]);
+    for (nth, hand) in wires.all().into_iter().enumerate() {
+        let place = folder.path().join(nth.to_string());
+        std::fs::create_dir(&place).unwrap();
+        let mut person = Person::at(hand, &place);
+        plan(&mut person);
+        assert!((0..RUNS).any(|_| tried(&mut person)), "{hand}: disturbed");
+        let (speed, force) = chosen(&mut person);
+        check_gentle(person.state(), speed);
+        keep(&mut person);
+        power_cycle(&mut sim, &mut person);
+        let (live, _) = person
+            .state()
+            .device
+            .live(ParamId::DefaultSpeed(Dof::Index))
+            .unwrap();
+        assert_eq!(live, Value::Number(speed), "{hand}");
+        drop(person);
+        check_by_script(hand, &place, speed, force);
+        // So that the next wire has something to find.
+        run(&[
+            "params",
+            "reset",
+            "--yes",
+            "--hand",
+            hand,
+            "--folder",
+            place.to_str().unwrap(),
+        ])
+        .ok();
+    }
+}
+
+/// Other programs find what the person chose.
+fn check_by_script(hand: &str, place: &Path, speed: i32, force: i32) {
+    let wanted = place.join("wanted.toml");
+    let rows = format!("[default_speed]\nindex = {speed}\n[default_force]\nindex = {force}");
+    let text = format!("format = \"handscope-params\"\nversion = 1\n{rows}\n");
+    std::fs::write(&wanted, text).unwrap();
+    let found = run(&[
+        "params",
+        "diff",
+        wanted.to_str().unwrap(),
+        "--json",
+        "--hand",
+        hand,
+    ]);
+    let found = found.ok().lines().pop().unwrap();
+    assert_eq!(found["differences"], 0, "{hand}");
+    for (register, value) in [("SPEED_SET", speed), ("FORCE_SET", force)] {
+        let read = run(&["read", register, "--json", "--hand", hand]).ok();
+        let read = read.lines().pop().unwrap();
+        assert_eq!(
+            read[register][Dof::Index.index()],
+            value,
+            "{hand} {register}"
+        );
+    }
+}
