@@ -40,8 +40,12 @@ pub fn rest(curve: &Curve, from: f64, to: f64) -> Option<Rest> {
     })
 }
 
+/// A line is drawn between readings no further apart than this, s. Farther apart, nobody knows what lay between, and a
+/// reading counts from when it was there: late, never early.
+const LINE_MAX_S: f64 = 0.06;
+
 /// When a curve first passes a level for good: two values in a row beyond it, on the line between the last value before
-/// and the first beyond. `None` if it does not, or if the first value known already is beyond.
+/// and the first beyond, if they are near each other. `None` if it does not, or if the first value known already is beyond.
 #[must_use]
 pub fn passes(points: impl Iterator<Item = Point>, level: f64) -> Option<f64> {
     let mut before: Option<Point> = None;
@@ -57,7 +61,12 @@ pub fn passes(points: impl Iterator<Item = Point>, level: f64) -> Option<f64> {
         }
         let from = before?;
         let share = (level - from.v) / (point.v - from.v).max(f64::EPSILON);
-        first = Some(from.t + (point.t - from.t) * share.clamp(0.0, 1.0));
+        let apart = point.t - from.t;
+        first = Some(if apart > LINE_MAX_S {
+            point.t
+        } else {
+            from.t + apart * share.clamp(0.0, 1.0)
+        });
     }
     None
 }
@@ -113,6 +122,17 @@ mod tests {
             let seen = begins(&curve, 0.0, 3.0).unwrap();
             assert!((seen - start).abs() < 0.003, "{start} {seen}");
         }
+    }
+
+    #[test]
+    fn between_readings_far_apart_nothing_is_made_up() {
+        let rare = |apart: f64| {
+            let values = [0.0, 0.0, 9.0, 9.0].into_iter().enumerate();
+            let points = values.map(|(n, v)| (f64::from(u32::try_from(n).unwrap()) * apart, v));
+            passes(points.collect::<Curve>().between(0.0, 9.0), 0.9).unwrap()
+        };
+        assert!((rare(0.05) - 0.055).abs() < 1e-9);
+        assert!((rare(0.3) - 0.6).abs() < 1e-9);
     }
 
     #[test]

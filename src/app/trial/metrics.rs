@@ -3,8 +3,9 @@
 //! Times are those at which replies were there, counted from the moment at which the closing command was given to the
 //! link. Errors, with T the time between two reads (see `rate_hz`, `longest_gap_s`) and S the noise of the force at rest:
 //!
-//! * times: T late at most, for contact and motion less, as they are drawn back along the rise; a command waits for the
-//!   request on the wire before it, so dead time and time to contact hold up to one transaction more (15 ms on a slow hand);
+//! * times: T late at most; for contact and motion less, as they are drawn back along the rise where T is up to 60 ms. T of
+//!   touch is that of the fingertips, which a slow line reads more seldom than forces. A command waits for the request on
+//!   the wire before it, so dead time and time to contact hold up to one transaction more (15 ms on a slow hand);
 //! * motion: half a unit of ANGLE_ACT more, which is 12 ms at speed 25 and nothing at 250;
 //! * forces: the reading at rest is taken away, so a sensor's offset does not count. A peak is the highest reading: too
 //!   low if the force peaked between two reads, too high by up to 2 S. At the sensor's end it is a lower bound (`clipped`);
