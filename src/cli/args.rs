@@ -300,7 +300,7 @@ impl LanguageArg {
 }
 
 const SIM_HELP: &str = "\
-Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix SIGUSR1 switches them off and on again, and 'power cycled' is printed: what was not saved is gone.
+Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix SIGUSR1 switches them off for a second; once they are on again 'power cycled' is printed: what was not saved is gone.
 On Modbus TCP the unit id says which hand is meant; 255 means the first, and a hand that is alone answers to all.";
 
 fn sim_help() -> String {

@@ -27,6 +27,9 @@ const LIVE_EACH: Duration = Duration::from_millis(10);
 /// A wire being served; it resolves only if it fails.
 type Served = BoxFuture<'static, anyhow::Error>;
 
+/// How long a hand that is switched off and on stays silent: its own start is said nowhere, a person's hand takes as long.
+const STARTS_UP: Duration = Duration::from_secs(1);
+
 /// Serves the hand until the person ends it.
 pub(crate) fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     tokio::runtime::Builder::new_current_thread()
@@ -103,10 +106,12 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Switches all hands off and on at each wish, and says so once it is done.
+/// Switches all hands off and on at each wish, and says so once they answer again.
 async fn lose_power(out: &mut Out, mut power: PowerCut, hands: &Hands) -> anyhow::Error {
     loop {
         power.wished().await;
+        hands.with_each(SimHand::switch_off);
+        tokio::time::sleep(STARTS_UP).await;
         hands.with_each(SimHand::power_cycle);
         if let Err(error) = out.line("power cycled").and_then(|()| out.flush()) {
             return error;

@@ -32,7 +32,9 @@ impl Session {
             if let Err(end) = self.turn(bus).await {
                 return end;
             }
-            match self.step(bus).await {
+            let stepped = self.step(bus).await;
+            self.tell_line_left();
+            match stepped {
                 Ok(true) => {
                     self.count(bus);
                     self.watch_others(bus);

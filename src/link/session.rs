@@ -229,6 +229,7 @@ impl Session {
             self.answer(job.ticket, Err(RequestError::LinkLost));
         }
         self.lose_settling();
+        self.status.line_left = false;
         self.go(LinkState::Offline);
         while let Ok((ticket, _)) = self.ends.requests.try_recv() {
             self.answer(ticket, Err(RequestError::NotConnected));

@@ -121,6 +121,15 @@ impl Session {
         )
     }
 
+    /// Says whether the line is left to the hand.
+    pub(crate) fn tell_line_left(&mut self) {
+        let left = self.leaves_line();
+        if self.status.line_left != left {
+            self.status.line_left = left;
+            self.publish();
+        }
+    }
+
     /// The next step of what is under way.
     pub(crate) async fn settle(&mut self, bus: &mut Bus) -> Result<(), End> {
         let Some(settling) = self.settling.take() else {

@@ -58,6 +58,8 @@ pub struct LinkStatus {
     pub latency_timer_ms: Option<u16>,
     /// Round trips stand at the ticks of such a timer, where the system does not tell.
     pub latency_ticks: bool,
+    /// The line is left to a hand that saves or calibrates: values grow old meanwhile. A stop still passes.
+    pub line_left: bool,
     /// How the last hold went.
     pub hold: Hold,
     /// Why the hand is not armed, if it was.

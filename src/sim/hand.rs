@@ -10,16 +10,14 @@ use crate::sim::live::{self, element};
 use crate::sim::memory::{GAP, Memory, Refusal};
 use crate::sim::number;
 use crate::sim::personality::{
-    ChangeAck, Doubles, GapAnswer, Personality, Power, SaveAnswer, SpeedZero, TactileCheck,
-    Turnaround,
+    ChangeAck, Doubles, GapAnswer, Personality, SaveAnswer, SpeedZero, TactileCheck, Turnaround,
 };
 use crate::sim::scenario::{self, Ailment, Order, Scenario};
+use crate::sim::supply::Supply;
 use crate::sim::touch::{SENSOR_MS, Touch};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// When the 24 V supply goes, and for how long, on a hand whose supply does.
-const POWER_OFF_MS: std::ops::Range<u64> = 3000..3500;
 /// What a sensor's own header adds to its sum: 55 AA, 56 bytes, a command, a number, 8 channels.
 // Manual: silent; the sensor maker's own frame has this header before the same 54 bytes.
 const SENSOR_HEADER_SUM: u16 = 0x55 + 0xAA + 56 + 3 + 1 + 8;
@@ -108,6 +106,7 @@ pub struct SimHand {
     pub(crate) config: SimConfig,
     pub(crate) memory: Memory,
     pub(crate) body: Body,
+    supply: Supply,
     touch: Touch,
     rng: fastrand::Rng,
     pub(crate) now_ms: u64,
@@ -136,6 +135,7 @@ impl SimHand {
         let mut touch = Touch::new(&mut rng);
         touch.measure(&mut rng);
         let mut hand = Self {
+            supply: Supply::new(config.personality.power),
             config,
             memory: Memory::new(config.id),
             body,
@@ -172,7 +172,7 @@ impl SimHand {
     /// [`Refusal`] for runs that leave the memory, or cross the gap on a hand that does not answer there.
     pub fn read(&mut self, span: Span, now: Moment) -> Result<Vec<u8>, Refusal> {
         self.advance_to(now);
-        if self.is_off() {
+        if self.supply.is_off(self.now_ms) {
             return Err(Refusal::Silent);
         }
         if self.config.personality.gap == GapAnswer::Refused && overlaps(span, GAP) {
@@ -196,7 +196,7 @@ impl SimHand {
         now: Moment,
     ) -> Result<WriteEffect, Refusal> {
         self.advance_to(now);
-        if self.is_off() {
+        if self.supply.is_off(self.now_ms) {
             return Err(Refusal::Silent);
         }
         self.record(now, address, bytes);
@@ -275,9 +275,16 @@ impl SimHand {
         self.calibration_end.take_if(|due| *due <= now).is_some()
     }
 
-    /// Switches the hand off and on. The joints stay where they are.
+    /// Switches the hand off. The joints stay where they are, and nothing is answered.
+    pub fn switch_off(&mut self, now: Moment) {
+        self.advance_to(now);
+        self.supply.switch_off();
+    }
+
+    /// Switches the hand off and on, or on if it is off. The joints stay where they are.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance_to(now);
+        self.supply.switch_on();
         self.restart();
     }
 
@@ -299,11 +306,6 @@ impl SimHand {
     #[must_use]
     pub const fn id(&self) -> u8 {
         self.id
-    }
-
-    /// True while the hand has no power.
-    fn is_off(&self) -> bool {
-        self.config.personality.power == Power::Cut && POWER_OFF_MS.contains(&self.now_ms)
     }
 
     /// The serial speed's code in effect, by default that of the last power-up.
@@ -364,8 +366,8 @@ impl SimHand {
             Scenario::Faults => self.script_faults(),
             Scenario::Idle | Scenario::Rigid | Scenario::Fragile | Scenario::Extremes => {}
         }
-        if self.is_off() {
-            if self.now_ms == POWER_OFF_MS.start {
+        if self.supply.is_off(self.now_ms) {
+            if self.supply.fails(self.now_ms) {
                 self.restart();
             }
             return;

@@ -12,6 +12,7 @@ mod obey;
 pub mod personality;
 pub mod scenario;
 pub mod serve;
+mod supply;
 pub mod touch;
 
 pub use body::{Body, Object};

@@ -136,8 +136,10 @@ fn rival(pane: &Pane<'_>) -> Option<Banner> {
 
 fn stale(pane: &Pane<'_>) -> Option<Banner> {
     let asked = pane.state.sample.angle?.asked;
-    let live = pane.state.link.state.is_live();
-    (live && pane.freshness(Some(asked)) == Freshness::Stale).then(|| Banner {
+    let link = &pane.state.link;
+    // While the hand saves, nobody asks it: whoever wanted that sees it where it was wanted.
+    let expected = link.state.is_live() && !link.line_left;
+    (expected && pane.freshness(Some(asked)) == Freshness::Stale).then(|| Banner {
         title: main::STALE_TITLE,
         body: format!(
             "{} {}",

@@ -266,3 +266,40 @@ fn another_controller_is_a_banner_disarms_and_goes_away_again() {
     assert_eq!(told.len(), 1, "{told:?}");
     bench.until(7000, |bench| !bench.shows("ANOTHER CONTROLLER"));
 }
+
+/// A hand that saves and never says how that went.
+fn saving() -> Bench {
+    let mut config = SimConfig::default();
+    config.personality.set("save-result", "never").unwrap();
+    let mut bench = Bench::keeping(config);
+    let gentle = 100_i16.to_le_bytes().repeat(6);
+    for address in [1032, 1044] {
+        bench.hand(|hand, now| hand.write(address, &gentle, now).unwrap());
+    }
+    bench.click_first_button("Device");
+    bench.until(2000, |bench| bench.state().device.read_at.is_some());
+    bench.run(200);
+    bench.click("Save to flash");
+    bench.until(2000, |bench| bench.state().link.line_left);
+    bench
+}
+
+#[test]
+fn values_that_grow_old_because_the_hand_saves_are_greyed_and_no_warning() {
+    let mut bench = saving();
+    bench.wait(1500);
+    assert!(bench.shows("The hand writes its flash. Leave it switched on."));
+    assert_eq!(bench.texts_with("Age ").len(), 1);
+    assert!(!bench.shows("OLD VALUES"));
+    bench.until(6000, |bench| !bench.state().link.line_left);
+    bench.run(200);
+    assert!(bench.texts_with("Age ").is_empty(), "it is read again");
+}
+
+#[test]
+fn a_link_that_is_lost_while_the_hand_saves_is_not_left_to_it_any_more() {
+    let mut bench = saving();
+    bench.unplug();
+    bench.until(5000, |bench| bench.shows("LINK LOST"));
+    assert!(!bench.state().link.line_left);
+}
