@@ -89,7 +89,7 @@ impl WordUse {
             (None | Some(BytePacking::LowFirst), Some(BytePacking::LowFirst))
             | (Some(BytePacking::LowFirst), None) => return Ok(()),
             (None, None) => {
-                "it is not known how this hand puts single bytes into words; 'packing=low' in its address says that it is low byte first"
+                "it is not known how this hand puts single bytes into words; 'packing=low' in its address (in the window: Modbus bytes, Connection) says that it is low byte first"
             }
             _ => {
                 "this hand does not put single bytes into words low byte first, and writing them is not known to be safe"

@@ -8,6 +8,7 @@ use crate::transport::{Endpoint, Packing};
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::link_figures;
 use crate::ui::look::Pane;
+use crate::ui::packing_row::{self, packing_ui};
 use crate::ui::quirk_sheet;
 use crate::ui::scan::ScanPanel;
 use crate::ui::text::{Text, panels, quirks};
@@ -16,7 +17,7 @@ use egui::{Id, Rect, TextEdit, Ui, pos2, vec2};
 
 /// Width of the captions of the form.
 const CAPTION: f32 = theme::CAPTION_WIDE;
-/// Height of the longest form, with one row of ports.
+/// Height of the longest form but that of Modbus RTU, with one row of ports.
 const HEIGHT: f32 = theme::CONNECTION_CARD;
 /// Rows of ports shown at once.
 const PORTS_MAX: usize = 4;
@@ -77,7 +78,6 @@ pub(crate) struct ConnectionForm {
     host: String,
     tcp_port: String,
     unit: String,
-    /// Not typed: chosen beside what the hand answers, and kept with the address.
     packing: Option<Packing>,
     interface: String,
     bitrate: String,
@@ -119,7 +119,7 @@ impl ConnectionForm {
         self.fill(pane.state.endpoint.as_ref());
         let (left, right) = rect.split_left_right_at_x(rect.left() + rect.width() * 0.56);
         let left = left.with_max_x(left.right() - theme::GAP);
-        let height = form_height(pane.state.ports.len());
+        let height = self.height(pane.state.ports.len());
         if let Some(left) = self.scan.ui(ui, left, height, pane) {
             self.form_ui(ui, left, pane);
         }
@@ -154,6 +154,16 @@ impl ConnectionForm {
         if swap.put(ui, look, place, Id::unique("swap")).clicked() {
             self.shows_budget = !self.shows_budget;
         }
+    }
+
+    /// Height of the form with so many ports listed.
+    fn height(&self, ports: usize) -> f32 {
+        let more = (1..PORTS_MAX.min(ports)).map(|_| theme::CONTROL + theme::GAP);
+        let packing = match self.kind {
+            Kind::Rtu => packing_row::HEIGHT,
+            _ => 0.0,
+        };
+        HEIGHT + packing + more.sum::<f32>()
     }
 
     fn fill(&mut self, endpoint: Option<&Endpoint>) {
@@ -283,6 +293,9 @@ impl ConnectionForm {
                 };
                 field_ui(ui, &mut body, pane, caption, "", speed);
                 field_ui(ui, &mut body, pane, panels::HAND_ID, "", &mut self.id);
+                if self.kind == Kind::Rtu {
+                    packing_ui(ui, &mut body, pane, CAPTION - theme::GAP, &mut self.packing);
+                }
             }
             Kind::Can => {
                 let interface = &mut self.interface;
@@ -300,6 +313,7 @@ impl ConnectionForm {
                     &mut self.tcp_port,
                 );
                 field_ui(ui, &mut body, pane, panels::UNIT, "", &mut self.unit);
+                packing_ui(ui, &mut body, pane, CAPTION - theme::GAP, &mut self.packing);
             }
         }
         take_top(&mut body, theme::STEP);
@@ -400,12 +414,6 @@ impl ConnectionForm {
             }
         }
     }
-}
-
-/// Height that the form has with so many ports listed.
-fn form_height(ports: usize) -> f32 {
-    let more = (1..PORTS_MAX.min(ports)).map(|_| theme::CONTROL + theme::GAP);
-    HEIGHT + more.sum::<f32>()
 }
 
 fn field_ui(

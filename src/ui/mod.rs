@@ -42,6 +42,7 @@ mod look;
 mod message_log;
 mod note_bar;
 mod number;
+mod packing_row;
 mod plot_axes;
 mod plot_bars;
 mod plot_cursors;

@@ -77,6 +77,33 @@ fn connecting_and_disconnecting_write_nothing() {
 }
 
 #[test]
+fn how_bytes_stand_in_words_can_be_said_for_modbus_and_is_part_of_the_address() {
+    let mut bench = Bench::live();
+    bench.click_button("Connection");
+    for (kind, has_words) in [("RS485", false), ("Modbus RTU", true), ("Modbus TCP", true)] {
+        bench.click_button(&format!("Kind of link: {kind}"));
+        bench.run(60);
+        assert_eq!(bench.shows("Modbus bytes: as the hand shows"), has_words);
+    }
+    bench.click_button("Modbus bytes: as the hand shows");
+    bench.run(200);
+    bench.click("low first");
+    bench.run(200);
+    assert_eq!(
+        bench
+            .texts_with("tcp:192.168.11.210:6000?unit=255&packing=low")
+            .len(),
+        1
+    );
+    bench.click_button("Modbus bytes: low first");
+    bench.run(200);
+    bench.click("as the hand shows");
+    bench.run(200);
+    assert!(bench.texts_with("packing=").is_empty());
+    assert_eq!(bench.writes(), [], "nothing is connected by choosing");
+}
+
+#[test]
 fn without_arming_no_control_of_the_joints_writes() {
     let mut bench = Bench::live();
     for joint in JOINTS {

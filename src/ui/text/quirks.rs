@@ -14,6 +14,8 @@ texts! {
     TOUCH: "Fingertips", "指尖";
     SEEN: "Seen", "连接日期";
     UNKNOWN: "-", "-";
+    PACKING_TIP: "How this hand puts single bytes (SAVE, faults) into Modbus words. Choose only if it cannot be found out and its papers say so: a wrong choice writes to the wrong address.", "本手将单字节（SAVE、故障）放入 Modbus 字的方式。仅当无法识别且资料有说明时才手动选择：选错会写到错误的地址。";
+    AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
     LOW: "low first", "低字节在前";
     HIGH: "high first", "高字节在前";
