@@ -9,9 +9,9 @@
 //! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
-//! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings and SAVE; finding hands; what went over the wire |
+//! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings, SAVE and calibration; finding hands; what went over the wire |
 //! | 2 | [`sim`] | a hand that answers on the wire |
-//! | 3 | [`app`] | everything the program knows, without drawing; grasp trials and what is measured of them; what a hand keeps, in files, compared, backed up |
+//! | 3 | [`app`] | everything the program knows, without drawing; grasp trials and what is measured of them; what a hand keeps, in files, compared, backed up; what is done to a hand only under a card |
 //! | 4 | [`ui`] | the window: reads state, returns actions |
 //! | 5 | [`shell`] | program and window as one thing |
 //! | 5 | [`raster`] | what egui drew as pixels, without a GPU |

@@ -15,8 +15,9 @@ use handscope::app::params::values::Params;
 use handscope::hand::{Dof, HandId, PerDof, Setting, Speed};
 use handscope::hand::{Force, Span, register};
 use handscope::link::{
-    self, ArmRequest, Calibrated, Clock, Doubt, LinkConfig, LinkEvent, LinkHandle, LinkState,
-    NotSent, Outcome, PollRates, Request, RequestError, Reset, SaveDoubt, Saved, Verdict, Written,
+    self, ArmRefusal, ArmRequest, Calibrated, Clock, Doubt, LinkConfig, LinkEvent, LinkHandle,
+    LinkState, NotSent, Outcome, PollRates, Request, RequestError, Reset, SaveDoubt, Saved,
+    Verdict, Written,
 };
 use handscope::sim::serve::{can, modbus_rtu, modbus_tcp, rs485};
 use handscope::sim::{
@@ -331,6 +332,22 @@ async fn a_save_is_confirmed_by_its_frame_or_by_reading_back_and_the_hand_wakes_
     }
 }
 
+/// Why the hand cannot be armed.
+async fn refused_arming(link: &mut LinkHandle) -> ArmRefusal {
+    link.arm(ArmRequest {
+        speed: PerDof::splat(Speed::GENTLE),
+        force: PerDof::splat(Force::GENTLE),
+    });
+    let refused = timeout(Duration::from_millis(90), async {
+        loop {
+            if let LinkEvent::ArmRefused { reason, .. } = link.event().await.unwrap() {
+                return reason;
+            }
+        }
+    });
+    refused.await.expect("it is said at once")
+}
+
 #[tokio::test(start_paused = true)]
 async fn the_line_is_left_to_a_hand_that_saves() {
     let line = Line::new(Personality::default(), 0, Trouble::None);
@@ -340,6 +357,11 @@ async fn the_line_is_left_to_a_hand_that_saves() {
     pass(&mut link, Duration::from_millis(900)).await;
     let during = link.stats().state_reads - before;
     assert!(during <= 4, "{during} reads while the hand saves");
+    assert_eq!(
+        refused_arming(&mut link).await,
+        ArmRefusal::HandBusy,
+        "it is not the pose"
+    );
     pass(&mut link, Duration::from_millis(900)).await;
     assert!(
         link.stats().state_reads > before + 20,

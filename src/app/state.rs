@@ -1,6 +1,6 @@
 //! Everything the window shows, as plain values. Changed only by `update`; draws nothing, opens nothing.
 
-use crate::app::device::book::DeviceBook;
+use crate::app::device::book::{DeviceBook, Doing};
 use crate::app::faults::FaultBook;
 use crate::app::gestures::GestureBook;
 use crate::app::guard::Guarded;
@@ -156,6 +156,8 @@ impl State {
     /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.
     #[must_use]
     pub fn arm_refusal(&self) -> Option<ArmRefusal> {
-        arm_refusal(self.link.state, &self.sample, self.now)
+        let saves = self.link.state.is_live() && self.device.doing == Doing::Saving;
+        let busy = saves.then_some(ArmRefusal::HandBusy);
+        busy.or_else(|| arm_refusal(self.link.state, &self.sample, self.now))
     }
 }

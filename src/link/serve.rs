@@ -1,7 +1,7 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{Dof, HandCommand, RegisterWrite};
+use crate::hand::{HandCommand, RegisterWrite};
 use crate::link::bus::{Bus, BusError};
 use crate::link::event::{LinkEvent, RequestError};
 use crate::link::handle::Wanted;
@@ -127,12 +127,9 @@ impl Session {
         if self.status.armed.is_some() {
             return Ok(());
         }
-        // While the line is left to a hand that saves, nobody looks where its joints are.
-        let unseen = self
-            .leaves_line()
-            .then_some(ArmRefusal::UnknownPose { dof: Dof::Little });
-        let refusal = arm_refusal(self.status.state, &self.sample, self.now());
-        if let Some(reason) = refusal.or(unseen) {
+        let busy = self.leaves_line().then_some(ArmRefusal::HandBusy);
+        let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
+        if let Some(reason) = busy.or_else(refusal) {
             self.refuse_arm(reason);
             return Ok(());
         }

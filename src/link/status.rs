@@ -197,6 +197,9 @@ pub enum ArmRefusal {
     /// A drive reports a fault.
     #[error("a drive reports a fault: clear it first")]
     Fault,
+    /// The hand saves or calibrates: the line is left to it, so nobody looks where its joints are.
+    #[error("the hand writes its flash or calibrates: wait until that is over")]
+    HandBusy,
     /// The hand did not acknowledge its speed and force limits.
     #[error("the hand did not acknowledge its speed and force limits")]
     NoAnswer,

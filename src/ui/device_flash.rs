@@ -6,24 +6,34 @@ use crate::app::device::refusal::Refusal;
 use crate::app::device::wish::DeviceWish;
 use crate::app::params::record::Backup;
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_top};
+use crate::ui::guarded_entries;
 use crate::ui::list;
 use crate::ui::look::Pane;
 use crate::ui::text::{device, verdicts};
 use crate::ui::theme;
 use egui::{Color32, Id, Rect, Ui};
 
-/// Draws the card: beside the table two parts under each other, below it side by side.
+/// Draws the card: beside the table its parts under each other, below it side by side.
 pub(crate) fn flash_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     let body = controls::card(ui, pane.look, rect);
     if rect.height() > rect.width() {
+        let body = entries_ui(ui, body, pane);
         let (upper, lower) = body.split_top_bottom_at_y(body.top() + theme::DEVICE_SAVE);
         save_ui(ui, upper.with_max_y(upper.bottom() - theme::GAP), pane);
         files_ui(ui, lower, pane);
     } else {
         let (left, right) = body.split_left_right_at_x(body.center().x);
-        save_ui(ui, left.with_max_x(left.right() - theme::PAD), pane);
+        let left = entries_ui(ui, left.with_max_x(left.right() - theme::PAD), pane);
+        save_ui(ui, left, pane);
         files_ui(ui, right, pane);
     }
+}
+
+/// What is done to the hand only under a card stands at the bottom; the room that is left.
+fn entries_ui(ui: &mut Ui, body: Rect, pane: &mut Pane<'_>) -> Rect {
+    let (rest, mut row) = body.split_top_bottom_at_y(body.bottom() - theme::CONTROL);
+    guarded_entries::left_ui(ui, &mut row, pane);
+    rest.with_max_y(rest.bottom() - theme::GAP)
 }
 
 fn save_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {

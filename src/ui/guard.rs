@@ -242,6 +242,7 @@ fn change_over(look: Look, guarded: &Guarded, end: &End) -> Card {
         End::Occupied => vec![
             warning(cards::OVER_OCCUPIED),
             Line::Note(guarded.new.to_string()),
+            from_line(look, guarded),
         ],
         End::NotTaken { reason } => {
             let mut lines = vec![warning(cards::OVER_NOT_TAKEN)];
@@ -281,10 +282,6 @@ fn change_over(look: Look, guarded: &Guarded, end: &End) -> Card {
             lines
         }
     };
-    // After a look at another place the window is not where the hand is.
-    if matches!(end, End::Occupied | End::NotWritten) && guarded.new != guarded.old {
-        choices.push(connect(cards::TO_OLD, guarded, Place::Old));
-    }
     Card {
         title: look.say(title(&guarded.flow)).into(),
         lines,

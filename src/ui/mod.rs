@@ -27,6 +27,7 @@ mod frame_menu;
 mod gesture_editor;
 mod gestures;
 mod guard;
+mod guarded_entries;
 mod hand_picture;
 mod hand_scene;
 mod joint_rail;

@@ -1,13 +1,13 @@
 //! What was found out about the hand that answers: shown and copied. Asks for nothing, changes nothing.
 
-use crate::app::action::Action;
 use crate::app::quirk_sheet::QuirkSheet;
 use crate::link::quirks::baud_of_code;
 use crate::transport::Endpoint;
 use crate::ui::controls::{self, Button, take_left, take_top};
+use crate::ui::guarded_entries;
 use crate::ui::link_figures;
 use crate::ui::look::Pane;
-use crate::ui::text::{Text, cards, quirks as text};
+use crate::ui::text::{Text, quirks as text};
 use crate::ui::theme;
 use egui::{Id, Rect, Ui};
 
@@ -38,36 +38,7 @@ pub(crate) fn sheet_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     body.min.y += theme::GAP;
     copy_ui(ui, body, pane);
     let mut foot = body.with_min_y(body.bottom() - theme::CONTROL);
-    guarded_ui(ui, &mut foot, pane);
-}
-
-/// What is done to this hand only under a card.
-fn guarded_ui(ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    let live = pane.state.link.state.is_live();
-    let reason = (!live).then(|| look.say(cards::NO_HAND));
-    for (text, tip, action) in [
-        (
-            cards::RESET_ENTRY,
-            cards::RESET_ENTRY_TIP,
-            Action::FactoryReset,
-        ),
-        (
-            cards::CALIBRATE_ENTRY,
-            cards::CALIBRATE_ENTRY_TIP,
-            Action::CalibrateForce,
-        ),
-    ] {
-        let width = controls::text_width(ui, look.say(text), theme::body()) + 2.0 * theme::PAD;
-        let place = controls::take_right(head, width);
-        let button = Button::new(look.say(text), look.say(tip)).disabled(reason);
-        if button
-            .put(ui, look, place, Id::unique(("guarded", text.en)))
-            .clicked()
-        {
-            pane.actions.push(action);
-        }
-    }
+    guarded_entries::right_ui(ui, &mut foot, pane);
 }
 
 fn lines(pane: &Pane<'_>) -> Vec<(Text, String)> {

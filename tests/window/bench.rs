@@ -3,27 +3,29 @@
 use egui::{Key, Modifiers, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use handscope::app::InFolder;
 use handscope::app::action::Action;
 use handscope::app::program::{App, Env};
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
-use handscope::hand::{Dof, Moment};
+use handscope::hand::{Dof, Moment, SerialSpeed};
 use handscope::link::{Clock, LinkState};
 use handscope::shell::Cockpit;
-use handscope::sim::serve::{SharedHand, rs485};
-use handscope::sim::{SimConfig, SimHand};
+use handscope::sim::serve::{SharedHand, can, modbus_rtu, modbus_tcp, rs485};
+use handscope::sim::{Hands, SimConfig, SimHand};
 use handscope::transport::{
-    BoxedWire, Dial, Endpoint, FaultPlan, PortFound, TransportError, faulty_pair, pair,
+    BoxedWire, Dial, Endpoint, FaultPlan, PortFound, TransportError, Wire, faulty_pair, pair,
 };
 use handscope::ui::View;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tempfile::TempDir;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::runtime::Runtime;
-use tokio::task::AbortHandle;
+use tokio::task::{AbortHandle, JoinHandle};
 
 pub use egui::accesskit::Role;
 
@@ -41,6 +43,8 @@ pub const GESTURE: u16 = 1008;
 /// The far end of the cable: plugged in or not.
 struct Socket {
     hand: SharedHand,
+    /// Hands beside it on the next wire.
+    others: Mutex<Vec<SharedHand>>,
     plugged: Mutex<bool>,
     /// What the next wire has.
     faults: Mutex<Option<FaultPlan>>,
@@ -64,8 +68,25 @@ impl Dial for Socket {
                 (ours, its)
             }
         };
-        let task = tokio::spawn(rs485::serve(self.hand.clone(), its));
-        self.served.lock().unwrap().push(task.abort_handle());
+        let hands = Hands::new(self.hand.clone(), self.others.lock().unwrap().clone());
+        let mut tasks = Vec::new();
+        let its = match endpoint {
+            Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
+                let (at_line, far) = pair();
+                let carried = at_speed(self.hand.clone(), line.baud, its, far);
+                tasks.push(tokio::spawn(carried));
+                Box::new(at_line) as BoxedWire
+            }
+            _ => Box::new(its) as BoxedWire,
+        };
+        tasks.push(match endpoint {
+            Endpoint::Tcp { .. } => tokio::spawn(modbus_tcp::serve_client(hands, its)),
+            Endpoint::Can { .. } => tokio::spawn(can::serve(hands, its).map(drop)),
+            Endpoint::Rtu(_) => tokio::spawn(modbus_rtu::serve(hands, its).map(drop)),
+            _ => tokio::spawn(rs485::serve(hands, its)),
+        });
+        let handles = tasks.iter().map(JoinHandle::abort_handle);
+        self.served.lock().unwrap().extend(handles);
         Box::pin(async {
             let wire: BoxedWire = Box::new(ours);
             Ok(wire)
@@ -75,6 +96,33 @@ impl Dial for Socket {
     fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
         let listed = self.listed.lock().unwrap().clone();
         Box::pin(std::future::ready(listed))
+    }
+}
+
+/// Carries bytes both ways while the hand has the speed at which the port was opened; at another speed nobody understands a byte.
+async fn at_speed(hand: SharedHand, baud: u32, mut near: impl Wire, mut far: impl Wire) {
+    let code = SerialSpeed::ALL
+        .into_iter()
+        .find(|speed| speed.baud() == baud)
+        .map(SerialSpeed::code);
+    let is_heard = || Some(hand.with(|hand, _| hand.baud_code())) == code;
+    let (mut asked, mut answered) = ([0; 512], [0; 512]);
+    loop {
+        let passed = tokio::select! {
+            read = near.read(&mut asked) => match read {
+                Ok(len @ 1..) if is_heard() => far.write_all(&asked[..len]).await,
+                Ok(1..) => Ok(()),
+                _ => return,
+            },
+            read = far.read(&mut answered) => match read {
+                Ok(len @ 1..) if is_heard() => near.write_all(&answered[..len]).await,
+                Ok(1..) => Ok(()),
+                _ => return,
+            },
+        };
+        if passed.is_err() {
+            return;
+        }
     }
 }
 
@@ -110,6 +158,7 @@ impl Room {
         let hand = SharedHand::new(SimHand::new(config), clock.instant(clock.now()));
         let socket = Arc::new(Socket {
             hand,
+            others: Mutex::default(),
             plugged: Mutex::new(true),
             faults: Mutex::default(),
             served: Mutex::default(),
@@ -575,6 +624,28 @@ impl Bench {
         let room = self.harness.state();
         let _inside = room.runtime.enter();
         room.socket.hand.with(act)
+    }
+
+    /// Puts a hand beside the first one, on every wire that is opened from now on.
+    pub fn add_hand(&mut self, id: u8) {
+        let room = self.harness.state();
+        let _inside = room.runtime.enter();
+        let config = SimConfig {
+            id,
+            ..SimConfig::default()
+        };
+        let begun = room.clock.instant(room.clock.now());
+        let hand = SharedHand::new(SimHand::new(config), begun);
+        room.socket.others.lock().unwrap().push(hand);
+    }
+
+    /// Writes that reached the hands beside the first one.
+    pub fn writes_to_others(&self) -> usize {
+        let room = self.harness.state();
+        let _inside = room.runtime.enter();
+        let others = room.socket.others.lock().unwrap();
+        let count = |hand: &SharedHand| hand.with(|hand, _| hand.journal().len());
+        others.iter().map(count).sum()
     }
 
     /// Every write that reached the hand, oldest first.

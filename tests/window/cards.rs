@@ -3,7 +3,7 @@
 use crate::bench::{Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
 use egui::{Key, Vec2, vec2};
 use handscope::app::action::Action;
-use handscope::app::guard::{Doing, Flow, change};
+use handscope::app::guard::{Doing, Flow};
 use handscope::app::params::table::{ParamId, Value};
 use handscope::app::settings::Language;
 use handscope::hand::{Dof, register};
@@ -86,6 +86,13 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
         bench.shows("The hand says that it is in flash.")
     });
     assert_eq!(count(&bench, SAVE), 1);
+    let saved = |bench: &Bench| bench.state().device.known.saved.is_some();
+    bench.until(1000, saved);
+    assert_eq!(
+        bench.state().device.backups.len(),
+        1,
+        "what was kept before is found where the hand went"
+    );
     bench.hand(SimHand::power_cycle);
     assert_eq!(id_of(&bench), 7);
     bench.click_button("Done");
@@ -112,6 +119,108 @@ fn a_hand_that_nobody_keeps_goes_back_after_fifteen_seconds() {
         (id_of(&bench), count(&bench, HAND_ID), count(&bench, SAVE)),
         (1, 2, 0)
     );
+}
+
+#[test]
+fn an_id_that_another_hand_has_is_refused_and_the_window_stays_with_its_hand() {
+    let mut bench = on_a_line(Personality::default());
+    bench.add_hand(7);
+    change_id(&mut bench, 7);
+    bench.until(20_000, |bench| {
+        bench.shows("Another hand answers there. Nothing was written.")
+    });
+    assert_eq!((count(&bench, HAND_ID), bench.writes_to_others()), (0, 0));
+    assert_eq!(id_of(&bench), 1);
+    bench.until(5_000, |bench| {
+        bench.state().link.state == LinkState::Monitoring && place(bench).contains("id=1")
+    });
+    bench.click_button("Done");
+    bench.wait(1000);
+    assert!(bench.state().guard.is_none());
+    assert!(place(&bench).contains("id=1"), "{}", place(&bench));
+    let kept = bench.state().settings.endpoint.clone().unwrap();
+    assert!(kept.contains("id=1"), "{kept}");
+}
+
+#[test]
+fn a_cable_that_is_back_in_time_can_still_be_kept() {
+    let mut bench = on_a_line(Personality::default());
+    change_id(&mut bench, 7);
+    bench.until(20_000, |bench| bench.shows("Keep the change?"));
+    bench.unplug();
+    bench.wait(1000);
+    assert!(bench.is_disabled(Role::Button, "Keep"));
+    assert!(!bench.is_disabled(Role::Button, "Go back"));
+    bench.plug();
+    bench.until(8_000, |bench| !bench.is_disabled(Role::Button, "Keep"));
+    bench.click_button("Keep");
+    assert!(bench.shows("Save it in the hand?"));
+    bench.click_button("Until power off");
+    bench.run(100);
+    assert!(
+        bench.shows(
+            "It is not in flash: switched off and on the hand is found at the former place."
+        )
+    );
+    assert_eq!((id_of(&bench), count(&bench, SAVE)), (7, 0));
+    let listed = |bench: &Bench| bench.state().device.backups.len() == 1;
+    bench.until(2_000, listed);
+}
+
+/// A hand that takes another speed as this, on a line that carries only what has its speed.
+fn with_speed(effect: &str) -> Bench {
+    let mut personality = Personality::default();
+    personality.set("baud-effect", effect).unwrap();
+    let mut bench = on_a_line(personality);
+    bench.act(Action::ChangePlace(ParamId::ReduRatio, Value::Number(2)));
+    bench.run(100);
+    assert!(bench.shows("Change the serial speed of the hand?"));
+    bench.click_button("Change");
+    bench.until(30_000, |bench| bench.shows("Keep the change?"));
+    bench
+}
+
+fn code_of(bench: &Bench) -> u8 {
+    bench.hand(|hand, _| hand.baud_code())
+}
+
+fn place(bench: &Bench) -> String {
+    let place = bench.state().endpoint.as_ref();
+    place.map(ToString::to_string).unwrap_or_default()
+}
+
+#[test]
+fn a_speed_that_acts_at_once_is_followed_kept_saved_and_there_after_power() {
+    let mut bench = with_speed("now");
+    assert_eq!(code_of(&bench), 2);
+    assert!(place(&bench).contains("baud=19200"), "{}", place(&bench));
+    bench.click_button("Keep");
+    bench.click_button("Save anyway");
+    bench.until(10_000, |bench| {
+        bench.shows("The hand says that it is in flash.")
+    });
+    bench.hand(SimHand::power_cycle);
+    bench.click_button("Done");
+    bench.wait(3000);
+    assert_eq!(code_of(&bench), 2);
+    assert_eq!(bench.state().link.state, LinkState::Monitoring);
+    let kept = bench.state().settings.endpoint.clone().unwrap();
+    assert!(kept.contains("baud=19200"), "{kept}");
+}
+
+#[test]
+fn a_speed_that_nobody_keeps_is_taken_back_over_the_new_speed() {
+    let mut bench = with_speed("now");
+    bench.until(40_000, |bench| {
+        bench.shows("The hand holds the former value and answers where it was.")
+    });
+    assert_eq!(code_of(&bench), 0);
+    bench.click_button("Done");
+    bench.wait(3000);
+    assert_eq!(bench.state().link.state, LinkState::Monitoring);
+    assert!(place(&bench).contains("baud=115200"), "{}", place(&bench));
+    let kept = bench.state().settings.endpoint.clone().unwrap();
+    assert_eq!(kept, "rs485:/dev/hand?id=1", "nothing else is remembered");
 }
 
 #[test]
@@ -159,24 +268,28 @@ fn nothing_begins_while_the_hand_is_armed_or_on_a_key() {
 }
 
 #[test]
-fn a_speed_that_waits_for_power_is_kept_with_both_places_shown() {
-    let mut bench = on_a_line(Personality::default());
-    bench.act(Action::ChangePlace(ParamId::ReduRatio, Value::Number(2)));
-    bench.run(100);
-    bench.click_button("Change");
-    bench.until(30_000, |bench| bench.shows("Keep the change?"));
-    let keeping = bench
-        .state()
-        .guard
-        .as_ref()
-        .map(|guarded| guarded.flow.clone());
-    assert!(
-        matches!(keeping, Some(Flow::Change(run)) if matches!(run.stage(), change::Stage::Keeping { .. }))
-    );
+fn a_speed_that_waits_for_power_is_kept_with_both_places_and_the_way_to_the_new_one() {
+    let mut bench = with_speed("after-power");
+    assert_eq!(code_of(&bench), 0);
     bench.click_button("Keep");
     bench.click_button("Save anyway");
     bench.until(10_000, |bench| bench.shows("Connect: new place"));
     assert!(bench.shows("Connect: former place"));
+    bench.hand(SimHand::power_cycle);
+    bench.wait(3000);
+    assert_ne!(bench.state().link.state, LinkState::Monitoring);
+    bench.click_button("Connect: new place");
+    bench.until(5_000, |bench| {
+        bench.state().link.state == LinkState::Monitoring
+    });
+    assert!(place(&bench).contains("baud=19200"), "{}", place(&bench));
+    let known = |bench: &Bench| bench.state().device.known.saved.is_some();
+    bench.until(2_000, known);
+    assert_eq!(
+        bench.state().device.backups.len(),
+        1,
+        "its record is here too"
+    );
 }
 
 #[test]
@@ -227,6 +340,49 @@ fn a_factory_reset_wants_its_word_and_a_hand_at_rest_and_tells_where_the_hand_is
     assert!(!bench.state().is_armed());
     bench.click_button("Done");
     assert!(bench.state().guard.is_none());
+}
+
+#[test]
+fn the_view_of_the_device_opens_the_same_cards() {
+    for (button, title) in [
+        ("Factory reset", "Return to the factory's parameters?"),
+        ("Calibrate force", "Calibrate the force sensors"),
+    ] {
+        let mut bench = on_a_line(Personality::default());
+        bench.show(View::Device);
+        bench.run(400);
+        bench.click_button(button);
+        bench.run(100);
+        assert_eq!(bench.all(Role::AlertDialog).len(), 1);
+        assert!(bench.shows(title), "{button}");
+        bench.click_button("Cancel");
+        bench.unplug();
+        bench.wait(1000);
+        assert!(bench.is_disabled(Role::Button, button));
+        assert_eq!(bench.writes(), []);
+    }
+}
+
+#[test]
+fn a_factory_reset_takes_the_record_of_the_hand_along() {
+    let mut bench = on_a_line(Personality::default());
+    change_id(&mut bench, 7);
+    bench.until(20_000, |bench| bench.shows("Keep the change?"));
+    bench.click_button("Keep");
+    bench.click_button("Until power off");
+    bench.click_button("Done");
+    bench.act(Action::FactoryReset);
+    bench.run(100);
+    bench.type_into("To go on, type RESET", "RESET");
+    bench.click_button("Reset");
+    bench.until(20_000, |bench| {
+        let begin = "The hand holds the factory's parameters and answers here:";
+        !bench.texts_with(begin).is_empty()
+    });
+    assert!(place(&bench).contains("id=1"), "{}", place(&bench));
+    let listed = |bench: &Bench| bench.state().device.backups.len() == 2;
+    bench.until(2_000, listed);
+    assert_eq!(bench.state().device.known.saved, None);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use handscope::app::notices::NoticeKind;
 use handscope::app::params::table::{ParamId, Value};
 use handscope::app::settings::Language;
 use handscope::hand::Dof;
-use handscope::link::{SaveDoubt, Saved};
+use handscope::link::{ArmRefusal, SaveDoubt, Saved};
 use handscope::sim::SimConfig;
 use std::time::Duration;
 
@@ -371,6 +371,54 @@ fn a_save_is_backed_up_confirmed_by_the_hand_and_shown_with_its_date() {
         "all as saved and as delivered"
     );
     assert!(bench.shows("No row differs."));
+}
+
+#[test]
+fn a_wire_without_a_result_frame_is_told_as_read_back_and_not_as_confirmed() {
+    for endpoint in [
+        "tcp:127.0.0.1:6000",
+        "can:can0?id=1",
+        "rtu:/dev/hand?baud=115200&id=1",
+    ] {
+        let mut bench = Bench::kept(SimConfig::default(), endpoint, LARGE);
+        bench.wait(1500);
+        defaults(&mut bench, 100);
+        open(&mut bench);
+        bench.click("Save to flash");
+        settle(&mut bench);
+        let told = bench.texts_with("acknowledged, and read back the same");
+        assert_eq!(told.len(), 1, "{endpoint}");
+        assert!(told[0].contains("Only the next power-up shows what is in flash."));
+        assert!(!bench.texts_with("(read back the same)").is_empty());
+        assert!(bench.texts_with("the hand says").is_empty());
+        assert!(bench.texts_with("confirmed by the hand").is_empty());
+        assert_eq!(bench.reading("Index speed last saved"), "100");
+    }
+}
+
+#[test]
+fn arming_while_the_hand_saves_is_refused_with_its_own_reason() {
+    let mut bench = Bench::keeping(SimConfig::default());
+    defaults(&mut bench, 100);
+    open(&mut bench);
+    bench.click("Save to flash");
+    bench.until(2000, |bench| bench.state().device.doing == Doing::Saving);
+    bench.wait(300);
+    assert!(bench.is_disabled(Role::Button, "Arm the hand"));
+    bench.act(Action::Arm);
+    bench.run(100);
+    let all = bench.state().notices.iter();
+    let refused = all.filter_map(|notice| match &notice.what {
+        NoticeKind::ArmRefused(why) => Some(*why),
+        _ => None,
+    });
+    assert_eq!(refused.collect::<Vec<_>>(), [ArmRefusal::HandBusy]);
+    bench.show(handscope::ui::View::Faults);
+    let words = "The hand writes its flash or calibrates: wait until that is over.";
+    assert!(!bench.texts_with(words).is_empty(), "{:?}", bench.texts());
+    settle(&mut bench);
+    assert!(!bench.state().is_armed());
+    assert!(!bench.addresses().contains(&SPEED_SET));
 }
 
 #[test]

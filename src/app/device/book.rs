@@ -222,6 +222,11 @@ impl DeviceBook {
         }
     }
 
+    /// The files of this hand were changed by others: they are read again.
+    pub(crate) fn forget_record(&mut self) {
+        self.folder = None;
+    }
+
     pub(crate) fn forget_ends(&mut self) {
         self.ends.clear();
     }

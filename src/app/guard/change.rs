@@ -54,6 +54,20 @@ pub enum End {
     Nowhere,
 }
 
+impl End {
+    /// Where the hand is; `None` = nobody knows.
+    #[must_use]
+    pub const fn place(&self) -> Option<Place> {
+        match self {
+            Self::NotWritten | Self::Occupied | Self::NotTaken { .. } | Self::Back => {
+                Some(Place::Old)
+            }
+            Self::NotBack(at) | Self::Kept { at, .. } => Some(*at),
+            Self::Nowhere => None,
+        }
+    }
+}
+
 /// Where it stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Stage {
@@ -233,7 +247,7 @@ impl Change {
                     Some(Stage::Returning(self.way_back(from), from))
                 }
                 None if at == last && self.is_followed => {
-                    *at = other(*at);
+                    *at = at.other();
                     None
                 }
                 None if *rounds > 1 => {
@@ -284,13 +298,6 @@ pub enum Follow {
     Wire,
     /// Not before the next power-up, or not by this.
     No,
-}
-
-const fn other(place: Place) -> Place {
-    match place {
-        Place::Old => Place::New,
-        Place::New => Place::Old,
-    }
 }
 
 fn went(step: &Step, now: Moment) -> Option<Stage> {

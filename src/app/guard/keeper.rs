@@ -5,34 +5,29 @@ use crate::app::calibration::Calibration;
 use crate::app::desk::Desk;
 use crate::app::guard::change::{Change, Follow, Next, Stage};
 use crate::app::guard::errand::{Answer, Errand, Poll};
+use crate::app::guard::files::GuardFiles;
 use crate::app::guard::guarded::{
     Doing, Flow, GuardStep, Guarded, WayTo, command, held_now, not_now,
 };
 use crate::app::guard::reset::{FactoryReset, ResetStage, factory_place};
 use crate::app::params::danger::worse;
-use crate::app::params::guard::new_place;
-use crate::app::params::record::{Record, folder_beside};
+use crate::app::params::guard::{Place, new_place};
 use crate::app::params::table::{ParamId, Value};
 use crate::app::params::values::{Params, SPANS, decoded, span_of};
 use crate::hand::{Moment, Span};
-use crate::link::{Outcome, Request, RequestError, Reset, Saved, Wake};
+use crate::link::{Outcome, Request, RequestError, Reset, SaveDoubt, Saved, Wake};
 use crate::transport::Endpoint;
 use crate::transport::route::{Route, route};
-use std::io;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
-use tokio::sync::oneshot;
+use std::path::Path;
 
-/// What came of work on a file: where it lies, or what the system says.
-type Filed = Result<Option<PathBuf>, String>;
+use tokio::sync::oneshot;
 
 /// One card at a time, and the work behind it.
 pub(crate) struct Guarding {
-    folder: Option<PathBuf>,
+    files: GuardFiles,
     runtime: tokio::runtime::Handle,
     wake: Wake,
     errand: Option<Errand>,
-    filing: Option<oneshot::Receiver<Filed>>,
     way: Option<oneshot::Receiver<Option<Route>>>,
     /// What the hand held before.
     params: Params,
@@ -50,11 +45,10 @@ impl Guarding {
         wake: Wake,
     ) -> Self {
         Self {
-            folder: settings.map(folder_beside),
+            files: GuardFiles::new(settings, runtime.clone(), Wake::clone(&wake)),
             runtime,
             wake,
             errand: None,
-            filing: None,
             way: None,
             params: Params::default(),
             unread: Vec::new(),
@@ -124,7 +118,7 @@ impl Guarding {
 
     fn clear(&mut self) {
         self.errand = None;
-        self.filing = None;
+        self.files.forget();
         self.way = None;
         self.params = Params::default();
         self.unread = SPANS.to_vec();
@@ -161,6 +155,10 @@ impl Guarding {
                 if matches!(change.stage(), Stage::Offering(_)) {
                     state.settings.endpoint = state.endpoint.as_ref().map(ToString::to_string);
                 }
+                if let Stage::Offering(Place::New) = change.stage() {
+                    let (old, new) = (guarded.old.clone(), guarded.new.clone());
+                    self.files.adopt(&old, &new);
+                }
             }
             (GuardStep::GoBack, Flow::Change(change)) => change.go_back(),
             (GuardStep::Save, Flow::Change(change)) => change.save(),
@@ -191,8 +189,10 @@ impl Guarding {
 
     /// Reads one group after the other, then writes the file.
     fn back_up(&mut self, guarded: &mut Guarded, desk: &mut Desk, now: Moment) -> Option<Endpoint> {
-        if self.filing.is_some() {
-            match self.filed()? {
+        if self.files.is_busy() {
+            let filed = self.files.done()?;
+            desk.state.device.forget_record();
+            match filed {
                 Ok(path) => {
                     guarded.backup = path;
                     guarded.doing = Doing::Running;
@@ -237,7 +237,7 @@ impl Guarding {
             _ => "before apply",
         };
         let params = self.params.clone();
-        let begun = self.file(&guarded.old, move |record, since| {
+        let begun = self.files.begin(&guarded.old, move |record, since| {
             record.back_up(&params, why, since).map(Some)
         });
         if !begun {
@@ -248,8 +248,9 @@ impl Guarding {
 
     fn go_on(&mut self, guarded: &mut Guarded, desk: &mut Desk, now: Moment) -> Option<Endpoint> {
         // A file that is being written is waited for; what it says of itself is told by the file.
-        if self.filing.is_some() {
-            let _filed = self.filed()?;
+        if self.files.is_busy() {
+            let _filed = self.files.done()?;
+            desk.state.device.forget_record();
         }
         match &mut guarded.flow {
             Flow::Change(change) => {
@@ -290,7 +291,8 @@ impl Guarding {
         };
         let id = change.id;
         let (place, request) = match next {
-            Next::Person | Next::Nothing => return None,
+            Next::Person => return None,
+            Next::Nothing => return home(guarded, change, desk),
             Next::Look(place) => (place, Request::Read(span_of(id))),
             Next::Write(place, value) => (place, Request::Command(command(id, value)?)),
             Next::Save(place) => (place, Request::Save),
@@ -299,7 +301,7 @@ impl Guarding {
         if request == Request::Save && !std::mem::replace(&mut self.is_noted, true) {
             let mut params = self.params.clone();
             params.put(id, change.wanted);
-            self.file(&at, move |record, since| {
+            self.files.begin(&at, move |record, since| {
                 record.attempt(&params, since).map(|()| None)
             });
             return None;
@@ -314,22 +316,16 @@ impl Guarding {
         };
         match (request, answer) {
             (Request::Read(_), answer) => change.heard(held(id, answer), now),
-            (Request::Save, Answer::Ended(Ok(Outcome::Saved(saved)))) => {
-                self.file(&at, {
-                    let saved = saved.clone();
-                    move |record, _| record.end(&saved).map(|()| None)
-                });
-                change.saved(saved);
+            (Request::Save, Answer::Ended(end)) => {
+                let saved = saved_by(end);
+                change.saved(saved.clone());
+                self.files.note_saved(guarded, place, saved);
             }
             (Request::Command(_), Answer::Ended(Err(RequestError::Refused { reason, .. }))) => {
                 change.wrote(Some(reason));
             }
             (_, Answer::Unreached | Answer::Ended(Err(RequestError::Full { .. }))) => {
                 change.unreached();
-            }
-            (Request::Save, Answer::Ended(_)) => {
-                let why = crate::link::SaveDoubt::LinkLost;
-                change.saved(Saved::Unknown { why });
             }
             // A missing answer proves nothing.
             (_, Answer::Ended(_)) => change.wrote(None),
@@ -369,7 +365,8 @@ impl Guarding {
                 self.begin_reading();
                 if is_out {
                     let old = guarded.old.clone();
-                    self.file(&old, |record, _| record.forget_saved().map(|()| None));
+                    self.files
+                        .begin(&old, |record, _| record.forget_saved().map(|()| None));
                 }
             }
             (Request::Reset, Answer::Unreached) => reset.cancel(),
@@ -380,6 +377,10 @@ impl Guarding {
                 self.unread.remove(0);
                 if self.unread.is_empty() {
                     reset.heard(Some(&self.params));
+                    let (old, found) = (guarded.old.clone(), desk.state.endpoint.clone());
+                    if let Some(found) = found {
+                        self.files.adopt(&old, &found);
+                    }
                 }
             }
             _ => {
@@ -407,40 +408,6 @@ impl Guarding {
         poll
     }
 
-    /// Works on the files of a hand, off the window's thread; false if there is no folder for them.
-    fn file(
-        &mut self,
-        hand: &Endpoint,
-        work: impl FnOnce(&Record, Duration) -> io::Result<Option<PathBuf>> + Send + 'static,
-    ) -> bool {
-        let Some(folder) = &self.folder else {
-            return false;
-        };
-        let record = Record::new(folder, hand);
-        let (done, filing) = oneshot::channel();
-        let wake = Wake::clone(&self.wake);
-        self.runtime.spawn_blocking(move || {
-            let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-            let filed = work(&record, since_1970.unwrap_or_default());
-            // A receiver that is gone means that the window is gone: no one is left to tell.
-            let _told = done.send(filed.map_err(|error| error.to_string()));
-            wake();
-        });
-        self.filing = Some(filing);
-        true
-    }
-
-    /// What came of the work on a file, once.
-    fn filed(&mut self) -> Option<Filed> {
-        let filed = match self.filing.as_mut()?.try_recv() {
-            Err(oneshot::error::TryRecvError::Empty) => return None,
-            Err(oneshot::error::TryRecvError::Closed) => Err("the program is ending".into()),
-            Ok(filed) => filed,
-        };
-        self.filing = None;
-        Some(filed)
-    }
-
     fn look_up(&self, host: String) -> oneshot::Receiver<Option<Route>> {
         let (done, way) = oneshot::channel();
         let wake = Wake::clone(&self.wake);
@@ -461,6 +428,25 @@ impl Guarding {
         });
         self.way = None;
     }
+}
+
+/// What came of a SAVE; without a word of it nobody knows.
+fn saved_by(end: Result<Outcome, RequestError>) -> Saved {
+    match end {
+        Ok(Outcome::Saved(saved)) => saved,
+        _ => Saved::Unknown {
+            why: SaveDoubt::LinkLost,
+        },
+    }
+}
+
+/// Where the link has to go once a change is over: to the hand, not to another one that was looked for on the way.
+fn home(guarded: &Guarded, change: &Change, desk: &Desk) -> Option<Endpoint> {
+    let Stage::Over(end) = change.stage() else {
+        return None;
+    };
+    let there = guarded.endpoint(end.place()?);
+    (desk.state.endpoint.as_ref() != Some(there)).then(|| there.clone())
 }
 
 /// What a hand that was looked for holds; nothing if nobody answered.

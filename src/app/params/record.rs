@@ -80,6 +80,52 @@ impl Record {
         }
     }
 
+    /// The record of a hand at another endpoint, beside this one.
+    #[must_use]
+    pub fn beside(&self, hand: &Endpoint) -> Self {
+        let folder = self.folder.parent().unwrap_or(&self.folder);
+        Self::new(folder, hand)
+    }
+
+    /// Takes over what is known of the same hand where it was found before: its backups, and what was saved. What was known here
+    /// of flash was that of a hand which is not here any more, and is forgotten; its backups stay.
+    ///
+    /// # Errors
+    /// What the system says. Then a part may be taken over already.
+    pub fn adopt(&self, former: &Self) -> io::Result<()> {
+        if self.folder == former.folder {
+            return Ok(());
+        }
+        for path in former.backup_paths()? {
+            let Some(name) = path.file_name() else {
+                continue;
+            };
+            let own = self.folder.join("backups").join(name);
+            if !own.exists() {
+                replace(&own, &std::fs::read_to_string(&path)?)?;
+            }
+        }
+        self.let_go_of_old_backups()?;
+        self.forget_saved()?;
+        let of_flash = [
+            (former.saved_path(), self.saved_path()),
+            (former.attempt_path(), self.attempt_path()),
+        ];
+        for (from, to) in of_flash {
+            if from.exists() {
+                replace(&to, &std::fs::read_to_string(from)?)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn let_go_of_old_backups(&self) -> io::Result<()> {
+        for old in self.backup_paths()?.iter().rev().skip(BACKUPS_MAX) {
+            std::fs::remove_file(old)?;
+        }
+        Ok(())
+    }
+
     /// Where it lies.
     #[must_use]
     pub fn folder(&self) -> &Path {
@@ -119,9 +165,7 @@ impl Record {
         };
         let path = backups.join(name);
         replace(&path, &file.to_toml())?;
-        for old in self.backup_paths()?.iter().rev().skip(BACKUPS_MAX) {
-            std::fs::remove_file(old)?;
-        }
+        self.let_go_of_old_backups()?;
         Ok(path)
     }
 
@@ -298,6 +342,36 @@ mod tests {
             about,
             ("2026-11-21T00:00:49Z".into(), "before reset".into())
         );
+    }
+
+    #[test]
+    fn what_was_known_of_a_hand_is_found_where_it_went() {
+        let folder = tempfile::tempdir().unwrap();
+        let old = record(&folder);
+        let new = old.beside(&"rtu:/dev/../x?id=9".parse().unwrap());
+        assert_eq!(new.folder.parent(), old.folder.parent());
+        // A hand that was at the new place once.
+        new.back_up(&params(9), "before save", at(0)).unwrap();
+        new.attempt(&params(9), at(0)).unwrap();
+        new.end(&Saved::Confirmed).unwrap();
+
+        old.back_up(&params(7), "before apply", at(5)).unwrap();
+        old.adopt(&old).unwrap();
+        new.adopt(&old).unwrap();
+        assert_eq!(new.known().unwrap(), Known::default(), "it never saved");
+        assert_eq!(new.backups().unwrap().len(), 2);
+        assert_eq!(old.backups().unwrap().len(), 1, "nothing is taken away");
+
+        old.attempt(&params(7), at(9)).unwrap();
+        old.end(&Saved::ReadBack).unwrap();
+        new.adopt(&old).unwrap();
+        assert_eq!(new.known().unwrap(), old.known().unwrap());
+        assert_eq!(new.backups().unwrap().len(), 2, "each is there once");
+        for n in 0..u64::try_from(BACKUPS_MAX).unwrap() {
+            old.back_up(&params(7), "before save", at(20 + n)).unwrap();
+        }
+        new.adopt(&old).unwrap();
+        assert_eq!(new.backups().unwrap().len(), BACKUPS_MAX);
     }
 
     #[test]

@@ -36,6 +36,15 @@ pub(crate) async fn run(
         .back_up(before, "before apply", since_1970())
         .context("cannot make a backup, nothing was written to the hand")?;
     let moved = moved(old, change).await?;
+    if matches!(moved, Moved::There | Moved::Waits) {
+        let new = record.beside(&change.new);
+        new.adopt(record).with_context(|| {
+            format!(
+                "the hand was changed, and its backups could not be taken along: they are in {}",
+                record.folder().display()
+            )
+        })?;
+    }
     let answers_at = match moved {
         Moved::There => Some(change.new.to_string()),
         Moved::Nowhere => None,

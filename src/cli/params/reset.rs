@@ -50,6 +50,10 @@ async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
         say(&way_back(&common.hand, &backup));
         return Err(Told.into());
     };
+    record
+        .beside(&place)
+        .adopt(&record)
+        .context("the hand was reset, and its backups could not be taken along")?;
     let left = live.differences(&Params::factory());
     let done = left
         .iter()

@@ -48,6 +48,7 @@ pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
         ArmRefusal::Offline => look.say(main::REFUSED_OFFLINE).into(),
         ArmRefusal::Holding => look.say(main::REFUSED_HOLDING).into(),
         ArmRefusal::Fault => look.say(main::REFUSED_FAULT).into(),
+        ArmRefusal::HandBusy => look.say(main::REFUSED_BUSY).into(),
         ArmRefusal::NoAnswer => look.say(main::REFUSED_NO_ANSWER).into(),
         ArmRefusal::UnknownPose { dof: joint } => {
             format!("{} {}", look.say(main::REFUSED_POSE), look.say(dof(joint)))
