@@ -2,42 +2,82 @@
 //! best. Holds what is chosen, no trial.
 
 use crate::app::action::Action;
-use crate::app::trial::Criterion;
-use crate::app::trial::best::best;
-use crate::app::tuner::{Origin, Session, SessionId, Shown, TrialWish};
-use crate::hand::Dof;
-use crate::ui::compare_best;
-use crate::ui::compare_table::{self, Sorting};
+use crate::app::state::State;
+use crate::app::tuner::{Comparison, Origin, Session, SessionId, TrialWish};
+use crate::ui::card::{Card, Choice, Line, Manner};
+use crate::ui::compare_best::BestView;
+use crate::ui::compare_curves::CurvesView;
+use crate::ui::compare_list::{self, Sheet};
+use crate::ui::compare_table::TableView;
 use crate::ui::controls::{self, Button, Label, take_left, take_right, take_top};
-use crate::ui::look::Pane;
-use crate::ui::text::{Text, tune};
+use crate::ui::look::{Look, Pane};
+use crate::ui::text::{compare, tune};
 use crate::ui::text_field::TextField;
 use crate::ui::theme;
-use crate::ui::trial_plot::{TrialLine, TrialPlot};
-use egui::{Color32, Id, Rect, Ui};
+use egui::{Id, Rect, Ui};
 
 /// Characters of a note.
 const NOTE_CHARS: usize = 300;
 
-/// Where the time of the curves begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Align {
-    #[default]
-    Command,
-    Contact,
+/// A trial of a session.
+pub(crate) type Strong = Option<(SessionId, usize)>;
+
+/// The sessions that are shown, and the one whose words and files are at hand.
+#[derive(Debug, Default)]
+pub(crate) struct Chosen {
+    /// Over each other, the oldest first.
+    pub(crate) shown: Vec<SessionId>,
+    /// One of them.
+    pub(crate) focus: Option<SessionId>,
+    newest: Option<SessionId>,
+}
+
+impl Chosen {
+    /// What was begun or opened last is shown at once; what is not there any more is not.
+    fn follow(&mut self, sessions: &[Session]) {
+        let newest = sessions.iter().map(|session| session.id).max();
+        let is_new = newest > self.newest;
+        self.newest = newest.max(self.newest);
+        self.shown
+            .retain(|id| sessions.iter().any(|own| own.id == *id));
+        if is_new || self.shown.is_empty() {
+            self.shown = newest.into_iter().collect();
+        }
+        let is_shown = |id: &SessionId| self.shown.contains(id);
+        self.focus = self.focus.filter(is_shown);
+        self.focus = self.focus.or(self.shown.last().copied());
+    }
+
+    /// Makes a session the one at hand; alone, unless it is shown with others.
+    pub(crate) fn choose(&mut self, id: SessionId) {
+        if !self.shown.contains(&id) {
+            self.shown = vec![id];
+        }
+        self.focus = Some(id);
+    }
+
+    /// Puts a session over the others or takes it away. The last one stays.
+    pub(crate) fn toggle(&mut self, id: SessionId) {
+        if !self.shown.contains(&id) {
+            self.shown.push(id);
+            self.shown.sort_unstable();
+        } else if self.shown.len() > 1 {
+            self.shown.retain(|own| *own != id);
+            self.focus = self.focus.filter(|focus| *focus != id);
+        }
+    }
 }
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct CompareView {
-    chosen: Option<SessionId>,
-    newest: Option<SessionId>,
-    shown: Shown,
-    align: Align,
-    sorting: Sorting,
+    chosen: Chosen,
+    comparison: Option<Comparison>,
+    curves: CurvesView,
+    table: TableView,
     /// The trial that stands out.
-    strong: Option<usize>,
-    best: compare_best::BestView,
+    strong: Strong,
+    best: BestView,
     typed: Option<(Id, String)>,
 }
 
@@ -45,52 +85,59 @@ impl CompareView {
     /// Draws the view.
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let state = pane.state;
-        let sessions = &state.tuner.sessions;
-        // What was begun or opened last is shown at once.
-        let newest = sessions.last().map(|session| session.id);
-        if newest != self.newest {
-            (self.newest, self.chosen) = (newest, newest);
-        }
+        let book = &pane.state.tuner;
+        self.chosen.follow(&book.sessions);
         let mut body = controls::card(ui, look, rect);
-        let chosen = self.chosen.and_then(|id| state.tuner.session(id));
-        let chosen = chosen.or(sessions.last());
-        self.head_ui(ui, take_top(&mut body, theme::CONTROL), pane, chosen);
-        let Some(session) = chosen else {
+        let focus = self.chosen.focus.and_then(|id| book.session(id));
+        self.head_ui(ui, take_top(&mut body, theme::CONTROL), pane, focus);
+        let Some(focus) = focus else {
             Label::new(look.say(tune::COMPARE_EMPTY), look.palette.muted)
                 .center()
                 .put(ui, body);
             return;
         };
-        self.words_ui(ui, take_top(&mut body, theme::CONTROL), pane, session);
+        let sheet = Sheet { look, book };
+        compare_list::list_ui(ui, &mut body, sheet, &mut self.chosen);
+        let comparison = self.comparison(pane, focus.id);
         let curves = body.height() * theme::CURVES_SHARE;
         let mut upper = take_top(&mut body, curves);
         let width = (upper.width() * theme::MAP_SHARE).clamp(theme::MAP_LEAST, theme::MAP_MOST);
         let side = take_right(&mut upper, width);
-        self.curves_ui(ui, upper, pane, session);
-        self.best.ui(ui, side, pane, session);
-        compare_table::table_ui(
-            ui,
-            body,
-            pane,
-            session,
-            (&mut self.sorting, &mut self.strong),
-        );
+        self.curves
+            .ui(ui, upper, pane, &comparison, &mut self.strong);
+        self.best.ui(ui, side, pane, &comparison, focus);
+        self.table.ui(ui, body, pane, &comparison, &mut self.strong);
+        self.comparison = Some(comparison);
     }
 
+    /// The sessions side by side: reckoned again only when they changed.
+    fn comparison(&mut self, pane: &Pane<'_>, focus: SessionId) -> Comparison {
+        let book = &pane.state.tuner;
+        let shown = &self.chosen.shown;
+        let former = self.comparison.take();
+        if let Some(former) = former.filter(|own| own.stands(book, shown, focus)) {
+            return former;
+        }
+        self.curves.forget();
+        self.table.forget();
+        Comparison::of(book, shown, focus)
+    }
+
+    /// Note, tags and files of the session at hand.
     fn head_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, now: Option<&Session>) {
         let look = pane.look;
         let runs = pane.state.tuner.run.as_ref().map(|run| run.session);
-        let cannot = match now {
-            None => Some(look.say(tune::COMPARE_EMPTY)),
-            Some(own) if Some(own.id) == runs => Some(look.say(tune::SAVE_RUNS)),
-            Some(own) if matches!(own.origin, Origin::Folder(_)) => Some(look.say(tune::SAVE_READ)),
-            Some(_) => None,
-        };
+        let none = now.is_none().then(|| look.say(tune::COMPARE_EMPTY));
         let id = now.map(|own| own.id);
+        let busy = (id.is_some() && id == runs).then(|| look.say(tune::SAVE_RUNS));
+        let busy = none.or(busy);
+        let read = now.filter(|own| matches!(own.origin, Origin::Folder { .. }));
+        let read = read.map(|_| look.say(tune::SAVE_READ));
         let save = id.map(|id| TrialWish::Save(id, Some(self.best.criterion())));
+        let forget = id.map(TrialWish::Forget);
         for (text, tip, disabled, wish) in [
-            (tune::SAVE, tune::SAVE_TIP, cannot, save),
+            (compare::FORGET, compare::FORGET_TIP, busy, forget),
+            (tune::SAVE, tune::SAVE_TIP, busy.or(read), save),
             (tune::OPEN, tune::OPEN_TIP, None, Some(TrialWish::Open)),
         ] {
             let words = look.say(text);
@@ -98,44 +145,16 @@ impl CompareView {
             let place = take_right(&mut row, width);
             let button = Button::new(words, look.say(tip)).disabled(disabled);
             let clicked = button.put(ui, look, place, Id::unique(("compare", text.en)));
-            if clicked.clicked()
-                && let Some(wish) = wish
-            {
-                pane.actions.push(Action::Trial(wish));
-            }
+            let wish = wish.filter(|_| clicked.clicked());
+            pane.actions.extend(wish.map(Action::Trial));
         }
-        // The newest first, as far as there is room.
-        for session in pane.state.tuner.sessions.iter().rev() {
-            let text = format!("{} {}", look.say(tune::SESSION), session.id.0);
-            let width = controls::text_width(ui, &text, theme::body()) + 2.0 * theme::PAD;
-            if row.width() < width {
-                break;
-            }
-            let place = take_left(&mut row, width);
-            let button = Button::new(&text, look.say(tune::SESSION_TIP));
-            let button = button.choice(id == Some(session.id));
-            let clicked = button.put(ui, look, place, Id::unique(("session", session.id)));
-            if clicked.clicked() {
-                (self.chosen, self.strong) = (Some(session.id), None);
-            }
+        if let Some(own) = now {
+            self.words_ui(ui, row, pane, own);
         }
     }
 
-    /// Whose hand it was, note and tags.
     fn words_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, session: &Session) {
         let look = pane.look;
-        // What was tried on the built-in hand belongs to no day.
-        let about = if session.head.simulated {
-            session.head.hand.clone()
-        } else {
-            let day = crate::app::quirk_sheet::day(session.head.begun);
-            format!("{day}  {}", session.head.hand)
-        };
-        let width = row.width() * theme::MAP_SHARE;
-        let place = take_left(&mut row, width);
-        Label::new(&about, look.palette.muted)
-            .small()
-            .put(ui, place);
         let tags = session.head.tags.join(", ");
         let half = (row.width() - theme::GAP) / 2.0;
         let id = session.id;
@@ -161,107 +180,27 @@ impl CompareView {
             }
         }
     }
-
-    fn curves_ui(&mut self, ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>, session: &Session) {
-        let look = pane.look;
-        let mut row = take_top(&mut rect, theme::CONTROL);
-        for shown in Shown::ALL {
-            let text = look.say(title(shown));
-            let tip = look.say(tune::SHOWN_TIP);
-            if choice_ui(ui, &mut row, pane, (text, tip), self.shown == shown) {
-                self.shown = shown;
-            }
-        }
-        let mut row = take_top(&mut rect, theme::CONTROL);
-        for (align, text) in [
-            (Align::Command, tune::ON_COMMAND),
-            (Align::Contact, tune::ON_CONTACT),
-        ] {
-            let tip = look.say(tune::ALIGN_TIP);
-            if choice_ui(
-                ui,
-                &mut row,
-                pane,
-                (look.say(text), tip),
-                self.align == align,
-            ) {
-                self.align = align;
-            }
-        }
-        let mut lines = Vec::new();
-        for tried in &session.trials {
-            let strong = self.strong == Some(tried.number);
-            for joint in &tried.lines.0 {
-                let zero_s = match self.align {
-                    Align::Command => Some(0.0),
-                    Align::Contact => joint.contact_s,
-                };
-                let Some(zero_s) = zero_s else { continue };
-                let points = joint.points(self.shown);
-                if points.is_empty() {
-                    continue;
-                }
-                let color = color(pane, session, tried.number, joint.dof);
-                let share = match self.strong {
-                    Some(_) if !strong => theme::CURVE_BEHIND,
-                    _ => 1.0,
-                };
-                let line = TrialLine {
-                    points,
-                    zero_s,
-                    color: color.gamma_multiply(share),
-                    width: if strong { theme::STRONG } else { theme::LINE },
-                };
-                lines.push((strong, line));
-            }
-        }
-        lines.sort_by_key(|(strong, _)| *strong);
-        let mut levels: Vec<f64> = Vec::new();
-        if self.shown == Shown::Force {
-            let forces = session.trials.iter().map(|own| own.setting.force.get());
-            levels = forces.map(f64::from).collect();
-            levels.sort_by(f64::total_cmp);
-            levels.dedup();
-        }
-        let plot = TrialPlot {
-            look,
-            name: look.say(title(self.shown)),
-            empty: look.say(tune::CURVES_EMPTY),
-            lines: lines.into_iter().map(|(_, line)| line).collect(),
-            levels,
-            least: (0.0, 1.0),
-        };
-        plot.ui(ui, rect);
-    }
 }
 
-/// The settings that one joint was tried with have a colour each; of several joints, each joint has its own.
-pub(crate) fn color(pane: &Pane<'_>, session: &Session, number: usize, dof: Dof) -> Color32 {
-    let palette = pane.look.palette;
-    let several = session
-        .trials
-        .iter()
-        .any(|tried| tried.metrics.joints.len() > 1);
-    if several {
-        return palette.dof[dof];
-    }
-    let mut settings: Vec<_> = session.trials.iter().map(|own| own.setting).collect();
-    settings.sort_unstable();
-    settings.dedup();
-    let tried = session.trials.iter().find(|own| own.number == number);
-    let at = tried.and_then(|own| settings.iter().position(|each| *each == own.setting));
-    let colors = Dof::ALL.map(|dof| palette.dof[dof]);
-    let at = at.unwrap_or(0) % colors.len();
-    colors.get(at).copied().unwrap_or(palette.text)
-}
-
-const fn title(shown: Shown) -> Text {
-    match shown {
-        Shown::Force => tune::SHOW_FORCE,
-        Shown::Angle => tune::SHOW_ANGLE,
-        Shown::Current => tune::SHOW_CURRENT,
-        Shown::Touch => tune::SHOW_TOUCH,
-    }
+/// The card of a session that is about to go and lies in no file.
+pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
+    let session = state.tuner.session(state.tuner.question?)?;
+    let trials = session.trials.len();
+    let loses = format!("{} {trials}", look.say(compare::FORGET_LOSES));
+    let back = Choice::new(compare::FORGET_NOT, compare::FORGET_NOT_TIP, Manner::Safe);
+    let forget = Choice::new(compare::FORGET_SURE, compare::FORGET_TIP, Manner::Danger);
+    Some(Card {
+        title: look.say(compare::FORGET_TITLE).into(),
+        lines: vec![
+            Line::Words(compare_list::name(look, session.id)),
+            Line::Warning(loses),
+        ],
+        choices: vec![
+            back.does(Action::Trial(TrialWish::Decline)),
+            forget.does(Action::Trial(TrialWish::Agree)),
+        ],
+        ..Card::default()
+    })
 }
 
 /// One of a row of choices; true if it was pressed.
@@ -272,7 +211,7 @@ pub(crate) fn choice_ui(
     (text, tip): (&str, &str),
     chosen: bool,
 ) -> bool {
-    let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP;
+    let width = choice_width(ui, text);
     let place = take_left(row, width.min(row.width()));
     row.min.x -= theme::STEP;
     let button = Button::new(text, tip).choice(chosen);
@@ -280,10 +219,7 @@ pub(crate) fn choice_ui(
     response.clicked()
 }
 
-/// The best setting of a session.
-pub(crate) fn best_of(
-    session: &Session,
-    criterion: Criterion,
-) -> Option<crate::app::trial::Setting> {
-    best(&session.scores(), criterion).map(|score| score.setting)
+/// The room of one of a row of choices.
+pub(crate) fn choice_width(ui: &Ui, text: &str) -> f32 {
+    controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP
 }

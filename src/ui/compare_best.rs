@@ -2,16 +2,17 @@
 
 use crate::app::action::Action;
 use crate::app::params::table::{ParamId, Value};
-use crate::app::trial::Criterion;
-use crate::app::trial::best::Score;
-use crate::app::tuner::Session;
+use crate::app::trial::best::{Score, best};
+use crate::app::trial::{Criterion, Setting};
+use crate::app::tuner::{Comparison, Difference, Session};
 use crate::hand::Dof;
-use crate::ui::compare::{best_of, choice_ui};
-use crate::ui::compare_table::setting_words;
+use crate::ui::compare::choice_ui;
+use crate::ui::compare_columns::setting_words;
+use crate::ui::compare_list;
 use crate::ui::controls::{self, Button, Label, take_left, take_right, take_top};
 use crate::ui::look::Pane;
 use crate::ui::number::NumberField;
-use crate::ui::text::tune;
+use crate::ui::text::{Text, compare, tune};
 use crate::ui::theme;
 use egui::{Align2, CornerRadius, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
@@ -49,7 +50,14 @@ impl BestView {
     }
 
     /// Draws the choice, the best, and the map.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, mut rect: Rect, pane: &mut Pane<'_>, own: &Session) {
+    pub(crate) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        mut rect: Rect,
+        pane: &mut Pane<'_>,
+        comparison: &Comparison,
+        focus: &Session,
+    ) {
         let look = pane.look;
         let mut row = take_top(&mut rect, theme::CONTROL);
         for (wanted, text) in [
@@ -62,8 +70,19 @@ impl BestView {
             }
         }
         self.hold_ui(ui, take_top(&mut rect, theme::CONTROL), pane);
-        self.best_ui(ui, take_top(&mut rect, theme::CONTROL), pane, own);
-        map_ui(ui, rect, pane, own, best_of(own, self.criterion()));
+        let best = best(comparison.scores(), self.criterion()).map(|score| score.setting);
+        let row = take_top(&mut rect, theme::CONTROL);
+        best_ui(ui, row, pane, comparison, best);
+        if comparison.sessions().len() > 1 {
+            of_ui(
+                ui,
+                take_top(&mut rect, theme::LIST_LINE),
+                pane,
+                comparison,
+                focus,
+            );
+        }
+        map_ui(ui, rect, pane, comparison.scores(), best);
     }
 
     fn hold_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
@@ -85,61 +104,87 @@ impl BestView {
             self.steady_g = steady_g;
         }
     }
+}
 
-    fn best_ui(&self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, own: &Session) {
-        let look = pane.look;
-        let best = best_of(own, self.criterion());
-        let none = look.say(tune::BEST_NONE);
-        let words = look.say(tune::PROMOTE);
-        let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
-        let place = take_right(&mut row, width);
-        let button = Button::new(words, look.say(tune::PROMOTE_TIP));
-        let button = button.disabled(best.is_none().then_some(none));
-        let clicked = button.put(ui, look, place, Id::unique("promote"));
-        if let Some(setting) = best.filter(|_| clicked.clicked()) {
-            for dof in joints(own) {
-                let speed = Value::Number(setting.speed.get().into());
-                let force = Value::Number(setting.force.get().into());
-                pane.actions
-                    .push(Action::Stage(ParamId::DefaultSpeed(dof), Some(speed)));
-                pane.actions
-                    .push(Action::Stage(ParamId::DefaultForce(dof), Some(force)));
-            }
+fn best_ui(
+    ui: &mut Ui,
+    mut row: Rect,
+    pane: &mut Pane<'_>,
+    comparison: &Comparison,
+    best: Option<Setting>,
+) {
+    let look = pane.look;
+    let none = look.say(tune::BEST_NONE);
+    let words = look.say(tune::PROMOTE);
+    let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
+    let place = take_right(&mut row, width);
+    let button = Button::new(words, look.say(tune::PROMOTE_TIP));
+    let button = button.disabled(best.is_none().then_some(none));
+    let clicked = button.put(ui, look, place, Id::unique("promote"));
+    if let Some(setting) = best.filter(|_| clicked.clicked()) {
+        for dof in comparison.joints() {
+            pane.actions.extend(staging(*dof, setting));
         }
-        let text = best.map_or_else(|| none.to_owned(), setting_words);
-        let color = if best.is_some() {
-            look.palette.ok
-        } else {
-            look.palette.muted
-        };
-        Label::new(&text, color)
-            .named(look.say(tune::BEST))
+    }
+    let text = best.map_or_else(|| none.to_owned(), setting_words);
+    let color = if best.is_some() {
+        look.palette.ok
+    } else {
+        look.palette.muted
+    };
+    Label::new(&text, color)
+        .named(look.say(tune::BEST))
+        .put(ui, row);
+}
+
+/// What stages a setting as the one after power-up.
+pub(crate) fn staging(dof: Dof, setting: Setting) -> [Action; 2] {
+    let speed = Value::Number(setting.speed.get().into());
+    let force = Value::Number(setting.force.get().into());
+    [
+        Action::Stage(ParamId::DefaultSpeed(dof), Some(speed)),
+        Action::Stage(ParamId::DefaultForce(dof), Some(force)),
+    ]
+}
+
+/// Over which sessions map and best are, and why not over all.
+fn of_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>, comparison: &Comparison, focus: &Session) {
+    let look = pane.look;
+    let differences = comparison.differences();
+    if differences.is_empty() {
+        Label::new(look.say(compare::TOGETHER), look.palette.muted)
+            .small()
             .put(ui, row);
+        return;
+    }
+    let words: Vec<&str> = differences
+        .iter()
+        .map(|difference| look.say(difference_words(*difference)))
+        .collect();
+    let own = compare_list::name(look, focus.id);
+    let text = format!("{own} {} {}", look.say(compare::ALONE), words.join(", "));
+    Label::new(&text, look.palette.warn)
+        .small()
+        .put(ui, row)
+        .on_hover_text(look.say(compare::ALONE_TIP));
+}
+
+const fn difference_words(difference: Difference) -> Text {
+    match difference {
+        Difference::Hand => compare::HAND,
+        Difference::Joints => compare::JOINTS,
+        Difference::Way => compare::WAY,
+        Difference::Approach => compare::APPROACH,
+        Difference::Dwell => compare::DWELL,
     }
 }
 
-/// The joints that a session tried.
-fn joints(session: &Session) -> Vec<Dof> {
-    let tried = |dof: &Dof| {
-        let mut all = session.trials.iter().flat_map(|own| &own.metrics.joints);
-        all.any(|joint| joint.dof == *dof)
-    };
-    Dof::ALL.into_iter().filter(tried).collect()
-}
-
 /// Overshoot as colours with numbers: speeds below each other, thresholds side by side.
-fn map_ui(
-    ui: &mut Ui,
-    mut rect: Rect,
-    pane: &Pane<'_>,
-    session: &Session,
-    best: Option<crate::app::trial::Setting>,
-) {
+fn map_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>, scores: &[Score], best: Option<Setting>) {
     let look = pane.look;
     let place = take_top(&mut rect, theme::LIST_LINE);
     let title = look.say(tune::MAP);
     Label::new(title, look.palette.muted).small().put(ui, place);
-    let scores = session.scores();
     let mut speeds: Vec<i16> = scores.iter().map(|own| own.setting.speed.get()).collect();
     let mut forces: Vec<i16> = scores.iter().map(|own| own.setting.force.get()).collect();
     for list in [&mut speeds, &mut forces] {

@@ -1,264 +1,393 @@
 //! What was measured, one row a trial and joint, and one for each setting that was repeated. Sorts, measures nothing.
 
+use crate::app::settings::Language;
 use crate::app::trial::{JointMetrics, Setting};
-use crate::app::tuner::Session;
-use crate::hand::Status;
-use crate::ui::compare::color;
+use crate::app::tuner::comparison::Seen;
+use crate::app::tuner::{Comparison, Place, Session, SessionId};
+use crate::ui::compare::Strong;
+use crate::ui::compare_columns::{COLUMNS, end_words, number, order, setting_words, spread};
+use crate::ui::compare_curves::color;
+use crate::ui::compare_list;
 use crate::ui::controls::{self, Button, Label, take_left};
-use crate::ui::list;
-use crate::ui::look::{Look, Pane};
-use crate::ui::text::{Text, trials, tune, words};
-use crate::ui::{format, theme};
-use egui::{Align2, Color32, CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo};
+use crate::ui::dash::Dash;
+use crate::ui::look::Pane;
+use crate::ui::text::{Text, compare, trials, tune, words};
+use crate::ui::theme;
+use egui::{Align2, Color32, CornerRadius, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
-/// One column.
-struct Column {
-    title: Text,
-    digits: usize,
-    value: fn(&JointMetrics) -> Option<f64>,
+/// What rows can be sorted by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum By {
+    Session,
+    #[default]
+    Trial,
+    /// One of [`COLUMNS`].
+    Number(usize),
+    End,
 }
 
-const fn column(title: Text, digits: usize, value: fn(&JointMetrics) -> Option<f64>) -> Column {
-    Column {
-        title,
-        digits,
-        value,
-    }
-}
-
-/// All with a number.
-static COLUMNS: [Column; 10] = [
-    column(tune::COLUMN_OVER, 0, |own| own.overshoot_g),
-    column(tune::COLUMN_PEAK, 0, |own| own.peak_force_g),
-    column(tune::COLUMN_STEADY, 0, |own| own.steady_force_g),
-    column(tune::COLUMN_CONTACT, 2, |own| own.time_to_contact_s),
-    column(tune::COLUMN_SETTLE, 2, |own| own.settle_time_s),
-    column(tune::COLUMN_DEAD, 3, |own| own.dead_time_s),
-    column(tune::COLUMN_RELAX, 0, |own| own.relaxation_g),
-    column(tune::COLUMN_SLIPS, 0, |own| {
-        own.slip_count
-            .and_then(|count| u32::try_from(count).ok())
-            .map(f64::from)
-    }),
-    column(tune::COLUMN_CURRENT, 0, |own| own.peak_current_ma),
-    column(tune::COLUMN_HEAT, 0, |own| own.temperature_rise_c),
-];
-
-/// What the rows are sorted by: a column, or the order of trial; and which way.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Sorting {
-    column: Option<usize>,
+/// Where the rows begin, and which way they go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Sorting {
+    by: By,
     falling: bool,
+}
+
+/// What is kept between frames: sorting and grouping thousands of rows is not for each of them.
+#[derive(Debug, Default)]
+pub(crate) struct TableView {
+    sorting: Sorting,
+    laid: Option<Laid>,
+}
+
+#[derive(Debug)]
+struct Laid {
+    sorting: Sorting,
+    language: Language,
+    order: Vec<Place>,
+    repeated: Vec<(SessionId, Setting)>,
 }
 
 /// One row.
 struct Row<'a> {
-    number: usize,
+    seen: Seen<'a>,
     name: String,
-    joint: &'a JointMetrics,
+    /// What names of its cells begin with.
+    short: String,
     end: String,
     color: Color32,
+    dash: Dash,
 }
 
-/// Draws the table. A pressed row stands out in the curves.
-pub(crate) fn table_ui(
-    ui: &mut Ui,
-    rect: Rect,
-    pane: &Pane<'_>,
-    session: &Session,
-    (sorting, strong): (&mut Sorting, &mut Option<usize>),
-) {
-    let rows = sorted(rows(pane, session), *sorting);
-    let least = theme::TRIAL_FIRST_COLUMN + 11.0 * theme::TRIAL_COLUMN;
-    let width = rect.width().max(least);
-    let inside = egui::UiBuilder::new().max_rect(rect).id_salt("trial table");
-    ui.scope_builder(inside, |ui| {
-        ui.shrink_clip_rect(rect);
-        ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
-        let area = egui::ScrollArea::both().auto_shrink(false);
-        area.show(ui, |ui| {
-            head_ui(ui, width, pane, sorting);
-            for row in &rows {
-                if row_ui(ui, width, pane, row, *strong == Some(row.number)) {
-                    let same = *strong == Some(row.number);
-                    *strong = (!same).then_some(row.number);
-                }
-            }
-            repeats_ui(ui, width, pane, session);
-        });
-    });
+/// What every part of the table is drawn with.
+struct Sheet<'a, 'b> {
+    pane: &'a Pane<'b>,
+    comparison: &'a Comparison,
 }
 
-fn rows<'a>(pane: &Pane<'_>, session: &'a Session) -> Vec<Row<'a>> {
-    let look = pane.look;
-    let mut rows = Vec::new();
-    for tried in &session.trials {
-        for joint in &tried.metrics.joints {
-            let kind = match tried.repeat {
-                None => look.say(tune::PROBE).to_owned(),
-                Some(_) => setting_words(tried.setting),
-            };
-            let end = match &tried.ended {
-                Some(why) => trials::ended(look, why),
-                None => end_words(look, joint.end_status.as_deref()),
-            };
-            rows.push(Row {
-                number: tried.number,
-                name: format!(
-                    "{}  {kind}  {}",
-                    tried.number,
-                    look.say(words::dof(joint.dof))
-                ),
-                joint,
-                end,
-                color: color(pane, session, tried.number, joint.dof),
+impl TableView {
+    /// The comparison is another one.
+    pub(crate) fn forget(&mut self) {
+        self.laid = None;
+    }
+
+    /// Draws the table. A pressed row stands out in the curves.
+    pub(crate) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        pane: &Pane<'_>,
+        comparison: &Comparison,
+        strong: &mut Strong,
+    ) {
+        let sheet = Sheet { pane, comparison };
+        let laid = self.laid(&sheet);
+        let session = sheet.session_width();
+        let least =
+            session + theme::TRIAL_FIRST_COLUMN + theme::TRIAL_COLUMNS * theme::TRIAL_COLUMN;
+        let width = rect.width().max(least);
+        let inside = egui::UiBuilder::new().max_rect(rect).id_salt("trial table");
+        let sorting = &mut self.sorting;
+        ui.scope_builder(inside, |ui| {
+            ui.shrink_clip_rect(rect);
+            ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
+            let area = egui::ScrollArea::both().auto_shrink(false);
+            area.show_viewport(ui, |ui, seen| {
+                let rows = vec2(width, height(&laid));
+                let place = ui.allocate_space(rows).1;
+                sheet.rows_ui(ui, place, &laid, strong);
+                sheet.repeats_ui(ui, place, &laid);
+                let top = place.top() + seen.top();
+                let head = place.with_min_y(top).with_max_y(top + theme::CONTROL);
+                sheet.head_ui(ui, head, sorting);
             });
+        });
+        self.laid = Some(laid);
+    }
+
+    /// The rows in their order, reckoned again only when something changed.
+    fn laid(&mut self, sheet: &Sheet<'_, '_>) -> Laid {
+        let (sorting, language) = (self.sorting, sheet.pane.look.language);
+        let former = self.laid.take();
+        let former = former.filter(|own| own.sorting == sorting && own.language == language);
+        former.unwrap_or_else(|| Laid {
+            sorting,
+            language,
+            order: sheet.sorted(sorting),
+            repeated: sheet.repeated(),
+        })
+    }
+}
+
+/// Height of all of it.
+fn height(laid: &Laid) -> f32 {
+    repeats_top(laid) + count(laid.repeated.len()) * theme::FIGURE_ROW * 2.0
+}
+
+/// Where the part of repeats begins, below its title.
+fn repeats_top(laid: &Laid) -> f32 {
+    let rows = theme::CONTROL + count(laid.order.len()) * theme::TRIAL_ROW;
+    match laid.repeated.is_empty() {
+        true => rows,
+        false => rows + theme::GAP + theme::LIST_LINE,
+    }
+}
+
+fn count(number: usize) -> f32 {
+    f32::from(u16::try_from(number).unwrap_or(u16::MAX))
+}
+
+impl<'a> Sheet<'a, '_> {
+    fn several(&self) -> bool {
+        self.comparison.sessions().len() > 1
+    }
+
+    /// A column of sessions is there if there are several.
+    fn session_width(&self) -> f32 {
+        match self.several() {
+            true => theme::SESSION_COLUMN,
+            false => 0.0,
         }
     }
-    rows
-}
 
-/// What the drive said in the end, in words; a name that this program does not know stays as it is.
-fn end_words(look: Look, name: Option<&str>) -> String {
-    let Some(name) = name else {
-        return format::UNKNOWN.to_owned();
-    };
-    let mut known = (0..=u8::MAX).map(Status::from_raw);
-    known
-        .find(|status| !matches!(status, Status::Unknown(_)) && status.name() == name)
-        .map_or_else(
-            || name.to_owned(),
-            |status| words::status(status, look.language).title.to_owned(),
-        )
-}
+    fn seen(&self, place: Place) -> Option<Seen<'a>> {
+        self.comparison.seen(&self.pane.state.tuner, place)
+    }
 
-/// Speed and threshold.
-pub(crate) fn setting_words(setting: Setting) -> String {
-    format!("{} / {} g", setting.speed.get(), setting.force.get())
-}
-
-/// What is not known goes last, whichever way the rest is sorted.
-fn sorted(mut rows: Vec<Row<'_>>, sorting: Sorting) -> Vec<Row<'_>> {
-    let Some(column) = sorting.column.and_then(|at| COLUMNS.get(at)) else {
+    /// The rows in the order that is asked for; what is not known goes last, whichever way the rest is sorted.
+    fn sorted(&self, sorting: Sorting) -> Vec<Place> {
+        let mut rows = self.comparison.rows().to_vec();
+        match sorting.by {
+            By::Session => rows.sort_by_key(|place| place.session),
+            By::Trial => rows.sort_by_key(|place| (place.trial, place.session)),
+            By::End => rows.sort_by_cached_key(|place| {
+                let seen = self.seen(*place);
+                seen.map_or_else(String::new, |seen| self.end(seen))
+            }),
+            By::Number(at) => {
+                let value = COLUMNS.get(at).map(|column| column.value);
+                let value = |place: &Place| value?(self.seen(*place)?.joint);
+                let mut known: Vec<(Option<f64>, Place)> =
+                    rows.iter().map(|place| (value(place), *place)).collect();
+                known.sort_by(|(a, _), (b, _)| order(*a, *b, sorting.falling));
+                return known.into_iter().map(|(_, place)| place).collect();
+            }
+        }
         if sorting.falling {
             rows.reverse();
         }
-        return rows;
-    };
-    rows.sort_by(
-        |a, b| match ((column.value)(a.joint), (column.value)(b.joint)) {
-            (Some(a), Some(b)) if sorting.falling => b.total_cmp(&a),
-            (Some(a), Some(b)) => a.total_cmp(&b),
-            (a, b) => b.is_some().cmp(&a.is_some()),
-        },
-    );
-    rows
-}
+        rows
+    }
 
-fn cells(row: Rect) -> (Rect, Rect, f32) {
-    let (first, rest) = row.split_left_right_at_x(row.left() + theme::TRIAL_FIRST_COLUMN);
-    (first, rest, rest.width() / theme::TRIAL_COLUMNS)
-}
+    /// Settings that a session tried more than once, session by session.
+    fn repeated(&self) -> Vec<(SessionId, Setting)> {
+        let book = &self.pane.state.tuner;
+        let sessions = self.comparison.sessions();
+        let sessions = sessions.filter_map(|id| book.session(id));
+        let mut all = Vec::new();
+        for session in sessions {
+            let tried = session.trials.iter().filter(|own| own.repeat.is_some());
+            let mut settings: Vec<Setting> = tried.map(|own| own.setting).collect();
+            settings.sort_unstable();
+            let twice = settings.chunk_by(|a, b| a == b).filter(|own| own.len() > 1);
+            all.extend(twice.filter_map(|own| Some((session.id, *own.first()?))));
+        }
+        all
+    }
 
-fn head_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, sorting: &mut Sorting) {
-    let look = pane.look;
-    let row = list::piece(ui, width, theme::CONTROL);
-    let (first, mut rest, each) = cells(row);
-    let titles = COLUMNS.iter().map(|column| column.title);
-    let all = std::iter::once((None, tune::COLUMN_TRIAL));
-    let all = all.chain(titles.enumerate().map(|(at, title)| (Some(at), title)));
-    for (at, title) in all {
-        let place = match at {
-            None => first,
-            Some(_) => {
-                let (cell, more) = rest.split_left_right_at_x(rest.left() + each);
-                rest = more;
-                cell
-            }
+    fn end(&self, seen: Seen<'_>) -> String {
+        let look = self.pane.look;
+        match &seen.tried.ended {
+            Some(why) => trials::ended(look, why),
+            None => end_words(look, seen.joint.end_status.as_deref()),
+        }
+    }
+
+    fn row(&self, place: Place) -> Option<Row<'a>> {
+        let look = self.pane.look;
+        let seen = self.seen(place)?;
+        let (session, tried) = (seen.session, seen.tried);
+        let kind = match tried.repeat {
+            None => look.say(tune::PROBE).to_owned(),
+            Some(_) => setting_words(tried.setting),
         };
+        let joint = look.say(words::dof(seen.joint.dof));
+        Some(Row {
+            seen,
+            name: format!("{}  {kind}  {joint}", tried.number),
+            short: match self.several() {
+                true => format!("{}: {}", session.id.0, tried.number),
+                false => tried.number.to_string(),
+            },
+            end: self.end(seen),
+            color: color(self.pane, self.comparison, place, seen),
+            dash: compare_list::dash(self.comparison.sessions(), session.id),
+        })
+    }
+
+    /// The rows that are seen.
+    fn rows_ui(&self, ui: &mut Ui, place: Rect, laid: &Laid, strong: &mut Strong) {
+        let mut top = place.top() + theme::CONTROL;
+        for own in &laid.order {
+            let rect = place.with_min_y(top).with_max_y(top + theme::TRIAL_ROW);
+            top += theme::TRIAL_ROW;
+            if !ui.is_rect_visible(rect) {
+                continue;
+            }
+            let Some(row) = self.row(*own) else { continue };
+            let key = Some((row.seen.session.id, row.seen.tried.number));
+            if self.row_ui(ui, rect, &row, *strong == key) {
+                *strong = key.filter(|_| *strong != key);
+            }
+        }
+    }
+
+    /// The parts of a row: the session, the trial, the numbers and the end, and the width of a number.
+    fn cells(&self, row: Rect) -> (Rect, Rect, Rect, f32) {
+        let (session, rest) = row.split_left_right_at_x(row.left() + self.session_width());
+        let (first, rest) = rest.split_left_right_at_x(rest.left() + theme::TRIAL_FIRST_COLUMN);
+        (session, first, rest, rest.width() / theme::TRIAL_COLUMNS)
+    }
+
+    fn head_ui(&self, ui: &mut Ui, row: Rect, sorting: &mut Sorting) {
+        let palette = self.pane.look.palette;
+        ui.painter()
+            .rect_filled(row, CornerRadius::ZERO, palette.card);
+        let (session, first, mut rest, each) = self.cells(row);
+        if self.several() {
+            self.head_cell_ui(ui, session, (By::Session, compare::COLUMN_SESSION), sorting);
+        }
+        self.head_cell_ui(ui, first, (By::Trial, tune::COLUMN_TRIAL), sorting);
+        for (at, column) in COLUMNS.iter().enumerate() {
+            let (cell, more) = rest.split_left_right_at_x(rest.left() + each);
+            rest = more;
+            self.head_cell_ui(ui, cell, (By::Number(at), column.title), sorting);
+        }
+        self.head_cell_ui(ui, rest, (By::End, tune::COLUMN_END), sorting);
+    }
+
+    fn head_cell_ui(
+        &self,
+        ui: &mut Ui,
+        cell: Rect,
+        (by, title): (By, Text),
+        sorting: &mut Sorting,
+    ) {
+        let look = self.pane.look;
         let text = look.say(title);
-        let button = Button::new(text, look.say(tune::COLUMN_TIP));
-        let button = button.choice(sorting.column == at);
-        let response = button.ground(ui, look, place, Id::unique(("trial column", title.en)));
+        let is_own = sorting.by == by;
+        let button = Button::new(text, look.say(tune::COLUMN_TIP)).choice(is_own);
+        let response = button.ground(ui, look, cell, Id::unique(("trial column", title.en)));
+        let mut words = cell.shrink2(vec2(theme::STEP, 0.0));
+        if is_own {
+            let (arrow, way) = match sorting.falling {
+                true => (theme::TO_BOTTOM, compare::FALLING),
+                false => (theme::TO_TOP, compare::RISING),
+            };
+            let place = words.with_min_x(words.right() - theme::SORT_ARROW);
+            words.max.x = place.min.x;
+            let label = format!("{text}: {}", look.say(way));
+            let sign = ui.interact(place, Id::unique("trial sorting"), Sense::hover());
+            sign.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
+            controls::sign(ui, place, arrow, look.palette.accent);
+        }
         let (font, color) = (theme::small(), look.palette.muted);
-        controls::paint_text(ui, place, Align2::CENTER_CENTER, text, font, color);
+        controls::paint_text(ui, words, Align2::CENTER_CENTER, text, font, color);
         if response.clicked() {
-            let again = sorting.column == at;
             *sorting = Sorting {
-                column: at,
-                falling: again && !sorting.falling,
+                by,
+                falling: is_own && !sorting.falling,
             };
         }
     }
-    Label::new(look.say(tune::COLUMN_END), look.palette.muted)
-        .small()
-        .put(ui, rest.translate(egui::vec2(theme::GAP, 0.0)));
-}
 
-fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(
-        || "-".to_owned(),
-        |value| format!("{:.digits$}", value + 0.0),
-    )
-}
-
-fn row_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, row: &Row<'_>, chosen: bool) -> bool {
-    let look = pane.look;
-    let rect = list::piece(ui, width, theme::TRIAL_ROW);
-    let id = Id::unique(("trial row", row.number, row.joint.dof));
-    let response = ui.interact(rect, id, Sense::click());
-    response.widget_info(|| WidgetInfo::selected(Role::Row, true, chosen, &row.name));
-    let ground = match (chosen, response.hovered()) {
-        (true, _) => look.palette.wash(look.palette.accent),
-        (false, true) => look.palette.control,
-        (false, false) => Color32::TRANSPARENT,
-    };
-    let round = CornerRadius::same(theme::ROUND_TINY);
-    ui.painter().rect_filled(rect, round, ground);
-    let (mut first, mut rest, each) = cells(rect);
-    let swatch = take_left(&mut first, theme::TRIAL_SWATCH);
-    let bar = controls::middle(swatch, theme::BAR);
-    ui.painter().rect_filled(bar, round, row.color);
-    Label::new(&row.name, look.palette.text)
-        .small()
-        .put(ui, first);
-    for column in &COLUMNS {
-        let (cell, more) = rest.split_left_right_at_x(rest.left() + each);
-        rest = more;
-        let text = number((column.value)(row.joint), column.digits);
-        let label = format!("{} {}", row.number, look.say(column.title));
-        Label::new(&text, look.palette.text)
-            .number()
-            .right()
-            .named(&label)
-            .put(ui, cell.with_max_x(cell.right() - theme::GAP));
+    fn row_ui(&self, ui: &mut Ui, rect: Rect, row: &Row<'_>, chosen: bool) -> bool {
+        let look = self.pane.look;
+        let (tried, joint) = (row.seen.tried, row.seen.joint);
+        let session = row.seen.session.id;
+        let id = Id::unique(("trial row", session, tried.number, joint.dof));
+        let response = ui.interact(rect, id, Sense::click());
+        let name = match self.several() {
+            true => format!("{}: {}", session.0, row.name),
+            false => row.name.clone(),
+        };
+        response.widget_info(|| WidgetInfo::selected(Role::Row, true, chosen, &name));
+        let ground = match (chosen, response.hovered()) {
+            (true, _) => look.palette.wash(look.palette.accent),
+            (false, true) => look.palette.control,
+            (false, false) => Color32::TRANSPARENT,
+        };
+        let round = CornerRadius::same(theme::ROUND_TINY);
+        ui.painter().rect_filled(rect, round, ground);
+        let (place, mut first, mut rest, each) = self.cells(rect);
+        if self.several() {
+            let text = session.0.to_string();
+            let label = format!("{} {}", row.short, look.say(compare::COLUMN_SESSION));
+            Label::new(&text, look.palette.text)
+                .number()
+                .center()
+                .named(&label)
+                .put(ui, place);
+        }
+        let swatch = take_left(&mut first, theme::KEY_SIGN);
+        let stroke = Stroke::new(theme::BAR, row.color);
+        row.dash.sample(ui.painter(), swatch, stroke);
+        Label::new(&row.name, look.palette.text)
+            .small()
+            .put(ui, first);
+        for column in &COLUMNS {
+            let (cell, more) = rest.split_left_right_at_x(rest.left() + each);
+            rest = more;
+            let text = number((column.value)(joint), column.digits);
+            let label = format!("{} {}", row.short, look.say(column.title));
+            Label::new(&text, look.palette.text)
+                .number()
+                .right()
+                .named(&label)
+                .put(ui, cell.with_max_x(cell.right() - theme::GAP));
+        }
+        Label::new(&row.end, look.palette.muted)
+            .small()
+            .put(ui, rest.translate(vec2(theme::GAP, 0.0)));
+        response.clicked()
     }
-    Label::new(&row.end, look.palette.muted)
-        .small()
-        .put(ui, rest.translate(egui::vec2(theme::GAP, 0.0)));
-    response.clicked()
-}
 
-/// The spread of settings that were tried more than once.
-fn repeats_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, session: &Session) {
-    let look = pane.look;
-    let scores = session.scores();
-    let repeated: Vec<Setting> = scores
-        .iter()
-        .filter(|score| score.trials > 1)
-        .map(|score| score.setting)
-        .collect();
-    if repeated.is_empty() {
-        return;
+    /// The spread of settings that were tried more than once.
+    fn repeats_ui(&self, ui: &mut Ui, place: Rect, laid: &Laid) {
+        if laid.repeated.is_empty() {
+            return;
+        }
+        let look = self.pane.look;
+        let mut top = place.top() + repeats_top(laid);
+        let title = place.with_min_y(top - theme::LIST_LINE).with_max_y(top);
+        Label::new(look.say(tune::REPEATED), look.palette.muted)
+            .small()
+            .put(ui, title);
+        for (id, setting) in &laid.repeated {
+            let rect = place
+                .with_min_y(top)
+                .with_max_y(top + theme::FIGURE_ROW * 2.0);
+            top = rect.bottom();
+            let session = self.pane.state.tuner.session(*id);
+            if let Some(session) = session.filter(|_| ui.is_rect_visible(rect)) {
+                self.repeat_ui(ui, rect, session, *setting);
+            }
+        }
     }
-    list::piece(ui, width, theme::GAP);
-    let title = look.say(tune::REPEATED);
-    list::line_ui(ui, width, title, look.palette.muted);
-    for setting in repeated {
-        let rect = list::piece(ui, width, theme::FIGURE_ROW * 2.0);
-        let (first, mut rest, each) = cells(rect);
-        let text = setting_words(setting);
+
+    fn repeat_ui(&self, ui: &mut Ui, rect: Rect, session: &Session, setting: Setting) {
+        let look = self.pane.look;
+        let (place, first, mut rest, each) = self.cells(rect);
+        let mut text = setting_words(setting);
         Label::new(&text, look.palette.text).small().put(ui, first);
+        if self.several() {
+            let number = session.id.0.to_string();
+            text = format!("{number}: {text}");
+            Label::new(&number, look.palette.text)
+                .number()
+                .center()
+                .put(ui, place);
+        }
         let own = session.trials.iter();
         let own = own.filter(|tried| tried.setting == setting && tried.repeat.is_some());
         let joints: Vec<&JointMetrics> = own.flat_map(|tried| &tried.metrics.joints).collect();
@@ -284,31 +413,5 @@ fn repeats_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, session: &Session) {
                 .right()
                 .put(ui, lower);
         }
-    }
-}
-
-/// Mean, and lowest to highest; of nothing nothing.
-fn spread(values: &[f64], digits: usize) -> (String, String) {
-    let count = u32::try_from(values.len()).unwrap_or(u32::MAX);
-    let low = values.iter().copied().reduce(f64::min);
-    let high = values.iter().copied().reduce(f64::max);
-    let (Some(low), Some(high)) = (low, high) else {
-        return ("-".into(), String::new());
-    };
-    let mean = values.iter().sum::<f64>() / f64::from(count);
-    let range = format!("{low:.digits$}..{high:.digits$}");
-    (number(Some(mean), digits), range)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_spread_is_the_mean_and_the_ends_and_of_nothing_nothing() {
-        let said = |mean: &str, range: &str| (mean.to_owned(), range.to_owned());
-        assert_eq!(spread(&[10.0, 40.0, 25.0], 0), said("25", "10..40"));
-        assert_eq!(spread(&[0.125, 0.5], 2), said("0.31", "0.12..0.50"));
-        assert_eq!(spread(&[], 2), said("-", ""));
     }
 }

@@ -9,9 +9,15 @@ mod card;
 mod card_tests;
 mod compare;
 mod compare_best;
+mod compare_columns;
+mod compare_curves;
+mod compare_list;
 mod compare_table;
+#[cfg(test)]
+mod compare_tests;
 mod connection;
 mod controls;
+mod dash;
 mod device;
 mod device_card;
 mod device_file;

@@ -1,10 +1,14 @@
-//! Curves of trials over the time from a common moment: lines over each other, a level to compare with. Knows no trial.
+//! Curves of trials over the time from a common moment: lines over each other, levels to compare with, and the line at the
+//! pointer. Knows no trial.
 
 use crate::ui::controls::{Label, paint_text};
+use crate::ui::dash::Dash;
 use crate::ui::look::Look;
 use crate::ui::plot_axes::{self, Band, Extent, Placing};
 use crate::ui::theme;
-use egui::{Align2, Color32, CornerRadius, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Align2, Color32, CornerRadius, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+};
 
 /// Steps of the value axis that fit any of the quantities.
 const STEPS: [f64; 12] = [
@@ -26,6 +30,16 @@ pub(crate) struct TrialLine<'a> {
     pub(crate) color: Color32,
     /// Its width.
     pub(crate) width: f32,
+    /// Its kind.
+    pub(crate) dash: Dash,
+}
+
+/// What a person points at.
+pub(crate) struct Pointed {
+    /// The line, by its place in the list.
+    pub(crate) line: Option<usize>,
+    /// Whether it was pressed, or nothing was.
+    pub(crate) clicked: bool,
 }
 
 /// What is drawn.
@@ -44,20 +58,49 @@ pub(crate) struct TrialPlot<'a> {
     pub(crate) least: (f64, f64),
 }
 
+impl TrialLine<'_> {
+    fn places(&self, placing: Placing) -> Vec<Pos2> {
+        let place = |[t, v]: &[f64; 2]| placing.at(&[t - self.zero_s, *v]);
+        self.points.iter().map(place).collect()
+    }
+}
+
+/// The line that passes next to a place, if one is near; of several the foremost.
+fn nearest(lines: &[Vec<Pos2>], at: Pos2) -> Option<usize> {
+    let apart = |places: &Vec<Pos2>| {
+        let pairs = places.iter().zip(places.iter().skip(1));
+        let apart = pairs.map(|(from, to)| distance(*from, *to, at));
+        apart.reduce(f32::min)
+    };
+    let near = lines.iter().enumerate().rev();
+    let near = near.filter_map(|(index, places)| Some((index, apart(places)?)));
+    let near = near.filter(|(_, apart)| *apart <= theme::LINE_NEAR);
+    let near = near.min_by(|(_, a), (_, b)| a.total_cmp(b));
+    near.map(|(index, _)| index)
+}
+
+/// From a place to a piece of a line.
+fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
+    let way = to - from;
+    let long = way.length_sq();
+    let part = if long > 0.0 {
+        ((at - from).dot(way) / long).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (from + way * part).distance(at)
+}
+
 impl TrialPlot<'_> {
-    /// Draws it.
-    pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect) {
+    /// Draws it, and says what the pointer is at.
+    pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect) -> Pointed {
         let look = self.look;
-        let (caption, below) = rect.split_top_bottom_at_y(rect.top() + theme::LIST_LINE);
-        Label::new(self.name, look.palette.muted)
-            .small()
-            .put(ui, caption);
-        let ground = below.with_max_y(below.bottom() - theme::PLOT_TIME_AXIS);
+        let ground = rect.with_max_y(rect.bottom() - theme::PLOT_TIME_AXIS);
         let plot = ground.with_min_x(ground.left() + theme::PLOT_AXIS);
         let response = ui.interact(
             plot,
             egui::Id::unique(("trial plot", self.name)),
-            Sense::hover(),
+            Sense::click(),
         );
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, self.name));
         ui.painter().rect_filled(
@@ -70,7 +113,10 @@ impl TrialPlot<'_> {
                 .small()
                 .center()
                 .put(ui, plot);
-            return;
+            return Pointed {
+                line: None,
+                clicked: false,
+            };
         };
         plot_axes::value_axis_ui(ui, ground, look, &band);
         for value in band.lines() {
@@ -92,10 +138,19 @@ impl TrialPlot<'_> {
             ));
         }
         let placing = Placing::of(plot, span, &band);
-        for line in &self.lines {
-            let place = |[t, v]: &[f64; 2]| placing.at(&[t - line.zero_s, *v]);
-            let places = line.points.iter().map(place).collect();
-            painter.line(places, Stroke::new(line.width, line.color));
+        let mut all: Vec<Vec<Pos2>> = self.lines.iter().map(|line| line.places(placing)).collect();
+        let near = response.hover_pos().and_then(|at| nearest(&all, at));
+        for (line, places) in self.lines.iter().zip(&mut all) {
+            let stroke = Stroke::new(line.width, line.color);
+            line.dash.line(&painter, std::mem::take(places), stroke);
+        }
+        if let Some(line) = near.and_then(|at| self.lines.get(at)) {
+            let stroke = Stroke::new(theme::STRONG, line.color.to_opaque());
+            line.dash.line(&painter, line.places(placing), stroke);
+        }
+        Pointed {
+            line: near,
+            clicked: response.clicked(),
         }
     }
 

@@ -6,6 +6,7 @@ use crate::app::trial::recording::{Recording, seconds};
 use crate::app::tuner::Run;
 use crate::hand::Dof;
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_top};
+use crate::ui::dash::Dash;
 use crate::ui::format;
 use crate::ui::look::Pane;
 use crate::ui::text::{trials, tune, words};
@@ -118,8 +119,12 @@ fn heat_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>) {
     }
 }
 
-fn force_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, run: &Run) {
+fn force_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>, run: &Run) {
     let look = pane.look;
+    let caption = take_top(&mut rect, theme::LIST_LINE);
+    Label::new(look.say(tune::LIVE_FORCE), look.palette.muted)
+        .small()
+        .put(ui, caption);
     let lines: Vec<(Dof, Vec<[f64; 2]>)> = match run.series.recording() {
         Some(recording) => run
             .plan
@@ -139,6 +144,7 @@ fn force_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, run: &Run) {
                 zero_s: 0.0,
                 color: look.palette.dof[*dof],
                 width: theme::LINE,
+                dash: Dash::Solid,
             })
             .collect(),
         levels: run

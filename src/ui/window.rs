@@ -10,7 +10,7 @@ use crate::app::tuner::TrialWish;
 use crate::ui::banner;
 use crate::ui::border::{border_ui, shut_ui};
 use crate::ui::card::CardView;
-use crate::ui::compare::CompareView;
+use crate::ui::compare::{self, CompareView};
 use crate::ui::connection::ConnectionForm;
 use crate::ui::device::DeviceView;
 use crate::ui::device_card;
@@ -301,6 +301,7 @@ impl Window {
         self.key_list.ui(ui, below, pane.look);
         let card = guard::card_of(pane.state, pane.look);
         let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
+        let card = card.or_else(|| compare::card_of(pane.state, pane.look));
         let asked = self.cards.ui(ui, covered, pane.look, card);
         pane.actions.extend(asked);
     }
@@ -387,7 +388,7 @@ impl Window {
 
 /// True while a card covers the body of the window.
 const fn is_covered(state: &State) -> bool {
-    state.guard.is_some() || state.device.question.is_some()
+    state.guard.is_some() || state.device.question.is_some() || state.tuner.question.is_some()
 }
 
 /// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.

@@ -33,7 +33,7 @@ fn save(bench: &mut Bench) -> PathBuf {
     });
     match &bench.state().tuner.sessions[0].origin {
         Origin::Here { saved, .. } => saved.clone().unwrap(),
-        Origin::Folder(_) => panic!("it was run here"),
+        Origin::Folder { .. } => panic!("it was run here"),
     }
 }
 
@@ -129,9 +129,148 @@ fn a_saved_session_is_read_back_with_its_curves() {
         bench.is_disabled(Role::Button, "Save session"),
         "it has its files"
     );
-    bench.click("Session 1");
+    bench.click_button("Session 1");
     bench.run(60);
     assert!(!bench.is_disabled(Role::Button, "Save session"));
+}
+
+/// The session that was run, and the same read from files in which something was changed.
+fn with_another(from: &str, to: &str) -> Bench {
+    let mut bench = tried();
+    let folder = save(&mut bench);
+    for file in ["session.toml", "trial-001.csv", "trial-002.csv"] {
+        let text = std::fs::read_to_string(folder.join(file)).unwrap();
+        let text = text.replacen(from, to, 1);
+        std::fs::write(bench.folder().join(file), text).unwrap();
+    }
+    bench.click("Open");
+    bench.until(5000, |bench| bench.state().tuner.sessions.len() == 2);
+    bench.run(60);
+    bench
+}
+
+fn rows(bench: &Bench) -> Vec<String> {
+    let rows = bench.all(Role::Row).into_iter();
+    rows.map(|(name, _)| name).collect()
+}
+
+#[test]
+fn sessions_lie_over_each_other_and_their_trials_are_told_apart() {
+    let mut bench = with_another("", "");
+    assert_eq!(rows(&bench).len(), 2, "what was opened is shown alone");
+    assert!(bench.is_disabled(Role::CheckBox, "Show Session 2"));
+    bench.click("Show Session 1");
+    bench.run(60);
+    let both = [
+        "1: 1  25 / 500 g  Index",
+        "2: 1  25 / 500 g  Index",
+        "1: 2  250 / 500 g  Index",
+        "2: 2  250 / 500 g  Index",
+    ];
+    assert_eq!(rows(&bench), both);
+    for (label, text) in [("1: 2 Session", "1"), ("2: 2 Session", "2")] {
+        assert_eq!(bench.reading(label), text);
+    }
+    assert_eq!(bench.reading("1: 2 Over, g"), bench.reading("2: 2 Over, g"));
+    for key in ["1: 1  25 / 500 g", "2: 2  250 / 500 g"] {
+        assert!(bench.shows(key), "the legend names {key}");
+    }
+    bench.click_row("2: 2  250");
+    assert!(bench.shows("Session 2  Trial 2  250 / 500 g  Index"));
+    bench.click("Over, g");
+    bench.click("Over, g");
+    bench.run(60);
+    assert!(rows(&bench)[1].contains("2  250") && rows(&bench)[3].contains("1  25"));
+    assert!(bench.shows("Over all sessions shown"));
+    bench.click("Show Session 2");
+    bench.run(60);
+    assert_eq!(rows(&bench).len(), 2);
+    assert!(over(&bench, 1) < 150.0);
+}
+
+#[test]
+fn sessions_that_were_not_alike_say_so_and_are_judged_apart() {
+    let mut bench = with_another("dwell_s = 0.5", "dwell_s = 2.5");
+    bench.click("Show Session 1");
+    bench.run(60);
+    assert!(bench.shows("Session 2 alone: the sessions differ in time held"));
+    assert_eq!(rows(&bench).len(), 4, "they are drawn all the same");
+    bench.click_button("Session 1");
+    bench.run(60);
+    assert!(bench.shows("Session 1 alone: the sessions differ in time held"));
+    assert_eq!(rows(&bench).len(), 4);
+}
+
+#[test]
+fn every_column_sorts_and_shows_which_way() {
+    let mut bench = with_another("Force reached", "Force reached");
+    bench.click("Show Session 1");
+    bench.run(60);
+    assert!(bench.shows("Trial: rising"));
+    for column in ["Session", "Trial", "Over, g", "Heat, \u{b0}C", "End"] {
+        bench.click_button(column);
+        bench.run(60);
+        let before = bench.shows(&format!("{column}: rising"));
+        bench.click_button(column);
+        bench.run(60);
+        let after = bench.shows(&format!("{column}: falling"));
+        let turned = before && after || column == "Trial";
+        assert!(turned, "{column}");
+    }
+    bench.click_button("Session");
+    bench.run(60);
+    assert!(rows(&bench)[..2].iter().all(|row| row.starts_with("1: ")));
+    bench.click_button("Session");
+    bench.run(60);
+    assert!(rows(&bench)[..2].iter().all(|row| row.starts_with("2: ")));
+}
+
+#[test]
+fn the_end_of_trials_sorts_by_its_words() {
+    let mut bench = on_block();
+    short(&mut bench);
+    enter(&mut bench, "Speeds to try", "25, 250");
+    enter(&mut bench, "Force, g", "700");
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    bench.show(View::Compare);
+    let first = |bench: &Bench| rows(bench)[0].chars().next().unwrap();
+    bench.click_button("End");
+    bench.run(60);
+    assert_eq!(first(&bench), '1', "Force reached");
+    bench.click_button("End");
+    bench.run(60);
+    assert_eq!(first(&bench), '2', "Index presses harder than the ceiling");
+}
+
+#[test]
+fn forgetting_what_is_in_no_file_asks_first() {
+    let mut bench = tried();
+    bench.click("Forget");
+    bench.run(60);
+    assert!(bench.shows("Forget this session?") && bench.texts_with("Trials: 2").len() == 1);
+    bench.click("Leave it");
+    bench.run(60);
+    assert_eq!(bench.state().tuner.sessions.len(), 1);
+    assert!(!bench.shows("Forget this session?"));
+    bench.click("Forget");
+    bench.run(60);
+    bench.click("Forget it");
+    bench.run(60);
+    assert!(bench.state().tuner.sessions.is_empty());
+    assert!(bench.shows("Nothing tried yet: run trials in Tune, or open an earlier session."));
+    assert!(bench.is_disabled(Role::Button, "Forget"));
+}
+
+#[test]
+fn forgetting_what_is_in_files_leaves_the_files() {
+    let mut bench = tried();
+    let folder = save(&mut bench);
+    bench.click("Forget");
+    bench.run(60);
+    assert!(bench.state().tuner.sessions.is_empty());
+    assert!(folder.join("session.toml").is_file());
 }
 
 #[test]

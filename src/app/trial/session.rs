@@ -162,7 +162,9 @@ fn named(angles: &PerDof<Option<Angle>>) -> BTreeMap<String, i16> {
 }
 
 impl PlanRow {
-    fn of(plan: &TrialPlan) -> Self {
+    /// Of a plan.
+    #[must_use]
+    pub fn of(plan: &TrialPlan) -> Self {
         let (fast_speed, until) = match plan.approach {
             Approach::OneStage => (None, None),
             Approach::TwoStage { fast, until } => (Some(fast.get()), Some(until)),

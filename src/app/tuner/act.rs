@@ -55,7 +55,13 @@ impl Desk {
                     session.head.tags = tags(&words);
                 }
             }
-            TrialWish::Forget(id) => tuner.forget(id),
+            TrialWish::Forget(id) => tuner.ask_to_forget(id),
+            TrialWish::Agree => {
+                if let Some(id) = tuner.question.take() {
+                    tuner.forget(id);
+                }
+            }
+            TrialWish::Decline => tuner.question = None,
             TrialWish::Open | TrialWish::Save(..) => {}
         }
     }

@@ -1,9 +1,8 @@
 //! What was tried, and the series that runs now. Sends nothing, reads no clock and no file.
 
-use crate::app::trial::best::{Score, Tally, tallies};
 use crate::app::trial::estimate;
 use crate::app::trial::recording::Recording;
-use crate::app::trial::session::Head;
+use crate::app::trial::session::{Head, PlanRow};
 use crate::app::trial::{Abort, Kind, Series, Setting, Trial, TrialMetrics, TrialPlan};
 use crate::app::tuner::draft::Draft;
 use crate::app::tuner::lines::Lines;
@@ -41,8 +40,24 @@ pub enum Origin {
         /// Where it was saved last.
         saved: Option<PathBuf>,
     },
-    /// It was read from a folder.
-    Folder(PathBuf),
+    /// It was read from files.
+    Folder {
+        /// Where they lie.
+        path: PathBuf,
+        /// What was planned.
+        plan: Box<PlanRow>,
+    },
+}
+
+impl Origin {
+    /// Whether all of it lies in files.
+    #[must_use]
+    pub const fn is_kept(&self) -> bool {
+        match self {
+            Self::Here { saved, .. } => saved.is_some(),
+            Self::Folder { .. } => true,
+        }
+    }
 }
 
 /// One trial that is over.
@@ -112,25 +127,31 @@ pub struct Session {
     pub trials: Vec<Tried>,
     /// Why it ended early.
     pub ended: Option<Ended>,
+    /// Trials whose samples were let go of before they lay in files.
+    pub lost: usize,
 }
 
 impl Session {
-    /// What its settings come to; looking for the contact does not count.
+    /// What was planned.
     #[must_use]
-    pub fn scores(&self) -> Vec<Score> {
-        let tried = self.trials.iter().filter(|tried| tried.repeat.is_some());
-        tallies(tried.map(|tried| Tally {
-            setting: tried.setting,
-            aborted: tried.ended.is_some(),
-            joints: &tried.metrics.joints,
-        }))
+    pub fn plan(&self) -> PlanRow {
+        match &self.origin {
+            Origin::Here { plan, .. } => PlanRow::of(plan),
+            Origin::Folder { plan, .. } => PlanRow::clone(plan),
+        }
     }
 
-    /// Trials whose samples are not in memory any more.
-    #[must_use]
-    pub fn without_samples(&self) -> usize {
-        let lost = |tried: &&Tried| tried.whole.is_some() && tried.rows() == 0;
-        self.trials.iter().filter(lost).count()
+    /// Lets go of the samples of its oldest trials, until so many rows less are held.
+    fn let_go(&mut self, over: &mut usize) {
+        let kept = self.origin.is_kept();
+        for tried in self.trials.iter_mut().filter(|tried| tried.rows() > 0) {
+            if *over == 0 {
+                return;
+            }
+            *over = over.saturating_sub(tried.rows());
+            tried.let_go();
+            self.lost += usize::from(!kept);
+        }
     }
 }
 
@@ -176,6 +197,8 @@ pub struct TunerBook {
     pub sessions: Vec<Session>,
     /// The series that ended last, until the next begins.
     pub last: Option<SessionId>,
+    /// The session that is about to be forgotten and lies in no file.
+    pub question: Option<SessionId>,
     newest: u64,
 }
 
@@ -200,10 +223,7 @@ impl TunerBook {
     /// Adds a session.
     pub fn add(&mut self, head: Head, origin: Origin, trials: Vec<Tried>) -> SessionId {
         if self.sessions.len() >= SESSIONS_MAX {
-            let kept = |session: &Session| match &session.origin {
-                Origin::Here { saved, .. } => saved.is_some(),
-                Origin::Folder(_) => true,
-            };
+            let kept = |session: &Session| session.origin.is_kept();
             let at = self.sessions.iter().position(kept).unwrap_or(0);
             self.sessions.remove(at);
         }
@@ -215,8 +235,18 @@ impl TunerBook {
             origin,
             trials,
             ended: None,
+            lost: 0,
         });
         id
+    }
+
+    /// Takes a session out of the list if it lies in files, else waits for a yes. The one that runs stays.
+    pub fn ask_to_forget(&mut self, id: SessionId) {
+        match self.session(id).map(|session| session.origin.is_kept()) {
+            Some(true) => self.forget(id),
+            Some(false) => self.question = Some(id),
+            None => {}
+        }
     }
 
     /// Takes a session out of the list. The one that runs stays.
@@ -226,20 +256,19 @@ impl TunerBook {
         }
     }
 
-    /// Keeps a trial, and no more rows than there is room for.
+    /// Keeps a trial, and no more rows than there is room for: what lies in files goes first, then the oldest.
     pub fn keep(&mut self, id: SessionId, trial: Trial) {
         if let Some(session) = self.session_mut(id) {
             session.trials.push(Tried::of(trial));
         }
-        let all = || self.sessions.iter().flat_map(|session| &session.trials);
-        let mut rows: usize = all().map(Tried::rows).sum();
-        let trials = self.sessions.iter_mut().flat_map(|own| &mut own.trials);
-        for tried in trials.filter(|tried| tried.rows() > 0) {
-            if rows <= ROWS_MAX {
-                break;
+        let all = self.sessions.iter().flat_map(|session| &session.trials);
+        let rows: usize = all.map(Tried::rows).sum();
+        let mut over = rows.saturating_sub(ROWS_MAX);
+        for kept in [true, false] {
+            let sessions = self.sessions.iter_mut();
+            for session in sessions.filter(|own| own.origin.is_kept() == kept) {
+                session.let_go(&mut over);
             }
-            rows -= tried.rows();
-            tried.let_go();
         }
     }
 }

@@ -177,9 +177,13 @@ pub(crate) fn read(folder: &Path) -> io::Result<Session> {
     Ok(Session {
         id: SessionId(0),
         head: head(&file),
-        origin: Origin::Folder(folder.to_owned()),
+        origin: Origin::Folder {
+            path: folder.to_owned(),
+            plan: Box::new(file.plan),
+        },
         trials,
         ended: file.aborted.map(Ended::Told),
+        lost: 0,
     })
 }
 

@@ -85,11 +85,17 @@ fn joint_lines(recording: &Recording, joint: &JointMetrics) -> JointLines {
 /// The lowest and the highest point of each piece, in their order.
 fn thinned(curve: &Curve) -> Vec<[f64; 2]> {
     let points: Vec<[f64; 2]> = curve.points().iter().map(|p| [p.t, p.v]).collect();
-    if points.len() <= 2 * PIECES {
-        return points;
+    thinned_to(&points, 2 * PIECES)
+}
+
+/// The lowest and the highest point of each piece, in their order: no more points than `most`, and never none of some.
+pub(crate) fn thinned_to(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
+    if points.len() <= most {
+        return points.to_vec();
     }
-    let mut kept = Vec::with_capacity(2 * PIECES);
-    for piece in points.chunks(points.len().div_ceil(PIECES)) {
+    let pieces = (most / 2).max(1);
+    let mut kept = Vec::with_capacity(2 * pieces);
+    for piece in points.chunks(points.len().div_ceil(pieces)) {
         let value = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
         let ends = [piece.iter().min_by(value), piece.iter().max_by(value)];
         let mut ends: Vec<[f64; 2]> = ends.into_iter().flatten().copied().collect();

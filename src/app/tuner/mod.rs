@@ -5,6 +5,9 @@ pub(crate) mod act;
 #[cfg(test)]
 mod act_tests;
 pub mod book;
+pub mod comparison;
+#[cfg(test)]
+mod comparison_tests;
 pub mod draft;
 pub(crate) mod files;
 pub mod lines;
@@ -12,6 +15,7 @@ pub mod wish;
 
 pub use act::StartRefusal;
 pub use book::{Ended, Origin, Run, Session, SessionId, Tried, TunerBook};
+pub use comparison::{Comparison, Difference, Group, Picture, Place};
 pub use draft::{Draft, Field, Reach};
 pub use lines::{Lines, Shown};
 pub use wish::TrialWish;

@@ -15,8 +15,12 @@ pub enum TrialWish {
     Note(SessionId, String),
     /// Keep these tags with a session, separated by commas.
     Tags(SessionId, String),
-    /// Take a session out of the list; its files, if any, stay.
+    /// Take a session out of the list; its files stay. What lies in no file is asked about first.
     Forget(SessionId),
+    /// Yes, without files too.
+    Agree,
+    /// No, it stays.
+    Decline,
     /// Ask for a session that was kept, and read it.
     Open,
     /// Ask for a folder and keep a session in a new one inside it; the report names the best by this.

@@ -1,6 +1,7 @@
 //! Every sentence of the window, in English and Chinese. No layout, no numbers.
 
 pub(crate) mod cards;
+pub(crate) mod compare;
 pub(crate) mod device;
 pub(crate) mod faults;
 pub(crate) mod keys;

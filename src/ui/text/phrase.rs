@@ -38,13 +38,14 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        cards, device, faults, keys, layout, main, panels, plots, poses, quirks, scan, touch,
-        traffic, tune,
+        cards, compare, device, faults, keys, layout, main, panels, plots, poses, quirks, scan,
+        touch, traffic, tune,
     };
 
     fn all() -> impl Iterator<Item = &'static Text> {
         let lists = [
             cards::ALL,
+            compare::ALL,
             device::ALL,
             faults::ALL,
             keys::ALL,

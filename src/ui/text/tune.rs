@@ -147,8 +147,8 @@ texts! {
     SAVE_TIP: "Writes the session into a new folder: settings, samples and a report.", "把试验写入新文件夹：设置、数据与报告。";
     SAVE_READ: "This session was read from files.", "该试验是从文件读取的。";
     SAVE_RUNS: "This series still runs.", "该轮试验仍在进行。";
-    SESSION: "Session", "试验";
-    SESSION_TIP: "Shows this session.", "显示这次试验。";
+    SESSION: "Session", "轮次";
+    SESSION_TIP: "Chooses this session: its note, tags and files are above. Shows it alone unless it is shown already.", "选择该轮次：上方为其备注、标签与文件。若未显示，则只显示它。";
     SHOWN_TIP: "Shows this quantity.", "显示该量。";
     SHOW_FORCE: "Force, g", "力 g";
     SHOW_ANGLE: "Angle", "角度";

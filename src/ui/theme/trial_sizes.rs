@@ -29,11 +29,9 @@ pub(crate) const TRIAL_BAR: f32 = 6.0;
 /// Height of a row of the table of trials.
 pub(crate) const TRIAL_ROW: f32 = 20.0;
 /// Least width of a column of the table of trials.
-pub(crate) const TRIAL_COLUMN: f32 = 62.0;
+pub(crate) const TRIAL_COLUMN: f32 = 64.0;
 /// Width of the first column of the table of trials.
 pub(crate) const TRIAL_FIRST_COLUMN: f32 = 150.0;
-/// Width of the sign of a line's colour in the table.
-pub(crate) const TRIAL_SWATCH: f32 = 10.0;
 /// Height of a cell of the map.
 pub(crate) const MAP_CELL: f32 = 26.0;
 /// Least width of a cell of the map.
@@ -54,3 +52,31 @@ pub(crate) const CURVES_SHARE: f32 = 0.48;
 pub(crate) const CURVE_BEHIND: f32 = 0.3;
 /// From this share of the heat on its colour is strong.
 pub(crate) const HEAT_BRIGHT: f32 = 0.6;
+/// Sessions whose rows are seen without scrolling, and how many of more.
+pub(crate) const SESSIONS_SEEN: (f32, f32) = (3.0, 3.4);
+/// Width of the tick of a session.
+pub(crate) const SESSION_TICK: f32 = 20.0;
+/// Width of the sign of a session's stroke.
+pub(crate) const SESSION_DASH: f32 = 26.0;
+/// Width of a session's name.
+pub(crate) const SESSION_NAME: f32 = 76.0;
+/// Width of how many trials a session has.
+pub(crate) const SESSION_TRIALS: f32 = 60.0;
+/// Width of whether a session is in files.
+pub(crate) const SESSION_STATE: f32 = 116.0;
+/// Width of the column of sessions in the table of trials.
+pub(crate) const SESSION_COLUMN: f32 = 56.0;
+/// Width of a column's arrow.
+pub(crate) const SORT_ARROW: f32 = 11.0;
+/// Drawn and left out by turns: long pieces.
+pub(crate) const DASH_LONG: [f32; 2] = [7.0, 4.0];
+/// Short pieces.
+pub(crate) const DASH_DOTS: [f32; 2] = [2.0, 3.0];
+/// Long and short pieces.
+pub(crate) const DASH_MIXED: [f32; 4] = [9.0, 3.0, 2.0, 3.0];
+/// Pieces that a line is cut into at most.
+pub(crate) const DASHES_MOST: f32 = 150.0;
+/// A line this near to the pointer is the one that is meant.
+pub(crate) const LINE_NEAR: f32 = 9.0;
+/// Width of the sign of a line in the legend.
+pub(crate) const KEY_SIGN: f32 = 20.0;
