@@ -225,7 +225,8 @@ impl TunerBook {
         if self.sessions.len() >= SESSIONS_MAX {
             let kept = |session: &Session| session.origin.is_kept();
             let at = self.sessions.iter().position(kept).unwrap_or(0);
-            self.sessions.remove(at);
+            let gone = self.sessions.remove(at);
+            self.question = self.question.filter(|id| *id != gone.id);
         }
         self.newest += 1;
         let id = SessionId(self.newest);
@@ -253,6 +254,7 @@ impl TunerBook {
     pub fn forget(&mut self, id: SessionId) {
         if self.run.as_ref().is_none_or(|run| run.session != id) {
             self.sessions.retain(|session| session.id != id);
+            self.question = self.question.filter(|asked| *asked != id);
         }
     }
 

@@ -7,7 +7,7 @@ use crate::app::trial::metrics::{Span, TrialMetrics, measure_joint};
 use crate::app::trial::recording::Row;
 use crate::app::trial::session::Head;
 use crate::app::trial::{Kind, Recording, Setting, Trial, TrialPlan};
-use crate::app::tuner::book::{Origin, ROWS_MAX, SessionId, TunerBook};
+use crate::app::tuner::book::{Origin, ROWS_MAX, SESSIONS_MAX, SessionId, TunerBook};
 use crate::app::tuner::comparison::{
     Comparison, Difference, Group, LINES_MAX, POINTS_MAX, SHOWN_MAX,
 };
@@ -224,4 +224,16 @@ fn samples_in_files_go_first_and_what_was_lost_is_counted() {
     assert_eq!(lost(&book), [1, 0], "the oldest is gone");
     let first = book.session(old).unwrap().trials[0].whole.clone().unwrap();
     assert_eq!(first.recording.lost(), rows);
+}
+
+#[test]
+fn nothing_is_asked_about_a_session_that_made_room() {
+    let mut book = TunerBook::default();
+    let first = begin(&mut book, "tcp:10.0.0.1", plan(|_| {}));
+    book.ask_to_forget(first);
+    assert_eq!(book.question, Some(first));
+    for _ in 1..=SESSIONS_MAX {
+        begin(&mut book, "tcp:10.0.0.1", plan(|_| {}));
+    }
+    assert_eq!((book.session(first), book.question), (None, None));
 }
