@@ -323,9 +323,15 @@ fn note_and_tags_stay_with_their_session() {
     assert_eq!(session(&bench).head.note, "an egg");
     assert_eq!(session(&bench).head.tags, ["egg", "raw"]);
     bench.desk.trial_wish(TrialWish::Forget(id), day, at);
+    assert_eq!(bench.desk.state.tuner.question, None);
     assert_eq!(session(&bench).id, id, "what runs is not forgotten");
     bench.desk.stop(at);
-    bench.desk.trial_wish(TrialWish::Forget(id), day, at);
-    assert!(bench.desk.state.tuner.sessions.is_empty());
+    for (answer, left) in [(TrialWish::Decline, 1), (TrialWish::Agree, 0)] {
+        bench.desk.trial_wish(TrialWish::Forget(id), day, at);
+        assert_eq!(bench.desk.state.tuner.question, Some(id));
+        bench.desk.trial_wish(answer, day, at);
+        assert_eq!(bench.desk.state.tuner.sessions.len(), left);
+        assert_eq!(bench.desk.state.tuner.question, None);
+    }
     assert_eq!(bench.desk.state.tuner.draft, Draft::default());
 }

@@ -243,10 +243,11 @@ impl TunerBook {
 
     /// Takes a session out of the list if it lies in files, else waits for a yes. The one that runs stays.
     pub fn ask_to_forget(&mut self, id: SessionId) {
+        let runs = self.run.as_ref().is_some_and(|run| run.session == id);
         match self.session(id).map(|session| session.origin.is_kept()) {
             Some(true) => self.forget(id),
-            Some(false) => self.question = Some(id),
-            None => {}
+            Some(false) if !runs => self.question = Some(id),
+            Some(false) | None => {}
         }
     }
 
