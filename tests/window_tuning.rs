@@ -26,7 +26,7 @@ use handscope::hand::Dof;
 use handscope::link::{Clock, LinkState};
 use handscope::shell::Cockpit;
 use handscope::ui::View;
-use program::{Running, run, sim_on_all};
+use program::{Running, Wires, run, sim_on_all};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -40,6 +40,7 @@ const RUNS: usize = 3;
 /// What the cup is held with at least, g, and may be pressed with beyond the threshold.
 const HOLD_G: f64 = 100.0;
 const OVERSHOOT_G: f64 = 100.0;
+const SPEED: ParamId = ParamId::DefaultSpeed(Dof::Index);
 
 struct Room {
     runtime: Runtime,
@@ -228,16 +229,12 @@ fn keep(person: &mut Person) {
     person.until("the rows", |state| state.device.read_at.is_some());
     person.press("Apply");
     person.until("applied rows", |state| {
-        !state.device.is_busy()
-            && state
-                .device
-                .staged(ParamId::DefaultSpeed(Dof::Index))
-                .is_none()
+        !state.device.is_busy() && state.device.staged(SPEED).is_none()
     });
     person.press("Save to flash");
     // The joints that were not tried still have the defaults of the factory.
     person.until("the question", |state| state.device.question.is_some());
-    person.press("Save all the same");
+    person.press("Save anyway");
     person.until("the end of SAVE", |state| {
         !state.device.is_busy() && state.device.save.is_some()
     });
@@ -251,40 +248,42 @@ fn power_cycle(sim: &mut Running, person: &mut Person) {
     });
 }
 
-#[test]
-fn a_person_finds_a_setting_that_spares_a_cup_and_the_hand_wakes_up_with_it_over_each_wire() {
+/// The whole way on one wire of a hand that serves all of them.
+fn walk(choose: fn(&Wires) -> &str) {
     let folder = tempfile::tempdir().unwrap();
     let (mut sim, wires) = sim_on_all(folder.path(), &["--scenario", "fragile"]);
-    for (nth, hand) in wires.all().into_iter().enumerate() {
-        let place = folder.path().join(nth.to_string());
-        std::fs::create_dir(&place).unwrap();
-        let mut person = Person::at(hand, &place);
-        plan(&mut person);
-        assert!((0..RUNS).any(|_| tried(&mut person)), "{hand}: disturbed");
-        let (speed, force) = chosen(&mut person);
-        check_gentle(person.state(), speed);
-        keep(&mut person);
-        power_cycle(&mut sim, &mut person);
-        let (live, _) = person
-            .state()
-            .device
-            .live(ParamId::DefaultSpeed(Dof::Index))
-            .unwrap();
-        assert_eq!(live, Value::Number(speed), "{hand}");
-        drop(person);
-        check_by_script(hand, &place, speed, force);
-        // So that the next wire has something to find.
-        run(&[
-            "params",
-            "reset",
-            "--yes",
-            "--hand",
-            hand,
-            "--folder",
-            place.to_str().unwrap(),
-        ])
-        .ok();
-    }
+    let hand = choose(&wires);
+    let mut person = Person::at(hand, folder.path());
+    plan(&mut person);
+    assert!((0..RUNS).any(|_| tried(&mut person)), "disturbed");
+    let (speed, force) = chosen(&mut person);
+    check_gentle(person.state(), speed);
+    keep(&mut person);
+    power_cycle(&mut sim, &mut person);
+    let live = person.state().device.live(SPEED).unwrap();
+    assert_eq!(live.0, Value::Number(speed));
+    drop(person);
+    check_by_script(hand, folder.path(), speed, force);
+}
+
+#[test]
+fn a_person_finds_what_spares_a_cup_and_the_hand_wakes_up_so_over_tcp() {
+    walk(|wires| &wires.tcp);
+}
+
+#[test]
+fn a_person_finds_what_spares_a_cup_and_the_hand_wakes_up_so_over_rs485() {
+    walk(|wires| &wires.rs485);
+}
+
+#[test]
+fn a_person_finds_what_spares_a_cup_and_the_hand_wakes_up_so_over_modbus_rtu() {
+    walk(|wires| &wires.rtu);
+}
+
+#[test]
+fn a_person_finds_what_spares_a_cup_and_the_hand_wakes_up_so_over_a_can_adapter() {
+    walk(|wires| &wires.slcan);
 }
 
 /// Other programs find what the person chose.

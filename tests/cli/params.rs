@@ -398,3 +398,16 @@ fn an_id_that_another_hand_has_or_that_waits_for_a_save_is_told() {
         "{place}"
     );
 }
+
+#[test]
+fn the_example_of_the_readme_is_a_file_that_is_taken_whole() {
+    let readme = include_str!("../../README.md");
+    let section = readme.split("### Parameters\n").nth(1).unwrap();
+    let example = section.split("```").nth(1).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("example.toml");
+    std::fs::write(&file, example.strip_prefix("toml").unwrap()).unwrap();
+    let ended = run(&["params", "diff", text(&file), "--json", "--hand", "sim:"]);
+    assert_eq!(ended.code, Some(1), "it differs: {}", ended.err);
+    assert_eq!(json(&ended)["differences"], 7, "{}", ended.out);
+}
