@@ -187,8 +187,8 @@ fn change_card(state: &State, look: Look, guarded: &Guarded, change: &Change) ->
         }
         Stage::Offering(_) => offer_card(look, guarded),
         Stage::Saving(_) => under_way(look, cards::OFFER_TITLE, look.say(cards::SAVING), 0.8),
-        Stage::Going(_) | Stage::Finding { .. } | Stage::Returning(..) => {
-            let is_back = !matches!(change.stage(), Stage::Going(_));
+        Stage::Going(_) | Stage::Finding { .. } | Stage::Returning(..) | Stage::Locating { .. } => {
+            let is_back = matches!(change.stage(), Stage::Finding { .. } | Stage::Returning(..));
             let title = if is_back {
                 cards::GOING_BACK
             } else {
@@ -255,6 +255,19 @@ fn change_over(look: Look, guarded: &Guarded, end: &End) -> Card {
             words(cards::OVER_NOT_BACK_POWER),
             backup_line(look, guarded),
         ],
+        End::Unseen(saved) => {
+            choices.extend(ways(guarded));
+            let mut lines = vec![
+                warning(cards::OVER_UNSEEN),
+                Line::Note(guarded.old.to_string()),
+                Line::Note(guarded.new.to_string()),
+            ];
+            if !matches!(saved, Saved::Unknown { .. }) {
+                lines.extend(saved_lines(look, guarded, Some(saved)));
+            }
+            lines.push(backup_line(look, guarded));
+            lines
+        }
         End::Nowhere => {
             choices.extend(ways(guarded));
             vec![

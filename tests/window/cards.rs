@@ -209,6 +209,30 @@ fn a_speed_that_acts_at_once_is_followed_kept_saved_and_there_after_power() {
 }
 
 #[test]
+fn a_speed_that_acts_at_save_is_found_again_after_it() {
+    let mut bench = with_speed("after-save");
+    assert_eq!(code_of(&bench), 0);
+    bench.click_button("Keep");
+    bench.click_button("Save anyway");
+    let answers = |bench: &Bench| bench.texts_with("The hand answers here:");
+    bench.until(60_000, |bench| !answers(bench).is_empty());
+    assert_eq!(code_of(&bench), 2);
+    let there = answers(&bench);
+    assert!(there[0].contains("baud=19200"), "{there:?}");
+    // The result went out at the new speed, which nobody heard.
+    assert!(
+        !bench
+            .texts_with("It is not known whether it is in flash.")
+            .is_empty()
+    );
+    bench.click_button("Done");
+    bench.wait(3000);
+    assert_eq!(bench.state().link.state, LinkState::Monitoring);
+    let kept = bench.state().settings.endpoint.clone().unwrap();
+    assert!(kept.contains("baud=19200"), "{kept}");
+}
+
+#[test]
 fn a_speed_that_nobody_keeps_is_taken_back_over_the_new_speed() {
     let mut bench = with_speed("now");
     bench.until(40_000, |bench| {

@@ -50,6 +50,8 @@ pub enum End {
         /// What came of SAVE.
         saved: Option<Saved>,
     },
+    /// Kept, and SAVE went out where it was; since then no hand answers at either place.
+    Unseen(Saved),
     /// No hand answers at either place.
     Nowhere,
 }
@@ -63,7 +65,7 @@ impl End {
                 Some(Place::Old)
             }
             Self::NotBack(at) | Self::Kept { at, .. } => Some(*at),
-            Self::Nowhere => None,
+            Self::Unseen(_) | Self::Nowhere => None,
         }
     }
 }
@@ -86,6 +88,15 @@ pub enum Stage {
     Offering(Place),
     /// SAVE is under way.
     Saving(Place),
+    /// SAVE may have made the change act: where is the hand.
+    Locating {
+        /// Where it is looked for.
+        at: Place,
+        /// What came of SAVE.
+        saved: Saved,
+        /// Rounds left.
+        rounds: u8,
+    },
     /// Where is the hand, before it is taken back.
     Finding {
         /// Where it is looked for.
@@ -144,7 +155,7 @@ impl Change {
                 Step::Write => Next::Write(Place::Old, self.wanted),
                 Step::Over(_) => Next::Nothing,
             },
-            Stage::Finding { at, .. } => Next::Look(*at),
+            Stage::Finding { at, .. } | Stage::Locating { at, .. } => Next::Look(*at),
             Stage::Returning(guard, from) => match guard.step() {
                 Step::Look(Place::Old) => Next::Look(*from),
                 Step::Look(Place::New) => Next::Look(Place::Old),
@@ -238,7 +249,15 @@ impl Change {
         let next = match &mut self.stage {
             Stage::Going(guard) => {
                 guard.heard(holds);
-                went(guard.step(), now)
+                match went(guard.step(), now) {
+                    // A third value: it is where it was, and would be lost once somebody saves.
+                    Some(Stage::Over(End::NotTaken { .. }))
+                        if holds.is_some_and(|holds| holds != self.before) =>
+                    {
+                        Some(Stage::Returning(self.way_back(Place::Old), Place::Old))
+                    }
+                    other => other,
+                }
             }
             Stage::Finding { at, last, rounds } => match holds {
                 Some(holds) if holds == self.before => Some(Stage::Over(End::Back)),
@@ -256,6 +275,20 @@ impl Change {
                 }
                 None => Some(Stage::Over(End::Nowhere)),
             },
+            Stage::Locating { at, saved, rounds } => match holds {
+                Some(_) => {
+                    let (at, saved) = (*at, Some(saved.clone()));
+                    Some(Stage::Over(End::Kept { at, saved }))
+                }
+                None if *at == Place::New && *rounds == 1 => {
+                    Some(Stage::Over(End::Unseen(saved.clone())))
+                }
+                None => {
+                    *rounds -= u8::from(*at == Place::New);
+                    *at = at.other();
+                    None
+                }
+            },
             Stage::Returning(guard, from) => {
                 guard.heard(holds);
                 let from = *from;
@@ -268,10 +301,22 @@ impl Change {
 
     /// SAVE came to its end.
     pub fn saved(&mut self, saved: Saved) {
-        if let Stage::Saving(at) = self.stage {
-            let saved = Some(saved);
-            self.stage = Stage::Over(End::Kept { at, saved });
-        }
+        let Stage::Saving(at) = self.stage else {
+            return;
+        };
+        self.stage = match saved {
+            // Some hands let a new id or speed act at SAVE.
+            Saved::Confirmed | Saved::ReadBack | Saved::Unknown { .. }
+                if at == Place::Old && self.is_followed =>
+            {
+                let rounds = ROUNDS;
+                Stage::Locating { at, saved, rounds }
+            }
+            saved => {
+                let saved = Some(saved);
+                Stage::Over(End::Kept { at, saved })
+            }
+        };
     }
 
     const fn guard(&self, wanted: Value) -> Guard {

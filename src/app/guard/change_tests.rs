@@ -11,12 +11,20 @@ use std::time::Duration;
 const OLD: Value = Value::Number(1);
 const NEW: Value = Value::Number(7);
 
+/// When a hand acts on a new id.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Moves {
+    Now,
+    AfterSave,
+    AfterPower,
+}
+
 /// A hand, what it holds, and what was done to it.
 #[derive(Clone)]
 struct Model {
     change: Change,
-    /// A hand that acts on a new id at once, or only holds it.
-    moves: bool,
+    /// When a hand acts on a new id.
+    moves: Moves,
     holds: Value,
     flash: Value,
     writes: u8,
@@ -31,13 +39,14 @@ struct Model {
 impl Model {
     fn place(&self) -> Place {
         match self.holds {
-            NEW if self.moves => Place::New,
+            NEW if self.moves == Moves::Now => Place::New,
+            NEW if self.moves == Moves::AfterSave && self.flash == NEW => Place::New,
             _ => Place::Old,
         }
     }
 }
 
-fn start(follow: Follow, moves: bool, losses: u8) -> Model {
+fn start(follow: Follow, moves: Moves, losses: u8) -> Model {
     let id = match follow {
         Follow::Wire => ParamId::HandId,
         Follow::No => ParamId::IpAddress,
@@ -120,10 +129,15 @@ fn successors(model: &Model) -> Vec<Model> {
                 next.flash = next.holds;
                 next.change.saved(Saved::Confirmed);
             });
-            add(1, &|next| {
-                let why = SaveDoubt::LinkLost;
-                next.change.saved(Saved::Unknown { why });
-            });
+            for is_taken in [false, true] {
+                add(1, &|next| {
+                    if is_taken {
+                        next.flash = next.holds;
+                    }
+                    let why = SaveDoubt::LinkLost;
+                    next.change.saved(Saved::Unknown { why });
+                });
+            }
             add(1, &|next| next.change.unreached());
         }
         Next::Nothing => {}
@@ -149,6 +163,10 @@ fn check(model: &Model, end: &End) {
                 assert_eq!(model.flash, model.holds);
             }
         }
+        End::Unseen(_) => {
+            assert_eq!(last.map(|look| look.1), Some(false));
+            assert!(model.lost >= 3, "a hand that is there is found");
+        }
         End::Nowhere => {
             assert_eq!(last.map(|look| look.1), Some(false));
             assert!(model.lost >= 3, "a hand that is there is found");
@@ -160,9 +178,10 @@ fn check(model: &Model, end: &End) {
 fn however_answers_and_power_are_lost_the_end_is_true() {
     let (mut ends, mut kinds) = (0_u32, std::collections::BTreeSet::new());
     for (follow, moves) in [
-        (Follow::Wire, true),
-        (Follow::Wire, false),
-        (Follow::No, false),
+        (Follow::Wire, Moves::Now),
+        (Follow::Wire, Moves::AfterSave),
+        (Follow::Wire, Moves::AfterPower),
+        (Follow::No, Moves::AfterPower),
     ] {
         for losses in 0..=7 {
             let mut open = vec![start(follow, moves, losses)];
@@ -181,7 +200,14 @@ fn however_answers_and_power_are_lost_the_end_is_true() {
         }
     }
     assert!(ends > 1000, "{ends}");
-    for kind in ["NotWritten", "NotTaken", "Back", "Kept", "Nowhere"] {
+    for kind in [
+        "NotWritten",
+        "NotTaken",
+        "Back",
+        "Kept",
+        "Unseen",
+        "Nowhere",
+    ] {
         assert!(kinds.contains(kind), "{kinds:?}");
     }
 }
@@ -240,4 +266,23 @@ fn nothing_is_written_before_a_person_begins() {
     change.cancel();
     change.begin();
     assert_eq!(*change.stage(), Stage::Over(End::NotWritten));
+}
+
+#[test]
+fn a_third_value_is_put_back_before_anybody_can_save_it() {
+    const THIRD: Value = Value::Number(3);
+    for (refused, held_then, expected) in [
+        (None, OLD, End::Back),
+        (Some("no".to_owned()), OLD, End::Back),
+        (None, THIRD, End::NotBack(Place::Old)),
+    ] {
+        let mut change = Change::new(ParamId::HandId, OLD, NEW, Follow::No);
+        change.begin();
+        change.wrote(refused);
+        change.heard(Some(THIRD), Moment::ZERO);
+        assert_eq!(change.next(), Next::Write(Place::Old, OLD));
+        change.wrote(None);
+        change.heard(Some(held_then), Moment::ZERO);
+        assert_eq!(*change.stage(), Stage::Over(expected));
+    }
 }

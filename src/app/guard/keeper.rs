@@ -3,7 +3,7 @@
 
 use crate::app::calibration::Calibration;
 use crate::app::desk::Desk;
-use crate::app::guard::change::{Change, Follow, Next, Stage};
+use crate::app::guard::change::{Change, End, Follow, Next, Stage};
 use crate::app::guard::errand::{Answer, Errand, Poll};
 use crate::app::guard::files::GuardFiles;
 use crate::app::guard::guarded::{
@@ -315,7 +315,14 @@ impl Guarding {
             return None;
         };
         match (request, answer) {
-            (Request::Read(_), answer) => change.heard(held(id, answer), now),
+            (Request::Read(_), answer) => {
+                change.heard(held(id, answer), now);
+                // SAVE may have sent it to its new place: that is what is remembered.
+                if let Stage::Over(End::Kept { at, .. }) = *change.stage() {
+                    let there = guarded.endpoint(at).to_string();
+                    desk.state.settings.endpoint = Some(there);
+                }
+            }
             (Request::Save, Answer::Ended(end)) => {
                 let saved = saved_by(end);
                 change.saved(saved.clone());

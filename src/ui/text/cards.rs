@@ -56,11 +56,12 @@ texts! {
     OVER_NOT_WRITTEN: "The hand was not reached. Nothing was written.", "未能联系灵巧手，未写入任何内容。";
     OVER_NOT_TAKEN: "The hand did not take the new value. It is where it was.", "灵巧手没有接受新值，仍在原位置。";
     OVER_BACK: "The hand holds the former value and answers where it was.", "灵巧手已恢复原值，并在原位置应答。";
-    OVER_NOT_BACK: "The former value could not be written. The hand holds the new one and answers here:", "无法写回原值。灵巧手保留新值，并在此应答：";
+    OVER_NOT_BACK: "The former value could not be written. The hand holds another one and answers here:", "无法写回原值。灵巧手现为其他值，并在此应答：";
     OVER_NOT_BACK_POWER: "Nothing is in flash: switched off and on it is found at the former place again.", "未写入闪存：断电再上电后会回到原位置。";
     OVER_KEPT: "The hand answers here:", "灵巧手在此应答：";
     OVER_UNSAVED: "It is not in flash: switched off and on the hand is found at the former place.", "未写入闪存：断电再上电后会回到原位置。";
     OVER_NOWHERE: "No hand answers at either place. Nothing is in flash: switch the hand off and on, and it is found at the former place again. If not, look for it in the Connection view.", "两个位置都没有应答。未写入闪存：请断电再上电，灵巧手会回到原位置。若仍找不到，请在连接视图中扫描。";
+    OVER_UNSEEN: "SAVE was sent, and no hand answers at either place. Switch it off and on: then it is at one of these places:", "已发送保存，两个位置都没有应答。请断电再上电，灵巧手在以下位置之一：";
     OVER_WAITS: "Switch the hand off and on; then it is found here:", "请断电再上电，之后灵巧手在：";
     SAVED_OK: "The hand says that it is in flash.", "灵巧手确认已写入闪存。";
     SAVED_READ: "The hand took SAVE and its parameters read the same. Only the next power-up shows what is in flash.", "灵巧手接受了保存，参数读回一致。是否写入闪存，下次上电才能确认。";
