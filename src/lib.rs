@@ -21,7 +21,9 @@
 //! # Threads
 //!
 //! The window's thread owns the program's state. One tokio thread runs all links and the built-in hand. Values cross
-//! between them, locks do not: samples and answers come as events, wishes go into one slot that a stop empties.
+//! between them, locks do not: samples and answers come as events, wishes go into one slot that a stop empties. The one
+//! lock is around the program while a series of trials runs: then the tokio thread takes events in too, at once, because
+//! limits must not wait for a window that nobody sees ([`shell::pulse`]).
 //!
 //! # What always holds
 //!

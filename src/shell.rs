@@ -1,6 +1,8 @@
 //! The program and its window as one thing: drain, draw, act. The real window, the headless one and the tests
 //! drive the same. Opens no window itself.
 
+pub mod pulse;
+
 use crate::app::action::Action;
 use crate::app::save::Content;
 use crate::app::{App, State};

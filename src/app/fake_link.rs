@@ -14,9 +14,8 @@ use crate::link::{
     RequestError, Setpoints, Ticket, WireTap,
 };
 use crate::transport::Endpoint;
-use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// What the link was told.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,10 +36,24 @@ pub(super) struct Wire {
     pub(super) refuse: Option<RequestError>,
 }
 
-pub(super) struct FakeLink(Rc<RefCell<Wire>>);
+/// The wire, for the link and the test that looks at it.
+#[derive(Clone, Default)]
+pub(super) struct SharedWire(Arc<Mutex<Wire>>);
+
+impl SharedWire {
+    pub(super) fn borrow(&self) -> MutexGuard<'_, Wire> {
+        self.0.lock().unwrap()
+    }
+
+    pub(super) fn borrow_mut(&self) -> MutexGuard<'_, Wire> {
+        self.0.lock().unwrap()
+    }
+}
+
+pub(super) struct FakeLink(SharedWire);
 
 impl FakeLink {
-    pub(super) const fn on(wire: Rc<RefCell<Wire>>) -> Self {
+    pub(super) const fn on(wire: SharedWire) -> Self {
         Self(wire)
     }
 
@@ -85,17 +98,17 @@ impl Link for FakeLink {
 
 pub(super) struct Bench {
     pub(super) desk: Desk,
-    pub(super) wire: Rc<RefCell<Wire>>,
+    pub(super) wire: SharedWire,
     pub(super) millis: u64,
 }
 
 impl Bench {
     pub(super) fn new() -> Self {
-        let wire = Rc::new(RefCell::new(Wire::default()));
+        let wire = SharedWire::default();
         let mut desk = Desk::new(Settings::default());
         desk.replace(
             Some(Endpoint::sim()),
-            Some(Box::new(FakeLink(Rc::clone(&wire)))),
+            Some(Box::new(FakeLink(wire.clone()))),
             Moment::ZERO,
         );
         Self {

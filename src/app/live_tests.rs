@@ -250,3 +250,47 @@ async fn settings_are_kept_and_setpoints_never() {
         "{text}"
     );
 }
+
+#[tokio::test(start_paused = true)]
+async fn the_plan_of_trials_is_kept_and_moves_nothing_when_it_is_read() {
+    use crate::app::tuner::{Draft, TrialWish, kept};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("settings.toml");
+    let mut bench = Bench::new(Some(path.clone()), Settings::default());
+    bench.app.open(None, bench.clock.now());
+    bench.run(1000).await;
+    let plan = Draft {
+        repeats: 7,
+        ..Draft::default()
+    };
+    bench.act(Action::Trial(TrialWish::Draft(Box::new(plan.clone()))));
+    while !bench.app.close(bench.clock.now()) {
+        bench.run(10).await;
+    }
+    let settings = crate::app::config::load(&path).settings;
+    let mut bench = Bench::new(None, settings.clone());
+    bench.app.open(None, bench.clock.now());
+    bench.run(1000).await;
+    let state = bench.app.state();
+    assert_eq!(state.tuner.draft, plan);
+    assert!(!state.is_armed() && !state.tuner.is_running());
+    let newer = Settings {
+        trial_plan: Some(
+            "repeats = \"as often as it takes\""
+                .parse::<toml::Table>()
+                .unwrap()
+                .into(),
+        ),
+        ..settings
+    };
+    let bench = Bench::new(None, newer.clone());
+    let state = bench.app.state();
+    assert_eq!(state.tuner.draft, Draft::default());
+    let told = |what: &NoticeKind| matches!(what, NoticeKind::PlanIgnored { .. });
+    assert!(state.notices.iter().any(|notice| told(&notice.what)));
+    assert_eq!(
+        state.settings.trial_plan, newer.trial_plan,
+        "it stays until another is written"
+    );
+    assert!(kept::draft(state.settings.trial_plan.as_ref()).is_err());
+}

@@ -198,6 +198,11 @@ pub enum NoticeKind {
         /// Why.
         message: String,
     },
+    /// The plan of trials of the last time cannot be taken.
+    PlanIgnored {
+        /// Why.
+        message: String,
+    },
     /// The remembered hand's spelling means nothing.
     EndpointIgnored {
         /// What the file says.
@@ -242,6 +247,7 @@ impl NoticeKind {
             | Self::SettingsIgnored { .. }
             | Self::HandDiffers { .. }
             | Self::SheetNotKept { .. }
+            | Self::PlanIgnored { .. }
             | Self::EndpointIgnored { .. } => Level::Warn,
         }
     }

@@ -20,6 +20,7 @@ use crate::app::sheet_keeper::SheetKeeper;
 use crate::app::state::{PortChoice, State};
 use crate::app::tuner::TrialWish;
 use crate::app::tuner::files::Files;
+use crate::app::tuner::kept;
 use crate::hand::Moment;
 use crate::link::{self, Clock, LinkConfig, PollRates, Wake};
 use crate::transport::{Dial, Endpoint, PortFound, ports};
@@ -92,6 +93,14 @@ impl App {
             settings.clone(),
         );
         let mut desk = Desk::new(settings);
+        match kept::draft(desk.state.settings.trial_plan.as_ref()) {
+            Ok(draft) => desk.state.tuner.draft = draft,
+            Err(error) => {
+                let message = error.to_string();
+                let what = NoticeKind::PlanIgnored { message };
+                desk.state.notices.push(Moment::ZERO, what);
+            }
+        }
         let pose_path = env.settings_path.as_deref().map(store::path_beside);
         let (library, notice) = pose_path.as_deref().map(store::load).unwrap_or_default();
         if let Some(what) = notice {

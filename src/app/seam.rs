@@ -6,7 +6,7 @@ use crate::link::{
 };
 
 /// One open link. Dropping it closes it.
-pub(crate) trait Link {
+pub(crate) trait Link: Send {
     /// Where it stands.
     fn status(&self) -> LinkStatus;
     /// What it measured of itself.

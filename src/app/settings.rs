@@ -1,4 +1,4 @@
-//! What is kept from one start to the next. Never a setpoint.
+//! What is kept from one start to the next. Never a setpoint: a plan of trials moves nothing before a person arms and starts it.
 
 use crate::app::layout::Layout;
 use crate::hand::{GestureRoute, GestureStore};
@@ -234,6 +234,9 @@ pub struct Settings {
     pub gesture_names: BTreeMap<String, String>,
     /// How the window is divided.
     pub layout: Layout,
+    /// The plan of trials that was written last ([`crate::app::tuner::kept`]); of whatever form, so that a newer one spoils
+    /// nothing else.
+    pub trial_plan: Option<toml::Value>,
     /// Keys of a newer version, kept as they are.
     #[serde(flatten)]
     pub others: toml::Table,

@@ -6,12 +6,13 @@ use crate::app::{Action, App, Env, SimDial};
 use crate::desktop::dialog::NativeDialog;
 use crate::desktop::start::{DesktopStart, Drawing};
 use crate::hand::Moment;
-use crate::link::{Clock, Wake};
+use crate::link::Clock;
 use crate::shell::Cockpit;
+use crate::shell::pulse::{Pulse, Shared, hold};
 use egui::{ViewportBuilder, ViewportCommand};
 use std::cell::RefCell;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 /// Samples come faster than a display shows them: one repaint serves all that come within this time.
@@ -68,7 +69,7 @@ impl Beginning {
 
 /// The program behind the window.
 pub(crate) struct Program {
-    cockpit: Cockpit,
+    cockpit: Shared,
     clock: Clock,
     titled: Option<String>,
     closing: bool,
@@ -78,7 +79,9 @@ impl Program {
     fn new(ctx: &egui::Context, start: DesktopStart, services: Services) -> Self {
         let Services { runtime, clock } = services;
         let repaint = ctx.clone();
-        let wake: Wake = Arc::new(move || repaint.request_repaint_after(REPAINT_WITHIN));
+        let pulse = Pulse::new();
+        let wake = pulse.wake(move || repaint.request_repaint_after(REPAINT_WITHIN));
+        let links = runtime.clone();
         let env = Env {
             dial: Arc::new(SimDial::new(clock)),
             runtime,
@@ -96,8 +99,11 @@ impl Program {
             app.tell(notice, clock.now());
         }
         app.open(start.endpoint, clock.now());
+        let cockpit = Cockpit::new(app).with_snap(start.snap);
+        let cockpit = Arc::new(Mutex::new(cockpit));
+        links.spawn(pulse.follow(&cockpit, clock));
         Self {
-            cockpit: Cockpit::new(app).with_snap(start.snap),
+            cockpit,
             clock,
             titled: None,
             closing: false,
@@ -107,7 +113,7 @@ impl Program {
     /// Takes in what happened. To be called before each frame, and [`REPAINT_AT_LEAST`] often while nothing is drawn.
     pub(crate) fn logic(&mut self, ctx: &egui::Context) {
         let now = self.clock.now();
-        self.cockpit.logic(now);
+        hold(&self.cockpit).logic(now);
         self.title(ctx);
         self.keep_size(ctx, now);
         self.close(ctx, now);
@@ -116,17 +122,19 @@ impl Program {
 
     /// Draws one frame over all of `ui`.
     pub(crate) fn ui(&mut self, ui: &mut egui::Ui) {
-        self.cockpit.ui(ui, self.clock.now());
+        hold(&self.cockpit).ui(ui, self.clock.now());
     }
 
     /// Names the hand in the window's title, so that a simulated one is told apart in the task bar too.
     fn title(&mut self, ctx: &egui::Context) {
-        let state = self.cockpit.state();
+        let cockpit = hold(&self.cockpit);
+        let state = cockpit.state();
         let title = match &state.endpoint {
             Some(_) if state.is_simulated() => "Handscope - SIMULATED hand".to_owned(),
             Some(endpoint) => format!("Handscope - {endpoint}"),
             None => "Handscope".to_owned(),
         };
+        drop(cockpit);
         if self.titled.as_ref() != Some(&title) {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.titled = Some(title);
@@ -142,11 +150,12 @@ impl Program {
             view.inner_rect.filter(|_| own)
         });
         let Some(shown) = shown else { return };
-        let layout = self.cockpit.state().settings.layout;
+        let mut cockpit = hold(&self.cockpit);
+        let layout = cockpit.state().settings.layout;
         let window = [shown.width(), shown.height()].into();
         if layout.window != window {
             let layout = Layout { window, ..layout };
-            self.cockpit.app().act(Action::Layout(layout), now);
+            cockpit.app().act(Action::Layout(layout), now);
         }
     }
 
@@ -156,7 +165,7 @@ impl Program {
         if !self.closing {
             return;
         }
-        if self.cockpit.app().close(now) {
+        if hold(&self.cockpit).app().close(now) {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         } else {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);

@@ -71,7 +71,7 @@ impl CurvesView {
             name: look.say(title(shown)),
             empty: look.say(tune::CURVES_EMPTY),
             lines,
-            levels: self.levels(comparison),
+            levels: self.levels(pane, comparison),
             least: (0.0, 1.0),
         };
         let pointed = plot.ui(ui, rect);
@@ -174,7 +174,7 @@ impl CurvesView {
         (places, lines)
     }
 
-    fn levels(&self, comparison: &Comparison) -> Vec<f64> {
+    fn levels(&self, pane: &Pane<'_>, comparison: &Comparison) -> Vec<(f64, Color32)> {
         if self.shown != Shown::Force {
             return Vec::new();
         }
@@ -182,7 +182,8 @@ impl CurvesView {
         let mut levels: Vec<f64> = forces.map(|own| f64::from(own.force.get())).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
-        levels
+        let color = pane.look.palette.muted;
+        levels.into_iter().map(|level| (level, color)).collect()
     }
 
     /// What is drawn, then the trial that is meant, or every line, or what colours and strokes stand for.

@@ -93,6 +93,7 @@ mod trial_plot;
 mod tune;
 mod tune_form;
 mod tune_live;
+mod tune_result;
 mod window;
 mod window_menu;
 

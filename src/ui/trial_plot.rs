@@ -52,8 +52,8 @@ pub(crate) struct TrialPlot<'a> {
     pub(crate) empty: &'a str,
     /// The lines, the foremost last.
     pub(crate) lines: Vec<TrialLine<'a>>,
-    /// Levels to compare with.
-    pub(crate) levels: Vec<f64>,
+    /// Levels to compare with, and their colours.
+    pub(crate) levels: Vec<(f64, Color32)>,
     /// What is always shown of the values.
     pub(crate) least: (f64, f64),
 }
@@ -126,10 +126,10 @@ impl TrialPlot<'_> {
         }
         self.time_ui(ui, plot, span, rect.bottom());
         let painter = ui.painter().with_clip_rect(plot.intersect(ui.clip_rect()));
-        for level in &self.levels {
+        for (level, color) in &self.levels {
             let y = plot_axes::y_of(plot, &band, *level);
             let ends = [pos2(plot.left(), y), pos2(plot.right(), y)];
-            let stroke = Stroke::new(1.0, look.palette.muted);
+            let stroke = Stroke::new(1.0, *color);
             painter.extend(egui::Shape::dashed_line(
                 &ends,
                 stroke,
@@ -165,7 +165,7 @@ impl TrialPlot<'_> {
                 extent.include(*v);
             }
         }
-        for level in &self.levels {
+        for (level, _) in &self.levels {
             extent.include(*level);
         }
         let (from, to) = span?;
@@ -209,6 +209,10 @@ impl TrialPlot<'_> {
             let size = vec2(theme::TRIAL_TIME, theme::PLOT_TIME_AXIS);
             let place = Rect::from_center_size(center, size);
             let over = (place.right() - plot.right()).max(0.0);
+            // Pushed further aside it would be read as the time of another line, or run into its number.
+            if over > theme::PAD {
+                continue;
+            }
             let place = place.translate(vec2(-over, 0.0));
             let digits = usize::from(step < 1.0) + usize::from(step < 0.1);
             let text = format!("{:.digits$} s", at_s + 0.0);

@@ -3,16 +3,17 @@
 
 use crate::app::action::Action;
 use crate::app::trial::estimate;
-use crate::app::tuner::{Session, StartRefusal, TrialWish};
+use crate::app::tuner::{StartRefusal, TrialWish};
 use crate::hand::impact::NOTABLE_G;
 use crate::ui::controls::{self, Button, Label, Weight, take_left, take_top};
 use crate::ui::format;
 use crate::ui::list;
 use crate::ui::look::Pane;
-use crate::ui::text::{trials, tune, words};
+use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::tune_form::TuneForm;
 use crate::ui::tune_live;
+use crate::ui::tune_result::ResultView;
 use crate::ui::window::View;
 use egui::{Id, Rect, Ui};
 
@@ -20,6 +21,7 @@ use egui::{Id, Rect, Ui};
 #[derive(Debug, Default)]
 pub(crate) struct TuneView {
     form: TuneForm,
+    result: ResultView,
 }
 
 impl TuneView {
@@ -32,16 +34,29 @@ impl TuneView {
         let (_, body) = controls::titled_card(ui, look, plan, look.say(tune::PLAN));
         self.form.ui(ui, body, pane);
         let (_, body) = controls::titled_card(ui, look, rest, look.say(tune::SERIES));
-        series_ui(ui, body, pane)
+        series_ui(ui, body, pane, &mut self.result)
     }
 }
 
-fn series_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) -> Option<View> {
-    if pane.state.tuner.run.is_some() {
+fn series_ui(
+    ui: &mut Ui,
+    mut body: Rect,
+    pane: &mut Pane<'_>,
+    result: &mut ResultView,
+) -> Option<View> {
+    let tuner = &pane.state.tuner;
+    if tuner.run.is_some() {
         tune_live::live_ui(ui, body, pane);
         return None;
     }
+    let last = tuner.last.and_then(|id| tuner.session(id));
     start_ui(ui, take_top(&mut body, theme::CONTROL_LARGE), pane);
+    let curves = body.height() * theme::RESULT_SHARE;
+    if let Some(session) = last.filter(|_| curves >= theme::TRIAL_PLOT_LEAST) {
+        let (above, below) = body.split_top_bottom_at_y(body.bottom() - curves);
+        body = above.with_max_y(above.bottom() - theme::GAP);
+        result.curves_ui(ui, below, pane, session);
+    }
     let mut asked = None;
     list::scroll_ui(ui, body, "trial series", |ui, width| {
         let look = pane.look;
@@ -49,9 +64,15 @@ fn series_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) -> Option<View> {
             list::wrapped_ui(ui, width, 0.0, &reason, look.palette.warn);
             list::piece(ui, width, theme::STEP);
         }
+        if let Some(session) = last {
+            asked = result.lines_ui(ui, width, pane, session);
+            list::piece(ui, width, theme::GAP);
+        }
         meaning_ui(ui, width, pane);
-        list::piece(ui, width, theme::GAP);
-        asked = last_ui(ui, width, pane);
+        if last.is_none() {
+            list::piece(ui, width, theme::GAP);
+            first_ui(ui, width, pane);
+        }
     });
     asked
 }
@@ -140,41 +161,11 @@ fn meaning_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>) {
     list::wrapped_ui(ui, width, 0.0, look.say(tune::ANY_KEY), look.palette.muted);
 }
 
-/// What became of the last series; before the first one, what to do.
-fn last_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>) -> Option<View> {
+/// Before the first series: what to do.
+fn first_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>) {
     let look = pane.look;
-    let tuner = &pane.state.tuner;
-    let Some(session) = tuner.last.and_then(|id| tuner.session(id)) else {
-        let title = list::piece(ui, width, theme::TITLE_LINE);
-        Label::new(look.say(tune::IDLE_TITLE), look.palette.text).put(ui, title);
-        let body = look.say(tune::IDLE_BODY);
-        list::wrapped_ui(ui, width, 0.0, body, look.palette.muted);
-        return None;
-    };
-    let (text, color) = outcome(pane, session);
-    list::wrapped_ui(ui, width, 0.0, &text, color);
-    list::piece(ui, width, theme::STEP);
-    let mut row = list::piece(ui, width, theme::CONTROL);
-    let words = look.say(tune::SEE_COMPARE);
-    let room = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
-    let button = Button::new(words, look.say(tune::SEE_COMPARE_TIP));
-    let button = button.named(look.say(tune::SEE_COMPARE_TIP));
-    let place = take_left(&mut row, room);
-    let clicked = button.put(ui, look, place, Id::unique("see compare"));
-    clicked.clicked().then_some(View::Compare)
-}
-
-fn outcome(pane: &Pane<'_>, session: &Session) -> (String, egui::Color32) {
-    let look = pane.look;
-    let last = look.say(tune::LAST);
-    match &session.ended {
-        None => {
-            let done = look.say(tune::ALL_DONE);
-            (format!("{last} {done}"), look.palette.ok)
-        }
-        Some(why) => {
-            let why = trials::ended(look, why);
-            (format!("{last} {why}"), look.palette.warn)
-        }
-    }
+    let title = list::piece(ui, width, theme::TITLE_LINE);
+    Label::new(look.say(tune::IDLE_TITLE), look.palette.text).put(ui, title);
+    let body = look.say(tune::IDLE_BODY);
+    list::wrapped_ui(ui, width, 0.0, body, look.palette.muted);
 }

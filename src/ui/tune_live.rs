@@ -5,14 +5,14 @@ use crate::app::state::Freshness;
 use crate::app::trial::recording::{Recording, seconds};
 use crate::app::tuner::Run;
 use crate::hand::Dof;
-use crate::ui::controls::{self, Button, Label, Weight, take_left, take_top};
+use crate::ui::controls::{self, Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::dash::Dash;
 use crate::ui::format;
 use crate::ui::look::Pane;
 use crate::ui::text::{trials, tune, words};
 use crate::ui::theme;
 use crate::ui::trial_plot::{TrialLine, TrialPlot};
-use egui::{CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo};
+use egui::{Color32, CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo};
 
 /// Rows of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
 const ROWS_DRAWN: usize = 2400;
@@ -103,7 +103,7 @@ fn heat_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>) {
     let each = row.width() / 6.0;
     for dof in Dof::ALL {
         let celsius = read.and_then(|read| read.value[dof].documented());
-        let text = celsius.map_or_else(|| "-".to_owned(), |celsius| format!("{celsius} °C"));
+        let text = celsius.map_or_else(|| "-".to_owned(), |celsius| celsius.to_string());
         let (cell, rest) = row.split_left_right_at_x(row.left() + each);
         row = rest;
         // Temperatures are read some times a second only.
@@ -121,10 +121,7 @@ fn heat_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>) {
 
 fn force_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>, run: &Run) {
     let look = pane.look;
-    let caption = take_top(&mut rect, theme::LIST_LINE);
-    Label::new(look.say(tune::LIVE_FORCE), look.palette.muted)
-        .small()
-        .put(ui, caption);
+    caption_ui(ui, take_top(&mut rect, theme::LIST_LINE), pane, run);
     let lines: Vec<(Dof, Vec<[f64; 2]>)> = match run.series.recording() {
         Some(recording) => run
             .plan
@@ -133,6 +130,8 @@ fn force_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>, run: &Run) {
             .collect(),
         None => Vec::new(),
     };
+    let all = lines.iter().flat_map(|(_, points)| points);
+    let highest = all.map(|[_, grams]| *grams).fold(0.0, f64::max);
     let plot = TrialPlot {
         look,
         name: look.say(tune::LIVE_FORCE),
@@ -147,15 +146,45 @@ fn force_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>, run: &Run) {
                 dash: Dash::Solid,
             })
             .collect(),
-        levels: run
-            .series
-            .setting()
-            .map(|setting| f64::from(setting.force.get()))
-            .into_iter()
-            .collect(),
+        levels: levels(pane, run, highest),
         least: (0.0, 100.0),
     };
     plot.ui(ui, rect);
+}
+
+/// What is drawn, and what the levels are.
+fn caption_ui(ui: &mut Ui, mut row: Rect, pane: &Pane<'_>, run: &Run) {
+    let look = pane.look;
+    let title = look.say(tune::LIVE_FORCE);
+    let width = controls::text_width(ui, title, theme::small()) + 1.0;
+    let place = take_left(&mut row, width);
+    Label::new(title, look.palette.muted).small().put(ui, place);
+    let ceiling = run.plan.limits.ceiling_g;
+    let ceiling = format!("{} {ceiling} g", look.say(tune::ENDS_AT));
+    let width = controls::text_width(ui, &ceiling, theme::small()) + 1.0;
+    let place = take_right(&mut row, width);
+    Label::new(&ceiling, look.palette.bad)
+        .small()
+        .put(ui, place);
+    if let Some(setting) = run.series.setting() {
+        let threshold = format!("{} {} g", look.say(tune::THRESHOLD), setting.force.get());
+        Label::new(&threshold, look.palette.muted)
+            .small()
+            .right()
+            .put(ui, row);
+    }
+}
+
+/// The threshold; the ceiling where it is near enough not to flatten the curve.
+fn levels(pane: &Pane<'_>, run: &Run, highest: f64) -> Vec<(f64, Color32)> {
+    let palette = pane.look.palette;
+    let threshold = run.series.setting();
+    let threshold = threshold.map(|setting| f64::from(setting.force.get()));
+    let ceiling = f64::from(run.plan.limits.ceiling_g);
+    let near = threshold.unwrap_or(0.0).max(highest) * 2.0 >= ceiling;
+    let ceiling = near.then_some((ceiling, palette.bad));
+    let threshold = threshold.map(|level| (level, palette.muted));
+    threshold.into_iter().chain(ceiling).collect()
 }
 
 /// The newest forces of a joint, as they came.

@@ -24,6 +24,7 @@ pub mod session;
 mod session_tests;
 pub mod slip;
 mod svg;
+mod together;
 pub mod watch;
 
 use crate::link::PollRates;

@@ -2,20 +2,19 @@
 //! from elsewhere. Writes no file itself.
 
 use crate::app::trial::best::{Criterion, Score, Spread, best};
-use crate::app::trial::curve::JointCurves;
+use crate::app::trial::curve::{Curve, JointCurves};
 use crate::app::trial::metrics::JointMetrics;
 use crate::app::trial::plan::Setting;
 use crate::app::trial::recording::{What, seconds};
 use crate::app::trial::series::Trial;
 use crate::app::trial::session::{SessionFile, TrialRow};
 use crate::app::trial::svg::{Line, Plot, escaped};
+use crate::app::trial::together::{BEFORE_S, Together};
 use crate::hand::Dof;
 use std::fmt::Write as _;
 
 /// Trials whose curves are drawn; the samples of the others lie beside the page.
 pub const DRAWN_MAX: usize = 60;
-/// What is drawn before the command, s.
-const BEFORE_S: f64 = 0.5;
 /// A page on paper: light, with six strokes that differ in grey too. The window's theme is another matter.
 const STYLE: &str = "body{font:14px/1.5 system-ui,sans-serif;margin:2em auto;max-width:70em;padding:0 1em;color:#1b1f24}\
 table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em .7em;border-bottom:1px solid #d8dee4;text-align:right}\
@@ -30,11 +29,13 @@ polyline{fill:none;stroke-width:1.2}.key{border-bottom:3px solid;margin-right:1e
 pub struct Page {
     drawn: Vec<(usize, String)>,
     left_out: usize,
+    together: Together,
 }
 
 impl Page {
     /// Draws one trial.
     pub fn add(&mut self, trial: &Trial) {
+        self.together.add(trial);
         if self.drawn.len() >= DRAWN_MAX {
             self.left_out += 1;
             return;
@@ -58,6 +59,7 @@ impl Page {
         summary(&mut out, scores, criterion);
         map(&mut out, scores);
         metrics(&mut out, &session.trials);
+        out.push_str(&self.together.text());
         out.push_str("<h2>Curves</h2>\n");
         legend(&mut out, session);
         for (number, curves) in &self.drawn {
@@ -363,9 +365,7 @@ fn curves(trial: &Trial) -> String {
         .filter(|mark| !matches!(mark.what, What::Prepare | What::Limits))
         .map(|mark| (seconds(zero, mark.at), mark.what.name()))
         .collect();
-    let plot = |name: &str,
-                level: Option<f64>,
-                pick: fn(&JointCurves) -> &crate::app::trial::curve::Curve| {
+    let plot = |name: &str, level: Option<f64>, pick: fn(&JointCurves) -> &Curve| {
         let line = |(dof, curves): &(Dof, JointCurves)| Line {
             stroke: dof.index(),
             curve: pick(curves)

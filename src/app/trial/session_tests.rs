@@ -49,7 +49,7 @@ fn head() -> Head {
         hand: format!("rs485:/dev/{EVIL}"),
         simulated: true,
         begun: Duration::from_secs(1_795_219_200),
-        note: format!("egg & cup {EVIL}"),
+        note: format!("egg & cup, 鸡蛋 & 杯 {EVIL}"),
         tags: vec!["egg".into(), EVIL.into()],
         quirks: Some(QuirkSheet {
             place: EVIL.into(),
@@ -172,9 +172,15 @@ fn the_page_is_whole_draws_the_curves_and_takes_no_orders() {
     kept(&place);
     let page = std::fs::read_to_string(place.join("report.html")).unwrap();
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n"));
-    assert_eq!(page.matches("<svg").count(), 2 * 3);
+    assert_eq!(page.matches("<svg").count(), 1 + 2 * 3);
     assert!(page.contains("<span class=\"key s3\">index</span>"));
-    assert_eq!(page.matches("class=\"key ").count(), 1);
+    assert!(page.contains("<span class=\"key s0\">speed 25, threshold 500 g</span>"));
+    assert_eq!(page.matches("class=\"key ").count(), 2);
+    let (all, each) = page.split_once("<h2>Curves</h2>").unwrap();
+    assert_eq!(all.matches("<polyline").count(), 2, "both over each other");
+    assert_eq!(each.matches("<polyline").count(), 2 * 3);
+    assert!(page.contains("<meta charset=\"utf-8\">"));
+    assert!(page.contains("鸡蛋 &amp; 杯"), "letters of any script stay");
     assert!(page.contains("SIMULATED HAND"));
     assert!(page.contains("Ended early: ended by a person"));
     assert!(page.contains("egg &amp; cup"));

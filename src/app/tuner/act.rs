@@ -7,6 +7,7 @@ use crate::app::trial::session::Head;
 use crate::app::trial::{self, Abort, LinkView, Order, Series};
 use crate::app::tuner::book::{Ended, Origin, Run, SessionId};
 use crate::app::tuner::draft::tags;
+use crate::app::tuner::kept;
 use crate::app::tuner::wish::TrialWish;
 use crate::hand::{Dof, Groups, HandSample, Moment, PerDof};
 use crate::link::PollRates;
@@ -43,7 +44,11 @@ impl Desk {
     pub(crate) fn trial_wish(&mut self, wish: TrialWish, since_1970: Duration, now: Moment) {
         let tuner = &mut self.state.tuner;
         match wish {
-            TrialWish::Draft(draft) => tuner.draft = *draft,
+            TrialWish::Draft(draft) => {
+                tuner.draft = *draft;
+                let kept = self.state.settings.trial_plan.as_ref();
+                self.state.settings.trial_plan = kept::value(&tuner.draft, kept);
+            }
             TrialWish::Start => self.start_series(since_1970, now),
             TrialWish::Note(id, words) => {
                 if let Some(session) = tuner.session_mut(id) {

@@ -208,7 +208,7 @@ fn the_hand_is_read_at_full_rate_exactly_while_a_series_runs() {
 #[test]
 fn another_hand_begins_at_the_rates_of_a_window() {
     let mut bench = running();
-    let wire = std::rc::Rc::clone(&bench.wire);
+    let wire = bench.wire.clone();
     let link = Box::new(FakeLink::on(wire));
     bench.told();
     bench.desk.replace(None, Some(link), bench.now());

@@ -10,6 +10,7 @@ pub mod comparison;
 mod comparison_tests;
 pub mod draft;
 pub(crate) mod files;
+pub mod kept;
 pub mod lines;
 pub mod wish;
 

@@ -9,7 +9,7 @@ use crate::link::{Disarmed, LinkTrouble, RequestError};
 use crate::ui::format;
 use crate::ui::look::Look;
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{device, main, panels, poses, quirks, traffic, trials, words};
+use crate::ui::text::{device, main, panels, poses, quirks, traffic, trials, tune, words};
 
 /// Title, cause and advice of what is wrong with a drive.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
@@ -202,6 +202,9 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         } => differing(look, differences, last_seen),
         NoticeKind::SheetNotKept { message } => {
             format!("{} {message}", said(quirks::NOT_KEPT))
+        }
+        NoticeKind::PlanIgnored { message } => {
+            format!("{} {message}", said(tune::PLAN_IGNORED))
         }
         NoticeKind::EndpointIgnored { text } => {
             format!("{} {text}", said(panels::NOTICE_ENDPOINT))

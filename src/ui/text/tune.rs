@@ -28,6 +28,7 @@ texts! {
     TEMPERATURE: "temperature", "温度";
     FAULTS: "fault", "故障";
 
+    PLAN_IGNORED: "The plan of trials of last time is of another version; the first plan is shown:", "上次的试验计划版本不同，已改用初始计划：";
     PLAN: "Plan", "试验计划";
     SERIES: "Series", "试验过程";
     JOINTS: "Joints and their way", "自由度与行程";
@@ -120,7 +121,7 @@ texts! {
     TRIAL: "Trial", "第";
     OF: "of", "次，共";
     LEFT: "left, at most about", "最长约剩";
-    TEMPS: "Temperatures", "各自由度温度";
+    TEMPS: "Temperatures, °C", "各自由度温度 °C";
     PROGRESS: "Progress", "进度";
     LIVE_FORCE: "Force now, g", "当前的力 g";
     LIVE_EMPTY: "Waits for the trial", "等待试验开始";
@@ -136,6 +137,11 @@ texts! {
     ALL_DONE: "all trials done.", "全部试验已完成。";
     SEE_COMPARE: "Compare", "查看对比";
     SEE_COMPARE_TIP: "Opens what was measured.", "打开测量结果。";
+    ABOVE: "above the threshold:", "超出力控阈值";
+    STAGED_NEXT: "Staged, nothing is written yet. Next: check, apply and save it in Device.", "已暂存，尚未写入。下一步：在“参数”中核对、应用并保存。";
+    SEE_DEVICE: "Go to Device", "前往参数";
+    SEE_DEVICE_TIP: "Opens the parameters, where what is staged is checked, applied and saved.", "打开参数页，核对、应用并保存暂存的值。";
+    ENDS_AT: "ends at", "上限";
     IDLE_TITLE: "Nothing tried yet", "还没有试验";
     IDLE_BODY: "Put an object between the fingers, choose how they close, arm the hand and start.", "把物体放在手指之间，设置闭合方式，使能后开始。";
     SPEED: "speed", "速度";
