@@ -51,7 +51,8 @@ fn series_ui(
     }
     let last = tuner.last.and_then(|id| tuner.session(id));
     start_ui(ui, take_top(&mut body, theme::CONTROL_LARGE), pane);
-    let curves = body.height() * theme::RESULT_SHARE;
+    let (height, words) = (body.height(), theme::RESULT_WORDS);
+    let curves = (height - words).max(height * theme::RESULT_SHARE);
     if let Some(session) = last.filter(|_| curves >= theme::TRIAL_PLOT_LEAST) {
         let (above, below) = body.split_top_bottom_at_y(body.bottom() - curves);
         body = above.with_max_y(above.bottom() - theme::GAP);

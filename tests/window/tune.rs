@@ -216,6 +216,25 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
 }
 
 #[test]
+fn what_came_out_is_staged_and_leads_to_the_parameters_and_nothing_is_written() {
+    let mut bench = on_block();
+    short(&mut bench);
+    enter(&mut bench, "Speeds to try", "50, 250");
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    assert_eq!(bench.texts_with("Least overshoot: 50 / 500 g").len(), 1);
+    let writes = bench.writes().len();
+    bench.click("Stages speed and threshold of the best as those after power-up, for the joints tried. Nothing is written.");
+    bench.run(100);
+    assert_eq!(bench.texts_with("Staged, nothing is written yet.").len(), 1);
+    bench.click("Opens the parameters, where what is staged is checked, applied and saved.");
+    bench.run(60);
+    assert_eq!(bench.view(), View::Device);
+    assert_eq!(bench.writes().len(), writes);
+}
+
+#[test]
 fn any_key_stops_it_and_does_nothing_else() {
     for key in [Key::L, Key::F7, Key::Enter, Key::ArrowLeft] {
         let mut bench = running();

@@ -80,5 +80,7 @@ pub(crate) const DASHES_MOST: f32 = 150.0;
 pub(crate) const LINE_NEAR: f32 = 9.0;
 /// Width of the sign of a line in the legend.
 pub(crate) const KEY_SIGN: f32 = 20.0;
-/// Share of the height that the curves of the last series get beside its words.
+/// Height of the words about a series, where there is plenty.
+pub(crate) const RESULT_WORDS: f32 = 260.0;
+/// Least share of the height that the curves of the last series get below its words.
 pub(crate) const RESULT_SHARE: f32 = 0.45;
