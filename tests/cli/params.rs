@@ -342,6 +342,13 @@ fn a_new_id_is_followed_kept_if_saved_and_gone_with_the_power_if_not() {
         assert_eq!(moved["rows"][0]["verdict"], "moved", "{moved}");
         let place = moved["answers_at"].as_str().unwrap().to_owned();
         assert!(place.contains("id=9"), "{place}");
+        let why = |bench: &Bench, place: &str| {
+            let listed = json(&bench.params(place, &["backups"]).ok());
+            let last = listed["backups"].as_array().unwrap().last().cloned();
+            last.map(|backup| backup["why"].clone())
+        };
+        let taken_along = Some(Value::from("before apply"));
+        assert_eq!(why(&bench, &place), taken_along, "{kind}");
         bench.power_cycle();
         bench.params(&hand, &["dump"]).ok();
         bench.params(&hand, &args).ok();
@@ -354,6 +361,8 @@ fn a_new_id_is_followed_kept_if_saved_and_gone_with_the_power_if_not() {
         assert_eq!(reset["params"]["hand_id"], 1, "{kind}");
         let again = reset["answers_at"].as_str().unwrap();
         assert!(!again.contains("id=9"), "{again}");
+        let taken_along = Some(Value::from("before reset"));
+        assert_eq!(why(&bench, again), taken_along, "{kind}");
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::bench::{Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
 use egui::{Key, Vec2, vec2};
 use handscope::app::action::Action;
-use handscope::app::guard::{Doing, Flow};
+use handscope::app::guard::{Doing, Flow, GuardStep};
 use handscope::app::params::table::{ParamId, Value};
 use handscope::app::settings::Language;
 use handscope::hand::{Dof, register};
@@ -498,6 +498,31 @@ fn the_cards_fit_the_smallest_window_in_both_languages() {
             }
             assert!(bench.texts().iter().all(|text| !text.ends_with('\u{2026}')));
         }
+    }
+}
+
+#[test]
+fn the_card_before_a_save_shows_all_that_is_hard_in_the_smallest_window() {
+    for (language, keep, save) in [
+        (Language::En, "Keep", "Save anyway"),
+        (Language::Zh, "保留", "仍然保存"),
+    ] {
+        let mut bench = Bench::kept(SimConfig::default(), "rs485:/dev/hand?id=1", SMALL);
+        bench.wait(1500);
+        bench.act(Action::Language(language));
+        bench.act(Action::ChangePlace(ParamId::HandId, Value::Number(7)));
+        bench.act(Action::Guard(GuardStep::Begin));
+        bench.until(20_000, |bench| {
+            bench.all(Role::Button).iter().any(|(name, _)| name == keep)
+        });
+        bench.click_button(keep);
+        bench.run(100);
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, SMALL);
+        assert!(window.contains_rect(bench.rect(Role::Button, save)));
+        let peaks = bench.texts_with("+2502");
+        assert_eq!(peaks.len(), Dof::ALL.len(), "{peaks:?}");
+        let cut = bench.texts_with("\u{2026}");
+        assert!(cut.is_empty(), "{cut:?}");
     }
 }
 
