@@ -14,8 +14,8 @@ use crate::ui::theme;
 use crate::ui::trial_plot::{TrialLine, TrialPlot};
 use egui::{Color32, CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo};
 
-/// Rows of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
-const ROWS_DRAWN: usize = 2400;
+/// Readings of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
+const READINGS_DRAWN: usize = 2400;
 
 /// Draws it.
 pub(crate) fn live_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
@@ -191,8 +191,12 @@ fn levels(pane: &Pane<'_>, run: &Run, highest: f64) -> Vec<(f64, Color32)> {
 fn force(recording: &Recording, dof: Dof) -> Vec<[f64; 2]> {
     let zero = recording.zero();
     let rows = recording.rows();
-    let newest = rows.len().saturating_sub(ROWS_DRAWN);
-    let rows = rows.iter().skip(newest);
-    rows.filter_map(|row| Some([seconds(zero, row.at), f64::from(row.force?[dof])]))
-        .collect()
+    let read = rows
+        .iter()
+        .rev()
+        .filter_map(|row| Some((row.at, row.force?[dof])));
+    let point = |(at, grams)| [seconds(zero, at), f64::from(grams)];
+    let mut points: Vec<[f64; 2]> = read.take(READINGS_DRAWN).map(point).collect();
+    points.reverse();
+    points
 }
