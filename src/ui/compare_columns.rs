@@ -25,6 +25,8 @@ const fn column(title: Text, digits: usize, value: fn(&JointMetrics) -> Option<f
     }
 }
 
+const MS_PER_S: f64 = 1000.0;
+
 /// All with a number.
 pub(crate) static COLUMNS: [Column; 10] = [
     column(tune::COLUMN_OVER, 0, |own| own.overshoot_g),
@@ -32,7 +34,9 @@ pub(crate) static COLUMNS: [Column; 10] = [
     column(tune::COLUMN_STEADY, 0, |own| own.steady_force_g),
     column(tune::COLUMN_CONTACT, 2, |own| own.time_to_contact_s),
     column(tune::COLUMN_SETTLE, 2, |own| own.settle_time_s),
-    column(tune::COLUMN_DEAD, 3, |own| own.dead_time_s),
+    column(tune::COLUMN_DEAD, 0, |own| {
+        own.dead_time_s.map(|s| s * MS_PER_S)
+    }),
     column(tune::COLUMN_RELAX, 0, |own| own.relaxation_g),
     column(tune::COLUMN_SLIPS, 0, |own| {
         own.slip_count

@@ -166,7 +166,7 @@ texts! {
     CURVES_EMPTY: "No samples to draw", "没有可画的数据";
     COLUMN_TIP: "Sorts by this; once more turns it round.", "按此排序，再次点击反向。";
     COLUMN_TRIAL: "Trial", "试验";
-    COLUMN_DEAD: "Dead, s", "死区 s";
+    COLUMN_DEAD: "Dead, ms", "死区 ms";
     COLUMN_CONTACT: "Contact, s", "接触 s";
     COLUMN_PEAK: "Peak, g", "峰值 g";
     COLUMN_OVER: "Over, g", "超出 g";
