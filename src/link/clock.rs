@@ -35,30 +35,31 @@ impl Clock {
     }
 }
 
-/// Notices that the computer slept: the monotonic clock may stand still then, the wall clock does not.
+/// Notices that the computer slept: the monotonic clock may stand still then, the wall clock does not. It looks at the
+/// system's own monotonic clock: virtual time stands still while a picture is drawn, and that is no sleep.
 #[derive(Debug)]
 pub(crate) struct SleepWatch {
     wall: SystemTime,
-    at: Moment,
+    at: std::time::Instant,
 }
 
 impl SleepWatch {
-    pub(crate) fn new(now: Moment) -> Self {
+    pub(crate) fn start() -> Self {
         Self {
             wall: SystemTime::now(),
-            at: now,
+            at: std::time::Instant::now(),
         }
     }
 
     /// How long the computer slept since the last call, if it did. A clock that was set back says nothing.
-    pub(crate) fn slept(&mut self, now: Moment) -> Option<Duration> {
-        self.slept_at(SystemTime::now(), now)
+    pub(crate) fn slept(&mut self) -> Option<Duration> {
+        self.slept_at(SystemTime::now(), std::time::Instant::now())
     }
 
-    fn slept_at(&mut self, wall: SystemTime, now: Moment) -> Option<Duration> {
+    fn slept_at(&mut self, wall: SystemTime, at: std::time::Instant) -> Option<Duration> {
         let by_wall = wall.duration_since(self.wall).unwrap_or_default();
-        let slept = by_wall.saturating_sub(now.since(self.at));
-        *self = Self { wall, at: now };
+        let slept = by_wall.saturating_sub(at.saturating_duration_since(self.at));
+        *self = Self { wall, at };
         (slept > SLEPT_AFTER).then_some(slept)
     }
 }
@@ -69,17 +70,22 @@ mod tests {
 
     #[test]
     fn only_a_wall_clock_that_runs_ahead_means_sleep() {
-        let wall = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000);
-        let mut watch = SleepWatch {
-            wall,
-            at: Moment::ZERO,
-        };
+        let mut watch = SleepWatch::start();
+        let (wall, now) = (watch.wall, watch.at);
         let step = Duration::from_millis(20);
-        let now = Moment::ZERO.plus(step);
-        assert_eq!(watch.slept_at(wall + step, now), None);
+        assert_eq!(watch.slept_at(wall + step, now + step), None);
         let week = Duration::from_secs(7 * 86_400);
         let woken = wall + step + week;
-        assert_eq!(watch.slept_at(woken, now.plus(step)), Some(week - step));
-        assert_eq!(watch.slept_at(woken - week, now.plus(step * 2)), None);
+        assert_eq!(watch.slept_at(woken, now + step * 2), Some(week - step));
+        assert_eq!(watch.slept_at(woken - week, now + step * 3), None);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn virtual_time_that_stands_still_is_no_sleep() {
+        let clock = Clock::start();
+        let mut watch = SleepWatch::start();
+        std::thread::sleep(SLEPT_AFTER + Duration::from_millis(50));
+        assert_eq!(clock.now(), Moment::ZERO);
+        assert_eq!(watch.slept(), None);
     }
 }

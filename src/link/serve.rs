@@ -22,8 +22,7 @@ impl Session {
     /// Serves the wire until it is lost or the handle is gone.
     pub(crate) async fn serve(&mut self, bus: &mut Bus) -> End {
         loop {
-            let now = self.now();
-            if let Some(slept) = self.sleep.slept(now) {
+            if let Some(slept) = self.sleep.slept() {
                 self.disarm(Disarmed::Resume);
                 return End::Lost(LinkTrouble::Suspended {
                     slept_s: slept.as_secs(),

@@ -82,7 +82,7 @@ impl Session {
         let now = config.clock.now();
         Self {
             plan: PollPlan::new(config.rates, WireCost::default(), now),
-            sleep: SleepWatch::new(now),
+            sleep: SleepWatch::start(),
             dialled: config.endpoint.clone(),
             config,
             ends,
@@ -149,7 +149,7 @@ impl Session {
             Err(error) => return (End::Lost(error.into()), false),
         };
         self.heard();
-        self.sleep = SleepWatch::new(self.now());
+        self.sleep = SleepWatch::start();
         self.go(LinkState::Identifying);
         let (end, answered) = match self.identify(&mut bus).await {
             Err(end) => (self.explained(end, &bus), false),
