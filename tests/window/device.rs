@@ -550,7 +550,9 @@ fn a_bad_file_is_refused_whole_with_the_name_of_the_field() {
     bench.run(400);
     let path = bench.folder().join("handscope-params.toml");
     let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replacen("ring = 1000", "ring = 3001", 1)).unwrap();
+    let (before, forces) = text.split_once("[default_force]").unwrap();
+    let forces = forces.replace("ring = 1000", "ring = 3001");
+    std::fs::write(&path, format!("{before}[default_force]{forces}")).unwrap();
     bench.click("Open file");
     bench.run(400);
     assert_eq!(bench.state().device.compared, None);

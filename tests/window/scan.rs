@@ -5,7 +5,7 @@ use crate::layout::check;
 use egui::vec2;
 use handscope::app::scan::ScanStage;
 use handscope::link::LinkState;
-use handscope::sim::SimConfig;
+use handscope::sim::{SimConfig, SimHand};
 use handscope::transport::{PortFound, UsbFound};
 
 const PORT: &str = "/dev/ttyUSB7";
@@ -156,6 +156,9 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
         assert!(!bench.texts_with(words).is_empty(), "{wrong}");
     }
     bench.type_into("Address or range", "127.0.0.5:6001");
+    bench.click_button("Disconnect");
+    bench.run(200);
+    bench.hand(SimHand::switch_off);
     bench.click_button("Scan address");
     bench.until(4000, is_done);
     assert_eq!(
