@@ -4,7 +4,8 @@
 
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
-use handscope::hand::Group;
+use handscope::app::trial::RATES;
+use handscope::hand::{Finger, Group};
 use handscope::link::{self, Clock, LinkConfig, LinkEvent, LinkHandle, LinkState, PollRates};
 use handscope::sim::serve::rs485;
 use handscope::sim::{SharedHand, SimConfig, SimHand};
@@ -12,12 +13,6 @@ use handscope::transport::{BoxedWire, Dial, Endpoint, PortFound, TransportError,
 use std::sync::{Arc, Mutex};
 use tokio::task::JoinHandle;
 use tokio::time::{Duration, Instant, sleep};
-
-const FAST: PollRates = PollRates {
-    state_hz: 500.0,
-    tactile_hz: 60.0,
-    settings_hz: 5.0,
-};
 
 /// A hand on an endless row of wires.
 struct Hand {
@@ -79,7 +74,7 @@ async fn in_a_second(link: &mut LinkHandle) -> (u32, u32) {
                 continue;
             };
             counts.0 += u32::from(fresh.contains(Group::Angle));
-            counts.1 += u32::from(fresh.contains(Group::Tactile(handscope::hand::Finger::Thumb)));
+            counts.1 += u32::from(fresh.contains(Group::Tactile(Finger::Thumb)));
         }
         sleep(Duration::from_millis(5)).await;
     }
@@ -98,9 +93,9 @@ async fn an_open_link_reads_at_the_rates_it_was_told_last_and_writes_nothing() {
     let mut link = open(&hand);
     live(&mut link).await;
     check(in_a_second(&mut link).await, PollRates::default());
-    link.read_at(FAST);
+    link.read_at(RATES);
     sleep(Duration::from_millis(50)).await;
-    check(in_a_second(&mut link).await, FAST);
+    check(in_a_second(&mut link).await, RATES);
     link.read_at(PollRates::default());
     sleep(Duration::from_millis(50)).await;
     check(in_a_second(&mut link).await, PollRates::default());
@@ -113,12 +108,12 @@ async fn the_rates_outlast_a_lost_wire_and_may_change_while_it_is_lost() {
     let hand = Hand::new();
     let mut link = open(&hand);
     live(&mut link).await;
-    link.read_at(FAST);
+    link.read_at(RATES);
     sleep(Duration::from_millis(50)).await;
     hand.hang_up();
     sleep(Duration::from_millis(50)).await;
     live(&mut link).await;
-    check(in_a_second(&mut link).await, FAST);
+    check(in_a_second(&mut link).await, RATES);
     hand.hang_up();
     sleep(Duration::from_millis(50)).await;
     assert_ne!(link.status().state, LinkState::Monitoring);

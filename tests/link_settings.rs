@@ -23,7 +23,7 @@ use handscope::link::{
     Verdict, Written,
 };
 use handscope::sim::{DefaultsWrite, FlashWrite, Personality, SaveAnswer};
-use line::{Dialled, IP, Line, Trouble};
+use line::{Dialled, IP, Line, Trouble, some_save_answer};
 use std::sync::Arc;
 use tokio::time::{Duration, Instant, sleep, timeout};
 
@@ -497,14 +497,7 @@ fn some_personality(rng: &mut fastrand::Rng) -> Personality {
             DefaultsWrite::Exception,
         ][rng.usize(..5)],
         flash: [FlashWrite::AtOnce, FlashWrite::Slowly][rng.usize(..2)],
-        save_frame: [
-            SaveAnswer::Command12,
-            SaveAnswer::Command11,
-            SaveAnswer::Late,
-            SaveAnswer::Never,
-            SaveAnswer::Twice,
-            SaveAnswer::Failed,
-        ][rng.usize(..6)],
+        save_frame: some_save_answer(rng),
         ..Personality::default()
     }
 }

@@ -25,11 +25,9 @@ use handscope::app::state::State;
 use handscope::app::{NoChoice, Settings};
 use handscope::hand::Span;
 use handscope::link::{Clock, LinkState, Saved};
-use handscope::sim::{
-    BaudEffect, Effect, FlashWrite, Personality, SaveAnswer, SharedHand, SimConfig, SimHand,
-};
+use handscope::sim::{BaudEffect, Effect, FlashWrite, Personality, SharedHand, SimConfig, SimHand};
 use handscope::transport::Endpoint;
-use line::{Dialled, IP, Line, Trouble};
+use line::{Dialled, IP, Line, Trouble, some_save_answer};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use tempfile::TempDir;
@@ -233,14 +231,7 @@ fn some_personality(rng: &mut fastrand::Rng) -> Personality {
             BaudEffect::AfterSave,
         ][rng.usize(..3)],
         flash: [FlashWrite::AtOnce, FlashWrite::Slowly][rng.usize(..2)],
-        save_frame: [
-            SaveAnswer::Command12,
-            SaveAnswer::Command11,
-            SaveAnswer::Late,
-            SaveAnswer::Never,
-            SaveAnswer::Twice,
-            SaveAnswer::Failed,
-        ][rng.usize(..6)],
+        save_frame: some_save_answer(rng),
         ..Personality::default()
     }
 }

@@ -5,6 +5,7 @@ mod act_poses;
 #[cfg(test)]
 mod act_poses_tests;
 pub mod action;
+pub mod calendar;
 pub mod calibration;
 pub mod config;
 pub mod connect;

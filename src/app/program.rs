@@ -1,14 +1,14 @@
 //! The program: opens and leaves hands, carries out actions, keeps settings. The rules of motion are in `act`.
 
 use crate::app::action::Action;
+use crate::app::calendar::{since_1970, stamp};
 use crate::app::config::Saver;
 use crate::app::desk::Desk;
-use crate::app::device::keeper::{DeviceKeeper, since_1970};
+use crate::app::device::keeper::DeviceKeeper;
 use crate::app::device::wish::DeviceWish;
 use crate::app::guard::keeper::Guarding;
 use crate::app::notices::NoticeKind;
 use crate::app::params::file::ParamsFile;
-use crate::app::params::stamp::stamp;
 use crate::app::poses::book::PoseBook;
 use crate::app::poses::library::Library;
 use crate::app::poses::store::{self, Reading};
@@ -26,7 +26,7 @@ use crate::link::{self, Clock, LinkConfig, PollRates, Wake};
 use crate::transport::{Dial, Endpoint, PortFound, ports};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 use tokio::sync::oneshot;
 
 /// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the
@@ -399,9 +399,7 @@ impl App {
                 self.sessions = session.and_then(save);
             }
             wish => {
-                let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
-                self.desk
-                    .trial_wish(wish, since_1970.unwrap_or_default(), now);
+                self.desk.trial_wish(wish, since_1970(), now);
             }
         }
     }

@@ -279,30 +279,10 @@ pub const fn touch_name(touch: TouchVariant) -> &'static str {
     }
 }
 
-/// The day of a time since 1970, `2026-11-21`, in universal time.
-#[must_use]
-pub fn day(since_1970: std::time::Duration) -> String {
-    // Days to a date as in Hinnant's "chrono-compatible low-level date algorithms".
-    let days = since_1970.as_secs() / 86_400 + 719_468;
-    let (era, of_era) = (days / 146_097, days % 146_097);
-    let year_of_era = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let march_month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * march_month + 2) / 5 + 1;
-    let month = if march_month < 10 {
-        march_month + 3
-    } else {
-        march_month - 9
-    };
-    let year = year_of_era + era * 400 + u64::from(month <= 2);
-    format!("{year:04}-{month:02}-{day:02}")
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
-    use std::time::Duration;
 
     fn quirks() -> Quirks {
         Quirks {
@@ -398,18 +378,5 @@ mod tests {
         }
         assert_eq!(book.hands.len(), SHEETS_MAX);
         assert!(book.hands.iter().all(|sheet| sheet.place != "tcp:h0:6000"));
-    }
-
-    #[test]
-    fn days_are_those_of_the_calendar() {
-        for (seconds, expected) in [
-            (0, "1970-01-01"),
-            (951_782_400, "2000-02-29"),
-            (951_868_800, "2000-03-01"),
-            (1_795_219_199, "2026-11-20"),
-            (1_795_219_200, "2026-11-21"),
-        ] {
-            assert_eq!(day(Duration::from_secs(seconds)), expected);
-        }
     }
 }

@@ -1,14 +1,14 @@
 //! Keeps the quirk sheet of the hand that answers now, off the window's thread, and says where it differs from the one of
 //! last time. Decides nothing about the hand.
 
+use crate::app::calendar::{day, since_1970};
 use crate::app::notices::NoticeKind;
-use crate::app::quirk_sheet::{QuirkBook, QuirkSheet, day};
+use crate::app::quirk_sheet::{QuirkBook, QuirkSheet};
 use crate::app::state::State;
 use crate::link::Quirks;
 use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 use tokio::sync::oneshot;
 
 /// The sheet from before, and the one of now.
@@ -58,8 +58,7 @@ impl SheetKeeper {
         };
         let (done, under_way) = oneshot::channel();
         self.runtime.spawn_blocking(move || {
-            let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-            let mut now = QuirkSheet::new(&hand, &quirks, &day(since_1970.unwrap_or_default()));
+            let mut now = QuirkSheet::new(&hand, &quirks, &day(since_1970()));
             let kept = QuirkBook::keep(&path, now.clone()).map(|before| {
                 if let Some(before) = &before {
                     now.first_seen.clone_from(&before.first_seen);

@@ -1,6 +1,6 @@
 //! The list of sessions: which are shown, with which stroke, what each is of, and whether it lies in files. Keeps nothing.
 
-use crate::app::quirk_sheet::day;
+use crate::app::calendar::day;
 use crate::app::tuner::comparison::SHOWN_MAX;
 use crate::app::tuner::{Origin, Session, SessionId, TunerBook};
 use crate::ui::compare::Chosen;

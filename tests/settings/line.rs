@@ -4,7 +4,7 @@ use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use handscope::hand::{SerialSpeed, Span};
 use handscope::sim::serve::{can, modbus_rtu, modbus_tcp, rs485};
-use handscope::sim::{Hands, Personality, SharedHand, SimConfig, SimHand};
+use handscope::sim::{Hands, Personality, SaveAnswer, SharedHand, SimConfig, SimHand};
 use handscope::transport::{BoxedWire, Dial, Endpoint, Pipe, TransportError, pair};
 use std::net::Ipv4Addr;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -14,6 +14,18 @@ use tokio::time::{Duration, Instant, sleep};
 
 /// IP_PART1 to 4 (manual 2.6).
 pub const IP: Span = Span::new(1700, 4);
+
+/// Any way in which a hand may end a SAVE.
+pub fn some_save_answer(rng: &mut fastrand::Rng) -> SaveAnswer {
+    [
+        SaveAnswer::Command12,
+        SaveAnswer::Command11,
+        SaveAnswer::Late,
+        SaveAnswer::Never,
+        SaveAnswer::Twice,
+        SaveAnswer::Failed,
+    ][rng.usize(..6)]
+}
 
 /// What happens once the hand took a write to the address in question, before its answer passes.
 #[derive(Debug, Clone, Copy, PartialEq)]

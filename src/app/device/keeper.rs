@@ -1,6 +1,7 @@
 //! The files of what a hand keeps, off the window's thread: the backup and the note before a SAVE, the note after it, the record that is
 //! shown, files that are compared. Decides nothing about the hand.
 
+use crate::app::calendar::since_1970;
 use crate::app::desk::Desk;
 use crate::app::device::book::SaveEnd;
 use crate::app::device::compared::Compared;
@@ -55,12 +56,6 @@ pub(crate) struct DeviceKeeper {
     loaded: Option<Endpoint>,
     under_way: Option<(Endpoint, oneshot::Receiver<Done>)>,
     opening: Option<oneshot::Receiver<Result<(PathBuf, ParamsFile), NoticeKind>>>,
-}
-
-/// The time of the calendar.
-pub(crate) fn since_1970() -> Duration {
-    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-    since.unwrap_or_default()
 }
 
 impl DeviceKeeper {

@@ -1,6 +1,7 @@
 //! The files of what is done under a card: backups, notes of a SAVE, and the record of a hand that goes to another place. One at a
 //! time, off the window's thread. Decides nothing about the hand.
 
+use crate::app::calendar::since_1970;
 use crate::app::guard::guarded::Guarded;
 use crate::app::params::guard::Place;
 use crate::app::params::record::{Record, folder_beside};
@@ -8,7 +9,7 @@ use crate::link::{Saved, Wake};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 use tokio::sync::oneshot;
 
 /// What came of work on a file: where it lies, or what the system says.
@@ -60,8 +61,7 @@ impl GuardFiles {
         let (done, filing) = oneshot::channel();
         let wake = Wake::clone(&self.wake);
         self.runtime.spawn_blocking(move || {
-            let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-            let filed = work(&record, since_1970.unwrap_or_default());
+            let filed = work(&record, since_1970());
             // A receiver that is gone means that the window is gone: no one is left to tell.
             let _told = done.send(filed.map_err(|error| error.to_string()));
             wake();

@@ -9,6 +9,5 @@ pub mod file;
 pub mod guard;
 pub mod plan;
 pub mod record;
-pub mod stamp;
 pub mod table;
 pub mod values;

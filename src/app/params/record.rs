@@ -1,9 +1,9 @@
 //! What this program knows of each hand's flash: what it saved last and what came of it, and dated backups. One folder a hand,
 //! all in the form of [`file`](crate::app::params::file). Writes to no hand.
 
+use crate::app::calendar::stamp;
 use crate::app::config::replace;
 use crate::app::params::file::{self, ParamsFile, ParamsFileError};
-use crate::app::params::stamp::stamp;
 use crate::app::params::values::Params;
 use crate::app::quirk_sheet::key;
 use crate::link::{SaveDoubt, Saved};

@@ -9,7 +9,8 @@
 //! Each file is whole at any moment: it is written beside its place and then put there. After each trial the session is
 //! complete up to it. A value that is not known has no key in TOML. Keys of a later version survive.
 
-use crate::app::quirk_sheet::{QuirkSheet, day};
+use crate::app::calendar::day;
+use crate::app::quirk_sheet::QuirkSheet;
 use crate::app::trial::best::{Criterion, scores};
 use crate::app::trial::metrics::JointMetrics;
 use crate::app::trial::plan::{Approach, TrialPlan, Until};

@@ -1,8 +1,9 @@
 //! Runs a series on the hand that is there: samples in, orders out, and what ends it. Decides nothing about trials.
 
+use crate::app::calendar::day;
 use crate::app::desk::Desk;
 use crate::app::notices::NoticeKind;
-use crate::app::quirk_sheet::{QuirkSheet, day};
+use crate::app::quirk_sheet::QuirkSheet;
 use crate::app::trial::session::Head;
 use crate::app::trial::{self, Abort, LinkView, Order, Series};
 use crate::app::tuner::book::{Ended, Origin, Run, SessionId};

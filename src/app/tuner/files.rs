@@ -147,7 +147,7 @@ impl Files {
 
 /// `handscope-trials-2026-11-21-123456`, in universal time.
 fn folder_name(begun: Duration) -> String {
-    let day = crate::app::quirk_sheet::day(begun);
+    let day = crate::app::calendar::day(begun);
     let of_day = begun.as_secs() % DAY_S;
     let (hours, minutes) = (of_day / 3600, of_day / 60 % 60);
     format!(

@@ -1,5 +1,6 @@
 //! `params apply`: rows of a file into the hand, each read back, with a backup before and the way back after a failure.
 
+use crate::app::calendar::since_1970;
 use crate::app::params::danger::worse;
 use crate::app::params::file;
 use crate::app::params::plan::{self, Plan, RowEnd, RowVerdict};
@@ -10,7 +11,7 @@ use crate::cli::params::args::ApplyArgs;
 use crate::cli::params::relocate::{self, Change};
 use crate::cli::params::show;
 use crate::cli::params::talk::Talk;
-use crate::cli::params::words::{self, or_dash, record, since_1970};
+use crate::cli::params::words::{self, or_dash, record};
 use crate::cli::session;
 use crate::link::{Verdict, Written};
 use anyhow::{Context as _, anyhow};

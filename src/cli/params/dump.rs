@@ -1,11 +1,12 @@
 //! `params dump`: all parameters, printed and written to a file. Reads only.
 
+use crate::app::calendar::since_1970;
 use crate::app::params::table::ParamId;
 use crate::cli::out::{Out, Told, say};
 use crate::cli::params::args::DumpArgs;
 use crate::cli::params::show;
 use crate::cli::params::talk::Talk;
-use crate::cli::params::words::{or_dash, record, since_1970};
+use crate::cli::params::words::{or_dash, record};
 use crate::cli::session;
 use anyhow::Context as _;
 use serde_json::json;

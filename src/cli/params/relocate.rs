@@ -1,6 +1,7 @@
 //! `params apply` for a row by which the hand is found on its bus: the wire is given up and taken again at each place. What a place
 //! that answers means is decided in `app::params::guard`.
 
+use crate::app::calendar::since_1970;
 use crate::app::params::guard::{Guard, Moved, Place, Step, new_place};
 use crate::app::params::record::Record;
 use crate::app::params::table::{ParamId, Value};
@@ -9,7 +10,6 @@ use crate::cli::out::{Out, Told, say};
 use crate::cli::params::args::ApplyArgs;
 use crate::cli::params::show;
 use crate::cli::params::talk::Talk;
-use crate::cli::params::words::since_1970;
 use crate::hand::{HandCommand, HandId, SerialSpeed};
 use crate::transport::Endpoint;
 use anyhow::{Context as _, anyhow};

@@ -1,12 +1,14 @@
 //! `params reset`: back to the factory's parameters, with a backup first, and where the hand answers then.
 
-use crate::app::params::table::{ParamId, Value};
+use crate::app::calendar::since_1970;
+use crate::app::guard::reset::factory_place;
+use crate::app::params::table::ParamId;
 use crate::app::params::values::Params;
 use crate::cli::out::{Out, Told, WrongUsage, say};
 use crate::cli::params::args::FlashArgs;
 use crate::cli::params::show;
 use crate::cli::params::talk::Talk;
-use crate::cli::params::words::{record, since_1970};
+use crate::cli::params::words::record;
 use crate::cli::session;
 use crate::link::Reset;
 use crate::transport::Endpoint;
@@ -91,24 +93,6 @@ async fn found(hand: &Endpoint) -> Option<(Endpoint, Params)> {
         }
     }
     None
-}
-
-/// The same wire with the factory's id and serial speed.
-fn factory_place(hand: &Endpoint) -> Endpoint {
-    let mut place = hand.clone();
-    let id = match ParamId::HandId.factory() {
-        Some(Value::Number(id)) => u8::try_from(id).unwrap_or(1),
-        _ => 1,
-    };
-    match &mut place {
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
-            line.id = id;
-            line.baud = crate::hand::SerialSpeed::Baud115200.baud();
-        }
-        Endpoint::Can { id: at, .. } | Endpoint::Slcan { id: at, .. } => *at = u16::from(id),
-        Endpoint::Tcp { .. } | Endpoint::Sim { .. } => {}
-    }
-    place
 }
 
 fn way_back(hand: &Endpoint, backup: &Path) -> String {

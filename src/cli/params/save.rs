@@ -1,12 +1,13 @@
 //! `params save`: the hand's parameters into its flash, with a backup first and a note of what came of it.
 
+use crate::app::calendar::since_1970;
 use crate::app::params::danger::dangers;
 use crate::app::params::record::saved_name;
 use crate::cli::out::{Out, Told, WrongUsage, say};
 use crate::cli::params::args::FlashArgs;
 use crate::cli::params::show;
 use crate::cli::params::talk::Talk;
-use crate::cli::params::words::{self, record, since_1970};
+use crate::cli::params::words::{self, record};
 use crate::cli::session;
 use crate::link::Saved;
 use anyhow::Context as _;

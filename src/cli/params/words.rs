@@ -8,7 +8,6 @@ use crate::app::params::table::Value;
 use crate::cli::params::args::Common;
 use crate::link::Saved;
 use anyhow::Context as _;
-use std::time::{Duration, SystemTime};
 
 /// This program's record of the hand.
 pub(crate) fn record(common: &Common) -> anyhow::Result<Record> {
@@ -22,12 +21,6 @@ pub(crate) fn record(common: &Common) -> anyhow::Result<Record> {
         }
     };
     Ok(Record::new(&folder, &common.hand))
-}
-
-/// Time since 1970, for files and names.
-pub(crate) fn since_1970() -> Duration {
-    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-    since.unwrap_or_default()
 }
 
 /// A value, or that it is not known.

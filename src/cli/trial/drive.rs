@@ -2,7 +2,7 @@
 //! shows rest. Decides nothing about trials.
 
 use crate::app::QuirkSheet;
-use crate::app::quirk_sheet::day;
+use crate::app::calendar::{day, since_1970};
 use crate::app::trial::session::{Head, Keeper};
 use crate::app::trial::{self, Abort, LinkView, Order, Series, Trial, TrialPlan};
 use crate::cli::interrupt::Interrupt;
@@ -16,7 +16,7 @@ use anyhow::{Context as _, anyhow, bail};
 use std::path::Path;
 use std::sync::mpsc;
 use std::thread::JoinHandle;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 use tokio::time::{Instant, sleep, timeout};
 
 /// How often time is looked at where nothing is read.
@@ -262,9 +262,7 @@ impl Writer {
         let Some(folder) = &args.out else {
             return Ok(None);
         };
-        let begun = SystemTime::now()
-            .duration_since(UNIX_EPOCH)
-            .unwrap_or_default();
+        let begun = since_1970();
         let head = Head {
             hand: args.hand.to_string(),
             simulated: args.hand.is_sim(),
