@@ -1,65 +1,25 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
-use crate::app::device::wish::DeviceWish;
-use crate::app::faults::FaultKind;
-use crate::app::guard::GuardStep;
+use crate::app::files::export::Content;
+use crate::app::hand::preset::Preset;
+use crate::app::hand::sequence::Play;
 use crate::app::layout::Layout;
-use crate::app::params::table::{ParamId, Value};
-use crate::app::poses::edit::LibraryEdit;
-use crate::app::poses::library::{PoseId, SequenceId};
-use crate::app::recorder::RecordingId;
-use crate::app::save::Content;
+use crate::app::params::action::ParamAction;
+use crate::app::procedures::procedure::ProcedureAction;
+use crate::app::readings::fault_recorder::{PersonAct, RecordingId};
+use crate::app::readings::faults::FaultKind;
 use crate::app::scan::ScanWish;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme};
-use crate::app::tuner::TrialWish;
+use crate::app::trials::action::TrialAction;
+use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, Dof, Finger, Force, Gesture, GestureRoute, GestureStore, Moment, PerDof, Speed,
     UserGesture,
 };
+use crate::params::rows::{ParamId, Value};
+use crate::poses::edit::LibraryEdit;
+use crate::poses::library::{Library, PoseId};
 use crate::transport::Endpoint;
-
-/// Poses that need no library.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Preset {
-    /// Every joint open.
-    Open,
-    /// Fingers and thumb half bent; the thumb's rotation stays.
-    Half,
-    /// Fingers and thumb bent; the thumb's rotation stays.
-    Close,
-}
-
-impl Preset {
-    /// Where this joint goes, if it moves at all.
-    #[must_use]
-    pub fn angle(self, dof: Dof) -> Option<Angle> {
-        match (self, dof) {
-            (Self::Open, _) => Some(Angle::MAX),
-            (Self::Half | Self::Close, Dof::ThumbRotate) => None,
-            (Self::Half, _) => Some(Angle::nearest(500)),
-            (Self::Close, _) => Some(Angle::MIN),
-        }
-    }
-}
-
-/// What a person does with a sequence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Play {
-    /// Run it from its start. Needs arming.
-    Start(SequenceId),
-    /// Take one step, then wait. Needs arming.
-    Step(SequenceId),
-    /// Hold where the hand is, until resumed.
-    Pause,
-    /// Go on where it was paused.
-    Resume,
-    /// End it and hold where the hand is.
-    End,
-    /// Show it on the drawn hand; nothing is sent.
-    Dry(SequenceId),
-    /// Show it no more.
-    EndDry,
-}
 
 /// One thing a person asked for. Returned by the views, carried out by `App::act`.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,7 +38,7 @@ pub enum Action {
     Speed(Dof, Speed),
     /// Leave a joint alone, or not.
     Lock(Dof, bool),
-    /// All joints that are not locked towards open or bent, none faster than is gentle. Needs arming.
+    /// All joints that are not locked towards open or bent, at the speeds that are set. Needs arming.
     Preset(Preset),
     /// Force threshold of all joints.
     ForceOfAll(Force),
@@ -98,12 +58,12 @@ pub enum Action {
     Library(LibraryEdit),
     /// Take a pose of the library, within its speed and force. Needs arming.
     Recall(PoseId),
-    /// Go to six angles at a gentle speed. Needs arming.
+    /// Go to six angles at the speeds that are set. Needs arming.
     TryAngles(PerDof<Angle>),
     /// Run a sequence, pause it, end it.
     Play(Play),
     /// What is asked about grasp trials.
-    Trial(TrialWish),
+    Trial(TrialAction),
     /// Ask for a file of poses and add what it holds.
     ImportPoses,
     /// Ask where the poses should go, and write them.
@@ -123,7 +83,7 @@ pub enum Action {
     /// Calibrate the force sensors. Checks first, under a card.
     CalibrateForce,
     /// What a person decides on such a card.
-    Guard(GuardStep),
+    Procedure(ProcedureAction),
     /// Talk to this hand from now on.
     Connect(Endpoint),
     /// Talk to no hand.
@@ -151,6 +111,8 @@ pub enum Action {
     Dismiss(u64),
     /// Dark or light.
     Theme(Theme),
+    /// Draw the right hand or the left one.
+    Side(Side),
     /// English or Chinese.
     Language(Language),
     /// Divide the window like this.
@@ -168,7 +130,7 @@ pub enum Action {
     /// What a kept row is to hold once it is applied, or nothing any more. Writes nothing.
     Stage(ParamId, Option<Value>),
     /// Read, write and save what the hand keeps.
-    Device(DeviceWish),
+    Param(ParamAction),
     /// Take the last taring back.
     UndoTare,
     /// Let the plots stand still; nothing is lost meanwhile.
@@ -194,12 +156,40 @@ impl Action {
             | Self::Recall(_)
             | Self::TryAngles(_)
             | Self::ClearErrors => true,
-            Self::Device(wish) => matches!(
-                wish,
-                DeviceWish::Apply | DeviceWish::Undo | DeviceWish::Save | DeviceWish::Agree
+            Self::Param(action) => matches!(
+                action,
+                ParamAction::Apply | ParamAction::Undo | ParamAction::Save | ParamAction::Agree
             ),
             Self::Play(play) => !matches!(play, Play::Dry(_) | Play::EndDry),
             _ => false,
         }
+    }
+
+    /// What this does to the hand, for the record of what happened; `None` if it does nothing to it. Arming, stopping,
+    /// gestures and notes are in the history already.
+    #[must_use]
+    pub fn person_act(&self, is_armed: bool, library: &Library) -> Option<PersonAct> {
+        match self {
+            Self::Disarm => return Some(PersonAct::Disarm),
+            Self::ClearErrors => return Some(PersonAct::ClearErrors),
+            // The rest passes only while armed.
+            _ if !is_armed => return None,
+            _ => {}
+        }
+        Some(match self {
+            Self::Target(dof, angle) => PersonAct::Target(*dof, *angle),
+            Self::Force(dof, force) => PersonAct::Force(*dof, *force),
+            Self::Speed(dof, speed) => PersonAct::Speed(*dof, *speed),
+            Self::ForceOfAll(force) => PersonAct::ForceOfAll(*force),
+            Self::SpeedOfAll(speed) => PersonAct::SpeedOfAll(*speed),
+            Self::Lock(dof, locked) => PersonAct::Lock(*dof, *locked),
+            Self::Preset(preset) => PersonAct::Preset(*preset),
+            Self::Recall(id) => PersonAct::Pose(library.pose(*id)?.name.as_str().into()),
+            Self::TryAngles(_) => PersonAct::Angles,
+            Self::Play(
+                play @ (Play::Start(_) | Play::Step(_) | Play::Pause | Play::Resume | Play::End),
+            ) => PersonAct::Play(*play),
+            _ => return None,
+        })
     }
 }

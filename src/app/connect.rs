@@ -108,7 +108,6 @@ impl Dial for SimDial {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use crate::hand::register;
 

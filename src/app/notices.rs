@@ -1,12 +1,13 @@
 //! What a person should read, as typed causes. The words, in every language, are the views'.
 
-use crate::app::faults::FaultKind;
-use crate::app::params::file::ParamsFileError;
-use crate::app::poses::file::PoseFileError;
-use crate::app::quirk_sheet::Difference;
-use crate::app::trial::Abort;
+use crate::app::readings::faults::FaultKind;
 use crate::hand::{Dof, Gesture, Moment, UserGesture};
-use crate::link::{ArmRefusal, Disarmed, LinkTrouble, RequestError};
+use crate::link::{LinkTrouble, RequestError};
+use crate::params::file::ParamsFileError;
+use crate::poses::file::PoseFileError;
+use crate::record::quirk_sheet::Difference;
+use crate::record::{ArmRefusal, Disarmed};
+use crate::trials::Abort;
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -63,6 +64,8 @@ pub enum NoticeKind {
     },
     /// Feedback does not show rest: the hand may still move.
     HoldAlarm,
+    /// Stop was pressed, and there is no live link to send it over.
+    StopNotSent,
     /// The hand is not armed any more, and no person asked for it.
     Disarmed(Disarmed),
     /// The hand cannot be armed.
@@ -215,7 +218,7 @@ impl NoticeKind {
     #[must_use]
     pub const fn level(&self) -> Level {
         match self {
-            Self::LinkLost(_) | Self::HoldAlarm => Level::Alarm,
+            Self::LinkLost(_) | Self::HoldAlarm | Self::StopNotSent => Level::Alarm,
             Self::Reconnected
             | Self::HoldConfirmed { .. }
             | Self::Acknowledged { .. }

@@ -1,61 +1,31 @@
-//! The program: opens and leaves hands, carries out actions, keeps settings. The rules of motion are in `act`.
+//! The program: carries out actions, lets hands and files go on, keeps settings. The rules of motion are with the hand.
 
 use crate::app::action::Action;
-use crate::app::calendar::{since_1970, stamp};
-use crate::app::config::Saver;
-use crate::app::desk::Desk;
-use crate::app::device::keeper::DeviceKeeper;
-use crate::app::device::wish::DeviceWish;
-use crate::app::guard::keeper::Guarding;
+use crate::app::env::Env;
+use crate::app::files::export::{self, Content};
+use crate::app::files::pose_file;
+use crate::app::files::quirk_notes::QuirkNotes;
+use crate::app::files::settings_file;
+use crate::app::hand::HandState;
+use crate::app::hand::connection::REST_WITHIN;
+use crate::app::hand::sequence::Play;
 use crate::app::notices::NoticeKind;
-use crate::app::params::file::ParamsFile;
-use crate::app::poses::book::PoseBook;
-use crate::app::poses::library::Library;
-use crate::app::poses::store::{self, Reading};
-use crate::app::recorder::Deed;
-use crate::app::save::{self, ChooseFile, Content, Saving};
+use crate::app::params::ParamAction;
+use crate::app::poses::PoseState;
 use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
-use crate::app::sheet_keeper::SheetKeeper;
 use crate::app::state::{PortChoice, State};
-use crate::app::tuner::TrialWish;
-use crate::app::tuner::files::Files;
-use crate::app::tuner::kept;
+use crate::app::trials::TrialAction;
+use crate::app::trials::files::{FilesEnd, SessionFiles};
 use crate::hand::Moment;
-use crate::link::{self, Clock, LinkConfig, PollRates, Wake};
-use crate::transport::{Dial, Endpoint, PortFound, ports};
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::time::Duration;
-use tokio::sync::oneshot;
-
-/// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the
-/// time after which the link itself gives the alarm, and a little.
-const REST_WITHIN: Duration = Duration::from_millis(600);
-
-/// What the program stands on.
-#[derive(Clone)]
-pub struct Env {
-    /// Where links live and files are written.
-    pub runtime: tokio::runtime::Handle,
-    /// The program's clock.
-    pub clock: Clock,
-    /// How wires are opened.
-    pub dial: Arc<dyn Dial>,
-    /// Called when something new is there.
-    pub wake: Wake,
-    /// How a person is asked where a file should go.
-    pub files: Arc<dyn ChooseFile>,
-    /// Where settings are kept; `None` = nowhere.
-    pub settings_path: Option<PathBuf>,
-}
-
-/// A hand that is being left: it was told to hold.
-struct Leaving {
-    /// Where to go then; `None` = nowhere.
-    to: Option<Endpoint>,
-    told: Moment,
-}
+use crate::history::MarkKind;
+use crate::params::file::ParamsFile;
+use crate::poses::library::{Library, Pose};
+use crate::poses::preview::Preview;
+use crate::store::calendar::{since_1970, stamp};
+use crate::store::{Job, Saver, on_thread};
+use crate::transport::{Endpoint, PortFound, ports};
+use crate::trials::plan_settings::{from_settings, in_place_of};
 
 /// The window is closing.
 #[derive(Clone, Copy)]
@@ -68,72 +38,61 @@ struct Closing {
 /// The whole program without its window.
 pub struct App {
     env: Env,
-    desk: Desk,
-    saver: Saver<Settings>,
+    state: State,
+    settings_saver: Saver<Settings>,
     pose_saver: Saver<Library>,
-    reading: Option<Reading>,
-    sheets: SheetKeeper,
-    params: DeviceKeeper,
-    guarding: Guarding,
-    leaving: Option<Leaving>,
-    closing: Option<Closing>,
-    ports: Option<oneshot::Receiver<Vec<PortFound>>>,
-    saving: Option<Saving>,
-    sessions: Option<Files>,
+    quirk_notes: QuirkNotes,
     scanner: Scanner,
+    closing: Option<Closing>,
+    finding_ports: Option<Job<Vec<PortFound>>>,
+    exporting: Option<Job<NoticeKind>>,
+    importing: Option<Job<Result<Library, NoticeKind>>>,
+    sessions: Option<Job<FilesEnd>>,
 }
 
 impl App {
     /// Connects to nothing by itself.
     #[must_use]
     pub fn new(env: Env, settings: Settings) -> Self {
-        let saver = Saver::new(
-            env.settings_path.clone(),
-            env.runtime.clone(),
-            settings.clone(),
-        );
-        let mut desk = Desk::new(settings);
-        match kept::draft(desk.state.settings.trial_plan.as_ref()) {
-            Ok(draft) => desk.state.tuner.draft = draft,
+        let (path, runtime) = (env.settings_path.clone(), env.runtime.clone());
+        let settings_saver = Saver::new(path, runtime, settings.clone(), settings_file::text);
+        let mut state = State {
+            settings,
+            ..State::default()
+        };
+        match from_settings(state.settings.trial_plan.as_ref()) {
+            Ok(plan) => state.trials.plan = plan,
             Err(error) => {
                 let message = error.to_string();
-                let what = NoticeKind::PlanIgnored { message };
-                desk.state.notices.push(Moment::ZERO, what);
+                state.trials.plan = in_place_of(state.settings.trial_plan.as_ref());
+                state
+                    .notices
+                    .push(Moment::ZERO, NoticeKind::PlanIgnored { message });
             }
         }
-        let pose_path = env.settings_path.as_deref().map(store::path_beside);
-        let (library, notice) = pose_path.as_deref().map(store::load).unwrap_or_default();
+        let pose_path = env.settings_path.as_deref().map(pose_file::path_beside);
+        let (library, notice) = pose_path
+            .as_deref()
+            .map(pose_file::load)
+            .unwrap_or_default();
         if let Some(what) = notice {
-            desk.state.notices.push(Moment::ZERO, what);
+            state.notices.push(Moment::ZERO, what);
         }
-        let pose_saver = Saver::new(pose_path, env.runtime.clone(), library.clone());
-        desk.state.poses = PoseBook::new(library);
-        let sheets = SheetKeeper::new(env.settings_path.as_deref(), env.runtime.clone());
-        let params = DeviceKeeper::new(
-            env.settings_path.as_deref(),
-            env.runtime.clone(),
-            Arc::clone(&env.wake),
-        );
-        let guarding = Guarding::new(
-            env.settings_path.as_deref(),
-            env.runtime.clone(),
-            Wake::clone(&env.wake),
-        );
+        let runtime = env.runtime.clone();
+        let pose_saver = Saver::new(pose_path, runtime, library.clone(), pose_file::text);
+        state.poses = PoseState::new(library);
         Self {
-            guarding,
+            quirk_notes: QuirkNotes::new(env.settings_path.as_deref()),
             env,
-            desk,
-            saver,
+            state,
+            settings_saver,
             pose_saver,
-            reading: None,
-            sheets,
-            params,
-            leaving: None,
-            closing: None,
-            ports: None,
-            saving: None,
-            sessions: None,
             scanner: Scanner::default(),
+            closing: None,
+            finding_ports: None,
+            exporting: None,
+            importing: None,
+            sessions: None,
         }
     }
 
@@ -142,11 +101,14 @@ impl App {
         let endpoint = endpoint
             .or_else(|| self.remembered(now))
             .unwrap_or_else(Endpoint::sim);
-        self.go(Some(endpoint), now);
+        let State { hands, notices, .. } = &mut self.state;
+        hands
+            .shown_mut()
+            .go(Some(endpoint), &self.env, notices, now);
     }
 
     fn remembered(&mut self, now: Moment) -> Option<Endpoint> {
-        let text = self.desk.state.settings.endpoint.clone()?;
+        let text = self.state.settings.endpoint.clone()?;
         match text.parse() {
             Ok(endpoint) => Some(endpoint),
             Err(_) => {
@@ -158,168 +120,230 @@ impl App {
 
     /// Tells the person something that was found elsewhere, such as an unreadable settings file.
     pub fn tell(&mut self, what: NoticeKind, now: Moment) {
-        self.desk.state.notices.push(now, what);
+        self.state.notices.push(now, what);
     }
 
     /// Everything the window shows.
     #[must_use]
     pub const fn state(&self) -> &State {
-        &self.desk.state
+        &self.state
     }
 
     /// Takes in what happened since the last call. Runs also while the window is hidden.
     pub fn logic(&mut self, now: Moment) {
-        self.desk.drain(now);
-        self.desk.state.record();
-        if let Some(leaving) = self.leaving.take_if(|leaving| {
-            now.since(leaving.told) >= REST_WITHIN || self.desk.is_at_rest(leaving.told)
-        }) {
-            self.go(leaving.to, now);
+        self.state.now = now;
+        let State {
+            hands,
+            notices,
+            trials,
+            settings,
+            scan,
+            ..
+        } = &mut self.state;
+        let env = &self.env;
+        for hand in hands.iter_mut() {
+            hand.take_news(notices, now);
+            hand.tick_sequence();
+            hand.tick_requests(notices, now);
+            hand.tick_params(env, notices, now);
+            hand.tick_series(trials, notices, now);
+            hand.tick_procedure(env, settings, notices, now);
+            hand.record();
+            hand.go_on_leaving(env, notices, now);
+            self.quirk_notes.tick(hand, env, notices, now);
         }
-        if let Some(place) = self.guarding.tick(&mut self.desk, now) {
-            self.go(Some(place), now);
+        self.scanner.drain(scan);
+        self.take_jobs(now);
+        self.save_changes(now);
+    }
+
+    fn take_jobs(&mut self, now: Moment) {
+        if let Some(found) = Job::take_from(&mut self.finding_ports) {
+            self.state.ports = found.into_iter().map(choice).collect();
         }
-        self.take_ports();
-        if let Some(end) = self.saving.as_mut().and_then(Saving::ended) {
-            self.saving = None;
+        if let Some(end) = Job::take_from(&mut self.exporting) {
             self.tell(end, now);
         }
-        self.take_session(now);
-        self.scanner.drain(&mut self.desk.state.scan);
-        if let Some(told) = self.sheets.tick(&mut self.desk.state) {
+        if let Some(end) = Job::take_from(&mut self.sessions) {
+            let told = self.state.trials.take(end);
             self.tell(told, now);
         }
-        if let Some(told) = self.params.tick(&mut self.desk) {
-            self.tell(told, now);
+        match Job::take_from(&mut self.importing) {
+            None => {}
+            // All of it is added, or nothing.
+            Some(Ok(library)) => {
+                let (poses, sequences) = (library.poses.len(), library.sequences.len());
+                self.state.poses.import(library);
+                self.tell(NoticeKind::PosesImported { poses, sequences }, now);
+            }
+            Some(Err(refused)) => self.tell(refused, now),
         }
-        self.take_poses(now);
-        let failed = self.saver.tick(&self.desk.state.settings, now);
-        let poses = &self.desk.state.poses.library;
-        for failed in failed.into_iter().chain(self.pose_saver.tick(poses, now)) {
-            self.tell(failed, now);
+    }
+
+    fn save_changes(&mut self, now: Moment) {
+        let at = now.since(Moment::ZERO);
+        if let Err(error) = self.settings_saver.tick(&self.state.settings, at) {
+            let message = error.to_string();
+            self.tell(NoticeKind::SettingsNotSaved { message }, now);
+        }
+        if let Err(error) = self.pose_saver.tick(&self.state.poses.library, at) {
+            let message = error.to_string();
+            self.tell(NoticeKind::PosesNotSaved { message }, now);
         }
     }
 
     /// Carries out one thing that a person asked for.
     pub fn act(&mut self, action: Action, now: Moment) {
-        self.desk.state.now = now;
-        if self.desk.state.tuner.is_running() && action.disturbs_series() {
+        self.state.now = now;
+        let hand = self.state.hand_mut();
+        hand.now = now;
+        if hand.runs_series() && action.disturbs_series() {
             self.tell(NoticeKind::SeriesRuns, now);
             return;
         }
-        if let Some(deed) = Deed::of(&action, &self.desk.state) {
-            self.desk.state.recorder.deed(deed, now);
+        if let Some(done) =
+            action.person_act(self.state.hand().is_armed(), &self.state.poses.library)
+        {
+            self.state.hand_mut().recorder.person(done, now);
         }
-        let desk = &mut self.desk;
         match action {
-            Action::Stop => desk.stop(now),
-            // A hand that is being left is not set in motion again.
-            Action::Arm if self.leaving.is_some() || self.closing.is_some() => {}
-            // Nor is one that something is done to under a card.
-            Action::Arm | Action::ClearErrors if desk.state.guard.is_some() => {}
-            Action::Arm => desk.arm(now),
-            Action::Disarm => desk.disarm(now),
-            Action::Target(dof, angle) => desk.target(dof, angle),
-            Action::Force(dof, force) => desk.force(dof, force),
-            Action::Speed(dof, speed) => desk.speed(dof, speed),
-            Action::Lock(dof, locked) => desk.lock(dof, locked),
-            Action::Preset(preset) => desk.preset(preset),
-            Action::ForceOfAll(force) => desk.force_of_all(force),
-            Action::SpeedOfAll(speed) => desk.speed_of_all(speed),
-            Action::Gesture(gesture) => desk.gesture(gesture, now),
-            Action::ClearErrors => desk.clear_errors(now),
-            Action::ChangePlace(id, wanted) => self.guarding.change(desk, id, wanted),
-            Action::FactoryReset => self.guarding.reset(desk),
-            Action::CalibrateForce => self.guarding.calibrate(desk),
-            Action::Guard(step) => self.guarding.step(desk, step, now),
-            Action::Connect(endpoint) => self.connect(endpoint, now),
-            Action::Disconnect => {
-                self.guarding.leave(desk);
-                self.leave(None, now);
-            }
-            Action::FindPorts => self.find_ports(),
-            Action::Save(content) => self.save(content),
-            Action::Scan(wish) => {
-                let held = desk.state.endpoint.clone();
-                self.scanner
-                    .begin(wish, held, &self.env, &mut desk.state.scan);
-            }
-            Action::CancelScan => self.scanner.cancel(&mut desk.state.scan),
-            Action::Tare(finger) => desk.tare(finger),
-            Action::UndoTare => desk.state.tare.undo(),
-            Action::SeenFault(dof, what) => desk.state.faults.see_one(dof, what),
-            Action::SeenFaults => desk.state.faults.see_all(),
-            Action::OpenedRecording(id) => desk.state.recorder.opened(id),
-            Action::ForgetFaults => desk.state.faults.forget(),
-            Action::Note(at, words) => desk.note(at, &words),
-            Action::Dismiss(id) => desk.state.notices.dismiss(id),
-            Action::Trial(wish) => self.act_on_trials(wish, now),
+            Action::Arm if self.closing.is_some() => {}
+            Action::Param(action) => self.param_action(action),
+            Action::Trial(action) => self.trial_action(action),
+            Action::Save(content) => self.export(content),
             Action::ImportPoses => self.import_poses(),
-            Action::ExportPoses => self.save(Content::Poses(self.desk.state.poses.library.clone())),
-            Action::Stage(id, value) => desk.stage(id, value),
-            Action::Device(wish) => self.device(wish, now),
-            action => self.act_on_poses(action, now),
+            Action::ExportPoses => self.export(Content::Poses(self.state.poses.library.clone())),
+            Action::FindPorts => self.find_ports(),
+            Action::Connect(endpoint) => self.connect(Some(endpoint), now),
+            Action::Disconnect => self.connect(None, now),
+            Action::Scan(wish) => {
+                let held = self.state.hand().endpoint.clone();
+                self.scanner
+                    .begin(wish, held, &self.env, &mut self.state.scan);
+            }
+            Action::CancelScan => self.scanner.cancel(&mut self.state.scan),
+            Action::Dismiss(id) => self.state.notices.dismiss(id),
+            action => self.hand_action(action, now),
         }
     }
 
-    /// What is done with files is begun here, all else at the desk.
-    fn device(&mut self, wish: DeviceWish, now: Moment) {
-        match wish {
-            DeviceWish::Dump => self.dump(),
-            DeviceWish::Open => self.params.open(self.env.files.as_ref()),
-            DeviceWish::OpenBackup(path) => self.params.open_backup(path),
-            wish => self.desk.device(&wish, now),
-        }
-    }
-
-    /// Asks where the rows should go that were read.
-    fn dump(&mut self) {
-        let params = self.desk.state.device.live_params();
-        if params.is_empty() {
-            return;
-        }
-        let file = ParamsFile {
-            hand: self.desk.state.hand_name(),
-            at: stamp(since_1970()),
-            why: "dump".into(),
-            params,
-            ..ParamsFile::default()
-        };
-        self.save(Content::Params(Box::new(file)));
-    }
-
-    /// Poses, sequences, and what the hand itself has stored.
-    fn act_on_poses(&mut self, action: Action, now: Moment) {
-        let desk = &mut self.desk;
+    /// What is done with the hand that is shown.
+    fn hand_action(&mut self, action: Action, now: Moment) {
+        let State {
+            hands,
+            notices,
+            settings,
+            ..
+        } = &mut self.state;
+        let (hand, env) = (hands.shown_mut(), &self.env);
         match action {
-            Action::StoreGesture(gesture, angles) => desk.store_gesture(gesture, angles, now),
-            Action::ReadGesture(gesture) => desk.read_gesture(gesture, now),
-            Action::Capture(name) => desk.capture(&name, now),
-            Action::Recapture(id) => desk.recapture(id, now),
-            Action::Library(edit) => desk.state.poses.edit(edit),
-            Action::Recall(id) => desk.recall(id),
-            Action::TryAngles(angles) => desk.try_angles(angles),
-            Action::Play(play) => desk.play(play, now),
-            kept => self.keep(kept),
+            Action::Stop => hand.stop(notices, now),
+            Action::Arm => hand.arm(notices, now),
+            Action::Disarm => hand.disarm(now),
+            Action::Target(dof, angle) => hand.target(dof, angle),
+            Action::Force(dof, force) => hand.force(dof, force),
+            Action::Speed(dof, speed) => hand.speed(dof, speed),
+            Action::Lock(dof, locked) => hand.lock(dof, locked),
+            Action::Preset(preset) => hand.preset(preset),
+            Action::ForceOfAll(force) => {
+                for dof in crate::hand::Dof::ALL {
+                    hand.force(dof, force);
+                }
+            }
+            Action::SpeedOfAll(speed) => {
+                for dof in crate::hand::Dof::ALL {
+                    hand.speed(dof, speed);
+                }
+            }
+            Action::TryAngles(angles) => hand.try_angles(angles),
+            Action::Gesture(gesture) => {
+                hand.gesture(gesture, settings.gesture_route, env, notices);
+            }
+            Action::ClearErrors if hand.procedure.is_none() => hand.clear_errors(env, notices),
+            Action::StoreGesture(gesture, angles) => {
+                hand.store_gesture((gesture, angles), settings.gesture_store, env, notices);
+            }
+            Action::ReadGesture(gesture) => {
+                hand.read_gesture(gesture, settings.gesture_store, env, notices);
+            }
+            Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted, env),
+            Action::FactoryReset => hand.open_reset(),
+            Action::CalibrateForce => hand.open_calibration(),
+            Action::Procedure(action) => hand.procedure_action(action, env, now),
+            Action::Tare(finger) => hand.tare(finger),
+            Action::UndoTare => hand.tare.undo(),
+            Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
+            Action::SeenFaults => hand.faults.see_all(),
+            Action::ForgetFaults => hand.faults.forget(),
+            Action::OpenedRecording(id) => hand.recorder.opened(id),
+            Action::Note(at, words) => {
+                if let Some(note) = MarkKind::note(&words) {
+                    hand.history.mark(at, note);
+                }
+            }
+            Action::Stage(id, value) => hand.params.stage(id, value),
+            action => self.pose_action(action, now),
+        }
+    }
+
+    /// Poses and sequences.
+    fn pose_action(&mut self, action: Action, now: Moment) {
+        let State {
+            hands,
+            notices,
+            poses,
+            ..
+        } = &mut self.state;
+        let hand = hands.shown_mut();
+        match action {
+            Action::Capture(name) => match hand.pose_now() {
+                Some(angles) => poses.newest = poses.library.add_pose(&name, Pose::at(angles)),
+                None => notices.push(now, NoticeKind::PoseUnknown),
+            },
+            Action::Recapture(id) => match hand.pose_now() {
+                Some(angles) => {
+                    let mut known = poses.library.poses.iter_mut();
+                    if let Some(pose) = known.find(|pose| pose.id == id) {
+                        pose.angles = angles;
+                    }
+                }
+                None => notices.push(now, NoticeKind::PoseUnknown),
+            },
+            Action::Library(edit) => poses.edit(edit),
+            Action::Recall(id) => {
+                if let Some(pose) = poses.library.pose(id)
+                    && hand.recall(pose)
+                {
+                    poses.recalled = Some(id);
+                }
+            }
+            Action::Play(Play::Dry(id)) => {
+                let angle = hand.sample.angle;
+                let from = crate::hand::PerDof::from_fn(|dof| {
+                    angle.and_then(|angle| angle.value[dof].documented())
+                });
+                poses.preview = Preview::of(&poses.library, id, from, now);
+            }
+            Action::Play(Play::EndDry) => poses.preview = None,
+            Action::Play(play) => {
+                if matches!(play, Play::Start(_) | Play::Step(_)) {
+                    poses.preview = None;
+                }
+                hand.play(play, &poses.library, &self.env);
+            }
+            action => self.keep(action),
         }
     }
 
     /// What is kept from one start to the next.
     fn keep(&mut self, action: Action) {
-        let State {
-            settings, gestures, ..
-        } = &mut self.desk.state;
+        let settings = &mut self.state.settings;
         match action {
-            Action::NameGesture(gesture, name) => {
-                gestures.set_name(gesture, &name);
-                settings.gesture_names = gestures.kept_names();
-            }
-            Action::GestureRoute(route) => {
-                gestures.route = route;
-                settings.gesture_route = route;
-            }
+            Action::NameGesture(gesture, name) => settings.name_gesture(gesture, &name),
+            Action::GestureRoute(route) => settings.gesture_route = route,
             Action::GestureStore(store) => settings.gesture_store = store,
             Action::Theme(theme) => settings.theme = theme,
+            Action::Side(side) => settings.side = side,
             Action::Layout(layout) => settings.layout = layout,
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,
@@ -330,146 +354,107 @@ impl App {
         }
     }
 
-    fn connect(&mut self, endpoint: Endpoint, now: Moment) {
-        self.guarding.leave(&mut self.desk);
-        // A scan may still ask further ids on the port that is wanted.
-        self.scanner.cancel(&mut self.desk.state.scan);
-        self.desk.state.settings.endpoint = Some(endpoint.to_string());
-        self.leave(Some(endpoint), now);
+    fn connect(&mut self, to: Option<Endpoint>, now: Moment) {
+        if let Some(endpoint) = &to {
+            // A scan may still ask further ids on the port that is wanted.
+            self.scanner.cancel(&mut self.state.scan);
+            self.state.settings.endpoint = Some(endpoint.to_string());
+        }
+        let State { hands, notices, .. } = &mut self.state;
+        let hand = hands.shown_mut();
+        hand.close_procedure();
+        hand.leave(to, &self.env, notices, now);
     }
 
-    /// Leaves the hand of now. One that may be moving is told to hold first and gets time to.
-    fn leave(&mut self, to: Option<Endpoint>, now: Moment) {
-        if let Some(leaving) = &mut self.leaving {
-            leaving.to = to;
-        } else if self.desk.may_move() {
-            self.desk.stop(now);
-            self.leaving = Some(Leaving { to, told: now });
-        } else {
-            self.go(to, now);
+    /// What is done with files is begun here, all else with the hand.
+    fn param_action(&mut self, action: ParamAction) {
+        match action {
+            ParamAction::Dump => {
+                let hand = self.state.hand();
+                let params = hand.params.live_params();
+                if params.is_empty() {
+                    return;
+                }
+                let file = ParamsFile {
+                    hand: hand.name(),
+                    at: stamp(since_1970()),
+                    why: "dump".into(),
+                    params,
+                    ..ParamsFile::default()
+                };
+                self.export(Content::Params(Box::new(file)));
+            }
+            action => self.state.hands.shown_mut().param_action(action, &self.env),
         }
     }
 
-    fn go(&mut self, to: Option<Endpoint>, now: Moment) {
-        // The old link goes first: a serial port has room for one.
-        self.desk.replace(None, None, now);
-        let Some(endpoint) = to else { return };
-        let config = LinkConfig {
-            endpoint: endpoint.clone(),
-            rates: PollRates::default(),
-            clock: self.env.clock,
-            dial: Arc::clone(&self.env.dial),
-            wake: Arc::clone(&self.env.wake),
-        };
-        let link = link::open(config, &self.env.runtime);
-        self.desk.replace(Some(endpoint), Some(Box::new(link)), now);
-    }
-
-    /// Reads on what went over the wire. Called while somebody looks at it, and only then.
-    pub fn read_traffic(&mut self, now: Moment) {
-        save::read_on(&mut self.desk.state.traffic, now);
-    }
-
-    /// Reads what the hand keeps because somebody looks at it. Called while they do; asks only when it is due. Writes nothing.
-    pub fn look_at_device(&mut self, now: Moment) {
-        if self.desk.state.device.look(now) {
-            self.desk.device(&DeviceWish::Read, now);
+    fn trial_action(&mut self, action: TrialAction) {
+        let State {
+            hands,
+            trials,
+            settings,
+            ..
+        } = &mut self.state;
+        match action {
+            TrialAction::Start => hands.shown_mut().start_series(trials, &self.env),
+            TrialAction::Open | TrialAction::Save(..) if self.sessions.is_some() => {}
+            TrialAction::Open => self.sessions = Some(SessionFiles::open(&self.env)),
+            TrialAction::Save(id, criterion) => {
+                let session = trials.session(id);
+                let save = |session| SessionFiles::save(session, criterion, &self.env);
+                self.sessions = session.and_then(save);
+            }
+            action => trials.act(action, settings),
         }
     }
 
     /// One file at a time: while a dialog is open, another is not opened.
-    fn save(&mut self, content: Content) {
-        if self.saving.is_some() {
-            return;
-        }
-        let (files, wake) = (&self.env.files, Arc::clone(&self.env.wake));
-        let saving = Saving::start(content, files.as_ref(), &self.env.runtime, wake);
-        self.saving = Some(saving);
-    }
-
-    fn act_on_trials(&mut self, wish: TrialWish, now: Moment) {
-        let (files, runtime) = (self.env.files.as_ref(), &self.env.runtime);
-        let wake = Arc::clone(&self.env.wake);
-        match wish {
-            TrialWish::Open | TrialWish::Save(..) if self.sessions.is_some() => {}
-            TrialWish::Open => self.sessions = Some(Files::open(files, runtime, wake)),
-            TrialWish::Save(id, criterion) => {
-                let session = self.desk.state.tuner.session(id);
-                let save = |session| Files::save(session, criterion, files, runtime, wake);
-                self.sessions = session.and_then(save);
-            }
-            wish => {
-                self.desk.trial_wish(wish, since_1970(), now);
-            }
-        }
-    }
-
-    fn take_session(&mut self, now: Moment) {
-        if let Some(end) = self.sessions.as_mut().and_then(Files::ended) {
-            self.sessions = None;
-            let told = self.desk.state.tuner.take(end);
-            self.tell(told, now);
+    fn export(&mut self, content: Content) {
+        if self.exporting.is_none() {
+            self.exporting = Some(export::save(content, &self.env));
         }
     }
 
     fn import_poses(&mut self) {
-        if self.reading.is_none() {
-            let (files, wake) = (&self.env.files, Arc::clone(&self.env.wake));
-            self.reading = Some(Reading::start(files.as_ref(), &self.env.runtime, wake));
+        if self.importing.is_none() {
+            self.importing = Some(pose_file::import(&self.env));
         }
-    }
-
-    /// A file of poses was read: all of it is added, or nothing.
-    fn take_poses(&mut self, now: Moment) {
-        let Some(end) = self.reading.as_mut().and_then(Reading::ended) else {
-            return;
-        };
-        self.reading = None;
-        let told = end.map(|library| {
-            let (poses, sequences) = (library.poses.len(), library.sequences.len());
-            self.desk.state.poses.import(library);
-            NoticeKind::PosesImported { poses, sequences }
-        });
-        self.tell(told.unwrap_or_else(|refused| refused), now);
     }
 
     fn find_ports(&mut self) {
-        if self.ports.is_some() {
-            return;
+        if self.finding_ports.is_none() {
+            let find = async { on_thread(|| Ok(ports())).await.unwrap_or_default() };
+            self.finding_ports = Some(Job::start(&self.env.runtime, &self.env.wake, find));
         }
-        let (found, asked) = oneshot::channel();
-        let wake = Arc::clone(&self.env.wake);
-        self.env.runtime.spawn_blocking(move || {
-            // A receiver that is gone means that the window is gone: no one is left to tell.
-            let _told = found.send(ports());
-            wake();
-        });
-        self.ports = Some(asked);
     }
 
-    fn take_ports(&mut self) {
-        let Some(asked) = &mut self.ports else { return };
-        match asked.try_recv() {
-            Ok(found) => self.desk.state.ports = found.into_iter().map(choice).collect(),
-            Err(oneshot::error::TryRecvError::Empty) => return,
-            Err(oneshot::error::TryRecvError::Closed) => {}
-        }
-        self.ports = None;
+    /// Reads on what went over the wire. Called while somebody looks at it, and only then.
+    pub fn read_traffic(&mut self, now: Moment) {
+        export::read_on(&mut self.state.hand_mut().traffic, now);
     }
 
-    /// The window wants to close. A hand that is armed or that this program set in motion is told to hold first.
+    /// Reads what the hand keeps because somebody looks at it. Called while they do; asks only when it is due. Writes nothing.
+    pub fn look_at_params(&mut self, now: Moment) {
+        self.state.hands.shown_mut().look_at_params(&self.env, now);
+    }
+
+    /// The window is about to close. A hand that is armed, or that this program set in motion, is stopped first.
     /// True once the window may go: the hand rests, or 600 ms have passed. Call it each frame until then.
     pub fn close(&mut self, now: Moment) -> bool {
+        let State { hands, notices, .. } = &mut self.state;
         let closing = *self.closing.get_or_insert_with(|| {
-            let held = self.desk.may_move();
-            if held {
-                self.desk.stop(now);
+            let mut held = false;
+            for hand in hands.iter_mut().filter(|hand| hand.may_move()) {
+                hand.stop(notices, now);
+                held = true;
             }
             Closing { since: now, held }
         });
-        let poses = self.pose_saver.flush(&self.desk.state.poses.library, now);
-        let saved = self.saver.flush(&self.desk.state.settings, now) && poses;
-        let rests = !closing.held || self.desk.is_at_rest(closing.since);
+        let at = now.since(Moment::ZERO);
+        let poses = self.pose_saver.flush(&self.state.poses.library, at);
+        let saved = self.settings_saver.flush(&self.state.settings, at) && poses;
+        let is_held = |hand: &HandState| hand.is_held(closing.since);
+        let rests = !closing.held || self.state.hands.iter().all(is_held);
         saved && rests || now.since(closing.since) >= REST_WITHIN
     }
 }

@@ -1,6 +1,6 @@
 //! Looking for hands: what the window shows of a scan, and the scan behind it. Never connects by itself.
 
-use crate::app::program::Env;
+use crate::app::env::Env;
 use crate::hand::HandId;
 use crate::link::scan::{
     Found, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanProgress, ScanSummary,
@@ -67,7 +67,7 @@ pub enum ScanRemark {
 
 /// What the window shows of the newest scan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct ScanBook {
+pub struct ScanState {
     /// Where it stands.
     pub stage: ScanStage,
     /// What was asked for.
@@ -84,7 +84,7 @@ pub struct ScanBook {
     pub left_out: usize,
 }
 
-impl ScanBook {
+impl ScanState {
     /// True while a scan is under way.
     #[must_use]
     pub fn is_running(&self) -> bool {
@@ -125,7 +125,7 @@ impl Scanner {
         wish: ScanWish,
         held: Option<Endpoint>,
         env: &Env,
-        book: &mut ScanBook,
+        book: &mut ScanState,
     ) {
         if self.handle.is_some() {
             return;
@@ -134,10 +134,10 @@ impl Scanner {
             ports: Vec::new(),
             can: Vec::new(),
         };
-        *book = ScanBook {
+        *book = ScanState {
             stage: ScanStage::Running,
             wish: Some(wish.clone()),
-            ..ScanBook::default()
+            ..ScanState::default()
         };
         let (local, hosts, ids) = match wish {
             ScanWish::Ports(IdRange::Few) => (Local::Listed, Vec::new(), FEW),
@@ -157,14 +157,14 @@ impl Scanner {
     }
 
     /// Ends the scan that runs; what it found stays.
-    pub(crate) fn cancel(&mut self, book: &mut ScanBook) {
+    pub(crate) fn cancel(&mut self, book: &mut ScanState) {
         if self.handle.take().is_some() {
             book.stage = ScanStage::Cancelled;
         }
     }
 
     /// Takes in what was found.
-    pub(crate) fn drain(&mut self, book: &mut ScanBook) {
+    pub(crate) fn drain(&mut self, book: &mut ScanState) {
         let Some(handle) = &mut self.handle else {
             return;
         };
@@ -180,7 +180,6 @@ impl Scanner {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use std::time::Duration;
 
@@ -195,7 +194,7 @@ mod tests {
 
     #[test]
     fn what_has_no_room_is_counted() {
-        let mut book = ScanBook::default();
+        let mut book = ScanState::default();
         for _ in 0..=FOUND_MAX {
             book.take(found(1));
         }

@@ -1,12 +1,13 @@
 //! What is kept from one start to the next. Never a setpoint: a plan of trials moves nothing before a person arms and starts it.
 
 use crate::app::layout::Layout;
-use crate::hand::{GestureRoute, GestureStore};
+use crate::hand::kinematics::Side;
+use crate::hand::{Gesture, GestureRoute, GestureStore};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Dark or light.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Theme {
     /// Light on dark.
@@ -210,6 +211,9 @@ impl ShownPlots {
     }
 }
 
+/// Characters in the name of a gesture: what fits a button.
+pub const NAME_CHARS_MAX: usize = 32;
+
 /// What is kept from one start to the next. Unknown keys of the file survive in [`Self::others`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -218,6 +222,8 @@ pub struct Settings {
     pub endpoint: Option<String>,
     /// Dark or light.
     pub theme: Theme,
+    /// The hand that is drawn: no register says which one it is.
+    pub side: Side,
     /// Language of the window.
     pub language: Language,
     /// How angles are written and typed.
@@ -234,10 +240,55 @@ pub struct Settings {
     pub gesture_names: BTreeMap<String, String>,
     /// How the window is divided.
     pub layout: Layout,
-    /// The plan of trials that was written last ([`crate::app::tuner::kept`]); of whatever form, so that a newer one spoils
+    /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,
     /// Keys of a newer version, kept as they are.
     #[serde(flatten)]
     pub others: toml::Table,
+}
+
+impl Settings {
+    /// The name that a person gave to a gesture. Manual: 2.6.7 lists no names by number, so there are no others.
+    #[must_use]
+    pub fn gesture_name(&self, gesture: Gesture) -> Option<&str> {
+        let name = self.gesture_names.get(&gesture.get().to_string())?.trim();
+        (!name.is_empty()).then_some(name)
+    }
+
+    /// Gives a gesture a name of one line; empty takes it away.
+    pub fn name_gesture(&mut self, gesture: Gesture, name: &str) {
+        let plain = |c: char| if c.is_control() { ' ' } else { c };
+        let line: String = name.chars().map(plain).collect();
+        let line: String = line.trim().chars().take(NAME_CHARS_MAX).collect();
+        let number = gesture.get().to_string();
+        if line.is_empty() {
+            self.gesture_names.remove(&number);
+        } else {
+            self.gesture_names.insert(number, line);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_gestures_are_lines_that_fit_and_empty_ones_are_none() {
+        let mut settings = Settings::default();
+        let gesture = Gesture::MIN;
+        settings.name_gesture(gesture, " a\nfist ");
+        assert_eq!(settings.gesture_name(gesture), Some("a fist"));
+        settings.name_gesture(gesture, &"手".repeat(100));
+        let chars = settings
+            .gesture_name(gesture)
+            .map(|name| name.chars().count());
+        assert_eq!(chars, Some(NAME_CHARS_MAX));
+        settings.name_gesture(gesture, "  ");
+        assert_eq!(
+            (settings.gesture_name(gesture), settings.gesture_names.len()),
+            (None, 0)
+        );
+    }
 }

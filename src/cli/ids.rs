@@ -1,4 +1,4 @@
-//! Lists of hand ids as a person types them: `3`, `1,2,3`, `1-10`, or both together. Asks nobody.
+//! Lists of hand ids as a person types them: `3`, `1,2,3`, `1-10`, or a mixture.
 
 use crate::hand::HandId;
 
@@ -52,14 +52,13 @@ fn id(text: &str, whole: &str) -> Result<HandId, String> {
         .and_then(|number| HandId::new(number).ok())
         .ok_or_else(|| {
             format!(
-                "'{whole}' is no list of ids: write numbers from 1 to 254, such as 1,2,3 or 1-10"
+                "'{whole}' is not a list of ids: write numbers from 1 to 254, such as 1,2,3 or 1-10"
             )
         })
 }
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
 
     fn ids(text: &str) -> Result<Vec<u8>, String> {
@@ -83,14 +82,14 @@ mod tests {
     #[test]
     fn bad_lists_get_one_clear_sentence() {
         for (text, words) in [
-            ("", "no list of ids"),
+            ("", "not a list of ids"),
             ("0", "1 to 254"),
             ("255", "1 to 254"),
-            ("1,,2", "no list of ids"),
-            ("1;2", "no list of ids"),
-            ("one", "no list of ids"),
-            ("-3", "no list of ids"),
-            ("1-2-3", "no list of ids"),
+            ("1,,2", "not a list of ids"),
+            ("1;2", "not a list of ids"),
+            ("one", "not a list of ids"),
+            ("-3", "not a list of ids"),
+            ("1-2-3", "not a list of ids"),
             ("1-300", "1 to 254"),
             ("9-3", "write 3-9"),
             ("1,2,1", "id 1 is named twice"),

@@ -1,11 +1,11 @@
-//! The person's or the system's wish that the program ends: Ctrl-C, and on Unix SIGTERM and SIGHUP; and that the simulated hand
-//! loses its power: SIGUSR1. Ends nothing itself.
+//! Signals: Ctrl-C, and on Unix SIGTERM and SIGHUP, ask the program to end; SIGUSR1 cuts the power of the simulated hand. Ends
+//! nothing itself.
 
 use anyhow::Context as _;
 #[cfg(unix)]
 use tokio::signal::unix::{Signal, SignalKind, signal};
 
-/// Listens from its making on, so that no wish is missed.
+/// Listens from its creation on, so that no signal is missed.
 pub(crate) struct Interrupt {
     #[cfg(unix)]
     signals: [Signal; 3],
@@ -13,7 +13,7 @@ pub(crate) struct Interrupt {
 
 #[cfg(unix)]
 impl Interrupt {
-    /// Begins to listen. Must be called within a tokio runtime.
+    /// Starts listening. Must be called within a tokio runtime.
     pub(crate) fn listen() -> anyhow::Result<Self> {
         let on = |kind| signal(kind).context("cannot listen for Ctrl-C");
         Ok(Self {
@@ -25,7 +25,7 @@ impl Interrupt {
         })
     }
 
-    /// Resolves at the first wish. May be dropped and called again.
+    /// Resolves at the first signal. May be dropped and called again.
     pub(crate) async fn wished(&mut self) {
         let [interrupt, terminate, hangup] = &mut self.signals;
         tokio::select! {
@@ -39,12 +39,12 @@ impl Interrupt {
 
 #[cfg(not(unix))]
 impl Interrupt {
-    /// Begins to listen. Must be called within a tokio runtime.
+    /// Starts listening. Must be called within a tokio runtime.
     pub(crate) fn listen() -> anyhow::Result<Self> {
         Ok(Self {})
     }
 
-    /// Resolves at the first wish. May be dropped and called again.
+    /// Resolves at the first signal. May be dropped and called again.
     pub(crate) async fn wished(&mut self) {
         if tokio::signal::ctrl_c()
             .await
@@ -56,7 +56,7 @@ impl Interrupt {
     }
 }
 
-/// The person's wish that the simulated hand loses its power for a moment: SIGUSR1, where there are signals.
+/// A request to cut the simulated hand's power for a moment: SIGUSR1, where there are signals.
 pub(crate) struct PowerCut {
     #[cfg(unix)]
     signal: Signal,
@@ -64,13 +64,13 @@ pub(crate) struct PowerCut {
 
 #[cfg(unix)]
 impl PowerCut {
-    /// Begins to listen. Must be called within a tokio runtime.
+    /// Starts listening. Must be called within a tokio runtime.
     pub(crate) fn listen() -> anyhow::Result<Self> {
         let signal = signal(SignalKind::user_defined1()).context("cannot listen for SIGUSR1")?;
         Ok(Self { signal })
     }
 
-    /// Resolves at the next wish. May be dropped and called again.
+    /// Resolves at the next signal. May be dropped and called again.
     pub(crate) async fn wished(&mut self) {
         if self.signal.recv().await.is_none() {
             std::future::pending::<()>().await;

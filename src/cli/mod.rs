@@ -1,39 +1,37 @@
-//! The terminal's side of the program: what the command line asks is done here, and how it ended is told. Knows no
-//! protocol and draws nothing.
+//! The command line: one file a command, each of which carries out its command and reports the outcome.
 
 mod args;
 mod doctor;
+mod help;
 mod ids;
 mod interrupt;
 mod names;
 mod out;
 mod params;
+mod parse;
 mod quirks;
 mod read;
 mod registers;
 mod scan;
 mod session;
 mod sim;
-mod sim_quirks;
 mod snapshot;
-mod telemetry;
 mod trial;
 mod value;
 mod watch;
 mod window;
-mod wire;
 
 use args::{Cli, Command};
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 use out::{Out, ReaderGone, Told, WrongUsage};
 use std::process::ExitCode;
 
 /// The exit status of wrong usage, as clap gives it.
 const WRONG_USAGE: u8 = 2;
 
-/// Does what the command line asks. Errors go to standard error as one sentence each.
+/// Runs the command line. Errors go to standard error as one sentence each.
 ///
-/// The exit status is 0 when done, 1 if it could not be done; wrong usage ends the process with 2.
+/// The exit status is 0 when done, 1 on failure, 2 on wrong usage.
 #[must_use]
 pub fn run() -> ExitCode {
     let Cli { command, window } = Cli::parse();
@@ -60,9 +58,8 @@ fn obey(command: Command) -> anyhow::Result<()> {
     let mut out = Out::stdout();
     let done = match command {
         Command::Snapshot(args) => snapshot::run(&mut out, &args),
-        Command::Watch(args) if args.wire => wire::run(&mut out, &args),
-        Command::Watch(args) => watch::run(&mut out, args),
-        Command::Read(args) => read::run(&mut out, args),
+        Command::Watch(args) => watch::run(&mut out, &args),
+        Command::Read(args) => read::run(&mut out, &args),
         Command::Scan(args) => scan::run(&mut out, &args),
         Command::Doctor(args) => doctor::run(&mut out, &args),
         Command::Quirks(args) => quirks::run(&mut out, &args),
@@ -70,8 +67,9 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Trial(args) => trial::run(&mut out, &args),
         Command::Sim(args) => sim::run(&mut out, &args),
         Command::Registers(args) => registers::run(&mut out, args.json),
+        Command::Help(args) => help::run(&mut out, &args, Cli::command()),
     };
-    // What was found out before a failure is shown as well.
+    // Output from before a failure is shown as well.
     let shown = out.flush();
     done.and(shown)
 }

@@ -1,4 +1,4 @@
-//! Names that a person types: registers by the manual's names, and which known one a wrong one was meant to be.
+//! Names that a person types: registers by the manual's names, and the known names nearest to a mistyped one.
 
 use crate::hand::register::{self, REGISTERS, Register};
 
@@ -17,9 +17,11 @@ pub(crate) fn register(name: &str) -> Result<&'static Register, String> {
 }
 
 /// The known names that look most like this one, best first.
-fn nearest(name: &str, known: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
+pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let name = name.to_uppercase();
-    let mut ranked: Vec<(usize, &str)> = known.map(|one| (unlikeness(&name, one), one)).collect();
+    let mut ranked: Vec<(usize, &str)> = known
+        .map(|one| (unlikeness(&name, &one.to_uppercase()), one))
+        .collect();
     ranked.sort_by_key(|(unlike, _)| *unlike);
     ranked
         .into_iter()
@@ -57,7 +59,6 @@ fn distance(from: &str, to: &str) -> usize {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
 
     #[test]

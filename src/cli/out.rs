@@ -1,13 +1,13 @@
-//! Standard output, locked once and gathered, and words for a person on standard error. A reader that went away ends
-//! the command quietly.
+//! Standard output, locked once and buffered, and messages on standard error. A reader that goes away ends the command
+//! quietly.
 
+use serde::Serialize;
 use std::io::{self, BufWriter, Write};
 
-/// Bytes gathered before they go out by themselves: some twenty samples, so that a full-rate stream is not a system
-/// call a line.
+/// Size of the buffer: some twenty samples, so that a full-rate stream does not cost a system call per line.
 const GATHERED: usize = 64 * 1024;
 
-/// Where a command's results go. What is written shows at [`Out::flush`] at the latest.
+/// Where a command's results go. Everything written shows at [`Out::flush`] at the latest.
 pub(crate) struct Out {
     to: BufWriter<Box<dyn Write>>,
 }
@@ -17,15 +17,22 @@ pub(crate) struct Out {
 #[error("the reader of the output went away")]
 pub(crate) struct ReaderGone;
 
-/// The command could not do what was asked, and has said why already.
+/// The command failed, and has already said why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("it was said already")]
+#[error("already reported")]
 pub(crate) struct Told;
 
-/// What was asked needs something else beside it on the command line. Nothing was done.
+/// Wrong usage that clap cannot see. Nothing was done.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub(crate) struct WrongUsage(pub(crate) String);
+
+impl WrongUsage {
+    /// As the error of a command.
+    pub(crate) fn error(why: impl Into<String>) -> anyhow::Error {
+        Self(why.into()).into()
+    }
+}
 
 impl Out {
     /// The process's standard output.
@@ -44,7 +51,22 @@ impl Out {
         checked(writeln!(self.to, "{line}"))
     }
 
-    /// Shows what was written until now.
+    /// Writes lines.
+    pub(crate) fn lines(
+        &mut self,
+        lines: impl IntoIterator<Item = impl AsRef<str>>,
+    ) -> anyhow::Result<()> {
+        lines
+            .into_iter()
+            .try_for_each(|line| self.line(line.as_ref()))
+    }
+
+    /// Writes one JSON object on a line, its fields in the order of their names.
+    pub(crate) fn object(&mut self, object: &impl Serialize) -> anyhow::Result<()> {
+        self.line(&serde_json::to_value(object)?.to_string())
+    }
+
+    /// Shows everything written so far.
     pub(crate) fn flush(&mut self) -> anyhow::Result<()> {
         checked(self.to.flush())
     }
@@ -58,7 +80,15 @@ fn checked(written: io::Result<()>) -> anyhow::Result<()> {
     }
 }
 
-/// Tells a person on standard error what is going on.
+/// How a command ends that has said everything already.
+pub(crate) fn end(is_done: bool) -> anyhow::Result<()> {
+    match is_done {
+        true => Ok(()),
+        false => Err(Told.into()),
+    }
+}
+
+/// Prints a message on standard error.
 pub(crate) fn say(words: &str) {
     // Where nobody can read, nobody can be told.
     let _unread = writeln!(io::stderr().lock(), "handscope: {words}");
@@ -66,7 +96,6 @@ pub(crate) fn say(words: &str) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use std::cell::RefCell;
     use std::rc::Rc;

@@ -1,97 +1,72 @@
-//! `quirks`: what a hand is found to do in its own way, printed or written to a file. Reads only; keeps nothing.
+//! `quirks`: how a hand differs from others, printed or written to a file. Only reads from the hand.
 
-use crate::app::QuirkSheet;
-use crate::app::quirk_sheet::{gap_name, packing_name, touch_name};
 use crate::cli::out::Out;
-use crate::cli::session;
+use crate::cli::session::{self, ONLY_WHAT_IS_ASKED};
 use crate::link::quirks::baud_of_code;
-use crate::link::{Clock, PollRates, Quirks};
+use crate::link::quirks::book::{self, QuirkBook};
+use crate::record::quirk_sheet::QuirkSheet;
 use crate::transport::Endpoint;
 use anyhow::Context as _;
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::path::PathBuf;
-
-/// The link asks for nothing once it knows the hand.
-const NOTHING_MORE: PollRates = PollRates {
-    state_hz: 0.0,
-    tactile_hz: 0.0,
-    settings_hz: 0.0,
-};
 
 #[derive(Debug, Args)]
 pub(crate) struct QuirksArgs {
-    /// The hand to get to know
+    /// The hand to examine
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Endpoint,
-    /// One JSON object
+    /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
-    /// Write the sheet to this file too
+    /// Also write the sheet to this file
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
 }
 
-/// Gets to know the hand and prints what was found.
+/// Identifies the hand and prints what was found.
 pub(crate) fn run(out: &mut Out, args: &QuirksArgs) -> anyhow::Result<()> {
-    let quirks = session::runtime()?.block_on(async {
-        let link = session::open(&args.hand, NOTHING_MORE, Clock::start());
-        session::answered(&link, &args.hand).await?;
-        anyhow::Ok(link.status().quirks)
-    })?;
+    let reached = session::reach(&args.hand, ONLY_WHAT_IS_ASKED);
+    let quirks =
+        session::runtime()?.block_on(async { reached.await.map(|link| link.status().quirks) })?;
+    let sheet = book::sheet(&args.hand, &quirks, "");
     if let Some(path) = &args.out {
-        let sheet = QuirkSheet::new(&args.hand, &quirks, "");
-        std::fs::write(path, sheet.to_toml())
+        std::fs::write(path, QuirkBook::of(sheet.clone()).to_toml())
             .with_context(|| format!("cannot write {}", path.display()))?;
     }
     if args.json {
-        return out.line(&object(&args.hand, &quirks).to_string());
+        return out.object(&json!({
+            "hand": args.hand.to_string(),
+            "hand_id": sheet.hand_id,
+            "baud_code": sheet.baud_code,
+            "packing": sheet.packing,
+            "gap": sheet.gap,
+            "touch": sheet.touch,
+        }));
     }
-    for line in lines(&args.hand, &quirks) {
-        out.line(&line)?;
-    }
-    Ok(())
+    out.lines(lines(&args.hand, sheet))
 }
 
-fn object(hand: &Endpoint, quirks: &Quirks) -> Value {
-    json!({
-        "hand": hand.to_string(),
-        "hand_id": quirks.hand_id,
-        "baud_code": quirks.baud_code,
-        "packing": quirks.packing.map(packing_name),
-        "gap": quirks.gap.map(gap_name),
-        "touch": quirks.touch.map(touch_name),
-    })
-}
-
-fn lines(hand: &Endpoint, quirks: &Quirks) -> Vec<String> {
-    let number = |value: Option<u8>| value.map_or("unknown".into(), |value| value.to_string());
-    let word = |value: Option<&'static str>| value.unwrap_or("unknown").to_owned();
-    let is_can = matches!(hand, Endpoint::Can { .. } | Endpoint::Slcan { .. });
-    let meant = quirks
-        .baud_code
-        .map(|code| match baud_of_code(code, is_can) {
-            Some(baud) => format!(
-                " ({baud} by the manual PRJ-02-TS-U-001 V1.0.0; other editions number differently)"
-            ),
-            None => " (no meaning in the manual PRJ-02-TS-U-001 V1.0.0)".into(),
-        });
-    let mut lines = vec![
-        format!("hand       {hand}"),
-        format!("HAND_ID    {}", number(quirks.hand_id)),
-        format!(
-            "REDU_RATIO {}{}",
-            number(quirks.baud_code),
-            meant.unwrap_or_default()
+fn lines(hand: &Endpoint, sheet: QuirkSheet) -> Vec<String> {
+    let row = |name: &str, value: Option<String>| {
+        format!("{name:<11}{}", value.unwrap_or_else(|| "unknown".into()))
+    };
+    let is_can = hand.is_can();
+    let code = sheet.baud_code.map(|code| match baud_of_code(code, is_can) {
+        Some(baud) => format!(
+            "{code} ({baud} by the manual PRJ-02-TS-U-001 V1.0.0; other editions number differently)"
         ),
+        None => format!("{code} (no meaning in the manual PRJ-02-TS-U-001 V1.0.0)"),
+    });
+    let is_packed = matches!(hand, Endpoint::Tcp { .. } | Endpoint::Rtu(_));
+    let packing = is_packed.then(|| row("packing", sheet.packing));
+    let head = [
+        row("hand", Some(hand.to_string())),
+        row("HAND_ID", sheet.hand_id.map(|id| id.to_string())),
+        row("REDU_RATIO", code),
     ];
-    if matches!(hand, Endpoint::Tcp { .. } | Endpoint::Rtu(_)) {
-        lines.push(format!(
-            "packing    {}",
-            word(quirks.packing.map(packing_name))
-        ));
-    }
-    lines.push(format!("gap        {}", word(quirks.gap.map(gap_name))));
-    lines.push(format!("touch      {}", word(quirks.touch.map(touch_name))));
-    lines
+    let gap = (!is_can).then(|| row("gap", sheet.gap));
+    let touch = [row("touch", sheet.touch)];
+    let rows = head.into_iter().chain(packing).chain(gap).chain(touch);
+    rows.collect()
 }

@@ -1,103 +1,92 @@
-//! `registers`: the map as text for people and JSON for scripts, made from the one table.
+//! `registers`: the register map as text and as JSON, from the one table.
 
 use crate::cli::out::Out;
-use crate::hand::register::{Access, Element, Origin, Persistence, REGISTERS, Register};
-use serde_json::{Value, json};
+use crate::hand::register::{Origin, REGISTERS, Register};
+use serde::Serialize;
+use serde_json::Value;
+
+/// A register as scripts see it, with what follows from it.
+#[derive(Serialize)]
+struct Row {
+    #[serde(flatten)]
+    register: Register,
+    count: u16,
+    in_manual: bool,
+}
+
+impl From<&Register> for Row {
+    fn from(register: &Register) -> Self {
+        Self {
+            register: *register,
+            count: register.count(),
+            in_manual: register.origin == Origin::Manual,
+        }
+    }
+}
 
 /// Prints the register map.
 pub(crate) fn run(out: &mut Out, as_json: bool) -> anyhow::Result<()> {
+    let rows: Value = serde_json::to_value(REGISTERS.each_ref().map(Row::from).as_slice())?;
     if as_json {
-        let rows: Vec<Value> = REGISTERS.iter().map(row_json).collect();
         return out.line(&serde_json::to_string_pretty(&rows)?);
     }
-    out.line(&format!(
-        "{:<20} {:>7} {:>5}  {:<7} {:<3} {:<13} {:>7} {:<4} {:<8} {:<7} {}",
-        "name",
-        "address",
-        "bytes",
-        "element",
-        "rw",
-        "range",
-        "default",
-        "unit",
-        "kept",
-        "manual",
-        "meaning"
-    ))?;
-    for row in &REGISTERS {
-        out.line(&row_text(row))?;
+    out.line(&line([
+        "name", "address", "bytes", "element", "rw", "range", "default", "unit", "kept", "manual",
+        "meaning",
+    ]))?;
+    for row in rows.as_array().into_iter().flatten() {
+        out.line(&text(row))?;
     }
     out.line("\n* not in the manual's register table: known from other programs for this family of hands")
 }
 
-fn row_text(row: &Register) -> String {
-    let range = row.range.map_or_else(
-        || "-".into(),
-        |(min, max)| {
-            let also = row
-                .also
-                .map_or_else(String::new, |also| format!("{also}, "));
-            format!("{also}{min}..{max}")
-        },
-    );
-    let mark = if row.origin == Origin::Field { "*" } else { "" };
-    let default = row
-        .default
-        .map_or_else(|| "-".into(), |default| default.to_string());
-    format!(
-        "{:<20} {:>7} {:>5}  {:<7} {:<3} {:<13} {:>7} {:<4} {:<8} {:<7} {}",
-        format!("{}{mark}", row.name),
-        row.address,
-        row.len,
-        element(row.element),
-        access(row.access),
+fn text(row: &Value) -> String {
+    let word = |key: &str| match row.get(key) {
+        None | Some(Value::Null) => "-".to_owned(),
+        Some(Value::String(word)) => word.clone(),
+        Some(other) => other.to_string(),
+    };
+    let mark = if word("in_manual") == "true" { "" } else { "*" };
+    let range = match row
+        .get("range")
+        .and_then(Value::as_array)
+        .map(Vec::as_slice)
+    {
+        Some([min, max]) if word("also") == "-" => format!("{min}..{max}"),
+        Some([min, max]) => format!("{}, {min}..{max}", word("also")),
+        _ => "-".into(),
+    };
+    line([
+        &(word("name") + mark),
+        &word("address"),
+        &word("bytes"),
+        &word("element"),
+        &word("access"),
+        &range,
+        &word("default"),
+        &word("unit"),
+        &word("kept"),
+        &word("section"),
+        &word("meaning"),
+    ])
+}
+
+/// The columns of the table.
+fn line(cells: [&str; 11]) -> String {
+    let [
+        name,
+        address,
+        bytes,
+        element,
+        access,
         range,
         default,
-        row.unit,
-        kept(row.persistence),
-        row.section,
-        row.meaning
+        unit,
+        kept,
+        section,
+        meaning,
+    ] = cells;
+    format!(
+        "{name:<20} {address:>7} {bytes:>5}  {element:<7} {access:<3} {range:<13} {default:>7} {unit:<4} {kept:<8} {section:<7} {meaning}"
     )
-}
-
-fn row_json(row: &Register) -> Value {
-    json!({
-        "name": row.name,
-        "address": row.address,
-        "bytes": row.len,
-        "element": element(row.element),
-        "count": row.count(),
-        "access": access(row.access),
-        "range": row.range.map(|(min, max)| [min, max]),
-        "also": row.also,
-        "default": row.default,
-        "unit": row.unit,
-        "kept": kept(row.persistence),
-        "section": row.section,
-        "in_manual": row.origin == Origin::Manual,
-        "meaning": row.meaning,
-    })
-}
-
-const fn element(element: Element) -> &'static str {
-    match element {
-        Element::Byte => "byte",
-        Element::Short => "short",
-        Element::Tactile => "tactile",
-    }
-}
-
-const fn access(access: Access) -> &'static str {
-    match access {
-        Access::Read => "r",
-        Access::ReadWrite => "rw",
-    }
-}
-
-const fn kept(persistence: Persistence) -> &'static str {
-    match persistence {
-        Persistence::Volatile => "no",
-        Persistence::Saved => "by SAVE",
-        Persistence::Live => "live",
-    }
 }

@@ -1,7 +1,7 @@
-//! `scan`: which hands answer, on all ports and interfaces of this computer or on those that are named, and at addresses
-//! that are named. Writes nothing to any hand.
+//! `scan`: which hands answer on this computer's ports and interfaces, or on those that are named, and at named network
+//! addresses. Writes nothing to any hand.
 
-use crate::app::SimDial;
+use crate::app::connect::SimDial;
 use crate::cli::ids::HandIds;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, Told, say};
@@ -9,55 +9,59 @@ use crate::cli::session;
 use crate::hand::HandId;
 use crate::link::Clock;
 use crate::link::scan::{
-    Found, HOSTS_MAX, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanHint,
-    ScanProgress, ScanSummary, Speaks, start,
+    Found, HOSTS_MAX, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanProgress,
+    ScanSummary, Speaks, start,
 };
-use crate::transport::{TransportError, UsbFound};
+use crate::transport::UsbFound;
 use anyhow::bail;
 use clap::builder::NonEmptyStringValueParser;
 use clap::error::ErrorKind;
 use serde_json::{Value, json};
+use std::fmt::Display;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// The progress line of a terminal moves this often.
+/// How often the progress line of a terminal is redrawn.
 const SHOW_EACH: Duration = Duration::from_millis(200);
-/// Where no terminal shows a line that moves, a plain one comes this often.
+/// How often a plain line is printed where there is no terminal.
 const SAY_EACH: Duration = Duration::from_secs(10);
-/// Ids asked where none are named: a bus seldom has more hands, and each costs about half a second a port.
+/// Ids asked by default: a bus seldom has more hands, and each id costs about half a second a port.
 const IDS_UP_TO: u8 = 10;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct ScanArgs {
-    /// Look at this serial port; may be given several times
+    /// Check this serial port; may be repeated
     #[arg(long, value_name = "PORT", value_parser = NonEmptyStringValueParser::new())]
     serial: Vec<String>,
-    /// Look at this address or at all of a range, for example 192.168.11.210 or 192.168.11.0/24; several times
+    /// Check this address, or every address of a range, for example 192.168.11.210 or 192.168.11.0/24; may be repeated
     #[arg(long, value_name = "HOST[:PORT]|CIDR")]
     tcp: Vec<Hosts>,
-    /// Look at this CAN interface; several times
+    /// Check this CAN interface; may be repeated
     #[arg(long, value_name = "INTERFACE", value_parser = NonEmptyStringValueParser::new())]
     can: Vec<String>,
-    /// Look behind the serial CAN adapter on this port; several times
+    /// Check the bus behind the serial CAN adapter on this port; may be repeated
     #[arg(long, value_name = "PORT", value_parser = NonEmptyStringValueParser::new())]
     slcan: Vec<String>,
+    /// Look behind the maker's own USB-CAN adapter on this port; several times
+    #[arg(long, value_name = "PORT", value_parser = NonEmptyStringValueParser::new())]
+    usbcan: Vec<String>,
     /// Ids to ask on every bus, for example 1-10 or 1,2,7 [default: 1-10]
     #[arg(long, value_name = "IDS", conflicts_with = "all_ids")]
     ids: Option<HandIds>,
     /// Ask all ids, 1 to 254
     #[arg(long)]
     all_ids: bool,
-    /// One JSON object a line
+    /// Print one JSON object per line
     #[arg(long)]
     json: bool,
 }
 
 impl ScanArgs {
     fn local(&self) -> Local {
-        let named = [&self.serial, &self.can, &self.slcan];
+        let named = [&self.serial, &self.can, &self.slcan, &self.usbcan];
         if self.tcp.is_empty() && named.iter().all(|list| list.is_empty()) {
             return Local::Listed;
         }
@@ -74,8 +78,12 @@ impl ScanArgs {
                 false => wish(port, Speaks::Hand),
             });
         let slcan = self.slcan.iter().map(|port| wish(port, Speaks::CanAdapter));
+        let usbcan = self
+            .usbcan
+            .iter()
+            .map(|port| wish(port, Speaks::MakersAdapter));
         Local::Named {
-            ports: serial.chain(slcan).collect(),
+            ports: serial.chain(slcan).chain(usbcan).collect(),
             can: self.can.clone(),
         }
     }
@@ -93,13 +101,13 @@ impl ScanArgs {
         let hosts: usize = self.tcp.iter().map(Hosts::count).sum();
         if hosts > HOSTS_MAX {
             let words =
-                format!("--tcp names {hosts} addresses, {HOSTS_MAX} at most are looked at\n");
+                format!("--tcp names {hosts} addresses; at most {HOSTS_MAX} can be checked\n");
             clap::Error::raw(ErrorKind::ValueValidation, words).exit();
         }
     }
 }
 
-/// Looks everywhere that was asked for. Fails if nothing was found and something could not be looked at.
+/// Scans. Fails if nothing was found and a place could not be checked.
 pub(crate) fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
     args.refuse_too_many_hosts();
     let runtime = session::runtime()?;
@@ -170,54 +178,52 @@ impl Scan<'_> {
         match event {
             ScanEvent::Found(found) => {
                 self.found += 1;
-                let line = match self.json {
-                    true => found_json(&found).to_string(),
-                    false => found_text(&found),
-                };
-                self.out.line(&line)?;
+                match self.json {
+                    true => self.out.object(&found_json(&found))?,
+                    false => self.out.line(&found_text(&found))?,
+                }
             }
-            ScanEvent::Trouble { place, error } => {
-                say(&error.to_string());
-                self.object(|| trouble_json(&place, &error))?;
-            }
-            ScanEvent::Hint(hint) => {
-                say(&hint.to_string());
-                self.object(|| hint_json(&hint))?;
-            }
+            ScanEvent::Trouble { place, error } => self.told("trouble", &place, &error)?,
+            ScanEvent::Hint(hint) => self.told("hint", &hint.place(), &hint)?,
             ScanEvent::Begun { .. } | ScanEvent::Held { .. } | ScanEvent::Done(_) => {}
         }
         self.out.flush()
     }
 
-    fn object(&mut self, object: impl FnOnce() -> Value) -> anyhow::Result<()> {
+    /// Says what is in the way at a place.
+    fn told(&mut self, what: &str, place: &str, words: &impl Display) -> anyhow::Result<()> {
+        let words = words.to_string();
+        say(&words);
         match self.json {
-            true => self.out.line(&object().to_string()),
+            true => self
+                .out
+                .object(&json!({ what: { "place": place, "words": words } })),
             false => Ok(()),
         }
     }
 
-    /// What came of it; without a summary the person ended it.
-    fn end(mut self, summary: Option<ScanSummary>) -> anyhow::Result<()> {
+    /// Reports the outcome; without a summary, a person ended the scan.
+    fn end(self, summary: Option<ScanSummary>) -> anyhow::Result<()> {
         let found = self.found;
-        self.object(|| summary_json(found, summary))?;
+        if self.json {
+            self.out.object(&summary_json(found, summary))?;
+        }
         self.out.flush()?;
         match summary {
             _ if found > 0 => Ok(()),
             None => bail!("the scan was ended before it found a hand"),
             Some(summary) if summary.failed > 0 => Err(Told.into()),
             Some(summary) if summary.places == 0 => bail!(
-                "there is nothing to scan: the system lists no serial port and no CAN interface; plug the adapter in, or name what to scan with --serial, --can, --slcan or --tcp"
+                "there is nothing to scan: the system lists no serial port and no CAN interface; plug the adapter in, or name what to scan with --serial, --can, --slcan, --usbcan or --tcp"
             ),
             Some(summary) => {
+                let (asked, took_s) = (summary.asked, summary.took.as_secs_f64());
+                let more = match self.all_ids {
+                    true => "",
+                    false => "; --all-ids asks all ids",
+                };
                 say(&format!(
-                    "no hand answered ({} questions, {:.1} s): check power and cable{}",
-                    summary.asked,
-                    summary.took.as_secs_f64(),
-                    if self.all_ids {
-                        ""
-                    } else {
-                        "; --all-ids asks all ids"
-                    }
+                    "no hand answered ({asked} questions, {took_s:.1} s): check power and cable{more}"
                 ));
                 Ok(())
             }
@@ -225,7 +231,7 @@ impl Scan<'_> {
     }
 }
 
-/// The line on standard error that tells how far the scan is.
+/// The progress line on standard error.
 struct Screen {
     is_terminal: bool,
     shown: bool,
@@ -257,7 +263,7 @@ impl Screen {
         }
     }
 
-    /// Makes room for a line that stays.
+    /// Clears the progress line, so that a line that stays can be printed.
     fn clear(&mut self) {
         if std::mem::take(&mut self.shown) {
             put("\r\x1b[K");
@@ -296,24 +302,18 @@ fn found_text(found: &Found) -> String {
 
 /// Maker, product and serial number, then what the system knows it by.
 fn usb_text(usb: &UsbFound) -> String {
-    let words: Vec<&str> = [&usb.maker, &usb.product]
-        .into_iter()
-        .flatten()
-        .map(String::as_str)
-        .collect();
-    let serial = usb
-        .serial
-        .as_ref()
-        .map(|serial| format!(", serial {serial}"));
-    format!(
+    let words = [&usb.maker, &usb.product].into_iter().flatten();
+    let words: Vec<&str> = words.map(String::as_str).collect();
+    let serial = usb.serial.as_ref();
+    let serial = serial.map(|serial| format!(", serial {serial}"));
+    let text = format!(
         "{} (USB {:04x}:{:04x}{})",
         words.join(" "),
         usb.vendor_id,
         usb.product_id,
         serial.unwrap_or_default()
-    )
-    .trim_start()
-    .to_owned()
+    );
+    text.trim_start().to_owned()
 }
 
 fn found_json(found: &Found) -> Value {
@@ -333,30 +333,19 @@ fn found_json(found: &Found) -> Value {
     }})
 }
 
-fn trouble_json(place: &str, error: &TransportError) -> Value {
-    json!({ "trouble": { "place": place, "words": error.to_string() } })
-}
-
-fn hint_json(hint: &ScanHint) -> Value {
-    json!({ "hint": { "place": hint.place(), "words": hint.to_string() } })
-}
-
 fn summary_json(found: usize, summary: Option<ScanSummary>) -> Value {
-    let counts = summary.unwrap_or_default();
-    let known = |count: usize| summary.map(|_| count);
     json!({ "summary": {
         "found": found,
         "complete": summary.is_some(),
-        "places": known(counts.places),
-        "failed": known(counts.failed),
-        "questions": known(counts.asked),
+        "places": summary.map(|summary| summary.places),
+        "failed": summary.map(|summary| summary.failed),
+        "questions": summary.map(|summary| summary.asked),
         "took_s": summary.map(|summary| summary.took.as_secs_f64()),
     }})
 }
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
 
     fn found(usb: Option<UsbFound>) -> Found {
@@ -437,18 +426,25 @@ mod tests {
             "scan --tcp 127.0.0.1",
             "scan --can can0",
             "scan --slcan COM3",
+            "scan --usbcan COM3",
         ] {
             assert_ne!(parsed(named).local(), Local::Listed, "{named}");
         }
-        let Local::Named { ports, .. } = parsed("scan --serial a --slcan a --slcan b").local()
+        let Local::Named { ports, .. } =
+            parsed("scan --serial a --slcan a --slcan b --usbcan c").local()
         else {
             unreachable!("ports were named");
         };
         let speaks: Vec<_> = ports.iter().map(|wish| wish.speaks).collect();
-        // The second mention of a port is dropped by the plan.
+        // The second mention of a port is joined to the first by the plan.
         assert_eq!(
             speaks,
-            [Speaks::Either, Speaks::CanAdapter, Speaks::CanAdapter]
+            [
+                Speaks::Either,
+                Speaks::CanAdapter,
+                Speaks::CanAdapter,
+                Speaks::MakersAdapter
+            ]
         );
     }
 }

@@ -1,7 +1,9 @@
 //! A link for a terminal command: its runtime, its clock, and the wait for a hand that answers. Prints nothing.
 
-use crate::app::SimDial;
-use crate::link::{self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates};
+use crate::app::connect::SimDial;
+use crate::link::{
+    self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates, Records,
+};
 use crate::transport::Endpoint;
 use anyhow::{Context as _, bail};
 use std::sync::Arc;
@@ -9,12 +11,12 @@ use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::{Instant, sleep};
 
-/// A hand that is there answers long before; who waits longer wants to know why nothing comes.
+/// A hand that is there answers long before; after this the person is told why nothing comes.
 pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
-/// How often the wait looks.
+/// How often the wait checks.
 const LOOK_EACH: Duration = Duration::from_millis(10);
 
-/// A runtime of one thread: a reader of our output that is slow slows the reads down, and no sample is lost.
+/// A runtime of one thread: a slow reader of our output slows the polling down, and no sample is lost.
 pub(crate) fn runtime() -> anyhow::Result<Runtime> {
     Builder::new_current_thread()
         .enable_all()
@@ -22,8 +24,31 @@ pub(crate) fn runtime() -> anyhow::Result<Runtime> {
         .context("cannot start the link")
 }
 
+/// A link that asks for nothing by itself: the line belongs to what a command asks.
+pub(crate) const ONLY_WHAT_IS_ASKED: PollRates = PollRates {
+    state_hz: 0.0,
+    tactile_hz: 0.0,
+    settings_hz: 0.0,
+};
+
+/// Opens a link and waits for the hand. Must be called within a tokio runtime.
+pub(crate) async fn reach(hand: &Endpoint, rates: PollRates) -> anyhow::Result<LinkHandle> {
+    let link = open(hand, rates, Clock::start());
+    answered(&link, hand).await?;
+    Ok(link)
+}
+
 /// Opens a link. Must be called within a tokio runtime; reads only.
 pub(crate) fn open(endpoint: &Endpoint, rates: PollRates, clock: Clock) -> LinkHandle {
+    open_with_records(endpoint, rates, clock).0
+}
+
+/// The same, with everything that happens from the first moment on.
+pub(crate) fn open_with_records(
+    endpoint: &Endpoint,
+    rates: PollRates,
+    clock: Clock,
+) -> (LinkHandle, Records) {
     let config = LinkConfig {
         endpoint: endpoint.clone(),
         rates,
@@ -57,7 +82,7 @@ pub(crate) fn no_hand(endpoint: &Endpoint, trouble: &LinkTrouble) -> String {
     format!("no hand at {endpoint}: {trouble}")
 }
 
-/// That nothing at all was heard in time.
+/// The message where nothing at all was heard in time.
 pub(crate) fn unanswered(endpoint: &Endpoint) -> String {
     format!(
         "no hand at {endpoint}: nothing came within {} s; check power, cable, address and id",

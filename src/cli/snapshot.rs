@@ -1,42 +1,112 @@
-//! `snapshot`: pictures of the window and lists of what stands in it, as files. Draws nothing itself.
+//! `snapshot`: pictures of the window, and lists of what they show, as files.
 
 use crate::app::settings::{Language, Theme};
-use crate::cli::args::{CardArg, SnapshotArgs, Views};
 use crate::cli::out::{Out, WrongUsage, say};
-use crate::headless::canvas::Picture;
-use crate::headless::cards::SceneCard;
-use crate::headless::driver::{Driver, Scene};
-use crate::headless::png;
+use crate::cli::parse::seconds;
+use crate::shell::headless::canvas::Picture;
+use crate::shell::headless::cards::SceneCard;
+use crate::shell::headless::driver::{Driver, Scene};
+use crate::shell::headless::png;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::View;
 use anyhow::Context as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// A person who waits is told how far it is.
+/// How often progress is printed.
 const TELL_EACH: Duration = Duration::from_secs(1);
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct SnapshotArgs {
+    /// The hand to show [default: the built-in one]
+    #[arg(long, value_name = "URL")]
+    hand: Option<Endpoint>,
+    /// What the built-in hand does: idle, free, rigid, fragile, grasp, faults, extremes
+    #[arg(long, value_name = "NAME", conflicts_with = "hand")]
+    scenario: Option<Scenario>,
+    /// Seed of the built-in hand
+    #[arg(long, default_value_t = 1, conflicts_with = "hand")]
+    seed: u64,
+    /// Seconds after connecting
+    #[arg(long, value_name = "SECONDS", default_value = "3", value_parser = seconds)]
+    at: Duration,
+    #[arg(long, value_name = "NAME", default_value = "window", value_parser = views, help = views_help())]
+    view: Views,
+    /// A dialog to show over the view; the files take its name. keep and danger need the built-in hand
+    #[arg(long, value_parser = CARDS.map(|(name, _)| name))]
+    card: Option<String>,
+    /// Width x height in points
+    #[arg(long, value_name = "WxH", default_value = "1440x900", value_parser = size)]
+    size: (u32, u32),
+    /// Pixels per point
+    #[arg(long, default_value = "1", value_parser = scale)]
+    scale: f32,
+    /// Colours; with 'all', names of light pictures end in -light
+    #[arg(long, default_value = "dark", value_parser = ["dark", "light", "all"])]
+    theme: String,
+    /// Language of the window; with 'all', names of Chinese pictures end in -zh
+    #[arg(long, default_value = "en", value_parser = ["en", "zh", "all"])]
+    lang: String,
+    /// Folder for the files; created if missing
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Which pictures to draw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Views {
+    /// The window as it opens.
+    Window,
+    /// The window with this view open.
+    One(View),
+    /// Each view, and the window as it opens.
+    All,
+}
+
+/// The dialogs that can be shown.
+const CARDS: [(&str, SceneCard); 5] = [
+    ("reset", SceneCard::Reset),
+    ("calibrate", SceneCard::Calibrate),
+    ("address", SceneCard::Address),
+    ("keep", SceneCard::Keep),
+    ("danger", SceneCard::Danger),
+];
+const THEMES: [(&str, Theme); 2] = [("dark", Theme::Dark), ("light", Theme::Light)];
+const LANGUAGES: [(&str, Language); 2] = [("en", Language::En), ("zh", Language::Zh)];
+
+/// The chosen ones of two, with the endings of their file names.
+fn wanted<T: Copy>(name: &str, both: [(&str, T); 2]) -> Vec<(T, String)> {
+    let [(_, first), (second_name, second)] = both;
+    match name {
+        "all" => vec![(first, String::new()), (second, format!("-{second_name}"))],
+        name if name == second_name => vec![(second, String::new())],
+        _ => vec![(first, String::new())],
+    }
+}
 
 /// Draws the pictures and prints the name of each file.
 pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
-    let card = args.card.map(CardArg::card);
-    let mut driver = start(args, card.map(|(card, _)| card))?;
+    let named = |(name, _): &(&str, SceneCard)| Some(*name) == args.card.as_deref();
+    let card = CARDS.into_iter().find(named).map(|(_, card)| card);
+    let mut driver = start(args, card)?;
     driver.connect()?;
     driver.run_for(args.at, progress(args.at));
     if args.hand.is_none() && shows_trials(args) {
         driver.try_grasps();
     }
-    if let Some((card, _)) = card {
+    if let Some(card) = card {
         driver.open_card(card);
     }
     fs::create_dir_all(&args.out)
         .with_context(|| format!("cannot make the folder {}", args.out.display()))?;
-    for (language, of_language) in args.lang.each() {
-        for (number, (theme, of_theme)) in args.theme.each().iter().enumerate() {
-            driver.dress(*theme, *language);
+    for (language, of_language) in wanted(&args.lang, LANGUAGES) {
+        for (number, (theme, of_theme)) in wanted(&args.theme, THEMES).iter().enumerate() {
+            driver.dress(*theme, language);
             for (name, view) in pictures(args.view) {
-                let name = card.map_or(name, |(_, name)| name);
+                let card = args.card.as_ref();
+                let name = card.map_or(name.into(), |card| format!("card-{card}"));
                 let picture = driver.picture(view);
                 let labels = args.out.join(format!("{name}{of_language}.json"));
                 let image = args.out.join(format!("{name}{of_language}{of_theme}.png"));
@@ -63,7 +133,7 @@ fn start(args: &SnapshotArgs, card: Option<SceneCard>) -> anyhow::Result<Driver>
         language: Language::default(),
     };
     if card.is_some_and(SceneCard::wants_built_in) && !scene.endpoint.is_sim() {
-        let why = "this card is shown only with the built-in hand: a hand would be written to";
+        let why = "this dialog is drawn only with the built-in hand, because it writes to the hand";
         return Err(WrongUsage(why.into()).into());
     }
     Ok(match card.and_then(SceneCard::line) {
@@ -79,7 +149,7 @@ fn endpoint(args: &SnapshotArgs) -> Endpoint {
     })
 }
 
-/// Trials are tried only where nothing else was asked for: on a hand that does nothing by itself.
+/// Trials are run only on a hand that does nothing by itself.
 fn shows_trials(args: &SnapshotArgs) -> bool {
     let still = matches!(
         args.scenario.unwrap_or_default(),
@@ -88,7 +158,7 @@ fn shows_trials(args: &SnapshotArgs) -> bool {
     still && matches!(args.view, Views::One(View::Tune | View::Compare))
 }
 
-/// Names and views of the wanted pictures.
+/// Names and views of the pictures to draw.
 fn pictures(views: Views) -> Vec<(&'static str, View)> {
     let window = ("window", View::default());
     match views {
@@ -101,7 +171,7 @@ fn pictures(views: Views) -> Vec<(&'static str, View)> {
     }
 }
 
-/// Says each second of waiting how far it is.
+/// Prints progress every second.
 fn progress(whole: Duration) -> impl FnMut(Duration) {
     let mut told = Instant::now();
     move |done| {
@@ -119,4 +189,42 @@ fn progress(whole: Duration) -> impl FnMut(Duration) {
 fn save_labels(path: &Path, picture: &Picture) -> anyhow::Result<()> {
     let list = serde_json::to_string_pretty(&picture.labels)?;
     fs::write(path, list + "\n").with_context(|| format!("cannot write {}", path.display()))
+}
+
+fn views_help() -> String {
+    let known = View::ALL.map(View::name).join(", ");
+    format!("A view ({known}), 'window' for the window as it opens, or 'all'")
+}
+
+fn views(text: &str) -> Result<Views, String> {
+    match text {
+        "window" => Ok(Views::Window),
+        "all" => Ok(Views::All),
+        name => View::by_name(name).map(Views::One).ok_or_else(|| {
+            let known = View::ALL.map(View::name).join(", ");
+            format!("there is no such view: choose {known}, window or all")
+        }),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let wrong = || format!("'{text}' is not a size: write WIDTHxHEIGHT, from 640x400 to 7680x4320");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let (width, height) = (
+        width.parse().map_err(|_not_one| wrong())?,
+        height.parse().map_err(|_not_one| wrong())?,
+    );
+    if (640..=7680).contains(&width) && (400..=4320).contains(&height) {
+        return Ok((width, height));
+    }
+    Err(wrong())
+}
+
+fn scale(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(scale) if (0.5..=4.0).contains(&scale) => Ok(scale),
+        _ => Err(format!(
+            "'{text}' is not a scale: write a number from 0.5 to 4"
+        )),
+    }
 }

@@ -1,6 +1,6 @@
-//! What stands in a register, decoded, for people and for JSON. Pure; reads nothing.
+//! The decoded value of a register, as text and as JSON. Pure.
 
-use crate::cli::telemetry::{fault_names, status_name, tactile_json};
+use crate::cli::watch::telemetry::{fault_names, status_name, tactile_json};
 use crate::hand::register::{self, Element, Register};
 use crate::hand::sample::touch_span;
 use crate::hand::{Faults, Finger, Status, TactileBlock};
@@ -44,14 +44,14 @@ fn elements(row: &Register, bytes: &[u8]) -> Vec<Value> {
     }
 }
 
-/// One line for a person: name, address, values, unit.
+/// One line of text: name, address, values, unit.
 pub(crate) fn value_text(row: &Register, bytes: &[u8]) -> String {
     let value = words(&value_json(row, bytes));
     let line = format!("{:<18} {:>5}  {value} {}", row.name, row.address, row.unit);
     line.trim_end().to_owned()
 }
 
-/// The fields of a fingertip in the order in which a person wants them.
+/// The fields of a fingertip, most useful first.
 const FIELDS: [&str; 9] = [
     "finger",
     "normal_n",
@@ -96,7 +96,6 @@ fn element_words(value: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
     use crate::hand::REGISTERS;
 

@@ -1,12 +1,13 @@
-//! The window, started from the command line; or why there is none. Draws nothing itself.
+//! Starts the window from the command line, or says why there is none.
 
 use crate::cli::args::WindowArgs;
 
 /// Opens the window and runs until it is closed. Where OpenGL does not start, one without it opens.
 #[cfg(feature = "desktop")]
 pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
-    use crate::app::config::{Loaded, default_path, load};
-    use crate::desktop::{self, DesktopError, DesktopStart, Drawing};
+    use crate::app::files::settings_file::{Loaded, default_path, load};
+    use crate::shell::desktop;
+    use crate::shell::desktop::{DesktopError, DesktopStart, Drawing};
     let settings_path = default_path();
     let loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
     let drawing = match args.software_because {
@@ -16,7 +17,7 @@ pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     };
     let hand = args.hand.as_ref().map(ToString::to_string);
     let ended = desktop::run(DesktopStart {
-        snap: crate::headless::snap::snap,
+        snap: crate::shell::headless::snap::snap,
         endpoint: args.hand,
         drawing,
         loaded,
@@ -28,7 +29,7 @@ pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     }
 }
 
-/// A process can have one event loop in its life, so the window without OpenGL opens in a new one.
+/// A process can have only one event loop in its life, so the window without OpenGL opens in a new process.
 #[cfg(feature = "desktop")]
 fn restart_without_opengl(hand: Option<String>, reason: &str) -> anyhow::Result<()> {
     use anyhow::Context as _;
@@ -37,7 +38,7 @@ fn restart_without_opengl(hand: Option<String>, reason: &str) -> anyhow::Result<
     program.args(hand.iter().flat_map(|hand| ["--hand", hand]));
     let failed = || {
         format!(
-            "OpenGL does not start ({reason}), and neither does this program anew; start 'handscope --software'"
+            "OpenGL does not start ({reason}), and the program could not restart itself without it; start 'handscope --software'"
         )
     };
     #[cfg(unix)]

@@ -227,8 +227,6 @@ fn trouble(id: u32, data: &[u8]) -> Record {
 #[cfg(test)]
 mod tests {
     #![allow(
-        clippy::unwrap_used,
-        clippy::indexing_slicing,
         clippy::cast_possible_truncation,
         clippy::cast_possible_wrap,
         reason = "a test may"

@@ -113,7 +113,6 @@ impl MbapSplitter {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
     use proptest::prelude::*;
 

@@ -7,3 +7,4 @@ pub mod modbus_rtu;
 pub mod pdu;
 pub mod rs485;
 pub mod slcan;
+pub mod usbcan;

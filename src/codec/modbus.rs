@@ -157,7 +157,6 @@ impl BytePacking {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
     use crate::hand::register::{STATE, TEMP};
     use crate::hand::{Angle, HandCommand, HandId, PerDof, Target};

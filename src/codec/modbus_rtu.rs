@@ -266,12 +266,7 @@ impl RtuSplitter {
 
 #[cfg(test)]
 mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        clippy::indexing_slicing,
-        clippy::cast_possible_truncation,
-        reason = "a test may"
-    )]
+    #![allow(clippy::cast_possible_truncation, reason = "a test may")]
     use super::*;
     use proptest::prelude::*;
 

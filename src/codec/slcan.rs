@@ -29,7 +29,13 @@ pub enum Command {
     Bitrate(u8),
     /// `T`: send a data frame with a 29-bit identifier.
     Send(CanFrame),
-    /// Anything else that is well-formed: versions, filters, 11-bit and remote frames.
+    /// `t`, `r` or `R`: send a frame that no hand knows, with 11 bits or without data.
+    SendOther(u8),
+    /// `L`: listen to the bus without taking part.
+    Listen,
+    /// `s`: the bit rate by the controller's two timing registers.
+    Timing(u16),
+    /// Anything else that is well-formed: versions, flags, filters.
     Other(u8),
 }
 
@@ -64,7 +70,7 @@ pub fn bitrate_code(bitrate: u32) -> Option<u8> {
     u8::try_from(at).ok()
 }
 
-/// The line that says this to an adapter; `None` for [`Command::Other`] and codes past 8.
+/// The line that says this to an adapter; `None` for codes past 8, and for what is told by its letter alone.
 #[must_use]
 pub fn encode_command(command: &Command) -> Option<Line> {
     let mut line = Line::new();
@@ -73,7 +79,12 @@ pub fn encode_command(command: &Command) -> Option<Line> {
         Command::Close => line.push(b'C'),
         Command::Bitrate(code @ 0..=8) => line.extend([b'S', b'0' + code]),
         Command::Send(frame) => line = frame_line(frame),
-        Command::Bitrate(_) | Command::Other(_) => return None,
+        Command::Listen => line.push(b'L'),
+        Command::Timing(registers) => {
+            line.push(b's');
+            line.extend(registers.to_be_bytes().into_iter().flat_map(digits));
+        }
+        Command::Bitrate(_) | Command::SendOther(_) | Command::Other(_) => return None,
     }
     line.push(CR);
     Some(line)
@@ -215,7 +226,7 @@ fn parse_answer(line: &[u8]) -> Option<Answer> {
     match line {
         [] => Some(Answer::Done),
         b"z" | b"Z" => Some(Answer::Sent),
-        [b'T', rest @ ..] => parse_frame(rest).map(Answer::Frame),
+        [b'T', rest @ ..] => parse_frame(rest, Shape::LONG).map(Answer::Frame),
         [
             letter @ (b't' | b'r' | b'R' | b'V' | b'v' | b'N' | b'F'),
             rest @ ..,
@@ -229,10 +240,16 @@ fn parse_command(line: &[u8]) -> Option<Command> {
         b"O" => Some(Command::Open),
         b"C" => Some(Command::Close),
         [b'S', code @ b'0'..=b'8'] => Some(Command::Bitrate(code - b'0')),
-        [b'T', rest @ ..] => parse_frame(rest).map(Command::Send),
+        [b'T', rest @ ..] => parse_frame(rest, Shape::LONG).map(Command::Send),
+        [b't', rest @ ..] => other_frame(b't', rest, Shape::SHORT),
+        [b'r', rest @ ..] => other_frame(b'r', rest, Shape::SHORT.remote()),
+        [b'R', rest @ ..] => other_frame(b'R', rest, Shape::LONG.remote()),
+        b"L" => Some(Command::Listen),
+        [b's', digits @ ..] if digits.len() == 4 => number(digits)
+            .and_then(|registers| u16::try_from(registers).ok())
+            .map(Command::Timing),
         [letter, rest @ ..]
-            if b"trRVvNFZLMmsXWQPA".contains(letter)
-                && rest.iter().all(u8::is_ascii_alphanumeric) =>
+            if b"VvNFZMmXWQPA".contains(letter) && rest.iter().all(u8::is_ascii_alphanumeric) =>
         {
             Some(Command::Other(*letter))
         }
@@ -240,26 +257,63 @@ fn parse_command(line: &[u8]) -> Option<Command> {
     }
 }
 
+/// How a frame is written.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    /// Digits of the identifier.
+    digits: usize,
+    id_max: u32,
+    /// A remote frame has a length and no data.
+    is_remote: bool,
+}
+
+impl Shape {
+    const LONG: Self = Self {
+        digits: 8,
+        id_max: 0x1FFF_FFFF,
+        is_remote: false,
+    };
+    const SHORT: Self = Self {
+        digits: 3,
+        id_max: 0x7FF,
+        is_remote: false,
+    };
+
+    const fn remote(mut self) -> Self {
+        self.is_remote = true;
+        self
+    }
+}
+
+fn other_frame(letter: u8, text: &[u8], shape: Shape) -> Option<Command> {
+    parse_frame(text, shape).map(|_| Command::SendOther(letter))
+}
+
 /// Identifier, length, data and perhaps a time stamp.
-fn parse_frame(text: &[u8]) -> Option<CanFrame> {
-    let id = text.get(..8)?.iter().try_fold(0, |id: u32, digit| {
-        Some((id << 4) | u32::from(nibble(*digit)?))
-    })?;
-    let len = match text.get(8)? {
-        digit @ b'0'..=b'8' => usize::from(digit - b'0'),
+fn parse_frame(text: &[u8], shape: Shape) -> Option<CanFrame> {
+    let (digits, rest) = text.split_at_checked(shape.digits)?;
+    let id = number(digits)?;
+    let (len, rest) = match rest.split_first()? {
+        (digit @ b'0'..=b'8', rest) => (usize::from(digit - b'0'), rest),
         _ => return None,
     };
-    let stamp = text.get(9 + 2 * len..)?;
+    let (data, stamp) = rest.split_at_checked(if shape.is_remote { 0 } else { 2 * len })?;
     let stamped = stamp.is_empty() || (stamp.len() == 4 && stamp.iter().all(u8::is_ascii_hexdigit));
-    if id > 0x1FFF_FFFF || !stamped {
+    if id > shape.id_max || !stamped {
         return None;
     }
-    let (pairs, _) = text.get(9..9 + 2 * len)?.as_chunks::<2>();
+    let (pairs, _) = data.as_chunks::<2>();
     let data: Option<Payload> = pairs
         .iter()
         .map(|[high, low]| Some((nibble(*high)? << 4) | nibble(*low)?))
         .collect();
     Some(CanFrame { id, data: data? })
+}
+
+fn number(digits: &[u8]) -> Option<u32> {
+    digits.iter().try_fold(0, |number: u32, digit| {
+        Some((number << 4) | u32::from(nibble(*digit)?))
+    })
 }
 
 fn nibble(digit: u8) -> Option<u8> {
@@ -273,7 +327,6 @@ fn nibble(digit: u8) -> Option<u8> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
     use crate::codec::can;
     use crate::hand::Span;

@@ -227,13 +227,6 @@ fn runs(row: &Register, values: PerDof<Option<i16>>, out: &mut Writes) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::indexing_slicing,
-        clippy::panic,
-        reason = "a test may"
-    )]
     use super::*;
     use crate::hand::register::{Access, Element, by_address};
     use crate::hand::units::{Angle, OutOfRange};

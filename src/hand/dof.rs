@@ -136,7 +136,7 @@ impl Finger {
 macro_rules! per {
     ($(#[$doc:meta])* $name:ident, $key:ident, $n:literal) => {
         $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
         pub struct $name<T>([T; $n]);
 
         impl<T> $name<T> {

@@ -7,13 +7,14 @@ pub mod command;
 pub mod dof;
 pub mod fault;
 pub mod impact;
+pub mod kinematics;
 pub mod moment;
+pub mod quantity;
 pub mod reading;
 pub mod register;
-pub mod row;
 pub mod sample;
+pub mod setpoints;
 pub mod setting;
-pub mod skeleton;
 pub mod status;
 pub mod tactile;
 pub mod units;
@@ -22,11 +23,13 @@ pub use command::{GestureRoute, GestureStore, HandCommand, RegisterWrite, Writes
 pub use dof::{Dof, Finger, PerDof, PerFinger};
 pub use fault::{Fault, Faults};
 pub use moment::{Moment, Timed};
+pub use quantity::{Quantity, QuantityRow, Touch};
 pub use reading::{
     AngleReading, CurrentReading, ForceReading, PositionReading, TemperatureReading,
 };
 pub use register::{REGISTERS, Register, Span};
 pub use sample::{Group, Groups, HandSample, Reply};
+pub use setpoints::{ArmEpoch, Setpoints};
 pub use setting::Setting;
 pub use status::{Status, Words};
 pub use tactile::TactileBlock;

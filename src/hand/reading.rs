@@ -4,7 +4,7 @@ use crate::hand::dof::Dof;
 use crate::hand::units::Angle;
 
 macro_rules! reading {
-    ($(#[$doc:meta])* $name:ident($inner:ty), $min:literal ..= $max:literal, $unit:literal) => {
+    ($(#[$doc:meta])* $name:ident($inner:ty), $min:literal ..= $max:literal) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub struct $name($inner);
@@ -12,8 +12,6 @@ macro_rules! reading {
         impl $name {
             /// The documented range.
             pub const RANGE: std::ops::RangeInclusive<$inner> = $min..=$max;
-            /// The unit, empty if the manual gives none.
-            pub const UNIT: &'static str = $unit;
 
             /// Keeps the number as the hand sent it.
             #[must_use]
@@ -38,23 +36,23 @@ macro_rules! reading {
 
 reading!(
     /// ANGLE_ACT: 0 = bent, 1000 = open (manual 2.6.15).
-    AngleReading(i16), 0..=1000, ""
+    AngleReading(i16), 0..=1000
 );
 reading!(
     /// POS_ACT: 0 = open, 2000 = bent (manual 2.6.14). Real hands leave the range a little.
-    PositionReading(i16), 0..=2000, ""
+    PositionReading(i16), 0..=2000
 );
 reading!(
     /// FORCE_ACT in grams (manual 2.6.16).
-    ForceReading(i16), -4000..=4000, "g"
+    ForceReading(i16), -4000..=4000
 );
 reading!(
     /// CURRENT in milliamperes (manual 2.6.17).
-    CurrentReading(i16), 0..=2000, "mA"
+    CurrentReading(i16), 0..=2000
 );
 reading!(
     /// TEMP in degrees Celsius (manual 2.6.20). 255 means that the hand does not know.
-    TemperatureReading(u8), 0..=100, "°C"
+    TemperatureReading(u8), 0..=100
 );
 
 impl AngleReading {

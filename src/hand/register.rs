@@ -1,6 +1,162 @@
 //! The register map of manual 2.6 as one table. Codec, planner, simulator and reference read it; nothing is decided here.
 
-pub use crate::hand::row::{Access, Element, Origin, Persistence, Register, Span};
+use serde::Serialize;
+use std::fmt;
+
+/// A run of bytes in the hand's memory, by byte address.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Span {
+    /// First byte.
+    pub address: u16,
+    /// Number of bytes.
+    pub len: u16,
+}
+
+impl Span {
+    /// A run of `len` bytes from `address`.
+    #[must_use]
+    pub const fn new(address: u16, len: u16) -> Self {
+        Self { address, len }
+    }
+
+    /// One past the last byte.
+    #[must_use]
+    pub const fn end(self) -> u32 {
+        self.address as u32 + self.len as u32
+    }
+
+    /// True if `inner` lies wholly inside.
+    #[must_use]
+    pub const fn covers(self, inner: Self) -> bool {
+        self.address <= inner.address && inner.end() <= self.end()
+    }
+
+    /// The part of `bytes`, which hold this run, that holds `inner`.
+    #[must_use]
+    pub fn slice(self, bytes: &[u8], inner: Self) -> Option<&[u8]> {
+        let from = usize::from(inner.address.checked_sub(self.address)?);
+        bytes.get(from..from + usize::from(inner.len))
+    }
+}
+
+/// What one element of a register is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Element {
+    /// An unsigned byte.
+    Byte,
+    /// A signed 16-bit number, low byte first.
+    Short,
+    /// A 58-byte fingertip block.
+    Tactile,
+}
+
+/// Who may do what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Access {
+    /// Only read.
+    #[serde(rename = "r")]
+    Read,
+    /// Read and written.
+    #[serde(rename = "rw")]
+    ReadWrite,
+}
+
+/// What happens to a value when the power goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Persistence {
+    /// Gone.
+    #[serde(rename = "no")]
+    Volatile,
+    /// Kept once SAVE was written.
+    #[serde(rename = "by SAVE")]
+    Saved,
+    /// Measured, not kept.
+    #[serde(rename = "live")]
+    Live,
+}
+
+/// Where a register is known from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// The manual's table.
+    Manual,
+    /// Other people's drivers; not in the manual's table.
+    Field,
+}
+
+/// One row of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Register {
+    /// As printed in the manual.
+    pub name: &'static str,
+    /// First byte.
+    pub address: u16,
+    /// Bytes.
+    #[serde(rename = "bytes")]
+    pub len: u16,
+    /// What an element is.
+    pub element: Element,
+    /// Read, or read and write.
+    pub access: Access,
+    /// Smallest and largest value of an element; `None` where the manual gives none.
+    pub range: Option<(i32, i32)>,
+    /// A value outside the range that is allowed too (-1 = no action).
+    pub also: Option<i32>,
+    /// Value at delivery, if the manual gives one.
+    pub default: Option<i32>,
+    /// Unit, empty if none.
+    pub unit: &'static str,
+    /// Kept or not.
+    #[serde(rename = "kept")]
+    pub persistence: Persistence,
+    /// Section of the manual.
+    pub section: &'static str,
+    /// Manual or field.
+    #[serde(skip)]
+    pub origin: Origin,
+    /// One sentence.
+    pub meaning: &'static str,
+}
+
+impl Register {
+    /// The bytes it covers.
+    #[must_use]
+    pub const fn span(&self) -> Span {
+        Span::new(self.address, self.len)
+    }
+
+    /// Bytes of one element.
+    #[must_use]
+    pub const fn element_len(&self) -> u16 {
+        match self.element {
+            Element::Byte => 1,
+            Element::Short => 2,
+            Element::Tactile => 58,
+        }
+    }
+
+    /// Number of elements.
+    #[must_use]
+    pub const fn count(&self) -> u16 {
+        self.len / self.element_len()
+    }
+
+    /// True if one element may hold `value`.
+    #[must_use]
+    pub fn allows(&self, value: i32) -> bool {
+        self.also == Some(value)
+            || self
+                .range
+                .is_none_or(|(min, max)| (min..=max).contains(&value))
+    }
+}
+
+impl fmt::Display for Register {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({})", self.name, self.address)
+    }
+}
 
 const fn byte(name: &'static str, address: u16, section: &'static str) -> Register {
     Register {
@@ -324,13 +480,6 @@ pub fn by_address(address: u16) -> Option<&'static Register> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::indexing_slicing,
-        clippy::panic,
-        reason = "a test may"
-    )]
     use super::*;
 
     #[test]

@@ -303,13 +303,6 @@ fn bytes<T>(
 
 #[cfg(test)]
 mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::indexing_slicing,
-        clippy::panic,
-        reason = "a test may"
-    )]
     use super::*;
     use crate::hand::dof::Dof;
 

@@ -71,7 +71,6 @@ impl Setting {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use crate::hand::dof::Dof;
     use crate::hand::register::{Persistence, by_address};

@@ -80,6 +80,12 @@ impl Status {
         )
     }
 
+    /// True if the drive says that it moves.
+    #[must_use]
+    pub const fn is_moving(self) -> bool {
+        matches!(self, Self::Releasing | Self::Grasping)
+    }
+
     /// True if the drive stopped to protect itself.
     #[must_use]
     pub const fn is_protective(self) -> bool {

@@ -121,13 +121,6 @@ impl Cursor<'_> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::indexing_slicing,
-        clippy::panic,
-        reason = "a test may"
-    )]
     use super::*;
     use proptest::prelude::*;
 

@@ -98,6 +98,19 @@ bounded!(
     UserGesture(u8), "USER_DEF_ANGLE", 14..=40
 );
 
+impl Gesture {
+    /// All forty, in their order (manual 2.6.7).
+    pub fn all() -> impl Iterator<Item = Self> {
+        (Self::MIN.0..=Self::MAX.0).map(Self)
+    }
+
+    /// True for those of the maker; the others are the person's own (manual 2.6.7).
+    #[must_use]
+    pub const fn is_fixed(self) -> bool {
+        self.0 < UserGesture::MIN.0
+    }
+}
+
 impl UserGesture {
     /// The number by which it is started.
     #[must_use]
@@ -114,6 +127,8 @@ impl HandId {
 }
 
 impl Angle {
+    /// A joint this near to its target, in counts, has arrived.
+    pub const ARRIVED_WITHIN: u16 = 20;
     /// Degrees of this joint at this angle, by the linear map of [`Dof::degrees`].
     #[must_use]
     pub fn degrees(self, dof: Dof) -> f32 {

@@ -1,287 +1,281 @@
-//! The window's end of a link: what may be said to it and what is heard. Never waits for a wire.
+//! The program's end of a link: what may be said to it and what is heard. Only a request waits, for its answer.
 
-use crate::hand::{Force, PerDof, Speed, Target};
-use crate::link::clock::Clock;
-use crate::link::event::{LinkEvent, Request, RequestError, Ticket};
-use crate::link::plan::PollRates;
-use crate::link::session::Session;
+use crate::hand::{HandCommand, Setpoints, Setting, Span};
+use crate::link::config::LinkConfig;
+use crate::link::poll::plan::PollRates;
+use crate::link::request::{Answer, Request, RequestError};
+use crate::link::session::conversation::Session;
 use crate::link::stats::LinkStats;
-use crate::link::status::{ArmEpoch, ArmRequest, LinkStatus};
+use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::tap::WireTap;
-use crate::transport::{Dial, Endpoint};
+use crate::link::wanted::{Ends, Wanted};
+use crate::record::{Calibrated, Record, Reset, Saved, Written};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-use tokio::sync::{mpsc, watch};
+use tokio::sync::broadcast::error::{RecvError, TryRecvError};
+use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
 /// Requests that may wait: a person cannot ask faster than this drains.
 pub const REQUESTS_MAX: usize = 16;
-/// Events that may wait for the window: ten seconds of samples at full rate of a serial line.
-pub const EVENTS_MAX: usize = 1024;
+/// Records that may wait for a reader: ten seconds of samples at full rate of a serial line.
+pub const RECORDS_MAX: usize = 1024;
 
-/// Called when something new is there, from any thread. Must return at once.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
-
-/// What a link is opened with.
-#[derive(Clone)]
-pub struct LinkConfig {
-    /// The hand.
-    pub endpoint: Endpoint,
-    /// How often to read what.
-    pub rates: PollRates,
-    /// The program's clock.
-    pub clock: Clock,
-    /// How wires are opened.
-    pub dial: Arc<dyn Dial>,
-    /// Called when an event waits.
-    pub wake: Wake,
-}
-
-/// New targets and limits for an armed hand. Joints that are `None` keep what they were told.
+/// A turn at moving the hand. Only the newest turn's setpoints pass, so that whoever takes over is not talked over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Setpoints {
-    /// The arming they belong to; in any other they are dropped.
-    pub epoch: ArmEpoch,
-    /// Angles to go to.
-    pub angle: PerDof<Option<Target>>,
-    /// Force thresholds.
-    pub force: PerDof<Option<Force>>,
-    /// Speeds.
-    pub speed: PerDof<Option<Speed>>,
-}
+pub struct MotionTurn(pub(crate) u64);
 
-impl Setpoints {
-    /// Nothing new, for one arming.
-    #[must_use]
-    pub const fn none(epoch: ArmEpoch) -> Self {
-        Self {
-            epoch,
-            angle: PerDof::splat(None),
-            force: PerDof::splat(None),
-            speed: PerDof::splat(None),
-        }
-    }
+/// One open link, for as many as want to use it. The wire closes with the last of its handles; the hand keeps what it was
+/// told last.
+#[derive(Debug, Clone)]
+pub struct LinkHandle(Arc<Shared>);
 
-    /// True if there is nothing to send.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        *self == Self::none(self.epoch)
-    }
-
-    /// Puts newer values over older ones, joint by joint. Another arming replaces all.
-    pub fn merge(&mut self, newer: &Self) {
-        if self.epoch != newer.epoch {
-            *self = *newer;
-            return;
-        }
-        put(&mut self.angle, &newer.angle);
-        put(&mut self.force, &newer.force);
-        put(&mut self.speed, &newer.speed);
-    }
-}
-
-fn put<T: Copy>(older: &mut PerDof<Option<T>>, newer: &PerDof<Option<T>>) {
-    for (dof, value) in newer.iter() {
-        if value.is_some() {
-            older[dof] = *value;
-        }
-    }
-}
-
-/// What the window wants and the session has not taken yet. One slot, so that nothing queues up, and
-/// a stop empties it in the same step.
-#[derive(Debug, Default)]
-pub(crate) struct Wanted {
-    pub(crate) stop: bool,
-    pub(crate) disarm: bool,
-    pub(crate) arm: Option<ArmRequest>,
-    pub(crate) setpoints: Option<Setpoints>,
-    pub(crate) rates: Option<PollRates>,
-    pub(crate) closed: bool,
-}
-
-impl Wanted {
-    /// True if the window wants anything at all.
-    pub(crate) const fn is_any(&self) -> bool {
-        let moves = self.arm.is_some() || self.setpoints.is_some();
-        self.stop || self.disarm || self.closed || moves || self.rates.is_some()
-    }
-}
-
-/// The session's ends of what the handle holds.
-pub(crate) struct Ends {
-    pub(crate) wanted: Arc<watch::Sender<Wanted>>,
-    pub(crate) requests: mpsc::Receiver<(Ticket, Request)>,
-    pub(crate) events: mpsc::Sender<LinkEvent>,
-    pub(crate) status: watch::Sender<LinkStatus>,
-    pub(crate) stats: watch::Sender<LinkStats>,
-    pub(crate) tap: WireTap,
-}
-
-/// One open link. Dropping it closes the wire; the hand keeps what it was told last.
 #[derive(Debug)]
-pub struct LinkHandle {
+struct Shared {
     wanted: Arc<watch::Sender<Wanted>>,
-    requests: mpsc::Sender<(Ticket, Request)>,
-    events: mpsc::Receiver<LinkEvent>,
+    requests: mpsc::Sender<Request>,
+    records: broadcast::WeakSender<Record>,
     status: watch::Receiver<LinkStatus>,
     stats: watch::Receiver<LinkStats>,
-    tickets: AtomicU64,
     tap: WireTap,
 }
 
-/// Opens a link on this runtime and keeps it open until the handle is dropped. Writes nothing by itself.
+impl Drop for Shared {
+    fn drop(&mut self) {
+        self.wanted.send_modify(|wanted| wanted.closed = true);
+    }
+}
+
+/// Opens a link on this runtime and keeps it open until the last handle is dropped. Gives its records from the first on.
+/// Writes nothing by itself.
 #[must_use]
-pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> LinkHandle {
+pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle, Records) {
     let wanted = Arc::new(watch::Sender::new(Wanted::default()));
     let (requests, asked) = mpsc::channel(REQUESTS_MAX);
-    let (told, events) = mpsc::channel(EVENTS_MAX);
+    let (told, records) = broadcast::channel(RECORDS_MAX);
     let (status_in, status) = watch::channel(LinkStatus::default());
     let (stats_in, stats) = watch::channel(LinkStats::default());
     let tap = WireTap::default();
-    let ends = Ends {
+    let shared = Shared {
         wanted: Arc::clone(&wanted),
-        requests: asked,
-        events: told,
-        status: status_in,
-        stats: stats_in,
-        tap: tap.clone(),
-    };
-    runtime.spawn(Session::new(config, ends).run());
-    LinkHandle {
-        wanted,
         requests,
-        events,
+        records: told.downgrade(),
         status,
         stats,
-        tickets: AtomicU64::new(0),
+        tap: tap.clone(),
+    };
+    let ends = Ends {
+        wanted,
+        requests: asked,
+        records: told,
+        status: status_in,
+        stats: stats_in,
         tap,
-    }
+    };
+    runtime.spawn(Session::new(config, ends).run());
+    (LinkHandle(Arc::new(shared)), Records::of(records))
 }
 
 impl LinkHandle {
     /// Where the link stands now.
     #[must_use]
     pub fn status(&self) -> LinkStatus {
-        self.status.borrow().clone()
+        self.0.status.borrow().clone()
     }
 
-    /// What the link measured of itself until now.
+    /// The link's statistics so far.
     #[must_use]
     pub fn stats(&self) -> LinkStats {
-        *self.stats.borrow()
+        *self.0.stats.borrow()
     }
 
-    /// Holds the hand where it is, before anything else, and disarms. Everything not yet sent is forgotten.
+    /// Stops the hand where it is, before anything else, and disarms. Everything not yet sent is dropped.
     pub fn stop(&self) {
-        self.wanted.send_modify(|wanted| {
+        self.0.wanted.send_modify(|wanted| {
             wanted.stop = true;
             wanted.arm = None;
             wanted.setpoints = None;
         });
     }
 
-    /// Asks to arm. The answer is the state `Armed`, or an event that says why not.
+    /// Asks to arm. The answer is the state `Armed`, or a record that says why not.
     pub fn arm(&self, request: ArmRequest) {
-        self.wanted.send_modify(|wanted| wanted.arm = Some(request));
+        self.0
+            .wanted
+            .send_modify(|wanted| wanted.arm = Some(request));
     }
 
-    /// Lets no setpoint pass any more. The hand keeps what it was told.
+    /// Disarms: no more setpoints pass. The hand keeps its last targets.
     pub fn disarm(&self) {
-        self.wanted.send_modify(|wanted| {
+        self.0.wanted.send_modify(|wanted| {
             wanted.disarm = true;
             wanted.arm = None;
             wanted.setpoints = None;
         });
     }
 
-    /// Sets targets and limits: the newest of each joint is sent, at most [`SETPOINT_HZ_MAX`] times a second.
+    /// Takes the turn at moving the hand: no further setpoints of earlier turns pass.
+    #[must_use]
+    pub fn take_turn(&self) -> MotionTurn {
+        let mut turn = 0;
+        self.0.wanted.send_if_modified(|wanted| {
+            wanted.turn += 1;
+            turn = wanted.turn;
+            false
+        });
+        MotionTurn(turn)
+    }
+
+    /// Sets targets and limits: the newest of each joint is sent, at most [`SETPOINT_HZ_MAX`] times a second. False if the
+    /// turn is over; then nothing is sent.
     ///
-    /// [`SETPOINT_HZ_MAX`]: crate::link::motion::SETPOINT_HZ_MAX
-    pub fn set(&self, setpoints: &Setpoints) {
-        self.wanted
-            .send_modify(|wanted| match &mut wanted.setpoints {
+    /// [`SETPOINT_HZ_MAX`]: crate::link::session::motion::SETPOINT_HZ_MAX
+    pub fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
+        self.0.wanted.send_if_modified(|wanted| {
+            if wanted.turn != turn.0 {
+                return false;
+            }
+            match &mut wanted.setpoints {
                 Some(older) => older.merge(setpoints),
                 none => *none = Some(*setpoints),
-            });
+            }
+            true
+        })
     }
 
     /// Reads at other rates from now on, reconnects included. Only what is asked for changes; nothing is written.
     pub fn read_at(&self, rates: PollRates) {
-        self.wanted.send_modify(|wanted| wanted.rates = Some(rates));
+        self.0
+            .wanted
+            .send_modify(|wanted| wanted.rates = Some(rates));
     }
 
-    /// Asks for one thing. The answer is an event with the ticket.
+    /// Writes, and waits until the hand acknowledged. It does not say that the value is in force.
     ///
     /// # Errors
-    /// [`RequestError::NotConnected`] at once while there is no live hand; [`RequestError::Full`] if too many wait.
-    pub fn ask(&self, request: Request) -> Result<Ticket, RequestError> {
-        if !self.status.borrow().state.is_live() {
+    /// [`RequestError`]: [`RequestError::NotConnected`] at once while there is no live hand, [`RequestError::Full`] if too
+    /// many wait. Nothing is tried again by itself.
+    pub async fn write(&self, command: HandCommand) -> Result<(), RequestError> {
+        self.request(|answer| Request::Command(command, answer))
+            .await
+    }
+
+    /// Reads some memory.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub async fn read(&self, span: Span) -> Result<Vec<u8>, RequestError> {
+        self.request(|answer| Request::Read(span, answer)).await
+    }
+
+    /// Writes one kept group at rest, reads it back, and says what the hand holds.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub async fn set_kept(&self, setting: Setting) -> Result<Written, RequestError> {
+        self.request(|answer| Request::Set(setting, answer)).await
+    }
+
+    /// Writes the hand's parameters to its flash, and says what is known of it (manual 2.6.4).
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub async fn save(&self) -> Result<Saved, RequestError> {
+        self.request(Request::Save).await
+    }
+
+    /// Returns to the factory's parameters. The hand may be found at another id, speed or address afterwards.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub async fn reset(&self) -> Result<Reset, RequestError> {
+        self.request(Request::Reset).await
+    }
+
+    /// Calibrates the force sensors. The line is left to the hand, and nothing arms, until that is over.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub async fn calibrate(&self) -> Result<Calibrated, RequestError> {
+        self.request(Request::Calibrate).await
+    }
+
+    /// Asks one thing and waits for its end. What is dropped before it was sent is not sent.
+    async fn request<T>(
+        &self,
+        request: impl FnOnce(Answer<T>) -> Request,
+    ) -> Result<T, RequestError> {
+        if !self.0.status.borrow().state.is_live() {
             return Err(RequestError::NotConnected);
         }
-        let ticket = Ticket(self.tickets.fetch_add(1, Ordering::Relaxed));
-        match self.requests.try_send((ticket, request)) {
-            Ok(()) => Ok(ticket),
-            Err(mpsc::error::TrySendError::Full(_)) => Err(RequestError::Full {
-                limit: REQUESTS_MAX,
-            }),
-            Err(mpsc::error::TrySendError::Closed(_)) => Err(RequestError::NotConnected),
+        let (answer, answered) = oneshot::channel();
+        self.0
+            .requests
+            .try_send(request(answer))
+            .map_err(|refused| match refused {
+                mpsc::error::TrySendError::Full(_) => RequestError::Full {
+                    limit: REQUESTS_MAX,
+                },
+                mpsc::error::TrySendError::Closed(_) => RequestError::NotConnected,
+            })?;
+        match answered.await {
+            Ok(end) => end,
+            // The session ended with the request in its hands.
+            Err(_gone) => Err(RequestError::LinkLost),
         }
     }
 
-    /// What went over the wire; copies go on recording with the link.
+    /// Everything that happens from now on.
+    #[must_use]
+    pub fn records(&self) -> Records {
+        match self.0.records.upgrade() {
+            Some(records) => Records::of(records.subscribe()),
+            None => Records::of(broadcast::channel(1).1),
+        }
+    }
+
+    /// The recorded traffic; copies go on recording with the link.
     #[must_use]
     pub fn tap(&self) -> WireTap {
-        self.tap.clone()
-    }
-
-    /// The next event, if one waits.
-    pub fn try_event(&mut self) -> Option<LinkEvent> {
-        self.events.try_recv().ok()
-    }
-
-    /// Waits for the next event. `None` once the session has ended.
-    pub async fn event(&mut self) -> Option<LinkEvent> {
-        self.events.recv().await
+        self.0.tap.clone()
     }
 }
 
-impl Drop for LinkHandle {
-    fn drop(&mut self) {
-        self.wanted.send_modify(|wanted| wanted.closed = true);
-    }
+/// What happens at a hand, one record after the other. A reader that is too slow loses the oldest, and they are counted.
+#[derive(Debug)]
+pub struct Records {
+    records: broadcast::Receiver<Record>,
+    lost: u64,
 }
 
-#[cfg(test)]
-mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::indexing_slicing,
-        clippy::panic,
-        reason = "a test may"
-    )]
-    use super::*;
-    use crate::hand::{Angle, Dof};
-
-    fn one(epoch: u64, dof: Dof, angle: i16) -> Setpoints {
-        let mut setpoints = Setpoints::none(ArmEpoch(epoch));
-        setpoints.angle[dof] = Some(Target::Go(Angle::nearest(angle)));
-        setpoints
+impl Records {
+    pub(crate) const fn of(records: broadcast::Receiver<Record>) -> Self {
+        Self { records, lost: 0 }
     }
 
-    #[test]
-    fn the_newest_value_of_each_joint_wins() {
-        let mut all = one(1, Dof::Little, 100);
-        all.merge(&one(1, Dof::Index, 300));
-        all.merge(&one(1, Dof::Little, 200));
-        assert_eq!(all.angle[Dof::Little].unwrap().raw(), 200);
-        assert_eq!(all.angle[Dof::Index].unwrap().raw(), 300);
+    /// The next record, if one waits.
+    pub fn try_next(&mut self) -> Option<Record> {
+        loop {
+            match self.records.try_recv() {
+                Ok(record) => return Some(record),
+                Err(TryRecvError::Lagged(lost)) => self.lost += lost,
+                Err(TryRecvError::Empty | TryRecvError::Closed) => return None,
+            }
+        }
     }
 
-    #[test]
-    fn another_arming_forgets_older_setpoints() {
-        let mut all = one(1, Dof::Little, 100);
-        all.merge(&one(2, Dof::Index, 300));
-        assert_eq!(all, one(2, Dof::Index, 300));
+    /// Waits for the next record. `None` once the session has ended.
+    pub async fn next(&mut self) -> Option<Record> {
+        loop {
+            match self.records.recv().await {
+                Ok(record) => return Some(record),
+                Err(RecvError::Lagged(lost)) => self.lost += lost,
+                Err(RecvError::Closed) => return None,
+            }
+        }
+    }
+
+    /// Records that this reader was too slow for.
+    #[must_use]
+    pub const fn lost(&self) -> u64 {
+        self.lost
     }
 }

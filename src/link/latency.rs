@@ -1,9 +1,9 @@
-//! The mark that a USB adapter's latency timer leaves in round trips: short replies wait for its next tick. Only judges.
+//! Detects a USB adapter's latency timer from round trips: short replies wait for its next tick.
 
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// Longest reply, in memory bytes, that an adapter keeps until its timer ticks; a fuller packet is passed on at once.
+/// Longest reply, in memory bytes, that an adapter holds back until its timer ticks; a fuller packet is passed on at once.
 pub const KEPT_MAX: u16 = 48;
 /// Round trips that a judgement needs, and looks at.
 const TRIPS: usize = 16;
@@ -19,7 +19,7 @@ pub struct Ticks {
 }
 
 impl Ticks {
-    /// A reply of so many memory bytes took so long, as measured from here to here.
+    /// A reply of this many memory bytes took this long, measured at this end.
     pub fn took(&mut self, bytes: u16, trip: Duration) {
         if bytes > KEPT_MAX {
             return;

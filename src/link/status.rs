@@ -1,37 +1,9 @@
 //! What the link is doing and why, as plain values that may cross to any thread. No task, no wire.
 
-use crate::hand::{Dof, Force, Moment, PerDof, Speed};
+use crate::hand::{ArmEpoch, Force, Moment, PerDof, Speed};
 use crate::link::quirks::Quirks;
+use crate::record::{Disarmed, Hold, LinkState, Rest};
 use crate::transport::TransportError;
-
-/// Where one conversation with one hand stands (`design.md` §4).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum LinkState {
-    /// No wire.
-    #[default]
-    Offline,
-    /// A wire, and no answer yet.
-    Identifying,
-    /// The hand answers; nothing is written.
-    Monitoring,
-    /// A person armed it: setpoints pass.
-    Armed,
-    /// Stop was pressed: hold is repeated until the hand rests.
-    Holding,
-    /// A drive reports a fault: nothing passes but reads, hold and clearing.
-    Fault,
-}
-
-impl LinkState {
-    /// True if the hand answers.
-    #[must_use]
-    pub const fn is_live(self) -> bool {
-        matches!(
-            self,
-            Self::Monitoring | Self::Armed | Self::Holding | Self::Fault
-        )
-    }
-}
 
 /// Everything the window shows of the link.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -51,7 +23,7 @@ pub struct LinkStatus {
     /// True if the adapter gives back what is sent.
     pub echoes: bool,
     /// Another controller talks to this hand, noticed in the last seconds.
-    pub rival: bool,
+    pub other_controller: bool,
     /// The port at which the adapter is now, if that is another than was asked for.
     pub moved_to: Option<String>,
     /// How long the adapter may keep what it got, milliseconds, where the system tells.
@@ -60,6 +32,8 @@ pub struct LinkStatus {
     pub latency_ticks: bool,
     /// The line is left to a hand that saves or calibrates: values grow old meanwhile. A stop still passes.
     pub line_left: bool,
+    /// Whether the hand rests, by feedback and what was written.
+    pub rest: Rest,
     /// How the last hold went.
     pub hold: Hold,
     /// Why the hand is not armed, if it was.
@@ -139,78 +113,6 @@ pub enum LinkTrouble {
     },
 }
 
-/// How a stop goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Hold {
-    /// None was asked since the hand answered.
-    #[default]
-    None,
-    /// Hold is being repeated.
-    Asked {
-        /// When stop was pressed.
-        at: Moment,
-        /// Hold frames sent so far.
-        sent: u32,
-    },
-    /// Feedback shows that the hand rests.
-    Confirmed {
-        /// When stop was pressed.
-        at: Moment,
-        /// When feedback showed rest.
-        rest: Moment,
-    },
-    /// Feedback does not show rest in time: the hand may still move. Hold goes on.
-    Alarm {
-        /// When stop was pressed.
-        at: Moment,
-    },
-}
-
-/// Why a hand that was armed is not any more.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Disarmed {
-    /// Stop.
-    Stop,
-    /// The person disarmed it.
-    Person,
-    /// A drive reports a fault.
-    Fault,
-    /// The link was lost.
-    LinkLost,
-    /// Feedback grew old.
-    Stale,
-    /// This computer slept.
-    Resume,
-    /// Another controller talks to this hand.
-    Rival,
-}
-
-/// Why the hand cannot be armed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum ArmRefusal {
-    /// No live hand.
-    #[error("there is no live hand")]
-    Offline,
-    /// Stop is still going on.
-    #[error("a stop is still being confirmed")]
-    Holding,
-    /// A drive reports a fault.
-    #[error("a drive reports a fault: clear it first")]
-    Fault,
-    /// The hand saves or calibrates: the line is left to it, so nobody looks where its joints are.
-    #[error("the hand writes its flash or calibrates: wait until that is over")]
-    HandBusy,
-    /// The hand did not acknowledge its speed and force limits.
-    #[error("the hand did not acknowledge its speed and force limits")]
-    NoAnswer,
-    /// A joint without a fresh, sensible angle.
-    #[error("the angle of a joint is unknown or old")]
-    UnknownPose {
-        /// The first such joint.
-        dof: Dof,
-    },
-}
-
 /// What a person arms with: the first write that leaves the armed hand is this, never an angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArmRequest {
@@ -219,7 +121,3 @@ pub struct ArmRequest {
     /// Force thresholds to set before anything moves.
     pub force: PerDof<Force>,
 }
-
-/// One arming. Setpoints carry it, so that none from an earlier arming can act.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub struct ArmEpoch(pub u64);

@@ -230,7 +230,6 @@ impl AsyncWrite for TappedWire {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
     use crate::transport::pair;
     use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};

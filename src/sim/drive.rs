@@ -2,6 +2,7 @@
 
 use crate::hand::impact::{RIGID_G_PER_COUNT, overshoot_g, two_stage_overshoot_g};
 use crate::hand::{Fault, Faults, Status};
+use crate::sim::object::Contact;
 use arrayvec::ArrayVec;
 
 /// Length of a step, s.
@@ -45,25 +46,13 @@ const RELAX_S: f64 = 0.15;
 const FAST_APPROACH: f64 = 2.0;
 /// A finger that rested so long begins anew, ms: halting between two stages takes less.
 const BEGINS_ANEW_MS: u32 = 400;
+/// Half a unit of ANGLE_ACT.
+const SAME_ANGLE: f64 = 1.0;
+/// What relaxing leaves of the threshold, and what of it counts as still held.
+const RELAXED_PART: f64 = 0.92;
+const HELD_PART: f64 = 0.9;
 /// A joint this near to its open end makes room for another object, counts.
 const OPEN_WITHIN: f64 = 20.0;
-
-/// What a joint meets while it bends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
-    /// Angle at which the fingertip touches, 0..=1000.
-    pub angle: f64,
-    /// Stiffness, g for each position count.
-    pub stiffness: f64,
-    /// Force that it does not survive, g; a whole one is put there when the joint is open again.
-    pub breaks_at_g: Option<f64>,
-}
-
-impl Contact {
-    fn position(self) -> f64 {
-        position_of(self.angle)
-    }
-}
 
 /// What a joint is told.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,7 +160,7 @@ impl Drive {
 
     fn load_at(&self, position: f64) -> f64 {
         self.whole_contact().map_or(0.0, |contact| {
-            (position - contact.position()).max(0.0) * contact.stiffness * self.grip
+            (position - position_of(contact.angle)).max(0.0) * contact.stiffness * self.grip
         })
     }
 
@@ -179,7 +168,7 @@ impl Drive {
     #[must_use]
     pub fn gap(&self) -> Option<f64> {
         self.whole_contact()
-            .map(|contact| (contact.position() - self.position).max(0.0))
+            .map(|contact| (position_of(contact.angle) - self.position).max(0.0))
     }
 
     /// mA.
@@ -283,7 +272,7 @@ impl Drive {
                 break;
             }
             self.pending.remove(0);
-            self.begin(goal);
+            self.begin(goal, setting);
         }
         self.current_ma = 0.0;
         self.watch_rest();
@@ -330,7 +319,7 @@ impl Drive {
         self.broken |= most.is_some_and(|most| self.load_g() > most);
     }
 
-    fn begin(&mut self, goal: Goal) {
+    fn begin(&mut self, goal: Goal, setting: Setting) {
         match goal {
             Goal::Freeze => {
                 if matches!(self.phase, Phase::Moving { .. }) {
@@ -339,7 +328,9 @@ impl Drive {
             }
             Goal::Position(to) => {
                 let to = to.clamp(0.0, STROKE);
-                if self.may_move(to) {
+                if self.is_there(to) {
+                    self.stop_moving(Status::PositionReached);
+                } else if self.may_move(to) && !self.holds(to, setting) {
                     self.pushing_ms = 0;
                     self.over_current_ms = 0;
                     if to < self.position {
@@ -349,6 +340,18 @@ impl Drive {
                 }
             }
         }
+    }
+
+    /// True if it rests where it is told to go, as far as ANGLE_ACT tells.
+    fn is_there(&self, to: f64) -> bool {
+        let is_near = (to - self.position).abs() < SAME_ANGLE;
+        is_near && self.phase == Phase::Rest && self.faults.is_empty()
+    }
+
+    /// True if its threshold stopped it and the grip is still there: told to close again, it does not push (manual 2.6.12).
+    fn holds(&self, to: f64, setting: Setting) -> bool {
+        let closes = self.status == Status::ForceReached && to > self.position;
+        closes && self.load_g() >= HELD_PART * setting.threshold_g.max(1.0)
     }
 
     /// A drive that stalled or drew too much may still open; any other fault keeps it still.
@@ -436,12 +439,12 @@ impl Drive {
         } else {
             overshoot_g(speed, threshold_g)
         };
-        let met = contact.position() + threshold_g / stiffness;
-        let rest_g = 0.92 * threshold_g + 0.05 * over * stiffness / RIGID_G_PER_COUNT;
+        let met = position_of(contact.angle) + threshold_g / stiffness;
+        let rest_g = RELAXED_PART * threshold_g + 0.05 * over * stiffness / RIGID_G_PER_COUNT;
         self.status = Status::ForceReached;
         self.phase = Phase::Coasting {
             to: (met + over / RIGID_G_PER_COUNT).min(STROKE),
-            relax_to: (contact.position() + rest_g / stiffness).min(STROKE),
+            relax_to: (position_of(contact.angle) + rest_g / stiffness).min(STROKE),
         };
     }
 

@@ -3,14 +3,15 @@
 use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
 use crate::hand::sample::touch_span;
 use crate::hand::{Dof, Fault, Finger, Moment, PerDof};
-use crate::sim::body::{Body, Object};
+use crate::sim::body::Body;
 use crate::sim::drive::{Goal, Setting, position_of};
 use crate::sim::extremes;
 use crate::sim::live::{self, element};
 use crate::sim::memory::{GAP, Memory, Refusal};
 use crate::sim::number;
+use crate::sim::object::Object;
 use crate::sim::personality::{
-    ChangeAck, Doubles, GapAnswer, Personality, SaveAnswer, SpeedZero, TactileCheck, Turnaround,
+    Beyond, ChangeAck, Doubles, GapAnswer, Personality, SpeedZero, TactileCheck, Turnaround,
 };
 use crate::sim::scenario::{self, Ailment, Order, Scenario};
 use crate::sim::supply::Supply;
@@ -67,8 +68,6 @@ pub struct WriteEffect {
     pub is_acked: bool,
     /// Elements that the hand took; the others were dropped without a word.
     pub taken: usize,
-    /// A late result was put in line ([`SimHand::late_save_result`]).
-    pub result_follows: bool,
 }
 
 /// How an answer is sent.
@@ -117,6 +116,8 @@ pub struct SimHand {
     pub(crate) saves: VecDeque<(Moment, SaveFrame)>,
     /// When a serial line with the maker's framing hears that a calibration is finished.
     pub(crate) calibration_end: Option<Moment>,
+    /// False while a write comes over a wire that has no frames later than the reply.
+    pub(crate) sends_late_frames: bool,
     pub(crate) id: u8,
     pub(crate) baud_code: u8,
     /// Chance of what is not the body's: how answers are sent.
@@ -147,6 +148,7 @@ impl SimHand {
             flash_due_ms: None,
             saves: VecDeque::new(),
             calibration_end: None,
+            sends_late_frames: true,
             id: config.id,
             baud_code: 0,
             chance: fastrand::Rng::with_seed(config.seed ^ 0x5EED),
@@ -182,10 +184,13 @@ impl SimHand {
         if self.config.personality.stamp_gap {
             self.memory.put(STAMP.address, &now.micros().to_le_bytes());
         }
-        self.memory.read(span).map(<[u8]>::to_vec)
+        match self.config.personality.beyond {
+            Beyond::Refused => self.memory.read(span).map(<[u8]>::to_vec),
+            Beyond::Zeros => self.memory.read_on(span),
+        }
     }
 
-    /// A write from outside.
+    /// A write from outside, over a serial line with the maker's framing, where late frames follow.
     ///
     /// # Errors
     /// [`Refusal`] for runs that leave the memory. A value that the hand does not take is no error: it is dropped.
@@ -201,7 +206,7 @@ impl SimHand {
         }
         self.record(now, address, bytes);
         self.refuse_read_only(address)?;
-        let (in_line, id) = (self.saves.len(), self.id);
+        let id = self.id;
         let speeds = PerDof::from_fn(|dof| self.memory.short(&SPEED_SET, element(dof)));
         let bytes = self.as_taken(address, bytes)?;
         let changes = self
@@ -222,7 +227,6 @@ impl SimHand {
             },
             is_acked: !(is_change && ack == ChangeAck::None),
             taken: changes.len(),
-            result_follows: self.saves.len() > in_line,
         })
     }
 
@@ -249,13 +253,6 @@ impl SimHand {
             return None;
         }
         self.saves.pop_front().map(|(_, frame)| frame)
-    }
-
-    /// Takes back the result of the newest SAVE: only serial lines with the maker's framing have such a frame.
-    pub fn cancel_newest_save_result(&mut self) {
-        let twice = self.config.personality.save_frame == SaveAnswer::Twice;
-        let left = self.saves.len().saturating_sub(1 + usize::from(twice));
-        self.saves.truncate(left);
     }
 
     /// When the next result of a SAVE is due.
@@ -364,7 +361,7 @@ impl SimHand {
         match self.config.scenario {
             Scenario::Grasp => self.script_grasp(),
             Scenario::Faults => self.script_faults(),
-            Scenario::Idle | Scenario::Rigid | Scenario::Fragile | Scenario::Extremes => {}
+            _ => {}
         }
         if self.supply.is_off(self.now_ms) {
             if self.supply.fails(self.now_ms) {

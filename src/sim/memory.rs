@@ -118,7 +118,7 @@ impl Memory {
     /// # Errors
     /// [`Refusal::Unmapped`] beyond 4095, [`Refusal::Empty`] without a byte.
     pub fn read(&self, span: Span) -> Result<&[u8], Refusal> {
-        check(span)?;
+        check(span, MEMORY_LEN)?;
         let from = usize::from(span.address);
         self.ram
             .get(from..from + usize::from(span.len))
@@ -126,6 +126,17 @@ impl Memory {
                 address: span.address,
                 last: span.end() - 1,
             })
+    }
+
+    /// As [`Self::read`], with zeros for what lies beyond the memory, up to address 65535.
+    ///
+    /// # Errors
+    /// [`Refusal::Unmapped`] beyond 65535, [`Refusal::Empty`] without a byte.
+    pub fn read_on(&self, span: Span) -> Result<Vec<u8>, Refusal> {
+        check(span, usize::from(u16::MAX) + 1)?;
+        let inside = self.ram.iter().skip(usize::from(span.address)).copied();
+        let all = inside.chain(std::iter::repeat(0));
+        Ok(all.take(usize::from(span.len)).collect())
     }
 
     /// One byte; zero outside.
@@ -176,7 +187,7 @@ impl Memory {
         out_of_range: OutOfRangeWrite,
     ) -> Result<Vec<Change>, Refusal> {
         let len = u16::try_from(bytes.len()).unwrap_or(u16::MAX);
-        check(Span::new(address, len))?;
+        check(Span::new(address, len), MEMORY_LEN)?;
         let elements = elements(address, bytes);
         let fits = |(_, row, value): &(u16, &Register, i32)| row.allows(*value);
         if out_of_range == OutOfRangeWrite::Exception && !elements.iter().all(fits) {
@@ -291,13 +302,13 @@ fn copy_saved(from: &[u8], to: &mut [u8]) {
     }
 }
 
-fn check(span: Span) -> Result<(), Refusal> {
+fn check(span: Span, memory_len: usize) -> Result<(), Refusal> {
     if span.len == 0 {
         return Err(Refusal::Empty {
             address: span.address,
         });
     }
-    if usize::try_from(span.end()).is_ok_and(|end| end <= MEMORY_LEN) {
+    if usize::try_from(span.end()).is_ok_and(|end| end <= memory_len) {
         return Ok(());
     }
     Err(Refusal::Unmapped {
@@ -312,7 +323,6 @@ fn low_byte(value: i32) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
 
     fn write(memory: &mut Memory, address: u16, bytes: &[u8]) -> usize {

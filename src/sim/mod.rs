@@ -9,21 +9,22 @@ mod live;
 pub mod memory;
 mod number;
 mod obey;
+pub mod object;
 pub mod personality;
 pub mod scenario;
 pub mod serve;
 mod supply;
 pub mod touch;
 
-pub use body::{Body, Object};
-pub use drive::Contact;
+pub use body::Body;
 pub use hand::{JournalEntry, Manner, SaveFrame, SimConfig, SimHand, WriteEffect};
 pub use memory::Refusal;
+pub use object::{Contact, Object};
 pub use personality::{
-    BaudEffect, ByteWords, ChangeAck, ClearError, DefaultsWrite, Doubles, Effect, FlashWrite,
-    GapAnswer, InnerAddress, LongRead, MinusOne, NoSwitch, OutOfRangeWrite, Personality, Power,
-    ReadOnlyWrite, ReplyUnit, RtuReplyGap, SWITCHES, SaveAnswer, SingleReply, SpeedZero, Switch,
-    TactileCheck, TcpClients, Turnaround,
+    AnyId, BaudEffect, Beyond, ByteWords, Calibration, ChangeAck, ClearError, DefaultsWrite,
+    Doubles, Effect, FlashWrite, GapAnswer, InnerAddress, LongRead, MinusOne, NoSwitch,
+    OutOfRangeWrite, Personality, Power, ReadOnlyWrite, ReplyUnit, RtuReplyGap, SWITCHES,
+    SaveAnswer, SingleReply, SpeedZero, Switch, TactileCheck, TcpClients, Turnaround,
 };
 pub use scenario::{Scenario, UnknownScenario};
 pub use serve::{Hands, SharedHand};

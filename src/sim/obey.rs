@@ -8,12 +8,12 @@ use crate::hand::register::{
 use crate::hand::{Dof, Moment, PerDof, UserGesture};
 use crate::sim::drive::{Goal, position_of};
 use crate::sim::gesture;
-use crate::sim::hand::{SaveFrame, SimHand};
+use crate::sim::hand::{SaveFrame, SimHand, WriteEffect};
 use crate::sim::live::element;
 use crate::sim::memory::{Change, Refusal};
 use crate::sim::personality::{
-    BaudEffect, ClearError, DefaultsWrite, Effect, FlashWrite, MinusOne, ReadOnlyWrite, SaveAnswer,
-    SpeedZero,
+    BaudEffect, Calibration, ClearError, DefaultsWrite, Effect, FlashWrite, MinusOne,
+    ReadOnlyWrite, SaveAnswer, SpeedZero,
 };
 use std::time::Duration;
 
@@ -23,8 +23,6 @@ const SAVE_TAKES: Duration = Duration::from_secs(1);
 const SAVE_TAKES_LATE: Duration = Duration::from_secs(5);
 /// From the result of a SAVE to its double.
 const SAVE_AGAIN: Duration = Duration::from_millis(100);
-/// From GESTURE_FORCE_CLB to the new zero (manual 2.6.6: about six seconds).
-const CALIBRATION_MS: u64 = 6000;
 /// From SAVE to the last byte in flash, on a hand that takes its time.
 const FLASH_TAKES_MS: u64 = 1000;
 /// What a hand that clamps takes for defaults at most.
@@ -33,6 +31,22 @@ const CLAMPS_TO: i16 = 500;
 const SAVES_MAX: usize = 64;
 
 impl SimHand {
+    /// As [`Self::write`], over a wire that has no late frames: what a SAVE or a calibration came to is told nowhere.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn write_quietly(
+        &mut self,
+        address: u16,
+        bytes: &[u8],
+        now: Moment,
+    ) -> Result<WriteEffect, Refusal> {
+        self.sends_late_frames = false;
+        let effect = self.write(address, bytes, now);
+        self.sends_late_frames = true;
+        effect
+    }
+
     pub(crate) fn refuse_read_only(&self, address: u16) -> Result<(), Refusal> {
         let readable = by_address(address).is_some_and(|row| row.access == Access::Read);
         match self.config.personality.read_only {
@@ -64,15 +78,25 @@ impl SimHand {
                     self.config.personality.baud_effect != BaudEffect::AfterPower,
                 );
             }
-            a if a == GESTURE_FORCE_CLB.address && on => {
-                self.calibration_due_ms = Some(self.now_ms + CALIBRATION_MS);
-                self.calibration_end = Some(now.plus(Duration::from_millis(CALIBRATION_MS)));
-            }
+            a if a == GESTURE_FORCE_CLB.address && on => self.calibrate(now),
             a if a == GESTURE_NO_SET.address => self.take_pose(change.value),
             a if a == ACTION_SEQ_RUN.address && on => {
                 self.take_pose(i32::from(self.memory.byte(ACTION_SEQ_INDEX.address)));
             }
             _ => {}
+        }
+    }
+
+    /// Begins a calibration. Its end is told to whoever asked for one over a wire that can tell it.
+    fn calibrate(&mut self, now: Moment) {
+        // Manual: 2.6.6 names no time. Reports of hands in use say 2 to 6 s, the sister hand's older manual about 6.
+        let takes_ms = match self.config.personality.calibration {
+            Calibration::SixSeconds => 6000,
+            Calibration::TwoSeconds => 2000,
+        };
+        self.calibration_due_ms = Some(self.now_ms + takes_ms);
+        if self.sends_late_frames || self.calibration_end.is_some() {
+            self.calibration_end = Some(now.plus(Duration::from_millis(takes_ms)));
         }
     }
 
@@ -189,7 +213,8 @@ impl SimHand {
             FlashWrite::Slowly => self.flash_due_ms = Some(self.now_ms + FLASH_TAKES_MS),
         }
         let takes = match answer {
-            SaveAnswer::Never => &[][..],
+            _ if !self.sends_late_frames => &[][..],
+            SaveAnswer::Never => &[],
             SaveAnswer::Late => &[SAVE_TAKES_LATE],
             SaveAnswer::Twice => &[SAVE_TAKES, SAVE_TAKES.saturating_add(SAVE_AGAIN)],
             _ => &[SAVE_TAKES],

@@ -23,7 +23,7 @@ pub enum NoSwitch {
         name: String,
     },
     /// The switch has no such position.
-    #[error("'{value}' is no value of the quirk '{name}': it has {known}")]
+    #[error("'{value}' is not a value of the quirk '{name}': choose {known}")]
     Value {
         /// The switch.
         name: &'static str,
@@ -183,6 +183,21 @@ switches! {
     gap "gap" GapAnswer {
         "Read as zeros." Through "through",
         "Refused." Refused "refused",
+    }
+    "Reads past 4095, where the resistive sister hand keeps its fingertips; from 3290 on this one holds zeros."
+    beyond "beyond" Beyond {
+        "Refused: an exception over Modbus, silence elsewhere." Refused "refused",
+        "Read as zeros, up to 65535." Zeros "zeros",
+    }
+    "Ids 0 and 255 on RS485, which the maker's demos use (manual 2.6.1: 1 to 254)."
+    any_id "any-id" AnyId {
+        "Are nobody's." Silent "silent",
+        "Mean every hand, which answers with its own id." Answered "answered",
+    }
+    "From GESTURE_FORCE_CLB to the new zero (manual 2.6.6 names no time; field reports say 2 to 6 s)."
+    calibration "calibration" Calibration {
+        "Six seconds." SixSeconds "6s",
+        "Two seconds." TwoSeconds "2s",
     }
     "CLEAR_ERROR, to a joint that was on its way (manual 2.6.3)."
     clear_error "clear-error" ClearError {

@@ -10,6 +10,8 @@ pub enum Scenario {
     /// Nothing; a soft ball waits between the fingers.
     #[default]
     Idle,
+    /// Nothing, and nothing between the fingers.
+    Free,
     /// Nothing; a block waits as hard as the one that the overshoot was measured on.
     Rigid,
     /// Nothing; a cup waits that breaks if it is pressed too hard, and is replaced when the hand opens.
@@ -24,7 +26,7 @@ pub enum Scenario {
 
 /// A scenario's name that does not exist.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("'{got}' is no scenario: choose idle, rigid, fragile, grasp, faults or extremes")]
+#[error("'{got}' is not a scenario: choose idle, free, rigid, fragile, grasp, faults or extremes")]
 pub struct UnknownScenario {
     /// What was given.
     pub got: String,
@@ -32,8 +34,9 @@ pub struct UnknownScenario {
 
 impl Scenario {
     /// All, with the quiet one first.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Idle,
+        Self::Free,
         Self::Rigid,
         Self::Fragile,
         Self::Grasp,
@@ -46,6 +49,7 @@ impl Scenario {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Idle => "idle",
+            Self::Free => "free",
             Self::Rigid => "rigid",
             Self::Fragile => "fragile",
             Self::Grasp => "grasp",
@@ -201,7 +205,6 @@ pub fn fault_phase(now_ms: u64) -> Option<&'static [(Dof, Ailment)]> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
 
     #[test]

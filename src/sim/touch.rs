@@ -151,7 +151,6 @@ fn nearness(pad: (f64, f64), spot: (f64, f64)) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
 
     fn block(force_g: f64, gap: Option<f64>) -> TactileBlock {

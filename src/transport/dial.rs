@@ -8,7 +8,7 @@ use crate::transport::wire::{BoxedWire, Dial, TransportError};
 use crate::transport::{serial, tcp};
 use futures::future::BoxFuture;
 
-/// Serial speed of CAN adapters: those on USB take any, those on a real line this.
+/// Serial speed of CAN adapters that speak slcan: those on USB take any, those on a real line this.
 const ADAPTER_BAUD: u32 = 115_200;
 
 /// Dials serial ports, sockets and CAN interfaces. Other kinds of link are [`TransportError::Unsupported`].
@@ -27,7 +27,10 @@ impl Dial for SystemDial {
                     Ok(Box::new(tcp::connect(&host, port).await?) as BoxedWire)
                 }
                 Endpoint::Slcan { port, .. } => {
-                    Ok(Box::new(serial::open(&adapter(port))?) as BoxedWire)
+                    Ok(Box::new(serial::open(&adapter(port, ADAPTER_BAUD))?) as BoxedWire)
+                }
+                Endpoint::UsbCan { port, baud, .. } => {
+                    Ok(Box::new(serial::open(&adapter(port, baud))?) as BoxedWire)
                 }
                 #[cfg(target_os = "linux")]
                 Endpoint::Can { interface, id } => {
@@ -60,10 +63,10 @@ impl Dial for SystemDial {
 }
 
 /// The serial side of a CAN adapter.
-fn adapter(port: String) -> SerialLine {
+fn adapter(port: String, baud: u32) -> SerialLine {
     SerialLine {
         port,
-        baud: ADAPTER_BAUD,
+        baud,
         id: DEFAULT_ID,
         packing: None,
     }
@@ -87,8 +90,11 @@ mod tests {
             SystemDial.dial(&endpoint).await.err()
         };
         let place = "/nowhere/ttyACM0".to_owned();
-        let missing = dial("slcan:/nowhere/ttyACM0").await;
-        assert_eq!(missing, Some(TransportError::Missing { place }));
+        for kind in ["slcan", "usbcan"] {
+            let missing = dial(&format!("{kind}:/nowhere/ttyACM0")).await;
+            let place = place.clone();
+            assert_eq!(missing, Some(TransportError::Missing { place }));
+        }
         let place = "nocan9".to_owned();
         let missing = dial("can:nocan9").await;
         let wanted = if cfg!(target_os = "linux") {

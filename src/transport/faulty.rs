@@ -276,12 +276,7 @@ fn flip_bits(chunk: &mut [u8], most: u8, rng: &mut Rng) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        clippy::indexing_slicing,
-        clippy::cast_possible_truncation,
-        reason = "a test may"
-    )]
+    #![allow(clippy::cast_possible_truncation, reason = "a test may")]
     use super::*;
 
     const ROUGH: FaultOdds = FaultOdds {

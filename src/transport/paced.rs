@@ -2,7 +2,7 @@
 //! protocol.
 
 use crate::transport::pipe::{PIPE_LEN, Pipe, pair};
-use crate::transport::timer::Timer;
+use crate::transport::serial::timer::Timer;
 use crate::transport::wire::Wire;
 use std::io;
 use std::time::Duration;
@@ -114,7 +114,6 @@ impl<W: Wire> Line<W> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
 
     /// Answers each request of 9 bytes with so many.

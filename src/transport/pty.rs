@@ -1,6 +1,8 @@
 //! A pseudo-terminal with a link to it, so that other programs can open the simulated hand like a serial port. Knows no protocol.
 
-use crate::transport::permission::remedy;
+#[cfg(target_os = "linux")]
+use crate::transport::openers::Openers;
+use crate::transport::serial::permission::remedy;
 use crate::transport::wire::TransportError;
 use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use nix::pty::openpty;
@@ -28,6 +30,9 @@ pub struct PtyLink {
     slave_path: PathBuf,
     link_path: PathBuf,
     unheard: usize,
+    /// None where the system does not tell who has the slave open.
+    #[cfg(target_os = "linux")]
+    openers: Option<Openers>,
     /// The one speed that is understood; none = any.
     baud: Option<u32>,
     garbled: Vec<u8>,
@@ -44,6 +49,8 @@ impl PtyLink {
         let (master, slave) = open_raw().map_err(failed)?;
         let slave_path = nix::unistd::ttyname(&slave).map_err(|error| failed(error.into()))?;
         replace_link(&slave_path, link_path)?;
+        #[cfg(target_os = "linux")]
+        let openers = Openers::watch(&slave_path).ok();
         let undo = |error| {
             remove_link(&slave_path, link_path);
             failed(error)
@@ -59,6 +66,8 @@ impl PtyLink {
             slave_path: slave_path.clone(),
             link_path: link_path.to_path_buf(),
             unheard: 0,
+            #[cfg(target_os = "linux")]
+            openers,
             baud: None,
             garbled: Vec::new(),
         })
@@ -88,6 +97,25 @@ impl PtyLink {
     #[must_use]
     pub fn link_path(&self) -> &Path {
         &self.link_path
+    }
+
+    /// As a USB port does: what the last client has not read when it closes is thrown away, and what is written while
+    /// nobody has it open goes nowhere. True if nobody has, where the system tells.
+    #[cfg(target_os = "linux")]
+    fn poll_is_idle(&mut self, cx: &mut Context<'_>) -> io::Result<bool> {
+        let Some(openers) = &mut self.openers else {
+            return Ok(false);
+        };
+        if openers.poll_left(cx)? {
+            tcflush(&self.slave, FlushArg::TCIFLUSH)?;
+            self.unheard = 0;
+        }
+        Ok(!openers.are_there())
+    }
+
+    #[cfg(not(target_os = "linux"))]
+    fn poll_is_idle(&mut self, _cx: &mut Context<'_>) -> io::Result<bool> {
+        Ok(false)
     }
 
     fn forget_the_unheard(&mut self, coming: usize) -> io::Result<()> {
@@ -167,6 +195,7 @@ impl AsyncRead for PtyLink {
         cx: &mut Context<'_>,
         buf: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
+        self.poll_is_idle(cx)?;
         let got = loop {
             let mut guard = ready!(self.master.poll_read_ready(cx))?;
             let rest = buf.initialize_unfilled();
@@ -178,6 +207,10 @@ impl AsyncRead for PtyLink {
         buf.advance(got);
         if got > 0 {
             self.unheard = 0;
+            #[cfg(target_os = "linux")]
+            if let Some(openers) = &mut self.openers {
+                openers.are_heard();
+            }
         }
         Poll::Ready(Ok(()))
     }
@@ -189,6 +222,9 @@ impl AsyncWrite for PtyLink {
         cx: &mut Context<'_>,
         buf: &[u8],
     ) -> Poll<io::Result<usize>> {
+        if self.poll_is_idle(cx)? {
+            return Poll::Ready(Ok(buf.len()));
+        }
         self.forget_the_unheard(buf.len())?;
         // Bits read at another speed fall into other places.
         self.garbled.clear();
@@ -224,7 +260,6 @@ impl AsyncWrite for PtyLink {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use crate::transport::endpoint::SerialLine;
     use crate::transport::serial;
@@ -299,6 +334,59 @@ mod tests {
         }
         let mut client = serial::open(&line(&path)).unwrap();
         round_trip(&mut hand, &mut client).await;
+    }
+
+    /// Opens the port without throwing anything away, as `cat` does.
+    #[cfg(target_os = "linux")]
+    fn plain(path: &Path) -> File {
+        use std::os::unix::fs::OpenOptionsExt as _;
+        let flags = (OFlag::O_NONBLOCK | OFlag::O_NOCTTY).bits();
+        let mut options = File::options();
+        let options = options.read(true).write(true).custom_flags(flags);
+        options.open(path).unwrap()
+    }
+
+    #[cfg(target_os = "linux")]
+    #[tokio::test]
+    async fn what_a_client_did_not_read_before_it_closed_is_gone() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("hand");
+        let mut hand = PtyLink::create(&path).unwrap();
+        let mut one = [0];
+        for late in [false, true] {
+            let mut client = plain(&path);
+            client.write_all(b"?").unwrap();
+            hand.read_exact(&mut one).await.unwrap();
+            let answer = async |hand: &mut PtyLink| hand.write_all(b"!").await.unwrap();
+            if !late {
+                answer(&mut hand).await;
+                // Another that opens and closes it meanwhile takes nothing away.
+                let mut byte = [0];
+                drop(plain(&path));
+                assert!(
+                    timeout(Duration::from_millis(50), hand.read(&mut byte))
+                        .await
+                        .is_err()
+                );
+                assert_eq!((&client).read(&mut byte).unwrap(), 1);
+                answer(&mut hand).await;
+            }
+            drop(client);
+            if late {
+                answer(&mut hand).await;
+            }
+            assert!(
+                timeout(Duration::from_millis(50), hand.read(&mut one))
+                    .await
+                    .is_err()
+            );
+            let next = (&plain(&path)).read(&mut one);
+            assert_eq!(
+                next.unwrap_err().kind(),
+                io::ErrorKind::WouldBlock,
+                "{late}"
+            );
+        }
     }
 
     #[tokio::test]

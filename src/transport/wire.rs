@@ -1,8 +1,8 @@
 //! What every wire is: a stream of bytes both ways, and how one is opened. No hand, no protocol.
 
 use crate::transport::endpoint::Endpoint;
-use crate::transport::permission::Remedy;
-use crate::transport::serial::PortFound;
+use crate::transport::serial::found::PortFound;
+use crate::transport::serial::permission::Remedy;
 use futures::future::BoxFuture;
 use tokio::io::{AsyncRead, AsyncWrite};
 
@@ -134,7 +134,7 @@ pub enum TransportError {
     },
     /// A network interface of another kind.
     #[error(
-        "{place} is no CAN interface: choose one that 'ip link show type can' lists, such as can0"
+        "{place} is not a CAN interface: choose one that 'ip link show type can' lists, such as can0"
     )]
     NotCan {
         /// Interface.

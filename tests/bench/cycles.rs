@@ -1,8 +1,8 @@
 //! Full cycles a second - one motion state and one sweep over all fingertips - as fast as the link goes.
 
 use crate::report::{Aim, Failure, Report};
-use handscope::app::SimDial;
-use handscope::link::{Clock, LinkConfig, LinkHandle, LinkStats, PollRates, open};
+use handscope::app::connect::SimDial;
+use handscope::link::{Clock, LinkConfig, LinkStats, PollRates, Records, open};
 use handscope::sim::serve::modbus_tcp;
 use handscope::sim::{Scenario, SharedHand, SimConfig, SimHand};
 use handscope::transport::Endpoint;
@@ -108,10 +108,10 @@ pub(crate) fn measure(
         dial: Arc::new(SimDial::new(clock)),
         wake: Arc::new(|| ()),
     };
-    let mut link = open(config, runtime.handle());
-    listen(&mut link, warm);
-    let (before, begun) = (link.stats(), Instant::now());
-    listen(&mut link, counted);
+    let (link, mut records) = open(config, runtime.handle());
+    listen(&mut records, warm);
+    let (before, lost, begun) = (link.stats(), records.lost(), Instant::now());
+    listen(&mut records, counted);
     let (after, took) = (link.stats(), begun.elapsed());
     if after.state_reads == before.state_reads {
         return Err(format!("{endpoint} gives nothing: {:?}", link.status()).into());
@@ -121,7 +121,7 @@ pub(crate) fn measure(
     Ok(Measured {
         cycles: state.min(tactile) / took.as_secs_f64(),
         failed: count(failed(&after) - failed(&before)),
-        dropped: count(after.dropped_events - before.dropped_events),
+        dropped: count(records.lost() - lost),
         stats: after,
     })
 }
@@ -140,10 +140,10 @@ pub(crate) fn count(many: u64) -> f64 {
 }
 
 /// Takes what comes, as the window does.
-fn listen(link: &mut LinkHandle, length: Duration) {
+fn listen(records: &mut Records, length: Duration) {
     let begun = Instant::now();
     while begun.elapsed() < length {
-        while link.try_event().is_some() {}
+        while records.try_next().is_some() {}
         thread::sleep(LOOK_EACH);
     }
 }

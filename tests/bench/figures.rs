@@ -5,6 +5,7 @@ mod clock;
 mod codec;
 mod cycles;
 mod frames;
+mod hand;
 mod idle;
 #[cfg(unix)]
 mod line;
@@ -31,11 +32,12 @@ mod line {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 9] = [
+const PARTS: [Part; 10] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
     ("ui", frames::run),
+    ("hand", hand::run),
     ("png", pictures::run),
     ("start", start::run),
     ("memory", memory::run),

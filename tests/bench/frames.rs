@@ -6,8 +6,8 @@ use crate::cycles::Server;
 use crate::plain;
 use crate::report::{Aim, Failure, Report};
 use crate::scene::{Scene, Time};
-use handscope::app::history::History;
 use handscope::app::settings::PlotWindow;
+use handscope::history::History;
 use handscope::ui::View;
 use std::time::Duration;
 
@@ -38,13 +38,18 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     scene.run(Duration::from_secs(60));
     let young = all(report, &mut scene, "1 min")?;
     scene.run(Duration::from_secs(3545));
-    let held = scene.state().history.last_secs().unwrap_or_default()
-        - scene.state().history.first_secs().unwrap_or_default();
+    let held = scene.state().hand().history.last_secs().unwrap_or_default()
+        - scene
+            .state()
+            .hand()
+            .history
+            .first_secs()
+            .unwrap_or_default();
     report.row("history held by now", held, "s", Aim::AtLeast(3600.0))?;
     let old = all(report, &mut scene, "1 h")?;
     views(report, &mut scene)?;
     growth(report, young, old)?;
-    beside(report, &scene.state().history, old)?;
+    beside(report, &scene.state().hand().history, old)?;
     dead(report)
 }
 
@@ -70,13 +75,13 @@ fn dead(report: &mut Report) -> Result<(), Failure> {
     let mut scene = Scene::open(Time::Real, server.endpoint.clone())?;
     // Until the plots are full.
     scene.run(Duration::from_secs(10));
-    if !scene.state().link.state.is_live() {
+    if !scene.state().hand().link.state.is_live() {
         return Err("the served hand does not become live".into());
     }
     let [live, ..] = measure(&mut scene);
     drop(server);
     scene.run(DEAD_AFTER);
-    if scene.state().link.state.is_live() {
+    if scene.state().hand().link.state.is_live() {
         return Err("the link lives on without its hand".into());
     }
     let [dead, ..] = measure(&mut scene);

@@ -18,9 +18,9 @@ const AT_LEAST: Duration = Duration::from_millis(250);
 pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     let mut scene = Scene::start(Time::Real)?;
     rest(&mut scene, WARM);
-    let before = scene.state().stats.state_reads;
+    let before = scene.state().hand().stats.state_reads;
     let [frames, cpu] = measure(&mut scene);
-    let data = count(scene.state().stats.state_reads - before) / LENGTH.as_secs_f64();
+    let data = count(scene.state().hand().stats.state_reads - before) / LENGTH.as_secs_f64();
     report.row("states a second, live link at rest", data, "1/s", Aim::None)?;
     report.row("  frames a second", frames, "1/s", Aim::AtMost(data))?;
     report.row("  CPU of all threads", cpu, "% core", Aim::AtMost(15.0))?;

@@ -38,7 +38,7 @@ pub(crate) fn child() -> Result<(), Failure> {
         scene.run(Duration::from_secs(60) / FRAMES);
         std::hint::black_box(scene.frame());
     }
-    let history = u32::try_from(scene.state().history.bytes() / 1024)?;
+    let history = u32::try_from(scene.state().hand().history.bytes() / 1024)?;
     line(&format!(
         "{} {} {}",
         mib("VmRSS:")?,

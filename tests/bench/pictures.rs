@@ -3,8 +3,8 @@
 use crate::clock::{Sorted, millis, wall_and_cpu_ms};
 use crate::report::{Aim, Failure, Report};
 use handscope::app::settings::{Language, Theme};
-use handscope::headless::driver::{Driver, Scene};
-use handscope::headless::png;
+use handscope::shell::headless::driver::{Driver, Scene};
+use handscope::shell::headless::png;
 use handscope::transport::Endpoint;
 use handscope::ui::View;
 use std::path::Path;

@@ -3,8 +3,9 @@
 use crate::clock::{Sorted, cpu_ms};
 use egui::{Context, RawInput, Rect, pos2, vec2};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
-use handscope::app::history::{History, Quantity, Series, Trace};
 use handscope::hand::Dof;
+use handscope::hand::Quantity;
+use handscope::history::{History, Series, Trace};
 
 /// Frames of one figure; with an hour of history each takes long.
 const FRAMES: usize = 15;

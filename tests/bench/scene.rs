@@ -3,8 +3,14 @@
 use crate::clock::cpu_ms;
 use crate::report::Failure;
 use egui::{Context, RawInput, Rect, ViewportId, ViewportInfo, pos2, vec2};
+use handscope::app::action::Action;
+use handscope::app::connect::SimDial;
+use handscope::app::env::Env;
+use handscope::app::files::choose::NoChoice;
+use handscope::app::program::App;
 use handscope::app::settings::PlotWindow;
-use handscope::app::{Action, App, Env, NoChoice, Settings, SimDial, State};
+use handscope::app::settings::Settings;
+use handscope::app::state::State;
 use handscope::hand::Moment;
 use handscope::link::Clock;
 use handscope::shell::Cockpit;

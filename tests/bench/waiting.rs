@@ -96,19 +96,18 @@ async fn unplugged(path: &Path) -> Result<LinkHandle, Failure> {
         dial: Arc::clone(&dial) as Arc<dyn Dial>,
         wake: Arc::new(|| ()),
     };
-    let mut link = link::open(config, &tokio::runtime::Handle::current());
-    until(&mut link, |link| link.status().state.is_live()).await?;
+    let (link, _records) = link::open(config, &tokio::runtime::Handle::current());
+    until(&link, |link| link.status().state.is_live()).await?;
     dial.plugged.store(false, Ordering::Relaxed);
     served.abort();
-    until(&mut link, |link| !link.status().state.is_live()).await?;
+    until(&link, |link| !link.status().state.is_live()).await?;
     Ok(link)
 }
 
 #[cfg(unix)]
-async fn until(link: &mut LinkHandle, wanted: impl Fn(&LinkHandle) -> bool) -> Result<(), Failure> {
+async fn until(link: &LinkHandle, wanted: impl Fn(&LinkHandle) -> bool) -> Result<(), Failure> {
     let end = Instant::now() + PATIENCE;
     while !wanted(link) {
-        while link.try_event().is_some() {}
         if Instant::now() > end {
             return Err("the link does not follow the bench".into());
         }

@@ -25,5 +25,6 @@ macro_rules! targets {
 
 targets! {
     rs485_client rs485_device rtu_client modbus_pdu mbap can_record can_split slcan_answers slcan_commands
-    tap_rs485 tap_rtu tap_tcp tap_can tap_slcan words tactile values endpoint settings
+    usbcan_packets tap_rs485 tap_rtu tap_tcp tap_can tap_slcan tap_usbcan words tactile values endpoint settings
+    parameter_file pose_file
 }

@@ -1,4 +1,4 @@
-"""A session of trials as pandas reads it, with the five lines of the README. Usage: pandas_trials.py FOLDER"""
+"""A session of trials as pandas reads it, with the lines of the manual (assets/manual/files.md). Usage: pandas_trials.py FOLDER"""
 import sys
 
 place = sys.argv[1]

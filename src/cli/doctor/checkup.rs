@@ -1,38 +1,38 @@
-//! What a check-up found out about one hand and the way to it, as plain values. Measures, judges and prints nothing.
+//! The results of a check-up of one hand and the connection to it, as plain values.
 
 use crate::hand::Span;
 use crate::link::{LinkStats, LinkStatus, line_time};
 #[cfg(target_os = "linux")]
-use crate::transport::can_facts::CanFacts;
+use crate::transport::can::facts::CanFacts;
 use crate::transport::{Endpoint, PortFacts, Route};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Round trips kept a window: a day's look stays small, and the newest count.
+/// Round trips kept per window: a check-up of a day stays small, and the newest count.
 const TRIPS_MAX: usize = 65_536;
-/// Upper edges of the histogram, milliseconds; what is longer is in one more place.
+/// Upper edges of the histogram, milliseconds; longer round trips go into one more bin.
 pub(crate) const EDGES_MS: [u64; 7] = [1, 2, 4, 8, 16, 32, 64];
 
-/// One look at one hand.
+/// One check-up of one hand.
 pub(crate) struct Checkup {
     pub(crate) endpoint: Endpoint,
     pub(crate) place: Place,
-    /// What was measured, or why the hand did not answer.
+    /// The measurements, or why the hand did not answer.
     pub(crate) answer: Result<Measured, String>,
 }
 
-/// Where the hand is reached, as the system tells it.
+/// How the hand is reached, as the system reports it.
 pub(crate) enum Place {
     /// In this program.
     BuiltIn,
     /// Behind a serial port.
     Port(PortFacts),
-    /// In a network; none where the system knows no way.
+    /// In a network; `None` where the system has no route.
     Net(Option<Route>),
     /// On a CAN interface.
     #[cfg(target_os = "linux")]
     Can(CanFacts),
-    /// On a CAN interface, where there are none.
+    /// On a CAN interface, on a system without CAN.
     #[cfg(not(target_os = "linux"))]
     NoCan,
 }
@@ -44,13 +44,13 @@ pub(crate) struct Measured {
     pub(crate) status: LinkStatus,
     pub(crate) stats: LinkStats,
     pub(crate) windows: Vec<Window>,
-    /// Round trips of short replies stand at the ticks of a latency timer.
+    /// Round trips of short replies cluster at the ticks of a latency timer.
     pub(crate) ticks_seen: bool,
-    /// Why the link was lost while it was measured.
+    /// Why the link was lost during the measurement.
     pub(crate) lost: Option<String>,
 }
 
-/// One run of registers, read again and again.
+/// One block of registers, read repeatedly.
 pub(crate) struct Window {
     pub(crate) name: &'static str,
     pub(crate) span: Span,
@@ -87,7 +87,7 @@ impl Window {
         self.reads
     }
 
-    /// Round trip that so many of a hundred do not exceed.
+    /// The round trip at this percentile.
     pub(crate) fn percentile(&self, percent: usize) -> Option<Duration> {
         let mut sorted: Vec<Duration> = self.trips.iter().copied().collect();
         sorted.sort_unstable();
@@ -95,7 +95,7 @@ impl Window {
         sorted.get(last * percent / 100).copied()
     }
 
-    /// Reads a second if nothing else were asked.
+    /// Reads a second if nothing else were read.
     pub(crate) fn hz(&self) -> Option<f64> {
         let all: Duration = self.trips.iter().sum();
         let count = u32::try_from(self.trips.len())
@@ -111,7 +111,7 @@ impl Window {
         (seconds > 0.0).then(|| 1.0 / seconds)
     }
 
-    /// How many round trips lie below each edge and above the one before; the last place has the rest.
+    /// How many round trips lie below each edge and above the one before; the last bin has the rest.
     pub(crate) fn histogram(&self) -> [u64; EDGES_MS.len() + 1] {
         let mut counts = [0; EDGES_MS.len() + 1];
         for trip in &self.trips {
@@ -136,7 +136,6 @@ impl Measured {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
 
     #[test]

@@ -1,184 +1,184 @@
-//! What is wrong with a hand or the way to it, and what to do, in words. Measures and prints nothing.
+//! What is wrong with a hand or the connection to it, and what to do, in words.
 
 use crate::cli::doctor::checkup::{Checkup, Measured, Place};
-use crate::transport::{Endpoint, PortFacts, Route};
+use crate::transport::{PortFacts, Route};
+use serde::Serialize;
 use std::time::Duration;
 
-/// Adapters that may keep what they got for longer than this halve the rate.
+/// Adapters that hold data back for longer than this halve the rate.
 const TIMER_MS: u16 = 2;
-/// Requests without reply that are too many, of a thousand: one is this computer being busy.
+/// Too many requests without a reply, per thousand: a single one may be this computer being busy.
 const TIMEOUTS_PER_MILLE: u64 = 10;
-/// Wrong checksums that are too many, of a thousand (hazards: more than 1 in 1000 is a bad line).
+/// Too many wrong checksums, per thousand (hazards: more than 1 in 1000 is a bad line).
 const CHECKSUMS_PER_MILLE: u64 = 1;
-/// A hand takes up to 15 ms, an adapter 16 more; beyond that feedback is too old to steer by.
+/// A hand takes up to 15 ms, an adapter 16 more; beyond that, feedback is too old for control.
 const SLOW: Duration = Duration::from_millis(60);
 
-/// One thing that a person should know.
+/// One finding.
+#[derive(Serialize)]
 pub(crate) struct Finding {
-    /// True if it should not be so; false if it is only good to know.
+    /// True for a problem, false for a note.
+    #[serde(rename = "wrong")]
     pub(crate) is_wrong: bool,
     /// What was found.
     pub(crate) what: String,
-    /// What to do; empty if nothing is to be done.
+    /// What to do; empty if nothing.
     pub(crate) advice: String,
 }
 
-fn wrong(what: impl Into<String>, advice: impl Into<String>) -> Finding {
-    Finding {
-        is_wrong: true,
-        what: what.into(),
-        advice: advice.into(),
-    }
-}
+/// What was found so far.
+#[derive(Default)]
+struct Findings(Vec<Finding>);
 
-fn hint(what: impl Into<String>, advice: impl Into<String>) -> Finding {
-    Finding {
-        is_wrong: false,
-        ..wrong(what, advice)
+impl Findings {
+    fn add(&mut self, is_wrong: bool, what: impl Into<String>, advice: impl Into<String>) {
+        self.0.push(Finding {
+            is_wrong,
+            what: what.into(),
+            advice: advice.into(),
+        });
+    }
+
+    fn wrong(&mut self, what: impl Into<String>, advice: impl Into<String>) {
+        self.add(true, what, advice);
+    }
+
+    fn hint(&mut self, what: impl Into<String>, advice: impl Into<String>) {
+        self.add(false, what, advice);
     }
 }
 
 /// All findings, the worst first.
 pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
-    let mut found = Vec::new();
+    let mut found = Findings::default();
+    let endpoint = &checkup.endpoint;
     match &checkup.answer {
         // The sentence says itself what to do.
-        Err(why) => found.push(wrong(why, "")),
+        Err(why) => found.wrong(why, ""),
         Ok(measured) => answers(measured, &mut found),
     }
+    let measured = checkup.answer.as_ref().ok();
     match &checkup.place {
-        Place::Port(facts) => port(
-            &checkup.endpoint,
-            facts,
-            checkup.answer.as_ref().ok(),
-            &mut found,
-        ),
-        Place::Net(way) => net(way.as_ref(), checkup.answer.is_ok(), &mut found),
+        Place::Port(facts) => port(&endpoint.place(), facts, measured, &mut found),
+        Place::Net(way) => net(way.as_ref(), measured.is_some(), &mut found),
         #[cfg(target_os = "linux")]
-        Place::Can(facts) => can(&checkup.endpoint.place(), facts, &mut found),
+        Place::Can(facts) => can(&endpoint.place(), facts, &mut found),
         #[cfg(not(target_os = "linux"))]
         Place::NoCan => {}
         Place::BuiltIn => {}
     }
-    found.sort_by_key(|finding| !finding.is_wrong);
-    found
+    found.0.sort_by_key(|finding| !finding.is_wrong);
+    found.0
 }
 
-fn answers(measured: &Measured, found: &mut Vec<Finding>) {
+fn answers(measured: &Measured, found: &mut Findings) {
     if let Some(why) = &measured.lost {
-        found.push(wrong(
-            format!("the link was lost while it was looked at: {why}"),
+        found.wrong(
+            format!("the link was lost during the check: {why}"),
             "check plug, cable and the hand's power",
-        ));
+        );
     }
     let requests = measured.requests().max(1);
     let per_mille = |count: u64| count * 1000 / requests;
     let stats = &measured.stats;
     if per_mille(stats.timeouts) > TIMEOUTS_PER_MILLE {
-        found.push(wrong(
+        found.wrong(
             format!(
-                "{} of {requests} requests stayed without a reply",
+                "{} of {requests} requests went without a reply",
                 stats.timeouts
             ),
-            "check cable, termination and whether two devices have one id",
-        ));
+            "check the cable, the termination, and whether two devices share an id",
+        );
     }
     if per_mille(stats.checksum_errors) > CHECKSUMS_PER_MILLE {
-        found.push(wrong(
+        found.wrong(
             format!("{} replies had a wrong checksum", stats.checksum_errors),
-            "check termination, ground and cable length; over RS485 Modbus RTU is checked better than the maker's framing",
-        ));
+            "check termination, ground and cable length; on RS485, Modbus RTU has a better check than the maker's framing",
+        );
     }
-    if measured.status.rival || stats.foreign_requests > 0 {
-        found.push(wrong(
+    if measured.status.other_controller || stats.foreign_requests > 0 {
+        found.wrong(
             format!(
                 "another controller talks to this hand ({} times noticed)",
                 stats.foreign_requests
             ),
-            "close the other program or take the other master off the bus",
-        ));
+            "close the other program, or take the other master off the bus",
+        );
     }
     let slowest = measured
         .windows
         .iter()
         .filter_map(|window| window.percentile(50));
     if let Some(trip) = slowest.max().filter(|trip| *trip > SLOW) {
-        found.push(wrong(
+        found.wrong(
             format!("a reply takes {} ms", trip.as_millis()),
-            "choose a higher baud, or look at the latency of adapter and network",
-        ));
+            "choose a higher baud rate, or check the latency of adapter and network",
+        );
     }
     if measured.status.echoes {
-        found.push(hint(
-            "the adapter echoes: what is sent comes back, and is left out",
-            "nothing has to be done; switching the echo off frees the line",
-        ));
+        found.hint(
+            "the adapter echoes what is sent; the echo is ignored",
+            "nothing to do; switching the echo off would free the line",
+        );
     }
 }
 
-fn port(
-    endpoint: &Endpoint,
-    facts: &PortFacts,
-    measured: Option<&Measured>,
-    found: &mut Vec<Finding>,
-) {
-    let port = endpoint.place();
+fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut Findings) {
     // A port that could not be opened because of it has been told of with this name already.
     if let Some(holder) = facts.holder.as_ref().filter(|_| measured.is_some()) {
-        found.push(wrong(
+        found.wrong(
             format!("{port} is also open in {holder}"),
-            "close that program: two of them mix up their replies",
-        ));
+            "close that program: two programs mix up each other's replies",
+        );
     }
     let timer = facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms);
     match timer {
-        Some(ms) if ms > TIMER_MS => found.push(wrong(
-            format!("the USB adapter keeps replies back for up to {ms} ms (latency timer)"),
-            timer_advice(facts, &port),
-        )),
+        Some(ms) if ms > TIMER_MS => found.wrong(
+            format!("the USB adapter holds replies back for up to {ms} ms (latency timer)"),
+            timer_advice(facts, port),
+        ),
         // The driver says that the timer is short: then it is the hand that takes so long.
         Some(_) => {}
-        None if measured.is_some_and(|measured| measured.ticks_seen) => found.push(wrong(
+        None if measured.is_some_and(|measured| measured.ticks_seen) => found.wrong(
             "replies come every 16 ms, as from a USB adapter with a latency timer of 16 ms",
-            timer_advice(facts, &port),
-        )),
+            timer_advice(facts, port),
+        ),
         None => {}
     }
 }
 
-/// The one line that cures it.
+/// The command that fixes it.
 fn timer_advice(facts: &PortFacts, port: &str) -> String {
     let device = facts.device.as_deref().unwrap_or(port);
     let name = device.rsplit('/').next().unwrap_or(device);
     if cfg!(windows) {
         return format!(
-            "in the Device Manager open {name}, Port Settings, Advanced, and set the latency timer to 1 ms"
+            "in the Device Manager, open {name}, Port Settings, Advanced, and set the latency timer to 1 ms"
         );
     }
     format!("run 'echo 1 | sudo tee /sys/bus/usb-serial/devices/{name}/latency_timer'")
 }
 
-fn net(way: Option<&Route>, is_answered: bool, found: &mut Vec<Finding>) {
+fn net(way: Option<&Route>, is_answered: bool, found: &mut Findings) {
     let Some(way) = way.filter(|way| way.is_direct() == Some(false)) else {
         return;
     };
     let interface = way.interface.as_deref().unwrap_or("the interface");
     let what = format!(
-        "{} is not in the network of {} ({interface}): a router stands between, or nothing",
+        "{} is not in the network of {} ({interface}): it is behind a router, or out of reach",
         way.to, way.from
     );
     let advice = format!(
-        "give this computer an address beside the hand's, for example 'sudo ip addr add {} dev {interface}'",
+        "give this computer an address in the hand's network, for example 'sudo ip addr add {} dev {interface}'",
         neighbour(way)
     );
-    found.push(if is_answered {
-        hint(what, "")
-    } else {
-        wrong(what, advice)
-    });
+    match is_answered {
+        true => found.hint(what, ""),
+        false => found.wrong(what, advice),
+    }
 }
 
-/// An address in the hand's own network of 256 that is most likely free.
+/// An address in the hand's own /24 network that is most likely free.
 fn neighbour(way: &Route) -> String {
     match way.to {
         std::net::IpAddr::V4(to) => {
@@ -191,46 +191,38 @@ fn neighbour(way: &Route) -> String {
 }
 
 #[cfg(target_os = "linux")]
-fn can(interface: &str, facts: &crate::transport::can_facts::CanFacts, found: &mut Vec<Finding>) {
-    use crate::transport::can_facts::QUEUE_LEN_USUAL;
-    if let Some(state) = facts
-        .state
-        .as_deref()
-        .filter(|state| *state != "ERROR-ACTIVE" && *state != "STOPPED")
-    {
-        found.push(wrong(
+fn can(interface: &str, facts: &crate::transport::can::facts::CanFacts, found: &mut Findings) {
+    use crate::transport::can::facts::QUEUE_LEN_USUAL;
+    let is_well = |state: &&str| matches!(*state, "ERROR-ACTIVE" | "STOPPED");
+    if let Some(state) = facts.state.as_deref().filter(|state| !is_well(state)) {
+        found.wrong(
             format!("the controller of {interface} is {state}"),
-            "check bit rate, cable and termination at both ends",
-        ));
+            "check bit rate, cable, and termination at both ends",
+        );
     }
-    if facts
-        .bitrate
-        .is_some_and(|rate| rate != 1_000_000 && rate != 500_000)
-    {
-        found.push(hint(
-            format!("{interface} runs at {} bit/s, where hands run at 1000000 as delivered", facts.bitrate.unwrap_or_default()),
+    let is_usual = |rate: &u64| matches!(*rate, 1_000_000 | 500_000);
+    if let Some(rate) = facts.bitrate.filter(|rate| !is_usual(rate)) {
+        found.hint(
+            format!("{interface} runs at {rate} bit/s; hands are delivered with 1000000"),
             format!("run 'sudo ip link set {interface} down', then 'sudo ip link set {interface} up type can bitrate 1000000'"),
-        ));
+        );
     }
-    if facts.is_up == Some(true) && facts.queue_len.is_some_and(|len| len <= QUEUE_LEN_USUAL) {
-        found.push(hint(
-            format!(
-                "{interface} lets {} frames wait",
-                facts.queue_len.unwrap_or_default()
-            ),
-            format!("where frames are refused, run 'sudo ip link set {interface} txqueuelen 100'"),
-        ));
+    let queue_len = facts.queue_len.filter(|_| facts.is_up == Some(true));
+    if let Some(len) = queue_len.filter(|len| *len <= QUEUE_LEN_USUAL) {
+        found.hint(
+            format!("{interface} queues only {len} frames"),
+            format!("if frames are refused, run 'sudo ip link set {interface} txqueuelen 100'"),
+        );
     }
 }
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use crate::cli::doctor::checkup::Window;
     use crate::hand::Span;
     use crate::link::{LinkStats, LinkStatus};
-    use crate::transport::UsbFound;
+    use crate::transport::{Endpoint, UsbFound};
 
     fn healthy(endpoint: &Endpoint) -> Measured {
         let mut window = Window::new("angles", Span::new(1546, 12), endpoint);
@@ -312,7 +304,7 @@ mod tests {
             ),
             (
                 Place::BuiltIn,
-                |measured| measured.status.rival = true,
+                |measured| measured.status.other_controller = true,
                 true,
                 "another controller",
             ),

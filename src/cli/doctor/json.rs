@@ -1,4 +1,4 @@
-//! A check-up as one JSON object; a contract with scripts, documented in the README. Measures and judges nothing.
+//! A check-up as one JSON object; a contract with scripts, documented in `assets/manual/json.md`.
 
 use crate::cli::doctor::checkup::{Checkup, EDGES_MS, Measured, Place, Window};
 use crate::cli::doctor::findings::Finding;
@@ -9,24 +9,15 @@ use std::time::Duration;
 /// The whole object. What is not known is null.
 pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     let measured = checkup.answer.as_ref().ok();
-    let (mut port, mut network, mut can) = (Value::Null, Value::Null, Value::Null);
+    let (mut port, mut network, mut can) = (None, None, None::<Value>);
     match &checkup.place {
-        Place::BuiltIn => {}
-        Place::Port(facts) => port = port_json(facts),
-        Place::Net(way) => network = way.as_ref().map_or(Value::Null, net_json),
+        Place::Port(facts) => port = Some(port_json(facts)),
+        Place::Net(way) => network = way.as_ref().map(net_json),
         #[cfg(target_os = "linux")]
-        Place::Can(facts) => {
-            can = json!({
-                "exists": facts.exists,
-                "is_can": facts.is_can,
-                "is_up": facts.is_up,
-                "bitrate": facts.bitrate,
-                "state": facts.state,
-                "queue_len": facts.queue_len,
-            });
-        }
+        Place::Can(facts) => can = Some(json!(facts)),
         #[cfg(not(target_os = "linux"))]
-        Place::NoCan => can = Value::Null,
+        Place::NoCan => can = None,
+        Place::BuiltIn => {}
     }
     let status = measured.map(|measured| &measured.status);
     json!({
@@ -38,17 +29,13 @@ pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
         "answers": measured.is_some(),
         "error": checkup.answer.as_ref().err(),
         "answered_after_ms": measured.map(|measured| millis(measured.answered_after)),
-        "now_at": status.and_then(|status| status.moved_to.clone()),
+        "now_at": status.and_then(|status| status.moved_to.as_ref()),
         "adapter_echoes": status.map(|status| status.echoes),
-        "other_controller": status.map(|status| status.rival),
+        "other_controller": status.map(|status| status.other_controller),
         "latency_ticks": measured.map(|measured| measured.ticks_seen),
         "windows": measured.map(|measured| measured.windows.iter().map(window_json).collect::<Vec<_>>()),
         "errors": measured.map(errors_json),
-        "findings": found.iter().map(|finding| json!({
-            "wrong": finding.is_wrong,
-            "what": finding.what,
-            "advice": finding.advice,
-        })).collect::<Vec<_>>(),
+        "findings": found,
     })
 }
 

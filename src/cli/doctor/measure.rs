@@ -1,36 +1,33 @@
-//! Gathers what the system tells and what the hand answers, by reading only. Judges and prints nothing.
+//! Collects what the system reports and what the hand answers, by reading only.
 
-use crate::cli::args::DoctorArgs;
 use crate::cli::doctor::checkup::{Checkup, Measured, Place, Window};
 use crate::cli::interrupt::Interrupt;
 use crate::cli::session;
 use crate::hand::{Span, register};
-use crate::link::{
-    Clock, LinkEvent, LinkHandle, Outcome, PollRates, Request, RequestError, Ticket, Ticks,
-};
+use crate::link::{Clock, LinkHandle, PollRates, RequestError, Ticks};
 use crate::transport::{Endpoint, Sysfs, port_facts, route};
 use std::time::Duration;
 use tokio::time::{Instant, sleep, sleep_until};
 
-/// The setpoints alone are read beside what is measured: they show whether someone else changes them.
+/// Besides what is measured, only the setpoints are read: they show whether someone else changes them.
 const RATES: PollRates = PollRates {
     state_hz: 0.0,
     tactile_hz: 0.0,
     settings_hz: 2.0,
 };
-/// Where each question could still be answered late, the next waits for so long.
+/// Where a late reply is possible, the next request waits this long.
 const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
-/// Fingertips of the first of two reads that bring all five.
+/// The fingertips in the first of the two reads that cover all five.
 const TIPS: Span = Span::new(register::TOUCH.address, 232);
 const LAST_TIP: Span = Span::new(register::TOUCH.address + TIPS.len, 58);
 
-/// Looks at the way to the hand, then at the hand, until the time is over or the person ends it.
-pub(crate) async fn check(args: &DoctorArgs) -> anyhow::Result<Checkup> {
+/// Checks the connection, then the hand, until the time is up or a person ends it.
+pub(crate) async fn check(hand: &Endpoint, length: Duration) -> anyhow::Result<Checkup> {
     let interrupt = Interrupt::listen()?;
-    let place = place(&args.hand).await;
+    let place = place(hand).await;
     Ok(Checkup {
-        answer: answer(args, interrupt).await,
-        endpoint: args.hand.clone(),
+        answer: answer(hand, length, interrupt).await,
+        endpoint: hand.clone(),
         place,
     })
 }
@@ -41,11 +38,13 @@ async fn place(endpoint: &Endpoint) -> Place {
         Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
             Place::Port(port_facts(&line.port, &Sysfs::default()))
         }
-        Endpoint::Slcan { port, .. } => Place::Port(port_facts(port, &Sysfs::default())),
+        Endpoint::Slcan { port, .. } | Endpoint::UsbCan { port, .. } => {
+            Place::Port(port_facts(port, &Sysfs::default()))
+        }
         // A name that cannot be resolved is told again, with its reason, when it is dialled.
         Endpoint::Tcp { host, port, .. } => Place::Net(route(host, *port).await.ok()),
         #[cfg(target_os = "linux")]
-        Endpoint::Can { interface, .. } => Place::Can(crate::transport::can_facts::can_facts(
+        Endpoint::Can { interface, .. } => Place::Can(crate::transport::can::facts::can_facts(
             interface,
             std::path::Path::new("/sys"),
         )),
@@ -54,23 +53,27 @@ async fn place(endpoint: &Endpoint) -> Place {
     }
 }
 
-async fn answer(args: &DoctorArgs, mut interrupt: Interrupt) -> Result<Measured, String> {
+async fn answer(
+    hand: &Endpoint,
+    length: Duration,
+    mut interrupt: Interrupt,
+) -> Result<Measured, String> {
     let begun = Instant::now();
-    let mut link = session::open(&args.hand, RATES, Clock::start());
-    let answered = session::answered(&link, &args.hand);
+    let link = session::open(hand, RATES, Clock::start());
+    let answered = session::answered(&link, hand);
     tokio::select! {
         biased;
         () = interrupt.wished() => return Err("ended before the hand answered".into()),
         answered = answered => answered.map_err(|error| error.to_string())?,
     }
     let answered_after = begun.elapsed();
-    let mut look = Look::new(&args.hand);
-    let until = Instant::now() + args.length;
+    let mut look = Look::new(hand);
+    let until = Instant::now() + length;
     tokio::select! {
         biased;
         () = interrupt.wished() => {}
         () = sleep_until(until) => {}
-        () = look.ask_on(&mut link) => {}
+        () = look.ask_on(&link) => {}
     }
     let status = link.status();
     let lost = session::trouble(&status).map(ToString::to_string);
@@ -84,7 +87,7 @@ async fn answer(args: &DoctorArgs, mut interrupt: Interrupt) -> Result<Measured,
     })
 }
 
-/// The windows in turn, one question at a time.
+/// Reads the windows in turn, one request at a time.
 struct Look {
     windows: Vec<Window>,
     ticks: Ticks,
@@ -110,12 +113,12 @@ impl Look {
     }
 
     /// Asks until the link is lost.
-    async fn ask_on(&mut self, link: &mut LinkHandle) {
+    async fn ask_on(&mut self, link: &LinkHandle) {
         loop {
             for window in &mut self.windows {
                 let asked = Instant::now();
-                match read(link, window.span).await {
-                    Ok(()) => {
+                match link.read(window.span).await {
+                    Ok(_bytes) => {
                         let trip = asked.elapsed();
                         window.took(trip);
                         self.ticks.took(window.span.len, trip);
@@ -133,16 +136,4 @@ impl Look {
             }
         }
     }
-}
-
-async fn read(link: &mut LinkHandle, span: Span) -> Result<(), RequestError> {
-    let asked: Ticket = link.ask(Request::Read(span))?;
-    while let Some(event) = link.event().await {
-        if let LinkEvent::Done { ticket, result } = event
-            && ticket == asked
-        {
-            return result.map(|_: Outcome| ());
-        }
-    }
-    Err(RequestError::LinkLost)
 }

@@ -1,4 +1,4 @@
-//! `doctor`: what is wrong with a hand and the way to it, and what to do. Reads only.
+//! `doctor`: diagnoses a hand and the connection to it, and says what to do. Only reads.
 
 mod checkup;
 mod findings;
@@ -6,19 +6,33 @@ mod json;
 mod measure;
 mod text;
 
-use crate::cli::args::DoctorArgs;
 use crate::cli::out::Out;
+use crate::cli::parse::seconds;
 use crate::cli::session;
+use crate::transport::Endpoint;
 use anyhow::bail;
+use std::time::Duration;
 
-/// Looks, tells, and fails if something is wrong.
+#[derive(Debug, clap::Args)]
+pub(crate) struct DoctorArgs {
+    /// The hand to examine
+    #[arg(long, value_name = "URL")]
+    pub(crate) hand: Endpoint,
+    /// Seconds to measure once it answers
+    #[arg(long = "for", value_name = "SECONDS", default_value = "5", value_parser = seconds)]
+    pub(crate) length: Duration,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Runs a check-up and prints it. Fails if something is wrong.
 pub(crate) fn run(out: &mut Out, args: &DoctorArgs) -> anyhow::Result<()> {
-    let checkup = session::runtime()?.block_on(measure::check(args))?;
+    let checkup = session::runtime()?.block_on(measure::check(&args.hand, args.length))?;
     let found = findings::judge(&checkup);
-    if args.json {
-        out.line(&json::object(&checkup, &found).to_string())?;
-    } else {
-        text::print(out, &checkup, &found)?;
+    match args.json {
+        true => out.object(&json::object(&checkup, &found))?,
+        false => out.lines(text::lines(&checkup, &found))?,
     }
     match found.iter().filter(|finding| finding.is_wrong).count() {
         0 => Ok(()),

@@ -1,7 +1,13 @@
-//! The command line of `params` as clap sees it. Does nothing.
+//! The command line of `params` as clap sees it, and what follows from it alone. Reaches no hand.
 
-use crate::app::params::table::ParamId;
+use crate::app::files::settings_file;
+use crate::cli::out::WrongUsage;
+use crate::params::backups::{Backups, folder_beside};
+use crate::params::rows::ParamId;
+use crate::params::values::Params;
+use crate::tasks::Consent;
 use crate::transport::Endpoint;
+use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -15,42 +21,53 @@ pub(crate) struct ParamsArgs {
 pub(crate) enum ParamsCommand {
     /// Read all parameters, print them, and write them to a file
     Dump(DumpArgs),
-    /// Compare what the hand holds with a file, with what was saved last, or with the factory's
+    /// Compare the hand's parameters with a file, the last save, or the factory values
     #[command(
         after_help = "Exit status: 0 no difference; 1 differences, or something could not be read; 2 wrong usage."
     )]
     Diff(DiffArgs),
-    /// Write the rows of a file that differ, read each back, and say what came of it
+    /// Write the rows of a file that differ, read each back, and report the outcome
     #[command(
-        after_help = "A file is taken whole or not at all. Before anything is written, what the hand holds goes into a backup. If a row is not applied, the others are put back, unless --partial is given. Nothing is in flash before 'handscope params save'.\n\nRows that say where a hand is found (hand_id, redu_ratio, ip_address) are left alone unless --only names them; hand_id and redu_ratio are changed one at a time, and the hand is looked for at the new and at the old place; a new id is refused if another hand has it. ip_address acts once it was saved and the hand was switched off and on. Such rows, and speeds and forces that hit harder than before on a stiff object, need --yes."
+        after_help = "A file is taken whole or not at all. A backup is made before anything is written. If a row cannot be applied, the others are restored, unless --partial is given. Nothing is in flash before 'handscope params save'.\n\nThe rows that decide where a hand answers (hand_id, redu_ratio, ip_address) are left alone unless --only names them. hand_id and redu_ratio are changed one at a time, and the hand is then looked for at its new and its old place; a new id is refused if another hand has it. ip_address takes effect after a save and a power cycle. These rows, and speeds and forces that hit harder than before on a stiff object, need --yes."
     )]
     Apply(ApplyArgs),
-    /// Write the hand's parameters to its flash, so that it wakes up with them
+    /// Write the hand's parameters to its flash, so that it starts with them
     #[command(
-        after_help = "A backup is made first. On RS485 the hand says how it ended; on Modbus and CAN nothing does, and that is said: there only the next power-up shows it ('handscope params diff --saved').\n\nExit status: 0 saved as far as this wire can tell; 1 failed, or not known."
+        after_help = "A backup is made first. On RS485 the hand reports the result; on Modbus and CAN it does not, and only the next power-up shows it ('handscope params diff --saved').\n\nExit status: 0 saved as far as this wire can tell; 1 failed, or not known."
     )]
     Save(FlashArgs),
-    /// Return the hand to the factory's parameters
+    /// Return the hand to its factory parameters
     #[command(
-        after_help = "A backup is made first; 'handscope params apply' brings it back. The hand must rest. Id, serial speed and IP address become the factory's too: where the hand answers then is looked up and said."
+        after_help = "A backup is made first; 'handscope params apply' restores it. The hand must be at rest. Id, serial speed and IP address return to their factory values too; the hand is then looked for, and its address printed."
     )]
     Reset(FlashArgs),
-    /// List the backups of a hand, and what was saved last. Asks the hand nothing
-    Backups(BackupsArgs),
+    /// List the backups of a hand and its last save, without asking the hand
+    Backups(Common),
 }
 
-/// Which hand, how it is told, and where this program's records lie.
+/// The hand, the form of the output, and the folder of this program's records.
 #[derive(Debug, Args)]
 pub(crate) struct Common {
     /// The hand
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Endpoint,
-    /// One JSON object
+    /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
     /// Folder of records and backups [default: params, beside the window's settings]
     #[arg(long, value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,
+}
+
+impl Common {
+    /// This program's files of the hand.
+    pub(crate) fn backups(&self) -> anyhow::Result<Backups> {
+        let beside_settings = || settings_file::default_path().as_deref().map(folder_beside);
+        let folder = self.folder.clone().or_else(beside_settings);
+        let folder =
+            folder.context("no home folder for records and backups: name one with --folder")?;
+        Ok(Backups::new(&folder, &self.hand))
+    }
 }
 
 #[derive(Debug, Args)]
@@ -70,13 +87,13 @@ pub(crate) struct DiffArgs {
     /// A parameter file
     #[arg(value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
-    /// What this program saved last
+    /// Compare with what this program saved last
     #[arg(long)]
     pub(crate) saved: bool,
-    /// What the manual says of delivery
+    /// Compare with the factory values in the manual
     #[arg(long)]
     pub(crate) factory: bool,
-    /// Show the rows without a difference too
+    /// Also show rows that do not differ
     #[arg(long)]
     pub(crate) all: bool,
 }
@@ -88,33 +105,58 @@ pub(crate) struct ApplyArgs {
     pub(crate) file: PathBuf,
     #[command(flatten)]
     pub(crate) common: Common,
-    /// Only this row or group, for example default_speed.index or default_force; may be given several times
+    /// Only this row or group, for example default_speed.index or default_force; may be repeated
     #[arg(long, value_name = "ROW", value_parser = rows)]
     pub(crate) only: Vec<Rows>,
-    /// Keep the rows that were applied even if others were not
+    /// Keep the rows that were applied even if others fail
     #[arg(long)]
     pub(crate) partial: bool,
-    /// You mean it, also where the hand may be found elsewhere or will hit hard
+    /// Confirm changes of where the hand answers, and settings that hit hard
     #[arg(long)]
     pub(crate) yes: bool,
+}
+
+impl ApplyArgs {
+    /// What --yes agrees to.
+    pub(crate) const fn consent(&self) -> Consent {
+        match self.yes {
+            true => Consent::Given,
+            false => Consent::To(Vec::new()),
+        }
+    }
+
+    /// The rows of a file that are to be written: those that --only names, else all but those that say where the hand is.
+    pub(crate) fn chosen(&self, params: &Params) -> Params {
+        let is_named = |id| self.only.iter().any(|rows| rows.0.contains(&id));
+        params.only(|id| match self.only.is_empty() {
+            true => !id.is_place(),
+            false => is_named(id),
+        })
+    }
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct FlashArgs {
     #[command(flatten)]
     pub(crate) common: Common,
-    /// You mean it
+    /// Confirm
     #[arg(long)]
     pub(crate) yes: bool,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct BackupsArgs {
-    #[command(flatten)]
-    pub(crate) common: Common,
+impl FlashArgs {
+    /// Refuses without --yes; `what` says what it would do.
+    pub(crate) fn consented(&self, what: &str) -> anyhow::Result<()> {
+        match self.yes {
+            true => Ok(()),
+            false => Err(WrongUsage::error(format!(
+                "{what}: add --yes to confirm; nothing was written"
+            ))),
+        }
+    }
 }
 
-/// The rows that one name means.
+/// The rows that a name stands for.
 #[derive(Debug, Clone)]
 pub(crate) struct Rows(pub(crate) Vec<ParamId>);
 
@@ -123,7 +165,7 @@ fn rows(name: &str) -> Result<Rows, String> {
     if rows.is_empty() {
         let all: Vec<String> = ParamId::all().into_iter().map(ParamId::name).collect();
         return Err(format!(
-            "there is no such row; there are {}",
+            "there is no such row; the rows are {}",
             all.join(", ")
         ));
     }

@@ -1,57 +1,54 @@
-//! `params backups`: what this program keeps of a hand. Asks the hand nothing.
+//! `params backups`: the backups and the last save that this program keeps of a hand, without asking the hand.
 
 use crate::cli::out::{Out, say};
-use crate::cli::params::args::BackupsArgs;
-use crate::cli::params::words::record;
-use anyhow::{Context as _, anyhow};
+use crate::cli::params::args::Common;
+use crate::cli::params::words::known;
+use crate::params::backups::Backup;
+use crate::params::file::ParamsFile;
+use anyhow::Context as _;
 use serde_json::{Value, json};
 
 /// Lists the backups, oldest first.
-pub(crate) fn run(out: &mut Out, args: &BackupsArgs) -> anyhow::Result<()> {
-    let record = record(&args.common)?;
-    let folder = record.folder().display().to_string();
-    let backups = record
+pub(crate) fn run(out: &mut Out, args: &Common) -> anyhow::Result<()> {
+    let files = args.backups()?;
+    let folder = files.folder();
+    let backups = files
         .backups()
-        .with_context(|| format!("cannot list {folder}"))?;
-    let known = record
-        .known()
-        .map_err(|error| anyhow!("the record of this hand in {folder} cannot be used: {error}"))?;
-    if args.common.json {
-        let rows: Vec<Value> = backups
-            .iter()
-            .map(|backup| match &backup.about {
-                Ok((at, why)) => json!({ "path": backup.path, "at": at, "why": why }),
-                Err(error) => json!({ "path": backup.path, "error": error.to_string() }),
-            })
-            .collect();
-        let note = |file: &Option<crate::app::params::file::ParamsFile>| {
-            let file = file.as_ref();
-            file.map(|file| json!({ "at": file.at, "verdict": file.verdict }))
-        };
-        let object = json!({
-            "hand": args.common.hand.to_string(),
-            "folder": folder,
-            "saved": note(&known.saved),
-            "doubtful": note(&known.doubtful),
-            "backups": rows,
-        });
-        return out.line(&object.to_string());
+        .with_context(|| format!("cannot list {}", folder.display()))?;
+    let known = known(&files)?;
+    if args.json {
+        return out.object(&json!({
+            "hand": args.hand.to_string(),
+            "folder": folder.display().to_string(),
+            "saved": known.saved.as_ref().map(note),
+            "doubtful": known.doubtful.as_ref().map(note),
+            "backups": backups.iter().map(object).collect::<Vec<_>>(),
+        }));
     }
     for backup in &backups {
+        let path = backup.path.display();
         match &backup.about {
-            Ok((at, why)) => out.line(&format!("{at}  {why:<14} {}", backup.path.display()))?,
-            Err(error) => say(&format!("{}: {error}", backup.path.display())),
+            Ok((at, why)) => out.line(&format!("{at}  {why:<14} {path}"))?,
+            Err(error) => say(&format!("{path}: {error}")),
         }
     }
-    match &known.saved {
-        Some(saved) => out.line(&format!("last saved {} ({})", saved.at, saved.verdict))?,
-        None => out.line("nothing that this program saved is known to be in the hand's flash")?,
+    out.line(&known.saved.map_or_else(
+        || "this program has no confirmed save for this hand".into(),
+        |file| format!("last saved {} ({})", file.at, file.verdict),
+    ))?;
+    out.lines(known.doubtful.map(|file| {
+        let (at, verdict) = (file.at, file.verdict);
+        format!("the result of the SAVE at {at} is not known ({verdict})")
+    }))
+}
+
+fn object(backup: &Backup) -> Value {
+    match &backup.about {
+        Ok((at, why)) => json!({ "path": backup.path, "at": at, "why": why }),
+        Err(error) => json!({ "path": backup.path, "error": error.to_string() }),
     }
-    match &known.doubtful {
-        Some(file) => out.line(&format!(
-            "a SAVE of {} is of unknown result ({})",
-            file.at, file.verdict
-        )),
-        None => Ok(()),
-    }
+}
+
+fn note(file: &ParamsFile) -> Value {
+    json!({ "at": file.at, "verdict": file.verdict })
 }

@@ -1,16 +1,15 @@
-//! `params`: what a hand keeps, read, compared, written, saved, reset. Nothing here moves the hand, and nothing is written but by
-//! `apply`, `save` and `reset`.
+//! `params`: the parameters a hand keeps, read, compared, written, saved, reset. Nothing here moves the hand, and only `apply`,
+//! `save` and `reset` write to it.
 
 mod apply;
 mod args;
 mod backups;
 mod diff;
 mod dump;
-mod relocate;
+mod place;
+mod reach;
 mod reset;
 mod save;
-mod show;
-mod talk;
 mod words;
 
 pub(crate) use args::ParamsArgs;
@@ -18,7 +17,7 @@ pub(crate) use args::ParamsArgs;
 use crate::cli::out::Out;
 use args::ParamsCommand;
 
-/// Does what is asked of the parameters.
+/// Runs one of the subcommands.
 pub(crate) fn run(out: &mut Out, args: &ParamsArgs) -> anyhow::Result<()> {
     match &args.command {
         ParamsCommand::Dump(args) => dump::run(out, args),

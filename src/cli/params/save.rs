@@ -1,75 +1,58 @@
-//! `params save`: the hand's parameters into its flash, with a backup first and a note of what came of it.
+//! `params save`: the hand's parameters into its flash, with a backup first and a note of the result.
 
-use crate::app::calendar::since_1970;
-use crate::app::params::danger::dangers;
-use crate::app::params::record::saved_name;
-use crate::cli::out::{Out, Told, WrongUsage, say};
+use crate::cli::out::{Out, end, say};
 use crate::cli::params::args::FlashArgs;
-use crate::cli::params::show;
-use crate::cli::params::talk::Talk;
-use crate::cli::params::words::{self, record};
+use crate::cli::params::{reach, words};
 use crate::cli::session;
-use crate::link::Saved;
-use anyhow::Context as _;
+use crate::params::backups::saved_name;
+use crate::record::Saved;
+use crate::tasks::Consent;
+use crate::tasks::save::{Save, SaveStep, save};
+use anyhow::bail;
 use serde_json::json;
-use std::time::{Duration, SystemTime};
-use tokio::time::sleep;
 
-/// The result of a SAVE may come this late; another process must not take it for the result of its own.
-const APART: Duration = Duration::from_secs(6);
-
-/// Saves. Fails unless it is saved as far as the wire can tell.
+/// Saves. Fails unless the parameters are saved, as far as the wire can tell.
 pub(crate) fn run(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
-    if !args.yes {
-        return Err(WrongUsage(
-            "save writes the hand's flash: add --yes if you mean it; nothing was written".into(),
-        )
-        .into());
-    }
-    session::runtime()?.block_on(save(out, args))
+    args.consented("save writes the hand's flash")?;
+    session::runtime()?.block_on(save_now(out, args))
 }
 
-async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
+async fn save_now(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
     let common = &args.common;
-    let record = record(common)?;
-    let mut talk = Talk::open(&common.hand).await?;
-    let params = talk.read_whole().await?;
-    for danger in dangers(&params) {
-        say(&format!("warning: {}", words::danger(&danger)));
+    let backups = common.backups()?;
+    let known = backups.known().unwrap_or_default();
+    let link = reach::open(&common.hand).await?;
+    let task = Save {
+        backups,
+        before: known.saved.map(|file| file.params).unwrap_or_default(),
+        consent: Consent::Given,
+    };
+    let told = |step| {
+        if let SaveStep::Meant(risks) = step {
+            for danger in &risks.dangers {
+                say(&format!("warning: {}", words::danger(danger)));
+            }
+        }
+    };
+    let report = save(&link, &task, told).await?;
+    let sentence = words::saved(&report.saved);
+    if let Some(why) = report.not_noted {
+        bail!("{sentence}; and this could not be noted: {why}");
     }
-    let kept = "nothing was written to the hand";
-    let backup = record
-        .back_up(&params, "before save", since_1970())
-        .with_context(|| format!("cannot make a backup, {kept}"))?;
-    if let Some(ago) = record.since_attempt(SystemTime::now()) {
-        sleep(APART.saturating_sub(ago)).await;
-    }
-    record
-        .attempt(&params, since_1970())
-        .with_context(|| format!("cannot note the SAVE, {kept}"))?;
-    let saved = talk.save().await?;
-    record
-        .end(&saved)
-        .with_context(|| format!("{}; and this could not be noted", words::saved(&saved)))?;
-    let done = matches!(saved, Saved::Confirmed | Saved::ReadBack);
-    let sentence = words::saved(&saved);
+    let is_saved = matches!(report.saved, Saved::Confirmed | Saved::ReadBack);
     if common.json {
-        let object = json!({
+        out.object(&json!({
             "hand": common.hand.to_string(),
-            "backup": backup,
-            "result": saved_name(&saved),
+            "backup": report.backup,
+            "result": saved_name(&report.saved),
             "words": sentence,
-            "params": show::params_json(&params),
-        });
-        out.line(&object.to_string())?;
-    } else if done {
-        out.line(&sentence)?;
-        out.line(&format!("backup: {}", backup.display()))?;
+            "params": report.params,
+        }))?;
+    } else if is_saved {
+        let backup = format!("backup: {}", report.backup.display());
+        out.lines([sentence, backup])?;
     } else {
         say(&sentence);
     }
-    match done {
-        true => Ok(()),
-        false => Err(Told.into()),
-    }
+    end(is_saved)
 }

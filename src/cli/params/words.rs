@@ -1,34 +1,55 @@
-//! What is said of parameters, in sentences; and where the records lie. Reads and writes nothing.
+//! Rows, dangers and results in sentences, tables and JSON, as the commands about parameters share them. Pure.
 
-use crate::app::config;
-use crate::app::params::danger::Danger;
-use crate::app::params::plan::{RowEnd, RowVerdict};
-use crate::app::params::record::{Record, folder_beside};
-use crate::app::params::table::Value;
-use crate::cli::params::args::Common;
-use crate::link::Saved;
-use anyhow::Context as _;
+use crate::params::backups::{Backups, Known};
+use crate::params::changes::{RowOutcome, RowVerdict};
+use crate::params::danger::Danger;
+use crate::params::file::{self, ParamsFile};
+use crate::params::rows::{ParamId, Value};
+use crate::record::Saved;
+use crate::tasks::Risks;
+use anyhow::anyhow;
+use serde_json::{Value as Json, json};
+use std::path::Path;
 
-/// This program's record of the hand.
-pub(crate) fn record(common: &Common) -> anyhow::Result<Record> {
-    let folder = match &common.folder {
-        Some(folder) => folder.clone(),
-        None => {
-            let settings = config::default_path();
-            let settings = settings
-                .context("no home folder for records and backups: name one with --folder")?;
-            folder_beside(&settings)
-        }
-    };
-    Ok(Record::new(&folder, &common.hand))
-}
-
-/// A value, or that it is not known.
+/// A value, or "not known".
 pub(crate) fn or_dash(value: Option<Value>) -> String {
     value.map_or_else(|| "-".into(), |value| value.to_string())
 }
 
-/// What a person should know before a hand wakes up so.
+/// A table of rows with two columns of values under these titles.
+pub(crate) fn table(
+    titles: [&str; 2],
+    rows: impl IntoIterator<Item = (ParamId, [Option<Value>; 2])>,
+) -> Vec<String> {
+    let [one, two] = titles;
+    let head = format!("{:<27}{one:>15} {two:>15}  unit manual", "");
+    let line = |(id, values): (ParamId, [Option<Value>; 2])| {
+        let [one, two] = values.map(or_dash);
+        let (name, section) = (id.name(), id.register().section);
+        format!("{name:<27}{one:>15} {two:>15}  {:<3} {section}", id.unit())
+    };
+    let lines = rows.into_iter().map(line);
+    let all = std::iter::once(head).chain(lines);
+    all.map(|line| line.trim_end().to_owned()).collect()
+}
+
+/// A parameter file, and what should be said of keys that are not known.
+pub(crate) fn load(path: &Path) -> anyhow::Result<(ParamsFile, Option<String>)> {
+    let file = file::load(path).map_err(|error| anyhow!("{}: {error}", path.display()))?;
+    let unknown = file.unknown_keys();
+    let note = format!("unknown keys: {}", unknown.join(", "));
+    Ok((file, (!unknown.is_empty()).then_some(note)))
+}
+
+/// What this program knows of the hand's flash.
+pub(crate) fn known(files: &Backups) -> anyhow::Result<Known> {
+    let folder = files.folder().display();
+    files
+        .known()
+        .map_err(|error| anyhow!("the record of this hand in {folder} cannot be used: {error}"))
+}
+
+/// The warning about defaults that hit hard after power-up.
 pub(crate) fn danger(danger: &Danger) -> String {
     let joint = danger.dof.name();
     let (speed, force) = (danger.speed, danger.force_g);
@@ -38,18 +59,57 @@ pub(crate) fn danger(danger: &Danger) -> String {
         ""
     };
     format!(
-        "{joint} would wake up with speed {speed} and a force threshold of {force} g{strong}; on a rigid block such a finger was measured to press {:.0} g harder than its threshold",
+        "{joint} would start with speed {speed} and a force threshold of {force} g{strong}; on a rigid block, such a finger was measured to press {:.0} g beyond its threshold",
         danger.overshoot_g
     )
 }
 
-/// What came of a row, in words.
-pub(crate) fn verdict(end: &RowEnd) -> String {
+/// What must be meant: defaults that hit harder than before, and rows that say where the hand is found.
+pub(crate) fn risks(risks: &Risks) -> Vec<String> {
+    let dangers = risks.dangers.iter().map(danger);
+    let places = risks.places.iter().map(|(id, value)| {
+        let name = id.name();
+        format!("{name} becomes {value}: the hand may be found elsewhere")
+    });
+    dangers.chain(places).collect()
+}
+
+/// One row that was to be written.
+pub(crate) fn outcome_json(end: &RowOutcome) -> Json {
+    let reason = match &end.verdict {
+        RowVerdict::Refused { reason } => Some(reason.clone()),
+        RowVerdict::Unverified(why) => Some(why.to_string()),
+        RowVerdict::NotSent(why) => Some(why.to_string()),
+        _ => None,
+    };
+    json!({
+        "name": end.id,
+        "before": end.before,
+        "wanted": end.wanted,
+        "holds": end.holds,
+        "verdict": end.verdict.name(),
+        "reason": reason,
+    })
+}
+
+/// The same as a line.
+pub(crate) fn outcome_line(end: &RowOutcome) -> String {
+    format!(
+        "{:<27}{:>15} -> {:<15} holds {:<15} {}",
+        end.id.name(),
+        or_dash(end.before),
+        end.wanted.to_string(),
+        or_dash(end.holds),
+        verdict(end)
+    )
+}
+
+fn verdict(end: &RowOutcome) -> String {
     match &end.verdict {
         RowVerdict::Applied => "applied".into(),
         RowVerdict::Refused { reason } => format!("refused: {reason}"),
         RowVerdict::Dropped => {
-            "not applied: the hand did not object, and keeps what it held".into()
+            "not applied: the hand did not object, but kept its old value".into()
         }
         RowVerdict::Altered => "not applied: the hand took another value".into(),
         RowVerdict::Unverified(why) => format!("not known: {why}"),
@@ -57,7 +117,7 @@ pub(crate) fn verdict(end: &RowEnd) -> String {
     }
 }
 
-/// What is known of a SAVE, in one sentence.
+/// The result of a SAVE, in one sentence.
 pub(crate) fn saved(saved: &Saved) -> String {
     match saved {
         Saved::Confirmed => "saved: the hand says that its parameters are in flash".into(),
@@ -66,7 +126,7 @@ pub(crate) fn saved(saved: &Saved) -> String {
             "not saved: the hand says that writing its flash failed (code {code}); what was in flash before should still be there"
         ),
         Saved::Unknown { why } => format!(
-            "whether it was saved is not known: {why}; switch the hand off and on, then compare with 'handscope params diff'"
+            "it is not known whether it was saved: {why}; switch the hand off and on, then compare with 'handscope params diff'"
         ),
         Saved::Refused { reason } => format!("not saved: {reason}"),
         Saved::NotSent(why) => format!("not saved, nothing was written: {why}"),

@@ -1,10 +1,5 @@
 //! Frames of the manual, whole, split, glued, damaged, in noise; and what holds for all bytes. Nothing but tests.
-#![allow(
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    clippy::cast_possible_truncation,
-    reason = "a test may"
-)]
+#![allow(clippy::cast_possible_truncation, reason = "a test may")]
 
 use crate::codec::rs485::client::{Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
 use crate::codec::rs485::device::{

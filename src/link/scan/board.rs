@@ -15,7 +15,7 @@ pub struct ScanProgress {
     pub left: Duration,
 }
 
-/// What is left of each lane, and what came of the others.
+/// What is left of each lane, and the results of the others.
 #[derive(Debug, Default)]
 pub(crate) struct Board {
     total: usize,

@@ -2,7 +2,7 @@
 
 use crate::hand::HandId;
 use crate::link::clock::Clock;
-use crate::link::handle::Wake;
+use crate::link::config::Wake;
 use crate::link::scan::board::{Board, ScanProgress};
 use crate::link::scan::event::ScanEvent;
 use crate::link::scan::hosts::Hosts;

@@ -95,7 +95,6 @@ impl AsyncWrite for LentWire {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use crate::transport::pair;
     use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};

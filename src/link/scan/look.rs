@@ -2,9 +2,9 @@
 //! writes nothing.
 
 use crate::hand::register::HAND_ID;
-use crate::link::bus::{Bus, BusError};
+use crate::link::bus::late_replies::LateReplies;
+use crate::link::bus::{self, BusError};
 use crate::link::clock::Clock;
-use crate::link::late::LateReplies;
 use crate::link::scan::board::Board;
 use crate::link::scan::event::{Found, ScanEvent, ScanHint};
 use crate::link::scan::heard::LentWire;
@@ -217,10 +217,7 @@ impl Look {
         };
         let late = LateReplies::default();
         let lent = Box::new(wire.clone());
-        let mut bus = match Bus::new(&one.endpoint, lent, late, self.room.clock) {
-            Ok(bus) => bus,
-            Err(error) => return Answer::Shut(error),
-        };
+        let mut bus = bus::on_wire(&one.endpoint, lent, late, self.room.clock);
         self.asked += 1;
         let begun = Instant::now();
         let read = bus.read(HAND_ID.span(), one.limit).await;
@@ -229,7 +226,7 @@ impl Look {
         let foreign = bus.counts().foreign_replies > 0;
         if heard > 0 && !matches!(read, Err(BusError::Lost(_))) {
             // The next question must not be talked over what still comes. A wire that breaks now breaks then too.
-            let _broken = bus.settle().await;
+            let _broken = bus.quiet().await;
         }
         bus.close();
         match read {
@@ -292,6 +289,7 @@ fn same_wire(one: &Endpoint, other: &Endpoint) -> bool {
             a.baud == b.baud
         }
         (Endpoint::Slcan { .. }, Endpoint::Slcan { .. }) => true,
+        (Endpoint::UsbCan { baud: a, .. }, Endpoint::UsbCan { baud: b, .. }) => a == b,
         _ => false,
     }
 }
@@ -300,7 +298,9 @@ fn same_wire(one: &Endpoint, other: &Endpoint) -> bool {
 fn is_expected(endpoint: &Endpoint, hand_id: u8) -> bool {
     match endpoint {
         Endpoint::Rs485(line) | Endpoint::Rtu(line) => line.id == hand_id,
-        Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } => *id == u16::from(hand_id),
+        Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => {
+            *id == u16::from(hand_id)
+        }
         Endpoint::Sim { .. } | Endpoint::Tcp { .. } => (1..=254).contains(&hand_id),
     }
 }

@@ -1,5 +1,5 @@
-//! Finding hands: what to try and in which order ([`plan`]), looking at one place ([`look`]), and the end that asks
-//! ([`handle`]). Reads HAND_ID alone; never writes, and goes nowhere that was not named or listed.
+//! Finding hands: what to try and in which order ([`plan`]), looking at one place (`look`), and the end that asks
+//! (`handle`). Reads HAND_ID alone; never writes, and goes nowhere that was not named or listed.
 
 mod board;
 mod event;

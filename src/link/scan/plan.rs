@@ -3,7 +3,7 @@
 
 use crate::hand::{HandId, SerialSpeed};
 use crate::link::scan::hosts::Hosts;
-use crate::transport::endpoint::{DEFAULT_BITRATE, DEFAULT_UNIT};
+use crate::transport::endpoint::{DEFAULT_BAUD, DEFAULT_BITRATE, DEFAULT_ID, DEFAULT_UNIT};
 use crate::transport::tcp::CONNECT_DEADLINE;
 use crate::transport::{Endpoint, SerialLine, UsbFound};
 use std::cmp::Reverse;
@@ -34,8 +34,10 @@ pub const HOSTS_AT_ONCE: usize = 64;
 pub enum Speaks {
     /// A hand, in the private framing and in Modbus RTU.
     Hand,
-    /// A serial CAN adapter.
+    /// A serial CAN adapter that speaks slcan.
     CanAdapter,
+    /// The maker's own CAN adapter.
+    MakersAdapter,
     /// Either: the adapter is tried first.
     Either,
 }
@@ -120,14 +122,20 @@ impl ScanPlan {
     }
 
     fn add(&mut self, lane: Lane, held: Option<&Endpoint>) {
-        let known = |place: &String| *place == lane.place;
-        if self
+        if self.held.contains(&lane.place) {
+            return;
+        }
+        // A place that is named twice is looked at once, for all that is asked of it.
+        if let Some(known) = self
             .lanes
-            .iter()
-            .map(|lane| &lane.place)
-            .chain(&self.held)
-            .any(known)
+            .iter_mut()
+            .find(|known| known.place == lane.place)
         {
+            for one in lane.tries {
+                if !known.tries.contains(&one) {
+                    known.tries.push(one);
+                }
+            }
             return;
         }
         let is_held = held.is_some_and(|held| held.place() == lane.place);
@@ -189,25 +197,18 @@ fn beside(costs: &[Duration], at_once: usize) -> Duration {
 
 /// True if both are asked over the same line in the same way, so that a hand that answers to one speaks for the other.
 pub(crate) fn same_line(one: &Endpoint, other: &Endpoint) -> bool {
-    match (one, other) {
-        (Endpoint::Rs485(a), Endpoint::Rs485(b)) | (Endpoint::Rtu(a), Endpoint::Rtu(b)) => {
-            a.port == b.port && a.baud == b.baud
+    let line = |endpoint: &Endpoint| {
+        let mut line = endpoint.clone();
+        match &mut line {
+            Endpoint::Rs485(line) | Endpoint::Rtu(line) => line.id = DEFAULT_ID,
+            Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => {
+                *id = u16::from(DEFAULT_ID)
+            }
+            Endpoint::Tcp { .. } | Endpoint::Sim { .. } => return None,
         }
-        (
-            Endpoint::Slcan {
-                port: a,
-                bitrate: x,
-                ..
-            },
-            Endpoint::Slcan {
-                port: b,
-                bitrate: y,
-                ..
-            },
-        ) => a == b && x == y,
-        (Endpoint::Can { interface: a, .. }, Endpoint::Can { interface: b, .. }) => a == b,
-        _ => false,
-    }
+        Some(line)
+    };
+    line(one).is_some_and(|one| line(other) == Some(one))
 }
 
 /// The ids that are asked first on every line, and all others: most hands have the id they were delivered with.
@@ -218,14 +219,23 @@ fn first_and_rest(ids: &[HandId]) -> [&[HandId]; 2] {
 
 fn port_lane(wish: &PortWish, ids: &[HandId]) -> Lane {
     let mut tries = Vec::new();
-    if wish.speaks != Speaks::Hand {
+    if wish.speaks == Speaks::MakersAdapter {
+        tries.extend(ids.iter().map(|id| {
+            bus_try(Endpoint::UsbCan {
+                port: wish.port.clone(),
+                baud: DEFAULT_BAUD,
+                id: u16::from(id.get()),
+            })
+        }));
+    }
+    if matches!(wish.speaks, Speaks::CanAdapter | Speaks::Either) {
         for ids in first_and_rest(ids) {
             for bitrate in BITRATES {
                 tries.extend(ids.iter().map(|id| adapter_try(&wish.port, bitrate, *id)));
             }
         }
     }
-    if wish.speaks != Speaks::CanAdapter {
+    if matches!(wish.speaks, Speaks::Hand | Speaks::Either) {
         for ids in first_and_rest(ids) {
             // By code, which is also the order of likelihood: as delivered first.
             for speed in SerialSpeed::ALL {
@@ -248,13 +258,11 @@ fn port_lane(wish: &PortWish, ids: &[HandId]) -> Lane {
 }
 
 fn can_lane(interface: &str, ids: &[HandId]) -> Lane {
-    let tries = ids.iter().map(|id| Try {
-        endpoint: Endpoint::Can {
+    let tries = ids.iter().map(|id| {
+        bus_try(Endpoint::Can {
             interface: interface.into(),
             id: u16::from(id.get()),
-        },
-        limit: REPLY_WAIT,
-        cost: REPLY_WAIT,
+        })
     });
     Lane {
         kind: LaneKind::Can,
@@ -302,6 +310,15 @@ fn line_try(kind: fn(SerialLine) -> Endpoint, port: &str, baud: u32, id: HandId)
     }
 }
 
+/// On a bus that needs nothing but the question.
+const fn bus_try(endpoint: Endpoint) -> Try {
+    Try {
+        endpoint,
+        limit: REPLY_WAIT,
+        cost: REPLY_WAIT,
+    }
+}
+
 fn adapter_try(port: &str, bitrate: u32, id: HandId) -> Try {
     Try {
         endpoint: Endpoint::Slcan {
@@ -316,7 +333,6 @@ fn adapter_try(port: &str, bitrate: u32, id: HandId) -> Try {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
     use super::*;
 
     fn ids(last: usize) -> Vec<HandId> {

@@ -1,7 +1,8 @@
-//! CAN for the tap, as Linux's frames and as the text of a serial adapter. Identifiers and lines are the codecs'.
+//! CAN for the tap: Linux's frames, and the text and the packets of serial adapters. What they hold is the codecs' to know.
 
 use crate::codec::can::{CanFrame, CanId, RECORD_LEN, Record, Way, from_record};
 use crate::codec::slcan::{Answer, AnswerDecoder, Command, CommandDecoder, LINE_MAX};
+use crate::codec::usbcan::{Content, Found, inspect};
 use crate::hand::Span;
 use crate::link::tap::Direction;
 use crate::link::traffic::cut::Seen;
@@ -28,6 +29,28 @@ pub fn look_line(bytes: &[u8]) -> Seen {
         Some(end) if end <= LINE_MAX => Seen::Whole(end + 1),
         None if bytes.len() <= LINE_MAX => Seen::Open(None),
         Some(_) | None => Seen::Nothing(Wrong::NoFrame { len: 1 }),
+    }
+}
+
+/// What stands here of the maker's adapter.
+#[must_use]
+pub fn look_packet(bytes: &[u8]) -> Seen {
+    match inspect(bytes) {
+        Found::Packet(len, _) => Seen::Whole(len),
+        Found::BadSum { len, got, want } => Seen::Damaged(len, Wrong::Checksum { got, want }),
+        Found::Open => Seen::Open(None),
+        Found::Nothing => Seen::Nothing(Wrong::NoFrame { len: 1 }),
+    }
+}
+
+/// What a packet says; one that is damaged says nothing.
+#[must_use]
+pub fn said_packet(direction: Direction, packet: &[u8]) -> Said {
+    match (inspect(packet), direction) {
+        (Found::Packet(_, Content::Frame(frame)), _) => said_frame(direction, &frame),
+        (Found::Packet(..), Direction::ToHand) => Said::new(Kind::Adapter),
+        (Found::Packet(..), Direction::FromHand) => Said::new(Kind::AdapterReply),
+        _ => Said::new(Kind::Noise),
     }
 }
 

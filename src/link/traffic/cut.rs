@@ -11,9 +11,9 @@ const RUN_MAX: usize = 128;
 /// What a protocol sees at a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Seen {
-    /// A frame of so many bytes.
+    /// A frame of this many bytes.
     Whole(usize),
-    /// A frame of so many bytes that is damaged. A good one may begin inside.
+    /// A damaged frame of this many bytes. A good one may begin inside.
     Damaged(usize, Wrong),
     /// A frame that is not whole yet; its length if that is known.
     Open(Option<usize>),

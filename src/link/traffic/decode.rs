@@ -1,7 +1,7 @@
 //! Pieces of a tap to frames, for one link. Pure: no clock, no lock; the same pieces give the same frames.
 
 use crate::hand::Moment;
-use crate::link::bus::id_of;
+use crate::link::bus::error::id_of;
 use crate::link::tap::{Direction, Piece, PieceKind};
 use crate::link::traffic::cut::{Cut, Cutter, Seen};
 use crate::link::traffic::frame::{Form, Frame, Kind, Wrong};
@@ -53,6 +53,7 @@ impl Decoder {
             Endpoint::Tcp { .. } => Form::Tcp,
             Endpoint::Can { .. } => Form::Can,
             Endpoint::Slcan { .. } => Form::Slcan,
+            Endpoint::UsbCan { .. } => Form::UsbCan,
         };
         let hand = id_of(endpoint);
         Self {
@@ -183,6 +184,7 @@ fn looker(form: Form, unit: u8, direction: Direction) -> impl Fn(&[u8]) -> Seen 
         Form::Tcp => modbus::look_tcp(bytes),
         Form::Can => can::look_record(bytes),
         Form::Slcan => can::look_line(bytes),
+        Form::UsbCan => can::look_packet(bytes),
     }
 }
 
@@ -193,5 +195,6 @@ fn said(form: Form, direction: Direction, bytes: &[u8]) -> Said {
         Form::Tcp => modbus::said_tcp(direction, bytes),
         Form::Can => can::said_record(direction, bytes),
         Form::Slcan => can::said_line(direction, bytes),
+        Form::UsbCan => can::said_packet(direction, bytes),
     }
 }

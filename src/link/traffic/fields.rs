@@ -1,5 +1,6 @@
 //! A frame byte by byte: which bytes are what, and which of them are wrong. Words for people are the views'.
 
+use crate::codec::usbcan::split_escapes;
 use crate::link::tap::Direction;
 use crate::link::traffic::frame::{Form, Frame, Kind, Wrong};
 use crate::link::traffic::values;
@@ -42,8 +43,12 @@ pub enum FieldName {
     Protocol,
     /// CAN identifier.
     CanId,
-    /// Filler of Linux's form of a CAN frame.
+    /// Filler of Linux's form of a CAN frame, or of a packet of the maker's CAN adapter.
     Filler,
+    /// Channel, 29 or 11 bits, data or remote frame: of a packet of the maker's CAN adapter.
+    FrameKind,
+    /// The two bytes that such a packet ends with.
+    Tail,
     /// Text of a serial CAN adapter.
     Text,
     /// Bytes of no known meaning.
@@ -84,6 +89,7 @@ impl Frame {
             Form::Tcp => tcp(&mut parts),
             Form::Can => record(&mut parts),
             Form::Slcan => parts.put(self.bytes.len(), FieldName::Text),
+            Form::UsbCan => packet(&mut parts),
         }
         parts.rest();
         parts.fields
@@ -125,6 +131,18 @@ impl Parts<'_> {
             register: None,
             value,
         });
+    }
+
+    /// As [`Self::put`], and the A5 that were put in before them.
+    fn put_escaped(&mut self, len: usize, name: FieldName) {
+        let whole = self.escaped(len);
+        self.put(whole, name);
+    }
+
+    /// Bytes that the next `len` take with the A5 that were put in.
+    fn escaped(&self, len: usize) -> usize {
+        let left = self.bytes(&(self.at..self.frame.bytes.len()));
+        split_escapes(left).take(len).map(|(taken, _)| taken).sum()
     }
 
     /// The next `len` bytes are memory: one field a register.
@@ -183,25 +201,32 @@ const fn blames(wrong: Wrong, name: FieldName) -> bool {
 }
 
 fn value(frame: &Frame, name: FieldName, bytes: &[u8]) -> String {
+    let plain: Vec<u8> = match frame.form {
+        Form::UsbCan => split_escapes(bytes).map(|(_, byte)| byte).collect(),
+        _ => bytes.to_vec(),
+    };
     let number = |little: bool| {
         let fold = |sum: u64, byte: &u8| (sum << 8) | u64::from(*byte);
         if little {
-            bytes.iter().rev().fold(0, fold)
+            plain.iter().rev().fold(0, fold)
         } else {
-            bytes.iter().fold(0, fold)
+            plain.iter().fold(0, fold)
         }
     };
-    let is_little = matches!(frame.form, Form::Rs485);
+    let is_little = matches!(frame.form, Form::Rs485 | Form::UsbCan);
     match name {
-        FieldName::Header | FieldName::Data | FieldName::Filler | FieldName::Unknown => {
-            String::new()
-        }
+        FieldName::Header
+        | FieldName::Data
+        | FieldName::Filler
+        | FieldName::FrameKind
+        | FieldName::Tail
+        | FieldName::Unknown => String::new(),
         FieldName::Checksum => format!("{:02X}", number(true)),
         FieldName::Crc => format!("{:04X}", number(true)),
-        FieldName::CanId => format!(
-            "{:08X}",
-            number(cfg!(target_endian = "little")) & 0x1FFF_FFFF
-        ),
+        FieldName::CanId => {
+            let is_little = is_little || cfg!(target_endian = "little");
+            format!("{:08X}", number(is_little) & 0x1FFF_FFFF)
+        }
         FieldName::Text => String::from_utf8_lossy(bytes)
             .trim_end()
             .escape_debug()
@@ -306,4 +331,25 @@ fn record(parts: &mut Parts<'_>) {
     }
     let rest = parts.left();
     parts.put(rest, F::Filler);
+}
+
+fn packet(parts: &mut Parts<'_>) {
+    use FieldName as F;
+    parts.put(2, F::Header);
+    parts.put_escaped(4, F::CanId);
+    // The length stands behind the data.
+    let at = parts.at + parts.escaped(8);
+    let len = usize::from(parts.frame.bytes.get(at).copied().unwrap_or_default()).min(8);
+    match parts.frame.kind {
+        Kind::Read => parts.put_escaped(len, F::Wanted),
+        Kind::WriteReply => parts.put_escaped(len, F::Acknowledge),
+        Kind::ReadReply | Kind::Write if parts.escaped(len) == len => parts.memory(len),
+        Kind::ReadReply | Kind::Write => parts.put_escaped(len, F::Data),
+        _ => parts.put_escaped(len, F::Unknown),
+    }
+    parts.put(at.saturating_sub(parts.at), F::Filler);
+    parts.put(1, F::Length);
+    parts.put(3, F::FrameKind);
+    parts.put_escaped(1, F::Checksum);
+    parts.put(2, F::Tail);
 }

@@ -17,6 +17,8 @@ pub enum Form {
     Can,
     /// Lines of a serial CAN adapter.
     Slcan,
+    /// Packets of the maker's own CAN adapter.
+    UsbCan,
 }
 
 /// What a frame is.
@@ -86,7 +88,7 @@ pub enum Wrong {
         command: Option<u8>,
     },
     /// Bytes in which no frame begins.
-    #[error("{len} bytes that are no frame")]
+    #[error("{len} bytes that are not a frame")]
     NoFrame {
         /// How many.
         len: usize,
@@ -118,7 +120,7 @@ pub enum Wrong {
         want: u16,
     },
     /// A CAN identifier that is not this hand's protocol.
-    #[error("identifier {id:08X} is none of the hand's")]
+    #[error("identifier {id:08X} does not belong to the hand")]
     ForeignCanId {
         /// As sent.
         id: u32,
@@ -139,7 +141,7 @@ pub enum Wrong {
         after_ms: u64,
     },
     /// Fewer or more bytes than were asked for.
-    #[error("{got} bytes of memory, asked were {want}")]
+    #[error("{got} bytes of memory, {want} were requested")]
     Amount {
         /// As sent.
         got: u16,
@@ -147,7 +149,7 @@ pub enum Wrong {
         want: u16,
     },
     /// It is about another address than was asked.
-    #[error("address {got}, asked was {want}")]
+    #[error("address {got}, {want} was requested")]
     Address {
         /// As sent.
         got: u16,
@@ -155,7 +157,7 @@ pub enum Wrong {
         want: u16,
     },
     /// Another number than that of the open request (manual 2.5).
-    #[error("transaction {got}, open is {want}")]
+    #[error("transaction {got}, expected {want}")]
     Transaction {
         /// As sent.
         got: u16,
@@ -169,7 +171,7 @@ pub enum Wrong {
         code: u8,
     },
     /// The hand did not take it: an acknowledgement other than 1.
-    #[error("not taken: acknowledgement {value}, should be 1")]
+    #[error("not accepted: acknowledgement {value}, should be 1")]
     NotTaken {
         /// As sent.
         value: u8,
@@ -184,16 +186,16 @@ pub enum Wrong {
     #[error("no reply")]
     NoReply,
     /// A line that no adapter says or takes.
-    #[error("no line of a serial CAN adapter")]
+    #[error("not a line of a serial CAN adapter")]
     Line,
     /// The adapter said that it could not.
-    #[error("the adapter could not do it")]
+    #[error("the adapter reports failure")]
     AdapterFailed,
     /// The CAN controller gave the bus up.
     #[error("bus-off: the controller left the bus")]
     BusOff,
     /// The CAN controller met many errors.
-    #[error("error-passive: the controller met many errors")]
+    #[error("error-passive: the controller saw many errors")]
     ErrorPassive,
     /// Pieces that are gone.
     #[error("{pieces} earlier pieces are no longer kept")]
@@ -241,7 +243,7 @@ pub struct Frame {
     pub bytes: Box<[u8]>,
     /// What it is.
     pub kind: Kind,
-    /// The hand that is meant or that answers.
+    /// The hand that is addressed, or that answers.
     pub hand: Option<u16>,
     /// The memory it is about. In a reply without address, that of the request it answers.
     pub span: Option<Span>,

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 /// Requests without reply that a late reply is still set against.
 const GIVEN_UP_MAX: usize = 16;
-/// A request that is open for so long gets no reply any more.
+/// A request that is open for this long gets no reply any more.
 const REPLY_WITHIN: Duration = Duration::from_secs(1);
 
 /// A request that waits for its reply.
@@ -46,7 +46,7 @@ impl Asked {
     }
 }
 
-/// What a link asked and what became of it.
+/// A request of the link and its outcome.
 #[derive(Debug, Clone)]
 pub struct Matching {
     form: Form,
@@ -180,7 +180,7 @@ impl Matching {
             return Wrong::Address { got, want };
         }
         // Request and reply share an identifier on CAN, so an echo is told by what it carries.
-        let is_can = matches!(self.form, Form::Can | Form::Slcan);
+        let is_can = matches!(self.form, Form::Can | Form::Slcan | Form::UsbCan);
         let asked_for = u8::try_from(open.span.len).unwrap_or(u8::MAX);
         if is_can && said.memory == [asked_for] {
             return Wrong::Echo;

@@ -1,7 +1,7 @@
 //! Frames cut out of what a tap recorded, with what they mean and what is wrong about them. Only for those who look:
 //! the link itself never asks here.
-
 pub mod can;
+pub mod compose;
 pub mod cut;
 pub mod decode;
 pub mod fields;

@@ -8,7 +8,7 @@ use crate::link::traffic::frame::{Kind, Wrong};
 pub struct Said {
     /// What it is.
     pub kind: Kind,
-    /// The hand that is meant or that answers.
+    /// The hand that is addressed, or that answers.
     pub hand: Option<u16>,
     /// The memory it is about; a Modbus reply to a read does not say.
     pub span: Option<Span>,

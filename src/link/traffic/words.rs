@@ -1,5 +1,5 @@
-//! Frames as lines: English text, JSON, CSV, for the terminal and for files. Their forms are a contract; the README
-//! says them.
+//! Frames as lines: English text, JSON, CSV, for the terminal and for files. Their forms are a contract, documented in
+//! `assets/manual/json.md`.
 
 use crate::link::tap::Direction;
 use crate::link::traffic::frame::{Form, Frame, Kind};

@@ -10,6 +10,7 @@ pub mod pty;
 pub mod rs485;
 pub mod shared;
 pub mod slcan;
+pub mod usbcan;
 
 pub use hands::Hands;
 pub use shared::SharedHand;

@@ -5,11 +5,14 @@ use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
 use crate::sim::memory::Refusal;
 use crate::sim::personality::{ByteWords, InnerAddress, LongRead, Personality, SingleReply};
 use crate::sim::serve::shared::SharedHand;
+use std::ops::RangeInclusive;
 
 /// Most words of one read (manual 2.5, function 03).
 const READ_WORDS_MAX: u16 = 125;
 /// Most words of one write (manual 2.5, function 16).
 const WRITE_WORDS_MAX: usize = 0x7B;
+/// The network address, one byte a field (manual 2.6).
+const ADDRESS: RangeInclusive<u16> = 1700..=1703;
 /// Marks a reply that is an exception.
 const EXCEPTION: u8 = 0x80;
 const ILLEGAL_FUNCTION: u8 = 1;
@@ -81,7 +84,7 @@ impl Unit<'_> {
             single.flat_map(|byte| [0, *byte]).collect()
         } else {
             let (pairs, _) = bytes.as_chunks::<2>();
-            let at = (address..).step_by(2);
+            let at = (address..=u16::MAX).step_by(2);
             at.zip(pairs)
                 .flat_map(|(at, pair)| self.swapped(at, *pair))
                 .collect()
@@ -114,10 +117,7 @@ impl Unit<'_> {
             return Ok(());
         };
         self.hand.with(|hand, now| {
-            let effect = hand.write(address, &bytes, now)?;
-            if effect.result_follows {
-                hand.cancel_newest_save_result();
-            }
+            let effect = hand.write_quietly(address, &bytes, now)?;
             if effect.is_acked {
                 Ok(())
             } else {
@@ -128,16 +128,18 @@ impl Unit<'_> {
 
     /// The memory bytes that written words mean; `None` for a word that is no byte where one is wanted.
     fn memory_of(&self, address: u16, data: &[u8]) -> Option<Vec<u8>> {
-        // Manual: 1000 to 1009 are single bytes side by side; one word there is one of them.
-        let single = data.len() == 2 && (1000..=1009).contains(&address);
+        // Manual: 1000 to 1009 are single bytes side by side, and so are 1700 to 1703; one word there is one of them.
+        let single = (1000..=1009).contains(&address);
         match (data, self.personality.byte_words) {
             // The byte meant for this register lands in its neighbour.
             (_, ByteWords::HighFirst) => {}
             ([high, low], _) if single => return (*high == 0).then(|| vec![*low]),
+            // Two fields of the address in one word are two.
+            ([0, low], _) if ADDRESS.contains(&address) => return Some(vec![*low]),
             _ => {}
         }
         let (pairs, _) = data.as_chunks::<2>();
-        let at = (address..).step_by(2);
+        let at = (address..=u16::MAX).step_by(2);
         Some(
             at.zip(pairs)
                 .flat_map(|(at, pair)| self.swapped(at, *pair))

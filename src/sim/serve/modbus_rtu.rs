@@ -15,6 +15,8 @@ use tokio::time::sleep;
 const CHUNK: usize = 512;
 /// Silence after which an unfinished request is given up: far longer than any gap inside one.
 const SILENCE: Duration = Duration::from_millis(50);
+/// Silence behind noise after which a request is looked for again: shorter than any client's patience.
+const SILENCE_AFTER_NOISE: Duration = Duration::from_millis(10);
 /// The pause inside a reply of a hand that makes one: longer than the 1.5 characters that are allowed.
 const PAUSE: Duration = Duration::from_millis(2);
 /// Requests of functions 03 and 06: unit, function, two words, check.
@@ -31,6 +33,7 @@ pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) -> io::Result<()> {
         hands: hands.into(),
         wire,
         held: ArrayVec::new(),
+        is_noisy: false,
     };
     let _hung_up = line.run().await;
     Ok(())
@@ -40,35 +43,42 @@ struct Line<W> {
     hands: Hands,
     wire: W,
     held: ArrayVec<u8, CHUNK>,
+    /// What comes is not listened to until the line is silent.
+    is_noisy: bool,
 }
 
 impl<W: Wire> Line<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {
+            let silence = match self.is_noisy {
+                true => SILENCE_AFTER_NOISE,
+                false => SILENCE,
+            };
             tokio::select! {
                 biased;
                 read = self.wire.read(&mut chunk) => match read? {
                     0 => return Ok(()),
                     len => self.take(chunk.get(..len).unwrap_or_default()).await?,
                 },
-                () = sleep(SILENCE), if !self.held.is_empty() => self.held.clear(),
+                () = sleep(silence), if self.is_noisy || !self.held.is_empty() => {
+                    self.held.clear();
+                    self.is_noisy = false;
+                }
             }
         }
     }
 
     async fn take(&mut self, mut bytes: &[u8]) -> io::Result<()> {
-        while !bytes.is_empty() {
+        while !bytes.is_empty() && !self.is_noisy {
             let (now, later) = bytes.split_at(bytes.len().min(self.held.remaining_capacity()));
             self.held.extend(now.iter().copied());
             bytes = later;
-            while let Some((frame, used)) = first_request(&self.held) {
+            while let Front::Request(frame, used) = front(&self.held) {
                 self.held.drain(..used);
                 self.answer(&frame).await?;
             }
-            if self.held.is_full() {
-                self.held.clear();
-            }
+            self.is_noisy = matches!(front(&self.held), Front::Noise);
         }
         Ok(())
     }
@@ -108,18 +118,32 @@ impl<W: Wire> Line<W> {
     }
 }
 
-/// The first whole request, without its check, and the bytes up to its end. What stands before it is noise.
-fn first_request(held: &[u8]) -> Option<(Vec<u8>, usize)> {
-    (0..held.len()).find_map(|at| {
-        let frame = held.get(at..)?;
-        let len = match frame {
-            [_, 3 | 6, ..] => SHORT_LEN,
-            [_, 16, _, _, _, _, count, ..] => LONG_FRAMING + usize::from(*count),
-            // Other functions have requests of their own; those without data are told that they are not known.
-            [_, 1..=0x7F, ..] => SHORT_LEN,
-            _ => return None,
-        };
-        let (body, check) = frame.get(..len)?.split_last_chunk()?;
-        (crc16(body).to_le_bytes() == *check).then(|| (body.to_vec(), at + len))
-    })
+/// What stands at the front of the bytes since the last request or the last silence.
+enum Front {
+    /// A whole request, without its check, and its length with it.
+    Request(Vec<u8>, usize),
+    /// A request that is not whole yet, or nothing.
+    Open,
+    /// No request.
+    Noise,
+}
+
+/// A request begins behind another one or behind a silence, nowhere else: the data of a longer one that was cut may look
+/// like one too.
+fn front(held: &[u8]) -> Front {
+    let len = match held {
+        [] | [_] => return Front::Open,
+        [_, 16, _, _, _, _, count, ..] => LONG_FRAMING + usize::from(*count),
+        [_, 16, ..] => return Front::Open,
+        // Other functions have requests of their own; those without data are told that they are not known.
+        [_, 1..=0x7F, ..] => SHORT_LEN,
+        _ => return Front::Noise,
+    };
+    match held.get(..len).and_then(<[u8]>::split_last_chunk) {
+        None => Front::Open,
+        Some((body, check)) if crc16(body).to_le_bytes() == *check => {
+            Front::Request(body.to_vec(), len)
+        }
+        Some(_) => Front::Noise,
+    }
 }

@@ -4,6 +4,7 @@ use crate::sim::serve::hands::Hands;
 use crate::sim::serve::modbus_rtu;
 use crate::sim::serve::rs485;
 use crate::sim::serve::slcan;
+use crate::sim::serve::usbcan;
 use crate::transport::{LinePace, PtyLink, TransportError, paced};
 use std::future::Future;
 use std::io;
@@ -66,4 +67,16 @@ pub fn serve_slcan(
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
     Ok(slcan::serve(hands.into(), link))
+}
+
+/// As [`serve_slcan`], with the maker's own adapter.
+///
+/// # Errors
+/// As [`serve_rs485`].
+pub fn serve_usbcan(
+    hands: impl Into<Hands> + Send + 'static,
+    path: &Path,
+) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
+    let link = PtyLink::create(path)?;
+    Ok(usbcan::serve(hands.into(), link))
 }

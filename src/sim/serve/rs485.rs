@@ -5,8 +5,9 @@ use crate::codec::rs485::{
     encode_save_result, encode_write_ack,
 };
 use crate::hand::Span;
+use crate::sim::hand::SimHand;
 use crate::sim::memory::Refusal;
-use crate::sim::personality::LongRead;
+use crate::sim::personality::{AnyId, LongRead};
 use crate::sim::serve::hands::Hands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
@@ -125,7 +126,7 @@ impl<W: Wire> Line<W> {
 
 fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
     hand.with(|hand, now| match request {
-        Request::Read { id, span } if *id == hand.id() => {
+        Request::Read { id, span } if is_meant(hand, *id) => {
             let cut = hand.personality().long_read == LongRead::Truncate;
             let len = match span.len {
                 ..=READ_LEN_MAX => span.len,
@@ -133,17 +134,24 @@ fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
                 _ => return None,
             };
             let bytes = hand.read(Span::new(span.address, len), now).ok()?;
-            encode_read_reply(*id, span.address, &bytes)
+            encode_read_reply(hand.id(), span.address, &bytes)
         }
-        Request::Write { id, address, bytes } if *id == hand.id() => {
+        Request::Write { id, address, bytes } if is_meant(hand, *id) => {
             match hand.write(*address, bytes, now) {
                 Ok(effect) => effect
                     .is_acked
                     .then(|| encode_write_ack(effect.ack_id, *address, ACK)),
-                Err(Refusal::ReadOnly { .. }) => Some(encode_write_ack(*id, *address, NAK)),
+                Err(Refusal::ReadOnly { .. }) => Some(encode_write_ack(hand.id(), *address, NAK)),
                 Err(_) => None,
             }
         }
         _ => None,
     })
+}
+
+/// True if a frame to this id is for this hand.
+// Manual: 2.6.1 gives hands 1 to 254, and says nothing of who answers to 0 and 255, nor with which id.
+fn is_meant(hand: &SimHand, id: u8) -> bool {
+    let any = matches!(id, 0 | 255) && hand.personality().any_id == AnyId::Answered;
+    any || id == hand.id()
 }

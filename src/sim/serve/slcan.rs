@@ -1,7 +1,7 @@
 //! Simulated hands behind a serial CAN adapter, adapter included (Lawicel's text). Opens no port.
 
 use crate::codec::can::CanFrame;
-use crate::codec::slcan::{Answer, Command, CommandDecoder, encode_answer};
+use crate::codec::slcan::{Answer, BITRATES, Command, CommandDecoder, encode_answer};
 use crate::sim::serve::can;
 use crate::sim::serve::hands::Hands;
 use crate::transport::Wire;
@@ -10,8 +10,12 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 
 /// Bytes taken at once: many commands.
 const CHUNK: usize = 512;
-/// Code of the bit rate of a hand as delivered, 1 Mbit/s (manual 2.3).
-const HAND_BITRATE: u8 = 8;
+/// The bit rate of a hand as delivered (manual 2.3) …
+const HAND_BITRATE: u32 = 1_000_000;
+/// … and the timing registers that stand for it, as the adapters' manual has them.
+const HAND_TIMING: u16 = 0x0014;
+/// Bytes that send a frame of 11 bits are acknowledged with.
+const SENT_SHORT: &[u8] = b"z\r";
 /// What the adapter says of itself, as the known ones do.
 const VERSION: &[u8] = b"V1013\r";
 const SERIAL: &[u8] = b"NSIM1\r";
@@ -22,18 +26,27 @@ pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
     let mut adapter = Adapter {
         hands: hands.into(),
         wire,
-        is_open: false,
-        bitrate: HAND_BITRATE,
+        mode: Mode::Closed,
+        bitrate: Some(HAND_BITRATE),
     };
     // The end of the wire is the only end there is, and the only error.
     let _hung_up = adapter.run().await;
 }
 
+/// What part the adapter takes in the bus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mode {
+    Closed,
+    Open,
+    Listening,
+}
+
 struct Adapter<W> {
     hands: Hands,
     wire: W,
-    is_open: bool,
-    bitrate: u8,
+    mode: Mode,
+    /// None if it was set by timing registers that are not the hand's.
+    bitrate: Option<u32>,
 }
 
 impl<W: Wire> Adapter<W> {
@@ -58,21 +71,31 @@ impl<W: Wire> Adapter<W> {
 
     async fn obey(&mut self, command: Command) -> io::Result<()> {
         let allowed = match &command {
-            Command::Open | Command::Bitrate(_) => !self.is_open,
-            Command::Close | Command::Send(_) => self.is_open,
+            Command::Open | Command::Listen | Command::Bitrate(_) | Command::Timing(_) => {
+                self.mode == Mode::Closed
+            }
+            Command::Close => self.mode != Mode::Closed,
+            Command::Send(_) | Command::SendOther(_) => self.mode == Mode::Open,
             Command::Other(_) => true,
         };
         if !allowed {
             return self.say(&Answer::Failed).await;
         }
         match command {
-            Command::Open => self.is_open = true,
-            Command::Close => self.is_open = false,
-            Command::Bitrate(code) => self.bitrate = code,
+            Command::Open => self.mode = Mode::Open,
+            Command::Listen => self.mode = Mode::Listening,
+            Command::Close => self.mode = Mode::Closed,
+            Command::Bitrate(code) => self.bitrate = BITRATES.get(usize::from(code)).copied(),
+            Command::Timing(registers) => {
+                self.bitrate = (registers == HAND_TIMING).then_some(HAND_BITRATE);
+            }
             Command::Other(b'V') => return self.wire.write_all(VERSION).await,
             Command::Other(b'N') => return self.wire.write_all(SERIAL).await,
             Command::Other(b'F') => return self.wire.write_all(FLAGS).await,
             Command::Other(_) => {}
+            // No hand knows such frames (manual 2.3): they go out, and nobody answers.
+            Command::SendOther(b'R') => return self.say(&Answer::Sent).await,
+            Command::SendOther(_) => return self.wire.write_all(SENT_SHORT).await,
             Command::Send(frame) => {
                 self.say(&Answer::Sent).await?;
                 return self.put_on_the_bus(&frame).await;
@@ -82,7 +105,7 @@ impl<W: Wire> Adapter<W> {
     }
 
     async fn put_on_the_bus(&mut self, frame: &CanFrame) -> io::Result<()> {
-        if self.bitrate != HAND_BITRATE {
+        if self.bitrate != Some(HAND_BITRATE) {
             return Ok(());
         }
         let hands = self.hands.clone();

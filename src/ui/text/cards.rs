@@ -9,9 +9,6 @@ texts! {
     CLOSE_TIP: "Closes this card.", "关闭此卡片。";
     TYPE: "To go on, type", "要继续，请输入";
     NO_HAND: "No hand answers.", "没有灵巧手应答。";
-    ARMED: "Disarm the hand first.", "请先取消使能。";
-    HOLDING: "A stop is still being confirmed.", "正在确认停止。";
-    MOVING: "Wait until the hand rests.", "请等灵巧手静止。";
     BACKUP: "Backup", "备份";
     BACKING_UP: "Keeping a backup of what the hand holds", "正在备份灵巧手的参数";
     NO_BACKUP: "No backup could be made, and nothing was written.", "无法备份，未写入任何内容。";
@@ -86,7 +83,7 @@ texts! {
     RESET_ENTRY_TIP: "Asks first. Returns the hand to the parameters of its delivery.", "先询问，再把灵巧手恢复为出厂参数。";
 
     CALIBRATE_TITLE: "Calibrate the force sensors", "校准力传感器";
-    CALIBRATE_WORDS: "The hand takes the forces of now as zero; that takes about 6 s, and nothing else moves it meanwhile. Open it, and let it touch nothing.", "灵巧手把当前的力作为零点，约 6 秒，期间不会运动。请张开手，不要接触任何物体。";
+    CALIBRATE_WORDS: "The hand takes the forces of now as zero; that takes 2 to 6 s, and nothing else moves it meanwhile. Open it, and let it touch nothing.", "灵巧手把当前的力作为零点，需 2 到 6 秒，期间不会运动。请张开手，不要接触任何物体。";
     CALIBRATE: "Calibrate", "校准";
     CALIBRATE_TIP: "Sends GESTURE_FORCE_CLB.", "发送 GESTURE_FORCE_CLB。";
     CALIBRATE_NOT_YET: "Not all of it is so yet.", "条件尚未全部满足。";

@@ -71,6 +71,7 @@ texts! {
     WHY_ARMED: "The hand is armed: disarm it first.", "灵巧手已使能：请先取消使能。";
     WHY_HOLDING: "A stop is being confirmed.", "正在确认停止。";
     WHY_MOVING: "The hand moves: wait until it rests.", "灵巧手在运动：请等它静止。";
+    WHY_REST_UNKNOWN: "It is not known whether the hand rests: wait for its status.", "尚不清楚灵巧手是否静止：请等待状态更新。";
     WHY_BUSY: "Something is under way.", "正在进行其他操作。";
     WHY_NOTHING_STAGED: "Nothing is staged that can be applied.", "没有可应用的暂存值。";
     WHY_NOTHING_TO_UNDO: "No apply of this session changed anything.", "本次没有可撤销的应用。";

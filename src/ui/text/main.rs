@@ -127,11 +127,11 @@ texts! {
     UNIT_NAME: "Angle unit", "角度单位";
     UNIT_TIP: "Angles as 0 to 1000, in degrees, or in percent of the way to open. A decimal comma is understood.", "角度以 0 到 1000、度或张开百分比表示。";
     OPEN: "Open all", "全部张开";
-    OPEN_TIP: "Tells every joint that is not locked to open, at speed 200 or slower.", "令所有未锁定的自由度张开，速度不超过 200。";
+    OPEN_TIP: "Tells every joint that is not locked to open, at its set speed.", "令所有未锁定的自由度张开，按设定的速度。";
     HALF: "Half", "半握";
-    HALF_TIP: "Bends fingers and thumb half, at speed 200 or slower. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲到一半，速度不超过 200。大拇指旋转与锁定的自由度不动。";
+    HALF_TIP: "Bends fingers and thumb half, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲到一半，按设定的速度。大拇指旋转与锁定的自由度不动。";
     CLOSE: "Close", "握拢";
-    CLOSE_TIP: "Bends fingers and thumb until their force thresholds stop them, at speed 200 or slower. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲，直到力控阈值使其停止，速度不超过 200。大拇指旋转与锁定的自由度不动。";
+    CLOSE_TIP: "Bends fingers and thumb until their force thresholds stop them, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲，直到力控阈值使其停止，按设定的速度。大拇指旋转与锁定的自由度不动。";
     HOLD: "Hold", "保持";
     HOLD_TIP: "The same as STOP: every joint stays where it is.", "与“停止”相同：所有自由度停在原位。";
     AGE: "Age", "距今";

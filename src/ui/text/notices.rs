@@ -1,13 +1,14 @@
 //! Messages, troubles of the link and failed requests as sentences in the window's language. Decides nothing.
 
-use crate::app::faults::FaultKind;
 use crate::app::notices::{Asked, NoticeKind};
-use crate::app::quirk_sheet::Difference;
+use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
 use crate::hand::Words;
-use crate::link::{Disarmed, LinkTrouble, RequestError};
-use crate::ui::format;
-use crate::ui::look::Look;
+use crate::link::{LinkTrouble, RequestError};
+use crate::record::Disarmed;
+use crate::record::quirk_sheet::Difference;
+use crate::ui::kit::format;
+use crate::ui::kit::look::Look;
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, main, panels, poses, quirks, traffic, trials, tune, words};
 
@@ -96,7 +97,7 @@ fn disarmed(look: Look, why: Disarmed) -> &'static str {
         Disarmed::Fault => panels::DISARMED_FAULT,
         Disarmed::LinkLost => panels::DISARMED_LOST,
         Disarmed::Stale => panels::DISARMED_STALE,
-        Disarmed::Rival => panels::DISARMED_RIVAL,
+        Disarmed::OtherController => panels::DISARMED_RIVAL,
         Disarmed::Resume => panels::DISARMED_RESUME,
     })
 }
@@ -138,6 +139,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             format!("{} {}", said(panels::NOTICE_HELD), format::age(*after))
         }
         NoticeKind::HoldAlarm => said(main::ALARM_BODY),
+        NoticeKind::StopNotSent => said(panels::NOTICE_STOP_NOT_SENT),
         NoticeKind::Disarmed(why) => disarmed(look, *why).into(),
         NoticeKind::ArmRefused(why) => {
             format!(

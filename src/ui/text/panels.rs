@@ -51,7 +51,7 @@ texts! {
 
     HAND: "Hand", "灵巧手";
     HAND_PICTURE: "Picture of the hand", "手部姿态图";
-    HAND_PICTURE_TIP: "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Dashed: where it is told to go.\nBones and couplings are those of a sister model; which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。虚线为目标姿态。\n骨架与联动关系取自同系列型号；拇指旋转方向手册没有说明。";
+    HAND_PICTURE_TIP: "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Arrows are the forces on the fingertips. A coloured shell is where a joint is told to go.\nLengths and couplings are those of a public model of this hand (Unitree Robotics, BSD-3-Clause); which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。箭头为指尖受力，彩色轮廓为目标姿态。\n尺寸与联动关系取自该手的公开模型（Unitree Robotics，BSD-3-Clause）；拇指旋转方向手册没有说明。";
 
     TOUCH_SCALE_TARED: "Heat: counts since taring, age", "热度：去皮后的增量，距今";
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
@@ -96,6 +96,7 @@ texts! {
     TIMER_SEEN: "Replies come every 16 ms, as from a USB adapter that keeps them back (latency timer).", "应答每 16 ms 才到，像是 USB 适配器的延迟定时器所致。";
     TIMER_CURE: "In a terminal:", "在终端运行：";
     TIMER_CURE_WINDOWS: "Device Manager, port, Port Settings, Advanced: latency timer 1 ms.", "设备管理器 → 端口 → 端口设置 → 高级：延迟定时器 1 ms。";
+    NOTICE_STOP_NOT_SENT: "STOP could not be sent: no hand answers. If it moves, switch off its 24 V supply.", "停止命令未能发出：没有灵巧手应答。若仍在运动，请关闭 24 V 电源。";
     NOTICE_RECONNECTED: "The hand answers again. It is not armed.", "灵巧手重新应答，尚未使能。";
     NOTICE_HELD: "Feedback shows rest. From stop to rest:", "反馈显示已静止。从停止到静止：";
     NOTICE_ARM: "Not armed.", "未能使能。";
@@ -140,6 +141,7 @@ texts! {
     KIND_TCP: "Modbus TCP", "Modbus TCP";
     KIND_CAN: "CAN", "CAN";
     KIND_SLCAN: "CAN adapter", "CAN 适配器";
+    KIND_USBCAN: "Maker's CAN", "因时 USB-CAN";
     KIND_TIP: "How the hand is reached.", "与灵巧手的连接方式。";
     PORT: "Serial port", "串口";
     PORT_HINT: "/dev/ttyUSB0 or COM5", "/dev/ttyUSB0 或 COM5";
@@ -165,6 +167,7 @@ texts! {
     HINT_SERIAL: "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
     HINT_CAN: "Linux only. As delivered: 1000000 bit/s, id 1. The interface must be up: sudo ip link set can0 up type can bitrate 1000000.", "仅限 Linux。出厂设置：1000000 bit/s，ID 1。接口须已启用：sudo ip link set can0 up type can bitrate 1000000。";
     HINT_SLCAN: "A serial CAN adapter that speaks slcan (Lawicel). As delivered, the hand has 1000000 bit/s and id 1.", "使用 slcan（Lawicel）协议的串口 CAN 适配器。灵巧手出厂设置：1000000 bit/s，ID 1。";
+    HINT_USBCAN: "The maker's own USB-CAN adapter, 115200 bit/s on its serial side. Its bit rate on CAN is not set from here: it must be that of the hand, as delivered 1000000 bit/s.", "因时自带的 USB-CAN 适配器，串口侧 115200 bit/s。此处不设置其 CAN 波特率：须与灵巧手一致，出厂为 1000000 bit/s。";
     HINT_TCP: "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "地址";

@@ -129,12 +129,11 @@ texts! {
     READ_HAND: "Read", "读取";
     READ_HAND_TIP: "Reads what the hand has stored under this number.", "读取灵巧手中该编号的内容。";
     TEST: "Test", "测试";
-    TEST_TIP: "Goes to these angles at a gentle speed. Nothing is stored.", "以低速到达这些角度，不写入。";
+    TEST_TIP: "Goes to these angles at the set speeds. Nothing is stored.", "按设定的速度到达这些角度，不写入。";
     UPLOAD: "Upload", "写入";
     UPLOAD_TIP: "Writes these six angles into the hand and reads them back. Nothing moves.", "把六个角度写入灵巧手并读回。不会运动。";
     FIRST_ANGLES: "Take angles first: from the hand, or by reading.", "请先取得角度：取当前姿态或读取。";
     VERDICT_WRITING: "Sent, not acknowledged yet", "已发送，尚未确认";
-    VERDICT_READING: "Acknowledged, reading back", "已确认，正在读回";
     VERDICT_SAME: "Read back the same: the hand holds it", "读回一致：灵巧手已保存";
     VERDICT_DIFFERS: "Read back differently: this hand does not keep it there", "读回不一致：此灵巧手没有保存";
     VERDICT_FAILED: "Did not work: see the messages", "未成功：请查看消息";

@@ -1,8 +1,8 @@
 //! Sentences about what a hand was found to do in its own way.
 
-use crate::app::quirk_sheet::Fact;
 use crate::codec::modbus::BytePacking;
 use crate::link::{GapRead, TouchDoubt, TouchVariant};
+use crate::record::quirk_sheet::Fact;
 use crate::ui::text::phrase::{Text, texts};
 
 texts! {

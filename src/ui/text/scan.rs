@@ -3,8 +3,8 @@
 use crate::app::scan::ScanRemark;
 use crate::app::settings::Language;
 use crate::link::scan::ScanHint;
-use crate::ui::format;
-use crate::ui::look::Look;
+use crate::ui::kit::format;
+use crate::ui::kit::look::Look;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -93,7 +93,6 @@ fn hint_zh(hint: &ScanHint) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
 
     #[test]

@@ -4,7 +4,10 @@ use crate::ui::text::phrase::texts;
 
 texts! {
     DRAWN: "Drawn finger", "图中手指";
-    GHOST: "Dashed: angle not known", "虚线轮廓：角度未知";
+    UNKNOWN: "Grey: angle not known", "灰色：角度未知";
+    RIGHT_HAND: "Right hand", "右手";
+    LEFT_HAND: "Left hand", "左手";
+    SIDE_TIP: "Which hand is drawn; the hand does not say which one it is. A click draws the other one. Nothing moves.", "图中所画的手；灵巧手不会报告自己是左手还是右手。点击可切换，灵巧手不会动作。";
     ASSUMED: "Pads: assumed places", "分区位置为假定";
     ASSUMED_TIP: "Which channel belongs to which pad is not documented: channels 1 to 7 are drawn as pads 1 to 7 of the sensor maker's model. Channel 8 belongs to no pad and stands beside them.", "手册没有说明通道与分区的对应关系：这里假定通道 1 至 7 对应传感器厂家模型的分区 1 至 7。通道 8 不属于任何分区，画在旁边。";
     DETAIL: "Detail", "详情";

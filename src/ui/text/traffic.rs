@@ -3,7 +3,7 @@
 use crate::app::settings::Language;
 use crate::link::traffic::fields::FieldName;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::ui::look::Look;
+use crate::ui::kit::look::Look;
 use crate::ui::text::phrase::{Text, texts};
 
 texts! {
@@ -86,6 +86,8 @@ texts! {
     PROTOCOL: "Protocol", "协议";
     CAN_ID: "Identifier", "标识符";
     FILLER: "Filler", "填充";
+    FRAME_KIND: "Kind of frame", "帧类型";
+    TAIL: "Tail", "帧尾";
     TEXT_LINE: "Text", "文本";
     UNKNOWN: "Unknown", "未知";
 }
@@ -130,6 +132,8 @@ pub(crate) const fn field(name: FieldName) -> Text {
         FieldName::Protocol => PROTOCOL,
         FieldName::CanId => CAN_ID,
         FieldName::Filler => FILLER,
+        FieldName::FrameKind => FRAME_KIND,
+        FieldName::Tail => TAIL,
         FieldName::Text => TEXT_LINE,
         FieldName::Unknown => UNKNOWN,
     }

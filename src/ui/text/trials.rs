@@ -2,20 +2,20 @@
 
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Language;
-use crate::app::trial::{Abort, PlanError, Stage};
-use crate::app::tuner::draft::ListError;
-use crate::app::tuner::{Ended, Reach};
+use crate::app::trials::ApproachKind;
+use crate::app::trials::form::ListError;
 use crate::hand::{Dof, Fault};
-use crate::ui::format;
-use crate::ui::look::Look;
+use crate::trials::{Abort, EarlyEnd, PlanError, Stage};
+use crate::ui::kit::format;
+use crate::ui::kit::look::Look;
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{tune, words};
 
 /// Why something ended early. A file tells it in its own words.
-pub(crate) fn ended(look: Look, why: &Ended) -> String {
+pub(crate) fn ended(look: Look, why: &EarlyEnd) -> String {
     match why {
-        Ended::Here(why) => abort(look, *why),
-        Ended::Told(words) => format::sentence(words),
+        EarlyEnd::Here(why) => abort(look, *why),
+        EarlyEnd::FromFile(words) => format::sentence(words),
     }
 }
 
@@ -121,13 +121,13 @@ pub(crate) const fn stage(stage: Stage) -> Text {
 }
 
 /// How the object is reached.
-pub(crate) const fn reach(reach: Reach) -> Text {
-    match reach {
-        Reach::OneStage => tune::ONE_STAGE,
-        Reach::Measured => tune::TWO_MEASURED,
-        Reach::Angle => tune::TWO_ANGLE,
-        Reach::Proximity => tune::TWO_PROXIMITY,
-        Reach::Touch => tune::TWO_TOUCH,
+pub(crate) const fn approach(kind: ApproachKind) -> Text {
+    match kind {
+        ApproachKind::OneStage => tune::ONE_STAGE,
+        ApproachKind::Measured => tune::TWO_MEASURED,
+        ApproachKind::Angle => tune::TWO_ANGLE,
+        ApproachKind::Proximity => tune::TWO_PROXIMITY,
+        ApproachKind::Touch => tune::TWO_TOUCH,
     }
 }
 

@@ -1,11 +1,11 @@
 //! What came of writes and of SAVE, why something cannot be done, and what could hurt, as sentences in the window's language.
 
-use crate::app::device::book::{Doing, SaveEnd};
-use crate::app::device::refusal::Refusal;
-use crate::app::params::plan::{RowEnd, RowVerdict};
-use crate::app::params::table::ParamId;
-use crate::link::{Doubt, NotSent, SaveDoubt, Saved};
-use crate::ui::look::Look;
+use crate::app::params::refusal::Refusal;
+use crate::app::params::state::{Doing, SaveEnd};
+use crate::params::changes::{RowOutcome, RowVerdict};
+use crate::params::rows::ParamId;
+use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
+use crate::ui::kit::look::Look;
 use crate::ui::text::notices::request_error;
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, words};
@@ -17,6 +17,7 @@ pub(crate) const fn refusal(why: Refusal) -> Text {
         Refusal::Armed => device::WHY_ARMED,
         Refusal::Holding => device::WHY_HOLDING,
         Refusal::Moving => device::WHY_MOVING,
+        Refusal::RestUnknown => device::WHY_REST_UNKNOWN,
         Refusal::Busy => device::WHY_BUSY,
         Refusal::NothingStaged => device::WHY_NOTHING_STAGED,
         Refusal::NothingToUndo => device::WHY_NOTHING_TO_UNDO,
@@ -68,7 +69,7 @@ pub(crate) const fn about(id: ParamId) -> Text {
 }
 
 /// What came of a row.
-pub(crate) fn row_end(look: Look, end: &RowEnd) -> String {
+pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
     let say = |text| look.say(text);
     match &end.verdict {
         RowVerdict::Applied => say(device::APPLIED).into(),
@@ -104,6 +105,7 @@ fn not_sent(look: Look, why: NotSent) -> String {
         NotSent::Armed => device::WHY_ARMED,
         NotSent::Holding => device::WHY_HOLDING,
         NotSent::Moving => device::WHY_MOVING,
+        NotSent::RestUnknown => device::WHY_REST_UNKNOWN,
         NotSent::TooSoon { wait } => {
             let wait = wait.as_secs_f64().ceil();
             return format!("{} {wait} s", look.say(device::TOO_SOON));
@@ -188,6 +190,7 @@ mod tests {
         let look = Look {
             palette: Palette::of(Theme::Dark),
             language: Language::En,
+            side: crate::hand::kinematics::Side::Right,
         };
         let why = SaveDoubt::NoResult;
         let wait = Duration::from_millis(2100);

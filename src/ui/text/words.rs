@@ -2,8 +2,8 @@
 
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Finger, Status, Words};
-use crate::link::{ArmRefusal, LinkState};
-use crate::ui::look::Look;
+use crate::record::{ArmRefusal, LinkState};
+use crate::ui::kit::look::Look;
 use crate::ui::text::main;
 use crate::ui::text::phrase::Text;
 

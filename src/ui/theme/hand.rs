@@ -1,26 +1,112 @@
-//! Lengths of the drawn hand, in millimetres, and of the view of one fingertip, in points. No colours, no fonts.
+//! How the drawn hand is made and lit, in each theme, and the lengths of the view of one fingertip, in points.
 
-/// Thickness of a finger at its knuckle, in millimetres.
-pub(crate) const KNUCKLE_MM: f32 = 19.0;
-/// Thickness of a finger at its tip.
-pub(crate) const FINGERTIP_MM: f32 = 14.0;
-/// The thumb is this much thicker.
-pub(crate) const THUMB_MORE: f32 = 1.18;
-/// Rounding of the palm.
-pub(crate) const PALM_MM: f32 = 14.0;
-/// Half the palm's thickness.
-pub(crate) const PALM_HALF_MM: f32 = 7.0;
-/// Room around the bones, for halos.
-pub(crate) const HAND_MARGIN_MM: f32 = 13.0;
-/// How far in front and behind light and shade go.
-pub(crate) const SHADE_MM: f32 = 70.0;
-/// How far the light on a bone lies beside its middle, in its widths.
-pub(crate) const LIGHT_ASIDE: f32 = 0.16;
+use egui::Color32;
+use glam::Vec3;
+
+/// What a surface does with light. Colours are linear: half the number is half the light.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Material {
+    /// Its own colour.
+    pub(crate) base: Vec3,
+    /// Strength of the key light's highlight, and how small it is.
+    pub(crate) shine: f32,
+    pub(crate) sharp: i32,
+    /// How much of the surroundings it mirrors.
+    pub(crate) mirror: f32,
+}
+
+/// Lamps and materials of one theme. Ways are as the eye sees them: x right, y up, z near.
+#[derive(Debug)]
+pub(crate) struct Studio {
+    /// The way to the key light, and its strength.
+    pub(crate) key: Vec3,
+    pub(crate) key_power: f32,
+    /// The way to the fill light, and its strength.
+    pub(crate) fill: Vec3,
+    pub(crate) fill_power: f32,
+    /// Light from above and from below.
+    pub(crate) sky: f32,
+    pub(crate) ground: f32,
+    /// Light on what turns away from the eye: sets it off from a dark card, or darkens it on a light one.
+    pub(crate) rim: f32,
+    pub(crate) metal: Material,
+    pub(crate) plate: Material,
+    pub(crate) hinge: Material,
+    pub(crate) rubber: Material,
+    pub(crate) pad: Material,
+}
+
+const fn material([red, green, blue]: [u8; 3], shine: f32, sharp: i32, mirror: f32) -> Material {
+    let base = linear(Color32::from_rgb(red, green, blue));
+    Material {
+        base,
+        shine,
+        sharp,
+        mirror,
+    }
+}
+
+/// From the left, above and before the hand; and from the right.
+const KEY: Vec3 = Vec3::new(-0.466, 0.670, 0.577);
+const FILL: Vec3 = Vec3::new(0.884, 0.0, 0.468);
+
+/// On a dark card.
+pub(crate) static DARK_STUDIO: Studio = Studio {
+    key: KEY,
+    key_power: 0.82,
+    fill: FILL,
+    fill_power: 0.16,
+    sky: 0.22,
+    ground: 0.08,
+    rim: 0.42,
+    metal: material([0xC4, 0xC9, 0xD0], 0.20, 32, 0.40),
+    plate: material([0xA8, 0xAE, 0xB7], 0.06, 16, 0.15),
+    hinge: material([0x4A, 0x50, 0x59], 0.14, 20, 0.5),
+    rubber: material([0x44, 0x49, 0x51], 0.10, 9, 0.5),
+    pad: material([0x74, 0x7C, 0x88], 0.05, 10, 0.2),
+};
+
+/// On a light card.
+pub(crate) static LIGHT_STUDIO: Studio = Studio {
+    key: KEY,
+    key_power: 0.82,
+    fill: FILL,
+    fill_power: 0.22,
+    sky: 0.28,
+    ground: 0.14,
+    rim: -0.3,
+    metal: material([0xC2, 0xC8, 0xCF], 0.20, 32, 0.40),
+    plate: material([0xA6, 0xAC, 0xB6], 0.06, 16, 0.15),
+    hinge: material([0x46, 0x4C, 0x55], 0.12, 20, 0.5),
+    rubber: material([0x38, 0x3C, 0x43], 0.08, 9, 0.5),
+    pad: material([0x66, 0x6D, 0x78], 0.05, 10, 0.2),
+};
+
+/// A colour as linear light: the screen's curve is taken as a square.
+pub(crate) const fn linear(color: Color32) -> Vec3 {
+    const fn squared(part: u8) -> f32 {
+        let part = part as f32 / 255.0;
+        part * part
+    }
+    let [red, green, blue, _] = color.to_array();
+    Vec3::new(squared(red), squared(green), squared(blue))
+}
+
+/// Linear light as a colour; what is brighter than white is white.
+pub(crate) fn lit(light: Vec3, alpha: f32) -> Color32 {
+    let [red, green, blue] = light.clamp(Vec3::ZERO, Vec3::ONE).map(f32::sqrt).to_array();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at most 255"
+    )]
+    let [red, green, blue, alpha] =
+        [red * alpha, green * alpha, blue * alpha, alpha].map(|part| (part * 255.0 + 0.5) as u8);
+    Color32::from_rgba_premultiplied(red, green, blue, alpha)
+}
 
 /// A line that only leads the eye.
 pub(crate) const THIN: f32 = 1.2;
-/// The outline of what is meant, not measured.
-pub(crate) const MEANT: f32 = 1.5;
 /// A force as a line.
 pub(crate) const NEEDLE: f32 = 2.5;
 

@@ -2,6 +2,7 @@
 
 use crate::app::settings::Theme;
 use crate::hand::PerDof;
+use crate::ui::theme::hand::{DARK_STUDIO, LIGHT_STUDIO, Studio};
 use egui::Color32;
 
 /// All colours of one theme, by what they are for.
@@ -57,18 +58,14 @@ pub(crate) struct Palette {
     pub(crate) handle_dot: Color32,
     /// The skin of a drawn fingertip.
     pub(crate) skin: Color32,
-    /// The fingers and palm of the drawn hand in half light.
-    pub(crate) limb: Color32,
-    /// The same in full light.
-    pub(crate) limb_lit: Color32,
-    /// Their edges.
-    pub(crate) limb_edge: Color32,
+    /// Lamps and materials of the drawn hand.
+    pub(crate) studio: &'static Studio,
     /// The shear arrow over the heat.
     pub(crate) arrow: Color32,
     /// The six joints; told apart by all common kinds of colour blindness.
     pub(crate) dof: PerDof<Color32>,
-    /// True for light on dark.
-    dark: bool,
+    /// The theme it belongs to.
+    pub(crate) theme: Theme,
 }
 
 /// Light on dark.
@@ -98,9 +95,7 @@ static DARK: Palette = Palette {
     handle: Color32::from_rgb(0xE8, 0xEC, 0xF2),
     handle_dot: Color32::from_rgb(0x16, 0x1A, 0x20),
     skin: Color32::from_rgb(0x1E, 0x24, 0x2D),
-    limb: Color32::from_rgb(0x2B, 0x33, 0x3E),
-    limb_lit: Color32::from_rgb(0x4E, 0x5A, 0x69),
-    limb_edge: Color32::from_rgb(0x56, 0x62, 0x72),
+    studio: &DARK_STUDIO,
     arrow: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     dof: PerDof::new([
         Color32::from_rgb(0x5A, 0xB4, 0xE8),
@@ -110,7 +105,7 @@ static DARK: Palette = Palette {
         Color32::from_rgb(0xF0, 0x78, 0x4A),
         Color32::from_rgb(0xD8, 0x8A, 0xC0),
     ]),
-    dark: true,
+    theme: Theme::Dark,
 };
 
 /// Dark on light.
@@ -140,9 +135,7 @@ static LIGHT: Palette = Palette {
     handle: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     handle_dot: Color32::from_rgb(0x4E, 0x5A, 0x69),
     skin: Color32::from_rgb(0xE4, 0xE9, 0xEF),
-    limb: Color32::from_rgb(0xD3, 0xDA, 0xE3),
-    limb_lit: Color32::from_rgb(0xF4, 0xF7, 0xFA),
-    limb_edge: Color32::from_rgb(0xA4, 0xB0, 0xBE),
+    studio: &LIGHT_STUDIO,
     arrow: Color32::from_rgb(0x10, 0x14, 0x1A),
     dof: PerDof::new([
         Color32::from_rgb(0x00, 0x72, 0xB2),
@@ -152,7 +145,7 @@ static LIGHT: Palette = Palette {
         Color32::from_rgb(0xC8, 0x4A, 0x10),
         Color32::from_rgb(0xA8, 0x4A, 0x86),
     ]),
-    dark: false,
+    theme: Theme::Light,
 };
 
 impl Palette {
@@ -166,7 +159,7 @@ impl Palette {
 
     /// Text on the heat scale; `bright` where the colour is.
     pub(crate) fn on_heat(&self, bright: bool) -> Color32 {
-        if self.dark == bright {
+        if (self.theme == Theme::Dark) == bright {
             self.on_armed
         } else {
             self.on_strong
@@ -175,14 +168,18 @@ impl Palette {
 
     /// A weak wash of a colour over a card.
     pub(crate) fn wash(&self, color: Color32) -> Color32 {
-        color.gamma_multiply(if self.dark { 0.16 } else { 0.12 })
+        color.gamma_multiply(if self.theme == Theme::Dark {
+            0.16
+        } else {
+            0.12
+        })
     }
 
     /// A colour of the heat scale; `level` is 0..=1 and is cut to it.
     pub(crate) fn heat(&self, level: f32) -> Color32 {
         let level = f64::from(level.clamp(0.0, 1.0));
         // Rest must look calm on both grounds: dark on the dark skin, pale on the light one.
-        let color = if self.dark {
+        let color = if self.theme == Theme::Dark {
             colorous::INFERNO.eval_continuous(0.12 + 0.88 * level)
         } else {
             colorous::YELLOW_ORANGE_RED.eval_continuous(level)

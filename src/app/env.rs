@@ -1,0 +1,24 @@
+//! What the program stands on.
+
+use crate::app::files::choose::ChooseFile;
+use crate::link::{Clock, Wake};
+use crate::transport::Dial;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What the program stands on.
+#[derive(Clone)]
+pub struct Env {
+    /// Where links live, tasks run and files are written.
+    pub runtime: tokio::runtime::Handle,
+    /// The program's clock.
+    pub clock: Clock,
+    /// How wires are opened.
+    pub dial: Arc<dyn Dial>,
+    /// Called when something new is there.
+    pub wake: Wake,
+    /// How a person is asked where a file should go.
+    pub files: Arc<dyn ChooseFile>,
+    /// Where settings are kept; `None` = nowhere.
+    pub settings_path: Option<PathBuf>,
+}

@@ -1,0 +1,125 @@
+//! Saving to a file that a person chooses: how the place is asked for, and what is written there. Never blocks the window.
+
+use crate::app::env::Env;
+use crate::app::files::pose_file;
+use crate::app::notices::NoticeKind;
+use crate::history::Table;
+use crate::link::Traffic;
+use crate::link::traffic::frame::Frame;
+use crate::link::traffic::words::CSV_HEAD;
+use crate::params;
+use crate::params::file::ParamsFile;
+use crate::poses::library::Library;
+use crate::store::{Job, on_thread};
+use std::sync::Arc;
+
+/// The form of an exported list of frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TrafficForm {
+    /// A table with a head, for spreadsheets.
+    Csv,
+    /// One JSON object a line.
+    JsonLines,
+}
+
+/// What is to be saved.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Content {
+    /// Frames of the wire, in this order.
+    Traffic(TrafficForm, Vec<Arc<Frame>>),
+    /// What the plots show, as comma-separated values.
+    Plots(Table),
+    /// What was recorded around a fault, as comma-separated values.
+    Recording(Table),
+    /// A finished picture of the plots, as the bytes of a PNG file.
+    Picture(Vec<u8>),
+    /// Poses and sequences.
+    Poses(Library),
+    /// What a hand keeps, as it was read.
+    Params(Box<ParamsFile>),
+}
+
+impl Content {
+    /// The name that is suggested for the file.
+    #[must_use]
+    pub const fn file_name(&self) -> &'static str {
+        match self {
+            Self::Traffic(TrafficForm::Csv, _) => "handscope-traffic.csv",
+            Self::Traffic(TrafficForm::JsonLines, _) => "handscope-traffic.jsonl",
+            Self::Plots(_) => "handscope-plots.csv",
+            Self::Recording(_) => "handscope-fault.csv",
+            Self::Picture(_) => "handscope-plots.png",
+            Self::Poses(_) => pose_file::FILE_NAME,
+            Self::Params(_) => params::file::FILE_NAME,
+        }
+    }
+
+    /// Entries in it; a picture is one.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Traffic(_, frames) => frames.len(),
+            Self::Plots(table) | Self::Recording(table) => table.len(),
+            Self::Picture(bytes) => usize::from(!bytes.is_empty()),
+            Self::Poses(library) => library.poses.len() + library.sequences.len(),
+            Self::Params(file) => file.params.iter().count(),
+        }
+    }
+
+    /// True if there is nothing to save.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn bytes(&self) -> std::io::Result<Vec<u8>> {
+        Ok(match self {
+            Self::Traffic(form, frames) => frame_lines(*form, frames).into_bytes(),
+            Self::Plots(table) | Self::Recording(table) => table.csv().into_bytes(),
+            Self::Picture(bytes) => bytes.clone(),
+            Self::Poses(library) => pose_file::text(library)?.into_bytes(),
+            Self::Params(file) => file.to_toml().into_bytes(),
+        })
+    }
+}
+
+fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
+    let (head, line): (Option<String>, fn(&Frame) -> String) = match form {
+        TrafficForm::Csv => (Some(CSV_HEAD.into()), Frame::csv_line),
+        TrafficForm::JsonLines => (None, Frame::json_line),
+    };
+    let lines = frames.iter().map(|frame| line(frame));
+    let mut text = head.into_iter().chain(lines).collect::<Vec<_>>().join("\n");
+    text.push('\n');
+    text
+}
+
+/// Asks for a place and writes; what to tell a person of it.
+pub(crate) fn save(content: Content, env: &Env) -> Job<NoticeKind> {
+    let chosen = env.files.choose(content.file_name());
+    Job::start(&env.runtime, &env.wake, async move {
+        let Some(path) = chosen.await else {
+            return NoticeKind::NoFileChosen;
+        };
+        let place = path.clone();
+        let work = move || std::fs::write(&place, content.bytes()?).map(|()| content.len());
+        match on_thread(work).await {
+            Ok(entries) => NoticeKind::Saved { path, entries },
+            Err(error) => NoticeKind::NotSaved {
+                message: error.to_string(),
+                path,
+            },
+        }
+    })
+}
+
+/// Reads pieces on for as long as one frame of the window may take; the rest waits for the next one.
+pub(crate) fn read_on(traffic: &mut Traffic, now: crate::hand::Moment) {
+    /// As much as half of a full ring: opening the view shows it in two frames.
+    const ROUNDS: usize = 5;
+    for _ in 0..ROUNDS {
+        if !traffic.read_some(now) {
+            return;
+        }
+    }
+}

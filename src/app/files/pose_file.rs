@@ -1,0 +1,127 @@
+//! Files of poses on disk: read at start and for import, bounded, off the window's thread. Knows no setpoint.
+
+use crate::app::env::Env;
+use crate::app::notices::NoticeKind;
+use crate::poses::file;
+use crate::poses::file::{PoseFileCause, PoseFileError};
+use crate::poses::library::Library;
+use crate::store::{Job, last_of, on_thread, read_text, set_aside};
+use std::path::{Path, PathBuf};
+
+/// Five hundred poses are a quarter of this; anything longer is not a file of poses.
+const FILE_LEN_MAX: u64 = 1024 * 1024;
+/// The file's name, beside the settings and for export.
+pub const FILE_NAME: &str = "handscope-poses.toml";
+
+/// Where poses lie, beside these settings.
+#[must_use]
+pub fn path_beside(settings: &Path) -> PathBuf {
+    settings.with_file_name("poses.toml")
+}
+
+/// Reads a file of poses.
+///
+/// # Errors
+/// [`PoseFileError`]: what cannot be read, and where.
+pub fn read(path: &Path) -> Result<Library, PoseFileError> {
+    let unreadable = |error: std::io::Error| PoseFileCause::Unreadable(error.to_string());
+    match read_text(path, FILE_LEN_MAX).map_err(unreadable)? {
+        Some(text) => file::read(&text),
+        None => Err(PoseFileCause::Unreadable("there is no such file".into()).into()),
+    }
+}
+
+/// The file's text.
+///
+/// # Errors
+/// What the writer of the format says.
+pub fn text(library: &Library) -> std::io::Result<String> {
+    file::write(library).map_err(std::io::Error::other)
+}
+
+/// The library that was kept, and what a person should know about its file. An unreadable file is put aside and the
+/// last good one taken.
+#[must_use]
+pub fn load(path: &Path) -> (Library, Option<NoticeKind>) {
+    if !path.exists() {
+        return (Library::default(), None);
+    }
+    match read(path) {
+        Ok(library) => (library, None),
+        Err(error) => {
+            let library = read(&last_of(path)).unwrap_or_default();
+            let kept_as = set_aside(path);
+            (library, Some(NoticeKind::PosesIgnored { error, kept_as }))
+        }
+    }
+}
+
+/// Asks for a file and reads it.
+pub(crate) fn import(env: &Env) -> Job<Result<Library, NoticeKind>> {
+    let chosen = env.files.open(FILE_NAME);
+    Job::start(&env.runtime, &env.wake, async move {
+        let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
+        let place = path.clone();
+        let unreadable =
+            |error: std::io::Error| Err(PoseFileCause::Unreadable(error.to_string()).into());
+        let read = on_thread(move || Ok(read(&place))).await;
+        read.unwrap_or_else(unreadable)
+            .map_err(|error| NoticeKind::PosesRefused { path, error })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io;
+
+    const GOOD: &str = r#"format = "handscope-poses"
+version = 1
+
+[[pose]]
+name = "Pinch"
+speed = 300
+force = 800
+angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_rotate = 1 }
+"#;
+
+    fn save(path: &Path, library: &Library) -> io::Result<()> {
+        crate::store::replace_keeping_last(path, &text(library)?)
+    }
+
+    #[test]
+    fn a_bad_file_on_disk_is_put_aside_and_the_last_good_one_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("poses.toml");
+        assert_eq!(load(&path), (Library::default(), None));
+        let good = file::read(GOOD).unwrap();
+        save(&path, &good).unwrap();
+        save(&path, &good).unwrap();
+        std::fs::write(&path, "half a fi").unwrap();
+        let (library, notice) = load(&path);
+        assert_eq!(library, good);
+        let Some(NoticeKind::PosesIgnored {
+            kept_as: Some(aside),
+            ..
+        }) = notice
+        else {
+            panic!("{notice:?}")
+        };
+        assert_eq!(std::fs::read_to_string(aside).unwrap(), "half a fi");
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_file_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("poses.toml");
+        let good = file::read(GOOD).unwrap();
+        save(&path, &good).unwrap();
+        // A folder where the new file would be made: the write fails before the old file is touched.
+        std::fs::create_dir(path.with_extension("new.toml")).unwrap();
+        assert!(save(&path, &Library::default()).is_err());
+        assert_eq!(
+            std::fs::read_to_string(&path).unwrap(),
+            text(&good).unwrap()
+        );
+    }
+}

@@ -1,0 +1,95 @@
+//! Keeps the quirk sheet of the hand that answers now, off the window's thread, and says where it differs from the one of
+//! last time. Decides nothing about the hand.
+
+use crate::app::env::Env;
+use crate::app::hand::HandState;
+use crate::app::notices::{NoticeKind, Notices};
+use crate::hand::Moment;
+use crate::link::Quirks;
+use crate::link::quirks::book::{self, QuirkBook};
+use crate::record::QuirkSheet;
+use crate::store::calendar::{day, since_1970};
+use crate::store::{Job, on_thread};
+use crate::transport::Endpoint;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The sheet from before, and the one of now.
+type Noted = (Option<QuirkSheet>, QuirkSheet);
+
+/// Notes each hand once for what it answers.
+#[derive(Debug)]
+pub(crate) struct QuirkNotes {
+    path: Option<PathBuf>,
+    noted: Option<(Endpoint, Quirks)>,
+    under_way: Option<Job<io::Result<Noted>>>,
+}
+
+impl QuirkNotes {
+    /// Keeps the book beside the settings; without settings nowhere.
+    pub(crate) fn new(settings: Option<&Path>) -> Self {
+        Self {
+            path: settings.map(QuirkBook::path),
+            noted: None,
+            under_way: None,
+        }
+    }
+
+    /// Notes a hand that is new or answers otherwise, and tells where it differs from last time.
+    pub(crate) fn tick(
+        &mut self,
+        hand: &mut HandState,
+        env: &Env,
+        notices: &mut Notices,
+        now: Moment,
+    ) {
+        match Job::take_from(&mut self.under_way) {
+            None => {}
+            Some(Err(error)) => {
+                let message = error.to_string();
+                notices.push(now, NoticeKind::SheetNotKept { message });
+            }
+            Some(Ok((before, sheet))) => {
+                if let Some(differs) = difference(before.as_ref(), &sheet) {
+                    notices.push(now, differs);
+                }
+                hand.sheet = Some(sheet);
+            }
+        }
+        let quirks = hand.link.quirks;
+        let endpoint = hand.endpoint.as_ref().filter(|endpoint| !endpoint.is_sim());
+        let new = endpoint.filter(|endpoint| {
+            let noted = self.noted.as_ref();
+            hand.link.state.is_live()
+                && noted.is_none_or(|noted| (&noted.0, noted.1) != (endpoint, quirks))
+        });
+        if let Some(endpoint) = new.filter(|_| self.under_way.is_none()).cloned() {
+            self.noted = Some((endpoint.clone(), quirks));
+            self.note(endpoint, quirks, env);
+        }
+    }
+
+    fn note(&mut self, endpoint: Endpoint, quirks: Quirks, env: &Env) {
+        let Some(path) = self.path.clone() else {
+            return;
+        };
+        let note = on_thread(move || {
+            let mut now = book::sheet(&endpoint, &quirks, &day(since_1970()));
+            let before = QuirkBook::keep(&path, now.clone())?;
+            if let Some(before) = &before {
+                now.first_seen.clone_from(&before.first_seen);
+            }
+            Ok((before, now))
+        });
+        self.under_way = Some(Job::start(&env.runtime, &env.wake, note));
+    }
+}
+
+fn difference(before: Option<&QuirkSheet>, now: &QuirkSheet) -> Option<NoticeKind> {
+    let before = before?;
+    let differences = before.differences(now);
+    (!differences.is_empty()).then(|| NoticeKind::HandDiffers {
+        differences,
+        last_seen: before.last_seen.clone(),
+    })
+}

@@ -1,0 +1,131 @@
+//! Settings on disk: read at start, written whole and off the window's thread. Knows no setpoint.
+
+use crate::app::notices::NoticeKind;
+use crate::app::settings::Settings;
+use crate::store::{read_text, set_aside};
+use std::path::{Path, PathBuf};
+
+/// A settings file is a page of text; anything longer is not ours.
+const FILE_LEN_MAX: u64 = 1024 * 1024;
+/// Where settings lie on this system; `None` if the person has no home.
+#[must_use]
+pub fn default_path() -> Option<PathBuf> {
+    let folders = directories::ProjectDirs::from("", "", "handscope")?;
+    Some(folders.config_dir().join("settings.toml"))
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Loaded {
+    /// The settings in force.
+    pub settings: Settings,
+    /// What a person should know about the file.
+    pub notice: Option<NoticeKind>,
+}
+
+/// Reads settings. A missing file means the defaults. A bad one too, and it is kept under another name.
+#[must_use]
+pub fn load(path: &Path) -> Loaded {
+    let message = match read_text(path, FILE_LEN_MAX) {
+        Ok(None) => return Loaded::default(),
+        Ok(Some(text)) => match toml::from_str(&text) {
+            Ok(settings) => {
+                return Loaded {
+                    settings,
+                    notice: None,
+                };
+            }
+            Err(error) => error.to_string(),
+        },
+        Err(error) => error.to_string(),
+    };
+    let kept_as = set_aside(path);
+    Loaded {
+        settings: Settings::default(),
+        notice: Some(NoticeKind::SettingsIgnored { message, kept_as }),
+    }
+}
+
+/// The file's text.
+///
+/// # Errors
+/// What the writer of the format says.
+pub fn text(settings: &Settings) -> std::io::Result<String> {
+    toml::to_string_pretty(settings).map_err(std::io::Error::other)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::app::settings::{Language, PlotWindow, Theme};
+
+    fn save(path: &Path, settings: &Settings) {
+        crate::store::replace_keeping_last(path, &text(settings).unwrap()).unwrap();
+    }
+
+    fn some() -> Settings {
+        let mut settings = Settings {
+            endpoint: Some("tcp:10.0.0.1:6000?unit=255".into()),
+            theme: Theme::Light,
+            language: Language::Zh,
+            plot_window: PlotWindow::M5,
+            ..Settings::default()
+        };
+        settings.gesture_names.insert("3".into(), "捏".into());
+        settings
+    }
+
+    #[test]
+    fn settings_come_back_as_they_were_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/settings.toml");
+        assert_eq!(load(&path), Loaded::default());
+        save(&path, &some());
+        assert_eq!(
+            load(&path),
+            Loaded {
+                settings: some(),
+                notice: None
+            }
+        );
+    }
+
+    #[test]
+    fn keys_of_a_newer_version_survive_load_and_save() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        std::fs::write(
+            &path,
+            "theme = \"light\"\nwarp = 9\n[crew]\nnames = [\"a\", \"b\"]\n",
+        )
+        .unwrap();
+        let loaded = load(&path);
+        assert_eq!((loaded.notice, loaded.settings.theme), (None, Theme::Light));
+        save(&path, &loaded.settings);
+        let written = std::fs::read_to_string(&path).unwrap();
+        let table: toml::Table = written.parse().unwrap();
+        assert_eq!(table.get("warp").and_then(toml::Value::as_integer), Some(9));
+        assert!(table.get("crew").is_some_and(toml::Value::is_table));
+    }
+
+    #[test]
+    fn a_bad_file_gives_defaults_and_is_kept_under_another_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        for bad in ["theme = ", "theme = \"mauve\"", "\0\0\0"] {
+            std::fs::write(&path, bad).unwrap();
+            let loaded = load(&path);
+            assert_eq!(loaded.settings, Settings::default());
+            let Some(NoticeKind::SettingsIgnored {
+                kept_as: Some(aside),
+                ..
+            }) = loaded.notice
+            else {
+                unreachable!("a notice must say so");
+            };
+            assert_eq!(std::fs::read_to_string(aside).unwrap(), bad);
+            assert!(!path.exists());
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! What a person asks of the hand, and the rules that stand before it. Opens no link, writes no file.
+
+use crate::app::hand::joint::Move;
+use crate::app::hand::preset::Preset;
+use crate::app::hand::{Freshness, HandState};
+use crate::app::notices::{NoticeKind, Notices};
+use crate::hand::{Angle, Dof, Finger, Force, Moment, PerDof, Setpoints, Speed, Target};
+use crate::link::ArmRequest;
+use crate::poses::library::Pose;
+use crate::record::LinkState;
+use crate::trials::Abort;
+
+impl HandState {
+    /// Holds now. Works in every state; whatever was armed is not any more, at once. Without a live link it says that
+    /// nothing could be sent.
+    pub(crate) fn stop(&mut self, notices: &mut Notices, now: Moment) {
+        match &self.open {
+            Some(open) if self.link.state.is_live() => open.link.stop(),
+            _ => notices.push(now, NoticeKind::StopNotSent),
+        }
+        if let Some(run) = &mut self.series {
+            run.end(Abort::Person);
+        }
+        self.put_down(LinkState::Holding, now);
+    }
+
+    /// Lets no setpoint pass any more. The hand keeps what it was told.
+    pub(crate) fn disarm(&mut self, now: Moment) {
+        if let Some(open) = &self.open {
+            open.link.disarm();
+        }
+        self.put_down(LinkState::Monitoring, now);
+    }
+
+    fn put_down(&mut self, state: LinkState, now: Moment) {
+        self.disarmed_at = Some(now);
+        if self.is_armed() {
+            self.link.state = state;
+        }
+        self.link.armed = None;
+        self.follow();
+    }
+
+    /// Asks the link to let setpoints pass, if the pose is known and nothing speaks against it.
+    pub(crate) fn arm(&mut self, notices: &mut Notices, now: Moment) {
+        // Nor is one armed that is being left, or that something is done to under a card.
+        if self.is_armed() || self.leaving.is_some() || self.procedure.is_some() {
+            return;
+        }
+        if let Some(reason) = self.arm_refusal() {
+            notices.push(now, NoticeKind::ArmRefused(reason));
+            return;
+        }
+        if let Some(open) = &self.open {
+            open.link.arm(ArmRequest {
+                speed: self.joints.map(|joint| joint.speed),
+                force: self.joints.map(|joint| joint.force),
+            });
+        }
+    }
+
+    /// Where a joint should go. Nothing happens unless armed and not locked.
+    pub(crate) fn target(&mut self, dof: Dof, angle: Angle) {
+        if !self.is_free(dof) {
+            return;
+        }
+        self.take_over();
+        self.joints[dof].target = Some(angle);
+        self.following[dof] = false;
+        self.send(|setpoints| setpoints.angle[dof] = Some(Target::Go(angle)));
+    }
+
+    /// Force threshold of a joint: kept, and sent if armed and not locked.
+    pub(crate) fn force(&mut self, dof: Dof, force: Force) {
+        self.joints[dof].force = force;
+        if self.is_free(dof) {
+            self.send(|setpoints| setpoints.force[dof] = Some(force));
+        }
+    }
+
+    /// Speed of a joint: kept, and sent if armed and not locked.
+    pub(crate) fn speed(&mut self, dof: Dof, speed: Speed) {
+        self.joints[dof].speed = speed;
+        if self.is_free(dof) {
+            self.send(|setpoints| setpoints.speed[dof] = Some(speed));
+        }
+    }
+
+    /// Leaves a joint alone, or not. Its slider stands at the actual angle until it is touched again; force and
+    /// speed that were changed meanwhile go out when it is free again.
+    pub(crate) fn lock(&mut self, dof: Dof, locked: bool) {
+        let joint = &mut self.joints[dof];
+        let freed = joint.locked && !locked;
+        joint.locked = locked;
+        let (force, speed) = (joint.force, joint.speed);
+        self.following[dof] = true;
+        self.follow();
+        self.tell_locks();
+        if freed && self.is_free(dof) {
+            self.send(|setpoints| {
+                setpoints.force[dof] = Some(force);
+                setpoints.speed[dof] = Some(speed);
+            });
+        }
+    }
+
+    /// All joints that are not locked to where the preset has them, in one step, at the speeds that are set.
+    pub(crate) fn preset(&mut self, preset: Preset) {
+        self.take_over_for(&Move {
+            to: PerDof::from_fn(|dof| preset.angle(dof)),
+            speed: PerDof::splat(None),
+            force: PerDof::splat(None),
+        });
+    }
+
+    /// Takes a pose: speed and force first, then the angles of joints that are free. Arms nothing; true if something was sent.
+    pub(crate) fn recall(&mut self, pose: &Pose) -> bool {
+        self.take_over_for(&Move {
+            to: pose.targets(),
+            speed: PerDof::splat(Some(pose.speed)),
+            force: PerDof::splat(Some(pose.force)),
+        })
+    }
+
+    /// Goes to six angles that are being edited, at the speeds that are set.
+    pub(crate) fn try_angles(&mut self, angles: PerDof<Angle>) {
+        self.take_over_for(&Move {
+            to: angles.map(Some),
+            speed: PerDof::splat(None),
+            force: PerDof::splat(None),
+        });
+    }
+
+    /// A person moves the hand in another way than what moves it now; true if something was sent.
+    fn take_over_for(&mut self, way: &Move) -> bool {
+        if !Dof::ALL.into_iter().any(|dof| self.is_free(dof)) {
+            return false;
+        }
+        self.take_over();
+        let sent = self.shown(way);
+        let free = |dof: Dof| way.to[dof].filter(|_| self.is_free(dof));
+        let to = PerDof::from_fn(free);
+        self.send(|setpoints| {
+            for (dof, to) in to.iter() {
+                let Some(to) = *to else { continue };
+                setpoints.speed[dof] = way.speed[dof];
+                setpoints.force[dof] = way.force[dof];
+                setpoints.angle[dof] = Some(Target::Go(to));
+            }
+        });
+        sent
+    }
+
+    /// The sliders stand where free joints were sent; true if there are such.
+    pub(crate) fn shown(&mut self, way: &Move) -> bool {
+        let mut any = false;
+        for dof in Dof::ALL {
+            let Some(to) = way.to[dof].filter(|_| self.is_free(dof)) else {
+                continue;
+            };
+            let joint = &mut self.joints[dof];
+            joint.target = Some(to);
+            joint.speed = way.speed[dof].unwrap_or(joint.speed);
+            joint.force = way.force[dof].unwrap_or(joint.force);
+            self.following[dof] = false;
+            any = true;
+        }
+        any
+    }
+
+    /// A person moves the hand: what moved it before does not any more.
+    pub(crate) fn take_over(&mut self) {
+        if let Some(run) = &mut self.sequence {
+            run.leave();
+        }
+        if let Some(open) = &mut self.open {
+            open.turn = open.link.take_turn();
+        }
+    }
+
+    /// Counts tactile channels from now, where the reading is fresh: one fingertip, or all.
+    pub(crate) fn tare(&mut self, finger: Option<Finger>) {
+        let fresh: Vec<Finger> = Finger::ALL
+            .into_iter()
+            .filter(|each| finger.is_none_or(|finger| finger == *each))
+            .filter(|each| self.tip_freshness(*each) == Freshness::Live)
+            .collect();
+        self.tare.tare(fresh, &self.sample);
+    }
+
+    /// Sends for the arming in force; without one, nothing.
+    pub(crate) fn send(&mut self, fill: impl FnOnce(&mut Setpoints)) {
+        let (Some(open), Some(epoch)) = (&self.open, self.link.armed) else {
+            return;
+        };
+        let mut setpoints = Setpoints::none(epoch);
+        fill(&mut setpoints);
+        open.link.set(open.turn, &setpoints);
+        self.commanded = true;
+    }
+
+    /// True for joints that a person may move now.
+    pub(crate) fn is_free(&self, dof: Dof) -> bool {
+        self.is_armed() && !self.runs_series() && !self.joints[dof].locked
+    }
+}

@@ -1,0 +1,130 @@
+//! A sequence on the hand: starting it, what a person wants of it while it runs, and what it tells.
+
+use crate::app::env::Env;
+use crate::app::hand::HandState;
+use crate::app::hand::joint::Move;
+use crate::app::hand::sequence::{Play, SequenceRun};
+use crate::app::running::Running;
+use crate::hand::{Moment, PerDof, Setpoints, Target};
+use crate::history::MarkKind;
+use crate::poses::library::{Library, SequenceId};
+use crate::poses::player::{Pace, Phase, cues};
+use crate::tasks::play::{self, PlayCommand, PlayStart, PlayStep, PlayView};
+use tokio::sync::mpsc;
+
+/// Wishes that may wait: a person cannot press faster than a task takes them.
+const COMMANDS_MAX: usize = 16;
+
+impl HandState {
+    /// Starts, pauses or ends a sequence of the library.
+    pub(crate) fn play(&mut self, wanted: Play, library: &Library, env: &Env) {
+        let command = |command| {
+            if let Some(run) = &self.sequence {
+                run.command(command);
+            }
+        };
+        match wanted {
+            Play::Start(id) => self.start_sequence(id, Pace::Through, library, env),
+            Play::Step(id) => {
+                let waits = |run: &SequenceRun| run.sequence == id && run.is_paused();
+                match self.sequence.as_ref().is_some_and(waits) {
+                    true => command(PlayCommand::Resume(Pace::OneStep)),
+                    false => self.start_sequence(id, Pace::OneStep, library, env),
+                }
+            }
+            Play::Pause => command(PlayCommand::Pause),
+            Play::Resume => command(PlayCommand::Resume(Pace::Through)),
+            Play::End => command(PlayCommand::End),
+            Play::Dry(_) | Play::EndDry => {}
+        }
+    }
+
+    fn start_sequence(&mut self, id: SequenceId, pace: Pace, library: &Library, env: &Env) {
+        let Some(epoch) = self.link.armed.filter(|_| self.is_armed()) else {
+            return;
+        };
+        self.take_over();
+        let Some(open) = &self.open else { return };
+        let start = PlayStart {
+            cues: cues(library, id),
+            looped: library.sequence(id).is_some_and(|own| own.looped),
+            pace,
+            epoch,
+            turn: open.turn,
+            locked: self.joints.map(|joint| joint.locked),
+            seen: self.sample,
+            clock: env.clock,
+        };
+        let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
+        let link = open.link.clone();
+        let task = Running::start(env, |steps| async move {
+            play::play(&link, start, wanted, |step| steps.tell(step)).await
+        });
+        self.sequence = Some(SequenceRun {
+            sequence: id,
+            view: PlayView {
+                at: 0,
+                phase: Phase::Moving { since: self.now },
+                late: 0,
+            },
+            commands: Some(commands),
+            task: Some(task),
+        });
+    }
+
+    /// Joints that are locked now are left alone.
+    pub(crate) fn tell_locks(&self) {
+        if let Some(run) = &self.sequence {
+            run.command(PlayCommand::Lock(self.joints.map(|joint| joint.locked)));
+        }
+    }
+
+    /// Takes in what the sequence did.
+    pub(crate) fn tick_sequence(&mut self) {
+        let Some(run) = &mut self.sequence else {
+            return;
+        };
+        let Some(task) = &mut run.task else { return };
+        let (steps, end) = task.news();
+        let taken_over = run.commands.is_none();
+        let mut sent = Vec::new();
+        for (_, step) in steps {
+            match step {
+                PlayStep::View(_) if taken_over => {}
+                PlayStep::View(view) => run.view = view,
+                PlayStep::Sent(setpoints) => sent.push(setpoints),
+            }
+        }
+        if let Some(end) = end {
+            run.task = None;
+            if run.is_running() {
+                run.view.phase = Phase::Ended(end);
+            }
+        }
+        if taken_over {
+            return;
+        }
+        for setpoints in sent {
+            self.commanded = true;
+            self.shown(&moved(&setpoints));
+        }
+    }
+
+    /// A gesture of the hand's own was started.
+    pub(crate) fn gesture_started(&mut self, number: u8, now: Moment) {
+        self.history.mark(now, MarkKind::Gesture(number));
+        self.commanded = true;
+        self.following = PerDof::splat(true);
+    }
+}
+
+fn moved(setpoints: &Setpoints) -> Move {
+    Move {
+        to: setpoints.angle.map(|target| match target {
+            Some(Target::Go(to)) => Some(to),
+            Some(Target::Leave) | None => None,
+        }),
+        speed: setpoints.speed,
+        force: setpoints.force,
+    }
+}

@@ -1,0 +1,78 @@
+//! A sequence that runs, or ran last, and what a person does with one.
+
+use crate::app::running::Running;
+use crate::poses::library::SequenceId;
+use crate::poses::player::{End, Phase};
+use crate::tasks::play::{PlayCommand, PlayStep, PlayView};
+use tokio::sync::mpsc;
+
+/// What a person does with a sequence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Play {
+    /// Run it from its start. Needs arming.
+    Start(SequenceId),
+    /// Take one step, then wait. Needs arming.
+    Step(SequenceId),
+    /// Hold where the hand is, until resumed.
+    Pause,
+    /// Go on where it was paused.
+    Resume,
+    /// End it and hold where the hand is.
+    End,
+    /// Show it on the drawn hand; nothing is sent.
+    Dry(SequenceId),
+    /// Show it no more.
+    EndDry,
+}
+
+/// A sequence that runs, or ran last.
+#[derive(Debug)]
+pub struct SequenceRun {
+    /// Which.
+    pub sequence: SequenceId,
+    /// Where it stands.
+    pub view: PlayView,
+    /// `None` once a person moves the hand in another way.
+    pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
+    pub(crate) task: Option<Running<PlayStep, End>>,
+}
+
+impl SequenceRun {
+    /// One that stands so and is run by nobody, for pictures and tests.
+    #[must_use]
+    pub const fn standing(sequence: SequenceId, view: PlayView) -> Self {
+        Self {
+            sequence,
+            view,
+            commands: None,
+            task: None,
+        }
+    }
+
+    /// True while it may send something.
+    #[must_use]
+    pub const fn is_running(&self) -> bool {
+        !matches!(self.view.phase, Phase::Ended(_))
+    }
+
+    /// True while it waits for a person.
+    #[must_use]
+    pub const fn is_paused(&self) -> bool {
+        matches!(self.view.phase, Phase::Paused)
+    }
+
+    pub(crate) fn command(&self, command: PlayCommand) {
+        if let Some(commands) = &self.commands {
+            // One that cannot be taken any more has ended.
+            let _taken = commands.try_send(command);
+        }
+    }
+
+    /// It does not move the hand any more.
+    pub(crate) fn leave(&mut self) {
+        if self.is_running() {
+            self.commands = None;
+            self.view.phase = Phase::Ended(End::TakenOver);
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Everything about one hand in one value: its link, the newest readings, what was measured, faults, setpoints, tasks.
+
+use crate::app::hand::gestures::GestureState;
+use crate::app::hand::joint::Joint;
+use crate::app::hand::open::{Leaving, Open};
+use crate::app::hand::pending::Pending;
+use crate::app::hand::sequence::SequenceRun;
+use crate::app::params::state::ParamsState;
+use crate::app::procedures::procedure::Procedure;
+use crate::app::procedures::running::ProcedureWork;
+use crate::app::readings::fault_recorder::FaultRecorder;
+use crate::app::readings::faults::FaultList;
+use crate::app::readings::pace::Pace;
+use crate::app::readings::peaks::ForcePeaks;
+use crate::app::readings::tare::Tare;
+use crate::app::trials::run::SeriesRun;
+use crate::hand::{
+    Angle, AngleReading, Finger, Force, HandSample, Moment, PerDof, PerFinger, Speed,
+};
+use crate::history::History;
+use crate::link::session::motion::arm_refusal;
+use crate::link::{LinkStats, LinkStatus, Traffic};
+use crate::record::{ArmRefusal, LinkState, QuirkSheet};
+use crate::transport::Endpoint;
+
+/// How much a shown value can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Freshness {
+    /// Never read on this connection: shown as "-".
+    Unknown,
+    /// From a live link and young.
+    Live,
+    /// Older than about three readings of this wire take, or the link is gone: greyed out, with its age.
+    Stale,
+}
+
+/// Everything about one hand.
+#[derive(Debug)]
+pub struct HandState {
+    /// The time of this frame.
+    pub now: Moment,
+    /// The hand that is wanted; `None` after a disconnect.
+    pub endpoint: Option<Endpoint>,
+    /// Where the link stands.
+    pub link: LinkStatus,
+    /// What the link measured of itself.
+    pub stats: LinkStats,
+    /// The newest of everything the hand said, with its times. Kept when the link is lost, and then old.
+    pub sample: HandSample,
+    /// How often angles, and with them what else tells the motion, are read.
+    pub pace: Pace,
+    /// How often a fingertip is read.
+    pub tip_pace: PerFinger<Pace>,
+    /// What the tactile channels are counted from.
+    pub tare: Tare,
+    /// The highest forces of the last seconds.
+    pub peaks: ForcePeaks,
+    /// The six joints as a person sets them.
+    pub joints: PerDof<Joint>,
+    /// What was measured over the last minutes.
+    pub history: History,
+    /// Faults now and before.
+    pub faults: FaultList,
+    /// What happened around them.
+    pub recorder: FaultRecorder,
+    /// Stored gestures: the last one, and what was read and written of them.
+    pub gestures: GestureState,
+    /// The sequence that runs, or ran last.
+    pub sequence: Option<SequenceRun>,
+    /// What the hand keeps, and what of it is to be changed.
+    pub params: ParamsState,
+    /// What is done under a card.
+    pub procedure: Option<Procedure>,
+    /// The series of trials that runs.
+    pub series: Option<SeriesRun>,
+    /// What went over the wire, as far as it was looked at.
+    pub traffic: Traffic,
+    /// What is kept about this hand; `None` for the built-in one, and until it was kept.
+    pub sheet: Option<QuirkSheet>,
+    /// What belongs to the card.
+    pub(crate) procedure_work: ProcedureWork,
+    /// The open link.
+    pub(crate) open: Option<Open>,
+    /// The hand is being left: it was told to hold.
+    pub(crate) leaving: Option<Leaving>,
+    /// Requests whose end is awaited.
+    pub(crate) asked: Vec<Pending>,
+    /// Sliders that show the actual angle although the hand is armed: locked, or moved by a gesture.
+    pub(crate) following: PerDof<bool>,
+    /// No arming from before this moment counts, whatever the link still says.
+    pub(crate) disarmed_at: Option<Moment>,
+    /// Something was sent on this connection that may move the hand.
+    pub(crate) commanded: bool,
+    /// Angles received before this belong to a connection that is gone.
+    pub(crate) seen_from: Option<Moment>,
+    pub(crate) was_live: bool,
+    /// The hand whose files were looked at last.
+    pub(crate) listed: Option<Endpoint>,
+}
+
+impl Default for HandState {
+    fn default() -> Self {
+        let joint = Joint {
+            target: None,
+            force: Force::GENTLE,
+            speed: Speed::GENTLE,
+            locked: false,
+        };
+        Self {
+            now: Moment::ZERO,
+            endpoint: None,
+            link: LinkStatus::default(),
+            stats: LinkStats::default(),
+            sample: HandSample::default(),
+            pace: Pace::default(),
+            tip_pace: PerFinger::splat(Pace::default()),
+            tare: Tare::default(),
+            peaks: ForcePeaks::default(),
+            joints: PerDof::splat(joint),
+            history: History::new(),
+            faults: FaultList::default(),
+            recorder: FaultRecorder::default(),
+            gestures: GestureState::default(),
+            sequence: None,
+            params: ParamsState::default(),
+            procedure: None,
+            series: None,
+            traffic: Traffic::default(),
+            sheet: None,
+            procedure_work: ProcedureWork::default(),
+            open: None,
+            leaving: None,
+            asked: Vec::new(),
+            following: PerDof::splat(true),
+            disarmed_at: None,
+            commanded: false,
+            seen_from: None,
+            was_live: false,
+            listed: None,
+        }
+    }
+}
+
+impl HandState {
+    /// Whether it is the built-in hand.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        self.endpoint.as_ref().is_some_and(Endpoint::is_sim)
+    }
+
+    /// How fresh a value asked for at `asked` is now.
+    #[must_use]
+    pub fn freshness(&self, asked: Option<Moment>) -> Freshness {
+        self.freshness_at(asked, self.pace)
+    }
+
+    /// The same for a reading of a fingertip.
+    #[must_use]
+    pub fn tip_freshness(&self, finger: Finger) -> Freshness {
+        let asked = self.sample.tactile[finger].map(|block| block.asked);
+        self.freshness_at(asked, self.tip_pace[finger])
+    }
+
+    fn freshness_at(&self, asked: Option<Moment>, pace: Pace) -> Freshness {
+        match asked {
+            None => Freshness::Unknown,
+            Some(_) if !self.link.state.is_live() => Freshness::Stale,
+            Some(at) if self.now.since(at) > pace.stale_after() => Freshness::Stale,
+            Some(_) => Freshness::Live,
+        }
+    }
+
+    /// The pose that the hand has, if all six angles are known, live and fresh.
+    #[must_use]
+    pub fn pose_now(&self) -> Option<PerDof<Angle>> {
+        let angle = self.sample.angle?;
+        let live = self.freshness(Some(angle.asked)) == Freshness::Live;
+        let angles = angle.value.map(AngleReading::hold).all();
+        angles.filter(|_| live)
+    }
+
+    /// The hand's name in files and lists; empty without one.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.endpoint
+            .as_ref()
+            .map(ToString::to_string)
+            .unwrap_or_default()
+    }
+
+    /// Lets the recorder go on.
+    pub(crate) fn record(&mut self) {
+        let hand = self.name();
+        self.recorder.tick(&self.history, &hand, self.now);
+    }
+
+    /// True while setpoints pass.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        self.link.state == LinkState::Armed
+    }
+
+    /// True while a series of trials may send something.
+    #[must_use]
+    pub const fn runs_series(&self) -> bool {
+        self.series.is_some()
+    }
+
+    /// True while a sequence may send something.
+    #[must_use]
+    pub fn runs_sequence(&self) -> bool {
+        self.sequence.as_ref().is_some_and(SequenceRun::is_running)
+    }
+
+    /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.
+    #[must_use]
+    pub fn arm_refusal(&self) -> Option<ArmRefusal> {
+        let saves = self.link.state.is_live() && self.params.is_saving();
+        let busy = saves.then_some(ArmRefusal::HandBusy);
+        busy.or_else(|| arm_refusal(self.link.state, &self.sample, self.now))
+    }
+}

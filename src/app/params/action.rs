@@ -1,0 +1,38 @@
+//! What a person may request in the Device view.
+
+use crate::hand::Dof;
+use crate::params::rows::ParamId;
+use std::path::PathBuf;
+
+/// One thing that a person asks for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ParamAction {
+    /// Read all rows. Writes nothing.
+    Read,
+    /// Write the staged rows, except those that decide where the hand answers, and read them back.
+    Apply,
+    /// Put back what the last apply changed, in the same way.
+    Undo,
+    /// Write the hand's parameters to its flash, after a backup.
+    Save,
+    /// Confirm: go on in spite of the dangers shown.
+    Agree,
+    /// Decline: nothing is written.
+    Decline,
+    /// Stage the hand's current speed and force as the defaults after power-up, of one joint or of all. Writes nothing.
+    CopyLive(Option<Dof>),
+    /// Drop everything that is staged.
+    UnstageAll,
+    /// Ask for a path, and write a parameter file there.
+    Dump,
+    /// Ask for a parameter file and compare it with the hand. Writes nothing.
+    Open,
+    /// Compare a backup with the hand. Writes nothing.
+    OpenBackup(PathBuf),
+    /// Tick a row of the file, or not.
+    Tick(ParamId),
+    /// Stage the rows that are ticked. Writes nothing.
+    StageTicked,
+    /// Close the file.
+    CloseFile,
+}

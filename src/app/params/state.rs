@@ -1,0 +1,264 @@
+//! What is known of the rows that a hand keeps: read back, staged, saved, and the outcomes of the last writes. Sends nothing.
+
+use crate::app::notices::NoticeKind;
+use crate::app::params::compared::Compared;
+use crate::app::params::running::{FilesRead, ParamsTask};
+use crate::hand::{Moment, Span};
+use crate::link::RequestError;
+use crate::params::backups::{Backup, Backups, Known};
+use crate::params::changes::{RowOutcome, RowVerdict};
+use crate::params::danger::Danger;
+use crate::params::file::{ParamsFile, ParamsFileError};
+use crate::params::rows::{ParamId, Value};
+use crate::params::values::Params;
+use crate::record::Saved;
+use crate::store::Job;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// A value read this long ago may have been changed by someone else since; it is shown as old.
+pub const OLD_AFTER: Duration = Duration::from_secs(60);
+/// Switching between views does not make the program read the same rows again within this time.
+pub const READ_AGAIN_AFTER: Duration = Duration::from_secs(2);
+
+/// After this long, opening the view counts as looking anew.
+const LOOKED_AWAY: Duration = Duration::from_millis(500);
+
+/// What is being done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Doing {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// Rows are read.
+    Reading,
+    /// Staged rows are written and read back.
+    Applying,
+    /// The backup is written.
+    BackingUp,
+    /// SAVE was sent; its result is awaited.
+    Saving,
+}
+
+/// What waits for a person's confirmation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// What would be done.
+    pub what: Wanted,
+    /// Why confirmation is needed.
+    pub dangers: Vec<Danger>,
+}
+
+/// What a person asked to write.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Wanted {
+    /// These rows, into the hand's memory.
+    Apply(Params),
+    /// What the hand holds, into its flash.
+    Save,
+}
+
+/// How a SAVE ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SaveEnd {
+    /// With this result from the hand, or without one.
+    Told(Saved),
+    /// The backup or the record could not be written: no SAVE was sent.
+    NoBackup {
+        /// The system's words.
+        message: String,
+    },
+    /// The hand was gone: no SAVE was sent.
+    NotAsked(RequestError),
+    /// With this result, which could not be recorded.
+    NotNoted(Saved, String),
+}
+
+/// What is known of the rows that a hand keeps.
+#[derive(Debug, Default)]
+pub struct ParamsState {
+    live: BTreeMap<ParamId, (Value, Moment)>,
+    staged: Params,
+    outcomes: BTreeMap<ParamId, RowOutcome>,
+    /// When all rows were read last.
+    pub read_at: Option<Moment>,
+    /// Whether a reading was begun since the hand was found.
+    pub(crate) is_asked: bool,
+    pub(crate) lost_at: Option<Moment>,
+    looked_at: Option<Moment>,
+    /// What is being done.
+    pub doing: Doing,
+    /// Why the last reading is incomplete.
+    pub trouble: Option<RequestError>,
+    /// What waits for a person's confirmation.
+    pub question: Option<Question>,
+    /// The values that undo the last apply.
+    pub undo: Params,
+    /// How the last SAVE of this session ended, and when.
+    pub save: Option<(SaveEnd, Moment)>,
+    /// The files of this hand; none where nothing is kept.
+    pub files: Option<Backups>,
+    /// What this program saved last.
+    pub known: Known,
+    /// Why that could not be read.
+    pub unreadable: Option<ParamsFileError>,
+    /// Backups, oldest first.
+    pub backups: Vec<Backup>,
+    /// A file that is compared with the hand.
+    pub compared: Option<Compared>,
+    /// What runs.
+    pub(crate) task: Option<ParamsTask>,
+    /// The files are being read.
+    pub(crate) listing: Option<Job<FilesRead>>,
+    /// A file that is looked at is being chosen and read.
+    pub(crate) opening: Option<Job<Result<(PathBuf, ParamsFile), NoticeKind>>>,
+}
+
+impl ParamsState {
+    /// What was read last, if anything was on this connection, and when.
+    #[must_use]
+    pub fn live(&self, id: ParamId) -> Option<(Value, Moment)> {
+        self.live.get(&id).copied()
+    }
+
+    /// All that was read.
+    #[must_use]
+    pub fn live_params(&self) -> Params {
+        let mut params = Params::default();
+        for (id, (value, _)) in &self.live {
+            params.put(*id, *value);
+        }
+        params
+    }
+
+    /// The staged value of a row, if there is one.
+    #[must_use]
+    pub fn staged(&self, id: ParamId) -> Option<Value> {
+        self.staged.get(id)
+    }
+
+    /// All that is staged.
+    #[must_use]
+    pub const fn all_staged(&self) -> &Params {
+        &self.staged
+    }
+
+    /// What Apply would write. Rows that decide where the hand answers are changed in a dialog instead.
+    #[must_use]
+    pub fn to_apply(&self) -> Params {
+        self.staged.only(|id| !id.is_place())
+    }
+
+    /// What this program saved last.
+    #[must_use]
+    pub fn saved(&self, id: ParamId) -> Option<Value> {
+        self.known.saved.as_ref()?.params.get(id)
+    }
+
+    /// Outcome of the last write of a row.
+    #[must_use]
+    pub fn outcome(&self, id: ParamId) -> Option<&RowOutcome> {
+        self.outcomes.get(&id)
+    }
+
+    /// True while something is running.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.doing != Doing::Nothing
+    }
+
+    /// True if the known values of a row differ.
+    #[must_use]
+    pub fn differs(&self, id: ParamId) -> bool {
+        let live = self.live(id).map(|(value, _)| value);
+        let others = [self.staged(id), self.saved(id), id.factory()];
+        let differs = |other: &Value| live.is_none_or(|live| live != *other);
+        others.iter().flatten().any(differs)
+    }
+
+    /// Notes that a person looks at the rows. True if they should now be read: when the view is opened, and when a hand is found
+    /// while it is open.
+    pub(crate) fn look(&mut self, now: Moment) -> bool {
+        let before = self.looked_at.replace(now);
+        let comes = before.is_none_or(|at| now.since(at) > LOOKED_AWAY);
+        !self.is_asked || comes && self.is_due(now)
+    }
+
+    /// True if the rows are worth reading again.
+    #[must_use]
+    pub fn is_due(&self, now: Moment) -> bool {
+        let lost = self.lost_at;
+        let young =
+            |at: Moment| now.since(at) < READ_AGAIN_AFTER && lost.is_none_or(|lost| lost < at);
+        !self.is_asked || !self.read_at.is_some_and(young)
+    }
+
+    /// Stages a value, or drops it. Values that may not be written are not staged.
+    pub(crate) fn stage(&mut self, id: ParamId, value: Option<Value>) {
+        match value {
+            None => self.staged.forget(id),
+            Some(value) if id.allows(value) => self.staged.put(id, value),
+            Some(_) => return,
+        }
+        self.outcomes.remove(&id);
+    }
+
+    pub(crate) fn unstage_all(&mut self) {
+        self.staged = Params::default();
+        self.outcomes.clear();
+    }
+
+    /// Takes values that were read.
+    pub(crate) fn take(&mut self, span: Span, bytes: &[u8], at: Moment) {
+        let mut read = Params::default();
+        read.take(span, bytes);
+        for (id, value) in read.iter() {
+            self.live.insert(id, (value, at));
+        }
+    }
+
+    /// Takes the outcome of writing a row. A row that the hand refused, dropped or took otherwise shows the hand's value
+    /// again; one of which nothing is known stays staged and is not known any more.
+    pub(crate) fn written(&mut self, row: RowOutcome, at: Moment) {
+        match (&row.verdict, row.holds) {
+            (RowVerdict::NotSent(_), _) => {}
+            (RowVerdict::Unverified(_), _) => {
+                self.live.remove(&row.id);
+            }
+            (_, holds) => {
+                self.staged.forget(row.id);
+                if let Some(holds) = holds {
+                    self.live.insert(row.id, (holds, at));
+                }
+            }
+        }
+        self.outcomes.insert(row.id, row);
+    }
+
+    /// True while a SAVE is under way.
+    #[must_use]
+    pub fn is_saving(&self) -> bool {
+        self.doing == Doing::Saving
+    }
+
+    /// The files of this hand were changed: they are read again.
+    pub(crate) fn forget_files(&mut self) {
+        self.files = None;
+    }
+
+    pub(crate) fn forget_outcomes(&mut self) {
+        self.outcomes.clear();
+    }
+
+    /// Something was written that may change any row: what was read is old.
+    pub(crate) const fn outdated(&mut self, now: Moment) {
+        self.lost_at = Some(now);
+    }
+
+    /// When the hand comes back it may be another one, or have been switched off: earlier readings are old.
+    pub(crate) const fn link_lost(&mut self, now: Moment) {
+        self.lost_at = Some(now);
+        self.is_asked = false;
+    }
+}

@@ -1,0 +1,353 @@
+//! What a person asks about the rows that a hand keeps, and the tasks that do it. Reads before it writes; asks before what
+//! could hurt.
+
+use crate::app::env::Env;
+use crate::app::hand::HandState;
+use crate::app::notices::{NoticeKind, Notices};
+use crate::app::params::action::ParamAction;
+use crate::app::params::compared::Compared;
+use crate::app::params::running::{FilesRead, ParamsTask};
+use crate::app::params::state::{Doing, ParamsState, Question, SaveEnd, Wanted};
+use crate::app::running::Running;
+use crate::hand::{Dof, Moment};
+use crate::link::LinkHandle;
+use crate::params::backups::{Backups, Known, folder_beside};
+use crate::params::changes;
+use crate::params::danger::Danger;
+use crate::params::file::{self, ParamsFile, ParamsFileError};
+use crate::params::rows::{ParamId, Value};
+use crate::params::values::Params;
+use crate::store::{Job, on_thread};
+use crate::tasks::apply::{Applied, Apply, ApplyStep, Otherwise, apply};
+use crate::tasks::read::{Rows, rows};
+use crate::tasks::save::{Save, SaveReport, SaveStep, save};
+use crate::tasks::{Consent, TaskError};
+use futures::future::BoxFuture;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Speed and force in force are read all the time; older ones are not copied.
+const COPY_WITHIN: Duration = Duration::from_secs(5);
+
+impl HandState {
+    /// Carries out what a person asked for.
+    pub(crate) fn param_action(&mut self, action: ParamAction, env: &Env) {
+        match action {
+            ParamAction::Read if self.read_refusal().is_none() => self.read_rows(env),
+            ParamAction::Apply if self.apply_refusal().is_none() => {
+                self.apply_rows(self.params.to_apply(), Vec::new(), env);
+            }
+            ParamAction::Undo if self.undo_refusal().is_none() => {
+                let undo = self.params.undo.clone();
+                self.stage_all(&undo);
+                self.apply_rows(undo, Vec::new(), env);
+            }
+            ParamAction::Save if self.save_refusal().is_none() => self.save(Vec::new(), env),
+            ParamAction::Agree if self.write_refusal().is_none() => {
+                match self.params.question.take() {
+                    Some(Question {
+                        what: Wanted::Apply(wanted),
+                        dangers,
+                    }) => self.apply_rows(wanted, dangers, env),
+                    Some(Question {
+                        what: Wanted::Save,
+                        dangers,
+                    }) => self.save(dangers, env),
+                    None => {}
+                }
+            }
+            ParamAction::Decline => self.params.question = None,
+            ParamAction::CopyLive(dof) => self.copy_live(dof),
+            ParamAction::UnstageAll => self.params.unstage_all(),
+            ParamAction::Open => self.open_params(env.files.open(file::FILE_NAME), env),
+            ParamAction::OpenBackup(path) => {
+                self.open_params(Box::pin(std::future::ready(Some(path))), env);
+            }
+            ParamAction::Tick(id) => {
+                if let Some(compared) = &mut self.params.compared {
+                    compared.tick(id);
+                }
+            }
+            ParamAction::StageTicked => {
+                if let Some(compared) = self.params.compared.take() {
+                    self.stage_all(&compared.chosen());
+                }
+            }
+            ParamAction::CloseFile => self.params.compared = None,
+            _ => {}
+        }
+    }
+
+    fn stage_all(&mut self, params: &Params) {
+        for (id, value) in params.iter() {
+            self.params.stage(id, Some(value));
+        }
+    }
+
+    fn copy_live(&mut self, dof: Option<Dof>) {
+        let (sample, now) = (self.sample, self.now);
+        let young = |asked: Moment| now.since(asked) <= COPY_WITHIN;
+        let is_live = self.link.state.is_live();
+        let speeds = sample.speed_set.filter(|all| is_live && young(all.asked));
+        let forces = sample.force_set.filter(|all| is_live && young(all.asked));
+        for dof in Dof::ALL
+            .into_iter()
+            .filter(|each| dof.is_none_or(|dof| dof == *each))
+        {
+            if let Some(speed) = speeds.and_then(|all| all.value[dof]) {
+                let value = Value::Number(i32::from(speed.get()));
+                self.params.stage(ParamId::DefaultSpeed(dof), Some(value));
+            }
+            if let Some(force) = forces.and_then(|all| all.value[dof]) {
+                let value = Value::Number(i32::from(force.get()));
+                self.params.stage(ParamId::DefaultForce(dof), Some(value));
+            }
+        }
+    }
+
+    /// Reads the rows because somebody looks at them, if it is due.
+    pub(crate) fn look_at_params(&mut self, env: &Env, now: Moment) {
+        if self.params.look(now) {
+            self.param_action(ParamAction::Read, env);
+        }
+    }
+
+    fn link_handle(&self) -> Option<LinkHandle> {
+        self.open.as_ref().map(|open| open.link.clone())
+    }
+
+    fn read_rows(&mut self, env: &Env) {
+        let Some(link) = self.link_handle() else {
+            return;
+        };
+        let params = &mut self.params;
+        (params.is_asked, params.trouble, params.doing) = (true, None, Doing::Reading);
+        let task = Running::start(env, |steps| async move {
+            rows(&link, |span, bytes| steps.tell((span, bytes.to_vec()))).await
+        });
+        params.task = Some(ParamsTask::Read(task));
+    }
+
+    fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, env: &Env) {
+        let Some(link) = self.link_handle() else {
+            return;
+        };
+        let task = Apply {
+            wanted: wanted.clone(),
+            consent: Consent::To(agreed),
+            backups: None,
+            otherwise: Otherwise::Stay,
+        };
+        let task = Running::start(env, |steps| async move {
+            apply(&link, &task, |step| steps.tell(step)).await
+        });
+        self.params.begin(Doing::Applying);
+        self.params.task = Some(ParamsTask::Apply(wanted, task));
+    }
+
+    fn save(&mut self, agreed: Vec<Danger>, env: &Env) {
+        let (Some(link), Some(backups)) = (self.link_handle(), self.params.files.clone()) else {
+            return;
+        };
+        let saved = self.params.known.saved.as_ref();
+        let task = Save {
+            backups,
+            before: saved.map(|file| file.params.clone()).unwrap_or_default(),
+            consent: Consent::To(agreed),
+        };
+        let task = Running::start(env, |steps| async move {
+            save(&link, &task, |step| steps.tell(step)).await
+        });
+        self.params.begin(Doing::BackingUp);
+        self.params.task = Some(ParamsTask::Save(task));
+    }
+
+    fn open_params(&mut self, chosen: BoxFuture<'static, Option<PathBuf>>, env: &Env) {
+        if self.params.opening.is_some() {
+            return;
+        }
+        let open = async move {
+            let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
+            let place = path.clone();
+            let read = on_thread(move || Ok(file::load(&place))).await;
+            match read.unwrap_or_else(|error| Err(unreadable(&error))) {
+                Ok(file) => Ok((path, file)),
+                Err(error) => Err(NoticeKind::ParamsRefused { path, error }),
+            }
+        };
+        self.params.opening = Some(Job::start(&env.runtime, &env.wake, open));
+    }
+
+    /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
+    pub(crate) fn tick_params(&mut self, env: &Env, notices: &mut Notices, now: Moment) {
+        self.params.take_task(now);
+        if let Some(read) = Job::take_from(&mut self.params.listing) {
+            self.params.show_files(read);
+        }
+        match Job::take_from(&mut self.params.opening) {
+            None => {}
+            Some(Ok((path, file))) => self.params.show_file(&path, file),
+            Some(Err(refused)) => notices.push(now, refused),
+        }
+        self.list_files(env);
+    }
+
+    fn list_files(&mut self, env: &Env) {
+        let Some(hand) = &self.endpoint else {
+            self.listed = None;
+            return;
+        };
+        let Some(folder) = env.settings_path.as_deref().map(folder_beside) else {
+            return;
+        };
+        if self.params.files.is_some() || self.params.listing.is_some() {
+            return;
+        }
+        let files = Backups::new(&folder, hand);
+        // The built-in hand begins as it was delivered: whatever was saved in an earlier one is gone.
+        let forgets = hand.is_sim() && self.listed.as_ref() != Some(hand);
+        self.listed = Some(hand.clone());
+        let list = on_thread(move || {
+            if forgets {
+                // What cannot be forgotten is shown with its date.
+                let _forgotten = files.forget_saved();
+            }
+            Ok(FilesRead::of(files))
+        });
+        let list = async move { list.await.ok() };
+        self.params.listing = Some(Job::start_fallible(&env.runtime, &env.wake, list));
+    }
+}
+
+impl ParamsState {
+    fn begin(&mut self, doing: Doing) {
+        self.is_asked = true;
+        (self.trouble, self.question, self.doing) = (None, None, doing);
+        match doing {
+            Doing::Applying => self.forget_outcomes(),
+            Doing::BackingUp => self.save = None,
+            _ => {}
+        }
+    }
+
+    fn take_task(&mut self, now: Moment) {
+        let Some(task) = self.task.take() else { return };
+        let is_over = match task {
+            ParamsTask::Read(mut run) => {
+                let (steps, end) = run.news();
+                for (at, (span, bytes)) in steps {
+                    self.take(span, &bytes, at);
+                }
+                let over = end.map(|end| self.rows_read(end, now)).is_some();
+                self.task = Some(ParamsTask::Read(run));
+                over
+            }
+            ParamsTask::Apply(wanted, mut run) => {
+                let (steps, end) = run.news();
+                for (at, step) in steps {
+                    match step {
+                        ApplyStep::Read(span, bytes) => self.take(span, &bytes, at),
+                        ApplyStep::Row(row) => self.written(row, at),
+                        ApplyStep::Meant(_) => {}
+                    }
+                }
+                let over = end
+                    .map(|end| self.rows_applied(&wanted, end, now))
+                    .is_some();
+                self.task = Some(ParamsTask::Apply(wanted, run));
+                over
+            }
+            ParamsTask::Save(mut run) => {
+                let (steps, end) = run.news();
+                for (at, step) in steps {
+                    match step {
+                        SaveStep::Read(span, bytes) => self.take(span, &bytes, at),
+                        SaveStep::Saving => self.doing = Doing::Saving,
+                        SaveStep::BackingUp | SaveStep::Meant(_) => {}
+                    }
+                }
+                let over = end.map(|end| self.save_ended(end, now)).is_some();
+                self.task = Some(ParamsTask::Save(run));
+                over
+            }
+        };
+        if is_over {
+            self.task = None;
+            self.doing = Doing::Nothing;
+        }
+    }
+
+    fn rows_read(&mut self, rows: Rows, now: Moment) {
+        if !rows.params.is_empty() {
+            self.read_at = Some(now);
+        }
+        self.trouble = rows.troubles.into_iter().next_back();
+    }
+
+    fn rows_applied(&mut self, wanted: &Params, end: Result<Applied, TaskError>, now: Moment) {
+        match end {
+            Ok(applied) => {
+                self.read_at = Some(now);
+                self.undo = changes::undo_of(&applied.rows);
+                for row in applied.rows {
+                    if self.outcome(row.id).is_none() {
+                        self.written(row, now);
+                    }
+                }
+                self.trouble = applied.broken_off;
+            }
+            Err(error) => self.refused(Wanted::Apply(wanted.clone()), error),
+        }
+    }
+
+    fn save_ended(&mut self, end: Result<SaveReport, TaskError>, now: Moment) {
+        self.forget_files();
+        let end = match end {
+            Ok(report) => match report.not_noted {
+                None => SaveEnd::Told(report.saved),
+                Some(message) => SaveEnd::NotNoted(report.saved, message),
+            },
+            Err(TaskError::NoBackup { message }) => SaveEnd::NoBackup { message },
+            Err(TaskError::NotAsked(error)) => SaveEnd::NotAsked(error),
+            Err(error) => return self.refused(Wanted::Save, error),
+        };
+        self.save = Some((end, now));
+    }
+
+    fn refused(&mut self, what: Wanted, error: TaskError) {
+        match error {
+            TaskError::NotMeant(risks) => {
+                let dangers = risks.dangers;
+                self.question = Some(Question { what, dangers });
+            }
+            TaskError::NotRead { why, .. } | TaskError::NotAsked(why) => self.trouble = Some(why),
+            TaskError::NotReached | TaskError::NoBackup { .. } => {}
+        }
+    }
+
+    fn show_files(&mut self, read: FilesRead) {
+        self.unreadable = None;
+        self.files = Some(read.files);
+        match read.known {
+            Ok(known) => self.known = known,
+            Err(error) => {
+                self.known = Known::default();
+                self.unreadable = Some(error);
+            }
+        }
+        match read.backups {
+            Ok(backups) => self.backups = backups,
+            Err(error) => self.unreadable = Some(unreadable(&error)),
+        }
+    }
+
+    fn show_file(&mut self, path: &std::path::Path, file: ParamsFile) {
+        let name = path.file_name().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        self.compared = Some(Compared::new(name, file, &self.live_params()));
+    }
+}
+
+fn unreadable(error: &std::io::Error) -> ParamsFileError {
+    ParamsFileError::Unreadable(error.to_string())
+}

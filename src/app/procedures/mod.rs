@@ -1,0 +1,11 @@
+//! What is done to a hand only under a card: a change of its place, a return to the factory's parameters, a calibration.
+
+pub mod procedure;
+pub(crate) mod reach;
+pub(crate) mod running;
+pub(crate) mod work;
+
+pub use crate::app::procedures::procedure::{
+    CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, ResetProcedure,
+    WayTo,
+};

@@ -1,0 +1,142 @@
+//! What a card shows and what a person may decide on it. Plain values; asks nobody.
+
+use crate::hand::Moment;
+use crate::params::danger::Danger;
+use crate::params::place::{Place, Places};
+use crate::tasks::TaskError;
+use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Checks, Offsets};
+use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep};
+use crate::tasks::reset::{ResetReport, ResetStep};
+use crate::transport::Endpoint;
+use crate::transport::endpoint::route::Route;
+use std::path::PathBuf;
+
+/// What a person decides on a card.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ProcedureAction {
+    /// Do it.
+    Begin,
+    /// The hand is where it should be.
+    Keep,
+    /// Take it back.
+    GoBack,
+    /// Put it into flash.
+    Save,
+    /// Leave it out of flash.
+    LeaveUnsaved,
+    /// The card was read.
+    Close,
+}
+
+/// Where a card stands.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ProcedureStage<S, E> {
+    /// A person is asked.
+    Asking,
+    /// It is under way, since then.
+    Doing(S, Moment),
+    /// It is over.
+    Over(E),
+}
+
+impl<S, E> ProcedureStage<S, E> {
+    /// True while something is done for it.
+    #[must_use]
+    pub const fn is_doing(&self) -> bool {
+        matches!(self, Self::Doing(..))
+    }
+
+    /// The result, once it is there.
+    #[must_use]
+    pub const fn end(&self) -> Option<&E> {
+        match self {
+            Self::Over(end) => Some(end),
+            Self::Asking | Self::Doing(..) => None,
+        }
+    }
+}
+
+/// The way to an address, as far as it was found out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum WayTo {
+    /// It is asked for.
+    Asked,
+    /// This.
+    Known(Route),
+    /// None.
+    None,
+}
+
+/// One card.
+#[derive(Debug)]
+pub enum Procedure {
+    /// A change of what the hand is found by.
+    Place(PlaceProcedure),
+    /// A return to the factory's parameters.
+    Reset(ResetProcedure),
+    /// A calibration of the force sensors.
+    Calibrate(CalibrateProcedure),
+}
+
+/// A change of what the hand is found by.
+#[derive(Debug)]
+pub struct PlaceProcedure {
+    /// What is changed.
+    pub change: PlaceChange,
+    /// Where it stands.
+    pub stage: ProcedureStage<PlaceStep, Result<PlaceReport, TaskError>>,
+    /// The backup.
+    pub backup: Option<PathBuf>,
+    /// This computer's way to a new address.
+    pub way: Option<WayTo>,
+    /// What a SAVE would make last besides: it writes all that the hand holds.
+    pub dangers: Vec<Danger>,
+}
+
+/// A return to the factory's parameters.
+#[derive(Debug)]
+pub struct ResetProcedure {
+    /// Where the hand is before and after.
+    pub places: Places,
+    /// Where it stands.
+    pub stage: ProcedureStage<ResetStep, Result<ResetReport, TaskError>>,
+}
+
+/// A calibration of the force sensors.
+#[derive(Debug)]
+pub struct CalibrateProcedure {
+    /// Where the hand is.
+    pub hand: Endpoint,
+    /// What must be so before.
+    pub checks: Checks,
+    /// The offsets before, once it began.
+    pub before: Option<Offsets>,
+    /// Where it stands.
+    pub stage: ProcedureStage<CalibrateStep, CalibrateReport>,
+}
+
+impl Procedure {
+    /// A card closes where nothing is under way.
+    #[must_use]
+    pub const fn may_close(&self) -> bool {
+        !match self {
+            Self::Place(card) => card.stage.is_doing(),
+            Self::Reset(card) => card.stage.is_doing(),
+            Self::Calibrate(card) => card.stage.is_doing(),
+        }
+    }
+}
+
+impl PlaceProcedure {
+    /// Where the hand is, as far as the card knows; `None` if nobody does.
+    #[must_use]
+    pub fn place(&self) -> Option<Place> {
+        match &self.stage {
+            ProcedureStage::Over(Ok(report)) => report.end.place(),
+            ProcedureStage::Doing(PlaceStep::Keeping(at) | PlaceStep::Offering(at), _) => Some(*at),
+            ProcedureStage::Asking | ProcedureStage::Doing(..) | ProcedureStage::Over(Err(_)) => {
+                Some(Place::Old)
+            }
+        }
+    }
+}

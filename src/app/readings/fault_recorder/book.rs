@@ -1,0 +1,453 @@
+//! When a recording begins and ends, what is noted meanwhile, and how many are kept.
+
+use crate::app::readings::fault_recorder::event::{Event, EventKind, PersonAct};
+use crate::app::readings::fault_recorder::recording::{
+    DriveState, FaultAt, Recording, RecordingId,
+};
+use crate::app::readings::faults::FaultKind;
+use crate::hand::{Dof, Group, Groups, HandSample, Moment, PerDof};
+use crate::history::History;
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Recorded before a fault: the cause of a stall or of heat lies there, and a grasp with its approach takes less.
+pub const BEFORE: Duration = Duration::from_secs(45);
+/// Recorded after a fault: long enough to see what the hand did then, and what the person did about it.
+pub const AFTER: Duration = Duration::from_secs(15);
+/// A fault that comes while one is recorded makes the recording longer, but not beyond this after the first.
+pub const LONGEST_AFTER: Duration = Duration::from_secs(60);
+/// Recordings kept: about 1 MB each at 100 Hz, and 4 MB for the longest of a fast link, so 48 MB at most.
+pub const RECORDINGS_MAX: usize = 12;
+/// Events noted: forty a second for as long as the longest recording.
+pub const EVENTS_MAX: usize = 4096;
+/// Faults listed in one recording: one that flickers says nothing new after that.
+const FAULTS_MAX: usize = 256;
+/// Turns of one knob within this time are one event.
+const KNOB: Duration = Duration::from_millis(250);
+
+/// One recording of the list.
+#[derive(Debug, Clone)]
+pub struct Listed {
+    /// What was recorded.
+    pub recording: Arc<Recording>,
+    /// A person has looked at it.
+    pub opened: bool,
+}
+
+/// A recording under way.
+#[derive(Debug, Clone)]
+struct Running {
+    first: Moment,
+    until: Moment,
+    faults: Vec<FaultAt>,
+}
+
+/// The recorder.
+#[derive(Debug, Clone)]
+pub struct FaultRecorder {
+    events: VecDeque<Event>,
+    /// What the drives said before the oldest event.
+    before: PerDof<DriveState>,
+    now: PerDof<DriveState>,
+    events_lost: u64,
+    running: Option<Running>,
+    kept: VecDeque<Listed>,
+    next: u64,
+    lost_unopened: u64,
+}
+
+impl Default for FaultRecorder {
+    fn default() -> Self {
+        Self {
+            events: VecDeque::new(),
+            before: PerDof::splat(DriveState::default()),
+            now: PerDof::splat(DriveState::default()),
+            events_lost: 0,
+            running: None,
+            kept: VecDeque::new(),
+            next: 0,
+            lost_unopened: 0,
+        }
+    }
+}
+
+impl FaultRecorder {
+    /// Notes how status and faults changed.
+    pub(crate) fn sample(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+        for dof in Dof::ALL {
+            if let Some(status) = sample.status.filter(|_| fresh.contains(Group::Status)) {
+                let status = status.value[dof];
+                match self.now[dof].status.replace(status) {
+                    // The first word of a hand is how it is, and no change.
+                    None => self.before[dof].status = Some(status),
+                    Some(old) if old == status => {}
+                    Some(_) => self.note(now, EventKind::Status(dof, status)),
+                }
+            }
+            if let Some(faults) = sample.faults.filter(|_| fresh.contains(Group::Faults)) {
+                let faults = faults.value[dof];
+                match self.now[dof].faults.replace(faults) {
+                    None => self.before[dof].faults = Some(faults),
+                    Some(old) if old == faults => {}
+                    Some(_) => self.note(now, EventKind::Faults(dof, faults)),
+                }
+            }
+        }
+    }
+
+    /// Notes what a person did.
+    pub(crate) fn person(&mut self, act: PersonAct, now: Moment) {
+        let known = self.events.iter_mut().rev().take(8).find(|event| {
+            let quick = now.since(event.at) < KNOB;
+            quick && matches!(&event.what, EventKind::PersonAct(old) if old.is_same_knob(&act))
+        });
+        match known {
+            Some(event) => event.what = EventKind::PersonAct(act),
+            None => self.note(now, EventKind::PersonAct(act)),
+        }
+    }
+
+    fn note(&mut self, at: Moment, what: EventKind) {
+        if self.events.len() >= EVENTS_MAX {
+            self.let_go();
+            self.events_lost += 1;
+        }
+        self.events.push_back(Event { at, what });
+    }
+
+    /// The oldest event goes; what it changed is remembered.
+    fn let_go(&mut self) {
+        match self.events.pop_front().map(|event| event.what) {
+            Some(EventKind::Status(dof, status)) => self.before[dof].status = Some(status),
+            Some(EventKind::Faults(dof, faults)) => self.before[dof].faults = Some(faults),
+            Some(EventKind::PersonAct(_)) | None => {}
+        }
+    }
+
+    /// A fault came: it is recorded, in the recording under way or in a new one.
+    pub(crate) fn fault(&mut self, dof: Dof, what: FaultKind, now: Moment) {
+        let running = self.running.get_or_insert_with(|| Running {
+            first: now,
+            until: now,
+            faults: Vec::new(),
+        });
+        running.until = now.plus(AFTER).min(running.first.plus(LONGEST_AFTER));
+        if running.faults.len() < FAULTS_MAX {
+            running.faults.push(FaultAt { at: now, dof, what });
+        } else {
+            self.events_lost += 1;
+        }
+    }
+
+    /// Ends the recording under way when its time has come, and forgets events that no recording will want.
+    pub(crate) fn tick(&mut self, history: &History, hand: &str, now: Moment) {
+        if self
+            .running
+            .as_ref()
+            .is_some_and(|running| now >= running.until)
+        {
+            self.cut(history, hand, now);
+        }
+        let first = self.running.as_ref().map_or(now, |running| running.first);
+        while let Some(oldest) = self.events.front()
+            && first.since(oldest.at) > BEFORE
+        {
+            self.let_go();
+        }
+    }
+
+    /// Another hand, or none: what is under way ends here, and nothing of this hand is taken for the next one's.
+    pub(crate) fn another_hand(&mut self, history: &History, hand: &str, now: Moment) {
+        self.cut(history, hand, now);
+        self.events.clear();
+        self.before = PerDof::splat(DriveState::default());
+        self.now = self.before;
+        self.events_lost = 0;
+    }
+
+    fn cut(&mut self, history: &History, hand: &str, now: Moment) {
+        let Some(running) = self.running.take() else {
+            return;
+        };
+        let first = running.first.since(Moment::ZERO);
+        let from = Moment::from_duration(first.saturating_sub(BEFORE));
+        let recording = Recording {
+            id: RecordingId(self.next),
+            hand: hand.to_owned(),
+            faults: running.faults,
+            from,
+            to: now,
+            history: history.slice(from.secs(), now.secs()),
+            before: self.before,
+            events: self.events.iter().cloned().collect(),
+            events_lost: std::mem::take(&mut self.events_lost),
+        };
+        self.next += 1;
+        self.make_room();
+        self.kept.push_back(Listed {
+            recording: Arc::new(recording),
+            opened: false,
+        });
+    }
+
+    /// The oldest that was looked at goes first; if there is none, the oldest of all, and that is counted.
+    fn make_room(&mut self) {
+        if self.kept.len() < RECORDINGS_MAX {
+            return;
+        }
+        let opened = self.kept.iter().position(|listed| listed.opened);
+        self.lost_unopened += u64::from(opened.is_none());
+        self.kept.remove(opened.unwrap_or(0));
+    }
+
+    /// A person looks at it.
+    pub(crate) fn opened(&mut self, id: RecordingId) {
+        for listed in &mut self.kept {
+            listed.opened |= listed.recording.id == id;
+        }
+    }
+
+    /// All that are kept, newest first.
+    pub fn iter(&self) -> impl Iterator<Item = &Listed> {
+        self.kept.iter().rev()
+    }
+
+    /// The recording with this id, if it is still kept.
+    #[must_use]
+    pub fn get(&self, id: RecordingId) -> Option<&Arc<Recording>> {
+        let mut all = self.kept.iter();
+        let found = all.find(|listed| listed.recording.id == id)?;
+        Some(&found.recording)
+    }
+
+    /// The newest recording of this fault, come at this moment.
+    #[must_use]
+    pub fn of(&self, dof: Dof, what: FaultKind, since: Moment) -> Option<&Arc<Recording>> {
+        let recordings = self.iter().map(|listed| &listed.recording);
+        recordings
+            .into_iter()
+            .find(|recording| recording.holds(dof, what, since))
+    }
+
+    /// When the recording under way ends; `None` if none is.
+    #[must_use]
+    pub fn runs_until(&self) -> Option<Moment> {
+        self.running.as_ref().map(|running| running.until)
+    }
+
+    /// Recordings that went although nobody had looked at them.
+    #[must_use]
+    pub const fn lost_unopened(&self) -> u64 {
+        self.lost_unopened
+    }
+
+    /// Memory that the recordings hold, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let kept = self.kept.iter().map(|listed| &listed.recording);
+        kept.map(|recording| {
+            recording.history.bytes() + recording.events.len() * size_of::<Event>()
+        })
+        .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::Quantity;
+    use crate::hand::{Angle, Fault, Faults, ForceReading, Status, Timed};
+    use crate::history::Series;
+
+    const STALL: FaultKind = FaultKind::Fault(Fault::Stall);
+
+    /// A hand at 100 Hz whose force tells the second.
+    struct Bench {
+        recorder: FaultRecorder,
+        history: History,
+        tick: u64,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            Self {
+                recorder: FaultRecorder::default(),
+                history: History::new(),
+                tick: 0,
+            }
+        }
+
+        fn now(&self) -> Moment {
+            Moment::from_micros(self.tick * 10_000)
+        }
+
+        fn run(&mut self, seconds: u64, status: Status) {
+            for _ in 0..seconds * 100 {
+                self.tick += 1;
+                let now = self.now();
+                let second = i16::try_from(self.tick / 100).unwrap_or(i16::MAX);
+                let timed = |value| Timed {
+                    value,
+                    asked: now,
+                    received: now,
+                };
+                let sample = HandSample {
+                    force: Some(timed(PerDof::splat(ForceReading::new(second)))),
+                    status: Some(Timed {
+                        value: PerDof::splat(status),
+                        asked: now,
+                        received: now,
+                    }),
+                    ..HandSample::default()
+                };
+                let mut fresh = Groups::NONE;
+                fresh.insert(Group::Force);
+                fresh.insert(Group::Status);
+                self.history.push(&sample, fresh);
+                self.recorder.sample(&sample, fresh, now);
+                self.recorder.tick(&self.history, "sim:", now);
+            }
+        }
+
+        fn fault(&mut self, dof: Dof) {
+            self.recorder.fault(dof, STALL, self.now());
+        }
+
+        fn newest(&self) -> Arc<Recording> {
+            let newest = self.recorder.iter().next().expect("a recording");
+            Arc::clone(&newest.recording)
+        }
+    }
+
+    #[test]
+    fn a_recording_holds_what_was_before_and_after_and_outlives_the_history() {
+        let mut bench = Bench::new();
+        bench.run(100, Status::PositionReached);
+        bench.fault(Dof::Index);
+        bench.run(2, Status::Stalled);
+        bench.recorder.person(PersonAct::ClearErrors, bench.now());
+        bench.run(12, Status::PositionReached);
+        assert_eq!(bench.recorder.iter().count(), 0, "it still runs");
+        assert!(bench.recorder.runs_until().is_some());
+        bench.run(2, Status::PositionReached);
+        let recording = bench.newest();
+        assert_eq!((recording.from.secs(), recording.to.secs()), (55.0, 115.0));
+        bench.history = History::new();
+        let force = Series::Joint(Quantity::Force, Dof::Ring);
+        let summary = recording
+            .history
+            .summary(force, 0.0, 1e9)
+            .expect("measured");
+        assert_eq!((summary.min, summary.max), (55.0, 115.0));
+        assert!((5990..=6010).contains(&summary.count), "{summary:?}");
+        let states: Vec<_> = recording
+            .states(Dof::Ring)
+            .iter()
+            .map(|one| one.2.status)
+            .collect();
+        let (rest, stalled) = (Some(Status::PositionReached), Some(Status::Stalled));
+        assert_eq!(states, [rest, stalled, rest]);
+        let table = recording.table().csv();
+        assert!(
+            table.contains("clear errors") && table.contains("status_ring"),
+            "{}",
+            &table[..900]
+        );
+        assert!(
+            table
+                .lines()
+                .next()
+                .is_some_and(|head| head.ends_with(",event"))
+        );
+        assert!(
+            bench
+                .recorder
+                .of(Dof::Index, STALL, Moment::from_micros(100_000_000))
+                .is_some()
+        );
+    }
+
+    #[test]
+    fn faults_that_come_together_are_one_recording_and_a_flickering_one_does_not_go_on_for_ever() {
+        let mut bench = Bench::new();
+        bench.run(50, Status::PositionReached);
+        for dof in Dof::ALL {
+            bench.fault(dof);
+            bench.run(5, Status::Stalled);
+        }
+        bench.run(15, Status::Stalled);
+        let recording = bench.newest();
+        assert_eq!(recording.faults.len(), 6);
+        let after = recording.to.since(recording.faults.last().expect("six").at);
+        assert!(
+            after >= AFTER,
+            "the last one has its time after it, too: {after:?}"
+        );
+        for _ in 0..100 {
+            bench.fault(Dof::Ring);
+            bench.run(1, Status::Stalled);
+        }
+        let longest = bench.newest();
+        assert!(longest.to.since(longest.from) <= BEFORE + LONGEST_AFTER);
+    }
+
+    #[test]
+    fn another_hand_ends_a_recording_and_begins_with_nothing() {
+        let mut bench = Bench::new();
+        bench.run(10, Status::Stalled);
+        bench.fault(Dof::Ring);
+        bench.run(1, Status::Stalled);
+        let now = bench.now();
+        bench.recorder.another_hand(&bench.history, "sim:", now);
+        assert_eq!(bench.newest().to, now);
+        assert!(bench.recorder.events.is_empty() && bench.recorder.runs_until().is_none());
+    }
+
+    #[test]
+    fn recordings_are_bounded_and_one_that_nobody_saw_goes_last_and_is_counted() {
+        let mut bench = Bench::new();
+        let record = |bench: &mut Bench| {
+            bench.fault(Dof::Ring);
+            bench.run(16, Status::Stalled);
+        };
+        for _ in 0..RECORDINGS_MAX {
+            record(&mut bench);
+        }
+        bench.recorder.opened(RecordingId(3));
+        record(&mut bench);
+        assert_eq!(bench.recorder.lost_unopened(), 0);
+        assert!(bench.recorder.get(RecordingId(3)).is_none());
+        assert!(bench.recorder.get(RecordingId(0)).is_some());
+        record(&mut bench);
+        assert_eq!(bench.recorder.lost_unopened(), 1);
+        assert!(bench.recorder.get(RecordingId(0)).is_none());
+        assert_eq!(bench.recorder.iter().count(), RECORDINGS_MAX);
+        assert!(
+            bench.recorder.bytes() < 48_000_000,
+            "{}",
+            bench.recorder.bytes()
+        );
+    }
+
+    #[test]
+    fn events_are_bounded_and_a_dragged_slider_is_few_of_them() {
+        let mut bench = Bench::new();
+        for step in 0..200_i16 {
+            bench.tick += 1;
+            let deed = PersonAct::Target(Dof::Index, Angle::nearest(step));
+            bench.recorder.person(deed, bench.now());
+        }
+        assert_eq!(bench.recorder.events.len(), 8, "two seconds");
+        for flip in 0..10_000_u64 {
+            let faults = Faults::from_raw(u8::from(flip % 2 == 0));
+            bench
+                .recorder
+                .note(bench.now(), EventKind::Faults(Dof::Ring, faults));
+        }
+        assert_eq!(bench.recorder.events.len(), EVENTS_MAX);
+        bench.fault(Dof::Ring);
+        bench.run(16, Status::Stalled);
+        assert!(bench.newest().events_lost > 5000, "and the loss is told");
+    }
+}

@@ -1,0 +1,13 @@
+//! The flight recorder: what happened around each fault stays viewable. Writes no file and sends nothing.
+
+pub(crate) mod book;
+pub(crate) mod event;
+pub(crate) mod recording;
+
+pub use crate::app::readings::fault_recorder::book::{
+    AFTER, BEFORE, EVENTS_MAX, FaultRecorder, LONGEST_AFTER, Listed, RECORDINGS_MAX,
+};
+pub use crate::app::readings::fault_recorder::event::{Event, EventKind, PersonAct};
+pub use crate::app::readings::fault_recorder::recording::{
+    DriveState, FaultAt, Recording, RecordingId,
+};

@@ -1,0 +1,136 @@
+//! One recording: everything that was measured and done around a fault, free of the history it came from.
+
+use crate::app::readings::fault_recorder::event::{Event, EventKind};
+use crate::app::readings::faults::FaultKind;
+use crate::hand::{Dof, Faults, Finger, Moment, PerDof, Status};
+use crate::hand::{Quantity, Touch};
+use crate::history::{History, Series, Table, TableGroup};
+
+/// A recording for as long as the program runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RecordingId(pub u64);
+
+/// A fault that came while it was recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FaultAt {
+    /// When.
+    pub at: Moment,
+    /// Of which joint.
+    pub dof: Dof,
+    /// What.
+    pub what: FaultKind,
+}
+
+/// What one drive says. `None` = not read yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct DriveState {
+    /// STATUS.
+    pub status: Option<Status>,
+    /// ERROR.
+    pub faults: Option<Faults>,
+}
+
+/// Everything around a fault.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// To find it.
+    pub id: RecordingId,
+    /// The hand, in the spelling of endpoints.
+    pub hand: String,
+    /// The faults, oldest first, at least one.
+    pub faults: Vec<FaultAt>,
+    /// From here; measurements may begin later.
+    pub from: Moment,
+    /// To here.
+    pub to: Moment,
+    /// What was measured, with the marks.
+    pub history: History,
+    /// What the drives said at first.
+    pub before: PerDof<DriveState>,
+    /// What was done and how the drives changed, oldest first.
+    pub events: Vec<Event>,
+    /// Events of this time that were not kept, because there were too many.
+    pub events_lost: u64,
+}
+
+impl Recording {
+    /// The fault that began it.
+    #[must_use]
+    pub fn fault(&self) -> Option<FaultAt> {
+        self.faults.first().copied()
+    }
+
+    /// True if it holds this fault of this joint, come at this moment.
+    #[must_use]
+    pub fn holds(&self, dof: Dof, what: FaultKind, since: Moment) -> bool {
+        let mut all = self.faults.iter();
+        all.any(|fault| fault.dof == dof && fault.what == what && fault.at == since)
+    }
+
+    /// What a drive said from when to when, oldest first, in seconds. Each stretch is of one state.
+    #[must_use]
+    pub fn states(&self, dof: Dof) -> Vec<(f64, f64, DriveState)> {
+        let mut stretches = Vec::new();
+        let (mut from, mut state) = (self.from, self.before[dof]);
+        for event in &self.events {
+            let mut new = state;
+            match event.what {
+                EventKind::Status(of, status) if of == dof => new.status = Some(status),
+                EventKind::Faults(of, faults) if of == dof => new.faults = Some(faults),
+                _ => {}
+            }
+            if new != state {
+                stretches.push((from.secs(), event.at.secs(), state));
+                (from, state) = (event.at, new);
+            }
+        }
+        stretches.push((from.secs(), self.to.secs(), state));
+        stretches.retain(|(from_s, to_s, _)| to_s > from_s);
+        stretches
+    }
+
+    /// Everything as one table: all measurements, status and fault byte of each drive where they changed, and what
+    /// happened.
+    #[must_use]
+    pub fn table(&self) -> Table {
+        let joints = Quantity::ALL.into_iter();
+        let joints = joints.flat_map(|quantity| Dof::ALL.map(|dof| Series::Joint(quantity, dof)));
+        let tips = Touch::ALL.into_iter();
+        let tips = tips.flat_map(|touch| Finger::ALL.map(|finger| Series::Tip(touch, finger)));
+        let series: Vec<Series> = joints.chain(tips).collect();
+        let table = self
+            .history
+            .table(&series, self.from.secs(), self.to.secs());
+        let deeds = self.events.iter().filter_map(|event| match &event.what {
+            EventKind::PersonAct(act) => Some((event.at.secs(), act.words())),
+            EventKind::Status(..) | EventKind::Faults(..) => None,
+        });
+        table.with(self.drives(), deeds.collect())
+    }
+
+    /// Status and fault byte of all drives, a row for each change.
+    fn drives(&self) -> TableGroup {
+        let mut now = self.before;
+        let mut rows = vec![(self.from, now)];
+        for event in &self.events {
+            match event.what {
+                EventKind::Status(dof, status) => now[dof].status = Some(status),
+                EventKind::Faults(dof, faults) => now[dof].faults = Some(faults),
+                EventKind::PersonAct(_) => continue,
+            }
+            rows.push((event.at, now));
+        }
+        let column = |name: &str, dof: Dof, raw: fn(DriveState) -> Option<u8>| {
+            let values = rows
+                .iter()
+                .map(|(_, all)| raw(all[dof]).map_or(f32::NAN, f32::from));
+            (format!("{name}_{}", dof.name()), values.collect())
+        };
+        let status = Dof::ALL.map(|dof| column("status", dof, |state| Some(state.status?.raw())));
+        let faults = Dof::ALL.map(|dof| column("faults", dof, |state| Some(state.faults?.raw())));
+        TableGroup {
+            times: rows.iter().map(|(at, _)| at.secs()).collect(),
+            columns: status.into_iter().chain(faults).collect(),
+        }
+    }
+}

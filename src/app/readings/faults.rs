@@ -1,0 +1,419 @@
+//! Faults now and before, joint by joint, latched until a person has seen them. Words are in `hand`.
+//!
+//! The rule: a new fault is unseen, and only a person's act marks it as seen, one entry or all. Opening the
+//! list is not enough, and neither is clearing errors: a fault that ended before anybody read it is worth a word. What
+//! comes again is unseen again.
+
+use crate::hand::{Dof, Fault, Group, Groups, HandSample, Moment, PerDof, Status};
+use std::time::Duration;
+
+/// Entries that can be: per joint eight fault bits and three protective codes. One entry each, so it cannot grow.
+pub const FAULT_ENTRIES_MAX: usize = 6 * (8 + 3);
+
+/// What is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FaultKind {
+    /// A bit of ERROR (manual 2.6.18).
+    Fault(Fault),
+    /// A protective code of STATUS (manual 2.6.19) that no bit of the drive's ERROR explains.
+    Status(Status),
+}
+
+impl FaultKind {
+    /// Whether CLEAR_ERROR can clear it (manual 2.6.3); `None` where the manual does not say: unknown bits, and status
+    /// codes, which follow from the faults.
+    #[must_use]
+    pub const fn clearable(self) -> Option<bool> {
+        match self {
+            Self::Fault(fault) => fault.clearable(),
+            Self::Status(_) => None,
+        }
+    }
+}
+
+/// Why CLEAR_ERROR would clear nothing now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum NothingToClear {
+    /// Nothing is wrong.
+    NoFault,
+    /// What is wrong ends by itself when the drive is cool, and not before.
+    OnlyHeat,
+}
+
+/// One thing that is or was wrong with one joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FaultEntry {
+    /// The joint.
+    pub dof: Dof,
+    /// What.
+    pub what: FaultKind,
+    /// When it came for the first time.
+    pub first: Moment,
+    /// When it came, this time.
+    pub since: Moment,
+    /// When the hand last said so.
+    pub last: Moment,
+    /// When the hand first said that it is over; `None` while it lasts.
+    pub until: Option<Moment>,
+    /// Times it came.
+    pub count: u32,
+    /// A person said that they have seen it, this time.
+    pub seen: bool,
+}
+
+impl FaultEntry {
+    /// True while it lasts.
+    #[must_use]
+    pub const fn is_active(&self) -> bool {
+        self.until.is_none()
+    }
+
+    /// How long it lasts, or lasted when it came last.
+    #[must_use]
+    pub fn lasted(&self, now: Moment) -> Duration {
+        self.until.unwrap_or(now).since(self.since)
+    }
+}
+
+/// Faults now and before.
+#[derive(Debug, Clone)]
+pub struct FaultList {
+    entries: Vec<FaultEntry>,
+    worked_again_c: PerDof<Option<f32>>,
+}
+
+impl Default for FaultList {
+    fn default() -> Self {
+        Self {
+            entries: Vec::new(),
+            worked_again_c: PerDof::splat(None),
+        }
+    }
+}
+
+impl FaultList {
+    /// Takes in what the hand says now. True if something is wrong that was not wrong before.
+    pub fn update(&mut self, sample: &HandSample, fresh: Groups, now: Moment) -> bool {
+        let mut news = false;
+        if let Some(faults) = sample.faults.filter(|_| fresh.contains(Group::Faults)) {
+            for (dof, faults) in faults.value.iter() {
+                if self.is_hot(dof) && !faults.contains(Fault::OverTemperature) {
+                    let celsius = sample.temperature.map(|all| all.value[dof].documented());
+                    self.worked_again_c[dof] = celsius.flatten().map(f32::from);
+                }
+                news |= faults.iter().fold(false, |new, fault| {
+                    self.see(dof, FaultKind::Fault(fault), now) | new
+                });
+                self.end(
+                    dof,
+                    now,
+                    |what| matches!(what, FaultKind::Fault(fault) if !faults.contains(fault)),
+                );
+            }
+        }
+        if let Some(statuses) = sample.status.filter(|_| fresh.contains(Group::Status)) {
+            for (dof, status) in statuses.value.iter() {
+                // A drive that reports faults stops because of them: that is one story and not two.
+                let explained = sample.faults.is_some_and(|all| !all.value[dof].is_empty());
+                if status.is_protective() && !explained {
+                    news |= self.see(dof, FaultKind::Status(*status), now);
+                }
+                self.end(
+                    dof,
+                    now,
+                    |what| matches!(what, FaultKind::Status(old) if old != *status),
+                );
+            }
+        }
+        news
+    }
+
+    /// A person has seen this one.
+    pub fn see_one(&mut self, dof: Dof, what: FaultKind) {
+        for entry in &mut self.entries {
+            entry.seen |= entry.dof == dof && entry.what == what;
+        }
+    }
+
+    /// A person has seen all of them.
+    pub fn see_all(&mut self) {
+        for entry in &mut self.entries {
+            entry.seen = true;
+        }
+    }
+
+    /// Those that no person has seen yet, lasting or over, newest first.
+    pub fn unseen(&self) -> impl Iterator<Item = &FaultEntry> {
+        self.iter().filter(|entry| !entry.seen)
+    }
+
+    /// Forgets what is over and was seen. What lasts stays, and so does what nobody has seen.
+    pub fn forget(&mut self) {
+        self.entries
+            .retain(|entry| entry.is_active() || !entry.seen);
+    }
+
+    /// Why CLEAR_ERROR would clear nothing; `None` if it clears something, or may.
+    #[must_use]
+    pub fn nothing_to_clear(&self) -> Option<NothingToClear> {
+        let mut any = false;
+        for entry in self.entries.iter().filter(|entry| entry.is_active()) {
+            if entry.what.clearable() != Some(false) {
+                return None;
+            }
+            any = true;
+        }
+        Some(if any {
+            NothingToClear::OnlyHeat
+        } else {
+            NothingToClear::NoFault
+        })
+    }
+
+    /// True while this drive is too hot.
+    fn is_hot(&self, dof: Dof) -> bool {
+        let hot = FaultKind::Fault(Fault::OverTemperature);
+        let mut own = self.entries.iter().filter(|entry| entry.dof == dof);
+        own.any(|entry| entry.is_active() && entry.what == hot)
+    }
+
+    /// Another hand: nothing is known of it.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The temperature at which this drive's last over-temperature ended, °C; `None` if none did yet.
+    #[must_use]
+    pub fn worked_again_c(&self, dof: Dof) -> Option<f32> {
+        self.worked_again_c[dof]
+    }
+
+    /// What lasts first, then what is over and unseen, then the rest; the newest first within each.
+    pub fn iter(&self) -> impl Iterator<Item = &FaultEntry> {
+        let mut sorted: Vec<&FaultEntry> = self.entries.iter().collect();
+        sorted.sort_by_key(|entry| {
+            let over = !entry.is_active();
+            (over, over && entry.seen, std::cmp::Reverse(entry.since))
+        });
+        sorted.into_iter()
+    }
+
+    /// What lasts, newest first.
+    pub fn active(&self) -> impl Iterator<Item = &FaultEntry> {
+        self.iter().filter(|entry| entry.is_active())
+    }
+
+    /// Entries of all kinds.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// True if nothing is or was wrong.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// True if it was not active before.
+    fn see(&mut self, dof: Dof, what: FaultKind, now: Moment) -> bool {
+        let known = self
+            .entries
+            .iter_mut()
+            .find(|entry| entry.dof == dof && entry.what == what);
+        match known {
+            Some(entry) if entry.is_active() => {
+                entry.last = now;
+                false
+            }
+            Some(entry) => {
+                *entry = FaultEntry {
+                    since: now,
+                    last: now,
+                    until: None,
+                    count: entry.count.saturating_add(1),
+                    seen: false,
+                    ..*entry
+                };
+                true
+            }
+            None => {
+                debug_assert!(
+                    self.entries.len() < FAULT_ENTRIES_MAX,
+                    "one entry per joint and kind"
+                );
+                self.entries.push(FaultEntry {
+                    dof,
+                    what,
+                    first: now,
+                    since: now,
+                    last: now,
+                    until: None,
+                    count: 1,
+                    seen: false,
+                });
+                true
+            }
+        }
+    }
+
+    fn end(&mut self, dof: Dof, now: Moment, over: impl Fn(FaultKind) -> bool) {
+        for entry in &mut self.entries {
+            if entry.dof == dof && entry.is_active() && over(entry.what) {
+                entry.until = Some(now);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{Faults, PerDof, Timed};
+
+    const AT: fn(u64) -> Moment = Moment::from_micros;
+
+    fn see(book: &mut FaultList, at: u64, raw: u8, status: u8) -> bool {
+        let mut faults = PerDof::splat(Faults::from_raw(0));
+        faults[Dof::Ring] = Faults::from_raw(raw);
+        let mut statuses = PerDof::splat(Status::PositionReached);
+        statuses[Dof::Ring] = Status::from_raw(status);
+        let sample = HandSample {
+            faults: Some(Timed {
+                value: faults,
+                asked: AT(at),
+                received: AT(at),
+            }),
+            status: Some(Timed {
+                value: statuses,
+                asked: AT(at),
+                received: AT(at),
+            }),
+            ..HandSample::default()
+        };
+        let mut fresh = Groups::NONE;
+        fresh.insert(Group::Faults);
+        fresh.insert(Group::Status);
+        book.update(&sample, fresh, AT(at))
+    }
+
+    #[test]
+    fn a_fault_stays_until_it_is_over_and_forgotten() {
+        let mut book = FaultList::default();
+        assert!(see(&mut book, 1, 1, 2));
+        assert!(!see(&mut book, 2, 1, 2), "the same fault is no news");
+        book.forget();
+        assert_eq!(book.active().count(), 1, "what lasts is not forgotten");
+        assert!(!see(&mut book, 3, 0, 2));
+        let entry = *book.iter().next().expect("kept");
+        assert_eq!(
+            (entry.since, entry.last, entry.until),
+            (AT(1), AT(2), Some(AT(3)))
+        );
+        assert!(see(&mut book, 4, 1, 2), "it came again");
+        assert_eq!(
+            book.iter().next().map(|entry| (entry.count, entry.since)),
+            Some((2, AT(4)))
+        );
+        see(&mut book, 5, 0, 2);
+        book.forget();
+        assert_eq!(book.len(), 1, "nobody has seen it");
+        book.see_all();
+        book.forget();
+        assert!(book.is_empty());
+    }
+
+    #[test]
+    fn a_fault_that_came_and_went_is_unseen_until_a_person_says_so_and_again_when_it_comes_again() {
+        let stall = FaultKind::Fault(Fault::Stall);
+        let mut book = FaultList::default();
+        see(&mut book, 1, 1, 2);
+        see(&mut book, 3_000_001, 0, 2);
+        let entry = *book.unseen().next().expect("latched");
+        assert_eq!((entry.what, entry.is_active()), (stall, false));
+        assert_eq!(entry.lasted(AT(9_000_000)), Duration::from_secs(3));
+        book.see_one(Dof::Index, stall);
+        assert_eq!(book.unseen().count(), 1, "another joint's");
+        book.see_one(Dof::Ring, stall);
+        assert_eq!(book.unseen().count(), 0);
+        see(&mut book, 5_000_000, 1, 2);
+        let entry = *book.unseen().next().expect("again");
+        assert_eq!((entry.count, entry.first), (2, AT(1)));
+        assert_eq!(entry.lasted(AT(6_000_000)), Duration::from_secs(1));
+        book.see_all();
+        see(&mut book, 7_000_000, 0, 2);
+        assert_eq!(book.unseen().count(), 0, "seen while it lasted is seen");
+    }
+
+    #[test]
+    fn clearing_is_offered_where_it_can_help_and_only_there() {
+        let mut book = FaultList::default();
+        assert_eq!(book.nothing_to_clear(), Some(NothingToClear::NoFault));
+        for (faults, status, want) in [
+            (0b0_0001, 2, None),
+            (0b0_0010, 2, Some(NothingToClear::OnlyHeat)),
+            (0b0_0010, 7, Some(NothingToClear::OnlyHeat)),
+            (0b0_0110, 7, None),
+            (0b0_1000, 2, None),
+            (0b1_0000, 2, None),
+            (0b10_0000, 2, None),
+            (0, 5, None),
+            (0, 2, Some(NothingToClear::NoFault)),
+        ] {
+            see(&mut book, 1, faults, status);
+            assert_eq!(book.nothing_to_clear(), want, "{faults:b} {status}");
+        }
+    }
+
+    #[test]
+    fn what_lasts_comes_first_then_the_newest() {
+        let mut book = FaultList::default();
+        see(&mut book, 1, 0, 6);
+        see(&mut book, 2, 0b01, 2);
+        see(&mut book, 3, 0b11, 2);
+        see(&mut book, 4, 0b10, 2);
+        let order: Vec<_> = book.iter().map(|entry| entry.what).collect();
+        let fault = |bit| FaultKind::Fault(Fault::from_bit(bit));
+        let stalled = FaultKind::Status(Status::Stalled);
+        assert_eq!(order, [fault(1), fault(0), stalled]);
+        book.see_one(Dof::Ring, fault(0));
+        let order: Vec<_> = book.iter().map(|entry| entry.what).collect();
+        assert_eq!(order, [fault(1), stalled, fault(0)], "unseen before seen");
+    }
+
+    #[test]
+    fn a_status_that_a_fault_explains_is_no_entry_of_its_own() {
+        let mut book = FaultList::default();
+        see(&mut book, 1, 0b1, 6);
+        assert_eq!(book.len(), 1);
+        see(&mut book, 2, 0, 6);
+        assert_eq!(
+            book.active().map(|entry| entry.what).collect::<Vec<_>>(),
+            [FaultKind::Status(Status::Stalled)]
+        );
+    }
+
+    #[test]
+    fn every_bit_and_code_fits() {
+        let mut book = FaultList::default();
+        for status in 0..=255 {
+            see(&mut book, 2 * u64::from(status), status, status);
+            see(&mut book, 2 * u64::from(status) + 1, 0, status);
+        }
+        assert!(book.len() <= FAULT_ENTRIES_MAX);
+        assert_eq!(
+            book.iter()
+                .filter(|entry| matches!(entry.what, FaultKind::Status(_)))
+                .count(),
+            3
+        );
+    }
+
+    #[test]
+    fn nothing_fresh_ends_nothing() {
+        let mut book = FaultList::default();
+        see(&mut book, 1, 1, 2);
+        assert!(!book.update(&HandSample::default(), Groups::NONE, AT(2)));
+        assert_eq!(book.active().count(), 1);
+    }
+}

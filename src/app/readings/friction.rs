@@ -1,0 +1,122 @@
+//! How the grip of a fingertip stands against slipping, for a friction that a person chose. Draws nothing.
+
+use crate::hand::TactileBlock;
+
+/// Below this normal force a ratio of forces says nothing, in newtons.
+const CONTACT_N: f32 = 0.2;
+/// Margin up to which a grip counts as near to slipping.
+pub(crate) const NEAR: f32 = 0.2;
+/// A state is left only when the margin is this much beyond the limit at which it was entered.
+const HYSTERESIS: f32 = 0.06;
+
+/// The forces of a grip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Grip {
+    /// Nothing known.
+    Unknown,
+    /// Too little force to say.
+    Loose,
+    /// Tangential over normal force.
+    Ratio(f32),
+}
+
+/// What they come to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Hold {
+    /// Nothing known.
+    #[default]
+    Unknown,
+    /// No contact.
+    Loose,
+    /// Far from slipping.
+    Firm,
+    /// Near to slipping.
+    Near,
+    /// Beyond the friction: the alarm.
+    Slips,
+}
+
+impl Grip {
+    /// As the newest block says.
+    pub(crate) fn of(block: Option<&TactileBlock>) -> Self {
+        let forces = block.and_then(|block| block.normal().zip(block.tangential()));
+        match forces {
+            None => Self::Unknown,
+            Some((normal, _)) if normal < CONTACT_N => Self::Loose,
+            Some((normal, tangential)) => Self::Ratio(tangential.abs() / normal),
+        }
+    }
+
+    /// How much of the friction is left, 1 = all, below 0 = more than there is.
+    pub(crate) fn margin(self, friction: f32) -> Option<f32> {
+        match self {
+            Self::Ratio(ratio) if friction > 0.0 => Some(1.0 - ratio / friction),
+            _ => None,
+        }
+    }
+}
+
+impl Hold {
+    /// What comes after this state. A margin that wavers around a limit does not make the alarm flicker.
+    pub(crate) fn next(self, grip: Grip, friction: f32) -> Self {
+        let Some(margin) = grip.margin(friction) else {
+            return match grip {
+                Grip::Loose => Self::Loose,
+                _ => Self::Unknown,
+            };
+        };
+        let stay = |is_so: bool| if is_so { HYSTERESIS } else { 0.0 };
+        if margin <= stay(self == Self::Slips) {
+            Self::Slips
+        } else if margin <= NEAR + stay(matches!(self, Self::Slips | Self::Near)) {
+            Self::Near
+        } else {
+            Self::Firm
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(normal_n: f32, tangential_n: f32) -> TactileBlock {
+        let mut block = TactileBlock::decode(&[0; 58]).unwrap();
+        block.normal_n = normal_n;
+        block.tangential_n = tangential_n;
+        block
+    }
+
+    #[test]
+    fn the_margin_is_what_friction_leaves() {
+        let grip = Grip::of(Some(&block(4.0, 1.0)));
+        assert_eq!(grip, Grip::Ratio(0.25));
+        assert_eq!(grip.margin(0.5), Some(0.5));
+        assert!(grip.margin(0.2).unwrap() < 0.0);
+        assert_eq!(grip.margin(0.0), None);
+    }
+
+    #[test]
+    fn without_contact_or_sense_there_is_no_margin() {
+        assert_eq!(Grip::of(Some(&block(0.05, 1.0))), Grip::Loose);
+        assert_eq!(Grip::of(Some(&block(f32::NAN, 1.0))), Grip::Unknown);
+        assert_eq!(Grip::of(None).margin(0.5), None);
+        assert_eq!(Hold::Slips.next(Grip::Loose, 0.5), Hold::Loose);
+        assert_eq!(Hold::Slips.next(Grip::Unknown, 0.5), Hold::Unknown);
+    }
+
+    #[test]
+    fn a_margin_that_wavers_around_the_limit_gives_one_alarm() {
+        let (mut hold, mut changes) = (Hold::Firm, 0);
+        for step in 0..100u8 {
+            // Friction 0.5: the margin wavers between -0.02 and 0.02.
+            let ratio = if step % 2 == 0 { 0.51 } else { 0.49 };
+            let next = hold.next(Grip::Ratio(ratio), 0.5);
+            changes += u32::from(next != hold);
+            hold = next;
+        }
+        assert_eq!((hold, changes), (Hold::Slips, 1));
+        assert_eq!(hold.next(Grip::Ratio(0.45), 0.5), Hold::Near);
+        assert_eq!(hold.next(Grip::Ratio(0.2), 0.5), Hold::Firm);
+    }
+}

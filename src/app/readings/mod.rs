@@ -1,0 +1,9 @@
+//! Readers of what is heard of a hand: faults and what happened around them, peaks, taring, cooling, friction.
+
+pub mod cooling;
+pub mod fault_recorder;
+pub mod faults;
+pub(crate) mod friction;
+pub mod pace;
+pub mod peaks;
+pub mod tare;

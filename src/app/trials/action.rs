@@ -1,0 +1,27 @@
+//! What a person may ask about grasp trials. Says nothing about how it is done.
+
+use crate::app::trials::state::SessionId;
+use crate::trials::{Criterion, TrialPlan};
+
+/// What a person asks for about trials.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TrialAction {
+    /// This is the plan now. Sends nothing.
+    Plan(Box<TrialPlan>),
+    /// Run the plan, in the arming that is in force. Needs arming.
+    Start,
+    /// Give a session this note.
+    Note(SessionId, String),
+    /// Give a session these tags, separated by commas.
+    Tags(SessionId, String),
+    /// Take a session out of the list; its files stay. What lies in no file is asked about first.
+    Forget(SessionId),
+    /// Yes, forget it without files too.
+    ConfirmForget,
+    /// No, it stays.
+    CancelForget,
+    /// Ask for a saved session, and read it.
+    Open,
+    /// Ask for a folder and save a session in a new one inside it; the report names the best by this.
+    Save(SessionId, Option<Criterion>),
+}

@@ -1,0 +1,156 @@
+//! Sessions in folders: asked for, written and read away from the window's thread. The formats are in [`crate::trials::session`].
+
+use crate::app::env::Env;
+use crate::app::notices::NoticeKind;
+use crate::app::trials::state::{
+    SessionId, SessionOrigin, SessionTrial, TrialSession, TrialsState,
+};
+use crate::store::{Job, on_thread, read_text};
+use crate::trials::recording::csv;
+use crate::trials::session::writer::SessionWriter;
+use crate::trials::session::{SESSION_FILE, SessionHead, load};
+use crate::trials::{Criterion, TrialRecording, TrialSummary};
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+/// A table of samples that is longer is not ours: a trial holds fewer rows.
+const TABLE_LEN_MAX: u64 = 256 * 1024 * 1024;
+/// Seconds of a day.
+const DAY_S: u64 = 86_400;
+
+/// What came of asking for files.
+#[derive(Debug)]
+pub(crate) enum FilesEnd {
+    /// A session of so many trials was written there.
+    Saved(SessionId, PathBuf, usize),
+    /// A session was read.
+    Opened(PathBuf, Box<TrialSession>),
+    /// Neither.
+    Not(NoticeKind),
+}
+
+/// Files of sessions.
+pub(crate) struct SessionFiles;
+
+impl SessionFiles {
+    /// Asks for a folder and writes a session that was run here into a new one inside it.
+    pub(crate) fn save(
+        session: &TrialSession,
+        criterion: Option<Criterion>,
+        env: &Env,
+    ) -> Option<Job<FilesEnd>> {
+        if matches!(session.origin, SessionOrigin::Folder(_)) {
+            return None;
+        }
+        let session = session.clone();
+        let chosen = env.files.folder();
+        Some(Job::start(&env.runtime, &env.wake, async move {
+            let Some(folder) = chosen.await else {
+                return FilesEnd::Not(NoticeKind::NoFileChosen);
+            };
+            let folder = folder.join(folder_name(&session.head));
+            let (id, trials) = (session.id, session.trials.len());
+            let place = folder.clone();
+            match on_thread(move || write(session, &place, criterion)).await {
+                Ok(()) => FilesEnd::Saved(id, folder, trials),
+                Err(error) => FilesEnd::Not(NoticeKind::NotSaved {
+                    path: folder,
+                    message: error.to_string(),
+                }),
+            }
+        }))
+    }
+
+    /// Asks for the `session.toml` of a session and reads its folder.
+    pub(crate) fn open(env: &Env) -> Job<FilesEnd> {
+        let chosen = env.files.open(SESSION_FILE);
+        Job::start(&env.runtime, &env.wake, async move {
+            let Some(file) = chosen.await else {
+                return FilesEnd::Not(NoticeKind::NoFileChosen);
+            };
+            let path = file.clone();
+            let work = move || read_session(file.parent().unwrap_or(Path::new(".")));
+            match on_thread(work).await {
+                Ok(session) => FilesEnd::Opened(path, Box::new(session)),
+                Err(error) => FilesEnd::Not(NoticeKind::SessionRefused {
+                    path,
+                    message: error.to_string(),
+                }),
+            }
+        })
+    }
+}
+
+/// `handscope-trials-2026-11-21-123456`, in universal time.
+fn folder_name(head: &SessionHead) -> String {
+    let of_day = head.begun_unix_s % DAY_S;
+    let (hours, minutes) = (of_day / 3600, of_day / 60 % 60);
+    let (day, seconds) = (&head.day, of_day % 60);
+    format!("handscope-trials-{day}-{hours:02}{minutes:02}{seconds:02}")
+}
+
+/// Writes the same files as the command line.
+fn write(session: TrialSession, folder: &Path, criterion: Option<Criterion>) -> io::Result<()> {
+    let mut head = session.head;
+    let aborted = head.aborted.take();
+    let mut writer = SessionWriter::create(folder, head, criterion)?;
+    for trial in &session.trials {
+        writer.add(&trial.summary, &trial.recording)?;
+    }
+    writer.finish(aborted)
+}
+
+/// Reads a session's folder. A table of samples that is not there leaves its trial without lines; a spoilt one refuses all.
+fn read_session(folder: &Path) -> io::Result<TrialSession> {
+    let file = load(folder)?;
+    let trial = |summary: TrialSummary| {
+        let samples = samples(folder, summary.samples.as_deref());
+        let number = summary.number;
+        let samples = samples.map_err(|error| io::Error::other(format!("trial {number}: {error}")));
+        Ok(SessionTrial::read(summary, &samples?.unwrap_or_default()))
+    };
+    let trials: io::Result<Vec<SessionTrial>> = file.trials.into_iter().map(trial).collect();
+    Ok(TrialSession {
+        id: SessionId(0),
+        head: file.head,
+        origin: SessionOrigin::Folder(folder.to_owned()),
+        trials: trials?,
+        lost: 0,
+    })
+}
+
+/// The samples of a trial; none if the file is not there. No name leads out of the folder.
+fn samples(folder: &Path, name: Option<&str>) -> io::Result<Option<TrialRecording>> {
+    let Some(name) = name else { return Ok(None) };
+    let mut parts = Path::new(name).components();
+    let (Some(Component::Normal(_)), None) = (parts.next(), parts.next()) else {
+        return Err(io::Error::other(format!(
+            "'{name}' is no file of this folder"
+        )));
+    };
+    let wrong = |error: String| io::Error::other(format!("'{name}', {error}"));
+    let text = read_text(&folder.join(name), TABLE_LEN_MAX);
+    let text = text.map_err(|error| wrong(error.to_string()))?;
+    let table = text.map(|text| csv::read(&text)).transpose();
+    table.map_err(|error| wrong(error.to_string()))
+}
+
+impl TrialsState {
+    /// Takes in what came of files, and what to tell of it.
+    pub(crate) fn take(&mut self, end: FilesEnd) -> NoticeKind {
+        match end {
+            FilesEnd::Not(notice) => notice,
+            FilesEnd::Saved(id, path, entries) => {
+                if let Some(session) = self.session_mut(id) {
+                    session.origin = SessionOrigin::Saved(path.clone());
+                }
+                NoticeKind::Saved { path, entries }
+            }
+            FilesEnd::Opened(path, session) => {
+                let trials = session.trials.len();
+                self.add(session.head, session.origin, session.trials);
+                NoticeKind::SessionOpened { path, trials }
+            }
+        }
+    }
+}

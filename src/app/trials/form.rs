@@ -1,0 +1,266 @@
+//! The plan of a series as a form: its choices, the place of each mistake, lists that are typed. Sends nothing.
+
+use crate::hand::{Angle, Dof, Force, PerDof};
+use crate::trials::plan::MARGIN;
+use crate::trials::plan_settings::LIST_MAX;
+use crate::trials::{Approach, PlanError, TrialPlan, Until};
+
+/// How the object is approached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ApproachKind {
+    /// At the setting's speed all the way.
+    OneStage,
+    /// Fast to a distance before the contact that a first, slow trial measures.
+    Measured,
+    /// Fast to an angle.
+    Angle,
+    /// Fast until the fingertip feels it come near.
+    Proximity,
+    /// Fast until the fingertip or the force sensor feels it.
+    Touch,
+}
+
+impl ApproachKind {
+    /// All, the plain one first.
+    pub const ALL: [Self; 5] = [
+        Self::OneStage,
+        Self::Measured,
+        Self::Angle,
+        Self::Proximity,
+        Self::Touch,
+    ];
+
+    /// The kind of an approach.
+    #[must_use]
+    pub const fn of(approach: Approach) -> Self {
+        match approach {
+            Approach::OneStage => Self::OneStage,
+            Approach::TwoStage { until, .. } => match until {
+                Until::Measured { .. } => Self::Measured,
+                Until::Angle(_) => Self::Angle,
+                Until::Proximity(_) => Self::Proximity,
+                Until::Touch(_) => Self::Touch,
+            },
+        }
+    }
+
+    /// Where its fast stage ends unless a person says otherwise; `None` if it has none.
+    #[must_use]
+    pub fn usual(self) -> Option<Until> {
+        match self {
+            Self::OneStage => None,
+            Self::Measured => Some(Until::Measured { margin: MARGIN }),
+            Self::Angle => Some(Until::Angle(Angle::nearest(600))),
+            Self::Proximity => Some(Until::Proximity(8000)),
+            Self::Touch => Some(Until::Touch(Force::nearest(20))),
+        }
+    }
+}
+
+/// A place in the form, to show there what is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PlanField {
+    /// The choice of joints.
+    Joints,
+    /// Start and target of a joint.
+    Way(Dof),
+    /// Speeds at the contact.
+    Speeds,
+    /// Force thresholds.
+    Forces,
+    /// Trials of each setting.
+    Repeats,
+    /// Time held.
+    Dwell,
+    /// Time between.
+    Rest,
+    /// Speed of the first stage.
+    Fast,
+    /// When the first stage ends.
+    Until,
+    /// The force that ends it.
+    Ceiling,
+    /// The temperatures.
+    Heat,
+}
+
+impl PlanField {
+    /// Where what is wrong with a plan stands.
+    #[must_use]
+    pub const fn of(error: &PlanError) -> Self {
+        match error {
+            PlanError::NoJoint => Self::Joints,
+            PlanError::NoWay { dof, .. } | PlanError::NoStart { dof } => Self::Way(*dof),
+            PlanError::Stage { .. } | PlanError::Until { .. } | PlanError::NoTouch => Self::Until,
+            PlanError::SlowApproach { .. } => Self::Fast,
+            PlanError::NoSpeed | PlanError::Empty => Self::Speeds,
+            PlanError::TooMany { .. } => Self::Repeats,
+            PlanError::Dwell { .. } => Self::Dwell,
+            PlanError::Rest { .. } => Self::Rest,
+            PlanError::Ceiling { .. } => Self::Ceiling,
+            PlanError::Temperature { .. } => Self::Heat,
+        }
+    }
+}
+
+/// Lets a joint close to an angle, from open if it has no start yet; without an angle it stays where it is.
+pub fn set_target(plan: &mut TrialPlan, dof: Dof, target: Option<Angle>) {
+    plan.close[dof] = target;
+    plan.start[dof] = target.and(plan.start[dof].or(Some(Angle::MAX)));
+}
+
+/// Takes the angles of a pose for its start or its end. What the pose leaves alone stays as it is; only joints that close
+/// have an end.
+pub fn take_pose(plan: &mut TrialPlan, side: PlanSide, angles: &PerDof<Option<Angle>>) {
+    for (dof, angle) in angles.iter() {
+        let place = match side {
+            PlanSide::Start => Some(&mut plan.start[dof]),
+            PlanSide::Close => Some(&mut plan.close[dof]).filter(|target| target.is_some()),
+        };
+        if let (Some(place), Some(_)) = (place, angle) {
+            *place = *angle;
+        }
+    }
+}
+
+/// One end of the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PlanSide {
+    /// Before.
+    Start,
+    /// At the end.
+    Close,
+}
+
+/// Why a list of numbers cannot be taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ListError {
+    /// Something in it is no whole number of the range.
+    NotInRange {
+        /// The largest.
+        most: i16,
+    },
+    /// More than [`LIST_MAX`].
+    TooLong,
+    /// Nothing in it.
+    Empty,
+}
+
+/// Whole numbers of 0 to `most`, separated by commas or spaces.
+///
+/// # Errors
+/// [`ListError`]: nothing of it is taken.
+pub fn list(text: &str, most: i16) -> Result<Vec<i16>, ListError> {
+    let words = text.split([',', ' ', '，', '、', ';']).map(str::trim);
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    if words.is_empty() {
+        return Err(ListError::Empty);
+    }
+    if words.len() > LIST_MAX {
+        return Err(ListError::TooLong);
+    }
+    let number = |word: &&str| {
+        let digits = word.bytes().all(|byte| byte.is_ascii_digit());
+        let number = digits.then(|| word.parse::<i16>().ok()).flatten();
+        number.filter(|number| *number <= most)
+    };
+    let numbers: Option<Vec<i16>> = words.iter().map(number).collect();
+    let mut numbers = numbers.ok_or(ListError::NotInRange { most })?;
+    numbers.sort_unstable();
+    numbers.dedup();
+    Ok(numbers)
+}
+
+/// Words between commas.
+#[must_use]
+pub fn tags(words: &str) -> Vec<String> {
+    let words = words.split([',', '，']).map(str::trim);
+    let words = words.filter(|word| !word.is_empty());
+    words.map(str::to_owned).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::Speed;
+    use std::time::Duration;
+
+    #[test]
+    fn lists_are_taken_whole_or_not_at_all() {
+        assert_eq!(list("250, 25 25，100", 1000), Ok(vec![25, 100, 250]));
+        let most = 1000;
+        for bad in ["25, x", "1001", "-1", "2.5", "99999"] {
+            assert_eq!(
+                list(bad, most),
+                Err(ListError::NotInRange { most }),
+                "{bad}"
+            );
+        }
+        assert_eq!(list(" , ", most), Err(ListError::Empty));
+        let long = vec!["1"; LIST_MAX + 1].join(",");
+        assert_eq!(list(&long, most), Err(ListError::TooLong));
+    }
+
+    #[test]
+    fn every_mistake_has_its_place() {
+        let wrong = |change: fn(&mut TrialPlan)| {
+            let mut plan = TrialPlan::default();
+            change(&mut plan);
+            plan.check().map_err(|error| PlanField::of(&error))
+        };
+        let dof = Dof::Index;
+        for (change, field) in [
+            (
+                (|own| own.close = PerDof::splat(None)) as fn(&mut TrialPlan),
+                PlanField::Joints,
+            ),
+            (|own| own.start[Dof::Index] = None, PlanField::Way(dof)),
+            (
+                |own| own.close[Dof::Index] = Some(Angle::MAX),
+                PlanField::Way(dof),
+            ),
+            (|own| own.grid.speeds = vec![Speed::MIN], PlanField::Speeds),
+            (|own| own.grid.repeats = 2000, PlanField::Repeats),
+            (|own| own.dwell = Duration::ZERO, PlanField::Dwell),
+            (
+                |own| own.grid.rest = Duration::from_secs(700),
+                PlanField::Rest,
+            ),
+            (|own| own.limits.ceiling_g = 100, PlanField::Ceiling),
+            (|own| own.limits.start_c = 70, PlanField::Heat),
+            (
+                |own| {
+                    own.approach = Approach::TwoStage {
+                        fast: Speed::nearest(5),
+                        until: Until::Angle(Angle::nearest(600)),
+                    };
+                },
+                PlanField::Fast,
+            ),
+            (
+                |own| {
+                    own.approach = Approach::TwoStage {
+                        fast: Speed::nearest(250),
+                        until: Until::Angle(Angle::MAX),
+                    };
+                },
+                PlanField::Until,
+            ),
+        ] {
+            assert_eq!(wrong(change), Err(field));
+        }
+    }
+
+    #[test]
+    fn a_pose_gives_starts_to_all_and_targets_to_those_that_close() {
+        let mut angles = PerDof::splat(Some(Angle::nearest(400)));
+        angles[Dof::Ring] = None;
+        let mut plan = TrialPlan::default();
+        take_pose(&mut plan, PlanSide::Start, &angles);
+        take_pose(&mut plan, PlanSide::Close, &angles);
+        assert_eq!(plan.start[Dof::ThumbRotate], Some(Angle::nearest(400)));
+        assert_eq!(plan.start[Dof::Ring], None);
+        assert_eq!(plan.close[Dof::Index], Some(Angle::nearest(400)));
+        assert_eq!(plan.close[Dof::Little], None);
+    }
+}

@@ -1,0 +1,198 @@
+//! What a person asks about grasp trials, and the series that runs on the hand.
+
+use crate::app::env::Env;
+use crate::app::hand::HandState;
+use crate::app::notices::{NoticeKind, Notices};
+use crate::app::running::Running;
+use crate::app::settings::Settings;
+use crate::app::trials::action::TrialAction;
+use crate::app::trials::form::tags;
+use crate::app::trials::run::SeriesRun;
+use crate::app::trials::state::{SessionId, SessionOrigin, TrialsState};
+use crate::hand::{Dof, Moment, PerDof};
+use crate::link::quirks::book;
+use crate::store::calendar::{day, since_1970};
+use crate::tasks::series::{SeriesStart, SeriesStep, SeriesView, Told, series};
+use crate::trials::plan_settings::to_settings;
+use crate::trials::recording::TrialRecording;
+use crate::trials::session::SessionHead;
+use crate::trials::{Abort, EarlyEnd, Stage, TrialPlan};
+use tokio::sync::oneshot;
+
+/// Why a series cannot begin, besides its plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StartRefusal {
+    /// A person arms first.
+    NotArmed,
+    /// A joint that would have to move is locked.
+    Locked(Dof),
+    /// One runs already.
+    Runs,
+}
+
+impl TrialsState {
+    /// Carries out what needs neither a file nor the hand.
+    pub(crate) fn act(&mut self, action: TrialAction, settings: &mut Settings) {
+        match action {
+            TrialAction::Plan(plan) => {
+                settings.trial_plan = to_settings(&plan);
+                self.plan = *plan;
+            }
+            TrialAction::Note(id, words) => {
+                if let Some(session) = self.session_mut(id) {
+                    session.head.note = words;
+                }
+            }
+            TrialAction::Tags(id, words) => {
+                if let Some(session) = self.session_mut(id) {
+                    session.head.tags = tags(&words);
+                }
+            }
+            TrialAction::Forget(id) => self.ask_to_forget(id),
+            TrialAction::ConfirmForget => {
+                if let Some(id) = self.to_confirm.take() {
+                    self.forget(id);
+                }
+            }
+            TrialAction::CancelForget => self.to_confirm = None,
+            TrialAction::Start | TrialAction::Open | TrialAction::Save(..) => {}
+        }
+    }
+}
+
+impl TrialsState {
+    /// The series that ran into this session is over; what to tell of it.
+    fn close(&mut self, id: SessionId, aborted: Option<Abort>) -> NoticeKind {
+        self.running = None;
+        let trials = self.session_mut(id).map_or(0, |session| {
+            session.head.aborted = aborted.map(EarlyEnd::Here);
+            session.trials.len()
+        });
+        NoticeKind::SeriesEnded { trials, aborted }
+    }
+}
+
+impl HandState {
+    /// Why a plan cannot begin now, if it makes sense at all.
+    #[must_use]
+    pub fn start_refusal(&self, plan: &TrialPlan) -> Option<StartRefusal> {
+        if self.runs_series() {
+            return Some(StartRefusal::Runs);
+        }
+        if !self.is_armed() || self.link.armed.is_none() {
+            return Some(StartRefusal::NotArmed);
+        }
+        let locked = self.joints.map(|joint| joint.locked);
+        plan.locked(&locked).map(StartRefusal::Locked)
+    }
+
+    /// Begins the series that is planned, in the arming of now. Without one nothing happens.
+    pub(crate) fn start_series(&mut self, trials: &mut TrialsState, env: &Env) {
+        let plan = trials.plan.clone();
+        if self.start_refusal(&plan).is_some() || plan.check().is_err() {
+            return;
+        }
+        self.take_over();
+        let (Some(epoch), Some(open)) = (self.link.armed, &self.open) else {
+            return;
+        };
+        let start = SeriesStart {
+            plan: plan.clone(),
+            epoch,
+            turn: open.turn,
+            seen: self.sample,
+            clock: env.clock,
+        };
+        let link = open.link.clone();
+        let (end, ended) = oneshot::channel();
+        let ended = async move {
+            match ended.await {
+                Ok(why) => why,
+                Err(_gone) => std::future::pending().await,
+            }
+        };
+        let task = Running::start(env, |steps| async move {
+            let tell = |step| {
+                steps.tell(step);
+                Told::Kept
+            };
+            series(&link, start, ended, tell).await
+        });
+        self.following = PerDof::splat(true);
+        self.commanded = true;
+        let head = self.session_head(plan.clone());
+        let session = trials.add(head, SessionOrigin::Unsaved, Vec::new());
+        (trials.last, trials.running) = (Some(session), Some(session));
+        self.series = Some(SeriesRun {
+            view: SeriesView {
+                number: 0,
+                total: plan.grid.settings().len(),
+                setting: None,
+                is_probing: false,
+                stage: Stage::Resting,
+            },
+            epoch,
+            session,
+            plan,
+            since: self.now,
+            recording: TrialRecording::default(),
+            end: Some(end),
+            task: Some(task),
+        });
+    }
+
+    fn session_head(&self, plan: TrialPlan) -> SessionHead {
+        let now = since_1970();
+        let quirks = |hand| book::sheet(hand, &self.link.quirks, &day(now));
+        SessionHead {
+            hand: self.name(),
+            simulated: self.is_simulated(),
+            quirks: self.endpoint.as_ref().map(quirks),
+            ..SessionHead::begin(plan, now)
+        }
+    }
+
+    /// Takes in what the series did.
+    pub(crate) fn tick_series(
+        &mut self,
+        trials: &mut TrialsState,
+        notices: &mut Notices,
+        now: Moment,
+    ) {
+        let Some(mut run) = self.series.take() else {
+            // One that was broken off with its link has ended there.
+            if let Some(session) = trials.running {
+                notices.push(now, trials.close(session, Some(Abort::LinkLost)));
+            }
+            return;
+        };
+        let Some(task) = &mut run.task else {
+            self.series = Some(run);
+            return;
+        };
+        let (steps, end) = task.news();
+        for (at, step) in steps {
+            match step {
+                SeriesStep::View(view) => {
+                    if view.number != run.view.number {
+                        run.since = at;
+                        run.recording = TrialRecording::default();
+                    }
+                    run.view = view;
+                }
+                SeriesStep::Mark(mark) => run.recording.mark(mark.at, mark.what),
+                SeriesStep::Trial(trial) => trials.add_trial(run.session, *trial),
+            }
+        }
+        let Some(end) = end else {
+            self.series = Some(run);
+            return;
+        };
+        let aborted = end.ok().and_then(|report| report.aborted);
+        notices.push(now, trials.close(run.session, aborted));
+        // The task disarmed the hand, or stopped it.
+        if self.link.armed == Some(run.epoch) {
+            self.disarm(now);
+        }
+    }
+}

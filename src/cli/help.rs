@@ -1,0 +1,287 @@
+//! `help`: the help of a command as clap writes it, or a page of the manual as plain text.
+
+use crate::cli::names;
+use crate::cli::out::{Out, WrongUsage};
+use crate::manual::{self, TOPICS, Topic};
+use clap::{Args, Command};
+
+#[derive(Debug, Args)]
+pub(crate) struct HelpArgs {
+    /// A command or a topic; without one, the list of all
+    #[arg(value_name = "COMMAND|TOPIC")]
+    pub(crate) words: Vec<String>,
+}
+
+/// Prints what the words ask for: without words the whole help, else a topic or a command.
+pub(crate) fn run(out: &mut Out, args: &HelpArgs, program: Command) -> anyhow::Result<()> {
+    let words: Vec<String> = args.words.iter().map(|word| word.to_lowercase()).collect();
+    if let [word, rest @ ..] = words.as_slice()
+        && let Some(Topic { name, text, .. }) = manual::topic(word)
+    {
+        if rest.is_empty() {
+            return plain(text).iter().try_for_each(|line| out.line(line));
+        }
+        let told = format!("'{name}' is a topic: 'handscope help {name}' shows all of it");
+        return Err(WrongUsage(told).into());
+    }
+    check_command(&words, program.clone())?;
+    let line = ["handscope"]
+        .into_iter()
+        .chain(words.iter().map(String::as_str));
+    match program.try_get_matches_from(line.chain(["--help"])) {
+        // Clap hands back its help as an error; printed by clap it keeps its colours and its width.
+        Err(help) => Ok(help.print()?),
+        Ok(_) => Ok(()),
+    }
+}
+
+/// The list of topics, for the help of the whole program.
+pub(crate) fn topics() -> String {
+    let lines = TOPICS
+        .iter()
+        .map(|topic| format!("\n  {:9}  {}", topic.name, topic.about));
+    lines.fold(
+        "Topics of the manual, shown by 'handscope help TOPIC':".to_owned(),
+        |all, line| all + &line,
+    )
+}
+
+/// Fails on the first word that names no command.
+fn check_command(words: &[String], mut command: Command) -> Result<(), WrongUsage> {
+    let mut path = String::new();
+    for word in words {
+        let Some(inner) = command.find_subcommand(word) else {
+            return Err(unknown(word, &path, &command));
+        };
+        let inner = inner.clone();
+        path = format!("{path} {word}");
+        command = inner;
+    }
+    Ok(())
+}
+
+fn unknown(word: &str, path: &str, command: &Command) -> WrongUsage {
+    let commands = command.get_subcommands().map(Command::get_name);
+    let (what, known): (String, Vec<&str>) = if path.is_empty() {
+        let topics = TOPICS.iter().map(|topic| topic.name);
+        (
+            "there is no command or topic".into(),
+            commands.chain(topics).collect(),
+        )
+    } else {
+        (
+            format!("'handscope{path}' has no command"),
+            commands.collect(),
+        )
+    };
+    if known.is_empty() {
+        return WrongUsage(format!("{what} '{word}'; try 'handscope help{path}'"));
+    }
+    let nearest = names::nearest(word, known.into_iter()).join(", ");
+    WrongUsage(format!(
+        "{what} '{word}'; the nearest are {nearest}; 'handscope help{path}' lists them all"
+    ))
+}
+
+/// A page of the manual as plain text: headings underlined, code indented, tables without their bars.
+fn plain(markdown: &str) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut in_code = false;
+    for line in markdown.lines() {
+        if line.starts_with("```") {
+            in_code = !in_code;
+        } else if in_code {
+            lines.push(format!("  {line}").trim_end().to_owned());
+        } else if let Some(title) = line.strip_prefix("# ") {
+            lines.extend([title.to_owned(), "=".repeat(title.chars().count())]);
+        } else if let Some(title) = line.strip_prefix("## ") {
+            lines.extend([title.to_owned(), "-".repeat(title.chars().count())]);
+        } else if let Some(row) = line.strip_prefix('|').and_then(|row| row.strip_suffix('|')) {
+            let row = row.replace("-|-", "  ").replace(" | ", "  ");
+            let row = row.strip_prefix(['-', ' ']).unwrap_or(&row);
+            let row = row.strip_suffix('-').unwrap_or(row);
+            lines.push(inline(row).trim_end().to_owned());
+        } else {
+            lines.push(inline(line));
+        }
+    }
+    lines
+}
+
+/// A line without the signs for bold and emphasis; code in quotes, as in the other messages of the program.
+fn inline(line: &str) -> String {
+    let (bullet, rest) = line
+        .strip_prefix("* ")
+        .map_or(("", line), |rest| ("* ", rest));
+    let rest = rest.replace("**", "").replace('*', "\"").replace('`', "'");
+    format!("{bullet}{rest}")
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+    use super::*;
+    use crate::cli::args::Cli;
+    use clap::error::ErrorKind;
+    use clap::{CommandFactory as _, Parser as _};
+
+    /// Columns of the narrowest common terminal.
+    const COLUMNS: usize = 80;
+    const README: &str = include_str!("../../README.md");
+
+    fn pages() -> impl Iterator<Item = (&'static str, &'static str)> {
+        let topics = TOPICS.iter().map(|topic| (topic.name, topic.text));
+        topics.chain([("README", README)])
+    }
+
+    #[test]
+    fn every_topic_is_a_page_of_plain_text_that_fits_a_terminal() {
+        for topic in TOPICS {
+            let lines = plain(topic.text);
+            assert!(lines.len() > 10, "{}", topic.name);
+            assert!(
+                lines.iter().any(|line| line.starts_with("====")),
+                "{}",
+                topic.name
+            );
+            for line in &lines {
+                assert!(
+                    line.chars().count() <= COLUMNS,
+                    "{}: too long: {line}",
+                    topic.name
+                );
+                for noise in ["```", "**", "](", "|--", "`"] {
+                    assert!(!line.contains(noise), "{}: {line}", topic.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_markdown_is_rendered_lightly() {
+        for (markdown, text) in [
+            ("# Files", "Files\n====="),
+            ("## Poses", "Poses\n-----"),
+            (
+                "* press **Arm**, then *Open all*",
+                "* press Arm, then \"Open all\"",
+            ),
+            ("run `handscope scan`", "run 'handscope scan'"),
+            ("```sh\nhandscope *\n```", "  handscope *"),
+            (
+                "| file  | holds |\n|-------|-------|\n| `a.b` | words |",
+                "file   holds\n-----  -----\n'a.b'  words",
+            ),
+        ] {
+            assert_eq!(plain(markdown).join("\n"), text);
+        }
+    }
+
+    #[test]
+    fn no_topic_hides_a_command() {
+        let command = Cli::command();
+        for topic in TOPICS {
+            assert!(
+                command.find_subcommand(topic.name).is_none(),
+                "{}",
+                topic.name
+            );
+        }
+    }
+
+    #[test]
+    fn a_wrong_word_is_met_with_the_nearest_ones() {
+        for (words, said) in [
+            (
+                &["wirin"][..],
+                "there is no command or topic 'wirin'; the nearest are wiring, ",
+            ),
+            (&["doktor"], "nearest are doctor, "),
+            (
+                &["params", "aply"],
+                "'handscope params' has no command 'aply'; the nearest are apply, ",
+            ),
+            (
+                &["watch", "tv"],
+                "'handscope watch' has no command 'tv'; try 'handscope help watch'",
+            ),
+        ] {
+            let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+            let error = check_command(&words, Cli::command()).unwrap_err();
+            assert!(error.0.contains(said), "{}", error.0);
+        }
+    }
+
+    /// A line of a shell as words. Knows quotes and comments, and ends at a pipe.
+    fn shell_words(line: &str) -> Vec<String> {
+        let (mut words, mut word, mut quoted) = (Vec::new(), String::new(), false);
+        for letter in line.chars() {
+            match letter {
+                '\'' => quoted = !quoted,
+                '#' | '|' if !quoted && word.is_empty() => break,
+                ' ' if !quoted => {
+                    words.extend((!word.is_empty()).then(|| std::mem::take(&mut word)))
+                }
+                letter => word.push(letter),
+            }
+        }
+        words.extend((!word.is_empty()).then_some(word));
+        words
+    }
+
+    /// Every command of ours in a page, and whether it stands in a code block or in the text.
+    fn commands(page: &str) -> Vec<(String, bool)> {
+        let mut found = Vec::new();
+        for (number, part) in page.split("```").enumerate() {
+            let is_block = number % 2 == 1;
+            let pieces: Vec<&str> = if is_block {
+                part.lines().collect()
+            } else {
+                part.split('`').skip(1).step_by(2).collect()
+            };
+            for piece in pieces {
+                let words: Vec<&str> = piece.split_whitespace().collect();
+                if words.first() == Some(&"handscope") {
+                    found.push((words.join(" "), is_block));
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn every_command_in_the_manual_is_one_that_the_program_takes() {
+        let mut count = 0;
+        for (name, page) in pages() {
+            for (command, is_block) in commands(page) {
+                let line = command.replace("--hand URL", "--hand sim:");
+                let Err(error) = Cli::try_parse_from(shell_words(&line)) else {
+                    count += 1;
+                    continue;
+                };
+                // A sentence may name a command without all that it needs.
+                let is_named = !is_block && error.kind() == ErrorKind::MissingRequiredArgument;
+                assert!(is_named, "{name}: {command}: {error}");
+            }
+        }
+        assert!(count > 25, "only {count} commands found");
+    }
+
+    #[test]
+    fn every_word_that_the_pages_send_a_reader_to_is_there() {
+        for (name, page) in pages() {
+            for (command, _) in commands(page) {
+                let Some(words) = command.strip_prefix("handscope help ") else {
+                    continue;
+                };
+                if ["TOPIC", "COMMAND"].contains(&words) || manual::topic(words).is_some() {
+                    continue;
+                }
+                let words: Vec<String> = words.split(' ').map(str::to_owned).collect();
+                if let Err(error) = check_command(&words, Cli::command()) {
+                    panic!("{name}: {command}: {error}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! `params apply` for a row by which the hand is found on its bus: the wire is given up and taken again at each place.
+
+use crate::cli::out::{Out, say};
+use crate::cli::params::args::ApplyArgs;
+use crate::cli::params::reach::{self, Places, SaidYes};
+use crate::cli::params::words::risks;
+use crate::params::place::{self, Moved, new_place};
+use crate::params::rows::{ParamId, Value};
+use crate::params::values::Params;
+use crate::tasks::place::{PlaceChange, PlaceReport, change_place};
+use crate::tasks::{Risks, read};
+use crate::transport::Endpoint;
+use anyhow::bail;
+use serde_json::json;
+use std::path::Path;
+
+/// Changes it, and says where the hand answers then. Whether it is there, or will be after a SAVE or a power-up; `None` if the
+/// hand held the value already.
+pub(crate) async fn change(
+    out: &mut Out,
+    args: &ApplyArgs,
+    id: ParamId,
+    wanted: Value,
+) -> anyhow::Result<Option<bool>> {
+    let files = args.common.backups()?;
+    let old = args.common.hand.clone();
+    let link = reach::open(&old).await?;
+    let rows = read::rows(&link, |_, _| ()).await;
+    drop(link);
+    let before = rows.with(|_| true)?.get(id);
+    let Some(before) = before.filter(|before| *before != wanted) else {
+        return Ok(None);
+    };
+    let mut meant = Risks::default();
+    meant.places.put(id, wanted);
+    args.consent().check(&meant)?;
+    for risk in risks(&meant) {
+        say(&format!("warning: {risk}"));
+    }
+    let new = new_place(&old, id, wanted).unwrap_or_else(|| old.clone());
+    let change = PlaceChange {
+        id,
+        before,
+        wanted,
+        places: place::Places { old, new },
+        is_followed: true,
+    };
+    let mut reach = Places::default();
+    let report = change_place(&mut reach, &change, &files, &mut SaidYes, |_| ()).await?;
+    if let Some(why) = &report.not_noted {
+        bail!(
+            "the hand was changed, and its backups could not be taken along: they are in {}: {why}",
+            files.folder().display()
+        );
+    }
+    tell(out, args, &change, &report)
+}
+
+fn tell(
+    out: &mut Out,
+    args: &ApplyArgs,
+    change: &PlaceChange,
+    report: &PlaceReport,
+) -> anyhow::Result<Option<bool>> {
+    let (old, new) = (&change.places.old, &change.places.new);
+    let Some(moved) = &report.moved else {
+        bail!("the hand at {old} does not answer any more; nothing was written");
+    };
+    let backup = &report.backup;
+    let answers_at = match moved {
+        Moved::There => Some(new.to_string()),
+        Moved::Nowhere => None,
+        _ => Some(old.to_string()),
+    };
+    let sentence = words(moved, change, backup);
+    let is_done = matches!(moved, Moved::There | Moved::Waits);
+    if args.common.json {
+        let row = json!({
+            "name": change.id,
+            "before": change.before,
+            "wanted": change.wanted,
+            "verdict": moved.name(),
+        });
+        out.object(&json!({
+            "hand": old.to_string(),
+            "backup": backup,
+            "rows": [row],
+            "applied": is_done,
+            "answers_at": answers_at,
+            "words": sentence,
+        }))?;
+    } else if is_done {
+        out.line(&sentence)?;
+        out.line(&format!("backup: {}", backup.display()))?;
+    }
+    if !is_done {
+        say(&sentence);
+    }
+    Ok(Some(is_done))
+}
+
+fn words(moved: &Moved, change: &PlaceChange, backup: &Path) -> String {
+    let (name, wanted) = (change.id.name(), change.wanted);
+    let (old, new) = (&change.places.old, &change.places.new);
+    match moved {
+        Moved::There => format!(
+            "{name} is {wanted}: the hand answers at {new} now. Not in flash: switched off and on it is at {old} again, unless 'handscope params save --yes --hand {new}' keeps it"
+        ),
+        Moved::Waits => format!(
+            "{name} is {wanted} and does not act yet: the hand still answers at {old}. After a SAVE, or a SAVE and a power-up, look for it at {new}"
+        ),
+        Moved::Stayed => {
+            format!("{name} was not changed: the hand answers at {old} and did not take it")
+        }
+        Moved::Refused { reason } => {
+            format!("{name} was not changed: {reason}; the hand answers at {old}")
+        }
+        Moved::Occupied => {
+            format!("{name} was not changed, nothing was written: another hand answers at {new}")
+        }
+        Moved::Nowhere => format!(
+            "{name} was written, and the hand answers neither at {new} nor at {old}. Nothing is in flash: switch it off and on, and it is at {old} again; if it is not, look for it with 'handscope scan --all-ids'. What it held is in {}",
+            backup.display()
+        ),
+    }
+}
+
+/// The row of a file by which this wire finds the hand, if the file wants one.
+pub(crate) fn wanted_row(
+    hand: &Endpoint,
+    chosen: &Params,
+) -> anyhow::Result<Option<(ParamId, Value)>> {
+    let is_bus = !matches!(hand, Endpoint::Tcp { .. });
+    let moves = |(id, _): &(ParamId, Value)| matches!(id, ParamId::HandId | ParamId::ReduRatio);
+    let Some((id, value)) = chosen.iter().find(|row| is_bus && moves(row)) else {
+        return Ok(None);
+    };
+    let name = id.name();
+    if chosen.iter().count() > 1 {
+        bail!("{name} is changed alone: name no other row with --only; nothing was written");
+    }
+    if new_place(hand, id, value).is_none() {
+        bail!(
+            "{name} cannot be changed through {hand}: the hand could not be followed there; nothing was written"
+        );
+    }
+    Ok(Some((id, value)))
+}

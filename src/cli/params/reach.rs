@@ -1,0 +1,77 @@
+//! How a command about parameters reaches the hand: one link at a time, and where it may be next.
+
+use crate::cli::out::{end, say};
+use crate::cli::session::{self, ANSWER_WITHIN};
+use crate::link::{Clock, LinkHandle, PollRates, RequestError};
+use crate::params::values::Params;
+use crate::tasks::hand::answers;
+use crate::tasks::place::Person;
+use crate::tasks::{Reach, read};
+use crate::transport::Endpoint;
+use anyhow::bail;
+use std::time::Duration;
+use tokio::time::sleep;
+
+/// Often enough to see whether the hand moves.
+const ONLY_THE_STATE: PollRates = PollRates {
+    state_hz: 20.0,
+    tactile_hz: 0.0,
+    settings_hz: 0.0,
+};
+/// Between giving up a port and taking it again.
+const PORT_RESTS: Duration = Duration::from_millis(300);
+
+/// Opens the link and waits for the hand. Must be called within a tokio runtime.
+pub(crate) async fn open(hand: &Endpoint) -> anyhow::Result<LinkHandle> {
+    session::reach(hand, ONLY_THE_STATE).await
+}
+
+/// All rows that can be read, and why others cannot.
+pub(crate) async fn read_rows(hand: &Endpoint) -> anyhow::Result<(Params, Vec<RequestError>)> {
+    let link = open(hand).await?;
+    let read::Rows { params, troubles } = read::rows(&link, |_, _| ()).await;
+    if params.is_empty() {
+        let why = troubles.last().map(ToString::to_string).unwrap_or_default();
+        bail!("cannot read any parameter of {hand}: {why}");
+    }
+    Ok((params, troubles))
+}
+
+/// Says what could not be read, and fails if there is any or if the command found something else.
+pub(crate) fn say_troubles(troubles: &[RequestError], is_well: bool) -> anyhow::Result<()> {
+    for trouble in troubles {
+        say(&format!("cannot read everything: {trouble}"));
+    }
+    end(is_well && troubles.is_empty())
+}
+
+/// Opens one link after the other, where the hand may be.
+#[derive(Default)]
+pub(crate) struct Places {
+    has_been_open: bool,
+}
+
+impl Reach for Places {
+    type Hand = LinkHandle;
+
+    async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
+        if std::mem::replace(&mut self.has_been_open, true) {
+            sleep(PORT_RESTS).await;
+        }
+        let link = session::open(place, ONLY_THE_STATE, Clock::start());
+        answers(&link, ANSWER_WITHIN).await.then_some(link)
+    }
+}
+
+/// Who said --yes keeps what was asked for; SAVE is a command of its own.
+pub(crate) struct SaidYes;
+
+impl Person for SaidYes {
+    async fn keeps(&mut self) -> bool {
+        true
+    }
+
+    async fn saves(&mut self) -> bool {
+        false
+    }
+}

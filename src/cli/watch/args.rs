@@ -1,0 +1,44 @@
+//! What `watch` is asked for.
+
+use crate::cli::parse::seconds;
+use crate::link::PollRates;
+use crate::transport::Endpoint;
+use std::time::Duration;
+use tokio::time::sleep;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct WatchArgs {
+    /// The hand to watch
+    #[arg(long, value_name = "URL")]
+    pub(crate) hand: Endpoint,
+    /// Seconds to watch [default: until Ctrl-C]
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) length: Option<Duration>,
+    /// Print one JSON object per line
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print the frames on the wire instead of values
+    #[arg(long)]
+    pub(crate) wire: bool,
+    /// Read as fast as the wire allows, instead of 100 states and 30 touch sweeps a second
+    #[arg(long)]
+    pub(crate) full_rate: bool,
+}
+
+impl WatchArgs {
+    /// How often the link reads.
+    pub(crate) fn rates(&self) -> PollRates {
+        match self.full_rate {
+            true => PollRates::FULL,
+            false => PollRates::default(),
+        }
+    }
+
+    /// Resolves when the time is up; never without a limit.
+    pub(crate) async fn over(&self) {
+        match self.length {
+            Some(length) => sleep(length).await,
+            None => std::future::pending().await,
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! `watch`: what the hand says, as it says it, and at the end what the link measured. Writes nothing to the hand.
+mod args;
+pub(crate) mod telemetry;
+mod wire;
+
+pub(crate) use args::WatchArgs;
+
+use crate::cli::interrupt::Interrupt;
+use crate::cli::out::{Out, say};
+use crate::cli::session::{self, ANSWER_WITHIN};
+use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
+use crate::hand::{Group, Groups, HandSample, Moment};
+use crate::link::{Clock, LinkHandle, LinkTrouble, Records};
+use crate::record::Record;
+use anyhow::bail;
+use std::pin::pin;
+use std::time::Duration;
+use tokio::time::{MissedTickBehavior, interval};
+
+/// Lines show after this at the latest; buffering them lets a full-rate stream keep up.
+const FLUSH_EACH: Duration = Duration::from_millis(50);
+/// People read no more than ten lines a second.
+const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
+
+/// Watches until the time is up or a person ends it. Fails if the hand never answered.
+pub(crate) fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
+    session::runtime()?.block_on(async {
+        let interrupt = Interrupt::listen()?;
+        match args.wire {
+            true => wire::watch(out, args, interrupt).await,
+            false => Watch::new(out, args).run(interrupt).await,
+        }
+    })
+}
+
+struct Watch<'a> {
+    args: &'a WatchArgs,
+    out: &'a mut Out,
+    clock: Clock,
+    link: LinkHandle,
+    records: Records,
+    /// State reads taken so far; each of them is a line of JSON.
+    taken: u64,
+    last_text: Option<Moment>,
+    answered: bool,
+    told: Option<LinkTrouble>,
+}
+
+/// What the watch does next.
+enum Step {
+    Record(Record),
+    Tick,
+    End,
+}
+
+impl<'a> Watch<'a> {
+    fn new(out: &'a mut Out, args: &'a WatchArgs) -> Self {
+        let clock = Clock::start();
+        let (link, records) = session::open_with_records(&args.hand, args.rates(), clock);
+        Self {
+            link,
+            records,
+            args,
+            out,
+            clock,
+            taken: 0,
+            last_text: None,
+            answered: false,
+            told: None,
+        }
+    }
+
+    async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
+        let mut tick = interval(FLUSH_EACH);
+        tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut end = pin!(self.args.over());
+        loop {
+            let step = tokio::select! {
+                biased;
+                () = interrupt.wished() => Step::End,
+                () = &mut end => Step::End,
+                _ = tick.tick() => Step::Tick,
+                record = self.records.next() => record.map_or(Step::End, Step::Record),
+            };
+            match step {
+                Step::Record(record) => self.take(record)?,
+                Step::Tick => self.tick()?,
+                Step::End => break,
+            }
+        }
+        self.finish()
+    }
+
+    fn elapsed(&self) -> Duration {
+        self.clock.now().since(Moment::ZERO)
+    }
+
+    /// Flushes the output, and reports what happened to the link.
+    fn tick(&mut self) -> anyhow::Result<()> {
+        self.out.flush()?;
+        let status = self.link.status();
+        if status.state.is_live() {
+            if self.told.take().is_some() {
+                say(&answers_again(status.moved_to.as_deref()));
+            }
+            self.answered = true;
+            return Ok(());
+        }
+        if let Some(trouble) = session::trouble(&status) {
+            self.tell(trouble)
+        } else if !self.answered && self.told.is_none() && self.elapsed() >= ANSWER_WITHIN {
+            self.give_up(&session::unanswered(&self.args.hand))
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Each cause is reported once, until the hand answers again.
+    fn tell(&mut self, trouble: &LinkTrouble) -> anyhow::Result<()> {
+        if self.told.as_ref() == Some(trouble) {
+            return Ok(());
+        }
+        self.told = Some(trouble.clone());
+        if self.answered {
+            say(&format!(
+                "link to {} lost: {trouble}; trying again",
+                self.args.hand
+            ));
+            return Ok(());
+        }
+        self.give_up(&session::no_hand(&self.args.hand, trouble))
+    }
+
+    /// Without a time limit, a hand that never answered is not waited for.
+    fn give_up(&mut self, why: &str) -> anyhow::Result<()> {
+        if self.args.length.is_some() {
+            say(&format!("{why}; trying again"));
+            return Ok(());
+        }
+        self.statistics()?;
+        bail!("{why}")
+    }
+
+    fn take(&mut self, record: Record) -> anyhow::Result<()> {
+        match record {
+            Record::Reading { sample, fresh } => self.sample(&sample, fresh),
+            _ => Ok(()),
+        }
+    }
+
+    fn sample(&mut self, sample: &HandSample, fresh: Groups) -> anyhow::Result<()> {
+        let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) else {
+            return Ok(());
+        };
+        self.answered = true;
+        self.taken += 1;
+        let at = angle.received;
+        if self.args.json {
+            return self.out.object(&sample_json(sample, at));
+        }
+        let is_soon = |last| at.since(last) < TEXT_LINE_EACH;
+        if self.last_text.is_some_and(is_soon) {
+            return Ok(());
+        }
+        self.last_text = Some(at);
+        self.out.line(&sample_text(sample, at))
+    }
+
+    fn finish(mut self) -> anyhow::Result<()> {
+        self.answered |= self.link.status().state.is_live();
+        self.statistics()?;
+        if self.answered {
+            return Ok(());
+        }
+        match self.told {
+            Some(trouble) => bail!("the hand never answered; last: {trouble}"),
+            None => bail!("the hand did not answer in time"),
+        }
+    }
+
+    /// The last line. Samples that still wait are shown first, so that lines and count agree.
+    fn statistics(&mut self) -> anyhow::Result<()> {
+        let elapsed = self.elapsed();
+        let mut stats = self.link.stats();
+        while self.taken < stats.state_reads
+            && let Some(record) = self.records.try_next()
+        {
+            self.take(record)?;
+        }
+        stats.dropped_events = self.records.lost();
+        // A sample is told before it is counted.
+        stats.state_reads = stats.state_reads.max(self.taken);
+        match self.args.json {
+            true => self.out.object(&stats_json(&stats, elapsed))?,
+            false => self.out.line(&stats_text(&stats, elapsed))?,
+        }
+        self.out.flush()
+    }
+}
+
+fn answers_again(moved_to: Option<&str>) -> String {
+    let place = moved_to.map(|port| format!("; its adapter is now at {port}"));
+    format!("the hand answers again{}", place.unwrap_or_default())
+}

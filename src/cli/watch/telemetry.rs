@@ -1,0 +1,296 @@
+//! Samples and statistics as the JSON lines and the text of `watch`. Pure; a contract with scripts.
+
+use crate::hand::{
+    Fault, Faults, Finger, HandSample, Moment, PerDof, Quantity, Status, TactileBlock,
+};
+use crate::link::{LineUse, LinkStats, PollGroup};
+use serde_json::{Map, Value, json};
+use std::fmt::Write as _;
+use std::time::Duration;
+
+/// One sample as one JSON object. What was not read is null.
+pub(crate) fn sample_json(sample: &HandSample, at: Moment) -> Value {
+    let status = sample.status.map(|status| status.value);
+    let faults = sample.faults.map(|faults| faults.value);
+    let position = sample.position.map(|position| position.value);
+    let tactile = sample.tactile.iter();
+    let tactile = tactile
+        .map(|(finger, block)| tactile_json(finger, block.map(|block| block.value).as_ref()));
+    let mut object = json!({
+        "t_s": at.secs(),
+        "position": position.map(|six| six.map(|position| position.raw())),
+        "status": status.map(|six| six.map(|status| status.name())),
+        "status_raw": status.map(|six| six.map(Status::raw)),
+        "faults": faults.map(|six| six.map(fault_names)),
+        "error_raw": faults.map(|six| six.map(Faults::raw)),
+        "tactile": tactile.collect::<Vec<_>>(),
+    });
+    let measured = Quantity::MEASURED.map(|quantity| {
+        let six = quantity.raw(sample).map(|six| six.value);
+        (quantity.row().json_name.to_owned(), json!(six))
+    });
+    if let Value::Object(fields) = &mut object {
+        fields.extend(measured);
+    }
+    object
+}
+
+/// The last line: the link's own statistics.
+pub(crate) fn stats_json(stats: &LinkStats, elapsed: Duration) -> Value {
+    json!({"stats": {
+        "elapsed_s": elapsed.as_secs_f64(),
+        "state_reads": stats.state_reads,
+        "tactile_reads": stats.tactile_reads,
+        "state_hz": rounded(stats.state_hz),
+        "tactile_hz": rounded(stats.tactile_hz),
+        "rtt_ms": {"p50": millis(stats.rtt_p50), "p99": millis(stats.rtt_p99)},
+        "timeouts": stats.timeouts,
+        "checksum_errors": stats.checksum_errors,
+        "resyncs": stats.resyncs,
+        "foreign_replies": stats.foreign_replies,
+        "foreign_requests": stats.foreign_requests,
+        "refusals": stats.refusals,
+        "reconnects": stats.reconnects,
+        "writes": stats.writes,
+        "dropped_samples": stats.dropped_events,
+        "line": line_json(&stats.line),
+    }})
+}
+
+fn line_json(line: &LineUse) -> Value {
+    let groups = PollGroup::ALL.into_iter().zip(&line.groups);
+    let groups: Map<String, Value> = groups
+        .map(|(group, used)| {
+            let value = json!({
+                "hz": rounded(used.hz),
+                "share": rounded(used.share),
+                "could_hz": rounded(used.could_hz),
+            });
+            (group_name(group).to_owned(), value)
+        })
+        .collect();
+    json!({
+        "utilisation": rounded(line.utilisation),
+        "on_wire": line.on_wire.map(rounded),
+        "turnaround_ms": millis(line.turnaround),
+        "writes_share": rounded(line.writes),
+        "split_at_gap": line.split,
+        "groups": groups,
+    })
+}
+
+const fn group_name(group: PollGroup) -> &'static str {
+    match group {
+        PollGroup::Motion => "motion",
+        PollGroup::Drives => "drives",
+        PollGroup::Temperature => "temperature",
+        PollGroup::Tactile => "tactile",
+        PollGroup::Settings => "settings",
+    }
+}
+
+/// What the line was used for, as text.
+fn line_text(line: &LineUse) -> String {
+    let percent = |share: f64| format!("{:.0} %", share * 100.0);
+    let mut text = format!("line {} used", percent(line.utilisation));
+    if let Some(on_wire) = line.on_wire {
+        let _infallible = write!(text, ", bits on it {}", percent(on_wire));
+    }
+    if let Some(ms) = millis(line.turnaround) {
+        let _infallible = write!(text, ", turnaround {ms:.2} ms");
+    }
+    for (group, used) in PollGroup::ALL.into_iter().zip(&line.groups) {
+        let (name, share) = (group_name(group), percent(used.share));
+        let _infallible = write!(text, "; {name} {:.1} Hz, {share}", used.hz);
+    }
+    text
+}
+
+/// One sample as one line of text.
+pub(crate) fn sample_text(sample: &HandSample, at: Moment) -> String {
+    let status = sample.status.map(|six| six.value.map(status_name));
+    let mut parts = vec![format!("{:9.3} s", at.secs())];
+    for (quantity, width) in Quantity::MEASURED.into_iter().zip([4, 5, 4, 3]) {
+        let row = quantity.row();
+        let (name, unit) = (row.json_name.split('_').next(), row.unit);
+        let space = if unit.is_empty() { "" } else { " " };
+        let values = quantity.raw(sample);
+        let values = values.map(|six| six.value.map(|value| format!("{value:width$}")));
+        let name = name.unwrap_or_default();
+        parts.push(format!("{name} {}{space}{unit}", joined(values)));
+    }
+    parts.push(format!("status {}", joined(status)));
+    if sample.has_fault() {
+        let faults = sample.faults.map(|six| six.value.map(fault_words));
+        parts.push(format!("faults {}", joined(faults)));
+    }
+    parts.join("  ")
+}
+
+fn joined(words: Option<PerDof<String>>) -> String {
+    words.map_or_else(|| "-".into(), |words| words.as_array().join(" "))
+}
+
+/// The statistics as lines of text.
+pub(crate) fn stats_text(stats: &LinkStats, elapsed: Duration) -> String {
+    let rtt = |value: Option<Duration>| {
+        millis(value).map_or_else(|| "-".into(), |ms| format!("{ms:.2} ms"))
+    };
+    format!(
+        "{:.1} s: {} states ({:.1} a second), {} touch sweeps ({:.1} a second), round trip {} (99 %: {})\n\
+         {} timeouts, {} checksum errors, {} resyncs, {} foreign replies, {} refusals, {} reconnects\n\
+         {}",
+        elapsed.as_secs_f64(),
+        stats.state_reads,
+        stats.state_hz,
+        stats.tactile_reads,
+        stats.tactile_hz,
+        rtt(stats.rtt_p50),
+        rtt(stats.rtt_p99),
+        stats.timeouts,
+        stats.checksum_errors,
+        stats.resyncs,
+        stats.foreign_replies,
+        stats.refusals,
+        stats.reconnects,
+        line_text(&stats.line),
+    )
+}
+
+/// One fingertip as JSON; all null if it was not read.
+pub(crate) fn tactile_json(finger: Finger, block: Option<&TactileBlock>) -> Value {
+    json!({
+        "finger": finger.name(),
+        "raw": block.map(|block| block.raw),
+        "normal_n": block.and_then(TactileBlock::normal).and_then(plain),
+        "normal_delta": block.map(|block| block.normal_delta),
+        "tangential_n": block.and_then(TactileBlock::tangential).and_then(plain),
+        "tangential_delta": block.map(|block| block.tangential_delta),
+        "direction_deg": block.and_then(TactileBlock::direction_deg),
+        "proximity": block.map(|block| block.proximity),
+        "check_ok": block.map(TactileBlock::check_ok),
+    })
+}
+
+/// A status in one word; a code that the manual does not list keeps its number.
+pub(crate) fn status_name(status: Status) -> String {
+    match status {
+        Status::Unknown(raw) => format!("unknown({raw})"),
+        known => known.name().into(),
+    }
+}
+
+/// The faults of one joint, lowest bit first.
+pub(crate) fn fault_names(faults: Faults) -> Vec<&'static str> {
+    faults.iter().map(Fault::name).collect()
+}
+
+fn fault_words(faults: Faults) -> String {
+    match fault_names(faults) {
+        names if names.is_empty() => "none".into(),
+        names => names.join("+"),
+    }
+}
+
+/// The shortest decimal that stands for this float: 0.3, not 0.30000001192092896.
+fn plain(newtons: f32) -> Option<f64> {
+    newtons.to_string().parse().ok()
+}
+
+fn millis(value: Option<Duration>) -> Option<f64> {
+    value.map(|value| rounded(value.as_secs_f64() * 1000.0))
+}
+
+/// Three digits after the point: more is noise.
+fn rounded(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{Reply, register};
+
+    #[test]
+    fn what_was_not_read_is_null() {
+        let json = sample_json(&HandSample::default(), Moment::from_micros(1_500_000));
+        assert_eq!(json["t_s"], 1.5);
+        for key in [
+            "angle",
+            "position",
+            "force_g",
+            "current_ma",
+            "temp_c",
+            "status",
+            "status_raw",
+            "faults",
+            "error_raw",
+        ] {
+            assert!(json[key].is_null(), "{key}");
+        }
+        assert_eq!(json["tactile"].as_array().unwrap().len(), 5);
+        assert_eq!(json["tactile"][0]["finger"], "little");
+        assert!(json["tactile"][4]["raw"].is_null());
+    }
+
+    #[test]
+    fn six_values_stand_in_register_order_with_names_and_raw_codes() {
+        let mut bytes = [0u8; 78];
+        bytes[0..2].copy_from_slice(&1000i16.to_le_bytes());
+        bytes[10..12].copy_from_slice(&7i16.to_le_bytes());
+        bytes[60] = 0x06;
+        bytes[66] = 3;
+        bytes[67] = 4;
+        bytes[77] = 255;
+        let mut sample = HandSample::default();
+        let at = Moment::ZERO;
+        sample.take(&Reply {
+            span: register::STATE,
+            bytes: &bytes,
+            asked: at,
+            received: at,
+        });
+        let json = sample_json(&sample, at);
+        assert_eq!(json["angle"], json!([1000, 0, 0, 0, 0, 7]));
+        assert_eq!(
+            json["faults"][0],
+            json!(["over_temperature", "over_current"])
+        );
+        assert_eq!(json["error_raw"][0], 6);
+        assert_eq!(json["status"][0], "force_reached");
+        assert_eq!(json["status"][1], "unknown");
+        assert_eq!(json["status_raw"][1], 4);
+        assert_eq!(json["temp_c"][5], 255);
+        assert!(json["position"].is_null());
+        assert!(sample_text(&sample, at).contains("over_temperature+over_current"));
+    }
+
+    #[test]
+    fn the_statistics_have_the_documented_keys() {
+        let json = stats_json(&LinkStats::default(), Duration::from_secs(5));
+        for key in [
+            "elapsed_s",
+            "state_reads",
+            "tactile_reads",
+            "state_hz",
+            "tactile_hz",
+            "rtt_ms",
+            "timeouts",
+            "checksum_errors",
+            "resyncs",
+            "reconnects",
+            "line",
+        ] {
+            assert!(!json["stats"][key].is_null(), "{key}");
+        }
+        assert!(json["stats"]["rtt_ms"]["p50"].is_null());
+        let line = &json["stats"]["line"];
+        assert_eq!(line["utilisation"], 0.0);
+        assert!(line["on_wire"].is_null() && line["turnaround_ms"].is_null());
+        for group in ["motion", "drives", "temperature", "tactile", "settings"] {
+            for key in ["hz", "share", "could_hz"] {
+                assert!(line["groups"][group][key].is_number(), "{group} {key}");
+            }
+        }
+    }
+}

@@ -1,0 +1,374 @@
+//! The packets of the maker's own USB-CAN adapter, alike in both directions. No port, no clock.
+//!
+//! Known, from the maker's public CAN demos and from records of a hand behind such an adapter: `AA AA`, the identifier
+//! (4 bytes, low byte first), 8 bytes of data of which the length counts, the length, `00 01 00`, the sum of all these,
+//! `55 55`; from the adapter, AA, 55 and A5 between head and tail come with A5 before them; the serial side has
+//! 115200 bit/s. The adapters of Robotell, which python-can knows, have the same packets; there the three bytes are the
+//! channel (FF: the adapter's own settings), 29 or 11 bits, and data or remote frame, and A5 is put in both ways.
+//!
+//! Not known: whether the maker's adapter takes settings at all, such as a bit rate; what it says when the bus does not
+//! take a frame; and whether it wants A5 put in: the demos put none, and so both are read here. Settings are never sent.
+
+use crate::codec::can::{CanFrame, Payload};
+use arrayvec::ArrayVec;
+
+/// The longest packet: each byte between head and tail with A5 before it.
+pub const PACKET_MAX: usize = 2 * AROUND + 2 * BODY;
+/// Bytes of a packet without any A5.
+pub const PACKET_MIN: usize = 2 * AROUND + BODY;
+
+/// Head or tail.
+const AROUND: usize = 2;
+/// Identifier, data, length, channel, bits, kind, sum.
+const BODY: usize = 17;
+const HEAD: u8 = 0xAA;
+const TAIL: u8 = 0x55;
+/// Comes before a byte that is data, though it looks like head, tail or itself.
+const ESCAPE: u8 = 0xA5;
+/// The channel of the adapter's own settings.
+const SETTINGS: u8 = 0xFF;
+/// The 29-bit kind of identifier, and the kind of frame that carries data.
+const LONG_ID: u8 = 1;
+const DATA: u8 = 0;
+
+/// A packet as it is sent.
+pub type Packet = ArrayVec<u8, PACKET_MAX>;
+
+/// What a packet brings.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Content {
+    /// A data frame with a 29-bit identifier.
+    Frame(CanFrame),
+    /// Anything else that is well-formed: 11-bit and remote frames, the adapter's settings.
+    Other,
+}
+
+/// What stands at the beginning of some bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Found {
+    /// A packet of so many bytes.
+    Packet(usize, Content),
+    /// One of so many bytes whose sum is wrong.
+    BadSum {
+        /// Its bytes.
+        len: usize,
+        /// As sent.
+        got: u8,
+        /// Of what was sent.
+        want: u8,
+    },
+    /// Too few bytes to tell.
+    Open,
+    /// No packet begins here.
+    Nothing,
+}
+
+/// What a decoder met apart from good packets. Counts only grow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct NoiseCounts {
+    /// Packets whose sum was wrong.
+    pub checksum_errors: u64,
+    /// Runs of bytes that had to be skipped to find the next packet.
+    pub resyncs: u64,
+    /// Bytes skipped.
+    pub skipped_bytes: u64,
+}
+
+/// The packet that carries a frame.
+#[must_use]
+pub fn encode(frame: &CanFrame) -> Packet {
+    let len = u8::try_from(frame.data.len()).unwrap_or_default();
+    let data = frame.data.iter().copied().chain(std::iter::repeat(0));
+    let mut body: ArrayVec<u8, BODY> = frame.id.to_le_bytes().into_iter().collect();
+    body.extend(data.take(8).chain([len, 0, LONG_ID, DATA]));
+    body.push(sum(&body));
+    let mut packet = Packet::from_iter([HEAD, HEAD]);
+    for byte in body {
+        if is_special(byte) {
+            packet.push(ESCAPE);
+        }
+        packet.push(byte);
+    }
+    packet.extend([TAIL, TAIL]);
+    packet
+}
+
+/// Looks at the beginning of some bytes: for a packet with A5 put in, and for one without.
+#[must_use]
+pub fn inspect(bytes: &[u8]) -> Found {
+    let rest = match bytes {
+        [] | [HEAD] => return Found::Open,
+        [HEAD, HEAD, rest @ ..] => rest,
+        _ => return Found::Nothing,
+    };
+    if let Some((body, [TAIL, TAIL, ..])) = rest.split_first_chunk::<BODY>()
+        && let Found::Packet(_, content) = judged(PACKET_MIN, body)
+    {
+        return Found::Packet(PACKET_MIN, content);
+    }
+    match unescaped(rest) {
+        Ok(Some((body, len))) => judged(len + 2 * AROUND, &body),
+        Ok(None) => Found::Open,
+        Err(NoBody) if rest.len() < BODY + AROUND => Found::Open,
+        Err(NoBody) => Found::Nothing,
+    }
+}
+
+/// The bytes do not go on as they must.
+struct NoBody;
+
+/// The body without the A5 that were put in, and the bytes that it takes with them; none if it is not whole.
+fn unescaped(bytes: &[u8]) -> Result<Option<([u8; BODY], usize)>, NoBody> {
+    let (mut body, mut len) = (ArrayVec::<u8, BODY>::new(), 0);
+    for (taken, byte) in split_escapes(bytes).take(BODY) {
+        if taken == 1 && is_special(byte) {
+            let is_open = byte == ESCAPE && len + 1 == bytes.len();
+            return if is_open { Ok(None) } else { Err(NoBody) };
+        }
+        body.push(byte);
+        len += taken;
+    }
+    match (body.into_inner(), bytes.get(len..)) {
+        (Ok(body), Some([TAIL, TAIL, ..])) => Ok(Some((body, len))),
+        (Ok(_), Some([] | [TAIL])) | (Err(_), _) => Ok(None),
+        _ => Err(NoBody),
+    }
+}
+
+/// Each byte with the number of bytes that it takes: two where A5 was put in before it.
+pub fn split_escapes(mut bytes: &[u8]) -> impl Iterator<Item = (usize, u8)> {
+    std::iter::from_fn(move || {
+        let (taken, byte, after) = match bytes {
+            [ESCAPE, byte, after @ ..] if is_special(*byte) => (2, *byte, after),
+            [byte, after @ ..] => (1, *byte, after),
+            [] => return None,
+        };
+        bytes = after;
+        Some((taken, byte))
+    })
+}
+
+fn judged(len: usize, body: &[u8; BODY]) -> Found {
+    let [a, b, c, d, data @ .., count, channel, bits, kind, got] = body;
+    let want = sum(body.split_last().map_or(&[], |(_, summed)| summed));
+    if *got != want {
+        return Found::BadSum {
+            len,
+            got: *got,
+            want,
+        };
+    }
+    let id = u32::from_le_bytes([*a, *b, *c, *d]);
+    let data = data.get(..usize::from(*count)).map(Payload::try_from);
+    Found::Packet(
+        len,
+        match (data, *channel != SETTINGS, *bits, *kind) {
+            (Some(Ok(data)), true, LONG_ID, DATA) if id <= 0x1FFF_FFFF => {
+                Content::Frame(CanFrame { id, data })
+            }
+            _ => Content::Other,
+        },
+    )
+}
+
+fn sum(bytes: &[u8]) -> u8 {
+    bytes.iter().fold(0, |sum, byte| sum.wrapping_add(*byte))
+}
+
+/// True for a byte that has A5 before it.
+const fn is_special(byte: u8) -> bool {
+    matches!(byte, HEAD | TAIL | ESCAPE)
+}
+
+/// Reads either direction.
+#[derive(Debug, Clone, Default)]
+pub struct PacketDecoder {
+    buffer: Packet,
+    /// Within a run of skipped bytes, which counts once.
+    skipping: bool,
+    counts: NoiseCounts,
+}
+
+impl PacketDecoder {
+    /// Takes the next byte; gives what it completes.
+    pub fn push(&mut self, byte: u8) -> Option<Content> {
+        if self.buffer.is_full() {
+            self.skip();
+        }
+        self.buffer.push(byte);
+        loop {
+            match inspect(&self.buffer) {
+                Found::Packet(len, content) => {
+                    self.buffer.drain(..len);
+                    self.skipping = false;
+                    return Some(content);
+                }
+                Found::Open => return None,
+                Found::BadSum { .. } => {
+                    self.counts.checksum_errors += 1;
+                    self.skip();
+                }
+                Found::Nothing => self.skip(),
+            }
+        }
+    }
+
+    /// What was no good packet.
+    #[must_use]
+    pub const fn counts(&self) -> NoiseCounts {
+        self.counts
+    }
+
+    /// Skips one byte only: the next packet may begin inside what looked like one.
+    fn skip(&mut self) {
+        self.counts.resyncs += u64::from(!self.skipping);
+        self.counts.skipped_bytes += 1;
+        self.skipping = true;
+        self.buffer.remove(0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+    use super::*;
+    use crate::codec::can;
+    use crate::hand::Span;
+    use proptest::prelude::*;
+
+    fn hex(text: &str) -> Vec<u8> {
+        let bytes = text.split_whitespace();
+        bytes
+            .map(|byte| u8::from_str_radix(byte, 16).unwrap())
+            .collect()
+    }
+
+    fn frame(id: u32, data: &[u8]) -> Content {
+        Content::Frame(CanFrame {
+            id,
+            data: Payload::try_from(data).unwrap(),
+        })
+    }
+
+    fn read(bytes: &[u8]) -> (Vec<Content>, NoiseCounts) {
+        let mut decoder = PacketDecoder::default();
+        let found = bytes
+            .iter()
+            .filter_map(|byte| decoder.push(*byte))
+            .collect();
+        (found, decoder.counts())
+    }
+
+    /// ANGLE_ACT(3) of hand 1 and its answer 969, as a hand gave it; its sum is 55.
+    const ASKED: &str = "AA AA 01 00 84 01 02 00 00 00 00 00 00 00 01 00 01 00 8A 55 55";
+    const ANSWERED: &str = "AA AA 01 00 84 01 C9 03 00 00 00 00 00 00 02 00 01 00 A5 55 55 55";
+
+    #[test]
+    fn the_packets_of_a_real_hand_and_of_the_makers_demos_are_understood() {
+        for (text, content) in [
+            (ASKED, frame(0x0184_0001, &[2])),
+            (ANSWERED, frame(0x0184_0001, &[0xC9, 3])),
+            // 500 to ANGLE_SET(0), the rest as padding that counts, and the hand's answer to it.
+            (
+                "AA AA 01 80 73 05 F4 01 FF FF FF FF FF FF 08 00 01 00 F1 55 55",
+                frame(0x0573_8001, &[0xF4, 1, 255, 255, 255, 255, 255, 255]),
+            ),
+            (
+                "AA AA 01 80 73 05 08 00 00 00 00 00 00 00 01 00 01 00 03 55 55",
+                frame(0x0573_8001, &[8]),
+            ),
+            // A sum of 55, and data of AA, 55 and A5, as the demos send them.
+            (
+                "AA AA 01 00 84 01 C9 03 00 00 00 00 00 00 02 00 01 00 55 55 55",
+                frame(0x0184_0001, &[0xC9, 3]),
+            ),
+            (
+                "AA AA 01 00 75 05 AA 55 A5 55 00 00 00 00 04 00 01 00 79 55 55",
+                frame(0x0575_0001, &[0xAA, 0x55, 0xA5, 0x55]),
+            ),
+            // 11 bits, a remote frame, a setting (1 Mbit/s, as Robotell's adapters take it), a length of 9.
+            (
+                "AA AA 23 01 00 00 00 00 00 00 00 00 00 00 01 00 00 00 25 55 55",
+                Content::Other,
+            ),
+            (
+                "AA AA 01 00 84 01 00 00 00 00 00 00 00 00 01 00 01 01 89 55 55",
+                Content::Other,
+            ),
+            (
+                "AA AA D0 FE FF 01 40 42 0F 00 00 00 00 00 04 FF 01 00 63 55 55",
+                Content::Other,
+            ),
+            (
+                "AA AA 01 00 84 01 00 00 00 00 00 00 00 00 09 00 01 00 90 55 55",
+                Content::Other,
+            ),
+        ] {
+            let (found, noise) = read(&hex(text));
+            assert_eq!(
+                (found, noise),
+                (vec![content], NoiseCounts::default()),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_sent_are_the_bytes_that_worked() {
+        let ask = can::read_request(1, Span::new(1552, 2)).unwrap();
+        assert_eq!(encode(&ask)[..], hex(ASKED)[..]);
+        let answer = can::frame(can::Way::Read, 1, 1552, &[0xC9, 3]).unwrap();
+        assert_eq!(encode(&answer)[..], hex(ANSWERED)[..]);
+        let all = can::frame(can::Way::Write, 0xAA, 1492, &[0x55; 8]).unwrap();
+        assert!(encode(&all).len() <= PACKET_MAX);
+    }
+
+    #[test]
+    fn packets_come_out_of_glued_cut_and_damaged_streams() {
+        let (ask, answer) = (hex(ASKED), hex(ANSWERED));
+        let good = [frame(0x0184_0001, &[2]), frame(0x0184_0001, &[0xC9, 3])];
+        let (found, noise) = read(&[&ask[..], &answer].concat());
+        assert_eq!((&found[..], noise), (&good[..], NoiseCounts::default()));
+        let mut bad_sum = ask.clone();
+        bad_sum[6] ^= 1;
+        let mut no_tail = ask.clone();
+        no_tail[20] = 0;
+        for (noise, sums) in [
+            (&b"\x00\xFF"[..], 0),
+            (b"\xAA", 0),
+            (b"\xAA\xAA", 0),
+            (b"\xAA\xAA\xA5", 0),
+            (b"\xAA\xAA\x01\x00\x84", 0),
+            (&answer[..20], 0),
+            (&ask[5..], 0),
+            (&bad_sum, 1),
+            (&no_tail, 0),
+            (&[0x11; 300], 0),
+            (&[HEAD; 300], 0),
+        ] {
+            let (found, counts) = read(&[noise, &ask, &answer].concat());
+            assert_eq!(found, good, "{noise:02X?}");
+            let want = NoiseCounts {
+                checksum_errors: sums,
+                resyncs: 1,
+                skipped_bytes: noise.len() as u64,
+            };
+            assert_eq!(counts, want, "{noise:02X?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn frames_read_back(id in 0_u32..=0x1FFF_FFFF, data in prop::collection::vec(prop_oneof![Just(0xA5), Just(0x55), Just(0xAA), any::<u8>()], 0..9)) {
+            let frame = CanFrame { id, data: Payload::try_from(&data[..]).unwrap() };
+            let (found, noise) = read(&encode(&frame));
+            prop_assert_eq!((found, noise), (vec![Content::Frame(frame)], NoiseCounts::default()));
+        }
+
+        #[test]
+        fn no_bytes_make_it_panic_or_grow(bytes in prop::collection::vec(prop_oneof![Just(0xA5), Just(0x55), Just(0xAA), any::<u8>()], 0..400)) {
+            let (found, noise) = read(&bytes);
+            prop_assert!((found.len() * PACKET_MIN) as u64 + noise.skipped_bytes <= bytes.len() as u64);
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! The one table of measured quantities: names, units, digits and scales, as history, plots, tables and text show them.
+
+use crate::hand::dof::PerDof;
+use crate::hand::moment::Timed;
+use crate::hand::reading::{AngleReading, CurrentReading, ForceReading, TemperatureReading};
+use crate::hand::sample::{Group, HandSample};
+
+/// What is measured of one joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// ANGLE_ACT, 0..=1000.
+    Angle,
+    /// FORCE_ACT, g.
+    Force,
+    /// CURRENT, mA.
+    Current,
+    /// TEMP, °C.
+    Temperature,
+    /// ANGLE_SET as the hand holds it, 0..=1000; a joint that is left alone has none.
+    TargetAngle,
+}
+
+/// What is measured at one fingertip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Touch {
+    /// Normal force, N.
+    Normal,
+    /// Tangential force, N.
+    Tangential,
+}
+
+/// One row of the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QuantityRow {
+    /// The stable name in tables.
+    pub name: &'static str,
+    /// The stable name of the six values in the JSON of a sample; empty where a sample does not tell them so.
+    pub json_name: &'static str,
+    /// The unit in ASCII, as tables and text have it; empty if there is none.
+    pub unit: &'static str,
+    /// Digits after the point.
+    pub decimals: usize,
+    /// The scale of a plot never shows less than this.
+    pub least_scale: (f64, f64),
+    /// Steps of such a scale.
+    pub scale_steps: [f64; 8],
+}
+
+/// Steps of grams and milliamperes.
+const WIDE: [f64; 8] = [50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0];
+/// Steps of newtons.
+const NEWTONS: [f64; 8] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
+
+const ANGLE: QuantityRow = QuantityRow {
+    name: "angle",
+    json_name: "angle",
+    unit: "",
+    decimals: 0,
+    least_scale: (0.0, 1000.0),
+    scale_steps: [
+        250.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0, 50_000.0,
+    ],
+};
+const FORCE: QuantityRow = QuantityRow {
+    name: "force",
+    json_name: "force_g",
+    unit: "g",
+    decimals: 0,
+    least_scale: (0.0, 200.0),
+    scale_steps: WIDE,
+};
+const CURRENT: QuantityRow = QuantityRow {
+    name: "current",
+    json_name: "current_ma",
+    unit: "mA",
+    ..FORCE
+};
+const TEMPERATURE: QuantityRow = QuantityRow {
+    name: "temperature",
+    json_name: "temp_c",
+    unit: "C",
+    decimals: 0,
+    least_scale: (20.0, 40.0),
+    scale_steps: [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0],
+};
+const TARGET_ANGLE: QuantityRow = QuantityRow {
+    name: "target_angle",
+    json_name: "",
+    ..ANGLE
+};
+const NORMAL: QuantityRow = QuantityRow {
+    name: "normal",
+    json_name: "",
+    unit: "N",
+    decimals: 2,
+    least_scale: (0.0, 2.0),
+    scale_steps: NEWTONS,
+};
+const TANGENTIAL: QuantityRow = QuantityRow {
+    name: "tangential",
+    least_scale: (0.0, 1.0),
+    ..NORMAL
+};
+
+impl Quantity {
+    /// All, in the order of the variants.
+    pub const ALL: [Self; 5] = [
+        Self::Angle,
+        Self::Force,
+        Self::Current,
+        Self::Temperature,
+        Self::TargetAngle,
+    ];
+
+    /// Those that the hand measures.
+    pub const MEASURED: [Self; 4] = [Self::Angle, Self::Force, Self::Current, Self::Temperature];
+
+    /// Its row of the table.
+    #[must_use]
+    pub const fn row(self) -> &'static QuantityRow {
+        match self {
+            Self::Angle => &ANGLE,
+            Self::Force => &FORCE,
+            Self::Current => &CURRENT,
+            Self::Temperature => &TEMPERATURE,
+            Self::TargetAngle => &TARGET_ANGLE,
+        }
+    }
+
+    /// The group of a sample that holds it.
+    #[must_use]
+    pub const fn group(self) -> Group {
+        match self {
+            Self::Angle => Group::Angle,
+            Self::Force => Group::Force,
+            Self::Current => Group::Current,
+            Self::Temperature => Group::Temperature,
+            Self::TargetAngle => Group::AngleSet,
+        }
+    }
+
+    /// The numbers of a sample as the hand sent them; none of targets, which are no measurement.
+    #[must_use]
+    pub fn raw(self, sample: &HandSample) -> Option<Timed<PerDof<i16>>> {
+        match self {
+            Self::Angle => six(sample.angle, AngleReading::raw),
+            Self::Force => six(sample.force, ForceReading::raw),
+            Self::Current => six(sample.current, CurrentReading::raw),
+            Self::Temperature => six(sample.temperature, |value| value.raw().into()),
+            Self::TargetAngle => None,
+        }
+    }
+
+    /// The numbers of a sample that the manual knows; only these may feed logic.
+    #[must_use]
+    pub fn documented(self, sample: &HandSample) -> Option<Timed<PerDof<Option<i16>>>> {
+        match self {
+            Self::Angle => six(sample.angle, AngleReading::documented),
+            Self::Force => six(sample.force, ForceReading::documented),
+            Self::Current => six(sample.current, CurrentReading::documented),
+            Self::Temperature => six(sample.temperature, |value| {
+                TemperatureReading::documented(value).map(i16::from)
+            }),
+            Self::TargetAngle => six(sample.angle_set, |target| {
+                target?.angle().map(|angle| angle.get())
+            }),
+        }
+    }
+}
+
+fn six<T, U>(
+    group: Option<Timed<PerDof<T>>>,
+    value: impl FnMut(T) -> U,
+) -> Option<Timed<PerDof<U>>> {
+    group.map(|group| Timed {
+        value: group.value.map(value),
+        asked: group.asked,
+        received: group.received,
+    })
+}
+
+impl Touch {
+    /// All, in the order of the variants.
+    pub const ALL: [Self; 2] = [Self::Normal, Self::Tangential];
+
+    /// Its row of the table.
+    #[must_use]
+    pub const fn row(self) -> &'static QuantityRow {
+        match self {
+            Self::Normal => &NORMAL,
+            Self::Tangential => &TANGENTIAL,
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Targets and limits for an armed hand: the newest of each joint wins, and none outlives its arming.
+
+use crate::hand::dof::PerDof;
+use crate::hand::units::{Force, Speed, Target};
+
+/// One arming. Setpoints carry it, so that none from an earlier arming can act.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct ArmEpoch(pub u64);
+
+/// New targets and limits for an armed hand. Joints that are `None` keep what they were told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Setpoints {
+    /// The arming they belong to; in any other they are dropped.
+    pub epoch: ArmEpoch,
+    /// Angles to go to.
+    pub angle: PerDof<Option<Target>>,
+    /// Force thresholds.
+    pub force: PerDof<Option<Force>>,
+    /// Speeds.
+    pub speed: PerDof<Option<Speed>>,
+}
+
+impl Setpoints {
+    /// Nothing new, for one arming.
+    #[must_use]
+    pub const fn none(epoch: ArmEpoch) -> Self {
+        Self {
+            epoch,
+            angle: PerDof::splat(None),
+            force: PerDof::splat(None),
+            speed: PerDof::splat(None),
+        }
+    }
+
+    /// True if there is nothing to send.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        *self == Self::none(self.epoch)
+    }
+
+    /// Puts newer values over older ones, joint by joint. Another arming replaces all.
+    pub fn merge(&mut self, newer: &Self) {
+        if self.epoch != newer.epoch {
+            *self = *newer;
+            return;
+        }
+        put(&mut self.angle, &newer.angle);
+        put(&mut self.force, &newer.force);
+        put(&mut self.speed, &newer.speed);
+    }
+}
+
+fn put<T: Copy>(older: &mut PerDof<Option<T>>, newer: &PerDof<Option<T>>) {
+    for (dof, value) in newer.iter() {
+        if value.is_some() {
+            older[dof] = *value;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::hand::dof::Dof;
+    use crate::hand::units::Angle;
+
+    fn one(epoch: u64, dof: Dof, angle: i16) -> Setpoints {
+        let mut setpoints = Setpoints::none(ArmEpoch(epoch));
+        setpoints.angle[dof] = Some(Target::Go(Angle::nearest(angle)));
+        setpoints
+    }
+
+    #[test]
+    fn the_newest_value_of_each_joint_wins() {
+        let mut all = one(1, Dof::Little, 100);
+        all.merge(&one(1, Dof::Index, 300));
+        all.merge(&one(1, Dof::Little, 200));
+        assert_eq!(all.angle[Dof::Little].unwrap().raw(), 200);
+        assert_eq!(all.angle[Dof::Index].unwrap().raw(), 300);
+    }
+
+    #[test]
+    fn another_arming_forgets_older_setpoints() {
+        let mut all = one(1, Dof::Little, 100);
+        all.merge(&one(2, Dof::Index, 300));
+        assert_eq!(all, one(2, Dof::Index, 300));
+    }
+}

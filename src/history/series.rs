@@ -1,0 +1,338 @@
+//! The whole history of one hand: which reading goes to which line. How lines are kept is told in the siblings.
+
+use crate::hand::register::ANGLE_SET;
+use crate::hand::{
+    Angle, Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, RegisterWrite, Span,
+    Timed, Touch,
+};
+use crate::history::mark::{Mark, MarkKind, Marks};
+use crate::history::reading::{Reading, Spread, Summary};
+use crate::history::table::{Table, TableGroup};
+use crate::history::trace::Trace;
+use crate::history::track::{Slice, Track};
+use std::collections::BTreeSet;
+
+/// The longest window of the plots.
+pub const HISTORY_SECONDS: u32 = 3600;
+/// Rows kept of each group: an hour at 200 Hz, the most a serial line carries; a faster link holds less time. About
+/// 80 MB with an hour at 100 Hz and fingertips at 30 Hz, and 230 MB when all are full.
+pub const HISTORY_ROWS: usize = 200 * HISTORY_SECONDS as usize;
+/// Rows kept of the fingertips' channels: ten minutes at 30 Hz, in about 6 MB for all five fingertips.
+pub const CHANNEL_ROWS: usize = 30 * 600;
+/// Channels of a fingertip.
+const CHANNELS: usize = 8;
+/// A longer silence than this breaks measured lines.
+const GAP_AFTER_S: f64 = 0.5;
+/// The same for targets, which are read about twice a second.
+const TARGET_GAP_AFTER_S: f64 = 3.0;
+
+/// Rows of times: one for each quantity of the joints, one for both of each fingertip, one for the channels of each.
+const TRACKS: usize = FIRST_CHANNELS + Finger::ALL.len();
+const FIRST_TIP: usize = Quantity::ALL.len();
+const FIRST_CHANNELS: usize = FIRST_TIP + Finger::ALL.len();
+
+/// One line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Series {
+    /// Of a joint.
+    Joint(Quantity, Dof),
+    /// Of a fingertip.
+    Tip(Touch, Finger),
+    /// Counts of one of the eight channels of a fingertip, from 0; kept for [`CHANNEL_ROWS`] only.
+    Channel(u8, Finger),
+}
+
+impl Series {
+    /// The head of its column in a table: what, of which part, unit. Stable.
+    #[must_use]
+    pub fn column_name(self) -> String {
+        let (row, part) = match self {
+            Self::Joint(quantity, dof) => (quantity.row(), dof.name()),
+            Self::Tip(touch, finger) => (touch.row(), finger.name()),
+            Self::Channel(channel, finger) => {
+                return format!("channel_{}_{}", channel + 1, finger.name());
+            }
+        };
+        let unit = if row.unit.is_empty() { "" } else { "_" };
+        format!("{}_{part}{unit}{}", row.name, row.unit)
+    }
+
+    /// Which row of times it is on.
+    const fn track(self) -> usize {
+        match self {
+            Self::Joint(quantity, _) => quantity as usize,
+            Self::Tip(_, finger) => FIRST_TIP + finger.index(),
+            Self::Channel(_, finger) => FIRST_CHANNELS + finger.index(),
+        }
+    }
+
+    /// Its place there.
+    const fn place(self) -> usize {
+        match self {
+            Self::Joint(_, dof) => dof.index(),
+            Self::Tip(touch, _) => touch as usize,
+            Self::Channel(channel, _) => channel as usize,
+        }
+    }
+}
+
+/// What was measured over the last minutes, by the time it was received.
+#[derive(Debug, Clone)]
+pub struct History {
+    /// As [`Series::track`] counts them.
+    tracks: Vec<Track>,
+    /// The newest targets, as sent or as read back.
+    targets: PerDof<Option<f32>>,
+    sent_at: Option<Moment>,
+    marks: Marks,
+}
+
+impl Default for History {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A row of times without a row.
+fn empty_track(number: usize) -> Track {
+    let of_targets = Quantity::TargetAngle as usize;
+    let gap_after_s = if number == of_targets {
+        TARGET_GAP_AFTER_S
+    } else {
+        GAP_AFTER_S
+    };
+    let (quantities, rows) = match number {
+        ..FIRST_TIP => (Dof::ALL.len(), HISTORY_ROWS),
+        FIRST_TIP..FIRST_CHANNELS => (Touch::ALL.len(), HISTORY_ROWS),
+        _ => (CHANNELS, CHANNEL_ROWS),
+    };
+    Track::new(number, quantities, rows, gap_after_s)
+}
+
+impl History {
+    /// Empty.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            tracks: (0..TRACKS).map(empty_track).collect(),
+            targets: PerDof::splat(None),
+            sent_at: None,
+            marks: Marks::default(),
+        }
+    }
+
+    /// Takes in what is new in a sample. Values that are not documented are not known.
+    pub fn push(&mut self, sample: &HandSample, fresh: Groups) {
+        for quantity in Quantity::ALL {
+            let Some(six) = quantity
+                .documented(sample)
+                .filter(|_| fresh.contains(quantity.group()))
+            else {
+                continue;
+            };
+            let six = Timed {
+                value: six.value.map(|value| value.map(f32::from)),
+                asked: six.asked,
+                received: six.received,
+            };
+            match quantity {
+                Quantity::TargetAngle => self.read_back(&six),
+                _ => self.add(quantity as usize, six.received, six.value.as_array()),
+            }
+        }
+        for (finger, block) in sample.tactile.iter() {
+            let Some(block) = block.filter(|_| fresh.contains(Group::Tactile(finger))) else {
+                continue;
+            };
+            let finite = |value: Option<f32>| value.filter(|value| value.is_finite());
+            let forces = [block.value.normal(), block.value.tangential()].map(finite);
+            self.add(FIRST_TIP + finger.index(), block.received, &forces);
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "exact below 16.7 million counts"
+            )]
+            let counts = block.value.raw.map(|raw| Some(raw as f32));
+            self.add(FIRST_CHANNELS + finger.index(), block.received, &counts);
+        }
+    }
+
+    fn add(&mut self, track: usize, at: Moment, values: &[Option<f32>]) {
+        if let Some(track) = self.tracks.get_mut(track) {
+            track.push(at.secs(), values.iter().copied());
+        }
+    }
+
+    /// What the hand holds is a check: what was read before the newest write says nothing of it.
+    fn read_back(&mut self, targets: &Timed<PerDof<Option<f32>>>) {
+        if self.sent_at.is_none_or(|sent| targets.asked > sent) {
+            self.targets = targets.value;
+            self.add_targets(targets.received, &targets.value);
+        }
+    }
+
+    fn add_targets(&mut self, at: Moment, targets: &PerDof<Option<f32>>) {
+        self.add(Quantity::TargetAngle as usize, at, targets.as_array());
+    }
+
+    /// Takes a write that left for the hand: targets step at the moment they were sent.
+    pub fn sent(&mut self, at: Moment, write: &RegisterWrite) {
+        let before = self.targets;
+        for (dof, target) in self.targets.iter_mut() {
+            let len = ANGLE_SET.element_len();
+            let at = ANGLE_SET.address + len * u16::try_from(dof.index()).unwrap_or_default();
+            let raw = write.span().slice(write.bytes(), Span::new(at, len));
+            let raw = raw.and_then(<[u8]>::first_chunk);
+            let raw = raw.map(|raw| i16::from_le_bytes(*raw));
+            if let Some(angle) = raw.and_then(|raw| Angle::new(raw).ok()) {
+                *target = Some(f32::from(angle.get()));
+            }
+        }
+        if self.targets != before {
+            self.sent_at = Some(at);
+            self.add_targets(at, &before);
+            self.add_targets(at, &self.targets.clone());
+        }
+    }
+
+    /// The link is lost: all lines break here.
+    pub fn gap(&mut self, at: Moment) {
+        (self.targets, self.sent_at) = (PerDof::splat(None), None);
+        for track in &mut self.tracks {
+            track.gap(at.secs());
+        }
+    }
+
+    /// Notes a moment worth a line across all plots.
+    pub fn mark(&mut self, at: Moment, kind: MarkKind) {
+        self.marks.push(Mark { at, kind });
+    }
+
+    /// The marks of a stretch of time, oldest first.
+    pub fn marks(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Mark> {
+        self.marks.between(from_s, to_s)
+    }
+
+    /// Fills `out` with one line over `columns` columns of pixels: at most about two points a column, and no
+    /// extreme is lost. The work grows with the columns, not with the history.
+    pub fn trace(&self, series: Series, from_s: f64, to_s: f64, columns: usize, out: &mut Trace) {
+        let slice = Slice {
+            from_s,
+            to_s,
+            columns: u32::try_from(columns).unwrap_or(u32::MAX).max(1),
+        };
+        match self.track(series) {
+            Some(track) => track.trace(series.place(), slice, out),
+            None => out.begin(),
+        }
+    }
+
+    /// The measurement nearest to a time; `None` in a gap.
+    #[must_use]
+    pub fn reading(&self, series: Series, at_s: f64) -> Option<Reading> {
+        self.track(series)?.reading(series.place(), at_s)
+    }
+
+    /// What all measurements of a stretch of time come to, both ends included; `None` if there is none. The work grows
+    /// with the logarithm of their number.
+    #[must_use]
+    pub fn summary(&self, series: Series, from_s: f64, to_s: f64) -> Option<Summary> {
+        self.track(series)?.summary(series.place(), from_s, to_s)
+    }
+
+    /// A copy of all measurements of some lines over a stretch of time, with the marks there.
+    #[must_use]
+    pub fn table(&self, series: &[Series], from_s: f64, to_s: f64) -> Table {
+        let numbers: BTreeSet<usize> = series.iter().map(|one| one.track()).collect();
+        let groups = numbers.into_iter().filter_map(|number| {
+            let track = self.tracks.get(number)?;
+            let rows = track.rows_within(from_s, to_s);
+            let own = series.iter().filter(|one| one.track() == number);
+            let column = |one: &Series| {
+                let values = rows.clone().filter_map(|row| track.value(one.place(), row));
+                (one.column_name(), values.collect())
+            };
+            Some(TableGroup {
+                columns: own.map(column).collect(),
+                times: rows.filter_map(|row| track.time_s(row)).collect(),
+            })
+        });
+        let mark = |mark: &Mark| (mark.at.secs(), mark.kind.words());
+        let marks = self.marks(from_s, to_s).map(mark);
+        Table::new(groups.collect(), marks.collect())
+    }
+
+    /// Mean and standard deviation of a stretch of time; `None` below two values. The work grows with their number.
+    #[must_use]
+    pub fn spread(&self, series: Series, from_s: f64, to_s: f64) -> Option<Spread> {
+        let track = self.track(series)?;
+        let rows = track.rows_within(from_s, to_s);
+        let values = rows.filter_map(|row| track.value(series.place(), row));
+        Spread::of(values.filter(|value| !value.is_nan()).map(f64::from))
+    }
+
+    /// Memory held by the channels of the fingertips, in bytes.
+    #[must_use]
+    pub fn channel_bytes(&self) -> usize {
+        let channels = self.tracks.iter().skip(FIRST_CHANNELS);
+        channels.map(Track::bytes).sum()
+    }
+
+    /// A copy of a stretch of time that stays as it is: all measurements but the channels, and marks. The work grows with their number.
+    #[must_use]
+    pub fn slice(&self, from_s: f64, to_s: f64) -> Self {
+        let tracks = self.tracks.iter().take(FIRST_CHANNELS);
+        let tracks = tracks.map(|track| track.slice(from_s, to_s));
+        let mut marks = Marks::default();
+        for mark in self.marks(from_s, to_s) {
+            marks.push(mark.clone());
+        }
+        Self {
+            tracks: tracks
+                .chain((FIRST_CHANNELS..TRACKS).map(empty_track))
+                .collect(),
+            targets: self.targets,
+            sent_at: self.sent_at,
+            marks,
+        }
+    }
+
+    /// Measurements of some lines over a stretch of time, without copying them.
+    #[must_use]
+    pub fn rows(&self, series: &[Series], from_s: f64, to_s: f64) -> usize {
+        let numbers: BTreeSet<usize> = series.iter().map(|one| one.track()).collect();
+        let tracks = numbers
+            .into_iter()
+            .filter_map(|number| self.tracks.get(number));
+        tracks
+            .map(|track| track.rows_within(from_s, to_s).len())
+            .sum()
+    }
+
+    /// Time of the oldest measurement that is still held, in seconds.
+    #[must_use]
+    pub fn first_secs(&self) -> Option<f64> {
+        self.tracks
+            .iter()
+            .filter_map(Track::first_s)
+            .reduce(f64::min)
+    }
+
+    /// Time of the newest measurement, in seconds.
+    #[must_use]
+    pub fn last_secs(&self) -> Option<f64> {
+        self.tracks
+            .iter()
+            .filter_map(Track::last_s)
+            .reduce(f64::max)
+    }
+
+    /// Memory held, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.tracks.iter().map(Track::bytes).sum()
+    }
+
+    fn track(&self, series: Series) -> Option<&Track> {
+        self.tracks.get(series.track())
+    }
+}

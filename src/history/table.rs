@@ -1,0 +1,161 @@
+//! Measurements as a table of text: one line for each moment at which something was received. Writes no file.
+
+use std::fmt::Write as _;
+
+/// Lines that were read together.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TableGroup {
+    /// Times of the rows, in seconds, never falling.
+    pub(crate) times: Vec<f64>,
+    /// Head and values of each column; NaN = not known.
+    pub(crate) columns: Vec<(String, Vec<f32>)>,
+}
+
+/// A copy of measurements, free of the history it came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    groups: Vec<TableGroup>,
+    marks: Vec<(f64, String)>,
+}
+
+/// What was received or happened at one moment.
+struct Line<'a> {
+    time_s: f64,
+    /// The row of each group, if it has one at this moment.
+    rows: Vec<Option<usize>>,
+    event: Option<&'a str>,
+}
+
+impl Table {
+    pub(crate) const fn new(groups: Vec<TableGroup>, marks: Vec<(f64, String)>) -> Self {
+        Self { groups, marks }
+    }
+
+    /// The same with more columns, and more that happened.
+    pub(crate) fn with(mut self, group: TableGroup, marks: Vec<(f64, String)>) -> Self {
+        self.groups.push(group);
+        self.marks.extend(marks);
+        self.marks.sort_by(|one, two| one.0.total_cmp(&two.0));
+        self
+    }
+
+    /// Lines of the text after its head. The work grows with the measurements.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.lines().count()
+    }
+
+    /// True if nothing was measured and nothing happened.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.marks.is_empty() && self.groups.iter().all(|group| group.times.is_empty())
+    }
+
+    /// Comma-separated values: `time_s` since the start of the program, then the columns with their units, then what
+    /// happened. A value that was not measured at that moment or is not known is an empty cell; a line of empty cells
+    /// is a break.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut text = String::from("time_s");
+        for (name, _) in self.groups.iter().flat_map(|group| &group.columns) {
+            text.push(',');
+            text.push_str(name);
+        }
+        text.push_str(",event\n");
+        for line in self.lines() {
+            // Writing to a string cannot fail.
+            let _done = write!(text, "{:.6}", line.time_s);
+            for (group, row) in self.groups.iter().zip(line.rows) {
+                for (_, values) in &group.columns {
+                    text.push(',');
+                    let value = row.and_then(|row| values.get(row));
+                    if let Some(value) = value.filter(|value| !value.is_nan()) {
+                        let _done = write!(text, "{value}");
+                    }
+                }
+            }
+            text.push(',');
+            text.push_str(&line.event.map(quoted).unwrap_or_default());
+            text.push('\n');
+        }
+        text
+    }
+
+    /// One line for each moment, in the order of time.
+    fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+        let mut next = vec![0; self.groups.len()];
+        let mut marks = self.marks.iter().peekable();
+        std::iter::from_fn(move || {
+            let times = self.groups.iter().zip(&next);
+            let times = times.filter_map(|(group, row)| group.times.get(*row).copied());
+            let time_s = times
+                .chain(marks.peek().map(|mark| mark.0))
+                .reduce(f64::min)?;
+            let rows = self.groups.iter().zip(&mut next).map(|(group, next)| {
+                let row = *next;
+                let is_here = group.times.get(row).is_some_and(|at_s| *at_s <= time_s);
+                *next += usize::from(is_here);
+                is_here.then_some(row)
+            });
+            Some(Line {
+                time_s,
+                rows: rows.collect(),
+                event: marks
+                    .next_if(|mark| mark.0 <= time_s)
+                    .map(|mark| mark.1.as_str()),
+            })
+        })
+    }
+}
+
+/// A cell of free text. One that a spreadsheet would take for a formula is made a text.
+fn quoted(words: &str) -> String {
+    let formula = words.starts_with(['=', '+', '-', '@']);
+    let lead = if formula { "\'" } else { "" };
+    if formula || words.contains([',', '"', '\n', '\r']) {
+        return format!("\"{lead}{}\"", words.replace('"', "\"\""));
+    }
+    words.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_moment_is_a_line_and_what_is_not_known_is_an_empty_cell() {
+        let column = |name: &str, values: &[f32]| (name.to_owned(), values.to_vec());
+        let table = Table::new(
+            vec![
+                TableGroup {
+                    times: vec![1.0, 1.01, 1.01],
+                    columns: vec![
+                        column("force_index_g", &[5.0, -7.0, f32::NAN]),
+                        column("force_ring_g", &[6.0, f32::NAN, f32::NAN]),
+                    ],
+                },
+                TableGroup {
+                    times: vec![1.01, 1.5],
+                    columns: vec![column("normal_thumb_N", &[0.25, 1.5])],
+                },
+            ],
+            vec![(1.2, "stop".into()), (1.5, "note: \"ok\", once".into())],
+        );
+        let lines = [
+            "time_s,force_index_g,force_ring_g,normal_thumb_N,event",
+            "1.000000,5,6,,",
+            "1.010000,-7,,0.25,",
+            "1.010000,,,,",
+            "1.200000,,,,stop",
+            "1.500000,,,1.5,\"note: \"\"ok\"\", once\"",
+            "",
+        ];
+        assert_eq!(table.csv(), lines.join("\n"));
+        assert_eq!(table.len(), 5);
+    }
+
+    #[test]
+    fn an_empty_table_has_its_head() {
+        assert_eq!(Table::new(Vec::new(), Vec::new()).csv(), "time_s,event\n");
+    }
+}

@@ -1,0 +1,260 @@
+//! CAN frames over a wire: as text or packets through a serial adapter, or as Linux's frames. Asks nothing of a hand.
+
+use crate::codec::can::{CanFrame, RECORD_LEN, Record, from_record, to_record};
+use crate::codec::slcan::{Answer, AnswerDecoder, Command, bitrate_code, encode_command};
+use crate::codec::usbcan::{self, Content, PacketDecoder};
+use crate::link::bus::error::{BusError, lost};
+use crate::transport::{BoxedWire, Endpoint, TransportError};
+use arrayvec::ArrayVec;
+use futures::FutureExt as _;
+use std::collections::VecDeque;
+use std::time::Duration;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::time::{Instant, timeout, timeout_at};
+
+/// Bytes taken from the wire at once, which bounds the frames that wait: a frame has at least 11 of them.
+const CHUNK: usize = 512;
+/// An adapter answers within this, behind a USB latency of 16 ms; some never answer, and work all the same.
+const ANSWER_WAIT: Duration = Duration::from_millis(60);
+/// Left-overs of an earlier conversation have come when nothing came for so long …
+const QUIET: Duration = Duration::from_millis(25);
+/// … and are not waited for longer than this: an adapter that does not close shows all that is on the bus.
+const QUIET_MAX: Duration = Duration::from_millis(150);
+
+/// What stands on the wire.
+enum Form {
+    /// Lawicel's text.
+    Text {
+        bitrate: u32,
+        decoder: AnswerDecoder,
+    },
+    /// The packets of the maker's adapter.
+    Packets(PacketDecoder),
+    /// Linux's `struct can_frame`, one after the other.
+    Records(ArrayVec<u8, RECORD_LEN>),
+}
+
+/// One end of a CAN bus.
+pub(crate) struct CanPort {
+    wire: BoxedWire,
+    place: String,
+    form: Form,
+    inbox: VecDeque<CanFrame>,
+    /// Answers of the adapter since it was last told something.
+    done: bool,
+    failed: bool,
+    passive: bool,
+}
+
+impl CanPort {
+    pub(crate) fn new(wire: BoxedWire, endpoint: &Endpoint) -> Self {
+        let (form, place) = match endpoint {
+            Endpoint::Slcan { port, bitrate, .. } => (
+                Form::Text {
+                    bitrate: *bitrate,
+                    decoder: AnswerDecoder::default(),
+                },
+                port.clone(),
+            ),
+            Endpoint::UsbCan { port, .. } => {
+                (Form::Packets(PacketDecoder::default()), port.clone())
+            }
+            Endpoint::Can { interface, .. } => (Form::Records(ArrayVec::new()), interface.clone()),
+            other => (Form::Records(ArrayVec::new()), other.to_string()),
+        };
+        Self {
+            wire,
+            place,
+            form,
+            inbox: VecDeque::new(),
+            done: false,
+            failed: false,
+            passive: false,
+        }
+    }
+
+    /// True if nothing that is sent here ever comes back: Linux sees to it. Adapters may echo.
+    pub(crate) const fn never_echoes(&self) -> bool {
+        matches!(self.form, Form::Records(_))
+    }
+
+    /// Goes on the bus. An adapter that never answers is taken for one that did as it was told.
+    pub(crate) async fn open(&mut self) -> Result<(), BusError> {
+        let Form::Text { bitrate, .. } = self.form else {
+            return Ok(());
+        };
+        let refused = BusError::Lost(TransportError::BitrateRefused {
+            place: self.place.clone(),
+            bitrate,
+        });
+        let Some(code) = bitrate_code(bitrate) else {
+            return Err(refused);
+        };
+        // Ends a half-sent line of whoever was here before.
+        self.put(b"\r").await?;
+        // An adapter that is closed already says that it failed; either is fine.
+        self.tell(&Command::Close).await?;
+        self.drain().await?;
+        if self.tell(&Command::Bitrate(code)).await? {
+            return Err(refused);
+        }
+        if self.tell(&Command::Open).await? {
+            return Err(BusError::Lost(TransportError::Io {
+                place: self.place.clone(),
+                message: "the CAN adapter could not go on the bus".into(),
+            }));
+        }
+        self.inbox.clear();
+        Ok(())
+    }
+
+    /// Leaves the bus, if the wire takes it at once.
+    pub(crate) fn close(&mut self) {
+        if matches!(self.form, Form::Text { .. })
+            && let Some(line) = encode_command(&Command::Close)
+        {
+            // A wire that does not take it is gone.
+            let _taken = self.put(&line).now_or_never();
+        }
+    }
+
+    /// Tells the adapter something; true if it said that it failed.
+    async fn tell(&mut self, command: &Command) -> Result<bool, BusError> {
+        let Some(line) = encode_command(command) else {
+            return Ok(false);
+        };
+        (self.done, self.failed) = (false, false);
+        self.put(&line).await?;
+        let until = Instant::now() + ANSWER_WAIT;
+        while !self.done && !self.failed {
+            match timeout_at(until, self.receive()).await {
+                Ok(received) => received?,
+                Err(_) => break,
+            }
+            self.inbox.clear();
+        }
+        Ok(std::mem::take(&mut self.failed))
+    }
+
+    async fn drain(&mut self) -> Result<(), BusError> {
+        let until = Instant::now() + QUIET_MAX;
+        while Instant::now() < until {
+            match timeout(QUIET, self.receive()).await {
+                Ok(received) => received?,
+                Err(_) => break,
+            }
+            self.inbox.clear();
+        }
+        Ok(())
+    }
+
+    pub(crate) async fn send(&mut self, frame: &CanFrame) -> Result<(), BusError> {
+        match self.form {
+            Form::Text { .. } => match encode_command(&Command::Send(frame.clone())) {
+                Some(line) => self.put(&line).await,
+                None => Ok(()),
+            },
+            Form::Packets(_) => self.put(&usbcan::encode(frame)).await,
+            Form::Records(_) => self.put(&to_record(frame)).await,
+        }
+    }
+
+    async fn put(&mut self, bytes: &[u8]) -> Result<(), BusError> {
+        let written = self.wire.write_all(bytes).await;
+        written.map_err(|error| lost(&self.place, &error))
+    }
+
+    /// The next frame that came.
+    pub(crate) fn next(&mut self) -> Option<CanFrame> {
+        self.inbox.pop_front()
+    }
+
+    /// Waits for bytes and makes frames of them. Safe to cancel: bytes are taken only when they are there.
+    pub(crate) async fn receive(&mut self) -> Result<(), BusError> {
+        let mut chunk = [0; CHUNK];
+        let got = self.wire.read(&mut chunk).await;
+        let got = got.map_err(|error| lost(&self.place, &error))?;
+        if got == 0 {
+            return Err(BusError::Lost(TransportError::HungUp {
+                place: self.place.clone(),
+            }));
+        }
+        for byte in chunk.iter().take(got) {
+            self.take(*byte)?;
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, byte: u8) -> Result<(), BusError> {
+        match &mut self.form {
+            Form::Text { decoder, .. } => match decoder.push(byte) {
+                Some(Answer::Done | Answer::Sent) => self.done = true,
+                Some(Answer::Failed) => self.failed = true,
+                Some(Answer::Frame(frame)) => self.inbox.push_back(frame),
+                Some(Answer::Other(_)) | None => {}
+            },
+            Form::Packets(decoder) => {
+                if let Some(Content::Frame(frame)) = decoder.push(byte) {
+                    self.inbox.push_back(frame);
+                }
+            }
+            Form::Records(record) => {
+                record.push(byte);
+                if let Ok(whole) = record.clone().into_inner() {
+                    record.clear();
+                    return self.take_record(&whole);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn take_record(&mut self, record: &[u8; RECORD_LEN]) -> Result<(), BusError> {
+        match from_record(record) {
+            Record::Frame(frame) => self.inbox.push_back(frame),
+            Record::ErrorPassive => self.passive = true,
+            Record::ErrorActive => self.passive = false,
+            Record::Other => {}
+            Record::BusOff => {
+                return Err(BusError::Lost(TransportError::BusOff {
+                    place: self.place.clone(),
+                }));
+            }
+        }
+        Ok(())
+    }
+
+    /// What the bus itself said that explains why nothing answers.
+    pub(crate) fn trouble(&self) -> Option<TransportError> {
+        let place = self.place.clone();
+        if self.passive {
+            Some(TransportError::ErrorPassive { place })
+        } else if self.failed {
+            Some(TransportError::QueueFull { place })
+        } else {
+            None
+        }
+    }
+
+    /// Something was answered: what an adapter refused before does not matter any more.
+    pub(crate) fn forget_refusals(&mut self) {
+        self.failed = false;
+    }
+
+    /// Lines that were no slcan text, or runs of bytes that were no packets.
+    pub(crate) fn bad_lines(&self) -> u64 {
+        match &self.form {
+            Form::Text { decoder, .. } => decoder.counts().bad_lines,
+            Form::Packets(decoder) => decoder.counts().resyncs,
+            Form::Records(_) => 0,
+        }
+    }
+
+    /// Packets whose sum was wrong.
+    pub(crate) const fn bad_sums(&self) -> u64 {
+        match &self.form {
+            Form::Packets(decoder) => decoder.counts().checksum_errors,
+            Form::Text { .. } | Form::Records(_) => 0,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Why a request has no good end, and what a bus counted. Shared by the protocols; nothing is retried here.
+
+use crate::transport::{Endpoint, TransportError};
+use arrayvec::ArrayVec;
+use std::io;
+use std::time::Duration;
+
+/// Most bytes that one read can carry over any protocol.
+pub(crate) const READ_MAX: usize = 252;
+
+/// The memory bytes of one reply.
+pub(crate) type Bytes = ArrayVec<u8, READ_MAX>;
+
+/// Why a request has no good end. Only `Lost` ends the session.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum BusError {
+    /// No reply in time.
+    Timeout { after: Duration },
+    /// The hand said no.
+    Refused { reason: String },
+    /// A reply of another length than was asked for.
+    WrongLength { got: usize, want: usize },
+    /// This protocol cannot carry so much.
+    TooLong,
+    /// Every way to ask could be answered by a late reply.
+    Ambiguous,
+    /// The wire is gone.
+    Lost(TransportError),
+}
+
+/// What a bus counted since it was opened.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct BusCounts {
+    pub(crate) checksum_errors: u64,
+    pub(crate) resyncs: u64,
+    pub(crate) foreign_replies: u64,
+    pub(crate) foreign_requests: u64,
+}
+
+impl BusCounts {
+    pub(crate) const fn plus(self, more: Self) -> Self {
+        Self {
+            checksum_errors: self.checksum_errors + more.checksum_errors,
+            resyncs: self.resyncs + more.resyncs,
+            foreign_replies: self.foreign_replies + more.foreign_replies,
+            foreign_requests: self.foreign_requests + more.foreign_requests,
+        }
+    }
+}
+
+/// The end of a wire: it hung up, or failed as it says.
+pub(crate) fn lost(place: &str, error: &io::Error) -> BusError {
+    let place = place.to_owned();
+    let told = error.get_ref().and_then(|inner| inner.downcast_ref());
+    if let Some(told) = told {
+        return BusError::Lost(TransportError::clone(told));
+    }
+    // A pseudo-terminal says EIO and a USB adapter ENXIO or EPIPE when the other side goes.
+    let hung_up = matches!(
+        error.kind(),
+        io::ErrorKind::BrokenPipe | io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset
+    ) || matches!(error.raw_os_error(), Some(5 | 6));
+    BusError::Lost(if hung_up {
+        TransportError::HungUp { place }
+    } else {
+        TransportError::Io {
+            place,
+            message: error.to_string(),
+        }
+    })
+}
+
+/// The id or unit that an endpoint asks for, for messages.
+pub(crate) fn id_of(endpoint: &Endpoint) -> u16 {
+    match endpoint {
+        Endpoint::Sim { .. } => 1,
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) => u16::from(line.id),
+        Endpoint::Tcp { unit, .. } => u16::from(*unit),
+        Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => *id,
+    }
+}

@@ -1,0 +1,132 @@
+//! What Modbus over a socket and over a serial line have in common (manual 2.4, 2.5): requests out of spans and
+//! writes, memory out of responses, errors out of the library's. Sends nothing.
+
+use crate::codec::modbus::{
+    BytePacking, ModbusWrite, READ_WORDS_MAX, bytes_from_words, words_for, words_from_write,
+};
+use crate::hand::{RegisterWrite, Span};
+
+use crate::link::bus::error::{BusError, Bytes, lost};
+use crate::transport::TransportError;
+use std::borrow::Cow;
+use tokio_modbus::{Error, ExceptionCode, Request, Response};
+
+/// The read of a span, function 03.
+///
+/// # Errors
+/// `TooLong` for none or more than 125 words.
+pub(crate) fn read_request(span: Span) -> Result<Request<'static>, BusError> {
+    let words = words_for(span);
+    if words.count > READ_WORDS_MAX || words.count == 0 {
+        return Err(BusError::TooLong);
+    }
+    Ok(Request::ReadHoldingRegisters(words.address, words.count))
+}
+
+/// The memory bytes that a response to [`read_request`] holds.
+pub(crate) fn read_response(
+    span: Span,
+    response: &Response,
+    packing: BytePacking,
+) -> Result<Bytes, BusError> {
+    let want = usize::from(span.len);
+    let Response::ReadHoldingRegisters(got) = response else {
+        return Err(BusError::WrongLength { got: 0, want });
+    };
+    // The library checks the number of words only in debug builds.
+    if got.len() != usize::from(words_for(span).count) {
+        let got = got.len() * 2;
+        return Err(BusError::WrongLength { got, want });
+    }
+    let bytes = bytes_from_words(span.address, got, packing);
+    let bytes = bytes
+        .iter()
+        .copied()
+        .take(want)
+        .take(Bytes::new().capacity());
+    Ok(bytes.collect())
+}
+
+/// The read of a group of single bytes in words of its own, or of the words that tell how they are packed.
+pub(crate) const fn words_request(address: u16, count: u16) -> Request<'static> {
+    Request::ReadHoldingRegisters(address, count)
+}
+
+/// The words that a response to [`words_request`] holds.
+pub(crate) fn words_response(count: u16, response: Response) -> Result<Vec<u16>, BusError> {
+    let want = usize::from(count) * 2;
+    match response {
+        Response::ReadHoldingRegisters(words) if words.len() == usize::from(count) => Ok(words),
+        Response::ReadHoldingRegisters(words) => Err(BusError::WrongLength {
+            got: words.len() * 2,
+            want,
+        }),
+        _ => Err(BusError::WrongLength { got: 0, want }),
+    }
+}
+
+/// The wanted bytes of a group of six in words of its own, appended.
+pub(crate) fn take_group(
+    bytes: &mut Bytes,
+    words: &[u16],
+    skip: usize,
+    take: usize,
+) -> Result<(), BusError> {
+    let group = BytePacking::OnePerWord.group(words);
+    let group = group.ok_or(BusError::WrongLength {
+        got: words.len() * 2,
+        want: 2 * usize::from(BytePacking::OnePerWord.words_per_group()),
+    })?;
+    bytes.extend(group.into_iter().skip(skip).take(take));
+    Ok(())
+}
+
+/// A write, by function 06 or 16.
+pub(crate) fn write_request(write: &RegisterWrite) -> Request<'static> {
+    match words_from_write(write) {
+        ModbusWrite::Single { address, value } => Request::WriteSingleRegister(address, value),
+        ModbusWrite::Multiple { address, words } => {
+            Request::WriteMultipleRegisters(address, Cow::Owned(words.to_vec()))
+        }
+    }
+}
+
+/// Checks that a response acknowledges the write.
+pub(crate) fn write_response(write: &RegisterWrite, response: &Response) -> Result<(), BusError> {
+    match (response, write_request(write)) {
+        // Manual: 2.4.2 prints zeros in the reply to FC06 where the standard echoes; both pass.
+        (Response::WriteSingleRegister(..), Request::WriteSingleRegister(..)) => Ok(()),
+        (
+            Response::WriteMultipleRegisters(at, count),
+            Request::WriteMultipleRegisters(address, words),
+        ) if *at == address && usize::from(*count) == words.len() => Ok(()),
+        _ => Err(BusError::WrongLength {
+            got: 0,
+            want: write.bytes().len(),
+        }),
+    }
+}
+
+/// What a call of the library came to. `closed`: the other side was seen to close the wire.
+pub(crate) fn outcome(
+    called: Result<Result<Response, ExceptionCode>, Error>,
+    place: &str,
+    closed: bool,
+) -> Result<Response, BusError> {
+    let place = || place.to_owned();
+    match called {
+        Ok(Ok(response)) => Ok(response),
+        Ok(Err(exception)) => Err(BusError::Refused {
+            reason: exception.to_string(),
+        }),
+        Err(Error::Protocol(error)) => Err(BusError::Lost(TransportError::Io {
+            place: place(),
+            message: error.to_string(),
+        })),
+        // Where the other side closes, the library passes on whatever error the system had last.
+        Err(Error::Transport(_)) if closed => {
+            Err(BusError::Lost(TransportError::HungUp { place: place() }))
+        }
+        Err(Error::Transport(error)) => Err(lost(&place(), &error)),
+    }
+}

@@ -1,0 +1,205 @@
+//! Single bytes over Modbus, where the manual leaves their packing open: which pieces a read falls into, and which writes
+//! are safe. Asks nothing itself.
+
+use crate::codec::modbus::BytePacking;
+use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
+use crate::hand::{RegisterWrite, Span};
+use crate::link::bus::error::BusError;
+use crate::transport::{Endpoint, Packing};
+use arrayvec::ArrayVec;
+
+/// The groups of single bytes: ERROR, STATUS, TEMP, one behind the other.
+const BYTE_GROUPS: [Span; 3] = [ERROR.span(), STATUS.span(), TEMP.span()];
+/// Pieces of a read: each group, and what stands before, between and behind.
+const PIECES_MAX: usize = 5;
+
+/// A part of a read that is one request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Piece {
+    /// Two bytes a word.
+    Memory(Span),
+    /// A group of six in words of its own, of which these bytes are wanted.
+    Group {
+        group: Span,
+        skip: usize,
+        take: usize,
+    },
+}
+
+/// How one bus takes bytes for words: what a person said, and what the hand was found to do.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WordUse {
+    chosen: Option<BytePacking>,
+    pub(crate) found: Option<BytePacking>,
+}
+
+impl WordUse {
+    pub(crate) fn new(endpoint: &Endpoint) -> Self {
+        Self {
+            chosen: chosen(endpoint),
+            found: None,
+        }
+    }
+
+    /// How words are read. Where nobody knows, as most hands are.
+    pub(crate) fn reading(&self) -> BytePacking {
+        self.chosen.or(self.found).unwrap_or_default()
+    }
+
+    /// The requests that a read takes.
+    pub(crate) fn pieces(&self, span: Span) -> ArrayVec<Piece, PIECES_MAX> {
+        let mut pieces = ArrayVec::new();
+        if self.reading() != BytePacking::OnePerWord {
+            pieces.push(Piece::Memory(span));
+            return pieces;
+        }
+        let mut at = span.address;
+        for group in BYTE_GROUPS {
+            if u32::from(at) >= span.end() || group.end() <= u32::from(at) {
+                continue;
+            }
+            if at < group.address {
+                let until = group.address.min(end(span));
+                pieces.push(Piece::Memory(Span::new(at, until - at)));
+                at = until;
+            }
+            if u32::from(at) < span.end() {
+                let until = end(group).min(end(span));
+                pieces.push(Piece::Group {
+                    group,
+                    skip: usize::from(at - group.address),
+                    take: usize::from(until - at),
+                });
+                at = until;
+            }
+        }
+        if u32::from(at) < span.end() {
+            pieces.push(Piece::Memory(Span::new(at, end(span) - at)));
+        }
+        pieces
+    }
+
+    /// Refuses writes of single bytes where they could change a neighbour: SAVE stands beside RESET_PARA. They pass
+    /// only where the hand was found to put the low byte first, or could not be judged and a person says so.
+    pub(crate) fn allows(&self, write: &RegisterWrite) -> Result<(), BusError> {
+        if !is_bytes(write) {
+            return Ok(());
+        }
+        let reason = match (self.chosen, self.found) {
+            (None | Some(BytePacking::LowFirst), Some(BytePacking::LowFirst))
+            | (Some(BytePacking::LowFirst), None) => return Ok(()),
+            (None, None) => {
+                "it is not known how this hand puts single bytes into words; 'packing=low' in its address (in the window: Modbus bytes, Connection) says that it is low byte first"
+            }
+            _ => {
+                "this hand does not put single bytes into words low byte first, and writing them is not known to be safe"
+            }
+        };
+        Err(BusError::Refused {
+            reason: reason.into(),
+        })
+    }
+}
+
+/// What a person said in the endpoint.
+pub(crate) fn chosen(endpoint: &Endpoint) -> Option<BytePacking> {
+    let packing = match endpoint {
+        Endpoint::Tcp { packing, .. } => *packing,
+        Endpoint::Rtu(line) => line.packing,
+        _ => None,
+    };
+    packing.map(|packing| match packing {
+        Packing::Low => BytePacking::LowFirst,
+        Packing::High => BytePacking::HighFirst,
+        Packing::One => BytePacking::OnePerWord,
+    })
+}
+
+/// One past the last byte, which lies below 65536 for every span that Modbus can name.
+fn end(span: Span) -> u16 {
+    u16::try_from(span.end()).unwrap_or(u16::MAX)
+}
+
+/// True if the write goes to registers of single bytes.
+fn is_bytes(write: &RegisterWrite) -> bool {
+    by_address(write.address()).is_some_and(|row| row.element == Element::Byte)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::HandCommand;
+    use crate::hand::register::STATE;
+
+    fn word_use(endpoint: &str, found: Option<BytePacking>) -> WordUse {
+        let mut word_use = WordUse::new(&endpoint.parse().unwrap());
+        word_use.found = found;
+        word_use
+    }
+
+    #[test]
+    fn single_bytes_are_written_only_where_the_low_byte_is_known_to_come_first() {
+        use BytePacking::{HighFirst, LowFirst, OnePerWord};
+        for (endpoint, found, allowed) in [
+            ("tcp:h", Some(LowFirst), true),
+            ("rtu:p", Some(LowFirst), true),
+            ("tcp:h", None, false),
+            ("tcp:h", Some(OnePerWord), false),
+            ("rtu:p", Some(HighFirst), false),
+            ("tcp:h?packing=low", None, true),
+            ("tcp:h?packing=low", Some(LowFirst), true),
+            ("rtu:p?packing=low", Some(OnePerWord), false),
+            ("tcp:h?packing=low", Some(HighFirst), false),
+            ("tcp:h?packing=high", Some(LowFirst), false),
+            ("tcp:h?packing=high", None, false),
+            ("rtu:p?packing=one", None, false),
+        ] {
+            let word_use = word_use(endpoint, found);
+            for command in [
+                HandCommand::Save,
+                HandCommand::ClearErrors,
+                HandCommand::IpAddress([192, 168, 11, 211].into()),
+            ] {
+                let write = &command.writes()[0];
+                let said = word_use.allows(write);
+                assert_eq!(said.is_ok(), allowed, "{endpoint} {found:?} {command:?}");
+            }
+            let speeds = HandCommand::Speeds(crate::hand::PerDof::splat(None));
+            for write in speeds.writes() {
+                assert_eq!(word_use.allows(&write), Ok(()), "words of two bytes pass");
+            }
+        }
+    }
+
+    #[test]
+    fn a_read_of_one_byte_a_word_falls_into_groups_and_covers_all() {
+        let word_use = word_use("tcp:h", Some(BytePacking::OnePerWord));
+        for span in [STATE, TEMP.span(), Span::new(1607, 12), Span::new(1000, 4)] {
+            let mut at = span.address;
+            for piece in word_use.pieces(span) {
+                let (from, len) = match piece {
+                    Piece::Memory(part) => (part.address, usize::from(part.len)),
+                    Piece::Group { group, skip, take } => {
+                        (group.address + u16::try_from(skip).unwrap(), take)
+                    }
+                };
+                assert_eq!(from, at, "{span:?}");
+                at += u16::try_from(len).unwrap();
+            }
+            assert_eq!(u32::from(at), span.end());
+        }
+        assert_eq!(word_use.pieces(STATE).len(), 4);
+    }
+
+    #[test]
+    fn a_person_decides_how_words_are_read() {
+        let found = Some(BytePacking::LowFirst);
+        let high = word_use("tcp:h?packing=high", found);
+        assert_eq!(high.reading(), BytePacking::HighFirst);
+        assert_eq!(word_use("tcp:h", None).reading(), BytePacking::LowFirst);
+        assert_eq!(
+            word_use("rtu:p", Some(BytePacking::OnePerWord)).reading(),
+            BytePacking::OnePerWord
+        );
+    }
+}

@@ -1,0 +1,353 @@
+//! Requests over the private RS485 framing (manual 2.2). One is open at a time; replies have no number.
+
+use crate::codec::rs485::{Frame, Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
+use crate::hand::register::HAND_ID;
+use crate::hand::{HandId, RegisterWrite, Span};
+use crate::link::bus::echo::Echo;
+use crate::link::bus::late_replies::LateReplies;
+
+use crate::link::bus::client::{Bus, ResultFrame};
+use crate::link::bus::error::{BusCounts, BusError, Bytes, id_of, lost};
+use crate::link::clock::Clock;
+use crate::link::poll::cost::WireCost;
+use crate::transport::{BoxedWire, Endpoint, TransportError};
+use arrayvec::ArrayVec;
+use async_trait::async_trait;
+use futures::FutureExt as _;
+use std::io;
+use std::time::Duration;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::time::{Instant, timeout, timeout_at};
+
+/// The line counts as quiet after this long without a byte: longer than any gap inside a frame.
+const QUIET: Duration = Duration::from_millis(8);
+/// A line that is never quiet is not waited for longer than this.
+const SETTLE_MAX: Duration = Duration::from_millis(60);
+/// Bytes taken from the wire at once: the longest reply and some noise.
+const CHUNK: usize = 512;
+/// Bits of a byte on the line: start, eight, stop.
+const BITS: u64 = 10;
+/// Bytes of a read request and of a reply's frame around its data.
+const FRAMING: u64 = 9 + 8;
+/// Results of a SAVE that are kept until they are asked for: one, its double, and one more.
+const RESULTS_MAX: usize = 3;
+
+/// The client side of one RS485 line.
+pub(crate) struct Rs485 {
+    wire: BoxedWire,
+    place: String,
+    id: HandId,
+    baud: Option<u32>,
+    decoder: ReplyDecoder,
+    late: LateReplies,
+    clock: Clock,
+    foreign: u64,
+    /// The request that went out last: what comes back like it is an echo.
+    sent: Frame,
+    echo: Echo,
+    foreign_requests: u64,
+    save_results: ArrayVec<SaveResult, RESULTS_MAX>,
+    is_calibrated: bool,
+}
+
+/// What an open request waits for.
+enum Expected {
+    Bytes(Span),
+    /// Of a write to this address. Manual: silent on who acknowledges a change of HAND_ID; the older manual shows the new
+    /// id (protocol choice 9).
+    Ack {
+        address: u16,
+        new_id: Option<u8>,
+    },
+}
+
+/// How a reply fits the open request.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "it lives on the stack, for one exchange"
+)]
+enum Fit {
+    Bytes(Bytes),
+    Ack,
+    No,
+}
+
+impl Rs485 {
+    pub(crate) fn new(
+        wire: BoxedWire,
+        endpoint: &Endpoint,
+        late: LateReplies,
+        clock: Clock,
+    ) -> Self {
+        let baud = match endpoint {
+            Endpoint::Rs485(line) => Some(line.baud),
+            _ => None,
+        };
+        Self {
+            wire,
+            place: endpoint.place(),
+            id: HandId::nearest(id_of(endpoint)),
+            baud,
+            decoder: ReplyDecoder::default(),
+            late,
+            clock,
+            foreign: 0,
+            sent: Frame::new(),
+            echo: Echo::default(),
+            foreign_requests: 0,
+            save_results: ArrayVec::new(),
+            is_calibrated: false,
+        }
+    }
+
+    async fn exchange(
+        &mut self,
+        frame: &Frame,
+        expected: &Expected,
+        limit: Duration,
+    ) -> Result<Fit, BusError> {
+        self.take_waiting()?;
+        self.sent.clone_from(frame);
+        self.echo.sent();
+        let deadline = Instant::now() + limit;
+        let timed_out = BusError::Timeout { after: limit };
+        match timeout_at(deadline, self.wire.write_all(frame)).await {
+            Ok(written) => written.map_err(|error| self.lost(&error))?,
+            Err(_) => return Err(timed_out),
+        }
+        loop {
+            if let Some(fit) = self.fitting(expected) {
+                return Ok(fit);
+            }
+            match timeout_at(deadline, self.receive()).await {
+                Ok(received) => received?,
+                Err(_) => break,
+            }
+        }
+        // Noise that looks like the head of a long frame may hide the reply.
+        self.decoder.flush_pending();
+        self.fitting(expected).ok_or(timed_out)
+    }
+
+    /// Takes what came while nobody asked, without waiting: none of it can answer the next request.
+    fn take_waiting(&mut self) -> Result<(), BusError> {
+        while let Some(received) = self.receive().now_or_never() {
+            received?;
+            self.drop_foreign();
+        }
+        self.decoder.flush_pending();
+        self.drop_foreign();
+        Ok(())
+    }
+
+    fn drop_foreign(&mut self) {
+        while let Some(reply) = self.decoder.next() {
+            self.foreign_reply(&reply);
+        }
+        self.sort_overheard();
+    }
+
+    /// Requests on the line: our own, given back by the adapter, or another controller's.
+    fn sort_overheard(&mut self) {
+        while let Some(request) = self.decoder.overheard() {
+            if request == self.sent {
+                self.echo.came_back();
+            } else {
+                self.foreign_requests += 1;
+            }
+        }
+    }
+
+    /// The reply to the open request, if it is there; others are counted and dropped.
+    fn fitting(&mut self, expected: &Expected) -> Option<Fit> {
+        while let Some(reply) = self.decoder.next() {
+            self.sort_overheard();
+            match self.fit(&reply, expected) {
+                Fit::No => self.unfit_reply(&reply, expected),
+                fit => {
+                    self.echo.answered();
+                    return Some(fit);
+                }
+            }
+        }
+        self.sort_overheard();
+        None
+    }
+
+    fn fit(&self, reply: &Reply, expected: &Expected) -> Fit {
+        match (reply, expected) {
+            (Reply::Read { id, address, bytes }, Expected::Bytes(span))
+                if *id == self.id.get()
+                    && *address == span.address
+                    && bytes.len() == usize::from(span.len) =>
+            {
+                Fit::Bytes(bytes.clone())
+            }
+            (
+                Reply::WriteAck {
+                    id,
+                    address,
+                    value: 1,
+                },
+                Expected::Ack {
+                    address: wanted,
+                    new_id,
+                },
+            ) if (*id == self.id.get() || Some(*id) == *new_id) && address == wanted => Fit::Ack,
+            _ => Fit::No,
+        }
+    }
+
+    /// A reply that is no answer to the open request.
+    fn unfit_reply(&mut self, reply: &Reply, expected: &Expected) {
+        // Manual: 1 acknowledges. What comes in place of it with another value says nothing of flash, though a result looks
+        // the same: that comes after the acknowledgement.
+        match (reply, expected) {
+            (Reply::WriteAck { address, .. }, Expected::Ack { address: own, .. })
+                if address == own =>
+            {
+                self.foreign += 1;
+            }
+            _ => self.foreign_reply(reply),
+        }
+    }
+
+    fn foreign_reply(&mut self, reply: &Reply) {
+        if reply.id() == self.id.get()
+            && let Some(result) = reply.save_result()
+        {
+            // Of more than these the oldest tell all there is to tell.
+            let _more = self.save_results.try_push(result);
+        }
+        self.is_calibrated |= reply.id() == self.id.get() && reply.is_calibration_end();
+        self.foreign += 1;
+        if let Reply::Read { address, bytes, .. } = reply
+            && let Ok(len) = u16::try_from(bytes.len())
+        {
+            self.late
+                .arrived(Span::new(*address, len), self.clock.now());
+        }
+    }
+
+    /// Waits for bytes and gives them to the decoder. Safe to cancel: bytes are taken only when they are there.
+    async fn receive(&mut self) -> Result<(), BusError> {
+        let mut chunk = [0; CHUNK];
+        let room = CHUNK.saturating_sub(self.decoder.buffered()).max(1);
+        let into = chunk.get_mut(..room).unwrap_or_default();
+        let got = self
+            .wire
+            .read(into)
+            .await
+            .map_err(|error| self.lost(&error))?;
+        if got == 0 {
+            return Err(BusError::Lost(TransportError::HungUp {
+                place: self.place.clone(),
+            }));
+        }
+        let bytes = into.get(..got).unwrap_or_default();
+        let taken = self.decoder.push(bytes);
+        debug_assert_eq!(taken, got, "the decoder has room for what was asked for");
+        Ok(())
+    }
+
+    fn lost(&self, error: &io::Error) -> BusError {
+        lost(&self.place, error)
+    }
+}
+
+#[async_trait]
+impl Bus for Rs485 {
+    fn save_result_frame(&self) -> ResultFrame {
+        ResultFrame::Comes
+    }
+
+    async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
+        let frame = encode_read(self.id, span).ok_or(BusError::TooLong)?;
+        let result = self.exchange(&frame, &Expected::Bytes(span), limit).await;
+        match result {
+            Ok(_) => self.late.answered(Some(span)),
+            Err(_) => self.late.gave_up(span, self.clock.now()),
+        }
+        match result? {
+            Fit::Bytes(bytes) => Ok(bytes),
+            Fit::Ack | Fit::No => Err(BusError::WrongLength {
+                got: 0,
+                want: usize::from(span.len),
+            }),
+        }
+    }
+
+    async fn write(&mut self, write: &RegisterWrite, limit: Duration) -> Result<(), BusError> {
+        let frame = encode_write(self.id, write);
+        let address = write.address();
+        let is_id = address == HAND_ID.address;
+        let new_id = write.bytes().first().copied().filter(|_| is_id);
+        self.exchange(&frame, &Expected::Ack { address, new_id }, limit)
+            .await?;
+        self.late.answered(None);
+        Ok(())
+    }
+
+    async fn quiet(&mut self) -> Result<(), BusError> {
+        let end = Instant::now() + SETTLE_MAX;
+        while Instant::now() < end {
+            match timeout(QUIET, self.receive()).await {
+                Ok(received) => received?,
+                Err(_) => break,
+            }
+            self.drop_foreign();
+        }
+        self.decoder.flush_pending();
+        self.drop_foreign();
+        Ok(())
+    }
+
+    fn take_save_result(&mut self) -> Option<SaveResult> {
+        self.save_results.pop_at(0)
+    }
+
+    fn take_calibration_end(&mut self) -> bool {
+        std::mem::replace(&mut self.is_calibrated, false)
+    }
+
+    async fn listen(&mut self) -> Result<(), BusError> {
+        while self.save_results.is_empty() && !self.is_calibrated {
+            self.receive().await?;
+            self.drop_foreign();
+        }
+        Ok(())
+    }
+
+    fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
+        self.late.first_clear(shapes, self.clock.now())
+    }
+
+    fn cost(&self) -> WireCost {
+        WireCost::rs485(self.baud)
+    }
+
+    fn wire_time(&self, bytes: u16) -> Duration {
+        let bits = (u64::from(bytes) + FRAMING) * BITS;
+        self.baud.map_or(Duration::ZERO, |baud| {
+            Duration::from_micros(bits * 1_000_000 / u64::from(baud.max(1)))
+        })
+    }
+
+    fn counts(&self) -> BusCounts {
+        let noise = self.decoder.counts();
+        BusCounts {
+            checksum_errors: noise.checksum_errors,
+            resyncs: noise.resyncs,
+            foreign_replies: self.foreign,
+            foreign_requests: self.foreign_requests,
+        }
+    }
+
+    fn echoes(&self) -> bool {
+        self.echo.is_sure()
+    }
+
+    fn close(self: Box<Self>) -> LateReplies {
+        self.late
+    }
+}

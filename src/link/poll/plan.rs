@@ -1,0 +1,376 @@
+//! What to read next, and when. Pure: time, answers and failures come in, spans go out; nothing is sent here.
+//!
+//! Each part of memory has its own rate. The part that waited longest, measured in its own periods, opens a window,
+//! and others that are wanted too join it where that is cheaper (`link::poll::window`). How long a window may be
+//! follows from the stop (`link::poll::cost`): at rest so long that a stop is still in time behind it, while
+//! something moves no longer than one fingertip, and then the motion state has every second turn at least.
+
+use crate::hand::{Moment, Span};
+use crate::link::poll::cost::{Turnaround, WireCost};
+use crate::link::poll::window::{Gaps, Joining, Part, SHAPES_MAX};
+use crate::link::quirks::GapRead;
+use crate::link::stats::PollGroup;
+use arrayvec::ArrayVec;
+use std::time::Duration;
+
+/// Parts that are wanted without limit count as this fast when they are weighed against slow ones …
+const SHORTEST_PERIOD: Duration = Duration::from_millis(10);
+/// … and slow ones as this fast, so that on a line that is too slow for all they do not wait for many of their periods.
+const LONGEST_PERIOD: Duration = Duration::from_millis(30);
+/// What waits so long is as urgent as the fastest: a sweep over all fingertips takes a slow hand on CAN most of a second.
+const STARVED_AFTER: Duration = Duration::from_secs(1);
+/// Temperatures change slowly and are read just often enough not to be shown as old.
+const TEMPERATURE_HZ: f64 = 5.0;
+/// Windows asked for last, none of which is asked for again in the same form: a whole run of replies may be doubled.
+const RECENT: usize = 3;
+/// Reckoned with before the first answer: that of a quick hand.
+const TURNAROUND: Duration = Duration::from_millis(3);
+
+/// How often each group is wanted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PollRates {
+    /// Motion states a second; infinite = as fast as the wire goes.
+    pub state_hz: f64,
+    /// Sweeps over all fingertips a second; infinite = as fast as the wire goes.
+    pub tactile_hz: f64,
+    /// Reads of the setpoints that the hand holds, a second.
+    pub settings_hz: f64,
+}
+
+impl Default for PollRates {
+    fn default() -> Self {
+        Self {
+            state_hz: 100.0,
+            tactile_hz: 30.0,
+            settings_hz: 2.0,
+        }
+    }
+}
+
+impl PollRates {
+    /// As fast as the wire goes, states and fingertips in turn.
+    pub const FULL: Self = Self {
+        state_hz: f64::INFINITY,
+        tactile_hz: f64::INFINITY,
+        settings_hz: 2.0,
+    };
+
+    fn of(&self, part: Part) -> f64 {
+        match part {
+            Part::Angle | Part::Force | Part::Drives => self.state_hz,
+            Part::Temperature => self.state_hz.min(TEMPERATURE_HZ),
+            Part::Targets | Part::Speeds | Part::Position => self.settings_hz,
+            Part::Tip(_) => self.tactile_hz,
+        }
+    }
+}
+
+/// What the hand is about, as far as reading it is concerned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tempo {
+    /// Nothing seems to move.
+    Rest,
+    /// Setpoints flow, or something moves.
+    Motion,
+    /// A stop waits to be confirmed: only what tells of motion and faults counts.
+    Stopping,
+}
+
+/// What is read next: the forms of one window, in the order of preference.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Question {
+    /// The caller takes the first that no late reply can be mistaken for.
+    pub(crate) shapes: ArrayVec<Span, SHAPES_MAX>,
+    /// True if it asks where the hand is.
+    pub(crate) is_motion: bool,
+}
+
+/// Due time of one part.
+#[derive(Debug, Clone, Copy)]
+struct Due {
+    part: Part,
+    period: Duration,
+    next: Moment,
+    /// Not asked for before this, however late it is by then.
+    held_until: Moment,
+    asked: Moment,
+}
+
+/// Decides what is read next.
+#[derive(Debug)]
+pub(crate) struct PollPlan {
+    parts: [Due; Part::ALL.len()],
+    cost: WireCost,
+    turnaround: Turnaround,
+    gaps: Gaps,
+    recent: ArrayVec<Span, RECENT>,
+    /// The last question was no motion state.
+    motion_turn: bool,
+}
+
+impl PollPlan {
+    pub(crate) fn new(rates: PollRates, cost: WireCost, now: Moment) -> Self {
+        Self {
+            parts: Part::ALL.map(|part| Due {
+                part,
+                period: period(rates.of(part)),
+                next: now,
+                held_until: now,
+                asked: now,
+            }),
+            cost,
+            turnaround: Turnaround::default(),
+            gaps: Gaps::default(),
+            recent: ArrayVec::new(),
+            motion_turn: true,
+        }
+    }
+
+    /// Reads at other rates: what is wanted more often than before waits one of its new periods at most.
+    pub(crate) fn change_rates(&mut self, rates: PollRates, now: Moment) {
+        for due in &mut self.parts {
+            due.period = period(rates.of(due.part));
+            due.next = due.next.min(now.plus(due.period));
+        }
+    }
+
+    /// The wire's cost model.
+    pub(crate) const fn cost(&self) -> &WireCost {
+        &self.cost
+    }
+
+    /// The hand's turnaround as learnt.
+    pub(crate) const fn turnaround(&self) -> &Turnaround {
+        &self.turnaround
+    }
+
+    /// How this hand takes reads through the gap between angles and forces.
+    pub(crate) fn know_gap(&mut self, gap: GapRead) {
+        self.gaps = Gaps::known(gap);
+    }
+
+    /// True if windows are split because the hand refuses to be read through a gap.
+    pub(crate) fn gaps_are_split(&self) -> bool {
+        self.gaps.are_split()
+    }
+
+    /// Whole reads of a group a second, if the wire carried nothing else; 0 before the first answer.
+    pub(crate) fn could_hz(&self, group: PollGroup) -> f64 {
+        let Some(turnaround) = self.turnaround.typical() else {
+            return 0.0;
+        };
+        let joining = self.joining(Tempo::Rest);
+        let mut left: ArrayVec<Part, { Part::ALL.len() }> = Part::ALL.into_iter().collect();
+        left.retain(|part| part.group() == group);
+        let mut all = Duration::ZERO;
+        while let Some(first) = left.first() {
+            let window = joining.window(first.span(), left.iter().copied());
+            all += self.cost.read(window.len, turnaround);
+            left.retain(|part| !window.covers(part.span()));
+        }
+        if all.is_zero() {
+            0.0
+        } else {
+            1.0 / all.as_secs_f64()
+        }
+    }
+
+    fn joining(&self, tempo: Tempo) -> Joining {
+        let longest = match tempo {
+            Tempo::Rest => self.cost.window(self.turnaround.longest()),
+            Tempo::Motion | Tempo::Stopping => self.cost.window_moving(),
+        };
+        Joining {
+            cost: self.cost,
+            turnaround: self.turnaround.typical().unwrap_or(TURNAROUND),
+            longest,
+            gaps: self.gaps,
+        }
+    }
+
+    /// What is to be read now, if anything is due.
+    pub(crate) fn next(&self, now: Moment, tempo: Tempo) -> Option<Question> {
+        let due = || self.wanted(tempo).filter(|due| due.at() <= now);
+        let motion = || {
+            due()
+                .filter(|due| due.part.is_motion())
+                .reduce(|a, b| a.later(b, now))
+        };
+        let any = || due().reduce(|a, b| a.later(b, now));
+        let others = || {
+            due()
+                .filter(|due| !due.part.is_motion())
+                .reduce(|a, b| a.later(b, now))
+        };
+        let first = match (tempo, self.motion_turn) {
+            (Tempo::Rest, _) => any(),
+            (_, true) => motion().or_else(any),
+            (_, false) => others().or_else(any),
+        };
+        first.map(|first| self.question(first, now, tempo))
+    }
+
+    /// The motion state, due or not.
+    pub(crate) fn motion(&self, now: Moment, tempo: Tempo) -> Question {
+        let angle = self.parts.iter().find(|due| due.part == Part::Angle);
+        let angle = angle.copied().unwrap_or(Due {
+            part: Part::Angle,
+            period: Duration::ZERO,
+            next: now,
+            held_until: now,
+            asked: now,
+        });
+        self.question(&angle, now, tempo)
+    }
+
+    /// What is read between two rounds of setpoints, so that a drag starves nothing; due or not it is no motion state.
+    pub(crate) fn others(&self, now: Moment) -> Option<Question> {
+        let due = self.parts.iter().filter(|due| due.at() <= now);
+        due.filter(|due| !due.part.is_motion())
+            .reduce(|a, b| a.later(b, now))
+            .map(|first| self.question(first, now, Tempo::Motion))
+    }
+
+    /// When something is due next.
+    pub(crate) fn next_due(&self, tempo: Tempo) -> Moment {
+        let next = self.wanted(tempo).map(Due::at).min();
+        next.unwrap_or(Moment::ZERO)
+    }
+
+    /// A window was answered. Its parts are due one period on, without catching up; counted from the asking, so that
+    /// rates are kept whatever the reply takes.
+    pub(crate) fn answered(&mut self, window: Span, asked: Moment, took: Duration) {
+        self.turnaround.learn(&self.cost, window.len, took);
+        self.gaps.answered(window);
+        self.asked(window, asked);
+    }
+
+    /// A window was not answered as it should be.
+    pub(crate) fn failed(&mut self, window: Span, now: Moment) {
+        self.gaps.failed(window);
+        self.asked(window, now);
+    }
+
+    /// Reads the setpoints as soon as possible: they were just written.
+    pub(crate) fn hasten_settings(&mut self, now: Moment) {
+        for due in &mut self.parts {
+            if matches!(due.part, Part::Targets | Part::Speeds) {
+                due.next = due.next.min(now);
+            }
+        }
+    }
+
+    /// No form of this window could be asked for: its parts wait until `until`, and are as late as they were.
+    pub(crate) fn failed_to_ask(&mut self, window: Span, until: Moment) {
+        self.motion_turn = true;
+        for due in &mut self.parts {
+            if window.covers(due.part.span()) {
+                due.held_until = until;
+            }
+        }
+    }
+
+    fn asked(&mut self, window: Span, at: Moment) {
+        if self.recent.is_full() {
+            self.recent.remove(0);
+        }
+        self.recent.push(window);
+        self.motion_turn = true;
+        for due in &mut self.parts {
+            if window.covers(due.part.span()) {
+                // A part that came along in company before its time is not put off for all the times it did.
+                due.next = due.next.plus(due.period).clamp(at, at.plus(due.period));
+                due.asked = at;
+                self.motion_turn &= !due.part.is_motion();
+            }
+        }
+    }
+
+    fn wanted(&self, tempo: Tempo) -> impl Iterator<Item = &Due> + Clone {
+        self.parts.iter().filter(move |due| {
+            tempo != Tempo::Stopping || due.part.is_motion() || due.part == Part::Drives
+        })
+    }
+
+    /// The question about a part and what goes well with it.
+    fn question(&self, first: &Due, now: Moment, tempo: Tempo) -> Question {
+        let joining = self.joining(tempo);
+        let joins = self
+            .wanted(tempo)
+            .filter(|due| due.joins(first, now, tempo));
+        // What belongs together goes first, so that chance neighbours do not take its place.
+        let alike = joins.clone().filter(|due| due.period == first.period);
+        let narrow = joining.window(first.part.span(), alike.map(|due| due.part));
+        let wide = joining.window(narrow, joins.map(|due| due.part));
+        let is_motion = wide.covers(Part::Angle.span());
+        let mut forms = joining.shapes(wide);
+        if is_motion {
+            // Shorter ones, for a line on which each longer one may still be answered late.
+            let shorter = [narrow, Part::Angle.span()].into_iter();
+            for window in shorter.filter(|window| *window != wide) {
+                forms.extend(
+                    joining
+                        .shapes(window)
+                        .into_iter()
+                        .take(forms.remaining_capacity()),
+                );
+            }
+        }
+        let is_recent = |shape: &&Span| self.recent.contains(shape);
+        let fresh = forms.iter().filter(|shape| !is_recent(shape));
+        let shapes = fresh
+            .chain(forms.iter().filter(is_recent))
+            .copied()
+            .collect();
+        Question { shapes, is_motion }
+    }
+}
+
+impl Due {
+    /// When it may be asked for.
+    fn at(&self) -> Moment {
+        self.next.max(self.held_until)
+    }
+
+    /// How long it waits, in its own periods.
+    fn lateness(&self, now: Moment) -> u128 {
+        let late = now.since(self.next);
+        let period = if late >= STARVED_AFTER {
+            SHORTEST_PERIOD
+        } else {
+            self.period.clamp(SHORTEST_PERIOD, LONGEST_PERIOD)
+        };
+        (late.as_micros() + 1) * 1_000_000 / period.as_micros()
+    }
+
+    /// Whichever waits longer; the earlier in the table if both do.
+    fn later<'a>(&'a self, other: &'a Self, now: Moment) -> &'a Self {
+        if other.lateness(now) > self.lateness(now) {
+            other
+        } else {
+            self
+        }
+    }
+
+    /// True if it may be read with `first`, being wanted now or so soon that this read serves as well.
+    fn joins(&self, first: &Self, now: Moment, tempo: Tempo) -> bool {
+        if tempo != Tempo::Rest && self.part.is_motion() != first.part.is_motion() {
+            return false;
+        }
+        match self.part {
+            // Fingertips that were read just now wait for their turn, else the last of them would take them along.
+            Part::Tip(_) => now.since(self.asked) * 3 >= now.since(first.asked) * 2,
+            // What belongs together stays together, and what is wanted seldom is not read much more often for company.
+            _ if self.period == first.period => self.next <= now.plus(self.period / 2),
+            _ => self.next <= now.plus(self.period / 8),
+        }
+    }
+}
+
+fn period(hz: f64) -> Duration {
+    if hz > 0.0 {
+        Duration::try_from_secs_f64(1.0 / hz).unwrap_or(Duration::MAX)
+    } else {
+        Duration::from_secs(u64::from(u32::MAX))
+    }
+}

@@ -1,0 +1,353 @@
+//! Which stretch of memory one read takes: the parts that are wanted now, joined where one longer read is cheaper than
+//! two, through a gap between registers where the hand allows it. Pure; when a part is wanted is not decided here.
+
+use crate::hand::Span;
+use crate::hand::register::{ANGLE_SET, POS_SET, STATE, TOUCH};
+use crate::link::poll::cost::WireCost;
+use crate::link::quirks::GapRead;
+use crate::link::stats::PollGroup;
+use arrayvec::ArrayVec;
+use std::time::Duration;
+
+/// Most forms in which one window is asked for.
+pub(crate) const SHAPES_MAX: usize = 32;
+/// Forms that differ from the window by bytes before or behind it.
+const VARIED_MAX: usize = 14;
+/// Runs without registers, which a hand may refuse to be read through (manual 2.6 lists none there).
+const GAPS: [Span; 2] = [Span::new(1510, 12), Span::new(1558, 24)];
+/// Memory that holds registers, gaps included.
+const REGIONS: [Span; 2] = [Span::new(POS_SET.address, 1624 - POS_SET.address), TOUCH];
+/// Times that a window failed which led through a gap, before the gap is blamed: once may be chance.
+const STRIKES: u8 = 2;
+
+/// What is read as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// ANGLE_ACT.
+    Angle,
+    /// FORCE_ACT.
+    Force,
+    /// CURRENT, ERROR and STATUS.
+    Drives,
+    /// TEMP.
+    Temperature,
+    /// POS_ACT.
+    Position,
+    /// ANGLE_SET and FORCE_SET.
+    Targets,
+    /// SPEED_SET.
+    Speeds,
+    /// One fingertip, in the order of addresses.
+    Tip(u8),
+}
+
+/// Bytes of one fingertip.
+const TIP: u16 = 58;
+
+impl Part {
+    pub(crate) const ALL: [Self; 12] = [
+        Self::Angle,
+        Self::Force,
+        Self::Drives,
+        Self::Temperature,
+        Self::Position,
+        Self::Targets,
+        Self::Speeds,
+        Self::Tip(0),
+        Self::Tip(1),
+        Self::Tip(2),
+        Self::Tip(3),
+        Self::Tip(4),
+    ];
+
+    /// Where it lies.
+    pub(crate) fn span(self) -> Span {
+        match self {
+            Self::Angle => Span::new(STATE.address, 12),
+            Self::Force => Span::new(1582, 12),
+            Self::Drives => Span::new(1594, 24),
+            Self::Temperature => Span::new(1618, 6),
+            Self::Position => Span::new(1534, 12),
+            Self::Targets => Span::new(ANGLE_SET.address, 24),
+            Self::Speeds => Span::new(1522, 12),
+            Self::Tip(finger) => Span::new(TOUCH.address + TIP * u16::from(finger), TIP),
+        }
+    }
+
+    /// The group that it is shown in.
+    pub(crate) const fn group(self) -> PollGroup {
+        match self {
+            Self::Angle | Self::Force => PollGroup::Motion,
+            Self::Drives => PollGroup::Drives,
+            Self::Temperature => PollGroup::Temperature,
+            Self::Tip(_) => PollGroup::Tactile,
+            Self::Targets | Self::Speeds | Self::Position => PollGroup::Settings,
+        }
+    }
+
+    /// True for what tells where the hand is and what it feels.
+    pub(crate) const fn is_motion(self) -> bool {
+        matches!(self, Self::Angle | Self::Force)
+    }
+}
+
+/// What is known of the gaps on this connection.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Gaps([Gap; GAPS.len()]);
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Gap {
+    /// A window through it was answered.
+    open: bool,
+    /// Windows through it that failed while none was answered.
+    strikes: u8,
+    /// The last one failed, and nothing was answered since.
+    suspect: bool,
+    refused: bool,
+}
+
+impl Gaps {
+    /// How the hand takes reads through the gap between angles and forces; of the other nothing is known.
+    pub(crate) fn known(read: GapRead) -> Self {
+        let gap = Gap {
+            open: read == GapRead::Through,
+            refused: read == GapRead::Split,
+            ..Gap::default()
+        };
+        Self([Gap::default(), gap])
+    }
+
+    /// True if a window may lead over this memory.
+    fn allow(&self, span: Span) -> bool {
+        let mut gaps = self.0.iter().zip(GAPS);
+        gaps.all(|(gap, place)| !overlap(span, place) || !(gap.refused || gap.suspect))
+    }
+
+    /// A window was answered. What failed only in a gap's company is that gap's fault.
+    pub(crate) fn answered(&mut self, span: Span) {
+        for (gap, place) in self.0.iter_mut().zip(GAPS) {
+            if overlap(span, place) {
+                gap.open = true;
+                gap.strikes = 0;
+            } else if gap.suspect {
+                gap.refused |= gap.strikes >= STRIKES;
+            }
+            gap.suspect = false;
+        }
+    }
+
+    /// A window got no answer, or not the one it should.
+    pub(crate) fn failed(&mut self, span: Span) {
+        for (gap, place) in self.0.iter_mut().zip(GAPS) {
+            if overlap(span, place) && !gap.open && !gap.refused {
+                gap.strikes = gap.strikes.saturating_add(1);
+                gap.suspect = true;
+            }
+        }
+    }
+
+    /// True if windows are split because of a gap.
+    pub(crate) fn are_split(&self) -> bool {
+        self.0.iter().any(|gap| gap.refused)
+    }
+}
+
+/// What decides how windows are joined.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Joining {
+    pub(crate) cost: WireCost,
+    pub(crate) turnaround: Duration,
+    /// Most data bytes.
+    pub(crate) longest: u16,
+    pub(crate) gaps: Gaps,
+}
+
+impl Joining {
+    /// The window around what is asked for: it takes in whichever of the others costs less in it than by itself.
+    pub(crate) fn window(&self, first: Span, others: impl Iterator<Item = Part> + Clone) -> Span {
+        let mut window = first;
+        loop {
+            let wider = others
+                .clone()
+                .map(|part| (part.span(), hull(window, part.span())))
+                .filter(|(part, hull)| !window.covers(*part) && self.pays(window, *part, *hull))
+                .min_by_key(|(_, hull)| hull.len);
+            match wider {
+                Some((_, hull)) => window = hull,
+                None => return window,
+            }
+        }
+    }
+
+    fn pays(&self, window: Span, part: Span, hull: Span) -> bool {
+        let read = |span: Span| self.cost.read(span.len, self.turnaround);
+        hull.len <= self.longest && self.gaps.allow(hull) && read(hull) <= read(window) + read(part)
+    }
+
+    /// The window, and forms of it with more bytes at its ends, shortest first. No two replies in a row may look alike,
+    /// and no late one may look like the next.
+    pub(crate) fn shapes(&self, window: Span) -> ArrayVec<Span, SHAPES_MAX> {
+        let room = room(window);
+        let most = self.longest.saturating_sub(window.len);
+        let ends = (0..=most / 2).flat_map(|extra| {
+            let all = 2 * extra;
+            let behind = (all <= room.behind).then_some((0, all));
+            let before = (all > 0 && all <= room.before).then_some((all, 0));
+            let both = (all > room.behind && all > room.before && all <= room.behind + room.before)
+                .then(|| (all - room.behind, room.behind));
+            behind.into_iter().chain(before).chain(both)
+        });
+        ends.map(|(before, behind)| {
+            Span::new(window.address - before, window.len + before + behind)
+        })
+        .take(VARIED_MAX)
+        .collect()
+    }
+}
+
+/// Bytes of registers around a window that could be read with it.
+struct Room {
+    before: u16,
+    behind: u16,
+}
+
+fn room(window: Span) -> Room {
+    let region = REGIONS.into_iter().find(|region| region.covers(window));
+    let region = region.unwrap_or(window);
+    let gaps_before = GAPS.iter().map(|gap| gap.end());
+    let start = gaps_before
+        .filter(|end| *end <= u32::from(window.address))
+        .fold(u32::from(region.address), u32::max);
+    let gaps_behind = GAPS.iter().map(|gap| u32::from(gap.address));
+    let end = gaps_behind
+        .filter(|start| *start >= window.end())
+        .fold(region.end(), u32::min);
+    Room {
+        before: u16::try_from(u32::from(window.address).saturating_sub(start)).unwrap_or(0) / 2 * 2,
+        behind: u16::try_from(end.saturating_sub(window.end())).unwrap_or(0) / 2 * 2,
+    }
+}
+
+fn overlap(a: Span, b: Span) -> bool {
+    u32::from(a.address) < b.end() && u32::from(b.address) < a.end()
+}
+
+fn hull(a: Span, b: Span) -> Span {
+    let from = a.address.min(b.address);
+    let len = a.end().max(b.end()) - u32::from(from);
+    Span::new(from, u16::try_from(len).unwrap_or(u16::MAX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn joining(cost: WireCost, turnaround: Duration, longest: u16) -> Joining {
+        Joining {
+            cost,
+            turnaround,
+            longest,
+            gaps: Gaps::default(),
+        }
+    }
+
+    fn window(joining: &Joining, first: Part, others: &[Part]) -> (u16, u16) {
+        let window = joining.window(first.span(), others.iter().copied());
+        (window.address, window.len)
+    }
+
+    const STATE_PARTS: [Part; 4] = [Part::Angle, Part::Force, Part::Drives, Part::Temperature];
+
+    #[test]
+    fn a_gap_is_read_through_where_that_is_cheaper_than_asking_twice() {
+        let fast = joining(WireCost::rs485(Some(115_200)), MS * 3, 252);
+        assert_eq!(window(&fast, Part::Angle, &STATE_PARTS), (1546, 78));
+        // 24 bytes take 12.5 ms at 19200 baud, another request and reply 8.9 and the hand's turnaround.
+        let slow = WireCost::rs485(Some(19_200));
+        let quick_hand = joining(slow, MS, 252);
+        assert_eq!(window(&quick_hand, Part::Angle, &STATE_PARTS), (1546, 12));
+        assert_eq!(window(&quick_hand, Part::Force, &STATE_PARTS), (1582, 42));
+        let slow_hand = joining(slow, MS * 8, 252);
+        assert_eq!(window(&slow_hand, Part::Angle, &STATE_PARTS), (1546, 78));
+        // Pieces of 8 bytes: the gap is three more of them, and apart costs none more.
+        let can = joining(WireCost::can(1_000_000), MS, 250);
+        assert_eq!(window(&can, Part::Angle, &STATE_PARTS), (1546, 12));
+    }
+
+    #[test]
+    fn a_window_keeps_to_the_longest_reply() {
+        let tips: Vec<Part> = (0..5).map(Part::Tip).collect();
+        for (longest, wanted) in [(252, 4), (135, 2), (58, 1)] {
+            let joining = joining(WireCost::rs485(Some(115_200)), MS, longest);
+            assert_eq!(window(&joining, Part::Tip(0), &tips), (3000, 58 * wanted));
+        }
+        let short = joining(WireCost::rs485(Some(115_200)), MS * 3, 58);
+        assert_eq!(window(&short, Part::Angle, &STATE_PARTS), (1546, 48));
+        assert_eq!(
+            window(&short, Part::Drives, &[Part::Temperature]),
+            (1594, 30)
+        );
+    }
+
+    #[test]
+    fn a_gap_that_is_refused_twice_splits_the_window_and_other_failures_do_not() {
+        let mut joining = joining(WireCost::rs485(Some(115_200)), MS * 3, 252);
+        let through = joining.window(Part::Angle.span(), STATE_PARTS.into_iter());
+        let single = Part::Angle.span();
+        joining.gaps.failed(through);
+        assert_eq!(window(&joining, Part::Angle, &STATE_PARTS), (1546, 12));
+        joining.gaps.failed(single);
+        joining.gaps.answered(single);
+        assert_eq!(
+            joining.window(Part::Angle.span(), STATE_PARTS.into_iter()),
+            through
+        );
+        joining.gaps.failed(through);
+        joining.gaps.answered(single);
+        assert!(joining.gaps.are_split());
+        assert_eq!(window(&joining, Part::Angle, &STATE_PARTS), (1546, 12));
+        assert_eq!(window(&joining, Part::Force, &STATE_PARTS), (1582, 42));
+        // Once it was read through, it is never blamed.
+        let mut known = Gaps::default();
+        known.answered(through);
+        for _ in 0..9 {
+            known.failed(through);
+            known.answered(single);
+        }
+        assert!(!known.are_split());
+    }
+
+    #[test]
+    fn the_forms_of_a_window_differ_cover_it_and_stay_within_registers() {
+        for (part, others, longest, least) in [
+            (Part::Angle, &STATE_PARTS[..2], 58, 6),
+            (Part::Angle, &STATE_PARTS[..3], 252, 12),
+            (Part::Drives, &STATE_PARTS[2..], 58, 7),
+            (Part::Tip(0), &[][..], 58, 1),
+            (Part::Tip(4), &[][..], 60, 2),
+            (Part::Targets, &[Part::Speeds][..], 58, 6),
+        ] {
+            let joining = joining(WireCost::rs485(Some(115_200)), MS * 3, longest);
+            let window = joining.window(part.span(), others.iter().copied());
+            let shapes = joining.shapes(window);
+            assert!(shapes.len() >= least, "{part:?}: {shapes:?}");
+            assert_eq!(shapes[0], window);
+            for (n, shape) in shapes.iter().enumerate() {
+                assert!(
+                    shape.covers(window) && shape.len <= longest,
+                    "{part:?} {shape:?}"
+                );
+                assert!(!shapes[..n].contains(shape), "{part:?} {shape:?}");
+                assert!(
+                    REGIONS.iter().any(|region| region.covers(*shape)),
+                    "{shape:?}"
+                );
+                for gap in GAPS {
+                    assert_eq!(overlap(*shape, gap), overlap(window, gap), "{shape:?}");
+                }
+            }
+        }
+    }
+}

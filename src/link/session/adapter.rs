@@ -1,0 +1,57 @@
+//! Remembers the adapter of a hand, so that it is found again under another port name. Decides where to dial; opens nothing.
+
+use crate::transport::{
+    Adapter, Dial, Endpoint, PortFound, TransportError, Whereabouts, is_same_port,
+};
+
+/// The adapter of a link that has answered once.
+#[derive(Debug, Default)]
+pub(crate) struct KnownAdapter {
+    adapter: Option<Adapter>,
+}
+
+impl KnownAdapter {
+    /// Notes the adapter through which the hand answered just now, and gives what is known of its port.
+    pub(crate) async fn remember(
+        &mut self,
+        dial: &dyn Dial,
+        endpoint: &Endpoint,
+    ) -> Option<PortFound> {
+        let port = endpoint.port()?;
+        let ports = dial.ports().await;
+        self.adapter = Adapter::at(port, &ports);
+        ports
+            .into_iter()
+            .find(|found| is_same_port(port, &found.path))
+    }
+
+    /// Where to dial now: as asked, or through the port at which the adapter is. A port of this name that is another
+    /// adapter now is not opened unasked.
+    pub(crate) async fn endpoint(
+        &self,
+        dial: &dyn Dial,
+        asked: &Endpoint,
+    ) -> Result<Endpoint, TransportError> {
+        let (Some(adapter), Some(port)) = (&self.adapter, asked.port()) else {
+            return Ok(asked.clone());
+        };
+        let ports = dial.ports().await;
+        let alike = match adapter.find(&ports) {
+            Whereabouts::At(path) if is_same_port(port, &path) => return Ok(asked.clone()),
+            Whereabouts::At(path) => return Ok(asked.through(&path)),
+            Whereabouts::Alike(alike) => alike,
+            Whereabouts::Gone => {
+                let mut taken = ports.iter().filter(|found| is_same_port(port, &found.path));
+                match taken.next() {
+                    Some(taken) => vec![taken.path.clone()],
+                    // Not listed: opening says in its own words what is wrong.
+                    None => return Ok(asked.clone()),
+                }
+            }
+        };
+        Err(TransportError::Away {
+            place: port.into(),
+            alike,
+        })
+    }
+}

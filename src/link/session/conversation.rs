@@ -1,0 +1,408 @@
+//! The task that owns one wire: dials, identifies, serves, and comes back after a loss. It decides what goes
+//! on the wire next: stop, then hold, setpoints, requests, reads. Nothing that was asked survives a lost link.
+
+use crate::hand::{HandSample, Moment};
+use crate::link::bus::late_replies::LateReplies;
+use crate::link::bus::{self, Bus, BusCounts, BusError};
+use crate::link::clock::SleepWatch;
+use crate::link::config::LinkConfig;
+use crate::link::latency::Ticks;
+use crate::link::poll::cost::WireCost;
+use crate::link::poll::plan::PollPlan;
+use crate::link::request::RequestError;
+use crate::link::session::adapter::KnownAdapter;
+use crate::link::session::counters::Counters;
+use crate::link::session::job::Job;
+use crate::link::session::motion::Motion;
+use crate::link::session::other_controller::OtherController;
+use crate::link::session::rest::RestWatch;
+use crate::link::session::save_watch::SaveWatch;
+use crate::link::status::{Dialling, LinkStatus, LinkTrouble};
+use crate::link::tap::TappedWire;
+use crate::link::wanted::{Ends, Wanted};
+use crate::record::{Disarmed, Hold, LinkState, Record, Rest};
+use crate::transport::{BoxedWire, Endpoint, TransportError};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::watch;
+use tokio::time::sleep_until;
+
+/// First wait before another try; some hands need 300 ms between close and connect.
+const RETRY_FIRST: Duration = Duration::from_millis(300);
+/// Longest wait: a hand that is back is seen again within two seconds.
+const RETRY_LONGEST: Duration = Duration::from_secs(1);
+/// Requests in a row without reply after which the link counts as lost …
+pub(crate) const SILENT_MAX: u32 = 4;
+/// … or fewer, but never one alone, where not even the shortest wait for one more would fit into this: with the time
+/// before the first of them, silence shows within 300 ms. A wire so slow that two requests take longer is given those two.
+const SILENCE_MAX: Duration = Duration::from_millis(288);
+const SILENT_LEAST: u32 = 2;
+/// Shortest wait for a reply: a hand takes up to 15 ms, a USB adapter up to 16 more.
+const REPLY_LIMIT_MIN: Duration = Duration::from_millis(50);
+/// Longest wait for a reply: part of the time in which a stop gets through, and half of that in which silence shows.
+const REPLY_LIMIT_MAX: Duration = Duration::from_millis(120);
+/// How serving a wire ended.
+pub(crate) enum End {
+    /// The handle is gone.
+    Closed,
+    /// The link was lost.
+    Lost(LinkTrouble),
+}
+
+/// One conversation with one hand.
+pub(crate) struct Session {
+    pub(crate) config: LinkConfig,
+    pub(crate) ends: Ends,
+    pub(crate) status: LinkStatus,
+    pub(crate) counters: Counters,
+    pub(crate) sample: HandSample,
+    pub(crate) plan: PollPlan,
+    pub(crate) motion: Motion,
+    pub(crate) moving: RestWatch,
+    pub(crate) job: Option<Job>,
+    /// The line is left to a hand that saves or calibrates.
+    pub(crate) leaves_line: bool,
+    /// Answers what a lost link broke off.
+    pub(crate) broken_off: Option<Box<dyn FnOnce() + Send + Sync>>,
+    pub(crate) saving: SaveWatch,
+    pub(crate) sleep: SleepWatch,
+    silent: u32,
+    /// When the first of the unanswered requests in a row was asked.
+    silent_since: Option<Moment>,
+    adapter: KnownAdapter,
+    pub(crate) ticks: Ticks,
+    /// The endpoint as it was dialled last: through the port at which the adapter is.
+    pub(crate) dialled: Endpoint,
+    late: LateReplies,
+    pub(crate) others: OtherController,
+    closed_wires: BusCounts,
+}
+
+impl Session {
+    pub(crate) fn new(config: LinkConfig, ends: Ends) -> Self {
+        let now = config.clock.now();
+        Self {
+            plan: PollPlan::new(config.rates, WireCost::default(), now),
+            sleep: SleepWatch::start(),
+            dialled: config.endpoint.clone(),
+            config,
+            ends,
+            status: LinkStatus::default(),
+            counters: Counters::default(),
+            sample: HandSample::default(),
+            motion: Motion::default(),
+            moving: RestWatch::default(),
+            job: None,
+            leaves_line: false,
+            broken_off: None,
+            saving: SaveWatch::default(),
+            silent: 0,
+            silent_since: None,
+            adapter: KnownAdapter::default(),
+            ticks: Ticks::default(),
+            late: LateReplies::default(),
+            others: OtherController::default(),
+            closed_wires: BusCounts::default(),
+        }
+    }
+
+    /// Runs until the handle is dropped.
+    pub(crate) async fn run(mut self) {
+        let mut attempt = 0;
+        loop {
+            attempt += 1;
+            let (end, answered) = self.conversation(attempt).await;
+            match end {
+                End::Closed => return,
+                End::Lost(trouble) => self.lost(trouble),
+            }
+            if answered {
+                attempt = 0;
+            }
+            if self.wait_for_retry(attempt).await {
+                return;
+            }
+        }
+    }
+
+    pub(crate) fn now(&self) -> Moment {
+        self.config.clock.now()
+    }
+
+    /// One wire, from dialling to its end; and whether the hand answered on it.
+    async fn conversation(&mut self, attempt: u32) -> (End, bool) {
+        self.status.dialling = Dialling::Trying { attempt };
+        self.publish();
+        let closed = closed(Arc::clone(&self.ends.wanted));
+        let dialled = tokio::select! {
+            biased;
+            () = closed => return (End::Closed, false),
+            dialled = self.dial() => dialled,
+        };
+        let late = std::mem::take(&mut self.late);
+        let (endpoint, wire) = match dialled {
+            Ok(dialled) => dialled,
+            Err(error) => return (End::Lost(error.into()), false),
+        };
+        self.dialled = endpoint;
+        let (tap, clock) = (self.ends.tap.clone(), self.config.clock);
+        let wire = Box::new(TappedWire::new(wire, tap, clock));
+        let mut bus = bus::on_wire(&self.dialled, wire, late, clock);
+        self.heard();
+        self.sleep = SleepWatch::start();
+        self.go(LinkState::Identifying);
+        let (end, answered) = match self.identify(bus.as_mut()).await {
+            Err(end) => (self.explained(end, bus.as_ref()), false),
+            Ok(()) => {
+                self.note_port().await;
+                self.begin(bus.as_ref());
+                (self.serve(bus.as_mut()).await, true)
+            }
+        };
+        self.count(bus.as_ref());
+        self.closed_wires = self.closed_wires.plus(bus.counts());
+        self.late = bus.close();
+        (end, answered)
+    }
+
+    /// Opens the wire where the adapter is now, and says where that is.
+    async fn dial(&self) -> Result<(Endpoint, BoxedWire), TransportError> {
+        let dial = self.config.dial.as_ref();
+        let endpoint = self.adapter.endpoint(dial, &self.config.endpoint).await?;
+        let wire = dial.dial(&endpoint).await?;
+        Ok((endpoint, wire))
+    }
+
+    /// A hand that never answered, with what was heard instead.
+    fn explained(&self, end: End, bus: &dyn Bus) -> End {
+        let End::Lost(LinkTrouble::NoAnswer { id }) = end else {
+            return end;
+        };
+        let place = self.dialled.place();
+        let heard = bus.counts();
+        let is_noisy = heard.checksum_errors + heard.resyncs + heard.foreign_replies > 0;
+        End::Lost(match self.dialled {
+            Endpoint::Tcp { .. } => LinkTrouble::Mute { place, unit: id },
+            _ if is_noisy => LinkTrouble::Garbled { place, id },
+            _ => LinkTrouble::NoAnswer { id },
+        })
+    }
+
+    /// Notes through which adapter the hand answered.
+    async fn note_port(&mut self) {
+        let (asked, at) = (&self.config.endpoint, &self.dialled);
+        let found = self.adapter.remember(self.config.dial.as_ref(), at).await;
+        self.status.latency_timer_ms = found.and_then(|port| port.usb?.latency_timer_ms);
+        self.status.moved_to = at.port().filter(|_| at != asked).map(str::to_owned);
+    }
+
+    /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
+    /// A stop that came while the link got to know the hand is kept; nothing else is.
+    fn begin(&mut self, bus: &dyn Bus) {
+        self.forget_wishes_but(|wanted| wanted.stop);
+        if self.sample != HandSample::default() {
+            self.counters.stats.reconnects += 1;
+        }
+        self.sample = HandSample::default();
+        self.others.begin();
+        self.plan = PollPlan::new(self.config.rates, bus.cost(), self.now());
+        if let Some(gap) = self.status.quirks.gap {
+            self.plan.know_gap(gap);
+        }
+        self.moving = RestWatch::default();
+        self.ticks = Ticks::default();
+        self.motion = Motion::after(self.motion.last_epoch);
+        self.status.dialling = Dialling::Idle;
+        self.status.trouble = None;
+        self.status.hold = Hold::None;
+        self.go(LinkState::Monitoring);
+    }
+
+    /// The link is gone: nothing stays armed, nothing stays queued.
+    fn lost(&mut self, trouble: LinkTrouble) {
+        self.disarm(Disarmed::LinkLost);
+        self.motion.forget();
+        self.status.trouble = Some(trouble);
+        self.counters.lost();
+        self.forget_wishes();
+        if let Some(job) = self.job.take() {
+            job.fail(RequestError::LinkLost);
+        }
+        self.status.line_left = false;
+        self.status.rest = Rest::Unknown;
+        self.go(LinkState::Offline);
+        if let Some(answer) = self.broken_off.take() {
+            answer();
+        }
+        while let Ok(request) = self.ends.requests.try_recv() {
+            request.fail(RequestError::NotConnected);
+        }
+        self.ends.stats.send_replace(self.counters.stats);
+    }
+
+    /// Empties the slot of wishes, but not the wish to close and how often to read.
+    pub(crate) fn forget_wishes(&self) {
+        self.forget_wishes_but(|_| false);
+    }
+
+    fn forget_wishes_but(&self, stop: fn(&Wanted) -> bool) {
+        self.ends.wanted.send_if_modified(|wanted| {
+            *wanted = Wanted {
+                closed: wanted.closed,
+                stop: stop(wanted),
+                rates: wanted.rates,
+                turn: wanted.turn,
+                ..Wanted::default()
+            };
+            false
+        });
+    }
+
+    /// Waits before the next try; true if the handle is gone meanwhile.
+    async fn wait_for_retry(&mut self, attempt: u32) -> bool {
+        let doublings = attempt.saturating_sub(1).min(8);
+        let wait = (RETRY_FIRST * 2u32.pow(doublings)).min(RETRY_LONGEST);
+        let until = self.now().plus(wait);
+        self.status.dialling = Dialling::Waiting { attempt, until };
+        self.publish();
+        let closed = closed(Arc::clone(&self.ends.wanted));
+        tokio::select! {
+            biased;
+            () = closed => true,
+            () = sleep_until(self.config.clock.instant(until)) => false,
+        }
+    }
+
+    /// How long a reply of so many bytes may take on this link.
+    pub(crate) fn reply_limit(&self, bus: &dyn Bus, bytes: u16) -> Duration {
+        let usual = self.counters.stats.rtt_p99.unwrap_or_default() * 2;
+        let on_wire = bus.wire_time(bytes);
+        let limit = on_wire + usual.clamp(REPLY_LIMIT_MIN, REPLY_LIMIT_MAX);
+        // In a silence the requests share what is left of its time.
+        let Some(since) = self.silent_since else {
+            return limit;
+        };
+        let left = SILENCE_MAX.saturating_sub(self.now().since(since));
+        limit.min(left.max(on_wire + REPLY_LIMIT_MIN))
+    }
+
+    /// A request was answered after `took`.
+    pub(crate) fn answered(&mut self, took: Duration) {
+        self.heard();
+        self.counters.round_trip(took);
+    }
+
+    /// A request failed. Only a lost wire, or too many failures in a row, end the conversation.
+    pub(crate) async fn failed(&mut self, bus: &mut dyn Bus, error: &BusError) -> Result<(), End> {
+        match error {
+            BusError::Lost(error) => return Err(End::Lost(error.clone().into())),
+            BusError::Refused { .. } => {
+                self.heard();
+                self.counters.stats.refusals += 1;
+                return Ok(());
+            }
+            BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
+            BusError::Timeout { .. } => self.counters.stats.timeouts += 1,
+            // Nothing was asked.
+            BusError::Ambiguous => return Ok(()),
+        }
+        if self.unheard(error) {
+            return Err(End::Lost(LinkTrouble::Silent {
+                silent: self.silent,
+            }));
+        }
+        if self.motion.hold.is_some() {
+            return Ok(());
+        }
+        // A stop does not wait for the line to settle.
+        let stop = stopped(Arc::clone(&self.ends.wanted));
+        tokio::select! {
+            biased;
+            () = stop => Ok(()),
+            settled = bus.quiet() => match settled {
+                Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+                _ => Ok(()),
+            },
+        }
+    }
+
+    /// The hand answered.
+    fn heard(&mut self) {
+        self.silent = 0;
+        self.silent_since = None;
+    }
+
+    /// A request got no usable reply; true if the hand now counts as gone.
+    fn unheard(&mut self, error: &BusError) -> bool {
+        let now = self.now();
+        let waited = match error {
+            BusError::Timeout { after } => *after,
+            _ => Duration::ZERO,
+        };
+        let asked = Moment::from_duration(now.since(Moment::ZERO).saturating_sub(waited));
+        self.silent += 1;
+        let since = *self.silent_since.get_or_insert(asked);
+        let one_more = now.since(since) + REPLY_LIMIT_MIN;
+        self.silent >= SILENT_MAX || self.silent >= SILENT_LEAST && one_more > SILENCE_MAX
+    }
+
+    /// Goes to a state and tells the window.
+    pub(crate) fn go(&mut self, state: LinkState) {
+        let now = self.now();
+        if self.status.state != state {
+            self.status.state = state;
+            self.status.since = now;
+            self.publish();
+            self.tell(Record::State { at: now, state });
+        }
+        self.publish();
+    }
+
+    pub(crate) fn publish(&self) {
+        let changed = self.ends.status.send_if_modified(|shown| {
+            let changed = *shown != self.status;
+            if changed {
+                shown.clone_from(&self.status);
+            }
+            changed
+        });
+        if changed {
+            (self.config.wake)();
+        }
+    }
+
+    /// Tells the readers, if there are any.
+    pub(crate) fn tell(&self, record: Record) {
+        // Without readers nobody misses it.
+        let _readers = self.ends.records.send(record);
+        (self.config.wake)();
+    }
+
+    /// Brings the statistics up to date.
+    pub(crate) fn count(&mut self, bus: &dyn Bus) {
+        let all = self.closed_wires.plus(bus.counts());
+        self.counters.stats.checksum_errors = all.checksum_errors;
+        self.counters.stats.resyncs = all.resyncs;
+        self.counters.stats.foreign_replies = all.foreign_replies;
+        self.others.overheard(all.foreign_requests, self.now());
+        self.counters.stats.foreign_requests = all.foreign_requests + self.others.changes;
+        let now = self.now();
+        self.counters.digest(now);
+        if let Some(line) = self.counters.line.figures(&self.plan, now) {
+            self.counters.stats.line = line;
+        }
+        self.ends.stats.send_replace(self.counters.stats);
+    }
+}
+
+/// Resolves when the handle is gone.
+pub(crate) async fn closed(wanted: Arc<watch::Sender<Wanted>>) {
+    let mut wanted = wanted.subscribe();
+    let _gone = wanted.wait_for(|wanted| wanted.closed).await;
+}
+
+/// Resolves when a stop is wanted, or the handle is gone.
+pub(crate) async fn stopped(wanted: Arc<watch::Sender<Wanted>>) {
+    let mut wanted = wanted.subscribe();
+    let _asked = wanted.wait_for(|wanted| wanted.stop || wanted.closed).await;
+}

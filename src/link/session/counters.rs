@@ -1,0 +1,209 @@
+//! Counting for [`LinkStats`]: rates over the last second and percentiles over the last round trips.
+
+use crate::hand::{Finger, Group, Groups, Moment, Span};
+use crate::link::poll::cost::WireCost;
+use crate::link::poll::meter::LineMeter;
+use crate::link::stats::{LineUse, LinkStats};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Round trips that the percentiles look back on.
+const ROUND_TRIPS: usize = 512;
+/// Rates count over this time.
+const RATE_OVER: Duration = Duration::from_secs(1);
+/// Most events a rate can hold: more a second than any wire gives.
+const RATE_EVENTS: usize = 16_384;
+/// Percentiles are worked out this often.
+const DIGEST_EACH: Duration = Duration::from_millis(250);
+
+/// Counts one link.
+#[derive(Debug, Default)]
+pub(crate) struct Counters {
+    pub(crate) stats: LinkStats,
+    round_trips: VecDeque<Duration>,
+    state: Rate,
+    tactile: Rate,
+    sweep: Sweep,
+    pub(crate) line: LineMeter,
+    digested: Moment,
+}
+
+impl Counters {
+    pub(crate) fn round_trip(&mut self, took: Duration) {
+        if self.round_trips.len() == ROUND_TRIPS {
+            self.round_trips.pop_front();
+        }
+        self.round_trips.push_back(took);
+    }
+
+    /// A window was answered.
+    pub(crate) fn read(&mut self, cost: &WireCost, window: Span, took: Duration) {
+        self.line.read(cost, window, took);
+    }
+
+    /// A write went out, answered or not.
+    pub(crate) fn wrote(&mut self, cost: &WireCost, written: Span, took: Duration) {
+        self.line.wrote(cost, written, took);
+    }
+
+    /// A read failed.
+    pub(crate) fn failed(&mut self, took: Duration) {
+        self.line.failed(took);
+    }
+
+    /// New values of these groups arrived.
+    pub(crate) fn fresh(&mut self, fresh: Groups, now: Moment) {
+        if fresh.contains(Group::Angle) {
+            self.stats.state_reads += 1;
+            self.state.hit(now);
+        }
+        if self.sweep.is_whole_with(fresh) {
+            self.stats.tactile_reads += 1;
+            self.tactile.hit(now);
+        }
+    }
+
+    /// Brings rates and percentiles up to date, not more often than needed.
+    pub(crate) fn digest(&mut self, now: Moment) {
+        if now.since(self.digested) < DIGEST_EACH && self.stats.rtt_p50.is_some() {
+            return;
+        }
+        self.digested = now;
+        self.stats.state_hz = self.state.hz(now);
+        self.stats.tactile_hz = self.tactile.hz(now);
+        let mut sorted: Vec<Duration> = self.round_trips.iter().copied().collect();
+        sorted.sort_unstable();
+        self.stats.rtt_p50 = percentile(&sorted, 50);
+        self.stats.rtt_p99 = percentile(&sorted, 99);
+    }
+
+    /// A lost link has no rate and no round trip; its counts stay.
+    pub(crate) fn lost(&mut self) {
+        self.round_trips.clear();
+        self.state = Rate::default();
+        self.tactile = Rate::default();
+        self.sweep = Sweep::default();
+        self.line = LineMeter::default();
+        self.stats.state_hz = 0.0;
+        self.stats.tactile_hz = 0.0;
+        self.stats.rtt_p50 = None;
+        self.stats.rtt_p99 = None;
+        self.stats.line = LineUse::default();
+    }
+}
+
+/// The fingertips read since all five were.
+#[derive(Debug, Default)]
+struct Sweep(Groups);
+
+impl Sweep {
+    fn is_whole_with(&mut self, fresh: Groups) -> bool {
+        if !fresh.has_tactile() {
+            return false;
+        }
+        for finger in Finger::ALL {
+            if fresh.contains(Group::Tactile(finger)) {
+                self.0.insert(Group::Tactile(finger));
+            }
+        }
+        let whole = Finger::ALL
+            .iter()
+            .all(|finger| self.0.contains(Group::Tactile(*finger)));
+        if whole {
+            self.0 = Groups::NONE;
+        }
+        whole
+    }
+}
+
+fn percentile(sorted: &[Duration], percent: usize) -> Option<Duration> {
+    let last = sorted.len().checked_sub(1)?;
+    sorted.get(last * percent / 100).copied()
+}
+
+#[derive(Debug, Default)]
+struct Rate {
+    hits: VecDeque<Moment>,
+}
+
+impl Rate {
+    fn hit(&mut self, now: Moment) {
+        if self.hits.len() == RATE_EVENTS {
+            self.hits.pop_front();
+        }
+        self.hits.push_back(now);
+        self.forget(now);
+    }
+
+    fn forget(&mut self, now: Moment) {
+        while self
+            .hits
+            .front()
+            .is_some_and(|hit| now.since(*hit) > RATE_OVER)
+        {
+            self.hits.pop_front();
+        }
+    }
+
+    /// Events a second between the oldest and the newest of the last second.
+    fn hz(&mut self, now: Moment) -> f64 {
+        self.forget(now);
+        let (Some(first), Some(last)) = (self.hits.front(), self.hits.back()) else {
+            return 0.0;
+        };
+        let (span, steps) = (
+            last.since(*first).as_secs_f64(),
+            self.hits.len().saturating_sub(1),
+        );
+        let steps = f64::from(u32::try_from(steps).unwrap_or(u32::MAX));
+        if span > 0.0 { steps / span } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn groups(all: &[Group]) -> Groups {
+        let mut groups = Groups::NONE;
+        for group in all {
+            groups.insert(*group);
+        }
+        groups
+    }
+
+    #[test]
+    fn rates_and_percentiles_come_from_the_last_second() {
+        let mut counters = Counters::default();
+        for n in 0..200u64 {
+            let now = Moment::from_micros(n * 10_000);
+            counters.fresh(groups(&[Group::Angle]), now);
+            counters.round_trip(Duration::from_millis(if n % 50 == 0 { 30 } else { 5 }));
+            counters.digest(now);
+        }
+        counters.digest(Moment::from_micros(2_250_000));
+        assert!((counters.stats.state_hz - 100.0).abs() < 0.5);
+        assert_eq!(counters.stats.rtt_p50, Some(Duration::from_millis(5)));
+        assert_eq!(counters.stats.rtt_p99, Some(Duration::from_millis(30)));
+        counters.lost();
+        assert_eq!(
+            (counters.stats.state_hz, counters.stats.rtt_p50),
+            (0.0, None)
+        );
+        assert_eq!(counters.stats.state_reads, 200);
+    }
+
+    #[test]
+    fn a_sweep_counts_once_all_five_fingertips_came_in_whatever_portions() {
+        let mut counters = Counters::default();
+        let tips = Finger::ALL.map(Group::Tactile);
+        for portion in [&tips[..2], &tips[1..3], &[Group::Angle], &tips[2..4]] {
+            counters.fresh(groups(portion), Moment::ZERO);
+        }
+        assert_eq!(counters.stats.tactile_reads, 0);
+        counters.fresh(groups(&tips[4..]), Moment::ZERO);
+        assert_eq!(counters.stats.tactile_reads, 1);
+        counters.fresh(groups(&tips[..4]), Moment::ZERO);
+        assert_eq!(counters.stats.tactile_reads, 1);
+    }
+}

@@ -1,0 +1,188 @@
+//! Decides when a stopped hand is at rest. Pure: samples and time in, a verdict out.
+
+use crate::hand::{AngleReading, Dof, Group, Groups, HandSample, Moment, PerDof, Target};
+use std::time::Duration;
+
+/// Hold frames are at most this far apart until rest is seen.
+pub(crate) const HOLD_REPEAT: Duration = Duration::from_millis(40);
+/// Hold follows the newest pose for this long after the press, then keeps the pose: a hand acts about 64 ms late, and
+/// a target that follows it for ever makes it swing for ever.
+const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
+/// Without rest by then, the alarm is raised.
+pub(crate) const HOLD_ALARM_AFTER: Duration = Duration::from_millis(500);
+/// A joint rests if it moves no more than this many counts …
+const REST_COUNTS: i32 = 2;
+/// … over at least this time.
+const REST_OVER: Duration = Duration::from_millis(100);
+
+/// One stop, from the press until feedback shows rest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HoldWatch {
+    pub(crate) at: Moment,
+    pub(crate) sent: u32,
+    pub(crate) alarmed: bool,
+    pose: PerDof<Target>,
+    first_sent: Option<Moment>,
+    last_sent: Option<Moment>,
+    still_since: Option<(Moment, PerDof<AngleReading>)>,
+}
+
+impl HoldWatch {
+    pub(crate) const fn new(at: Moment) -> Self {
+        Self {
+            at,
+            sent: 0,
+            alarmed: false,
+            pose: PerDof::splat(Target::Leave),
+            first_sent: None,
+            last_sent: None,
+            still_since: None,
+        }
+    }
+
+    /// When the next hold frame is due.
+    pub(crate) fn next_frame(&self, now: Moment) -> Moment {
+        self.last_sent.map_or(now, |sent| sent.plus(HOLD_REPEAT))
+    }
+
+    /// The targets of the hold frame that leaves at `now`, given where the joints were seen last.
+    pub(crate) fn frame(&mut self, newest: &PerDof<Target>, now: Moment) -> PerDof<Target> {
+        let follows = now.since(self.at) <= HOLD_FOLLOWS;
+        for (dof, target) in self.pose.iter_mut() {
+            if follows || *target == Target::Leave {
+                *target = newest[dof];
+            }
+        }
+        self.sent = self.sent.saturating_add(1);
+        self.first_sent.get_or_insert(now);
+        self.last_sent = Some(now);
+        self.pose
+    }
+
+    /// True if the alarm is to be raised now.
+    pub(crate) fn alarm_due(&self, now: Moment) -> bool {
+        !self.alarmed && now.since(self.at) >= HOLD_ALARM_AFTER
+    }
+
+    /// Takes a sample; true if it shows that all six joints rest. Only angles that were asked for
+    /// after the first hold frame count, and an angle that makes no sense is not at rest.
+    pub(crate) fn rests(&mut self, sample: &HandSample, fresh: Groups) -> bool {
+        let (Some(first_sent), Some(angle)) = (self.first_sent, sample.angle) else {
+            return false;
+        };
+        if !fresh.contains(Group::Angle) || angle.asked < first_sent {
+            return false;
+        }
+        if Dof::ALL
+            .iter()
+            .any(|dof| angle.value[*dof].hold().is_none())
+        {
+            self.still_since = None;
+            return false;
+        }
+        match self.still_since {
+            Some((since, from)) if near(&from, &angle.value) => {
+                angle.asked.since(since) >= REST_OVER
+            }
+            _ => {
+                self.still_since = Some((angle.received, angle.value));
+                false
+            }
+        }
+    }
+}
+
+fn near(a: &PerDof<AngleReading>, b: &PerDof<AngleReading>) -> bool {
+    Dof::ALL
+        .iter()
+        .all(|dof| (i32::from(a[*dof].raw()) - i32::from(b[*dof].raw())).abs() <= REST_COUNTS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{Angle, Timed};
+
+    fn ms(ms: u64) -> Moment {
+        Moment::from_micros(ms * 1000)
+    }
+
+    fn sample(asked: Moment, angle: i16) -> (HandSample, Groups) {
+        let value = PerDof::splat(AngleReading::new(angle));
+        let angle = Some(Timed {
+            value,
+            asked,
+            received: asked.plus(Duration::from_millis(5)),
+        });
+        let mut fresh = Groups::NONE;
+        fresh.insert(Group::Angle);
+        (
+            HandSample {
+                angle,
+                ..HandSample::default()
+            },
+            fresh,
+        )
+    }
+
+    /// Feeds an angle each 10 ms and gives the time at which rest was seen.
+    fn rest_at(angle_at: impl Fn(u64) -> i16, sent: u64) -> Option<u64> {
+        let mut watch = HoldWatch::new(ms(0));
+        (0..200).map(|n| n * 10).find(|t| {
+            if *t == sent {
+                watch.frame(&PerDof::splat(Target::Leave), ms(*t));
+            }
+            let (sample, fresh) = sample(ms(*t), angle_at(*t));
+            watch.rests(&sample, fresh)
+        })
+    }
+
+    #[test]
+    fn a_still_hand_rests_after_the_window_and_not_before_the_first_frame() {
+        let seen = rest_at(|_| 500, 0).unwrap();
+        assert!((100..=130).contains(&seen), "{seen}");
+        assert!(rest_at(|_| 500, 300).unwrap() >= 400);
+    }
+
+    #[test]
+    fn a_slow_creep_is_not_rest() {
+        // Three counts each 100 ms.
+        assert_eq!(
+            rest_at(|t| 500 + i16::try_from(t * 3 / 100).unwrap(), 0),
+            None
+        );
+    }
+
+    #[test]
+    fn an_angle_that_makes_no_sense_is_never_rest() {
+        assert_eq!(rest_at(|_| 2000, 0), None);
+    }
+
+    #[test]
+    fn the_alarm_is_due_after_half_a_second() {
+        let watch = HoldWatch::new(ms(0));
+        assert!(!watch.alarm_due(ms(499)));
+        assert!(watch.alarm_due(ms(500)));
+    }
+
+    #[test]
+    fn frames_are_due_at_once_and_then_each_forty_milliseconds() {
+        let mut watch = HoldWatch::new(ms(7));
+        assert_eq!(watch.next_frame(ms(7)), ms(7));
+        watch.frame(&PerDof::splat(Target::Leave), ms(9));
+        assert_eq!(watch.next_frame(ms(10)), ms(49));
+    }
+
+    #[test]
+    fn hold_follows_the_hand_first_and_then_keeps_its_pose() {
+        let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
+        let mut watch = HoldWatch::new(ms(0));
+        assert_eq!(watch.frame(&pose(500), ms(0)), pose(500));
+        assert_eq!(watch.frame(&pose(480), ms(40)), pose(480));
+        assert_eq!(watch.frame(&pose(470), ms(160)), pose(480));
+        let mut blind = HoldWatch::new(ms(0));
+        let unknown = PerDof::splat(Target::Leave);
+        assert_eq!(blind.frame(&unknown, ms(0)), unknown);
+        assert_eq!(blind.frame(&pose(300), ms(200)), pose(300));
+    }
+}

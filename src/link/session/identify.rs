@@ -1,0 +1,285 @@
+//! Identifies a hand on a fresh wire, by reading only: is it there, and how does it differ from others. Bounded in time, and
+//! cut short by a stop; nothing is written.
+
+use crate::codec::modbus::BytePacking;
+use crate::hand::register::{ANGLE_ACT, HAND_ID, REDU_RATIO, TEMP, TOUCH};
+use crate::hand::{Moment, Span};
+use crate::link::bus::error::id_of;
+use crate::link::bus::{Bus, BusError, Bytes};
+use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
+use crate::link::session::conversation::{End, Session, closed, stopped};
+use crate::link::status::LinkTrouble;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Attempts to get a first answer on a fresh wire.
+const TRIES: u32 = 3;
+/// After the first answer, no further request starts later than this: a reconnect must not wait.
+const WITHIN: Duration = Duration::from_millis(400);
+/// A question without an answer is asked once more: one lost reply must not look like a quirk.
+const ASKED: u32 = 2;
+
+/// Ways to ask for the id and for the speed's code, each of another length.
+const ID_SHAPES: [Span; 3] = [
+    HAND_ID.span(),
+    Span::new(HAND_ID.address, 3),
+    Span::new(HAND_ID.address, 6),
+];
+const BAUD_SHAPES: [Span; 3] = [
+    REDU_RATIO.span(),
+    Span::new(REDU_RATIO.address, 3),
+    Span::new(REDU_RATIO.address, 5),
+];
+/// From ANGLE_ACT across the unused addresses into FORCE_ACT. It begins at a group's base: what an address inside a group
+/// means over Modbus is open.
+const GAP_SHAPES: [Span; 4] = [
+    Span::new(ANGLE_ACT.address, 38),
+    Span::new(ANGLE_ACT.address, 40),
+    Span::new(ANGLE_ACT.address, 42),
+    Span::new(ANGLE_ACT.address, 44),
+];
+/// One fingertip and a little more, so that no question of the poll plan looks alike; and another fingertip.
+const TOUCH_SHAPES: [Span; 3] = [
+    Span::new(TOUCH.address, 60),
+    Span::new(TOUCH.address, 62),
+    Span::new(TOUCH.address, 64),
+];
+const OTHER_TOUCH_SHAPES: [Span; 3] = [
+    Span::new(TOUCH.address + 3 * 58, 62),
+    Span::new(TOUCH.address + 3 * 58, 64),
+    Span::new(TOUCH.address + 3 * 58, 66),
+];
+
+/// How a question ended.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "it lives on the stack, for one question"
+)]
+enum Heard {
+    Bytes(Bytes),
+    Refused,
+    Silent,
+    /// There was no time for it, or no way to ask that is clear.
+    Unasked,
+}
+
+impl Session {
+    /// Asks until the hand answers, and then what it does in its own way. The session lives on from there.
+    pub(crate) async fn identify(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+        let closed = closed(Arc::clone(&self.ends.wanted));
+        tokio::select! {
+            biased;
+            () = closed => Err(End::Closed),
+            known = self.get_to_know(bus) => known,
+        }
+    }
+
+    async fn get_to_know(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+        let id = self.first_answer(bus).await?;
+        // A stop from here on belongs to this hand; what was wished before does not.
+        self.forget_wishes();
+        let until = self.now().plus(WITHIN);
+        let packing = self.ask_packing(bus, id.as_ref(), until).await?;
+        bus.set_packing(packing);
+        self.status.quirks = Quirks {
+            packing,
+            hand_id: id.as_ref().and_then(|id| first_byte(id, packing)),
+            ..self.ask_rest(bus, until).await?
+        };
+        Ok(())
+    }
+
+    /// Asks for the id until something comes. A refusal is an answer too, without an id.
+    async fn first_answer(&mut self, bus: &mut dyn Bus) -> Result<Option<Bytes>, End> {
+        for _ in 0..TRIES {
+            self.take_turn(bus).await?;
+            // Where all are open, the id may be asked in the same words again: it does not change.
+            let span = bus.choose(&ID_SHAPES).unwrap_or(HAND_ID.span());
+            let span = Span::new(span.address, span.len + u16::from(bus.has_words()));
+            let limit = self.reply_limit(bus, span.len) * 2;
+            match bus.read(span, limit).await {
+                Ok(bytes) => return Ok(Some(bytes)),
+                Err(BusError::Refused { .. } | BusError::WrongLength { .. }) => return Ok(None),
+                Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
+                Err(BusError::Timeout { .. } | BusError::TooLong | BusError::Ambiguous) => {
+                    self.counters.stats.timeouts += 1;
+                    lost(bus.quiet().await)?;
+                }
+            }
+        }
+        Err(End::Lost(LinkTrouble::NoAnswer {
+            id: id_of(&self.config.endpoint),
+        }))
+    }
+
+    /// How single bytes stand in words; of wires without words nothing.
+    async fn ask_packing(
+        &mut self,
+        bus: &mut dyn Bus,
+        id: Option<&Bytes>,
+        until: Moment,
+    ) -> Result<Option<BytePacking>, End> {
+        for _ in 0..ASKED {
+            if self.hurried(until) {
+                break;
+            }
+            self.take_turn(bus).await?;
+            let limit = self.reply_limit(bus, 2 * BytePacking::OnePerWord.words_per_group());
+            match bus.words(TEMP.address, limit).await {
+                Ok(Some(words)) => return Ok(judged_packing(id, &words)),
+                Ok(None) => break,
+                Err(error) => {
+                    if let Heard::Refused = self.unanswered(bus, error).await? {
+                        break;
+                    }
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    async fn ask_rest(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<Quirks, End> {
+        let baud_code = match self.ask(bus, &BAUD_SHAPES, until).await? {
+            Heard::Bytes(bytes) => bytes.first().copied(),
+            _ => None,
+        };
+        // Where a run is asked for in pieces, no question is worth leading through the gap.
+        let gap = match bus.cost().turns(GAP_SHAPES[0].len) {
+            0 | 1 => self.ask(bus, &GAP_SHAPES, until).await?,
+            _ => Heard::Unasked,
+        };
+        let touch = self.ask_touch(bus, until).await?;
+        let gap = match gap {
+            Heard::Bytes(_) => Some(GapRead::Through),
+            Heard::Refused => Some(GapRead::Split),
+            // The serial framing has no word for no: silence is one if the next question is answered.
+            Heard::Silent if !bus.has_words() && touch.is_some() => Some(GapRead::Split),
+            Heard::Silent | Heard::Unasked => None,
+        };
+        Ok(Quirks {
+            baud_code,
+            gap,
+            touch,
+            ..Quirks::default()
+        })
+    }
+
+    /// What the fingertips look like. Where the first says nothing, another is asked.
+    async fn ask_touch(
+        &mut self,
+        bus: &mut dyn Bus,
+        until: Moment,
+    ) -> Result<Option<TouchVariant>, End> {
+        const EMPTY: Option<TouchVariant> = Some(TouchVariant::Unknown(TouchDoubt::Empty));
+        let mut first = judged(&self.ask(bus, &TOUCH_SHAPES, until).await?);
+        // Pieces of several requests may be of several measurements: their sum says nothing.
+        let pieces = bus.cost().turns(TOUCH_SHAPES[0].len);
+        if pieces > 1 && first == Some(TouchVariant::Unknown(TouchDoubt::Check)) {
+            first = Some(TouchVariant::Capacitive);
+        }
+        if first != EMPTY {
+            return Ok(first);
+        }
+        let other = judged(&self.ask(bus, &OTHER_TOUCH_SHAPES, until).await?);
+        Ok(other.or(first))
+    }
+
+    /// A question, asked again if nothing came, and how it ended.
+    async fn ask(
+        &mut self,
+        bus: &mut dyn Bus,
+        shapes: &[Span],
+        until: Moment,
+    ) -> Result<Heard, End> {
+        let mut heard = self.ask_once(bus, shapes, until).await?;
+        for _ in 1..ASKED {
+            if matches!(heard, Heard::Silent) {
+                heard = self.ask_once(bus, shapes, until).await?;
+            }
+        }
+        Ok(heard)
+    }
+
+    async fn ask_once(
+        &mut self,
+        bus: &mut dyn Bus,
+        shapes: &[Span],
+        until: Moment,
+    ) -> Result<Heard, End> {
+        if self.hurried(until) {
+            return Ok(Heard::Unasked);
+        }
+        self.take_turn(bus).await?;
+        let Some(span) = bus.choose(shapes) else {
+            return Ok(Heard::Unasked);
+        };
+        let (limit, asked) = (self.reply_limit(bus, span.len), self.now());
+        match bus.read(span, limit).await {
+            Ok(bytes) => {
+                self.answered(self.now().since(asked));
+                Ok(Heard::Bytes(bytes))
+            }
+            Err(error) => self.unanswered(bus, error).await,
+        }
+    }
+
+    async fn unanswered(&mut self, bus: &mut dyn Bus, error: BusError) -> Result<Heard, End> {
+        match error {
+            BusError::Lost(error) => return Err(End::Lost(error.into())),
+            BusError::Refused { .. } => {
+                self.counters.stats.refusals += 1;
+                return Ok(Heard::Refused);
+            }
+            BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
+            BusError::Ambiguous => {}
+            BusError::Timeout { .. } => self.counters.stats.timeouts += 1,
+        }
+        // A stop does not wait for the line to settle.
+        let stop = stopped(Arc::clone(&self.ends.wanted));
+        tokio::select! {
+            biased;
+            () = stop => {}
+            settled = bus.quiet() => lost(settled)?,
+        }
+        Ok(Heard::Silent)
+    }
+
+    /// True if there is no time for another question.
+    fn hurried(&self, until: Moment) -> bool {
+        self.now() >= until || self.ends.wanted.borrow().stop
+    }
+
+    async fn take_turn(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+        lost(bus.turn().await)
+    }
+}
+
+/// Of all failures only a lost wire ends the conversation.
+fn lost(done: Result<(), BusError>) -> Result<(), End> {
+    match done {
+        Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+        _ => Ok(()),
+    }
+}
+
+fn judged_packing(id: Option<&Bytes>, words: &[u16]) -> Option<BytePacking> {
+    let at_id = u16::from_le_bytes(*id?.first_chunk()?);
+    BytePacking::detect(at_id, words.first_chunk()?)
+}
+
+fn judged(heard: &Heard) -> Option<TouchVariant> {
+    match heard {
+        Heard::Bytes(bytes) => Some(TouchVariant::judge(bytes)),
+        Heard::Refused => Some(TouchVariant::Unknown(TouchDoubt::Refused)),
+        Heard::Silent | Heard::Unasked => None,
+    }
+}
+
+/// The id out of what was read before the packing was known, low byte first.
+fn first_byte(id: &Bytes, packing: Option<BytePacking>) -> Option<u8> {
+    match (packing, id.as_slice()) {
+        (Some(BytePacking::HighFirst), [_, high, ..]) => Some(*high),
+        (_, [low, ..]) => Some(*low),
+        _ => None,
+    }
+}

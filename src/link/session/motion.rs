@@ -1,0 +1,304 @@
+//! What a session holds about moving: arming, setpoints on their way, and the stop. Sends nothing itself.
+
+use crate::hand::ArmEpoch;
+use crate::hand::Setpoints;
+use crate::hand::{Dof, HandCommand, HandSample, Moment, PerDof, RegisterWrite, Target, Timed};
+use crate::link::session::hold::HoldWatch;
+use crate::record::{ArmRefusal, LinkState};
+use arrayvec::ArrayVec;
+use std::time::Duration;
+
+/// Setpoint rounds a second at most: more than a person's hand gives, less than would crowd a serial line.
+pub const SETPOINT_HZ_MAX: u32 = 50;
+/// Angles older than this are neither armed with nor held to.
+pub(crate) const ANGLE_FRESH: Duration = Duration::from_millis(250);
+/// An armed hand whose angles grow this old is disarmed.
+pub(crate) const ANGLE_LOST: Duration = Duration::from_millis(500);
+/// Writes of one round: speeds and forces in at most three runs each, and the angles.
+const ROUND_MAX: usize = 7;
+
+/// Rounds in a row between which only the motion state is read, on a line that is full with them.
+const ROUNDS_MAX: u8 = 2;
+
+/// Arming, setpoints and stop of one session.
+#[derive(Debug, Default)]
+pub(crate) struct Motion {
+    pub(crate) last_epoch: ArmEpoch,
+    pub(crate) hold: Option<HoldWatch>,
+    /// The newest wishes that no round has taken yet.
+    setpoints: Option<Setpoints>,
+    /// The round that is being sent, in order.
+    round: ArrayVec<RegisterWrite, ROUND_MAX>,
+    round_began: Option<Moment>,
+    /// No pose was asked for since the round began: on a slow line writes alone must not fill it.
+    pose_due: bool,
+    /// Rounds since anything but the motion state was asked for.
+    rounds: u8,
+}
+
+impl Motion {
+    /// A fresh start that still counts armings on from `last_epoch`.
+    pub(crate) fn after(last_epoch: ArmEpoch) -> Self {
+        Self {
+            last_epoch,
+            ..Self::default()
+        }
+    }
+
+    /// Nothing is wanted any more.
+    pub(crate) fn forget(&mut self) {
+        self.hold = None;
+        self.forget_setpoints();
+    }
+
+    pub(crate) fn forget_setpoints(&mut self) {
+        self.setpoints = None;
+        self.round.clear();
+    }
+
+    /// Takes newer setpoints, if they belong to the arming in force.
+    pub(crate) fn want(&mut self, newer: &Setpoints, armed: Option<ArmEpoch>) {
+        if armed != Some(newer.epoch) {
+            return;
+        }
+        match &mut self.setpoints {
+            Some(older) => older.merge(newer),
+            none => *none = Some(*newer),
+        }
+    }
+
+    /// When something can be sent next, if anything waits.
+    pub(crate) fn next_send(&self, now: Moment) -> Option<Moment> {
+        if let Some(hold) = &self.hold {
+            return Some(hold.next_frame(now));
+        }
+        if !self.round.is_empty() {
+            return Some(now);
+        }
+        self.setpoints.as_ref()?;
+        Some(self.round_began.map_or(now, |began| {
+            began.plus(Duration::from_secs(1) / SETPOINT_HZ_MAX)
+        }))
+    }
+
+    /// The next setpoint write, if one is due: speed before force before angle, so that no motion
+    /// starts with older limits.
+    pub(crate) fn next_write(&mut self, now: Moment) -> Option<RegisterWrite> {
+        if self.next_send(now)? > now {
+            return None;
+        }
+        if self.round.is_empty() {
+            if self.pose_due || self.rounds >= ROUNDS_MAX {
+                return None;
+            }
+            let setpoints = self.setpoints.take()?;
+            self.round_began = Some(now);
+            self.pose_due = true;
+            self.rounds = self.rounds.saturating_add(1);
+            self.round = round(&setpoints);
+        }
+        self.round.pop_at(0)
+    }
+
+    /// True if the next round waits only for a look at the pose.
+    pub(crate) fn wants_pose(&self, now: Moment) -> bool {
+        self.pose_due && self.waits(now)
+    }
+
+    /// True if the next round waits only for something else to be read.
+    pub(crate) fn wants_others(&self, now: Moment) -> bool {
+        !self.pose_due && self.rounds >= ROUNDS_MAX && self.waits(now)
+    }
+
+    /// True if requests may have their turns: not while a stop is being confirmed, but while its alarm lasts, and not
+    /// before the read that the next round waits for.
+    pub(crate) fn lets_jobs(&self, now: Moment) -> bool {
+        match &self.hold {
+            Some(hold) => hold.alarmed,
+            None => !self.wants_pose(now) && !self.wants_others(now),
+        }
+    }
+
+    fn waits(&self, now: Moment) -> bool {
+        self.round.is_empty() && self.next_send(now).is_some_and(|send| send <= now)
+    }
+
+    /// Something was asked for, answered or not.
+    pub(crate) const fn asked(&mut self, is_pose: bool) {
+        if is_pose {
+            self.pose_due = false;
+        } else {
+            self.rounds = 0;
+        }
+    }
+
+    /// Nothing but the pose is wanted of the hand: rounds need not wait.
+    pub(crate) const fn nothing_else(&mut self) {
+        self.rounds = 0;
+    }
+
+    /// The write was not acknowledged: it goes out again, unless something newer replaced it.
+    pub(crate) fn again(&mut self, write: RegisterWrite) {
+        if !self.round.is_full() {
+            self.round.insert(0, write);
+        }
+    }
+}
+
+fn round(setpoints: &Setpoints) -> ArrayVec<RegisterWrite, ROUND_MAX> {
+    let mut round = ArrayVec::new();
+    let mut commands: ArrayVec<HandCommand, 3> = ArrayVec::new();
+    commands.push(HandCommand::Speeds(setpoints.speed));
+    commands.push(HandCommand::Forces(setpoints.force));
+    if setpoints.angle.iter().any(|(_, angle)| angle.is_some()) {
+        commands.push(HandCommand::Angles(
+            setpoints.angle.map(|angle| angle.unwrap_or(Target::Leave)),
+        ));
+    }
+    for write in commands.iter().flat_map(HandCommand::writes) {
+        let _full = round.try_push(write);
+    }
+    round
+}
+
+/// The targets that hold what is known of the pose now: the actual angles if they are fresh, and
+/// "no action" for all joints if not, because an old pose would be a move.
+pub(crate) fn hold_targets(sample: &HandSample, now: Moment) -> PerDof<Target> {
+    if sample.angles_fresh(now, ANGLE_FRESH) {
+        sample.hold_targets()
+    } else {
+        PerDof::splat(Target::Leave)
+    }
+}
+
+/// Why a hand in this state and with these readings must not be armed; `None` if it may be, or is.
+pub(crate) fn arm_refusal(
+    state: LinkState,
+    sample: &HandSample,
+    now: Moment,
+) -> Option<ArmRefusal> {
+    match state {
+        LinkState::Offline | LinkState::Identifying => return Some(ArmRefusal::Offline),
+        LinkState::Holding => return Some(ArmRefusal::Holding),
+        LinkState::Fault => return Some(ArmRefusal::Fault),
+        LinkState::Armed => return None,
+        LinkState::Monitoring => {}
+    }
+    if sample.faults.is_none() {
+        return Some(ArmRefusal::UnknownPose { dof: Dof::Little });
+    }
+    let angle = sample
+        .angle
+        .filter(|angle: &Timed<_>| angle.age(now) <= ANGLE_FRESH);
+    Dof::ALL
+        .into_iter()
+        .find(|dof| angle.is_none_or(|angle| angle.value[*dof].hold().is_none()))
+        .map(|dof| ArmRefusal::UnknownPose { dof })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{Angle, AngleReading, Faults, Force, Speed};
+
+    fn sample(angle: i16, at: Moment) -> HandSample {
+        HandSample {
+            angle: Some(Timed {
+                value: PerDof::splat(AngleReading::new(angle)),
+                asked: at,
+                received: at,
+            }),
+            faults: Some(Timed {
+                value: PerDof::splat(Faults::default()),
+                asked: at,
+                received: at,
+            }),
+            ..HandSample::default()
+        }
+    }
+
+    #[test]
+    fn only_a_fresh_and_sensible_pose_can_be_armed() {
+        let at = Moment::from_micros(1_000_000);
+        let late = at.plus(ANGLE_FRESH + Duration::from_millis(1));
+        let check = |state, sample: HandSample, now| arm_refusal(state, &sample, now);
+        assert_eq!(check(LinkState::Monitoring, sample(500, at), at), None);
+        let unknown = Some(ArmRefusal::UnknownPose { dof: Dof::Little });
+        assert_eq!(check(LinkState::Monitoring, sample(500, at), late), unknown);
+        assert_eq!(check(LinkState::Monitoring, sample(-200, at), at), unknown);
+        assert_eq!(
+            check(LinkState::Monitoring, HandSample::default(), at),
+            unknown
+        );
+        assert_eq!(
+            check(LinkState::Fault, sample(500, at), at),
+            Some(ArmRefusal::Fault)
+        );
+        assert_eq!(
+            check(LinkState::Holding, sample(500, at), at),
+            Some(ArmRefusal::Holding)
+        );
+        assert_eq!(
+            check(LinkState::Offline, sample(500, at), at),
+            Some(ArmRefusal::Offline)
+        );
+    }
+
+    #[test]
+    fn an_old_pose_is_never_held_to() {
+        let at = Moment::from_micros(1_000_000);
+        let go = PerDof::splat(Target::Go(Angle::nearest(420)));
+        assert_eq!(hold_targets(&sample(420, at), at), go);
+        let old = hold_targets(&sample(420, at), at.plus(Duration::from_secs(1)));
+        assert_eq!(old, PerDof::splat(Target::Leave));
+    }
+
+    #[test]
+    fn limits_go_before_angles_and_rounds_keep_their_distance() {
+        let epoch = ArmEpoch(3);
+        let mut motion = Motion::default();
+        let mut wish = Setpoints::none(epoch);
+        wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
+        wish.force[Dof::Index] = Some(Force::GENTLE);
+        wish.speed[Dof::Index] = Some(Speed::GENTLE);
+        motion.want(&wish, Some(epoch));
+        let now = Moment::from_micros(10);
+        let sent: Vec<_> = std::iter::from_fn(|| motion.next_write(now))
+            .map(|write| write.address())
+            .collect();
+        assert_eq!(sent, [1528, 1504, 1486]);
+        motion.asked(true);
+        motion.want(&wish, Some(epoch));
+        assert_eq!(motion.next_write(now.plus(Duration::from_millis(19))), None);
+        assert!(
+            motion
+                .next_write(now.plus(Duration::from_millis(20)))
+                .is_some()
+        );
+    }
+
+    #[test]
+    fn a_round_waits_for_a_look_at_the_pose_after_the_one_before() {
+        let epoch = ArmEpoch(1);
+        let mut motion = Motion::default();
+        let mut wish = Setpoints::none(epoch);
+        wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
+        motion.want(&wish, Some(epoch));
+        assert!(motion.next_write(Moment::ZERO).is_some());
+        motion.want(&wish, Some(epoch));
+        let later = Moment::from_micros(100_000);
+        assert!(motion.wants_pose(later) && motion.next_write(later).is_none());
+        motion.asked(true);
+        assert!(!motion.wants_pose(later) && motion.next_write(later).is_some());
+    }
+
+    #[test]
+    fn setpoints_of_another_arming_are_dropped() {
+        let mut motion = Motion::default();
+        let mut wish = Setpoints::none(ArmEpoch(1));
+        wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
+        motion.want(&wish, Some(ArmEpoch(2)));
+        motion.want(&wish, None);
+        assert_eq!(motion.next_send(Moment::ZERO), None);
+    }
+}

@@ -1,0 +1,261 @@
+//! Another controller on the same hand: requests that are not ours, and setpoints that change though nobody here wrote
+//! them. Only judges; what follows from it is the session's.
+
+use crate::hand::{Force, RegisterWrite, Speed, Target};
+use crate::hand::{Group, Groups, HandSample, Moment, PerDof, Timed, register};
+use crate::link::bus::late_replies::LATE_HORIZON;
+use arrayvec::ArrayVec;
+use std::time::Duration;
+
+/// So many foreign requests …
+const REQUESTS: usize = 3;
+/// … within this time are another controller; fewer may be noise that happens to look like one.
+const WITHIN: Duration = Duration::from_secs(2);
+/// It counts as gone when it was not noticed for this long: setpoints are read back twice a second.
+const GONE_AFTER: Duration = Duration::from_secs(5);
+
+/// What was noticed of another controller.
+#[derive(Debug, Default)]
+pub(crate) struct OtherController {
+    counted: u64,
+    requests: ArrayVec<Moment, REQUESTS>,
+    noticed: Option<Moment>,
+    angles: Held<PerDof<Option<Target>>>,
+    forces: Held<PerDof<Option<Force>>>,
+    speeds: Held<PerDof<Option<Speed>>>,
+    /// Setpoints that changed though nobody here wrote them.
+    pub(crate) changes: u64,
+}
+
+impl OtherController {
+    /// A fresh conversation with the hand: what it held before does not count. What was noticed does, and what we wrote
+    /// through the wire before may still act.
+    pub(crate) fn begin(&mut self) {
+        self.angles.forget();
+        self.forces.forget();
+        self.speeds.forget();
+    }
+
+    /// The wire has counted this many foreign requests in all.
+    pub(crate) fn overheard(&mut self, total: u64, now: Moment) {
+        for _ in self.counted..total.min(self.counted.saturating_add(REQUESTS as u64)) {
+            if self.requests.is_full() {
+                self.requests.remove(0);
+            }
+            self.requests.push(now);
+        }
+        let is_new = total > self.counted;
+        self.counted = total;
+        let oldest = self.requests.first().copied();
+        let many = self.requests.is_full() && oldest.is_some_and(|at| now.since(at) <= WITHIN);
+        if is_new && many {
+            self.noticed = Some(now);
+        }
+    }
+
+    /// We write this, or may have: what it changes is ours.
+    pub(crate) fn wrote(&mut self, write: &RegisterWrite, now: Moment) {
+        let within = |row: &register::Register| row.span().covers(write.span());
+        if within(&register::ANGLE_SET) {
+            self.angles.wrote(now);
+        } else if within(&register::FORCE_SET) {
+            self.forces.wrote(now);
+        } else if within(&register::SPEED_SET) {
+            self.speeds.wrote(now);
+        } else {
+            // A gesture, a cleared fault: the hand may set its own setpoints then.
+            self.angles.wrote(now);
+            self.forces.wrote(now);
+            self.speeds.wrote(now);
+        }
+    }
+
+    /// The setpoints that the hand holds were read.
+    pub(crate) fn read(&mut self, sample: &HandSample, fresh: Groups) {
+        let fresh = |group| fresh.contains(group);
+        let changed = [
+            fresh(Group::AngleSet).then(|| self.angles.take(sample.angle_set)),
+            fresh(Group::ForceSet).then(|| self.forces.take(sample.force_set)),
+            fresh(Group::SpeedSet).then(|| self.speeds.take(sample.speed_set)),
+        ];
+        for at in changed.into_iter().flatten().flatten() {
+            self.changes += 1;
+            self.noticed = Some(at);
+        }
+    }
+
+    /// True while another controller is at work.
+    pub(crate) fn is_active(&self, now: Moment) -> bool {
+        self.noticed.is_some_and(|at| now.since(at) < GONE_AFTER)
+    }
+}
+
+/// One group of setpoints as the hand holds it.
+#[derive(Debug)]
+struct Held<T> {
+    known: Option<T>,
+    /// Read once and unlike what was known: one reading may be wrong, two are not.
+    doubted: bool,
+    wrote: Option<Moment>,
+}
+
+impl<T> Default for Held<T> {
+    fn default() -> Self {
+        Self {
+            known: None,
+            doubted: false,
+            wrote: None,
+        }
+    }
+}
+
+impl<T: Copy + PartialEq> Held<T> {
+    /// We wrote it: what was read before says nothing any more, however long the next reading takes.
+    fn wrote(&mut self, now: Moment) {
+        self.wrote = Some(now);
+        self.forget();
+    }
+
+    fn forget(&mut self) {
+        self.known = None;
+        self.doubted = false;
+    }
+
+    /// When a change that is not ours was read, for the second time.
+    fn take(&mut self, read: Option<Timed<T>>) -> Option<Moment> {
+        let read = read?;
+        // A write of ours may act as late as any reply may come.
+        let ours = self
+            .wrote
+            .is_some_and(|at| read.asked.since(at) < LATE_HORIZON);
+        if ours {
+            self.forget();
+            return None;
+        }
+        match self.known {
+            Some(known) if known != read.value && !self.doubted => {
+                self.doubted = true;
+                None
+            }
+            Some(known) => {
+                let changed = known != read.value;
+                self.known = Some(read.value);
+                self.doubted = false;
+                changed.then_some(read.received)
+            }
+            None => {
+                self.known = Some(read.value);
+                self.doubted = false;
+                None
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{HandCommand, Reply};
+
+    fn at(ms: u64) -> Moment {
+        Moment::from_micros(ms * 1000)
+    }
+
+    /// Reads speeds of all joints as the hand would give them.
+    fn read(rival: &mut OtherController, speed: u8, ms: u64) {
+        let mut sample = HandSample::default();
+        let bytes = [speed, 0].repeat(6);
+        let fresh = sample.take(&Reply {
+            span: register::SPEED_SET.span(),
+            bytes: &bytes,
+            asked: at(ms),
+            received: at(ms),
+        });
+        rival.read(&sample, fresh);
+    }
+
+    #[test]
+    fn setpoints_that_change_under_us_are_noticed_at_the_second_reading() {
+        let mut rival = OtherController::default();
+        for (ms, speed, active) in [
+            (0, 100, false),
+            (500, 100, false),
+            (1000, 50, false),
+            (1500, 50, true),
+            (6000, 50, true),
+            (6600, 50, false),
+        ] {
+            read(&mut rival, speed, ms);
+            assert_eq!(rival.is_active(at(ms)), active, "{ms}");
+        }
+        assert_eq!(rival.changes, 1);
+    }
+
+    #[test]
+    fn one_wrong_reading_and_our_own_writes_are_no_rival() {
+        let mut rival = OtherController::default();
+        read(&mut rival, 100, 0);
+        read(&mut rival, 7, 500);
+        read(&mut rival, 100, 1000);
+        let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::GENTLE)));
+        rival.wrote(&speeds.writes()[0], at(1200));
+        // It acts late, after a reading that still shows the old values.
+        for (ms, speed) in [
+            (1500, 100),
+            (2000, 100),
+            (3000, 250),
+            (3500, 250),
+            (4000, 250),
+        ] {
+            read(&mut rival, speed, ms);
+        }
+        assert_eq!(rival.changes, 0);
+        // On a line that is busy with other things it may be long until it is read again.
+        rival.wrote(&speeds.writes()[0], at(4200));
+        for (ms, speed) in [(8000, 99), (8500, 99)] {
+            read(&mut rival, speed, ms);
+        }
+        assert_eq!(rival.changes, 0);
+        rival.begin();
+        read(&mut rival, 1, 9000);
+        read(&mut rival, 1, 9500);
+        assert_eq!(rival.changes, 0, "after a reconnect nothing is known");
+    }
+
+    #[test]
+    fn our_write_may_act_at_the_end_of_its_horizon_and_through_a_wire_that_is_gone() {
+        let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::GENTLE)));
+        for reconnected in [false, true] {
+            let mut rival = OtherController::default();
+            read(&mut rival, 100, 0);
+            rival.wrote(&speeds.writes()[0], at(100));
+            if reconnected {
+                rival.begin();
+            }
+            for (ms, speed) in [
+                (1000, 100),
+                (2000, 100),
+                (2500, 250),
+                (3000, 250),
+                (3500, 250),
+            ] {
+                read(&mut rival, speed, ms);
+            }
+            assert_eq!(rival.changes, 0);
+        }
+    }
+
+    #[test]
+    fn a_few_foreign_requests_in_a_row_are_a_rival_and_scattered_ones_are_not() {
+        let mut rival = OtherController::default();
+        for n in 1..20 {
+            rival.overheard(n, at(n * 1500));
+            assert!(!rival.is_active(at(n * 1500)));
+        }
+        for n in 20..23 {
+            rival.overheard(n, at(40_000 + n * 10));
+        }
+        assert!(rival.is_active(at(40_300)));
+        assert!(!rival.is_active(at(46_000)));
+    }
+}

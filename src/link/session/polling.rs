@@ -1,0 +1,137 @@
+//! Reading by plan: which question goes out now, and what its answer changes. What else may go out first is decided
+//! elsewhere.
+
+use crate::hand::{Group, Moment, Reply, Span};
+use crate::link::bus::Bus;
+use crate::link::poll::plan::{Question, Tempo};
+use crate::link::session::conversation::{End, Session};
+use crate::link::status::LinkTrouble;
+use crate::record::{Disarmed, LinkState, Record};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A group that cannot be requested now is tried again after this: often enough, and not in a busy loop.
+const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
+
+impl Session {
+    /// What to ask now. While a stop is being confirmed only motion and faults count; once it failed, the rest gets its
+    /// turns again.
+    pub(crate) fn next_poll(&mut self) -> Option<Question> {
+        let now = self.now();
+        let tempo = self.tempo(now);
+        if self.motion.hold.is_none() {
+            if self.motion.wants_pose(now) {
+                return Some(self.plan.motion(now, tempo));
+            }
+            if self.motion.wants_others(now) {
+                match self.plan.others(now) {
+                    Some(question) => return Some(question),
+                    None => self.motion.nothing_else(),
+                }
+            }
+        }
+        self.plan.next(now, tempo)
+    }
+
+    /// When the next read is due.
+    pub(crate) fn next_read(&self) -> Moment {
+        self.plan.next_due(self.tempo(self.now()))
+    }
+
+    fn tempo(&self, now: Moment) -> Tempo {
+        match &self.motion.hold {
+            Some(hold) if !hold.alarmed => Tempo::Stopping,
+            Some(_) => Tempo::Motion,
+            None if self.moving.moves(now) => Tempo::Motion,
+            None => Tempo::Rest,
+        }
+    }
+
+    /// Asks where the hand is, due or not.
+    pub(crate) async fn poll_motion(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+        let now = self.now();
+        let question = self.plan.motion(now, self.tempo(now));
+        self.poll(bus, &question).await
+    }
+
+    /// One read of a window, and what its answer changes.
+    pub(crate) async fn poll(&mut self, bus: &mut dyn Bus, question: &Question) -> Result<(), End> {
+        self.motion.asked(question.is_motion);
+        let Some(span) = bus.choose(&question.shapes) else {
+            return self.ambiguous(question);
+        };
+        let limit = self.reply_limit(bus, span.len);
+        let asked = self.now();
+        let wanted = Arc::clone(&self.ends.wanted);
+        let result = bus.read_unless(span, limit, &|| wanted.borrow().stop).await;
+        let received = self.now();
+        let took = received.since(asked);
+        match result {
+            Ok(None) => Ok(()),
+            Ok(Some(bytes)) => {
+                self.answered(took);
+                self.watch_ticks(span.len, took);
+                self.counters.read(self.plan.cost(), span, took);
+                let bytes = &bytes;
+                self.take(&Reply {
+                    span,
+                    bytes,
+                    asked,
+                    received,
+                });
+                Ok(())
+            }
+            Err(error) => {
+                self.counters.failed(took);
+                self.plan.failed(span, received);
+                self.failed(bus, &error).await
+            }
+        }
+    }
+
+    fn take(&mut self, reply: &Reply<'_>) {
+        let now = reply.received;
+        self.plan
+            .answered(reply.span, reply.asked, now.since(reply.asked));
+        let fresh = self.sample.take(reply);
+        self.others.read(&self.sample, fresh);
+        self.moving.take(&self.sample, fresh, now);
+        self.counters.fresh(fresh, now);
+        let sample = Arc::new(self.sample);
+        self.tell(Record::Reading { sample, fresh });
+        if fresh.contains(Group::Faults) {
+            self.watch_faults();
+        }
+        if self
+            .motion
+            .hold
+            .as_mut()
+            .is_some_and(|hold| hold.rests(&self.sample, fresh))
+        {
+            self.hold_confirmed();
+        }
+    }
+
+    /// Every way to ask could be answered by a late reply. The motion state is worth a new wire; the rest waits.
+    fn ambiguous(&mut self, question: &Question) -> Result<(), End> {
+        let now = self.now();
+        let window = question.shapes.first().copied();
+        let window = window.unwrap_or(Span::new(0, 0));
+        self.plan.failed_to_ask(window, now.plus(AMBIGUOUS_WAIT));
+        if question.is_motion {
+            return Err(End::Lost(LinkTrouble::Ambiguous));
+        }
+        Ok(())
+    }
+
+    fn watch_faults(&mut self) {
+        match (self.sample.has_fault(), self.status.state) {
+            (true, LinkState::Armed | LinkState::Monitoring) => {
+                self.disarm(Disarmed::Fault);
+                self.go(LinkState::Fault);
+            }
+            (false, LinkState::Fault) => self.go(LinkState::Monitoring),
+            _ => {}
+        }
+    }
+}

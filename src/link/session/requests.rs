@@ -1,0 +1,192 @@
+//! Commands and reads on their way: writes that go out one a step, and reads of any memory. Motion among them needs
+//! arming, like every other.
+
+use crate::hand::{HandCommand, RegisterWrite, Span, Writes};
+use crate::link::bus::late_replies::LATE_HORIZON;
+use crate::link::bus::{Bus, BusError};
+use crate::link::request::{Answer, Request, RequestError};
+use crate::link::session::conversation::{End, Session};
+use crate::link::session::job::{JOB_MAX, Job};
+use crate::link::session::motion::hold_targets;
+use crate::record::LinkState;
+use arrayvec::ArrayVec;
+use std::sync::Arc;
+
+impl Session {
+    /// True if a request is under way or one was waiting.
+    pub(crate) fn next_job(&mut self) -> bool {
+        // One that is answered at once leaves the turn to the next.
+        while self.job.is_none()
+            && let Ok(request) = self.ends.requests.try_recv()
+        {
+            self.take_job(request);
+        }
+        self.job.is_some()
+    }
+
+    /// Takes a request, unless nobody waits for its answer any more: that one is not sent.
+    pub(crate) fn take_job(&mut self, request: Request) {
+        if request.is_abandoned() {
+            return;
+        }
+        match request {
+            Request::Read(span, answer) => {
+                let cleared = false;
+                self.job = Some(Job::Read {
+                    span,
+                    cleared,
+                    answer,
+                });
+            }
+            Request::Command(command, answer) => self.take_command(command, answer),
+            request => self.job = Some(Job::Alone(request)),
+        }
+    }
+
+    fn take_command(&mut self, command: HandCommand, answer: Answer<()>) {
+        let is_motion = command.is_motion();
+        if is_motion && self.status.state != LinkState::Armed {
+            let _told = answer.send(Err(RequestError::NotArmed));
+            return;
+        }
+        let mut writes = ArrayVec::new();
+        // A cleared fault may set free a move to an old target: the pose is made the target first.
+        if command == HandCommand::ClearErrors {
+            let hold = HandCommand::Angles(hold_targets(&self.sample, self.now()));
+            extend(&mut writes, hold.writes());
+        }
+        extend(&mut writes, command.writes());
+        self.job = Some(Job::Write {
+            writes,
+            is_motion,
+            answer,
+        });
+    }
+
+    /// Sends the next write of the request under way, or its read, and answers when all is done.
+    pub(crate) async fn work(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+        match self.job.take() {
+            None => Ok(()),
+            Some(Job::Alone(request)) => self.alone(bus, request).await,
+            Some(Job::Read {
+                span,
+                cleared: false,
+                answer,
+            }) if bus.choose(&[span]).is_none() => {
+                // The same question was answered just now; any other answer clears the line of doubles.
+                let cleared = true;
+                self.job = Some(Job::Read {
+                    span,
+                    cleared,
+                    answer,
+                });
+                self.poll_motion(bus).await
+            }
+            Some(Job::Read { span, answer, .. }) => self.read_for(bus, span, answer).await,
+            Some(Job::Write {
+                mut writes,
+                is_motion,
+                answer,
+            }) => {
+                let Some(write) = writes.pop_at(0) else {
+                    let _told = answer.send(Ok(()));
+                    return Ok(());
+                };
+                if is_motion {
+                    self.moving.commanded(self.now());
+                }
+                match self.write(bus, &write).await {
+                    Ok(()) if writes.is_empty() => {
+                        let _told = answer.send(Ok(()));
+                    }
+                    Ok(()) => {
+                        self.job = Some(Job::Write {
+                            writes,
+                            is_motion,
+                            answer,
+                        });
+                    }
+                    Err(error) => {
+                        let _told = answer.send(Err(request_error(&error, write.span())));
+                        self.failed(bus, &error).await?;
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+
+    async fn read_for(
+        &mut self,
+        bus: &mut dyn Bus,
+        span: Span,
+        answer: Answer<Vec<u8>>,
+    ) -> Result<(), End> {
+        if bus.choose(&[span]).is_none() || self.looks_like_save(span) {
+            let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
+            let _told = answer.send(Err(RequestError::Ambiguous { address, wait_s }));
+            return Ok(());
+        }
+        let limit = self.reply_limit(bus, span.len);
+        let asked = self.now();
+        let wanted = Arc::clone(&self.ends.wanted);
+        let read = bus.read_unless(span, limit, &|| wanted.borrow().stop).await;
+        match read {
+            // Asked again from its start, once the stop is through.
+            Ok(None) => {
+                let cleared = false;
+                self.job = Some(Job::Read {
+                    span,
+                    cleared,
+                    answer,
+                });
+            }
+            Ok(Some(bytes)) => {
+                let took = self.now().since(asked);
+                self.answered(took);
+                self.watch_ticks(span.len, took);
+                let _told = answer.send(Ok(bytes.to_vec()));
+            }
+            Err(error) => {
+                let _told = answer.send(Err(request_error(&error, span)));
+                self.failed(bus, &error).await?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn extend(into: &mut ArrayVec<RegisterWrite, JOB_MAX>, writes: Writes) {
+    for write in writes {
+        let full = into.try_push(write).is_err();
+        debug_assert!(!full, "a job holds the longest command and a hold");
+    }
+}
+
+fn request_error(error: &BusError, span: Span) -> RequestError {
+    let address = span.address;
+    match error {
+        BusError::Timeout { after } => {
+            let after_ms = u64::try_from(after.as_millis()).unwrap_or(u64::MAX);
+            RequestError::Timeout { address, after_ms }
+        }
+        BusError::Refused { reason } => RequestError::Refused {
+            address,
+            reason: reason.clone(),
+        },
+        BusError::WrongLength { got, want } => RequestError::WrongLength {
+            address,
+            got: *got,
+            want: *want,
+        },
+        BusError::TooLong => RequestError::TooLong {
+            address,
+            len: span.len,
+        },
+        BusError::Ambiguous => RequestError::Ambiguous {
+            address,
+            wait_s: LATE_HORIZON.as_secs(),
+        },
+        BusError::Lost(_) => RequestError::LinkLost,
+    }
+}

@@ -1,0 +1,175 @@
+//! Whether the hand rests, as far as feedback and what was written tell. Pure; decides nothing about reading.
+
+use crate::hand::{AngleReading, Dof, Group, Groups, HandSample, Moment, PerDof, Timed};
+use crate::record::Rest;
+use std::time::Duration;
+
+/// After the last sign of motion the hand counts as moving for this long: a person who drags pauses, and a hand acts
+/// late.
+const MOVES_FOR: Duration = Duration::from_secs(1);
+/// A joint that is no more than this many counts from where it was rests: readings swing by so much.
+const REST_COUNTS: i32 = 2;
+/// Feedback older than this says nothing of whether the hand rests now.
+const FRESH_FOR: Duration = Duration::from_millis(500);
+
+/// Watches for motion.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct RestWatch {
+    /// Where the joints were when they were last seen to have moved.
+    from: Option<PerDof<AngleReading>>,
+    /// The first angles that were seen.
+    watched_since: Option<Moment>,
+    moved: Option<Moment>,
+}
+
+impl RestWatch {
+    /// A motion was commanded.
+    pub(crate) const fn commanded(&mut self, now: Moment) {
+        self.moved = Some(now);
+    }
+
+    /// Takes what was read.
+    pub(crate) fn take(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+        if fresh.contains(Group::Angle)
+            && let Some(angle) = sample.angle
+        {
+            self.watched_since.get_or_insert(angle.received);
+            match self.from {
+                Some(from) if near(&from, &angle.value) => {}
+                Some(_) => {
+                    self.from = Some(angle.value);
+                    self.moved = Some(now);
+                }
+                None => self.from = Some(angle.value),
+            }
+        }
+        if fresh.contains(Group::Status)
+            && let Some(status) = sample.status
+            && status.value.iter().any(|(_, status)| status.is_moving())
+        {
+            self.moved = Some(now);
+        }
+    }
+
+    /// True if something moves, or did just now.
+    pub(crate) fn moves(&self, now: Moment) -> bool {
+        self.moved.is_some_and(|moved| now.since(moved) < MOVES_FOR)
+    }
+
+    /// Whether the hand rests. A status code that the manual does not list says nothing: 255 was seen on joints that rest
+    /// since power-up. Then angles that stood still for as long as motion counts have to do.
+    pub(crate) fn rest(&self, sample: &HandSample, now: Moment) -> Rest {
+        if self.moves(now) {
+            return Rest::Moving;
+        }
+        let (Some(status), Some(angle)) = (fresh(sample.status, now), fresh(sample.angle, now))
+        else {
+            return Rest::Unknown;
+        };
+        let says_so = status.iter().all(|(_, status)| status.is_stopped());
+        let is_sensible = angle.iter().all(|(_, angle)| angle.documented().is_some());
+        let watched = self
+            .watched_since
+            .is_some_and(|since| now.since(since) >= MOVES_FOR);
+        if says_so || is_sensible && watched {
+            Rest::Resting
+        } else {
+            Rest::Unknown
+        }
+    }
+}
+
+fn fresh<T>(group: Option<Timed<T>>, now: Moment) -> Option<T> {
+    group
+        .filter(|group| group.age(now) <= FRESH_FOR)
+        .map(|group| group.value)
+}
+
+fn near(a: &PerDof<AngleReading>, b: &PerDof<AngleReading>) -> bool {
+    let apart = |dof: Dof| (i32::from(a[dof].raw()) - i32::from(b[dof].raw())).abs();
+    Dof::ALL.iter().all(|dof| apart(*dof) <= REST_COUNTS)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::hand::Status;
+
+    fn ms(millis: u64) -> Moment {
+        Moment::from_micros(millis * 1000)
+    }
+
+    fn sample(status: u8, angle: i16, at: Moment) -> HandSample {
+        let timed = |value| Timed {
+            value,
+            asked: at,
+            received: at,
+        };
+        HandSample {
+            angle: Some(Timed {
+                value: PerDof::splat(AngleReading::new(angle)),
+                asked: at,
+                received: at,
+            }),
+            status: Some(timed(PerDof::splat(Status::from_raw(status)))),
+            ..HandSample::default()
+        }
+    }
+
+    fn all() -> Groups {
+        let mut groups = Groups::NONE;
+        groups.insert(Group::Angle);
+        groups.insert(Group::Status);
+        groups
+    }
+
+    #[test]
+    fn what_was_never_read_or_is_old_is_unknown() {
+        let watch = RestWatch::default();
+        assert_eq!(watch.rest(&HandSample::default(), ms(0)), Rest::Unknown);
+        let mut watch = RestWatch::default();
+        let seen = sample(2, 500, ms(0));
+        watch.take(&seen, all(), ms(0));
+        assert_eq!(watch.rest(&seen, ms(500)), Rest::Resting);
+        assert_eq!(watch.rest(&seen, ms(501)), Rest::Unknown);
+        let without_status = HandSample {
+            status: None,
+            ..seen
+        };
+        assert_eq!(watch.rest(&without_status, ms(10)), Rest::Unknown);
+    }
+
+    #[test]
+    fn status_angles_and_commands_each_show_motion_for_a_second() {
+        let (mut said, mut seen, mut told) = <(RestWatch, RestWatch, RestWatch)>::default();
+        said.take(&sample(1, 500, ms(0)), all(), ms(0));
+        seen.take(&sample(2, 500, ms(0)), all(), ms(0));
+        seen.take(&sample(2, 503, ms(0)), all(), ms(0));
+        told.commanded(ms(0));
+        let now = sample(2, 503, ms(999));
+        for mut watch in [said, seen, told] {
+            assert_eq!(watch.rest(&now, ms(999)), Rest::Moving);
+            watch.take(&sample(2, 503, ms(1000)), all(), ms(1000));
+        }
+        assert_eq!(seen.rest(&now, ms(1001)), Rest::Resting);
+    }
+
+    #[test]
+    fn an_unlisted_status_is_rest_only_with_angles_that_stood_still_for_a_second() {
+        let mut watch = RestWatch::default();
+        watch.take(&sample(255, 500, ms(0)), all(), ms(0));
+        assert_eq!(
+            watch.rest(&sample(255, 500, ms(990)), ms(999)),
+            Rest::Unknown
+        );
+        assert_eq!(
+            watch.rest(&sample(255, 500, ms(990)), ms(1000)),
+            Rest::Resting
+        );
+        assert_eq!(
+            watch.rest(&sample(255, 30_000, ms(990)), ms(1000)),
+            Rest::Unknown
+        );
+    }
+}

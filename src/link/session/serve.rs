@@ -1,0 +1,372 @@
+//! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
+//! requests at once, and the wishes of the window are looked at before each.
+
+use crate::hand::ArmEpoch;
+use crate::hand::{HandCommand, RegisterWrite};
+use crate::link::bus::client::Urgent;
+use crate::link::bus::{Bus, BusError};
+use crate::link::request::RequestError;
+use crate::link::session::conversation::{End, Session};
+use crate::link::session::hold::HoldWatch;
+use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
+use crate::link::status::{ArmRequest, LinkTrouble};
+use crate::link::wanted::Wanted;
+use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, WriteFate};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::time::sleep_until;
+
+/// Bytes of an acknowledgement's data.
+const ACK_LEN: u16 = 1;
+
+impl Session {
+    /// Serves the wire until it is lost or the handle is gone.
+    pub(crate) async fn serve(&mut self, bus: &mut dyn Bus) -> End {
+        loop {
+            match self.round(bus).await {
+                Ok(true) => self.after_step(bus),
+                Ok(false) => {
+                    self.tell_rest();
+                    self.idle().await;
+                }
+                Err(end) => return end,
+            }
+        }
+    }
+
+    async fn round(&mut self, bus: &mut dyn Bus) -> Result<bool, End> {
+        self.wake_up()?;
+        self.turn(bus).await?;
+        self.step(bus).await
+    }
+
+    /// Whether this computer slept; then the link is not what it was.
+    pub(crate) fn wake_up(&mut self) -> Result<(), End> {
+        let Some(slept) = self.sleep.slept() else {
+            return Ok(());
+        };
+        self.disarm(Disarmed::Resume);
+        let slept_s = slept.as_secs();
+        Err(End::Lost(LinkTrouble::Suspended { slept_s }))
+    }
+
+    /// What is told after something was done.
+    pub(crate) fn after_step(&mut self, bus: &dyn Bus) {
+        self.tell_rest();
+        self.count(bus);
+        self.watch_others(bus);
+    }
+
+    /// Does the most urgent thing; false if nothing is due.
+    async fn step(&mut self, bus: &mut dyn Bus) -> Result<bool, End> {
+        if self.urgent_step(bus).await? {
+            return Ok(true);
+        }
+        if self.motion.lets_jobs(self.now()) && self.next_job() {
+            self.work(bus).await?;
+        } else if let Some(question) = self.next_poll() {
+            self.poll(bus, &question).await?;
+        } else {
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    /// What goes before everything that was asked for: wishes, a stop, setpoints.
+    pub(crate) async fn urgent_step(&mut self, bus: &mut dyn Bus) -> Result<bool, End> {
+        if let Some(request) = self.take_wishes()? {
+            self.arm(bus, &request).await?;
+            return Ok(true);
+        }
+        self.watch_age();
+        let now = self.now();
+        let hold = self.motion.hold;
+        if hold.is_some_and(|hold| hold.next_frame(now) <= now) {
+            self.send_hold(bus).await?;
+        } else if let Some(write) = self.motion.next_write(now) {
+            self.send_setpoint(bus, write).await?;
+        } else {
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    /// Says whether the hand rests, and whether the line is left to it.
+    pub(crate) fn tell_rest(&mut self) {
+        let rest = self.moving.rest(&self.sample, self.now());
+        if (self.status.line_left, self.status.rest) != (self.leaves_line, rest) {
+            self.status.line_left = self.leaves_line;
+            self.status.rest = rest;
+            self.publish();
+        }
+    }
+
+    /// Waits until something is due or the window wants something.
+    pub(crate) async fn idle(&mut self) {
+        let now = self.now();
+        let read = self.next_read();
+        let due = self
+            .motion
+            .next_send(now)
+            .map_or(read, |send| send.min(read));
+        let due = self.config.clock.instant(due);
+        let mut wanted = self.ends.wanted.subscribe();
+        tokio::select! {
+            biased;
+            _ = wanted.wait_for(Wanted::is_any) => {}
+            Some(request) = self.ends.requests.recv(), if self.job.is_none() => self.take_job(request),
+            () = sleep_until(due) => {}
+        }
+    }
+
+    /// Takes what the window wants; gives back the wish to arm, which takes exchanges of its own.
+    fn take_wishes(&mut self) -> Result<Option<ArmRequest>, End> {
+        let mut wishes = Wanted::default();
+        self.ends.wanted.send_if_modified(|wanted| {
+            wishes = wanted.take();
+            false
+        });
+        if wishes.stop {
+            self.begin_hold();
+        }
+        if wishes.closed {
+            return Err(End::Closed);
+        }
+        if wishes.disarm {
+            self.disarm(Disarmed::Person);
+        }
+        if let Some(rates) = wishes.rates {
+            self.config.rates = rates;
+            self.plan.change_rates(rates, self.now());
+        }
+        if let Some(setpoints) = wishes.setpoints {
+            self.motion.want(&setpoints, self.status.armed);
+        }
+        Ok(wishes.arm)
+    }
+
+    fn stop_wanted(&self) -> bool {
+        let wanted = self.ends.wanted.borrow();
+        wanted.stop || wanted.disarm || wanted.closed
+    }
+
+    /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
+    /// An armed hand stays armed as it is.
+    async fn arm(&mut self, bus: &mut dyn Bus, request: &ArmRequest) -> Result<(), End> {
+        if self.status.armed.is_some() {
+            return Ok(());
+        }
+        let busy = self.leaves_line.then_some(ArmRefusal::HandBusy);
+        let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
+        if let Some(reason) = busy.or_else(refusal) {
+            self.refuse_arm(reason);
+            return Ok(());
+        }
+        let limits = [
+            HandCommand::Speeds(request.speed.map(Some)),
+            HandCommand::Forces(request.force.map(Some)),
+        ];
+        for write in limits.iter().flat_map(HandCommand::writes) {
+            self.turn(bus).await?;
+            if self.stop_wanted() {
+                return Ok(());
+            }
+            if let Err(error) = self.write(bus, &write).await {
+                self.failed(bus, &error).await?;
+                self.refuse_arm(ArmRefusal::NoAnswer);
+                return Ok(());
+            }
+        }
+        // A stop that came meanwhile wins: it is taken in the next step, and arming has to be asked for anew.
+        if self.stop_wanted() {
+            return Ok(());
+        }
+        let epoch = ArmEpoch(self.motion.last_epoch.0 + 1);
+        self.motion.last_epoch = epoch;
+        self.status.armed = Some(epoch);
+        self.status.disarmed = None;
+        self.status.hold = Hold::None;
+        let now = self.now();
+        self.plan.hasten_settings(now);
+        self.go(LinkState::Armed);
+        Ok(())
+    }
+
+    fn refuse_arm(&mut self, reason: ArmRefusal) {
+        let at = self.now();
+        self.tell(Record::ArmRefused { at, reason });
+    }
+
+    /// Disarms, and drops the setpoints that are on their way.
+    pub(crate) fn disarm(&mut self, why: Disarmed) {
+        self.motion.forget_setpoints();
+        if self.status.armed.take().is_none() {
+            return;
+        }
+        self.status.disarmed = Some(why);
+        if self.status.state == LinkState::Armed {
+            self.go(LinkState::Monitoring);
+        }
+        self.publish();
+    }
+
+    /// An armed hand whose pose is not known any more is not armed.
+    fn watch_age(&mut self) {
+        if self.status.armed.is_some() && !self.sample.angles_fresh(self.now(), ANGLE_LOST) {
+            self.disarm(Disarmed::Stale);
+        }
+        let now = self.now();
+        if let Some(hold) = &mut self.motion.hold
+            && hold.alarm_due(now)
+        {
+            hold.alarmed = true;
+            self.status.hold = Hold::Alarm { at: hold.at };
+            self.publish();
+        }
+    }
+
+    /// Another controller disarms, once: who arms while it is there has been told and wants it.
+    fn watch_others(&mut self, bus: &dyn Bus) {
+        let is_there = self.others.is_active(self.now());
+        let is_news = is_there && !self.status.other_controller;
+        if (self.status.other_controller, self.status.echoes) != (is_there, bus.echoes()) {
+            self.status.other_controller = is_there;
+            self.status.echoes = bus.echoes();
+            self.publish();
+        }
+        if is_news {
+            self.disarm(Disarmed::OtherController);
+        }
+    }
+
+    /// A reply took so long. Where the system does not tell an adapter's latency timer, its ticks do.
+    pub(crate) fn watch_ticks(&mut self, bytes: u16, took: Duration) {
+        self.ticks.took(bytes, took);
+        let untold = self.status.latency_timer_ms.is_none() && self.dialled.port().is_some();
+        let seen = untold && self.ticks.are_seen();
+        if self.status.latency_ticks != seen {
+            self.status.latency_ticks = seen;
+            self.publish();
+        }
+    }
+
+    fn begin_hold(&mut self) {
+        let now = self.now();
+        self.disarm(Disarmed::Stop);
+        if let Some(job) = self.job.take_if(|job| job.is_motion()) {
+            job.fail(RequestError::NotArmed);
+        }
+        if self.motion.hold.is_none_or(|hold| hold.alarmed) {
+            self.motion.hold = Some(HoldWatch::new(now));
+            self.status.hold = Hold::Asked { at: now, sent: 0 };
+        }
+        self.go(LinkState::Holding);
+    }
+
+    async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+        let now = self.now();
+        let newest = hold_targets(&self.sample, now);
+        let Some(hold) = &mut self.motion.hold else {
+            return Ok(());
+        };
+        let command = HandCommand::Angles(hold.frame(&newest, now));
+        if !hold.alarmed {
+            self.status.hold = Hold::Asked {
+                at: hold.at,
+                sent: hold.sent,
+            };
+        }
+        for write in command.writes() {
+            if let Err(error) = self.write(bus, &write).await {
+                self.failed(bus, &error).await?;
+            }
+        }
+        self.publish();
+        Ok(())
+    }
+
+    pub(crate) fn hold_confirmed(&mut self) {
+        let Some(hold) = self.motion.hold.take() else {
+            return;
+        };
+        self.status.hold = Hold::Confirmed {
+            at: hold.at,
+            rest: self.now(),
+        };
+        self.go(if self.sample.has_fault() {
+            LinkState::Fault
+        } else {
+            LinkState::Monitoring
+        });
+    }
+
+    /// One write and its acknowledgement, timed and counted.
+    pub(crate) async fn write(
+        &mut self,
+        bus: &mut dyn Bus,
+        write: &RegisterWrite,
+    ) -> Result<(), BusError> {
+        self.write_unless(bus, write, &|| false).await
+    }
+
+    async fn write_unless(
+        &mut self,
+        bus: &mut dyn Bus,
+        write: &RegisterWrite,
+        urgent: Urgent<'_>,
+    ) -> Result<(), BusError> {
+        let limit = self.reply_limit(bus, ACK_LEN);
+        let asked = self.now();
+        self.counters.stats.writes += 1;
+        let number = self.counters.stats.writes;
+        self.others.wrote(write, asked);
+        self.tell(Record::Sent {
+            at: asked,
+            number,
+            write: write.clone(),
+        });
+        let written = bus.write_unless(write, limit, urgent).await;
+        let answered = self.now();
+        let took = answered.since(asked);
+        self.tell(Record::Answered {
+            at: answered,
+            number,
+            fate: fate(&written),
+        });
+        self.counters.wrote(self.plan.cost(), write.span(), took);
+        written?;
+        self.answered(took);
+        Ok(())
+    }
+
+    async fn send_setpoint(&mut self, bus: &mut dyn Bus, write: RegisterWrite) -> Result<(), End> {
+        self.moving.commanded(self.now());
+        let wanted = Arc::clone(&self.ends.wanted);
+        let stop = || wanted.borrow().stop;
+        if let Err(error) = self.write_unless(bus, &write, &stop).await {
+            if matches!(error, BusError::Timeout { .. }) {
+                self.motion.again(write);
+            }
+            self.failed(bus, &error).await?;
+        }
+        Ok(())
+    }
+
+    /// Waits for the line; of all failures it can only be lost.
+    pub(crate) async fn turn(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+        match bus.turn().await {
+            Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn fate(written: &Result<(), BusError>) -> WriteFate {
+    match written {
+        Ok(()) => WriteFate::Acknowledged,
+        Err(BusError::Refused { reason }) => WriteFate::Refused {
+            reason: reason.clone(),
+        },
+        Err(_) => WriteFate::Unanswered,
+    }
+}

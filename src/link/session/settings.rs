@@ -1,0 +1,389 @@
+//! What is done at rest and with the line for itself: kept settings, SAVE, reset, calibration. One at a time; a stop
+//! passes before each exchange. What a late frame means is decided in `save_watch`.
+
+use crate::hand::register::{DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, SAVE};
+use crate::hand::{HandCommand, Moment, Setting, Span};
+use crate::link::bus::{Bus, BusError, ResultFrame};
+use crate::link::request::{Answer, Request, RequestError};
+use crate::link::session::conversation::{End, Session};
+use crate::link::session::save_watch::{Ack, Next};
+use crate::link::wanted::Wanted;
+use crate::record::{
+    Calibrated, Doubt, LinkState, NotSent, Reset, Rest, SaveDoubt, Saved, Verdict, Written,
+};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::time::sleep_until;
+
+/// Reads that may verify one write: one lost answer must not leave it unverified, and a value that differs is read twice.
+const READS: u8 = 3;
+/// Other questions asked to get a double of the last answer out of the way.
+const CLEARINGS: u8 = 3;
+/// Looks at the pose of a hand of which it is not known whether it rests.
+const LOOKS: u8 = 2;
+/// What is compared before and after a SAVE on wires without a result frame: the two default groups, side by side.
+const PARAMETERS: Span = Span::new(
+    DEFAULT_SPEED_SET.address,
+    DEFAULT_SPEED_SET.len + DEFAULT_FORCE_SET.len,
+);
+/// While the line is left to the hand, the session looks around this often.
+const LISTEN_FOR: Duration = Duration::from_millis(100);
+/// From a request to calibrate until it is over without a word. Manual: 2.6.6 names no time; hands in use were seen to take 2 to 6 s.
+pub(crate) const CALIBRATION_TAKES: Duration = Duration::from_secs(8);
+
+/// Reads that are left to verify with.
+struct Tries {
+    reads: u8,
+    clearings: u8,
+}
+
+impl Tries {
+    const fn new() -> Self {
+        Self {
+            reads: READS,
+            clearings: CLEARINGS,
+        }
+    }
+}
+
+impl Session {
+    /// Does one of these to its end and answers it. When the link is lost meanwhile, what is known then is the answer,
+    /// given once everybody can see that the link is lost.
+    pub(crate) async fn alone(&mut self, bus: &mut dyn Bus, request: Request) -> Result<(), End> {
+        match request {
+            Request::Set(setting, answer) => {
+                let end = self.write_setting(bus, setting).await;
+                let lost = Written {
+                    span: setting.span(),
+                    verdict: Verdict::Unverified {
+                        why: Doubt::LinkLost,
+                    },
+                    holds: None,
+                };
+                self.conclude(answer, end, Ok(lost))
+            }
+            Request::Save(answer) => {
+                let end = self.save_parameters(bus).await;
+                let lost = match &end {
+                    Err(_) => self.saving.lost().ok_or(RequestError::LinkLost),
+                    Ok(_) => Err(RequestError::LinkLost),
+                };
+                self.conclude(answer, end, lost)
+            }
+            Request::Reset(answer) => {
+                let end = self.reset_parameters(bus).await;
+                self.conclude(answer, end, Ok(Reset::Unanswered))
+            }
+            Request::Calibrate(answer) => {
+                let end = self.calibrate_forces(bus).await;
+                let why = SaveDoubt::LinkLost;
+                self.conclude(answer, end, Ok(Calibrated::Unknown { why }))
+            }
+            Request::Command(..) | Request::Read(..) => Ok(()),
+        }
+    }
+
+    fn conclude<T: Send + Sync + 'static>(
+        &mut self,
+        answer: Answer<T>,
+        end: Result<T, End>,
+        lost: Result<T, RequestError>,
+    ) -> Result<(), End> {
+        self.leaves_line = false;
+        match end {
+            Ok(end) => {
+                let _told = answer.send(Ok(end));
+                Ok(())
+            }
+            Err(end) => {
+                self.broken_off = Some(Box::new(move || {
+                    let _told = answer.send(lost);
+                }));
+                Err(end)
+            }
+        }
+    }
+
+    /// What is more urgent goes first: wishes, and a stop until it is confirmed or has failed.
+    async fn give_way(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+        loop {
+            self.wake_up()?;
+            self.turn(bus).await?;
+            if !self.urgent_step(bus).await? {
+                let stopping = self.motion.hold.is_some_and(|hold| !hold.alarmed);
+                match self.next_poll() {
+                    Some(question) if stopping => self.poll(bus, &question).await?,
+                    None if stopping => self.idle().await,
+                    _ => return Ok(()),
+                }
+            }
+            self.after_step(bus);
+        }
+    }
+
+    /// Why it must not be done now. What is not known is looked at first.
+    async fn refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, End> {
+        let mut looks = LOOKS;
+        loop {
+            self.give_way(bus).await?;
+            let now = self.now();
+            let why = match (self.status.state, self.moving.rest(&self.sample, now)) {
+                (LinkState::Armed, _) => NotSent::Armed,
+                (LinkState::Holding, _) => NotSent::Holding,
+                (_, Rest::Resting) => return Ok(None),
+                (_, Rest::Moving) => NotSent::Moving,
+                (_, Rest::Unknown) if looks > 0 => {
+                    looks -= 1;
+                    self.poll_motion(bus).await?;
+                    continue;
+                }
+                (_, Rest::Unknown) => NotSent::RestUnknown,
+            };
+            return Ok(Some(why));
+        }
+    }
+
+    /// The same, and not while the result of an earlier SAVE may still come.
+    async fn trigger_refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, End> {
+        let why = self.refusal(bus).await?;
+        let wait = self.saving.may_send(self.now()).err();
+        Ok(why.or(wait.map(|wait| NotSent::TooSoon { wait })))
+    }
+
+    async fn write_setting(&mut self, bus: &mut dyn Bus, setting: Setting) -> Result<Written, End> {
+        let written = |verdict, holds| Written {
+            span: setting.span(),
+            verdict,
+            holds,
+        };
+        if let Some(why) = self.refusal(bus).await? {
+            return Ok(written(Verdict::NotSent(why), None));
+        }
+        // The same value again does no harm: after a missing answer it goes out a second time.
+        for may_repeat in [true, false] {
+            let (refused, is_unanswered) = self.write_group(bus, setting).await?;
+            let mut tries = Tries::new();
+            let mut held = None;
+            loop {
+                match self.read_back(bus, setting.span(), &mut tries).await? {
+                    Err(why) => return Ok(written(Verdict::Unverified { why }, None)),
+                    Ok(bytes) if setting.is_held_by(&bytes) => {
+                        return Ok(written(Verdict::Applied, Some(bytes)));
+                    }
+                    // What a line without a check worth the name gave once is asked for again.
+                    Ok(bytes) if held.as_ref() != Some(&bytes) && tries.reads > 0 => {
+                        held = Some(bytes);
+                    }
+                    Ok(_) if is_unanswered && may_repeat => break,
+                    Ok(bytes) => {
+                        let verdict = match refused {
+                            Some(reason) => Verdict::Refused { reason },
+                            None => Verdict::Differs,
+                        };
+                        return Ok(written(verdict, Some(bytes)));
+                    }
+                }
+            }
+        }
+        let why = Doubt::NotReadBack;
+        Ok(written(Verdict::Unverified { why }, None))
+    }
+
+    /// Sends all writes of a group: the first refusal, and whether an answer is missing. Over CAN a part of the group may
+    /// be written and the rest not.
+    async fn write_group(
+        &mut self,
+        bus: &mut dyn Bus,
+        setting: Setting,
+    ) -> Result<(Option<String>, bool), End> {
+        let (mut refused, mut is_unanswered) = (None, false);
+        for write in setting.command().writes() {
+            self.give_way(bus).await?;
+            let Err(error) = self.write(bus, &write).await else {
+                continue;
+            };
+            match &error {
+                BusError::Refused { reason } => {
+                    refused.get_or_insert_with(|| reason.clone());
+                }
+                _ => is_unanswered = true,
+            }
+            self.failed(bus, &error).await?;
+        }
+        Ok((refused, is_unanswered))
+    }
+
+    async fn save_parameters(&mut self, bus: &mut dyn Bus) -> Result<Saved, End> {
+        if let Some(why) = self.trigger_refusal(bus).await? {
+            return Ok(Saved::NotSent(why));
+        }
+        let frame = bus.save_result_frame();
+        // Without a picture from before there is nothing to compare with, and that is said at the end.
+        let mut before = None;
+        if frame == ResultFrame::None {
+            let mut tries = Tries::new();
+            before = self.read_back(bus, PARAMETERS, &mut tries).await?.ok();
+            if let Some(why) = self.trigger_refusal(bus).await? {
+                return Ok(Saved::NotSent(why));
+            }
+        }
+        // What came until now is of an earlier one.
+        while bus.take_save_result().is_some() {}
+        self.saving.send(self.now(), frame);
+        self.leave_line();
+        let sent = self.trigger(bus, &HandCommand::Save).await;
+        self.saving.written(match &sent {
+            Ok(()) => Ack::Acknowledged,
+            Err(BusError::Refused { reason }) => Ack::Refused {
+                reason: reason.clone(),
+            },
+            Err(_) => Ack::Unanswered,
+        });
+        // A hand that writes its flash may be mute: that is no silence to be counted.
+        if let Err(BusError::Lost(error)) = sent {
+            return Err(End::Lost(error.into()));
+        }
+        let mut tries = Tries::new();
+        loop {
+            self.give_way(bus).await?;
+            while let Some(result) = bus.take_save_result() {
+                self.saving.result(result);
+            }
+            match self.saving.next(self.now()) {
+                Next::Done(saved) => return Ok(saved),
+                Next::Listen { until } => self.listen(bus, until).await?,
+                Next::ReadBack => {
+                    let after = self.read_back(bus, PARAMETERS, &mut tries).await?.ok();
+                    self.saving.read_back(after.is_some() && after == before);
+                }
+            }
+        }
+    }
+
+    async fn reset_parameters(&mut self, bus: &mut dyn Bus) -> Result<Reset, End> {
+        if let Some(why) = self.trigger_refusal(bus).await? {
+            return Ok(Reset::NotSent(why));
+        }
+        match self.trigger(bus, &HandCommand::ResetParameters).await {
+            Ok(()) => Ok(Reset::Acknowledged),
+            Err(BusError::Refused { reason }) => Ok(Reset::Refused { reason }),
+            Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+            Err(_) => Ok(Reset::Unanswered),
+        }
+    }
+
+    /// Sent once, then the line is left to the hand until its frame comes or it must be over.
+    async fn calibrate_forces(&mut self, bus: &mut dyn Bus) -> Result<Calibrated, End> {
+        if let Some(why) = self.trigger_refusal(bus).await? {
+            return Ok(Calibrated::NotSent(why));
+        }
+        // What came until now is of an earlier one.
+        let _earlier = bus.take_calibration_end();
+        let over = self.now().plus(CALIBRATION_TAKES);
+        self.leave_line();
+        let is_acknowledged = match self.trigger(bus, &HandCommand::CalibrateForce).await {
+            Ok(()) => true,
+            Err(BusError::Refused { reason }) => return Ok(Calibrated::Refused { reason }),
+            Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
+            // A hand that measures may be mute: that is no silence to be counted.
+            Err(_) => false,
+        };
+        loop {
+            self.give_way(bus).await?;
+            if bus.take_calibration_end() {
+                return Ok(Calibrated::Finished);
+            }
+            if self.now() >= over {
+                let why = SaveDoubt::Unanswered;
+                return Ok(match is_acknowledged {
+                    true => Calibrated::Quiet,
+                    false => Calibrated::Unknown { why },
+                });
+            }
+            self.listen(bus, over).await?;
+        }
+    }
+
+    /// From now on the line is left to a hand that saves or calibrates.
+    fn leave_line(&mut self) {
+        self.leaves_line = true;
+        self.tell_rest();
+    }
+
+    async fn trigger(&mut self, bus: &mut dyn Bus, command: &HandCommand) -> Result<(), BusError> {
+        match command.writes().into_iter().next() {
+            Some(write) => self.write(bus, &write).await,
+            None => Err(BusError::TooLong),
+        }
+    }
+
+    /// Leaves the line to the hand: takes what comes, asks nothing, and ends early for a wish of the window.
+    async fn listen(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), End> {
+        let now = self.now();
+        let until = until.min(now.plus(LISTEN_FOR));
+        // A stop that feedback does not confirm goes on meanwhile.
+        let until = self
+            .motion
+            .next_send(now)
+            .map_or(until, |hold| until.min(hold));
+        let mut wanted = self.ends.wanted.subscribe();
+        let over = sleep_until(self.config.clock.instant(until));
+        tokio::select! {
+            biased;
+            _ = wanted.wait_for(Wanted::is_any) => Ok(()),
+            heard = bus.listen() => match heard {
+                Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+                _ => Ok(()),
+            },
+            () = over => Ok(()),
+        }
+    }
+
+    /// Reads a group in a form that no late reply can answer.
+    async fn read_back(
+        &mut self,
+        bus: &mut dyn Bus,
+        span: Span,
+        tries: &mut Tries,
+    ) -> Result<Result<Vec<u8>, Doubt>, End> {
+        while tries.reads > 0 {
+            self.give_way(bus).await?;
+            // The same bytes and a few more: each length is another question.
+            let shapes = [0, 2, 4, 6].map(|more| Span::new(span.address, span.len + more));
+            let Some(shape) = bus.choose(&shapes) else {
+                if tries.clearings == 0 {
+                    return Ok(Err(Doubt::Ambiguous));
+                }
+                tries.clearings -= 1;
+                self.poll_motion(bus).await?;
+                continue;
+            };
+            let limit = self.reply_limit(bus, shape.len);
+            let asked = self.now();
+            let wanted = Arc::clone(&self.ends.wanted);
+            let read = bus
+                .read_unless(shape, limit, &|| wanted.borrow().stop)
+                .await;
+            match read {
+                // A stop came between.
+                Ok(None) => {}
+                Ok(Some(bytes)) => {
+                    tries.reads -= 1;
+                    self.answered(self.now().since(asked));
+                    let bytes = shape.slice(&bytes, span).map(<[u8]>::to_vec);
+                    return Ok(bytes.ok_or(Doubt::NotReadBack));
+                }
+                Err(error) => {
+                    tries.reads -= 1;
+                    self.failed(bus, &error).await?;
+                }
+            }
+        }
+        Ok(Err(Doubt::NotReadBack))
+    }
+
+    /// True if a read of this run could be answered by the result of a SAVE.
+    pub(crate) fn looks_like_save(&self, span: Span) -> bool {
+        span == SAVE.span() && self.saving.is_claimed(self.now())
+    }
+}

@@ -1,0 +1,44 @@
+//! The manual: the pages that `handscope help TOPIC` prints. Each page is a file in `assets/manual`.
+
+/// One page of the manual.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Topic {
+    /// The word a reader types after `handscope help`; also the name of the file.
+    pub name: &'static str,
+    /// What the page is about, in a few words, for the list of topics.
+    pub about: &'static str,
+    /// The page, as Markdown in lines of at most 80 characters.
+    pub text: &'static str,
+}
+
+/// Every topic, with its page as the documentation of a module of the same name.
+macro_rules! topics {
+    ($($name:ident: $about:literal;)*) => {
+        /// All topics, in the order of the list.
+        pub const TOPICS: &[Topic] = &[$(Topic {
+            name: stringify!($name),
+            about: $about,
+            text: include_str!(concat!("../assets/manual/", stringify!($name), ".md")),
+        }),*];
+        $(
+            #[doc = include_str!(concat!("../assets/manual/", stringify!($name), ".md"))]
+            pub mod $name {}
+        )*
+    };
+}
+
+topics! {
+    window: "what the window shows and does, view by view";
+    safety: "stopping the hand, forces, and what this program cannot do";
+    wiring: "power, Ethernet, RS485 and CAN, and how to find the hand";
+    hands: "how a hand is named: sim:, rs485:, rtu:, tcp:, slcan:, usbcan:, can:";
+    files: "poses, parameters, backups and trial sessions on disk";
+    json: "what the commands print with --json";
+    figures: "how fast it is, and what each wire can carry";
+}
+
+/// The topic of this name.
+#[must_use]
+pub fn topic(name: &str) -> Option<&'static Topic> {
+    TOPICS.iter().find(|topic| topic.name == name)
+}

@@ -1,0 +1,416 @@
+//! What this program knows of each hand's flash: what it saved last and what came of it, and dated backups. One folder a hand,
+//! all in the form of [`crate::params::file`]. Writes to no hand.
+
+use crate::params::file;
+use crate::params::file::{ParamsFile, ParamsFileError};
+use crate::params::values::Params;
+use crate::record::{SaveDoubt, Saved};
+use crate::store::calendar::stamp;
+use crate::store::replace_keeping_last;
+use crate::transport::Endpoint;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Backups kept per hand; the oldest goes first. Enough for a save a week for a year.
+pub const BACKUPS_MAX: usize = 50;
+
+/// The folder of one hand.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Backups {
+    folder: PathBuf,
+    hand: String,
+}
+
+/// One backup.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Backup {
+    /// Its path.
+    pub path: PathBuf,
+    /// When and why it was made, or why it cannot be read.
+    pub about: Result<(String, String), ParamsFileError>,
+}
+
+/// What is known of the flash.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Known {
+    /// What this program saved last, as far as the hand confirmed it.
+    pub saved: Option<ParamsFile>,
+    /// A later SAVE whose result is not known.
+    pub doubtful: Option<ParamsFile>,
+}
+
+/// The result of a SAVE as far as it is known, as a stable word for files and JSON.
+#[must_use]
+pub const fn saved_name(saved: &Saved) -> &'static str {
+    match saved {
+        Saved::Confirmed => "confirmed",
+        Saved::ReadBack => "read_back",
+        Saved::Failed { .. } => "failed",
+        Saved::Unknown { why } => match why {
+            SaveDoubt::NoResult => "unknown: no result",
+            SaveDoubt::Unanswered => "unknown: not acknowledged",
+            SaveDoubt::NotReadBack => "unknown: not read back",
+            SaveDoubt::LinkLost => "unknown: link lost",
+        },
+        Saved::Refused { .. } => "refused",
+        Saved::NotSent(_) => "not_sent",
+    }
+}
+
+/// The folder of all hands, beside the settings.
+#[must_use]
+pub fn folder_beside(settings: &Path) -> PathBuf {
+    settings.with_file_name("params")
+}
+
+impl Backups {
+    /// The folder of the hand at an endpoint, told by place and id as quirk sheets are.
+    #[must_use]
+    pub fn new(folder: &Path, hand: &Endpoint) -> Self {
+        let (place, id) = hand.place_and_id();
+        let plain = |letter: char| match letter {
+            letter if letter.is_ascii_alphanumeric() || letter == '.' => letter,
+            _ => '_',
+        };
+        let place: String = place.chars().map(plain).collect();
+        Self {
+            folder: folder.join(format!("{place}-id{id}")),
+            hand: hand.to_string(),
+        }
+    }
+
+    /// The folder of a hand at another endpoint, beside this one.
+    #[must_use]
+    pub fn beside(&self, hand: &Endpoint) -> Self {
+        let folder = self.folder.parent().unwrap_or(&self.folder);
+        Self::new(folder, hand)
+    }
+
+    /// Takes over the record of the same hand from its former place: its backups, and the last save. The last save known at
+    /// this place belonged to a hand that is gone, and is forgotten; its backups stay.
+    ///
+    /// # Errors
+    /// The system's error. A part may then be taken over already.
+    pub fn adopt(&self, former: &Self) -> io::Result<()> {
+        if self.folder == former.folder {
+            return Ok(());
+        }
+        for path in former.backup_paths()? {
+            let Some(name) = path.file_name() else {
+                continue;
+            };
+            let own = self.folder.join("backups").join(name);
+            if !own.exists() {
+                replace_keeping_last(&own, &std::fs::read_to_string(&path)?)?;
+            }
+        }
+        self.let_go_of_old_backups()?;
+        self.forget_saved()?;
+        let of_flash = [
+            (former.saved_path(), self.saved_path()),
+            (former.attempt_path(), self.attempt_path()),
+        ];
+        for (from, to) in of_flash {
+            if from.exists() {
+                replace_keeping_last(&to, &std::fs::read_to_string(from)?)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn let_go_of_old_backups(&self) -> io::Result<()> {
+        for old in self.backup_paths()?.iter().rev().skip(BACKUPS_MAX) {
+            std::fs::remove_file(old)?;
+        }
+        Ok(())
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// A file with these values and the current date.
+    #[must_use]
+    pub fn file(&self, params: &Params, why: &str, since_1970: Duration) -> ParamsFile {
+        ParamsFile {
+            hand: self.hand.clone(),
+            at: stamp(since_1970),
+            why: why.into(),
+            params: params.clone(),
+            ..ParamsFile::default()
+        }
+    }
+
+    /// Writes a dated backup, and removes the oldest one if there are more than [`BACKUPS_MAX`].
+    ///
+    /// # Errors
+    /// The system's error. Nothing should then be written to the hand.
+    pub fn back_up(&self, params: &Params, why: &str, since_1970: Duration) -> io::Result<PathBuf> {
+        let file = self.file(params, why, since_1970);
+        let day_and_time = file.at.replace(':', "-");
+        let why = why.replace(' ', "-");
+        let backups = self.folder.join("backups");
+        let earlier = self.backup_paths()?;
+        let is_same_second = |path: &&PathBuf| {
+            let name = path.file_name().and_then(|name| name.to_str());
+            name.is_some_and(|name| name.starts_with(&day_and_time))
+        };
+        // Names sort as they were made: a dot stands behind a hyphen.
+        let name = match earlier.iter().filter(is_same_second).count() {
+            0 => format!("{day_and_time}-{why}.toml"),
+            n => format!("{day_and_time}.{n:03}-{why}.toml"),
+        };
+        let path = backups.join(name);
+        replace_keeping_last(&path, &file.to_toml())?;
+        self.let_go_of_old_backups()?;
+        Ok(path)
+    }
+
+    /// The backups, oldest first.
+    ///
+    /// # Errors
+    /// The system's error; a missing folder holds no backups.
+    pub fn backups(&self) -> io::Result<Vec<Backup>> {
+        let paths = self.backup_paths()?.into_iter();
+        let about = |path: &Path| file::load(path).map(|file| (file.at, file.why));
+        let backups = paths.map(|path| Backup {
+            about: about(&path),
+            path,
+        });
+        Ok(backups.collect())
+    }
+
+    fn backup_paths(&self) -> io::Result<Vec<PathBuf>> {
+        let entries = match std::fs::read_dir(self.folder.join("backups")) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            entries => entries?,
+        };
+        let mut paths = Vec::new();
+        for entry in entries {
+            let path = entry?.path();
+            let is_backup = path.extension().is_some_and(|end| end == "toml");
+            if is_backup && path.is_file() {
+                paths.push(path);
+            }
+        }
+        paths.sort();
+        Ok(paths)
+    }
+
+    /// Records a SAVE before it is sent: if this program ends before the result, the file says that it is not known.
+    ///
+    /// # Errors
+    /// What the system says. Then no SAVE should be sent.
+    pub fn note_attempt(&self, params: &Params, since_1970: Duration) -> io::Result<()> {
+        let file = ParamsFile {
+            verdict: "unknown: under way".into(),
+            ..self.file(params, "save", since_1970)
+        };
+        replace_keeping_last(&self.attempt_path(), &file.to_toml())
+    }
+
+    /// Notes the result of the SAVE that was noted last.
+    ///
+    /// # Errors
+    /// What the system says, or what is wrong with the note. The SAVE is then noted as of unknown result.
+    pub fn note_result(&self, saved: &Saved) -> io::Result<()> {
+        let path = self.attempt_path();
+        let mut file = file::load(&path).map_err(io::Error::other)?;
+        file.verdict = saved_name(saved).into();
+        let text = file.to_toml();
+        if matches!(saved, Saved::Confirmed | Saved::ReadBack) {
+            replace_keeping_last(&self.saved_path(), &text)?;
+        }
+        replace_keeping_last(&path, &text)
+    }
+
+    /// The hand was returned to its factory parameters: earlier saves are no longer in flash.
+    ///
+    /// # Errors
+    /// The system's error.
+    pub fn forget_saved(&self) -> io::Result<()> {
+        for path in [self.saved_path(), self.attempt_path()] {
+            match std::fs::remove_file(path) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// What is known of the flash.
+    ///
+    /// # Errors
+    /// What is wrong with the files; a missing one is no error.
+    pub fn known(&self) -> Result<Known, ParamsFileError> {
+        let optional = |path: PathBuf| match path.exists() {
+            true => file::load(&path).map(Some),
+            false => Ok(None),
+        };
+        let attempt = optional(self.attempt_path())?;
+        Ok(Known {
+            saved: optional(self.saved_path())?,
+            doubtful: attempt.filter(|file| file.verdict.starts_with("unknown")),
+        })
+    }
+
+    /// How long ago the last SAVE was sent, by a clock that both processes share.
+    #[must_use]
+    pub fn since_attempt(&self, now: std::time::SystemTime) -> Option<Duration> {
+        let written = std::fs::metadata(self.attempt_path())
+            .ok()?
+            .modified()
+            .ok()?;
+        now.duration_since(written).ok()
+    }
+
+    fn attempt_path(&self) -> PathBuf {
+        self.folder.join("attempt.toml")
+    }
+
+    fn saved_path(&self) -> PathBuf {
+        self.folder.join("saved.toml")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::rows::{ParamId, Value};
+    use crate::record::NotSent;
+
+    fn record(folder: &tempfile::TempDir) -> Backups {
+        let hand = "rtu:/dev/../x?id=7".parse().unwrap();
+        Backups::new(folder.path(), &hand)
+    }
+
+    fn params(id: i32) -> Params {
+        let mut params = Params::default();
+        params.put(ParamId::HandId, Value::Number(id));
+        params
+    }
+
+    fn at(seconds: u64) -> Duration {
+        Duration::from_secs(1_795_219_200 + seconds)
+    }
+
+    #[test]
+    fn each_hand_has_one_folder_inside_the_given_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = [
+            "tcp:h",
+            "tcp:h?unit=1",
+            "rtu:/dev/x?id=1",
+            "rs485:/dev/x?id=1",
+            "can:can0",
+        ]
+        .map(|hand| Backups::new(folder.path(), &hand.parse().unwrap()).folder);
+        for (nth, name) in names.iter().enumerate() {
+            assert_eq!(name.parent(), Some(folder.path()));
+            assert_eq!(
+                names.iter().filter(|other| *other == name).count(),
+                1,
+                "{nth}"
+            );
+        }
+        assert_eq!(record(&folder).folder.parent(), Some(folder.path()));
+    }
+
+    #[test]
+    fn backups_are_dated_listed_and_bounded() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = record(&folder);
+        assert_eq!(record.backups().unwrap(), []);
+        let first = record.back_up(&params(1), "before save", at(0)).unwrap();
+        assert!(first.ends_with("2026-11-21T00-00-00Z-before-save.toml"));
+        let same_second = record.back_up(&params(2), "before save", at(0)).unwrap();
+        assert_ne!(first, same_second);
+        assert_eq!(file::load(&first).unwrap().params, params(1));
+        for n in 1..u64::try_from(BACKUPS_MAX).unwrap() {
+            record.back_up(&params(3), "before reset", at(n)).unwrap();
+        }
+        let backups = record.backups().unwrap();
+        assert_eq!(backups.len(), BACKUPS_MAX);
+        assert!(!first.exists() && same_second.exists(), "the oldest went");
+        let about = backups.last().unwrap().about.clone().unwrap();
+        assert_eq!(
+            about,
+            ("2026-11-21T00:00:49Z".into(), "before reset".into())
+        );
+    }
+
+    #[test]
+    fn what_was_known_of_a_hand_is_found_where_it_went() {
+        let folder = tempfile::tempdir().unwrap();
+        let old = record(&folder);
+        let new = old.beside(&"rtu:/dev/../x?id=9".parse().unwrap());
+        assert_eq!(new.folder.parent(), old.folder.parent());
+        // A hand that was at the new place once.
+        new.back_up(&params(9), "before save", at(0)).unwrap();
+        new.note_attempt(&params(9), at(0)).unwrap();
+        new.note_result(&Saved::Confirmed).unwrap();
+
+        old.back_up(&params(7), "before apply", at(5)).unwrap();
+        old.adopt(&old).unwrap();
+        new.adopt(&old).unwrap();
+        assert_eq!(new.known().unwrap(), Known::default(), "it never saved");
+        assert_eq!(new.backups().unwrap().len(), 2);
+        assert_eq!(old.backups().unwrap().len(), 1, "nothing is taken away");
+
+        old.note_attempt(&params(7), at(9)).unwrap();
+        old.note_result(&Saved::ReadBack).unwrap();
+        new.adopt(&old).unwrap();
+        assert_eq!(new.known().unwrap(), old.known().unwrap());
+        assert_eq!(new.backups().unwrap().len(), 2, "each is there once");
+        for n in 0..u64::try_from(BACKUPS_MAX).unwrap() {
+            old.back_up(&params(7), "before save", at(20 + n)).unwrap();
+        }
+        new.adopt(&old).unwrap();
+        assert_eq!(new.backups().unwrap().len(), BACKUPS_MAX);
+    }
+
+    #[test]
+    fn what_is_said_of_flash_follows_the_last_save() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = record(&folder);
+        assert_eq!(record.known().unwrap(), Known::default());
+        let saved = |record: &Backups| record.known().unwrap().saved.map(|file| file.params);
+        let doubtful = |record: &Backups| record.known().unwrap().doubtful.map(|file| file.params);
+
+        record.note_attempt(&params(1), at(0)).unwrap();
+        assert_eq!((saved(&record), doubtful(&record)), (None, Some(params(1))));
+        record.note_result(&Saved::Confirmed).unwrap();
+        assert_eq!((saved(&record), doubtful(&record)), (Some(params(1)), None));
+
+        for (end, doubted) in [
+            (Saved::Failed { code: 255 }, false),
+            (Saved::NotSent(NotSent::Moving), false),
+            (
+                Saved::Unknown {
+                    why: SaveDoubt::NoResult,
+                },
+                true,
+            ),
+        ] {
+            record.note_attempt(&params(2), at(9)).unwrap();
+            record.note_result(&end).unwrap();
+            let expected = (Some(params(1)), doubted.then(|| params(2)));
+            assert_eq!((saved(&record), doubtful(&record)), expected, "{end:?}");
+        }
+        record.note_attempt(&params(3), at(20)).unwrap();
+        record.note_result(&Saved::ReadBack).unwrap();
+        let known = record.known().unwrap().saved.unwrap();
+        assert_eq!(
+            (known.verdict.as_str(), known.params),
+            ("read_back", params(3))
+        );
+        assert!(
+            record.since_attempt(std::time::SystemTime::now()).unwrap() < Duration::from_secs(60)
+        );
+        record.forget_saved().unwrap();
+        assert_eq!(record.known().unwrap(), Known::default());
+    }
+}

@@ -1,0 +1,122 @@
+//! What could hurt once a hand wakes up with it: fast and strong defaults, by the measured overshoot. Forbids nothing.
+
+use crate::hand::impact::{HIGHEST_G, NOTABLE_G, overshoot_g};
+use crate::hand::{Dof, Force};
+use crate::params::rows::{ParamId, Value};
+use crate::params::values::Params;
+
+/// A joint whose defaults a person should know of before they are written or saved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Danger {
+    /// The joint.
+    pub dof: Dof,
+    /// Its speed after power-up.
+    pub speed: i32,
+    /// Its force threshold after power-up, grams.
+    pub force_g: i32,
+    /// The peak above the threshold on a rigid block, grams, as measured on one hand of the family.
+    pub overshoot_g: f64,
+}
+
+impl Danger {
+    /// What the finger presses at the peak, grams.
+    #[must_use]
+    pub fn peak_g(&self) -> f64 {
+        f64::from(self.force_g) + self.overshoot_g
+    }
+
+    /// True if no threshold as high was measured: the figure is that of the highest.
+    #[must_use]
+    pub fn is_beyond_measured(&self) -> bool {
+        f64::from(self.force_g) > HIGHEST_G
+    }
+
+    /// True if already the threshold is above the rated grip.
+    #[must_use]
+    pub fn is_above_rated(&self) -> bool {
+        self.force_g > i32::from(Force::RATED.get())
+    }
+}
+
+/// The dangerous joints that would hit harder with `after` than with `before`: these need a confirmation.
+#[must_use]
+pub fn worse(before: &Params, after: &Params) -> Vec<Danger> {
+    let peak = |params: &Params, dof| joint(params, dof).map(|joint| joint.peak_g());
+    let rises =
+        |danger: &Danger| peak(before, danger.dof).is_none_or(|before| danger.peak_g() > before);
+    dangers(after).into_iter().filter(rises).collect()
+}
+
+/// The dangerous joints among these parameters. A joint of which one of the two values is not known is not judged.
+#[must_use]
+pub fn dangers(params: &Params) -> Vec<Danger> {
+    let joints = Dof::ALL.into_iter();
+    joints
+        .filter_map(|dof| joint(params, dof))
+        .filter(|joint| joint.overshoot_g >= NOTABLE_G || joint.is_above_rated())
+        .collect()
+}
+
+fn joint(params: &Params, dof: Dof) -> Option<Danger> {
+    let number = |id| match params.get(id) {
+        Some(Value::Number(number)) => Some(number),
+        _ => None,
+    };
+    let speed = number(ParamId::DefaultSpeed(dof))?;
+    let force_g = number(ParamId::DefaultForce(dof))?;
+    Some(Danger {
+        dof,
+        speed,
+        force_g,
+        overshoot_g: overshoot_g(f64::from(speed), f64::from(force_g)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fast_and_strong_defaults_are_told_and_gentle_ones_are_not() {
+        for (speed, force, told) in [
+            (25, 500, false),
+            (200, 500, false),
+            (250, 500, true),
+            (1000, 1000, true),
+            (1000, 50, false),
+            (10, 2001, true),
+            (10, 2000, false),
+        ] {
+            let mut params = Params::default();
+            params.put(ParamId::DefaultSpeed(Dof::Index), Value::Number(speed));
+            assert!(dangers(&params).is_empty(), "one value alone is not judged");
+            params.put(ParamId::DefaultForce(Dof::Index), Value::Number(force));
+            let dangers = dangers(&params);
+            assert_eq!(dangers.len(), usize::from(told), "{speed} {force}");
+            assert!(dangers.iter().all(|danger| danger.dof == Dof::Index));
+        }
+    }
+    #[test]
+    fn only_what_hits_harder_than_before_has_to_be_meant() {
+        let joint = |speed, force| {
+            let mut params = Params::default();
+            params.put(ParamId::DefaultSpeed(Dof::Index), Value::Number(speed));
+            params.put(ParamId::DefaultForce(Dof::Index), Value::Number(force));
+            params
+        };
+        for (before, after, told) in [
+            (joint(1000, 1000), joint(200, 1000), false),
+            (joint(1000, 1000), joint(1000, 1000), false),
+            (joint(200, 500), joint(1000, 1000), true),
+            (joint(200, 1000), joint(250, 1000), true),
+            (Params::default(), joint(1000, 1000), true),
+            (joint(25, 500), joint(200, 500), false),
+        ] {
+            assert_eq!(
+                !worse(&before, &after).is_empty(),
+                told,
+                "{before:?} {after:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,376 @@
+//! Parameters as TOML, version 1 (assets/manual/files.md). A file is taken whole or not at all; keys that are not known are kept
+//! and named.
+
+use crate::params::rows::{DEFAULT_FORCE, DEFAULT_SPEED, ParamId};
+use crate::params::values::Params;
+use crate::store::read_text;
+use std::path::Path;
+use toml::Table;
+
+/// The name that is suggested for a parameter file.
+pub const FILE_NAME: &str = "handscope-params.toml";
+
+/// The format that a parameter file names.
+pub const FORMAT: &str = "handscope-params";
+/// The version that is written, and the only one that is read.
+pub const VERSION: i64 = 1;
+/// A parameter file is a page of text; anything longer is not one.
+pub const FILE_LEN_MAX: u64 = 64 * 1024;
+
+/// The tables with a line for each joint.
+const GROUPS: [&str; 2] = [DEFAULT_SPEED, DEFAULT_FORCE];
+
+/// Why a parameter file was rejected, as a whole.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ParamsFileError {
+    /// Not TOML.
+    #[error("{0}")]
+    Toml(String),
+    /// A field is missing.
+    #[error("`{field}` is missing")]
+    Missing {
+        /// Its name.
+        field: &'static str,
+    },
+    /// Another kind of file.
+    #[error("this is not a parameter file: its `format` is {got}, not \"{FORMAT}\"")]
+    Format {
+        /// What it says it is.
+        got: String,
+    },
+    /// Written by another version.
+    #[error("`version` is {got}: only {VERSION} can be read")]
+    Version {
+        /// What it says.
+        got: String,
+    },
+    /// A value that may not be written to a hand.
+    #[error("`{field}` is {got}: it must be {allowed}")]
+    Value {
+        /// The field.
+        field: String,
+        /// What stands there.
+        got: String,
+        /// What may.
+        allowed: String,
+    },
+    /// A file without a single parameter.
+    #[error("it holds no parameters")]
+    Empty,
+    /// The system could not read it.
+    #[error("it cannot be read: {0}")]
+    Unreadable(String),
+}
+
+/// A file of parameters.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ParamsFile {
+    /// Where the values were read, as an endpoint; empty if nowhere.
+    pub hand: String,
+    /// When, in UTC; empty if it is not known.
+    pub at: String,
+    /// Why it was written: `dump`, `before save`, …
+    pub why: String,
+    /// For what was saved: what is known of the SAVE.
+    pub verdict: String,
+    /// The values.
+    pub params: Params,
+    /// Keys of a later version, kept as they are.
+    pub others: Table,
+}
+
+impl ParamsFile {
+    /// The text of the file.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        let mut table = Table::new();
+        put(&mut table, "format", FORMAT);
+        put(&mut table, "version", VERSION);
+        let words = [
+            ("hand", &self.hand),
+            ("at", &self.at),
+            ("why", &self.why),
+            ("verdict", &self.verdict),
+        ];
+        for (key, text) in words.into_iter().filter(|(_, text)| !text.is_empty()) {
+            put(&mut table, key, text.as_str());
+        }
+        for (id, value) in self.params.iter() {
+            put(&mut table, &id.name(), value);
+        }
+        for (key, value) in &self.others {
+            match (table.get_mut(key), value) {
+                (Some(toml::Value::Table(known)), toml::Value::Table(others)) => {
+                    known.extend(others.clone());
+                }
+                (Some(_), _) => {}
+                (None, _) => {
+                    table.insert(key.clone(), value.clone());
+                }
+            }
+        }
+        // A table of text, numbers and tables can always be written.
+        toml::to_string(&table).unwrap_or_default()
+    }
+
+    /// The names of keys that are not known, groups spelt out.
+    #[must_use]
+    pub fn unknown_keys(&self) -> Vec<String> {
+        let keys = self.others.iter().flat_map(|(key, value)| match value {
+            toml::Value::Table(inner) if GROUPS.contains(&key.as_str()) => {
+                inner.keys().map(|inner| format!("{key}.{inner}")).collect()
+            }
+            _ => vec![key.clone()],
+        });
+        keys.collect()
+    }
+}
+
+/// Takes a file from its text.
+///
+/// # Errors
+/// The first thing that is wrong, with the field's name.
+pub fn read(text: &str) -> Result<ParamsFile, ParamsFileError> {
+    let mut table: Table = text.parse().map_err(|error: toml::de::Error| {
+        let line = error.span().map_or(1, |span| line_of(text, span.start));
+        ParamsFileError::Toml(format!("line {line}: {}", error.message()))
+    })?;
+    head(&mut table)?;
+    let mut file = ParamsFile {
+        hand: word(&mut table, "hand")?,
+        at: word(&mut table, "at")?,
+        why: word(&mut table, "why")?,
+        verdict: word(&mut table, "verdict")?,
+        ..ParamsFile::default()
+    };
+    for name in GROUPS {
+        let allowed = || format!("a table, [{name}], with a line for each joint");
+        let group = table.get(name);
+        if let Some(got) = group.filter(|group| !group.is_table()) {
+            return Err(bad_value(name, got, allowed()));
+        }
+    }
+    for id in ParamId::all() {
+        let Some(got) = take(&mut table, &id.name()) else {
+            continue;
+        };
+        let value = got.clone().try_into().ok();
+        let value = value.filter(|value| id.allows(*value));
+        let value = value.ok_or_else(|| bad_value(&id.name(), &got, id.allowed()))?;
+        file.params.put(id, value);
+    }
+    if file.params.is_empty() {
+        return Err(ParamsFileError::Empty);
+    }
+    table.retain(|name, value| {
+        let is_empty = value.as_table().is_some_and(Table::is_empty);
+        !(is_empty && GROUPS.contains(&name))
+    });
+    file.others = table;
+    Ok(file)
+}
+
+/// Reads a file that a person chose.
+///
+/// # Errors
+/// The first thing that is wrong.
+pub fn load(path: &Path) -> Result<ParamsFile, ParamsFileError> {
+    let unreadable = |error: std::io::Error| ParamsFileError::Unreadable(error.to_string());
+    let missing = || std::io::Error::other("there is no such file");
+    let text = read_text(path, FILE_LEN_MAX).and_then(|text| text.ok_or_else(missing));
+    read(&text.map_err(unreadable)?)
+}
+
+fn line_of(text: &str, at: usize) -> usize {
+    let before = text.get(..at).unwrap_or(text);
+    before.matches('\n').count() + 1
+}
+
+fn head(table: &mut Table) -> Result<(), ParamsFileError> {
+    let mut required = |field| take(table, field).ok_or(ParamsFileError::Missing { field });
+    let got = required("format")?;
+    if got.as_str() != Some(FORMAT) {
+        let got = got.to_string();
+        return Err(ParamsFileError::Format { got });
+    }
+    let got = required("version")?;
+    if got.as_integer() != Some(VERSION) {
+        let got = got.to_string();
+        return Err(ParamsFileError::Version { got });
+    }
+    Ok(())
+}
+
+fn word(table: &mut Table, field: &str) -> Result<String, ParamsFileError> {
+    match take(table, field) {
+        None => Ok(String::new()),
+        Some(toml::Value::String(text)) => Ok(text),
+        Some(got) => Err(bad_value(field, &got, "text in quotes".into())),
+    }
+}
+
+fn bad_value(field: &str, got: &toml::Value, allowed: String) -> ParamsFileError {
+    ParamsFileError::Value {
+        field: field.into(),
+        got: got.to_string(),
+        allowed,
+    }
+}
+
+/// Takes out what stands under a name; one with a dot lies in a group.
+fn take(table: &mut Table, name: &str) -> Option<toml::Value> {
+    match name.split_once('.') {
+        Some((group, key)) => table.get_mut(group)?.as_table_mut()?.remove(key),
+        None => table.remove(name),
+    }
+}
+
+/// Puts a value under a name; one with a dot goes into its group.
+fn put(table: &mut Table, name: &str, value: impl Into<toml::Value>) {
+    let Some((group, key)) = name.split_once('.') else {
+        table.insert(name.into(), value.into());
+        return;
+    };
+    let group = table.entry(group).or_insert_with(|| Table::new().into());
+    if let Some(group) = group.as_table_mut() {
+        group.insert(key.into(), value.into());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::rows::Value;
+    use proptest::prelude::*;
+
+    const TEXT: &str = "\
+format = \"handscope-params\"
+version = 1
+crew = 3
+hand_id = 7
+ip_address = \"10.0.0.9\"
+
+[default_speed]
+index = 300
+sixth = 9
+
+[default_force]
+thumb_bend = 800
+";
+
+    #[test]
+    fn a_file_is_read_and_written_with_what_is_not_known() {
+        let file = read(TEXT).unwrap();
+        let rows: Vec<_> = file
+            .params
+            .iter()
+            .map(|(id, value)| (id.name(), value))
+            .collect();
+        assert_eq!(
+            rows,
+            [
+                ("hand_id".into(), Value::Number(7)),
+                ("ip_address".into(), Value::Address([10, 0, 0, 9].into())),
+                ("default_speed.index".into(), Value::Number(300)),
+                ("default_force.thumb_bend".into(), Value::Number(800)),
+            ]
+        );
+        assert_eq!(file.unknown_keys(), ["crew", "default_speed.sixth"]);
+        assert_eq!(read(&file.to_toml()).unwrap(), file);
+    }
+
+    #[test]
+    fn a_bad_file_is_told_in_one_sentence_that_names_the_field() {
+        for (from, to, words) in [
+            (
+                "index = 300",
+                "index = 1001",
+                "`default_speed.index` is 1001: it must be a whole number from 0 to 1000",
+            ),
+            ("index = 300", "index = 3.5", "`default_speed.index` is 3.5"),
+            (
+                "index = 300",
+                "index = \"300\"",
+                "`default_speed.index` is \"300\"",
+            ),
+            ("index = 300", "index = nan", "`default_speed.index` is nan"),
+            (
+                "hand_id = 7",
+                "hand_id = 0",
+                "`hand_id` is 0: it must be a whole number from 1 to 254",
+            ),
+            ("hand_id = 7", "redu_ratio = 4", "`redu_ratio` is 4"),
+            (
+                "10.0.0.9",
+                "10.0.0.255",
+                "`ip_address` is \"10.0.0.255\": it must be an address of one computer",
+            ),
+            ("[default_force]", "[default_force.more]", "it holds"),
+            (
+                "version = 1",
+                "version = 2",
+                "`version` is 2: only 1 can be read",
+            ),
+            ("version = 1\n", "", "`version` is missing"),
+            (
+                "handscope-params",
+                "handscope-poses",
+                "not a parameter file",
+            ),
+            ("crew = 3", "crew = ", "line 3"),
+            (
+                "crew = 3",
+                "why = 3",
+                "`why` is 3: it must be text in quotes",
+            ),
+            ("crew = 3", "default_force = 3", "line 11"),
+        ] {
+            let text = TEXT.replace(from, to);
+            match read(&text) {
+                Err(error) => {
+                    let told = error.to_string();
+                    assert!(told.contains(words) && !told.contains('\n'), "{told}");
+                }
+                // What is not a joint is a key that is not known.
+                Ok(file) => assert!(
+                    words == "it holds" && !file.unknown_keys().is_empty(),
+                    "{to}"
+                ),
+            }
+        }
+        let empty = "format = \"handscope-params\"\nversion = 1\n";
+        assert_eq!(read(empty), Err(ParamsFileError::Empty));
+    }
+
+    #[test]
+    fn a_folder_a_long_file_and_none_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.toml");
+        assert!(matches!(load(&path), Err(ParamsFileError::Unreadable(_))));
+        assert!(matches!(
+            load(folder.path()),
+            Err(ParamsFileError::Unreadable(_))
+        ));
+        std::fs::write(&path, " ".repeat(70_000)).unwrap();
+        let long = load(&path).unwrap_err().to_string();
+        assert!(long.contains("70000") && long.contains("65536"), "{long}");
+        std::fs::write(&path, TEXT).unwrap();
+        assert_eq!(load(&path), read(TEXT));
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_makes_the_reader_fall_and_what_it_takes_may_be_written(
+            lines in prop::collection::vec("(hand_id|redu_ratio|ip_address|crew) = (-?[0-9]{1,12}|\"[0-9.]{0,16}\")", 0..4),
+            joints in prop::collection::vec("(little|ring|middle|index|six) = -?[0-9]{1,6}", 0..4),
+        ) {
+            let text = format!("format = \"{FORMAT}\"\nversion = 1\n{}\n[default_speed]\n{}\n", lines.join("\n"), joints.join("\n"));
+            if let Ok(file) = read(&text) {
+                for (id, value) in file.params.iter() {
+                    prop_assert!(id.allows(value));
+                }
+                prop_assert_eq!(read(&file.to_toml()), Ok(file));
+            }
+        }
+    }
+}

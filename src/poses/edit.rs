@@ -1,0 +1,307 @@
+//! How a person changes the library. Every change leaves it whole: names differ, steps name poses that exist.
+
+use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::poses::library::{
+    ENTRIES_MAX, Library, Millis, Pose, PoseId, STEPS_MAX, Sequence, SequenceId, Step, TAGS_MAX,
+    clean, free_name,
+};
+
+/// To which side something moves in its row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Way {
+    /// Towards the first.
+    Earlier,
+    /// Towards the last.
+    Later,
+}
+
+/// One change of a pose.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PoseEdit {
+    /// Another name; an empty one changes nothing, a taken one gets a number.
+    Rename(String),
+    /// Tags, separated by commas.
+    Tags(String),
+    /// Where one joint goes.
+    Angle(Dof, Angle),
+    /// Leave a joint alone, or not.
+    Leave(Dof, bool),
+    /// Speed of recalling.
+    Speed(Speed),
+    /// Force threshold of recalling.
+    Force(Force),
+    /// Another place in the order.
+    Shift(Way),
+    /// To this place in the order, 0 for the first; those between make room.
+    Move(usize),
+    /// A copy behind it.
+    Duplicate,
+    /// Away, with the steps that name it.
+    Delete,
+}
+
+/// One change of a sequence.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SequenceEdit {
+    /// Another name; an empty one changes nothing, a taken one gets a number.
+    Rename(String),
+    /// Whether the first step follows the last.
+    Loop(bool),
+    /// One more step at the end.
+    Add(PoseId),
+    /// A step away.
+    Remove(usize),
+    /// Another place for a step.
+    Shift(usize, Way),
+    /// A step from one place to another; those between make room.
+    Move(usize, usize),
+    /// Speed of a step.
+    Speed(usize, Speed),
+    /// Time at the pose of a step.
+    Dwell(usize, Millis),
+    /// Time to wait for arrival of a step.
+    Limit(usize, Millis),
+    /// The whole sequence away.
+    Delete,
+}
+
+/// One change of the library.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LibraryEdit {
+    /// Of a pose.
+    Pose(PoseId, PoseEdit),
+    /// A new sequence without steps, by this name or the next free one.
+    NewSequence(String),
+    /// Of a sequence.
+    Sequence(SequenceId, SequenceEdit),
+    /// Take the last deletion or import back.
+    Undo,
+}
+
+impl Library {
+    /// Adds a pose behind the others; `None` if the library is full.
+    pub fn add_pose(&mut self, name: &str, mut pose: Pose) -> Option<PoseId> {
+        if self.poses.len() >= ENTRIES_MAX {
+            return None;
+        }
+        pose.id = PoseId(self.fresh());
+        pose.name = free_name(&clean(name), |name| self.pose_named(name).is_some());
+        let id = pose.id;
+        self.poses.push(pose);
+        Some(id)
+    }
+
+    /// Adds a sequence behind the others; `None` if the library is full.
+    pub fn add_sequence(&mut self, name: &str) -> Option<SequenceId> {
+        if self.sequences.len() >= ENTRIES_MAX {
+            return None;
+        }
+        let id = SequenceId(self.fresh());
+        let name = self.free_sequence_name(&clean(name), id);
+        self.sequences.push(Sequence {
+            id,
+            name,
+            looped: false,
+            steps: Vec::new(),
+            others: toml::Table::new(),
+        });
+        Some(id)
+    }
+
+    fn free_sequence_name(&self, wanted: &str, but: SequenceId) -> String {
+        let others = self.sequences.iter().filter(|other| other.id != but);
+        free_name(wanted, |name| {
+            others.clone().any(|other| other.name == name)
+        })
+    }
+
+    /// Puts all of another library behind this one's own. Names that are taken get a number.
+    pub fn merge(&mut self, other: Self) {
+        let mut ids = Vec::new();
+        for pose in other.poses {
+            let (was, name) = (pose.id, pose.name.clone());
+            ids.extend(self.add_pose(&name, pose).map(|id| (was, id)));
+        }
+        for mut sequence in other.sequences {
+            let Some(id) = self.add_sequence(&sequence.name) else {
+                return;
+            };
+            sequence.steps.retain_mut(|step| {
+                let known = ids.iter().find(|(was, _)| *was == step.pose);
+                known.inspect(|(_, id)| step.pose = *id).is_some()
+            });
+            if let Some(own) = self.sequences.iter_mut().find(|own| own.id == id) {
+                (own.steps, own.looped) = (sequence.steps, sequence.looped);
+                own.others = sequence.others;
+            }
+        }
+        for (key, value) in other.others {
+            self.others.entry(key).or_insert(value);
+        }
+    }
+
+    /// Changes one pose.
+    pub fn edit_pose(&mut self, id: PoseId, edit: PoseEdit) {
+        let Some(at) = self.poses.iter().position(|pose| pose.id == id) else {
+            return;
+        };
+        match edit {
+            PoseEdit::Shift(way) => shift(&mut self.poses, at, way),
+            PoseEdit::Move(to) => put(&mut self.poses, at, to),
+            PoseEdit::Duplicate => self.duplicate(at),
+            PoseEdit::Delete => {
+                self.poses.remove(at);
+                for sequence in &mut self.sequences {
+                    sequence.steps.retain(|step| step.pose != id);
+                }
+            }
+            PoseEdit::Rename(name) => {
+                let others = self.poses.iter().filter(|pose| pose.id != id);
+                let taken = |name: &str| others.clone().any(|pose| pose.name == name);
+                let name = free_name(&clean(&name), taken);
+                if let Some(pose) = self.poses.get_mut(at).filter(|_| !name.is_empty()) {
+                    pose.name = name;
+                }
+            }
+            value => {
+                if let Some(pose) = self.poses.get_mut(at) {
+                    set(pose, value);
+                }
+            }
+        }
+    }
+
+    fn duplicate(&mut self, at: usize) {
+        let Some(copy) = self.poses.get(at).cloned() else {
+            return;
+        };
+        let name = copy.name.clone();
+        if self.add_pose(&name, copy).is_some()
+            && let Some(copy) = self.poses.pop()
+        {
+            self.poses.insert(at + 1, copy);
+        }
+    }
+
+    /// Changes one sequence.
+    pub fn edit_sequence(&mut self, id: SequenceId, edit: SequenceEdit) {
+        if edit == SequenceEdit::Delete {
+            self.sequences.retain(|sequence| sequence.id != id);
+            return;
+        }
+        let name = match &edit {
+            SequenceEdit::Rename(name) => self.free_sequence_name(&clean(name), id),
+            _ => String::new(),
+        };
+        let speed = match &edit {
+            SequenceEdit::Add(pose) => self.pose(*pose).map(|pose| pose.speed),
+            _ => None,
+        };
+        let Some(sequence) = self.sequences.iter_mut().find(|own| own.id == id) else {
+            return;
+        };
+        match edit {
+            SequenceEdit::Rename(_) if !name.is_empty() => sequence.name = name,
+            SequenceEdit::Loop(looped) => sequence.looped = looped,
+            SequenceEdit::Add(pose) => {
+                if let Some(speed) = speed.filter(|_| sequence.steps.len() < STEPS_MAX) {
+                    sequence.steps.push(Step::new(pose, speed));
+                }
+            }
+            SequenceEdit::Remove(at) if at < sequence.steps.len() => {
+                sequence.steps.remove(at);
+            }
+            SequenceEdit::Shift(at, way) => shift(&mut sequence.steps, at, way),
+            SequenceEdit::Move(from, to) => put(&mut sequence.steps, from, to),
+            SequenceEdit::Speed(at, speed) => change(sequence, at, |step| step.speed = speed),
+            SequenceEdit::Dwell(at, dwell) => change(sequence, at, |step| step.dwell = dwell),
+            SequenceEdit::Limit(at, limit) => change(sequence, at, |step| step.limit = limit),
+            SequenceEdit::Rename(_) | SequenceEdit::Remove(_) | SequenceEdit::Delete => {}
+        }
+    }
+}
+
+impl Step {
+    /// A step with the waiting times that a person starts from.
+    #[must_use]
+    pub fn new(pose: PoseId, speed: Speed) -> Self {
+        Self {
+            pose,
+            speed,
+            dwell: Millis::DWELL,
+            limit: Millis::LIMIT,
+            others: toml::Table::new(),
+        }
+    }
+}
+
+impl Pose {
+    /// A pose with gentle limits, moving every joint. Its name and id are given when it is added.
+    #[must_use]
+    pub fn at(angles: PerDof<Angle>) -> Self {
+        Self {
+            id: PoseId(0),
+            name: String::new(),
+            tags: Vec::new(),
+            angles,
+            leave: PerDof::splat(false),
+            speed: Speed::GENTLE,
+            force: Force::GENTLE,
+            others: toml::Table::new(),
+        }
+    }
+}
+
+fn set(pose: &mut Pose, edit: PoseEdit) {
+    match edit {
+        PoseEdit::Tags(text) => pose.tags = tags(&text),
+        PoseEdit::Angle(dof, angle) => pose.angles[dof] = angle,
+        PoseEdit::Leave(dof, leave) => pose.leave[dof] = leave,
+        PoseEdit::Speed(speed) => pose.speed = speed,
+        PoseEdit::Force(force) => pose.force = force,
+        PoseEdit::Rename(_)
+        | PoseEdit::Shift(_)
+        | PoseEdit::Move(_)
+        | PoseEdit::Duplicate
+        | PoseEdit::Delete => {}
+    }
+}
+
+/// Tags of a list with commas, each once.
+pub(crate) fn tags(text: &str) -> Vec<String> {
+    let mut tags: Vec<String> = Vec::new();
+    for tag in text.split([',', '，']).map(clean) {
+        if !tag.is_empty() && !tags.contains(&tag) && tags.len() < TAGS_MAX {
+            tags.push(tag);
+        }
+    }
+    tags
+}
+
+fn shift<T>(row: &mut [T], at: usize, way: Way) {
+    let other = match way {
+        Way::Earlier => at.checked_sub(1),
+        Way::Later => Some(at + 1),
+    };
+    if let Some(other) = other.filter(|other| (*other).max(at) < row.len()) {
+        row.swap(at, other);
+    }
+}
+
+/// Takes one out and puts it in elsewhere. A place that does not exist changes nothing.
+fn put<T>(row: &mut [T], from: usize, to: usize) {
+    let between = from.min(to)..=from.max(to);
+    if let Some(between) = row.get_mut(between) {
+        if from < to {
+            between.rotate_left(1);
+        } else {
+            between.rotate_right(1);
+        }
+    }
+}
+
+fn change(sequence: &mut Sequence, at: usize, change: impl FnOnce(&mut Step)) {
+    if let Some(step) = sequence.steps.get_mut(at) {
+        change(step);
+    }
+}

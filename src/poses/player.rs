@@ -1,0 +1,257 @@
+//! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
+
+use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
+use crate::poses::library::{Library, PoseId, SequenceId};
+use std::time::Duration;
+
+/// One step, with all that it needs: a pose that is edited meanwhile does not change what runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cue {
+    /// The pose.
+    pub pose: PoseId,
+    /// Where each joint goes; `None` = left alone.
+    pub targets: PerDof<Option<Angle>>,
+    /// Speed on the way.
+    pub speed: Speed,
+    /// Force threshold.
+    pub force: Force,
+    /// Time at the pose.
+    pub dwell: Duration,
+    /// Time after which a pose that is not reached counts as reached.
+    pub limit: Duration,
+}
+
+/// The steps of a sequence as they are now.
+#[must_use]
+pub fn cues(library: &Library, sequence: SequenceId) -> Vec<Cue> {
+    let steps = library.sequence(sequence).into_iter();
+    let steps = steps.flat_map(|own| &own.steps);
+    let cues = steps.filter_map(|step| {
+        let pose = library.pose(step.pose)?;
+        Some(Cue {
+            pose: pose.id,
+            targets: pose.targets(),
+            speed: step.speed,
+            force: pose.force,
+            dwell: step.dwell.duration(),
+            limit: step.limit.duration(),
+        })
+    });
+    cues.collect()
+}
+
+/// Why a sequence is over. Nothing starts it again but a person.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum End {
+    /// Every step was played.
+    Finished,
+    /// A person ended it.
+    Person,
+    /// Stop, or disarming.
+    Disarmed,
+    /// A drive reported a fault.
+    Fault,
+    /// The link was lost.
+    LinkLost,
+    /// A person moved the hand in another way.
+    TakenOver,
+}
+
+/// Where a sequence stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// On the way to a pose.
+    Moving {
+        /// Since when.
+        since: Moment,
+    },
+    /// At a pose.
+    Dwelling {
+        /// Since when.
+        since: Moment,
+    },
+    /// A person paused it, or the one step that was asked for is done.
+    Paused,
+    /// Over.
+    Ended(End),
+}
+
+/// Whether a sequence goes on by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pace {
+    /// Step after step.
+    Through,
+    /// One step, then a pause.
+    OneStep,
+}
+
+/// A running sequence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Player {
+    cues: Vec<Cue>,
+    looped: bool,
+    pace: Pace,
+    at: usize,
+    phase: Phase,
+    /// The current cue has not been sent yet.
+    due: bool,
+    /// The current pose was reached, or its time is up.
+    arrived: bool,
+    /// Poses that were not reached within their time.
+    late: u32,
+}
+
+impl Player {
+    /// Begins with the first step. Without steps it is over at once.
+    #[must_use]
+    pub const fn start(cues: Vec<Cue>, looped: bool, pace: Pace, now: Moment) -> Self {
+        let phase = if cues.is_empty() {
+            Phase::Ended(End::Finished)
+        } else {
+            Phase::Moving { since: now }
+        };
+        Self {
+            due: !cues.is_empty(),
+            cues,
+            looped,
+            pace,
+            at: 0,
+            phase,
+            arrived: false,
+            late: 0,
+        }
+    }
+
+    /// Which step it is at, 0 the first.
+    #[must_use]
+    pub const fn at(&self) -> usize {
+        self.at
+    }
+
+    /// Targets of the current step.
+    #[must_use]
+    pub fn targets(&self) -> PerDof<Option<Angle>> {
+        let cue = self.cues.get(self.at);
+        cue.map_or(PerDof::splat(None), |cue| cue.targets)
+    }
+
+    /// Where it stands.
+    #[must_use]
+    pub const fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Poses that were not reached within their time.
+    #[must_use]
+    pub const fn late(&self) -> u32 {
+        self.late
+    }
+
+    /// True once nothing is sent any more.
+    #[must_use]
+    pub const fn is_over(&self) -> bool {
+        matches!(self.phase, Phase::Ended(_))
+    }
+
+    /// True while a person can resume it.
+    #[must_use]
+    pub const fn is_paused(&self) -> bool {
+        matches!(self.phase, Phase::Paused)
+    }
+
+    /// Advances the time. Returns the cue to send now, if one is due.
+    ///
+    /// `seen`: the fresh angle of each joint that takes part. A joint that is left alone by the cue is not looked at.
+    pub fn tick(&mut self, now: Moment, seen: &PerDof<Option<i16>>) -> Option<Cue> {
+        match self.phase {
+            Phase::Moving { since } if !self.due => self.moving(since, now, seen),
+            Phase::Dwelling { since } => self.dwelling(since, now),
+            _ => {}
+        }
+        if !self.due || !matches!(self.phase, Phase::Moving { .. }) {
+            return None;
+        }
+        self.due = false;
+        self.cues.get(self.at).cloned()
+    }
+
+    fn moving(&mut self, since: Moment, now: Moment, seen: &PerDof<Option<i16>>) {
+        let Some(cue) = self.cues.get(self.at) else {
+            return;
+        };
+        let there = |dof: Dof| match cue.targets[dof] {
+            None => true,
+            Some(target) => {
+                seen[dof].is_some_and(|seen| target.get().abs_diff(seen) <= Angle::ARRIVED_WITHIN)
+            }
+        };
+        let is_there = Dof::ALL.into_iter().all(there);
+        let too_late = now.since(since) >= cue.limit;
+        if !is_there && !too_late {
+            return;
+        }
+        self.late += u32::from(!is_there);
+        self.arrived = true;
+        self.phase = Phase::Dwelling { since: now };
+    }
+
+    fn dwelling(&mut self, since: Moment, now: Moment) {
+        let dwell = self.cues.get(self.at).map(|cue| cue.dwell);
+        if dwell.is_some_and(|dwell| now.since(since) < dwell) {
+            return;
+        }
+        match self.pace {
+            Pace::Through => self.advance(now),
+            Pace::OneStep => self.phase = Phase::Paused,
+        }
+    }
+
+    fn advance(&mut self, now: Moment) {
+        let next = self.at + 1;
+        if next < self.cues.len() {
+            self.at = next;
+        } else if self.looped {
+            self.at = 0;
+        } else {
+            self.phase = Phase::Ended(End::Finished);
+            return;
+        }
+        self.begin(now);
+    }
+
+    const fn begin(&mut self, now: Moment) {
+        self.phase = Phase::Moving { since: now };
+        self.due = true;
+        self.arrived = false;
+    }
+
+    /// Waits for a person. True if it ran.
+    pub const fn pause(&mut self) -> bool {
+        let ran = matches!(self.phase, Phase::Moving { .. } | Phase::Dwelling { .. });
+        if ran {
+            self.phase = Phase::Paused;
+        }
+        ran
+    }
+
+    /// Goes on where it was paused: to the same pose if it was not reached, else to the next one.
+    pub fn resume(&mut self, pace: Pace, now: Moment) {
+        if !self.is_paused() {
+            return;
+        }
+        self.pace = pace;
+        if self.arrived {
+            self.advance(now);
+        } else {
+            self.begin(now);
+        }
+    }
+
+    /// Ends it, for good. The first reason stays.
+    pub const fn end(&mut self, why: End) {
+        if !self.is_over() {
+            self.phase = Phase::Ended(why);
+            self.due = false;
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! A sequence played on the drawn hand only: where the joints would be. Nothing here can reach a hand.
+
+use crate::hand::{Dof, Moment, PerDof};
+use crate::poses::library::{Library, SequenceId};
+use crate::poses::player::{Cue, cues};
+use std::time::Duration;
+
+/// Full stroke at full speed without load (manual 2.6.13).
+const FULL_STROKE_S: f64 = 0.6;
+
+/// A dry run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preview {
+    /// Of which sequence.
+    pub sequence: SequenceId,
+    /// When it began.
+    pub since: Moment,
+    cues: Vec<Cue>,
+    looped: bool,
+    from: PerDof<f64>,
+}
+
+/// What a dry run shows at one moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// Shares of the way from bent to open.
+    pub shares: PerDof<Option<f32>>,
+    /// Which step, 0 the first.
+    pub step: usize,
+    /// True once the last pose was held for its time.
+    pub over: bool,
+}
+
+impl Preview {
+    /// A sequence of the library from where the joints are; `None` if it has no steps. A joint of which it is not known where
+    /// it is begins where the first pose has it.
+    #[must_use]
+    pub fn of(
+        library: &Library,
+        sequence: SequenceId,
+        from: PerDof<Option<i16>>,
+        now: Moment,
+    ) -> Option<Self> {
+        let cues = cues(library, sequence);
+        let first = cues.first()?.targets;
+        let target = |dof: Dof| first[dof].map(|target| f64::from(target.get()));
+        let from =
+            PerDof::from_fn(|dof| from[dof].map(f64::from).or(target(dof)).unwrap_or(1000.0));
+        Some(Self {
+            sequence,
+            since: now,
+            cues,
+            looped: library.sequence(sequence)?.looped,
+            from,
+        })
+    }
+
+    /// What is shown at this moment.
+    #[must_use]
+    pub fn at(&self, now: Moment) -> Shown {
+        let mut left = now.since(self.since).as_secs_f64();
+        let mut angles = self.from;
+        let (round, after) = self.round(angles);
+        if self.looped && left >= round {
+            // From the second round on, each begins where the last one ended and takes the same time.
+            left -= round;
+            angles = after;
+            let (round, _) = self.round(angles);
+            left = if round > 0.0 { left % round } else { 0.0 };
+        }
+        for (step, cue) in self.cues.iter().enumerate() {
+            let way = way_s(cue, &angles);
+            if left < way {
+                let part = |dof: Dof| moved(cue, dof, angles[dof], left);
+                return shown(PerDof::from_fn(part), step, false);
+            }
+            angles = PerDof::from_fn(|dof| moved(cue, dof, angles[dof], way));
+            left -= way;
+            let dwell = cue.dwell.as_secs_f64();
+            if left < dwell {
+                return shown(angles, step, false);
+            }
+            left -= dwell;
+        }
+        shown(
+            angles,
+            self.cues.len().saturating_sub(1),
+            !self.looped || round <= 0.0,
+        )
+    }
+
+    /// Seconds of one round from these angles, and the angles after it.
+    fn round(&self, mut angles: PerDof<f64>) -> (f64, PerDof<f64>) {
+        let mut seconds = 0.0;
+        for cue in &self.cues {
+            let way = way_s(cue, &angles);
+            seconds += way + cue.dwell.as_secs_f64();
+            angles = PerDof::from_fn(|dof| moved(cue, dof, angles[dof], way));
+        }
+        (seconds, angles)
+    }
+}
+
+/// Thousandths of the stroke in a second.
+fn rate(cue: &Cue) -> f64 {
+    f64::from(cue.speed.get()) / FULL_STROKE_S
+}
+
+/// Seconds until every joint is there, at most the step's own limit.
+fn way_s(cue: &Cue, from: &PerDof<f64>) -> f64 {
+    let far = |dof: Dof| cue.targets[dof].map(|to| (f64::from(to.get()) - from[dof]).abs());
+    let farthest = Dof::ALL.into_iter().filter_map(far).fold(0.0, f64::max);
+    let limit = Duration::as_secs_f64(&cue.limit);
+    if farthest <= 0.0 {
+        0.0
+    } else if rate(cue) <= 0.0 {
+        limit
+    } else {
+        (farthest / rate(cue)).min(limit)
+    }
+}
+
+fn moved(cue: &Cue, dof: Dof, from: f64, seconds: f64) -> f64 {
+    let Some(to) = cue.targets[dof].map(|to| f64::from(to.get())) else {
+        return from;
+    };
+    let reach = rate(cue) * seconds;
+    from + (to - from).clamp(-reach, reach)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a share between 0 and 1")]
+fn shown(angles: PerDof<f64>, step: usize, over: bool) -> Shown {
+    Shown {
+        shares: angles.map(|angle| Some((angle / 1000.0) as f32)),
+        step,
+        over,
+    }
+}

@@ -1,0 +1,264 @@
+//! Proves the library's file and its players. What they send is proven with the task that plays.
+
+use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
+use crate::poses::edit::{PoseEdit, SequenceEdit};
+use crate::poses::file::{read, write};
+use crate::poses::library::{Library, Millis, Pose, PoseId};
+use crate::poses::player::{Cue, End, Pace, Phase, Player};
+use crate::poses::preview::Preview;
+use proptest::prelude::*;
+use std::time::Duration;
+
+const GOOD: &str = r#"format = "handscope-poses"
+version = 1
+mood = "calm"
+
+[[pose]]
+name = "Pinch"
+tags = ["demo"]
+speed = 300
+force = 800
+leave = ["little"]
+colour = "red"
+[pose.angles]
+little = 1000
+ring = 1000
+middle = 1000
+index = 420
+thumb_bend = 420
+thumb_rotate = 200
+
+[[sequence]]
+name = "Wave"
+loop = true
+[[sequence.step]]
+pose = "Pinch"
+speed = 250
+dwell_ms = 400
+limit_ms = 3000
+note = "slow"
+"#;
+
+#[test]
+fn a_file_is_read_as_documented_and_unknown_keys_survive() {
+    let library = read(GOOD).unwrap();
+    let pose = &library.poses[0];
+    assert_eq!(
+        (pose.name.as_str(), pose.speed.get(), pose.force.get()),
+        ("Pinch", 300, 800)
+    );
+    assert_eq!(pose.targets()[Dof::Little], None);
+    assert_eq!(pose.targets()[Dof::Index], Angle::new(420).ok());
+    let sequence = &library.sequences[0];
+    assert!(sequence.looped);
+    assert_eq!(sequence.steps[0].pose, pose.id);
+    assert_eq!(sequence.steps[0].dwell, Millis::nearest(400));
+    let again = write(&library).unwrap();
+    for kept in ["mood = \"calm\"", "colour = \"red\"", "note = \"slow\""] {
+        assert!(again.contains(kept), "{kept}\n{again}");
+    }
+    assert_eq!(read(&again).unwrap(), library);
+}
+
+#[test]
+fn a_bad_file_is_refused_with_line_and_field() {
+    for (from, to, line, field) in [
+        ("index = 420", "index = 1001", 16, "index"),
+        ("index = 420", "index = -1", 16, "index"),
+        ("index = 420", "index = nan", 16, "index"),
+        ("index = 420", "index = \"open\"", 16, "index"),
+        ("index = 420\n", "", 12, "index"),
+        ("index = 420", "index = 420\npinky = 3", 17, "pinky"),
+        ("speed = 300", "speed = 1001", 8, "speed"),
+        ("force = 800", "force = 3001", 9, "force"),
+        ("[\"little\"]", "[\"pinky\"]", 10, "leave"),
+        ("version = 1", "version = 2", 2, "version"),
+        ("version = 1\n", "", 1, "version"),
+        ("\"handscope-poses\"", "\"recipes\"", 1, "format"),
+        ("name = \"Pinch\"", "name = \"\"", 6, "name"),
+        ("name = \"Pinch\"", "name = \"a\\nb\"", 6, "name"),
+        ("pose = \"Pinch\"", "pose = \"Fist\"", 24, "pose"),
+        ("dwell_ms = 400", "dwell_ms = 600001", 26, "dwell_ms"),
+        ("loop = true", "loop = 1", 22, "loop"),
+    ] {
+        let error = read(&GOOD.replacen(from, to, 1)).unwrap_err();
+        assert_eq!(error.field.as_deref(), Some(field), "{to}: {error}");
+        assert_eq!(error.line, Some(line), "{to}: {error}");
+        let said = error.to_string();
+        assert!(
+            said.starts_with(&format!("line {line}, `{field}`: ")),
+            "{said}"
+        );
+    }
+    let twice = GOOD.replacen("[[sequence]]", "[[pose]]\nname = \"Pinch\"\nspeed = 1\nforce = 1\nangles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_rotate = 1 }\n[[sequence]]", 1);
+    assert!(read(&twice).unwrap_err().to_string().contains("used twice"));
+    for garbage in [
+        "",
+        "\0\0",
+        "= 3",
+        "[[pose]]",
+        "format = \"handscope-poses\"\nversion = 1\npose = 3",
+    ] {
+        read(garbage).unwrap_err();
+    }
+}
+
+fn name() -> impl Strategy<Value = String> {
+    "[a-zA-Z0-9\"'\\\\=#. 手捏]{1,40}"
+}
+
+fn pose() -> impl Strategy<Value = (String, [i16; 6], [bool; 6], i16, i16, String)> {
+    (
+        name(),
+        any::<[i16; 6]>(),
+        any::<[bool; 6]>(),
+        any::<i16>(),
+        any::<i16>(),
+        "[a-z,\" ]{0,30}",
+    )
+}
+
+proptest! {
+    #[test]
+    fn any_library_comes_back_from_its_text(
+        poses in prop::collection::vec(pose(), 0..6),
+        steps in prop::collection::vec((0..6_usize, any::<u32>(), any::<i16>()), 0..8),
+        looped: bool,
+    ) {
+        let mut library = Library::default();
+        for (name, angles, leave, speed, force, tags) in poses {
+            let mut pose = Pose::at(PerDof::new(angles.map(Angle::nearest)));
+            pose.leave = PerDof::new(leave);
+            (pose.speed, pose.force) = (Speed::nearest(speed), Force::nearest(force));
+            let name = if name.trim().is_empty() { "x" } else { &name };
+            let id = library.add_pose(name, pose).unwrap();
+            library.edit_pose(id, PoseEdit::Tags(tags));
+        }
+        let ids: Vec<PoseId> = library.poses.iter().map(|pose| pose.id).collect();
+        let own = library.add_sequence("own").unwrap();
+        library.edit_sequence(own, SequenceEdit::Loop(looped));
+        for (at, (pose, dwell, speed)) in steps.into_iter().filter(|(pose, ..)| *pose < ids.len()).enumerate() {
+            library.edit_sequence(own, SequenceEdit::Add(ids[pose]));
+            library.edit_sequence(own, SequenceEdit::Dwell(at, Millis::nearest(dwell)));
+            library.edit_sequence(own, SequenceEdit::Speed(at, Speed::nearest(speed)));
+        }
+        let text = write(&library).unwrap();
+        prop_assert_eq!(read(&text).unwrap(), library);
+    }
+
+    #[test]
+    fn no_text_makes_the_reader_fail_in_another_way(text in "\\PC*", cut in 0..600_usize) {
+        let _refused = read(&text);
+        let _cut = read(&GOOD.chars().take(cut).collect::<String>());
+    }
+}
+
+fn cue(angle: i16) -> Cue {
+    Cue {
+        pose: PoseId(1),
+        targets: PerDof::splat(Angle::new(angle).ok()),
+        speed: Speed::MAX,
+        force: Force::GENTLE,
+        dwell: Duration::from_millis(200),
+        limit: Duration::from_millis(1000),
+    }
+}
+
+fn ms(millis: u64) -> Moment {
+    Moment::from_micros(millis * 1000)
+}
+
+fn at(angle: i16) -> PerDof<Option<i16>> {
+    PerDof::splat(Some(angle))
+}
+
+#[test]
+fn a_player_waits_for_arrival_then_for_the_dwell_and_loops() {
+    let mut player = Player::start(vec![cue(0), cue(1000)], true, Pace::Through, ms(0));
+    let mut sent = |now, angle| {
+        player
+            .tick(ms(now), &at(angle))
+            .map(|cue| cue.targets[Dof::Index])
+    };
+    assert_eq!(sent(0, 500), Some(Angle::new(0).ok()));
+    assert_eq!(sent(300, 21), None, "not there yet");
+    assert_eq!(sent(400, 20), None, "there");
+    assert_eq!(sent(590, 20), None, "dwells");
+    assert_eq!(sent(600, 20), Some(Angle::new(1000).ok()));
+    assert_eq!(sent(1500, 20), None);
+    assert_eq!(sent(1600, 20), None, "its time is over");
+    assert_eq!(
+        sent(1800, 20),
+        Some(Angle::new(0).ok()),
+        "from the start again"
+    );
+    assert_eq!(player.late(), 1);
+}
+
+#[test]
+fn one_step_pauses_and_only_a_person_goes_on() {
+    let mut player = Player::start(vec![cue(0), cue(1000)], false, Pace::OneStep, ms(0));
+    assert!(player.tick(ms(0), &at(0)).is_some());
+    player.tick(ms(10), &at(0));
+    player.tick(ms(300), &at(0));
+    assert!(player.is_paused());
+    for later in [1000, 100_000] {
+        assert_eq!(player.tick(ms(later), &at(0)), None);
+    }
+    player.resume(Pace::Through, ms(100_000));
+    assert!(player.tick(ms(100_000), &at(0)).is_some(), "the next pose");
+    assert!(player.pause());
+    player.resume(Pace::Through, ms(100_500));
+    assert_eq!(player.at(), 1);
+    assert!(
+        player.tick(ms(100_500), &at(0)).is_some(),
+        "the same pose again"
+    );
+    player.end(End::Fault);
+    player.resume(Pace::Through, ms(100_600));
+    player.end(End::Person);
+    assert_eq!(
+        player.phase(),
+        Phase::Ended(End::Fault),
+        "the first reason stays"
+    );
+    assert_eq!(player.tick(ms(100_700), &at(1000)), None);
+}
+
+#[test]
+fn a_dry_run_takes_as_long_as_the_speed_says() {
+    let dry = |looped: bool| {
+        let pose = |name: &str, angle: i16| {
+            let angles = Dof::ALL
+                .map(|dof| format!("{} = {angle}\n", dof.name()))
+                .concat();
+            format!(
+                "[[pose]]\nname = \"{name}\"\nspeed = 1000\nforce = 500\n[pose.angles]\n{angles}"
+            )
+        };
+        let step = |name: &str| {
+            format!(
+                "[[sequence.step]]\npose = \"{name}\"\nspeed = 1000\ndwell_ms = 200\nlimit_ms = 1000\n"
+            )
+        };
+        let library = [
+            "format = \"handscope-poses\"\nversion = 1\n".to_owned(),
+            pose("Fist", 0),
+            pose("Flat", 1000),
+            format!("[[sequence]]\nname = \"Pump\"\nloop = {looped}\n"),
+            step("Fist"),
+            step("Flat"),
+        ];
+        let library = read(&library.concat()).unwrap();
+        Preview::of(&library, library.sequences[0].id, at(1000), ms(0)).unwrap()
+    };
+    let preview = dry(false);
+    let share = |preview: &Preview, now| preview.at(ms(now)).shares[Dof::Index].unwrap();
+    assert!((share(&preview, 300) - 0.5).abs() < 0.01);
+    assert!(share(&preview, 700) < 0.01, "dwells");
+    assert!((share(&preview, 1100) - 0.5).abs() < 0.01);
+    assert!(!preview.at(ms(1500)).over && preview.at(ms(1700)).over);
+    let looped = dry(true);
+    assert!((share(&looped, 1600 + 300) - 0.5).abs() < 0.01);
+    assert!(!looped.at(ms(1_000_000)).over);
+}

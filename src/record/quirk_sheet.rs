@@ -1,0 +1,102 @@
+//! What one hand was found to do, in words that a file can hold.
+
+use serde::{Deserialize, Serialize};
+
+/// What one hand was found to do. Keys of a later version survive in [`Self::others`].
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct QuirkSheet {
+    /// The endpoint without the id.
+    pub place: String,
+    /// The id or unit that was asked.
+    pub id: u16,
+    /// Day of the first answer, `2026-11-21`; empty in a sheet that was never kept.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub first_seen: String,
+    /// Day of the last answer.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub last_seen: String,
+    /// HAND_ID as the hand gives it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hand_id: Option<u8>,
+    /// REDU_RATIO as the hand gives it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub baud_code: Option<u8>,
+    /// `low-first`, `high-first` or `one-per-word`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub packing: Option<String>,
+    /// `through` or `split`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap: Option<String>,
+    /// `capacitive`, `resistive`, or `unknown: ` and why.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub touch: Option<String>,
+    /// Keys of a later version, kept as they are.
+    #[serde(flatten)]
+    pub others: toml::Table,
+}
+
+impl QuirkSheet {
+    /// What this sheet says otherwise than a later one. What either does not know is no difference.
+    #[must_use]
+    pub fn differences(&self, now: &Self) -> Vec<Difference> {
+        let number = |value: Option<u8>| value.map(|value| value.to_string());
+        let touch = |sheet: &Self| {
+            let known = |touch: &String| !touch.starts_with("unknown");
+            sheet.touch.clone().filter(known)
+        };
+        [
+            (Fact::HandId, number(self.hand_id), number(now.hand_id)),
+            (
+                Fact::BaudCode,
+                number(self.baud_code),
+                number(now.baud_code),
+            ),
+            (Fact::Packing, self.packing.clone(), now.packing.clone()),
+            (Fact::Gap, self.gap.clone(), now.gap.clone()),
+            (Fact::Touch, touch(self), touch(now)),
+        ]
+        .into_iter()
+        .filter_map(|(fact, before, now)| {
+            let (before, now) = (before?, now?);
+            (before != now).then_some(Difference { fact, before, now })
+        })
+        .collect()
+    }
+
+    /// A later visit to the same hand: what was not learnt this time stays as it was.
+    pub fn update(&mut self, now: Self) {
+        self.last_seen = now.last_seen;
+        self.hand_id = now.hand_id.or(self.hand_id);
+        self.baud_code = now.baud_code.or(self.baud_code);
+        self.packing = now.packing.or_else(|| self.packing.take());
+        self.gap = now.gap.or_else(|| self.gap.take());
+        self.touch = now.touch.or_else(|| self.touch.take());
+    }
+}
+
+/// What two sheets may disagree about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fact {
+    /// HAND_ID.
+    HandId,
+    /// REDU_RATIO.
+    BaudCode,
+    /// Bytes in words.
+    Packing,
+    /// The unused addresses.
+    Gap,
+    /// The fingertips.
+    Touch,
+}
+
+/// One thing that a hand answered otherwise before.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Difference {
+    /// What.
+    pub fact: Fact,
+    /// Then.
+    pub before: String,
+    /// Now.
+    pub now: String,
+}

@@ -1,0 +1,154 @@
+//! The outcome of writing a setting, of a SAVE, and of a return to the factory parameters. Plain values; nothing is sent here.
+
+use crate::hand::Span;
+use std::time::Duration;
+
+/// Why a request for a setting, a SAVE or a reset was not sent. Nothing changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NotSent {
+    /// Settings are not touched while setpoints pass.
+    #[error("the hand is armed: disarm it first")]
+    Armed,
+    /// A stop has the wire.
+    #[error("a stop is still being confirmed")]
+    Holding,
+    /// A joint moves, or did a second ago.
+    #[error("the hand moves: wait until it rests")]
+    Moving,
+    /// Whether it rests is not known.
+    #[error("it is not known whether the hand rests: its status or angles are missing or old")]
+    RestUnknown,
+    /// The result of an earlier SAVE could be taken for that of this one.
+    #[error("the last SAVE was just now: wait {} s", .wait.as_secs_f64().ceil())]
+    TooSoon {
+        /// How long to wait.
+        wait: Duration,
+    },
+}
+
+/// A group that was written and read back.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Written {
+    /// The group.
+    pub span: Span,
+    /// The outcome.
+    pub verdict: Verdict,
+    /// What the hand holds now, as far as it could be read back.
+    pub holds: Option<Vec<u8>>,
+}
+
+/// The outcome of a write.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Verdict {
+    /// Read back as written: in effect, acknowledged or not. Not in flash before a SAVE.
+    Applied,
+    /// The hand, or the rule against unsafe writes, said no, and the hand holds something else.
+    Refused {
+        /// The protocol's word for it.
+        reason: String,
+    },
+    /// The hand did not say no, and holds something else: dropped, or taken as another value.
+    Differs,
+    /// What the hand holds is not known.
+    Unverified {
+        /// Why.
+        why: Doubt,
+    },
+    /// Nothing was written.
+    NotSent(NotSent),
+}
+
+/// Why a write could not be verified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Doubt {
+    /// The reads that were to verify it were not answered.
+    #[error("the hand did not answer when its value was read back")]
+    NotReadBack,
+    /// A late reply to an earlier read could have been mistaken for the answer.
+    #[error("a late answer could have been mistaken for the value read back")]
+    Ambiguous,
+    /// The link was lost.
+    #[error("the link was lost")]
+    LinkLost,
+}
+
+/// What is known of a SAVE.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Saved {
+    /// The hand's second frame says that the parameters are in flash (manual 2.2.2; RS485 only).
+    Confirmed,
+    /// The hand's second frame says that they are not.
+    Failed {
+        /// The value in the frame; 255 by the manual.
+        code: u8,
+    },
+    /// Acknowledged, and the parameters read the same before and after. No wire but RS485 tells more: only the next
+    /// power-up shows what is in flash.
+    ReadBack,
+    /// Whether anything was written to flash is not known.
+    Unknown {
+        /// Why.
+        why: SaveDoubt,
+    },
+    /// The hand, or the rule against unsafe writes, said no.
+    Refused {
+        /// The protocol's word for it.
+        reason: String,
+    },
+    /// SAVE was not sent.
+    NotSent(NotSent),
+}
+
+/// Why the result of a SAVE is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum SaveDoubt {
+    /// It was acknowledged, and no second frame came in time.
+    #[error("the hand acknowledged it, but no result came within 3 s")]
+    NoResult,
+    /// It was not even acknowledged.
+    #[error("the hand neither acknowledged it nor gave a result")]
+    Unanswered,
+    /// Acknowledged, and then the parameters could not be read or read otherwise than before.
+    #[error("the hand acknowledged it, but its parameters did not read back unchanged")]
+    NotReadBack,
+    /// The link was lost before anything was known.
+    #[error("the link was lost before the result")]
+    LinkLost,
+}
+
+/// The outcome of a return to the factory parameters.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Reset {
+    /// The hand acknowledged it.
+    Acknowledged,
+    /// The hand, or the rule against unsafe writes, said no.
+    Refused {
+        /// The protocol's word for it.
+        reason: String,
+    },
+    /// No acknowledgement came: it may have acted, and the hand may be elsewhere now.
+    Unanswered,
+    /// It was not sent.
+    NotSent(NotSent),
+}
+
+/// The outcome of a calibration of the force sensors.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Calibrated {
+    /// The hand's second frame says that it is finished (RS485 only).
+    Finished,
+    /// Acknowledged, and the line was left alone for longer than it takes. No frame said so.
+    Quiet,
+    /// The hand said no.
+    Refused {
+        /// The protocol's word for it.
+        reason: String,
+    },
+    /// Whether the sensors were calibrated is not known.
+    Unknown {
+        /// Why.
+        why: SaveDoubt,
+    },
+    /// It was not sent.
+    NotSent(NotSent),
+}

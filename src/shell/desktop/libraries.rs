@@ -1,0 +1,159 @@
+//! The libraries that a window needs on Linux, and the packages that bring them. Loads none.
+
+use std::path::{Path, PathBuf};
+
+/// The names of a package in the three large families of distributions.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Package {
+    debian: &'static str,
+    fedora: &'static str,
+    arch: &'static str,
+}
+
+/// A library and where it comes from.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Library {
+    /// What it is called by those who look for it, in small letters.
+    name: &'static str,
+    /// Its file.
+    pub(crate) file: &'static str,
+    /// What brings it.
+    pub(crate) package: Package,
+}
+
+/// OpenGL with a driver that needs no graphics card.
+pub(crate) const OPENGL: Package = Package::of(
+    "libgl1 libgl1-mesa-dri",
+    "mesa-libGL mesa-dri-drivers",
+    "libglvnd mesa",
+);
+/// What small installations lack most often.
+pub(crate) const ALL: Package = Package::of(
+    "libxcursor1 libxi6 libxkbcommon-x11-0 libgl1",
+    "libXcursor libXi libxkbcommon-x11 mesa-libGL",
+    "libxcursor libxi libxkbcommon-x11 libglvnd",
+);
+
+/// What X11 needs. The longer names first: some begin with another.
+static OF_X11: [Library; 6] = [
+    Library {
+        name: "libxkbcommon-x11",
+        file: "libxkbcommon-x11.so.0",
+        package: Package::of("libxkbcommon-x11-0", "libxkbcommon-x11", "libxkbcommon-x11"),
+    },
+    Library {
+        name: "libxkbcommon",
+        file: "libxkbcommon.so.0",
+        package: Package::of("libxkbcommon0", "libxkbcommon", "libxkbcommon"),
+    },
+    Library {
+        name: "libxcursor",
+        file: "libXcursor.so.1",
+        package: Package::of("libxcursor1", "libXcursor", "libxcursor"),
+    },
+    Library {
+        name: "libxi.",
+        file: "libXi.so.6",
+        package: Package::of("libxi6", "libXi", "libxi"),
+    },
+    Library {
+        name: "libx11-xcb",
+        file: "libX11-xcb.so.1",
+        package: Package::of("libx11-xcb1", "libX11-xcb", "libx11"),
+    },
+    Library {
+        name: "libx11.",
+        file: "libX11.so.6",
+        package: Package::of("libx11-6", "libX11", "libx11"),
+    },
+];
+
+impl Package {
+    const fn of(debian: &'static str, fedora: &'static str, arch: &'static str) -> Self {
+        Self {
+            debian,
+            fedora,
+            arch,
+        }
+    }
+}
+
+/// What to type to get a package.
+pub(crate) fn install(package: &Package) -> String {
+    let Package {
+        debian,
+        fedora,
+        arch,
+    } = package;
+    format!(
+        "run 'sudo apt install {debian}' (Debian, Ubuntu), 'sudo dnf install {fedora}' (Fedora) or 'sudo pacman -S {arch}' (Arch)"
+    )
+}
+
+/// The library that these words, in small letters, are about.
+pub(crate) fn named_in(words: &str) -> Option<&'static Library> {
+    OF_X11.iter().find(|library| words.contains(library.name))
+}
+
+/// The first library of X11 that is in none of the places where this system keeps libraries.
+pub(crate) fn missing_here() -> Option<&'static Library> {
+    missing_from(&places())
+}
+
+fn missing_from(places: &[PathBuf]) -> Option<&'static Library> {
+    let is_there = |file: &str| places.iter().any(|place| place.join(file).is_file());
+    let any = OF_X11.iter().any(|library| is_there(library.file));
+    // A system that keeps them elsewhere is not told wrong things.
+    let missing = OF_X11.iter().find(|library| !is_there(library.file));
+    missing.filter(|_| any)
+}
+
+fn places() -> Vec<PathBuf> {
+    let own = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+    let own: Vec<PathBuf> = std::env::split_paths(&own).collect();
+    let usual = ["/lib", "/usr/lib", "/lib64", "/usr/lib64", "/usr/local/lib"].map(PathBuf::from);
+    let under = usual.iter().flat_map(|place| for_this_machine(place));
+    own.iter()
+        .cloned()
+        .chain(under)
+        .chain(usual.iter().cloned())
+        .collect()
+}
+
+/// Debian's folders by machine, such as `x86_64-linux-gnu`.
+fn for_this_machine(place: &Path) -> Vec<PathBuf> {
+    let name = format!("{}-linux-gnu", std::env::consts::ARCH);
+    let folders = std::fs::read_dir(place).into_iter().flatten().flatten();
+    let ours = folders.filter(|folder| folder.file_name().to_string_lossy().starts_with(&name));
+    ours.map(|folder| folder.path()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_library_that_is_not_there_is_found_and_nothing_is_guessed() {
+        let folder = tempfile::tempdir().unwrap();
+        let places = [folder.path().join("none"), folder.path().to_path_buf()];
+        assert_eq!(missing_from(&places), None, "they are kept elsewhere");
+        for library in &OF_X11 {
+            std::fs::write(folder.path().join(library.file), "").unwrap();
+        }
+        assert_eq!(missing_from(&places), None);
+        for library in &OF_X11 {
+            let file = folder.path().join(library.file);
+            std::fs::remove_file(&file).unwrap();
+            assert_eq!(missing_from(&places), Some(library));
+            std::fs::write(&file, "").unwrap();
+        }
+    }
+
+    #[test]
+    fn no_library_is_taken_for_another() {
+        for library in &OF_X11 {
+            assert_eq!(named_in(&library.file.to_lowercase()), Some(library));
+        }
+        assert_eq!(named_in("opengl"), None);
+    }
+}

@@ -1,0 +1,15 @@
+//! The real window: with OpenGL, or without where there is none. Draws nothing itself; views live in `ui`.
+
+pub(crate) mod dialog;
+pub(crate) mod failure;
+pub(crate) mod gl;
+pub(crate) mod libraries;
+pub(crate) mod options;
+pub(crate) mod program;
+pub(crate) mod screen;
+pub(crate) mod software;
+pub(crate) mod start;
+
+pub use crate::shell::desktop::failure::DesktopError;
+pub use crate::shell::desktop::options::{DesktopStart, Drawing};
+pub use crate::shell::desktop::start::run;

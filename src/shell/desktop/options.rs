@@ -1,0 +1,32 @@
+//! What the window starts with.
+
+use crate::app::files::settings_file::Loaded;
+use crate::shell::Snap;
+use crate::transport::Endpoint;
+use std::path::PathBuf;
+
+/// What draws the window.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Drawing {
+    /// OpenGL.
+    #[default]
+    OpenGl,
+    /// This program itself, on the processor, as a person asked for it.
+    Software,
+    /// The same, because OpenGL did not start, for this reason.
+    InPlaceOfOpenGl(String),
+}
+
+/// What the window starts with.
+pub struct DesktopStart {
+    /// The hand named on the command line.
+    pub endpoint: Option<Endpoint>,
+    /// What draws.
+    pub drawing: Drawing,
+    /// What was kept from last time, and what is to be said about it.
+    pub loaded: Loaded,
+    /// Where it is kept.
+    pub settings_path: Option<PathBuf>,
+    /// What makes pictures of the plots.
+    pub snap: Snap,
+}

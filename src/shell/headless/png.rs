@@ -1,0 +1,164 @@
+//! Pictures as PNG files: same pixels, same bytes. Draws nothing.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// Why a picture could not be saved.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum ImageError {
+    /// The number of bytes does not fit the size.
+    #[error("a picture of {width}x{height} has {wanted} bytes, got {got}")]
+    Size {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// Bytes of such a picture in RGBA8.
+        wanted: u64,
+        /// Bytes given.
+        got: u64,
+    },
+    /// The encoder refused, for instance a picture without pixels.
+    #[error("cannot encode a picture of {width}x{height}: {words}")]
+    Encode {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// The encoder's words.
+        words: String,
+    },
+    /// The file could not be written. The old file, if any, is untouched.
+    #[error("cannot write {}: {words}; choose a folder that exists and that you may write to", path.display())]
+    Write {
+        /// The file that was to be made.
+        path: PathBuf,
+        /// What kind of failure it was.
+        kind: io::ErrorKind,
+        /// The system's words.
+        words: String,
+    },
+}
+
+/// RGBA8 pixels, row by row from the top left, as the bytes of a PNG file. Alpha is left out: pictures are opaque.
+///
+/// # Errors
+/// [`ImageError::Size`] and [`ImageError::Encode`].
+pub fn encode(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, ImageError> {
+    let wanted = u64::from(width) * u64::from(height) * 4;
+    let got = u64::try_from(pixels.len()).unwrap_or(u64::MAX);
+    if got != wanted {
+        return Err(ImageError::Size {
+            width,
+            height,
+            wanted,
+            got,
+        });
+    }
+    let rgb: Vec<u8> = pixels
+        .chunks_exact(4)
+        .flat_map(|pixel| pixel.iter().take(3).copied())
+        .collect();
+    let refused = |error: ::png::EncodingError| ImageError::Encode {
+        width,
+        height,
+        words: error.to_string(),
+    };
+    let mut bytes = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder.set_compression(::png::Compression::Fast);
+    let mut writer = encoder.write_header().map_err(refused)?;
+    writer.write_image_data(&rgb).map_err(refused)?;
+    writer.finish().map_err(refused)?;
+    Ok(bytes)
+}
+
+/// Saves a picture at `path`, whole or not at all: written beside it first, then renamed.
+///
+/// # Errors
+/// Those of [`encode`] and [`ImageError::Write`].
+pub fn save(path: &Path, pixels: &[u8], size: (u32, u32)) -> Result<(), ImageError> {
+    let bytes = encode(pixels, size)?;
+    let refused = |error: io::Error| ImageError::Write {
+        path: path.to_path_buf(),
+        kind: error.kind(),
+        words: error.to_string(),
+    };
+    let part = part_of(path);
+    let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
+    if written.is_err() {
+        // Nothing to save of a half-written part, and it may not even exist.
+        fs::remove_file(&part).ok();
+    }
+    written.map_err(refused)
+}
+
+/// The name under which a file is written until it is whole; the process id keeps two writers apart.
+fn part_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(format!(".{}.part", std::process::id()));
+    path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PIXELS: [u8; 16] = [1, 2, 3, 255, 4, 5, 6, 255, 7, 8, 9, 255, 10, 11, 12, 255];
+
+    #[test]
+    fn saved_picture_reads_back_and_bytes_repeat() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("view.png");
+        fs::write(&path, "old").unwrap();
+        save(&path, &PIXELS, (2, 2)).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), encode(&PIXELS, (2, 2)).unwrap());
+        let file = io::BufReader::new(fs::File::open(&path).unwrap());
+        let mut reader = ::png::Decoder::new(file).read_info().unwrap();
+        let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut rgb).unwrap();
+        assert_eq!((info.width, info.height), (2, 2));
+        assert_eq!(rgb, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn failed_save_names_the_path_and_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("none").join("view.png");
+        let error = save(&missing, &PIXELS, (2, 2)).unwrap_err();
+        assert!(
+            matches!(&error, ImageError::Write { path, kind: io::ErrorKind::NotFound, .. } if *path == missing)
+        );
+        assert!(error.to_string().contains("view.png"), "{error}");
+
+        let blocked = folder.path().join("folder.png");
+        fs::create_dir(&blocked).unwrap();
+        fs::write(blocked.join("inside"), "").unwrap();
+        assert!(save(&blocked, &PIXELS, (2, 2)).is_err());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn wrong_size_and_empty_picture_are_refused() {
+        let wrong = encode(&PIXELS, (2, 3)).unwrap_err();
+        assert_eq!(
+            wrong,
+            ImageError::Size {
+                width: 2,
+                height: 3,
+                wanted: 24,
+                got: 16
+            }
+        );
+        assert!(matches!(
+            encode(&[], (0, 0)),
+            Err(ImageError::Encode { .. })
+        ));
+    }
+}

@@ -1,0 +1,98 @@
+//! The program and its window as one thing: drain, draw, act. The real window, the headless one and the tests
+//! drive the same. Opens no window itself.
+#[cfg(feature = "desktop")]
+pub mod desktop;
+pub mod headless;
+pub mod raster;
+
+use crate::app::action::Action;
+use crate::app::files::export::Content;
+use crate::app::program::App;
+use crate::app::state::State;
+use crate::hand::Moment;
+use crate::ui::{View, Window};
+
+/// Draws what `ui` draws at a time in seconds, in a size in points, into the bytes of a PNG file; `None` if it cannot.
+pub type Snap =
+    fn(size: (u32, u32), at_s: f64, ui: &mut dyn FnMut(&mut egui::Ui)) -> Option<Vec<u8>>;
+
+/// The program behind its window.
+pub struct Cockpit {
+    app: App,
+    window: Window,
+    snap: Option<Snap>,
+}
+
+impl Cockpit {
+    /// Puts a window in front of a program.
+    #[must_use]
+    pub fn new(app: App) -> Self {
+        Self {
+            app,
+            window: Window::new(),
+            snap: None,
+        }
+    }
+
+    /// With something that makes pictures of parts of the window.
+    #[must_use]
+    pub fn with_snap(self, snap: Snap) -> Self {
+        Self {
+            snap: Some(snap),
+            ..self
+        }
+    }
+
+    /// Takes in what happened since the last call. Runs also while the window is hidden.
+    pub fn logic(&mut self, now: Moment) {
+        self.app.logic(now);
+    }
+
+    /// Draws one frame and carries out what the person asked for in it.
+    pub fn ui(&mut self, ui: &mut egui::Ui, now: Moment) {
+        if self.window.view() == View::Traffic {
+            self.app.read_traffic(now);
+        }
+        if self.window.view() == View::Device {
+            self.app.look_at_params(now);
+        }
+        for action in self.window.ui(ui, self.app.state()) {
+            match action {
+                Action::SavePicture(size) => self.save_picture(size, now),
+                action => self.app.act(action, now),
+            }
+        }
+    }
+
+    /// Draws the plots once more, by themselves, and asks where the picture should go.
+    fn save_picture(&mut self, size: (u32, u32), now: Moment) {
+        let (window, state) = (&mut self.window, self.app.state());
+        let mut draw = |ui: &mut egui::Ui| window.plots_alone_ui(ui, state);
+        let drawn = self.snap.and_then(|snap| snap(size, now.secs(), &mut draw));
+        if let Some(bytes) = drawn {
+            self.app.act(Action::Save(Content::Picture(bytes)), now);
+        }
+    }
+
+    /// Shows another view.
+    pub fn show(&mut self, view: View) {
+        self.window.set_view(view);
+    }
+
+    /// The view that is shown.
+    #[must_use]
+    pub const fn view(&self) -> View {
+        self.window.view()
+    }
+
+    /// Everything the window shows.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        self.app.state()
+    }
+
+    /// The program, to open hands and to carry out actions that come from elsewhere.
+    pub fn app(&mut self) -> &mut App {
+        &mut self.app
+    }
+}

@@ -1,0 +1,303 @@
+//! One triangle into a strip of rows: which pixels, which colour, how it blends. No textures are kept here.
+
+use egui::Color32;
+use egui::epaint::Vertex;
+
+use crate::shell::raster::number::{
+    HALF_PIXEL, SUBPIXELS, channel, coordinate, fixed, index, narrow, real,
+};
+use crate::shell::raster::texture::Texture;
+
+/// Whole pixels that may be painted: `left..right`, `top..bottom`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Scissor {
+    pub(crate) left: i64,
+    pub(crate) top: i64,
+    pub(crate) right: i64,
+    pub(crate) bottom: i64,
+}
+
+/// Neighbouring rows of the picture, owned by one thread.
+#[derive(Debug)]
+pub(crate) struct Strip<'a> {
+    pub(crate) first_row: i64,
+    pub(crate) width: usize,
+    pub(crate) pixels: &'a mut [[u8; 4]],
+}
+
+impl Strip<'_> {
+    fn span(&mut self, row: i64, left: i64, right: i64) -> Option<&mut [[u8; 4]]> {
+        let start = index(row - self.first_row) * self.width;
+        self.pixels
+            .get_mut(start + index(left)..start + index(right))
+    }
+
+    /// The strip's rows as a scissor as wide as the picture.
+    pub(crate) fn bounds(&self) -> Scissor {
+        let rows = self.pixels.len() / self.width.max(1);
+        Scissor {
+            left: 0,
+            top: self.first_row,
+            right: coordinate(self.width),
+            bottom: self.first_row + coordinate(rows),
+        }
+    }
+}
+
+/// A corner in 1/256 px.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    x: i64,
+    y: i64,
+}
+
+/// `a * x + b * y + c >= 0` is inside, ties settled by the top-left rule.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    a: i64,
+    b: i64,
+    c: i64,
+}
+
+impl Edge {
+    fn new(from: Corner, to: Corner) -> Self {
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        let top_left = dy < 0 || (dy == 0 && dx > 0);
+        Self {
+            a: -dy,
+            b: dx,
+            c: dy * from.x - dx * from.y - i64::from(!top_left),
+        }
+    }
+
+    /// Narrows `left..right` to the pixels whose centres are inside on row `row`.
+    fn narrow_span(&self, row: i64, left: &mut i64, right: &mut i64) {
+        let at_zero = self.b * (row * SUBPIXELS + HALF_PIXEL) + self.c + self.a * HALF_PIXEL;
+        let step = self.a * SUBPIXELS;
+        if step > 0 {
+            *left = (*left).max((step - 1 - at_zero).div_euclid(step));
+        } else if step < 0 {
+            *right = (*right).min(at_zero.div_euclid(-step) + 1);
+        } else if at_zero < 0 {
+            *right = *left;
+        }
+    }
+}
+
+/// The plane through `N` values at the three corners.
+#[derive(Debug, Clone, Copy)]
+struct Plane<const N: usize> {
+    origin: [f64; N],
+    per_column: [f64; N],
+    per_row: [f64; N],
+}
+
+impl<const N: usize> Plane<N> {
+    fn new(corners: [Corner; 3], area: i64, values: [[f32; N]; 3]) -> Self {
+        let [p0, p1, p2] = corners;
+        let [v0, v1, v2] = values.map(|corner| corner.map(f64::from));
+        let unit = real(SUBPIXELS) / real(area);
+        let (x1, y1) = (real(p1.x - p0.x), real(p1.y - p0.y));
+        let (x2, y2) = (real(p2.x - p0.x), real(p2.y - p0.y));
+        let mut plane = Self {
+            origin: v0,
+            per_column: [0.0; N],
+            per_row: [0.0; N],
+        };
+        let slopes = plane.per_column.iter_mut().zip(&mut plane.per_row);
+        for (((column, row), v0), (v1, v2)) in slopes.zip(v0).zip(v1.into_iter().zip(v2)) {
+            *column = ((v1 - v0) * y2 - (v2 - v0) * y1) * unit;
+            *row = ((v2 - v0) * x1 - (v1 - v0) * x2) * unit;
+        }
+        plane
+    }
+
+    /// The value at the centre of a pixel that lies `column`, `row` pixels off the first corner.
+    fn at(&self, column: f64, row: f64) -> [f32; N] {
+        let mut values = [0.0; N];
+        let slopes = self.per_column.iter().zip(&self.per_row);
+        for ((value, origin), (x, y)) in values.iter_mut().zip(self.origin).zip(slopes) {
+            *value = narrow(origin + x * column + y * row);
+        }
+        values
+    }
+
+    fn steps(&self) -> [f32; N] {
+        self.per_column.map(narrow)
+    }
+}
+
+/// How a triangle's pixels get their colour.
+#[derive(Debug, Clone, Copy)]
+enum Fill {
+    /// One opaque colour.
+    Opaque([u8; 4]),
+    /// One colour, channels 0..=255.
+    Flat([f32; 4]),
+    /// A gradient times one texel (0..=1).
+    Shaded(Plane<4>, [f32; 4]),
+    /// One colour (0..=1) times a texture.
+    Textured([f32; 4], Plane<2>),
+    /// A gradient times a texture; red, green, blue, alpha.
+    Both(Plane<4>, Plane<2>),
+}
+
+/// Paints one triangle where strip and scissor allow. Triangles without area or with a NaN corner paint nothing.
+pub(crate) fn paint(
+    strip: &mut Strip<'_>,
+    scissor: Scissor,
+    texture: &Texture,
+    vertices: [(Vertex, [f32; 2]); 3],
+) {
+    let Some((corners, vertices, area)) = wound(vertices) else {
+        return;
+    };
+    let Some(bounds) = bounds(corners, scissor) else {
+        return;
+    };
+    let fill = fill(corners, area, vertices, texture);
+    if matches!(fill, Fill::Flat([0.0, 0.0, 0.0, 0.0])) {
+        return;
+    }
+    let [p0, p1, p2] = corners;
+    let edges = [Edge::new(p0, p1), Edge::new(p1, p2), Edge::new(p2, p0)];
+    for row in bounds.top..bounds.bottom {
+        let (mut left, mut right) = (bounds.left, bounds.right);
+        for edge in &edges {
+            edge.narrow_span(row, &mut left, &mut right);
+        }
+        if left < right
+            && let Some(span) = strip.span(row, left, right)
+        {
+            let column = real(left * SUBPIXELS + HALF_PIXEL - p0.x) / real(SUBPIXELS);
+            let line = real(row * SUBPIXELS + HALF_PIXEL - p0.y) / real(SUBPIXELS);
+            paint_span(span, &fill, texture, [column, line]);
+        }
+    }
+}
+
+/// The corners clockwise on screen, with twice the area; egui uses both windings.
+fn wound(vertices: [(Vertex, [f32; 2]); 3]) -> Option<([Corner; 3], [Vertex; 3], i64)> {
+    let [(v0, at0), (v1, at1), (v2, at2)] = vertices;
+    let corner = |[x, y]: [f32; 2]| {
+        Some(Corner {
+            x: fixed(x)?,
+            y: fixed(y)?,
+        })
+    };
+    let (p0, p1, p2) = (corner(at0)?, corner(at1)?, corner(at2)?);
+    let area = (p1.x - p0.x) * (p2.y - p0.y) - (p2.x - p0.x) * (p1.y - p0.y);
+    match area {
+        0 => None,
+        1.. => Some(([p0, p1, p2], [v0, v1, v2], area)),
+        _ => Some(([p0, p2, p1], [v0, v2, v1], -area)),
+    }
+}
+
+/// The pixels a triangle can touch; `None` if there are none.
+fn bounds(corners: [Corner; 3], scissor: Scissor) -> Option<Scissor> {
+    let [p0, p1, p2] = corners;
+    let first = |a: i64, b: i64, c: i64| a.min(b).min(c).div_euclid(SUBPIXELS);
+    let last = |a: i64, b: i64, c: i64| a.max(b).max(c).div_euclid(SUBPIXELS) + 1;
+    let bounds = Scissor {
+        left: scissor.left.max(first(p0.x, p1.x, p2.x)),
+        top: scissor.top.max(first(p0.y, p1.y, p2.y)),
+        right: scissor.right.min(last(p0.x, p1.x, p2.x)),
+        bottom: scissor.bottom.min(last(p0.y, p1.y, p2.y)),
+    };
+    (bounds.left < bounds.right && bounds.top < bounds.bottom).then_some(bounds)
+}
+
+fn fill(corners: [Corner; 3], area: i64, vertices: [Vertex; 3], texture: &Texture) -> Fill {
+    let [v0, v1, v2] = vertices;
+    let [width, height] = texture.scale();
+    let colour = |vertex: Vertex| rgba(vertex.color);
+    let texel = |vertex: Vertex| [vertex.uv.x * width, vertex.uv.y * height];
+    let one_colour = v0.color == v1.color && v0.color == v2.color;
+    let one_texel = v0.uv == v1.uv && v0.uv == v2.uv;
+    let gradient = || Plane::new(corners, area, vertices.map(colour));
+    let uv = || Plane::new(corners, area, vertices.map(texel));
+    match (one_colour, one_texel) {
+        (true, true) => {
+            let [x, y] = texel(v0);
+            flat(product(colour(v0), texture.sample(x, y).map(unit)))
+        }
+        (true, false) => Fill::Textured(colour(v0).map(unit), uv()),
+        (false, true) => {
+            let [x, y] = texel(v0);
+            Fill::Shaded(gradient(), texture.sample(x, y).map(unit))
+        }
+        (false, false) => Fill::Both(gradient(), uv()),
+    }
+}
+
+fn flat(colour: [f32; 4]) -> Fill {
+    let [.., alpha] = colour;
+    if alpha >= 255.0 {
+        Fill::Opaque(colour.map(channel))
+    } else {
+        Fill::Flat(colour)
+    }
+}
+
+fn paint_span(span: &mut [[u8; 4]], fill: &Fill, texture: &Texture, [column, row]: [f64; 2]) {
+    match *fill {
+        Fill::Opaque(colour) => span.fill(colour),
+        Fill::Flat(colour) => span.iter_mut().for_each(|pixel| over(pixel, colour)),
+        Fill::Shaded(gradient, texel) => {
+            let colours = walk(gradient.at(column, row), gradient.steps());
+            for (pixel, colour) in span.iter_mut().zip(colours) {
+                over(pixel, product(colour, texel));
+            }
+        }
+        Fill::Textured(colour, uv) => {
+            let places = walk(uv.at(column, row), uv.steps());
+            for (pixel, [x, y]) in span.iter_mut().zip(places) {
+                over(pixel, product(texture.sample(x, y), colour));
+            }
+        }
+        Fill::Both(gradient, uv) => {
+            let colours = walk(gradient.at(column, row), gradient.steps());
+            let places = walk(uv.at(column, row), uv.steps());
+            for ((pixel, colour), [x, y]) in span.iter_mut().zip(colours).zip(places) {
+                over(pixel, product(colour, texture.sample(x, y).map(unit)));
+            }
+        }
+    }
+}
+
+/// The values of a plane along a row. Each is computed from the start, so nothing adds up along a wide span.
+fn walk<const N: usize>(start: [f32; N], step: [f32; N]) -> impl Iterator<Item = [f32; N]> {
+    let mut column = 0.0_f32;
+    std::iter::repeat_with(move || {
+        let mut values = start;
+        for (value, step) in values.iter_mut().zip(step) {
+            *value += step * column;
+        }
+        column += 1.0;
+        values
+    })
+}
+
+fn rgba(colour: Color32) -> [f32; 4] {
+    colour.to_array().map(f32::from)
+}
+
+fn unit(channel: f32) -> f32 {
+    channel / 255.0
+}
+
+fn product(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
+    let [a0, a1, a2, a3] = a;
+    let [b0, b1, b2, b3] = b;
+    [a0 * b0, a1 * b1, a2 * b2, a3 * b3]
+}
+
+/// Premultiplied source over destination, in gamma space, rounded after each blend like an 8-bit target.
+fn over(pixel: &mut [u8; 4], colour: [f32; 4]) {
+    let [.., alpha] = colour;
+    let keep = 1.0 - alpha / 255.0;
+    for (old, new) in pixel.iter_mut().zip(colour) {
+        *old = channel(new + f32::from(*old) * keep);
+    }
+}

@@ -1,0 +1,11 @@
+//! Files: replaced whole or not at all, read within a limit, written when what they hold changed; and work off the window's
+//! thread. Knows no format.
+
+pub mod calendar;
+pub mod file;
+pub mod job;
+pub mod saver;
+
+pub use crate::store::file::{last_of, read_text, replace, replace_keeping_last, set_aside};
+pub use crate::store::job::{Job, on_thread};
+pub use crate::store::saver::Saver;

@@ -1,0 +1,115 @@
+//! Writes what is kept when it changed, at most once a second and one write at a time.
+
+use crate::store::file::replace_keeping_last;
+use crate::store::job::{Job, on_thread};
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A typed name or a dragged window changes settings many times a second; the disk sees one of them.
+const SAVE_EVERY: Duration = Duration::from_secs(1);
+
+/// Keeps a file up to date. Without a path, nothing is kept.
+#[derive(Debug)]
+pub struct Saver<K> {
+    path: Option<PathBuf>,
+    runtime: tokio::runtime::Handle,
+    text: fn(&K) -> io::Result<String>,
+    kept: K,
+    begun: Option<Duration>,
+    under_way: Option<Job<io::Result<()>>>,
+}
+
+impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
+    /// `kept` is what the file holds, or what needs no file; `text` makes the file of it.
+    pub const fn new(
+        path: Option<PathBuf>,
+        runtime: tokio::runtime::Handle,
+        kept: K,
+        text: fn(&K) -> io::Result<String>,
+    ) -> Self {
+        Self {
+            path,
+            runtime,
+            text,
+            kept,
+            begun: None,
+            under_way: None,
+        }
+    }
+
+    /// Writes if needed; `now` counts from any beginning. What went wrong with an earlier write comes back. It is not tried
+    /// again before something changes again.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn tick(&mut self, newest: &K, now: Duration) -> io::Result<()> {
+        let ended = self.ended();
+        let waits = self
+            .begun
+            .is_some_and(|begun| now.saturating_sub(begun) < SAVE_EVERY);
+        if !waits {
+            self.begin(newest, now);
+        }
+        ended
+    }
+
+    /// Writes what is not written yet, at once. True when all is on disk, or cannot be.
+    pub fn flush(&mut self, newest: &K, now: Duration) -> bool {
+        let failed = self.ended().is_err();
+        self.begin(newest, now);
+        failed || self.under_way.is_none()
+    }
+
+    fn begin(&mut self, newest: &K, now: Duration) {
+        let Some(path) = self.path.clone() else {
+            return;
+        };
+        if self.under_way.is_some() || *newest == self.kept {
+            return;
+        }
+        self.kept = newest.clone();
+        let (kept, text) = (newest.clone(), self.text);
+        let write = on_thread(move || replace_keeping_last(&path, &text(&kept)?));
+        let nobody: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
+        self.under_way = Some(Job::start(&self.runtime, &nobody, write));
+        self.begun = Some(now);
+    }
+
+    fn ended(&mut self) -> io::Result<()> {
+        Job::take_from(&mut self.under_way).unwrap_or(Ok(()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    async fn flushed(saver: &mut Saver<String>, newest: &str) {
+        while !saver.flush(&newest.into(), Duration::ZERO) {
+            tokio::task::yield_now().await;
+        }
+    }
+
+    #[tokio::test]
+    async fn only_changes_are_written_the_last_file_stays_and_a_failure_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/kept.toml");
+        let runtime = tokio::runtime::Handle::current();
+        let text = |kept: &String| Ok(kept.clone());
+        let mut saver = Saver::new(Some(path.clone()), runtime.clone(), "one".into(), text);
+        saver.tick(&"one".into(), Duration::ZERO).unwrap();
+        assert!(saver.under_way.is_none(), "nothing changed");
+        flushed(&mut saver, "two").await;
+        flushed(&mut saver, "three").await;
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "three");
+        let last = crate::store::file::last_of(&path);
+        assert_eq!(std::fs::read_to_string(last).unwrap(), "two");
+        let below = Some(path.join("below/a/file"));
+        let mut saver = Saver::new(below, runtime, "one".into(), text);
+        while saver.tick(&"two".into(), Duration::ZERO).is_ok() {
+            tokio::task::yield_now().await;
+        }
+    }
+}

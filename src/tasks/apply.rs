@@ -1,0 +1,182 @@
+//! Writing rows that a hand keeps: read first, then each group written at rest and read back.
+
+use crate::hand::{Setting, Span};
+use crate::link::RequestError;
+use crate::params::backups::Backups;
+use crate::params::changes::{self, RowOutcome, RowVerdict, WritePlan};
+use crate::params::danger::worse;
+use crate::params::rows::ParamId;
+use crate::params::values::Params;
+use crate::record::{NotSent, Verdict, Written};
+use crate::store::calendar::since_1970;
+use crate::store::on_thread;
+use crate::tasks::hand::{Hand, REACHED_WITHIN, answers, once_at_rest};
+use crate::tasks::{Consent, Risks, TaskError, read};
+use std::path::PathBuf;
+
+/// What is to be written, and how.
+#[derive(Debug, Clone)]
+pub struct Apply {
+    /// The rows and their new values.
+    pub wanted: Params,
+    /// What a person agreed to.
+    pub consent: Consent,
+    /// Where a backup goes before anything is written; none is made without.
+    pub backups: Option<Backups>,
+    /// What follows if not every row was applied.
+    pub otherwise: Otherwise,
+}
+
+/// What follows if not every row was applied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Otherwise {
+    /// Those that were stay.
+    Stay,
+    /// The hand gets back what it held.
+    Undo,
+}
+
+/// What is told on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ApplyStep {
+    /// A group was read.
+    Read(Span, Vec<u8>),
+    /// What a person agreed to.
+    Meant(Risks),
+    /// A row was written, or was not.
+    Row(RowOutcome),
+}
+
+/// The result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Applied {
+    /// What the hand held before.
+    pub before: Params,
+    /// The backup, if one was asked for and something had to be written.
+    pub backup: Option<PathBuf>,
+    /// The rows that had to be written, or were as wanted already.
+    pub rows: Vec<RowOutcome>,
+    /// Whether the hand holds again what it held, if it was to get it back.
+    pub undone: Option<bool>,
+    /// Why the rest was not written, if the link could not take it.
+    pub broken_off: Option<RequestError>,
+}
+
+impl Applied {
+    /// True if every row is in force.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        let applied = |row: &RowOutcome| row.verdict == RowVerdict::Applied;
+        self.broken_off.is_none() && self.rows.iter().all(applied)
+    }
+}
+
+/// Applies rows. Rows that the hand holds already are not written.
+///
+/// # Errors
+/// [`TaskError`]: then nothing was written.
+pub async fn apply<H: Hand>(
+    hand: &H,
+    task: &Apply,
+    mut tell: impl FnMut(ApplyStep),
+) -> Result<Applied, TaskError> {
+    let took = |span, bytes: &[u8]| tell(ApplyStep::Read(span, bytes.to_vec()));
+    let rows = read::rows(hand, took).await;
+    let is_needed = |id| task.backups.is_some() || task.wanted.get(id).is_some();
+    let before = rows.with(is_needed)?;
+    let plan = changes::plan_writes(&task.wanted, &before);
+    let mut after = before.clone();
+    plan.rows
+        .iter()
+        .for_each(|(id, value)| after.put(id, value));
+    let risks = Risks {
+        dangers: worse(&before, &after),
+        places: plan.rows.only(ParamId::is_place),
+    };
+    task.consent.check(&risks)?;
+    tell(ApplyStep::Meant(risks));
+    let mut applied = Applied {
+        backup: None,
+        rows: changes::held_already(&task.wanted, &plan, &before),
+        undone: None,
+        broken_off: None,
+        before,
+    };
+    if plan.settings.is_empty() {
+        return Ok(applied);
+    }
+    if let Some(backups) = task.backups.clone() {
+        let params = applied.before.clone();
+        let backup = on_thread(move || backups.back_up(&params, "before apply", since_1970()));
+        let no_backup = |error: std::io::Error| TaskError::NoBackup {
+            message: error.to_string(),
+        };
+        applied.backup = Some(backup.await.map_err(no_backup)?);
+    }
+    let (written, broken_off) = write(hand, &plan, &applied.before).await;
+    for row in &written {
+        tell(ApplyStep::Row(row.clone()));
+    }
+    applied.rows.extend(written);
+    applied.broken_off = broken_off;
+    if !applied.is_whole() && task.otherwise == Otherwise::Undo {
+        applied.undone = Some(undo(hand, &applied).await);
+    }
+    Ok(applied)
+}
+
+/// Writes all settings of a plan. What did not go out because a person armed meanwhile does not go out for the next group
+/// either.
+async fn write<H: Hand>(
+    hand: &H,
+    plan: &WritePlan,
+    before: &Params,
+) -> (Vec<RowOutcome>, Option<RequestError>) {
+    let mut rows = Vec::new();
+    for setting in &plan.settings {
+        let written = match write_one(hand, *setting).await {
+            Ok(written) => written,
+            Err(error) => return (rows, Some(error)),
+        };
+        rows.extend(changes::outcomes(plan, before, setting, &written));
+        if written.verdict == Verdict::NotSent(NotSent::Armed) {
+            break;
+        }
+    }
+    (rows, None)
+}
+
+/// Writes one group. If it is not known what the hand holds then, it is read once more, on a link that came back.
+async fn write_one<H: Hand>(hand: &H, setting: Setting) -> Result<Written, RequestError> {
+    let written = once_at_rest(|| hand.set_kept(setting)).await?;
+    if !matches!(written.verdict, Verdict::Unverified { .. }) {
+        return Ok(written);
+    }
+    if !answers(hand, REACHED_WITHIN).await {
+        return Ok(written);
+    }
+    Ok(match read::group(hand, written.span).await {
+        Ok(bytes) => Written {
+            verdict: Verdict::Differs,
+            holds: Some(bytes),
+            ..written
+        },
+        Err(_) => written,
+    })
+}
+
+/// Puts back what changed or may have; true if the hand holds what it held before.
+async fn undo<H: Hand>(hand: &H, applied: &Applied) -> bool {
+    let wanted = changes::undo_of(&applied.rows);
+    if wanted.is_empty() {
+        return true;
+    }
+    let live = read::rows(hand, |_, _| ()).await.params;
+    if live.is_empty() {
+        return false;
+    }
+    let plan = changes::plan_writes(&wanted, &live);
+    let (put_back, broken_off) = write(hand, &plan, &live).await;
+    let is_back = |row: &RowOutcome| row.holds.is_some() && row.holds == applied.before.get(row.id);
+    broken_off.is_none() && put_back.iter().all(is_back)
+}

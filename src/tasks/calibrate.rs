@@ -1,0 +1,215 @@
+//! The calibration of the force sensors: what must be so before, the request, and the offsets before and after (manual 2.6.6).
+
+use crate::hand::{Dof, Finger, ForceReading, HandSample, Moment, PerDof};
+use crate::link::{Clock, LinkStatus, RequestError};
+use crate::record::{Calibrated, LinkState, Record, Rest};
+use crate::tasks::hand::Hand;
+use std::collections::VecDeque;
+use std::time::Duration;
+use tokio::time::{Instant, timeout_at};
+
+/// An angle from here on counts as open: what drivers of this family ask for before a calibration.
+pub const OPEN_FROM: i16 = 950;
+/// A force beyond this is more than any offset of a hand at rest, g.
+pub const FREE_BELOW_G: u16 = 400;
+/// A fingertip that feels more than this is touched, N.
+pub const TOUCH_N: f32 = 0.3;
+/// How long the force has to be steady.
+const STEADY_FOR: Duration = Duration::from_secs(2);
+/// By how much it may change in that time, g.
+const STEADY_G: i16 = 20;
+/// Samples that are looked at: two seconds of the fastest wire.
+const SAMPLES_MAX: usize = 512;
+/// Samples older than this do not count.
+const FRESH_FOR: Duration = Duration::from_millis(500);
+/// How long the new offset is measured after the end.
+const MEASURE_FOR: Duration = Duration::from_millis(1500);
+
+/// What it takes at most. Manual: 2.6.6 names no time; hands in use were seen to take 2 to 6 s.
+pub const TAKES: Duration = Duration::from_secs(8);
+
+/// What must be so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Check {
+    /// Every joint is open.
+    Open,
+    /// No joint moves.
+    Still,
+    /// No force, and no fingertip feels anything.
+    Untouched,
+    /// The force does not change.
+    Steady,
+    /// No drive has a fault.
+    NoFault,
+    /// Nothing is armed, by this program; no stop is under way.
+    Disarmed,
+}
+
+impl Check {
+    /// All, in the order in which a person sees to them.
+    pub const ALL: [Self; 6] = [
+        Self::Disarmed,
+        Self::NoFault,
+        Self::Open,
+        Self::Still,
+        Self::Untouched,
+        Self::Steady,
+    ];
+}
+
+/// Forces by joint, g.
+pub type Offsets = PerDof<i16>;
+
+/// The checks before a calibration: they look at some seconds of force.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Checks {
+    forces: VecDeque<(Moment, Offsets)>,
+}
+
+impl Checks {
+    /// Takes in the newest force.
+    pub fn watch(&mut self, sample: &HandSample) {
+        let Some(force) = sample.force else { return };
+        if self.forces.back().is_some_and(|last| last.0 >= force.asked) {
+            return;
+        }
+        if self.forces.len() >= SAMPLES_MAX {
+            self.forces.pop_front();
+        }
+        let grams = force.value.map(ForceReading::raw);
+        self.forces.push_back((force.asked, grams));
+        let from = force.asked;
+        while let Some((at, _)) = self.forces.front()
+            && from.since(*at) > STEADY_FOR + FRESH_FOR
+        {
+            self.forces.pop_front();
+        }
+    }
+
+    /// Whether something is so; `None` = not known.
+    #[must_use]
+    pub fn check(
+        &self,
+        check: Check,
+        sample: &HandSample,
+        link: &LinkStatus,
+        now: Moment,
+    ) -> Option<bool> {
+        let fresh = |asked: Moment| link.state.is_live() && now.since(asked) <= FRESH_FOR;
+        match check {
+            Check::Disarmed => match link.state {
+                LinkState::Offline | LinkState::Identifying => None,
+                state => Some(!matches!(state, LinkState::Armed | LinkState::Holding)),
+            },
+            Check::NoFault => {
+                let all = sample.faults.filter(|all| fresh(all.asked))?;
+                Some(all.value.iter().all(|(_, faults)| faults.is_empty()))
+            }
+            Check::Open => {
+                let all = sample.angle.filter(|all| fresh(all.asked))?;
+                let is_open =
+                    |dof: Dof| dof == Dof::ThumbRotate || all.value[dof].raw() >= OPEN_FROM;
+                Some(Dof::ALL.into_iter().all(is_open))
+            }
+            Check::Still => match link.rest {
+                Rest::Unknown => None,
+                rest => Some(rest == Rest::Resting),
+            },
+            Check::Untouched => {
+                let all = sample.force.filter(|all| fresh(all.asked))?;
+                let free = |force: &ForceReading| force.raw().unsigned_abs() <= FREE_BELOW_G;
+                Some(all.value.iter().all(|(_, force)| free(force)) && is_untouched(sample)?)
+            }
+            Check::Steady => self.is_steady(now),
+        }
+    }
+
+    fn is_steady(&self, now: Moment) -> Option<bool> {
+        let (first, last) = (self.forces.front()?, self.forces.back()?);
+        if now.since(last.0) > FRESH_FOR || last.0.since(first.0) < STEADY_FOR {
+            return None;
+        }
+        Some(Dof::ALL.into_iter().all(|dof| {
+            let all = self.forces.iter().map(|(_, forces)| forces[dof]);
+            let (least, most) = (all.clone().min(), all.max());
+            let spread = least
+                .zip(most)
+                .map(|(least, most)| most.saturating_sub(least));
+            spread.is_some_and(|spread| spread <= STEADY_G)
+        }))
+    }
+
+    /// True if all of it is so.
+    #[must_use]
+    pub fn is_ready(&self, sample: &HandSample, link: &LinkStatus, now: Moment) -> bool {
+        let is_so = |check| self.check(check, sample, link, now) == Some(true);
+        Check::ALL.into_iter().all(is_so)
+    }
+
+    /// The mean of the forces that were looked at.
+    #[must_use]
+    pub fn mean(&self) -> Option<Offsets> {
+        let count = i64::try_from(self.forces.len())
+            .ok()
+            .filter(|count| *count > 0)?;
+        Some(PerDof::from_fn(|dof| {
+            let all = self.forces.iter().map(|(_, forces)| i64::from(forces[dof]));
+            i16::try_from(all.sum::<i64>() / count).unwrap_or_default()
+        }))
+    }
+}
+
+/// What is told on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CalibrateStep {
+    /// The request goes out; the line is left to the hand.
+    Calibrating,
+    /// The new offsets are measured.
+    Measuring,
+}
+
+/// The result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrateReport {
+    /// How it ended, or why it was not sent.
+    pub end: Result<Calibrated, RequestError>,
+    /// The offsets after it, as far as they were measured.
+    pub after: Option<Offsets>,
+}
+
+/// Calibrates, and measures the new offsets where it ended well.
+pub async fn calibrate<H: Hand>(
+    hand: &H,
+    clock: Clock,
+    mut tell: impl FnMut(CalibrateStep),
+) -> CalibrateReport {
+    tell(CalibrateStep::Calibrating);
+    let end = hand.calibrate().await;
+    let mut after = None;
+    if matches!(end, Ok(Calibrated::Finished | Calibrated::Quiet)) {
+        tell(CalibrateStep::Measuring);
+        let since = clock.now();
+        let mut records = hand.records();
+        let mut checks = Checks::default();
+        let until = Instant::now() + MEASURE_FOR;
+        while let Ok(Some(record)) = timeout_at(until, records.next()).await {
+            if let Record::Reading { sample, .. } = record
+                && sample.force.is_some_and(|force| force.asked >= since)
+            {
+                checks.watch(&sample);
+            }
+        }
+        after = checks.mean();
+    }
+    CalibrateReport { end, after }
+}
+
+/// Whether no fingertip feels anything; `None` where one was never read.
+fn is_untouched(sample: &HandSample) -> Option<bool> {
+    let mut is_free = true;
+    for finger in Finger::ALL {
+        let block = sample.tactile[finger]?.value;
+        is_free &= block.normal().is_none_or(|newton| newton.abs() <= TOUCH_N);
+    }
+    Some(is_free)
+}

@@ -1,0 +1,450 @@
+//! The hand of task tests: a memory, a flash, a power switch and a script of what goes wrong. Speaks no protocol.
+
+use crate::hand::{
+    AngleReading, ArmEpoch, Faults, ForceReading, Group, Groups, HandCommand, HandSample, Moment,
+    PerDof, RegisterWrite, Setpoints, Setting, Span, Speed, Status, TemperatureReading, Timed,
+};
+use crate::link::{ArmRequest, Clock, LinkStatus, MotionTurn, PollRates, Records, RequestError};
+use crate::params::changes::plan_writes;
+use crate::params::place;
+use crate::params::rows::{ParamId, Value};
+use crate::params::values::{Params, decoded, span_of};
+use crate::record::{
+    Calibrated, Hold, LinkState, NotSent, Record, Reset, Rest, Saved, Verdict, Written,
+};
+use crate::tasks::{Hand, Reach};
+use crate::transport::Endpoint;
+use std::sync::{Arc, Mutex, MutexGuard};
+use tokio::sync::broadcast;
+
+/// Bytes of memory: more than any address of a kept row.
+const MEMORY: usize = 4096;
+/// Records that may wait for a task.
+const RECORDS: usize = 64;
+
+/// One thing that a hand was asked or told.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Asked {
+    Read(Span),
+    Write(HandCommand),
+    Keep(Setting),
+    Save,
+    Reset,
+    Calibrate,
+    Stop,
+    Arm(ArmRequest),
+    Disarm,
+    Move(Setpoints),
+    ReadAt(PollRates),
+}
+
+/// What becomes of one request.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Fate {
+    /// The hand does it and answers.
+    Answered,
+    /// The hand does it, and the answer is lost.
+    AnswerLost,
+    /// The hand never hears it.
+    Unheard,
+    /// It ends so, and the hand does nothing.
+    Fails(RequestError),
+    /// The link holds it back.
+    NotSent(NotSent),
+    /// The hand takes this for every joint, or for the row, and answers as if nothing were.
+    Takes(i16),
+    /// The hand does nothing and answers so.
+    Verdict(Verdict),
+}
+
+type Script = Box<dyn FnMut(&Asked) -> Fate + Send>;
+
+/// What there is of the hand and its link.
+pub(crate) struct Facts {
+    pub(crate) status: LinkStatus,
+    memory: Vec<u8>,
+    flash: Vec<u8>,
+    pub(crate) asked: Vec<Asked>,
+    script: Script,
+    records: broadcast::Sender<Record>,
+    turn: u64,
+}
+
+/// One hand on an open link. Copies are the same hand.
+#[derive(Clone)]
+pub(crate) struct FakeHand {
+    facts: Arc<Mutex<Facts>>,
+    pub(crate) clock: Clock,
+}
+
+impl FakeHand {
+    /// A hand as delivered, watched, at rest, with 100 in all its defaults.
+    pub(crate) fn new() -> Self {
+        let facts = Facts {
+            status: LinkStatus {
+                state: LinkState::Monitoring,
+                rest: Rest::Resting,
+                ..LinkStatus::default()
+            },
+            memory: vec![0; MEMORY],
+            flash: Vec::new(),
+            asked: Vec::new(),
+            script: Box::new(|_| Fate::Answered),
+            records: broadcast::channel(RECORDS).0,
+            turn: 0,
+        };
+        let hand = Self {
+            facts: Arc::new(Mutex::new(facts)),
+            clock: Clock::start(),
+        };
+        let mut params = Params::factory();
+        for id in ParamId::all() {
+            if params.get(id).is_none() {
+                params.put(id, Value::Number(100));
+            }
+        }
+        for setting in plan_writes(&params, &Params::default()).settings {
+            hand.facts().take(&setting.command());
+        }
+        hand.facts().burn();
+        hand
+    }
+
+    pub(crate) fn facts(&self) -> MutexGuard<'_, Facts> {
+        self.facts.lock().unwrap()
+    }
+
+    /// From now on this decides what becomes of each request.
+    pub(crate) fn script(&self, script: impl FnMut(&Asked) -> Fate + Send + 'static) {
+        self.facts().script = Box::new(script);
+    }
+
+    /// What was asked since the last call.
+    pub(crate) fn asked(&self) -> Vec<Asked> {
+        std::mem::take(&mut self.facts().asked)
+    }
+
+    /// What it holds in a row.
+    pub(crate) fn holds(&self, id: ParamId) -> Option<Value> {
+        let facts = self.facts();
+        decoded(id, span_of(id), facts.bytes(&facts.memory, span_of(id)))
+    }
+
+    /// What it would wake up with.
+    pub(crate) fn in_flash(&self, id: ParamId) -> Option<Value> {
+        let facts = self.facts();
+        decoded(id, span_of(id), facts.bytes(&facts.flash, span_of(id)))
+    }
+
+    /// Puts a value into its memory, past everybody.
+    pub(crate) fn put(&self, id: ParamId, value: Value) {
+        let mut wanted = Params::default();
+        wanted.put(id, value);
+        for setting in plan_writes(&wanted, &Params::default()).settings {
+            self.facts().take(&setting.command());
+        }
+    }
+
+    /// Switches it off and on.
+    pub(crate) fn power_cycle(&self) {
+        let mut facts = self.facts();
+        facts.memory = facts.flash.clone();
+    }
+
+    /// A person armed it.
+    pub(crate) fn arm_as(&self, epoch: u64) {
+        let mut facts = self.facts();
+        facts.status.state = LinkState::Armed;
+        facts.status.armed = Some(ArmEpoch(epoch));
+    }
+
+    /// It says this of itself now, on all joints.
+    pub(crate) fn says(&self, said: Said) -> HandSample {
+        let sample = said.sample(self.clock.now());
+        let mut fresh = Groups::NONE;
+        for group in [
+            Group::Angle,
+            Group::Force,
+            Group::Status,
+            Group::Faults,
+            Group::Temperature,
+        ] {
+            fresh.insert(group);
+        }
+        let record = Record::Reading {
+            sample: Arc::new(sample),
+            fresh,
+        };
+        // Nobody may be listening.
+        let _heard = self.facts().records.send(record);
+        sample
+    }
+
+    async fn ask(&self, asked: Asked) -> Fate {
+        // A request takes a while, so that no task spins.
+        tokio::time::sleep(std::time::Duration::from_millis(5)).await;
+        let mut script = {
+            let mut facts = self.facts();
+            facts.asked.push(asked.clone());
+            if !facts.status.state.is_live() {
+                return Fate::Fails(RequestError::NotConnected);
+            }
+            std::mem::replace(&mut facts.script, Box::new(|_| Fate::Answered))
+        };
+        // A script may look at the hand.
+        let fate = script(&asked);
+        self.facts().script = script;
+        fate
+    }
+
+    fn note(&self, asked: Asked) {
+        self.facts().asked.push(asked);
+    }
+}
+
+impl Facts {
+    fn bytes<'a>(&self, of: &'a [u8], span: Span) -> &'a [u8] {
+        let from = usize::from(span.address);
+        &of[from..from + usize::from(span.len)]
+    }
+
+    fn take_write(&mut self, write: &RegisterWrite) {
+        let from = usize::from(write.address());
+        self.memory[from..from + write.bytes().len()].copy_from_slice(write.bytes());
+    }
+
+    fn take(&mut self, command: &HandCommand) {
+        for write in command.writes() {
+            self.take_write(&write);
+        }
+    }
+
+    fn burn(&mut self) {
+        self.flash = self.memory.clone();
+    }
+}
+
+fn timeout(address: u16) -> RequestError {
+    let after_ms = 100;
+    RequestError::Timeout { address, after_ms }
+}
+
+impl Hand for FakeHand {
+    fn status(&self) -> LinkStatus {
+        self.facts().status.clone()
+    }
+
+    fn records(&self) -> Records {
+        Records::of(self.facts().records.subscribe())
+    }
+
+    async fn read(&self, span: Span) -> Result<Vec<u8>, RequestError> {
+        match self.ask(Asked::Read(span)).await {
+            Fate::Answered => {
+                let facts = self.facts();
+                Ok(facts.bytes(&facts.memory, span).to_vec())
+            }
+            Fate::AnswerLost | Fate::Unheard => Err(timeout(span.address)),
+            Fate::Fails(error) => Err(error),
+            other => panic!("a read does not end as {other:?}"),
+        }
+    }
+
+    async fn write(&self, command: HandCommand) -> Result<(), RequestError> {
+        let address = command.writes()[0].address();
+        match self.ask(Asked::Write(command)).await {
+            Fate::Answered => self.facts().take(&command),
+            Fate::AnswerLost => {
+                self.facts().take(&command);
+                return Err(timeout(address));
+            }
+            Fate::Unheard => return Err(timeout(address)),
+            Fate::Fails(error) => return Err(error),
+            Fate::Takes(value) => {
+                let at = usize::from(address);
+                self.facts().memory[at] = u8::try_from(value).unwrap();
+            }
+            other => panic!("a write does not end as {other:?}"),
+        }
+        Ok(())
+    }
+
+    async fn set_kept(&self, setting: Setting) -> Result<Written, RequestError> {
+        let span = setting.span();
+        let verdict = match self.ask(Asked::Keep(setting)).await {
+            Fate::Answered => {
+                self.facts().take(&setting.command());
+                Verdict::Applied
+            }
+            Fate::Takes(value) => {
+                let from = usize::from(span.address);
+                let bytes = value.to_le_bytes().repeat(6);
+                self.facts().memory[from..from + 12].copy_from_slice(&bytes);
+                Verdict::Differs
+            }
+            Fate::Fails(error) => return Err(error),
+            Fate::NotSent(why) => Verdict::NotSent(why),
+            Fate::Verdict(verdict) => verdict,
+            other => panic!("a setting does not end as {other:?}"),
+        };
+        let is_read = matches!(
+            verdict,
+            Verdict::Applied | Verdict::Differs | Verdict::Refused { .. }
+        );
+        let facts = self.facts();
+        let holds = is_read.then(|| facts.bytes(&facts.memory, span).to_vec());
+        Ok(Written {
+            span,
+            verdict,
+            holds,
+        })
+    }
+
+    async fn save(&self) -> Result<Saved, RequestError> {
+        match self.ask(Asked::Save).await {
+            Fate::Answered => {
+                self.facts().burn();
+                Ok(Saved::Confirmed)
+            }
+            Fate::AnswerLost => {
+                self.facts().burn();
+                Err(RequestError::LinkLost)
+            }
+            Fate::Unheard => Err(RequestError::LinkLost),
+            Fate::NotSent(why) => Ok(Saved::NotSent(why)),
+            Fate::Fails(error) => Err(error),
+            other => panic!("a SAVE does not end as {other:?}"),
+        }
+    }
+
+    async fn reset(&self) -> Result<Reset, RequestError> {
+        let fate = self.ask(Asked::Reset).await;
+        if matches!(fate, Fate::Answered | Fate::AnswerLost) {
+            let settings = plan_writes(&Params::factory(), &Params::default()).settings;
+            for setting in settings {
+                self.facts().take(&setting.command());
+            }
+        }
+        match fate {
+            Fate::Answered => Ok(Reset::Acknowledged),
+            Fate::AnswerLost | Fate::Unheard => Ok(Reset::Unanswered),
+            Fate::NotSent(why) => Ok(Reset::NotSent(why)),
+            Fate::Verdict(Verdict::Refused { reason }) => Ok(Reset::Refused { reason }),
+            Fate::Fails(error) => Err(error),
+            other => panic!("a reset does not end as {other:?}"),
+        }
+    }
+
+    async fn calibrate(&self) -> Result<Calibrated, RequestError> {
+        match self.ask(Asked::Calibrate).await {
+            Fate::Answered => Ok(Calibrated::Finished),
+            Fate::NotSent(why) => Ok(Calibrated::NotSent(why)),
+            Fate::Fails(error) => Err(error),
+            other => panic!("a calibration does not end as {other:?}"),
+        }
+    }
+
+    fn stop(&self) {
+        self.note(Asked::Stop);
+        let at = self.clock.now();
+        let mut facts = self.facts();
+        facts.status.armed = None;
+        if facts.status.state.is_live() {
+            facts.status.state = LinkState::Monitoring;
+            facts.status.hold = Hold::Confirmed { at, rest: at };
+        }
+    }
+
+    fn arm(&self, request: ArmRequest) {
+        self.note(Asked::Arm(request));
+    }
+
+    fn disarm(&self) {
+        self.note(Asked::Disarm);
+        let mut facts = self.facts();
+        facts.status.armed = None;
+        if facts.status.state == LinkState::Armed {
+            facts.status.state = LinkState::Monitoring;
+        }
+    }
+
+    fn take_turn(&self) -> MotionTurn {
+        let mut facts = self.facts();
+        facts.turn += 1;
+        MotionTurn(facts.turn)
+    }
+
+    fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
+        let is_its = self.facts().turn == turn.0;
+        if is_its {
+            self.note(Asked::Move(*setpoints));
+        }
+        is_its
+    }
+
+    fn read_at(&self, rates: PollRates) {
+        self.note(Asked::ReadAt(rates));
+    }
+}
+
+/// What a hand says of itself, on all joints; each test spoils one thing.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Said {
+    pub(crate) angle: i16,
+    pub(crate) grams: i16,
+    pub(crate) celsius: u8,
+    pub(crate) faults: u8,
+    /// SPEED_SET and FORCE_SET.
+    pub(crate) limits: Option<(Speed, crate::hand::Force)>,
+}
+
+/// A well hand, open and free.
+pub(crate) const WELL: Said = Said {
+    angle: 1000,
+    grams: 3,
+    celsius: 30,
+    faults: 0,
+    limits: None,
+};
+
+impl Said {
+    fn sample(self, at: Moment) -> HandSample {
+        fn timed<T>(value: T, at: Moment) -> Option<Timed<T>> {
+            Some(Timed {
+                value,
+                asked: at,
+                received: at,
+            })
+        }
+        let limits = self.limits;
+        HandSample {
+            angle: timed(PerDof::splat(AngleReading::new(self.angle)), at),
+            force: timed(PerDof::splat(ForceReading::new(self.grams)), at),
+            status: timed(PerDof::splat(Status::PositionReached), at),
+            faults: timed(PerDof::splat(Faults::from_raw(self.faults)), at),
+            temperature: timed(PerDof::splat(TemperatureReading::new(self.celsius)), at),
+            speed_set: limits.and_then(|own| timed(PerDof::splat(Some(own.0)), at)),
+            force_set: limits.and_then(|own| timed(PerDof::splat(Some(own.1)), at)),
+            ..HandSample::default()
+        }
+    }
+}
+
+/// Goes where the hand may be: it is there where `is_there` says so.
+pub(crate) struct FakeReach<F> {
+    pub(crate) hand: FakeHand,
+    pub(crate) is_there: F,
+}
+
+impl<F: FnMut(&Endpoint) -> bool + Send> Reach for FakeReach<F> {
+    type Hand = FakeHand;
+
+    async fn reach(&mut self, place: &Endpoint) -> Option<FakeHand> {
+        (self.is_there)(place).then(|| self.hand.clone())
+    }
+}
+
+/// The command that writes a row by which a hand is found.
+pub(crate) fn place_write(id: ParamId, value: Value) -> Asked {
+    Asked::Write(place::command(id, value).unwrap())
+}

@@ -1,0 +1,190 @@
+//! A hand as tasks see it, how one is reached, and the waits that tasks share.
+
+use crate::hand::{HandCommand, Setpoints, Setting, Span};
+use crate::link::{
+    ArmRequest, LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError,
+};
+use crate::record::{Calibrated, LinkState, NotSent, Reset, Rest, Saved, Verdict, Written};
+use crate::transport::Endpoint;
+use std::time::Duration;
+use tokio::time::{Instant, sleep};
+
+/// A hand that is there answers within this, also on a port that was given up a moment ago.
+pub const REACHED_WITHIN: Duration = Duration::from_secs(3);
+/// A hand that still moves, or saved just now, is waited for this long.
+const RESTS_WITHIN: Duration = Duration::from_secs(8);
+/// So often it is asked again.
+pub(crate) const AGAIN_AFTER: Duration = Duration::from_millis(200);
+/// How often a wait looks.
+const LOOK_EACH: Duration = Duration::from_millis(10);
+
+/// One hand on an open link. The fake of tests is the other one who is this.
+pub trait Hand: Clone + Send + Sync + 'static {
+    /// Where the link stands.
+    fn status(&self) -> LinkStatus;
+    /// Everything that happens from now on.
+    fn records(&self) -> Records;
+    /// Reads some memory.
+    fn read(&self, span: Span) -> impl Future<Output = Result<Vec<u8>, RequestError>> + Send;
+    /// Writes, and waits for the acknowledgement.
+    fn write(&self, command: HandCommand) -> impl Future<Output = Result<(), RequestError>> + Send;
+    /// Writes a kept setting and reads it back.
+    fn set_kept(
+        &self,
+        setting: Setting,
+    ) -> impl Future<Output = Result<Written, RequestError>> + Send;
+    /// Writes the parameters to flash.
+    fn save(&self) -> impl Future<Output = Result<Saved, RequestError>> + Send;
+    /// Returns to the factory's parameters.
+    fn reset(&self) -> impl Future<Output = Result<Reset, RequestError>> + Send;
+    /// Calibrates the force sensors.
+    fn calibrate(&self) -> impl Future<Output = Result<Calibrated, RequestError>> + Send;
+    /// Holds before anything else, and disarms.
+    fn stop(&self);
+    /// Asks to arm.
+    fn arm(&self, request: ArmRequest);
+    /// Lets no setpoint pass any more.
+    fn disarm(&self);
+    /// Takes the turn at moving the hand.
+    fn take_turn(&self) -> MotionTurn;
+    /// Sets targets and limits; false if the turn is over.
+    fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool;
+    /// Reads at other rates.
+    fn read_at(&self, rates: PollRates);
+}
+
+impl Hand for LinkHandle {
+    fn status(&self) -> LinkStatus {
+        Self::status(self)
+    }
+    fn records(&self) -> Records {
+        Self::records(self)
+    }
+    async fn read(&self, span: Span) -> Result<Vec<u8>, RequestError> {
+        Self::read(self, span).await
+    }
+    async fn write(&self, command: HandCommand) -> Result<(), RequestError> {
+        Self::write(self, command).await
+    }
+    async fn set_kept(&self, setting: Setting) -> Result<Written, RequestError> {
+        Self::set_kept(self, setting).await
+    }
+    async fn save(&self) -> Result<Saved, RequestError> {
+        Self::save(self).await
+    }
+    async fn reset(&self) -> Result<Reset, RequestError> {
+        Self::reset(self).await
+    }
+    async fn calibrate(&self) -> Result<Calibrated, RequestError> {
+        Self::calibrate(self).await
+    }
+    fn stop(&self) {
+        Self::stop(self);
+    }
+    fn arm(&self, request: ArmRequest) {
+        Self::arm(self, request);
+    }
+    fn disarm(&self) {
+        Self::disarm(self);
+    }
+    fn take_turn(&self) -> MotionTurn {
+        Self::take_turn(self)
+    }
+    fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
+        Self::set(self, turn, setpoints)
+    }
+    fn read_at(&self, rates: PollRates) {
+        Self::read_at(self, rates);
+    }
+}
+
+/// Goes where a hand may be. A port has room for one link, so the one of before is given up.
+pub trait Reach: Send {
+    /// What it reaches.
+    type Hand: Hand;
+    /// The hand that answers at a place; `None` if none does within [`REACHED_WITHIN`].
+    fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<Self::Hand>> + Send;
+}
+
+/// Waits until the hand answers; false if it does not in time.
+pub async fn answers<H: Hand>(hand: &H, within: Duration) -> bool {
+    let until = Instant::now() + within;
+    while !hand.status().state.is_live() {
+        if Instant::now() >= until {
+            return false;
+        }
+        sleep(LOOK_EACH).await;
+    }
+    true
+}
+
+/// Waits for a while until a hand that answers is known to rest and nobody moves it; false if it does not come to that.
+pub(crate) async fn rests<H: Hand>(hand: &H) -> bool {
+    let until = Instant::now() + RESTS_WITHIN;
+    loop {
+        let status = hand.status();
+        let is_left_alone = matches!(status.state, LinkState::Monitoring | LinkState::Fault);
+        if is_left_alone && status.rest == Rest::Resting {
+            return true;
+        }
+        if Instant::now() >= until {
+            return false;
+        }
+        sleep(LOOK_EACH).await;
+    }
+}
+
+/// Whether a request was held back because of what the hand does at the moment.
+pub trait Attempt {
+    /// Why nothing was sent, if nothing was.
+    fn not_sent(&self) -> Option<NotSent>;
+}
+
+impl Attempt for Written {
+    fn not_sent(&self) -> Option<NotSent> {
+        match self.verdict {
+            Verdict::NotSent(why) => Some(why),
+            _ => None,
+        }
+    }
+}
+
+impl Attempt for Saved {
+    fn not_sent(&self) -> Option<NotSent> {
+        match self {
+            Self::NotSent(why) => Some(*why),
+            _ => None,
+        }
+    }
+}
+
+impl Attempt for Reset {
+    fn not_sent(&self) -> Option<NotSent> {
+        match self {
+            Self::NotSent(why) => Some(*why),
+            _ => None,
+        }
+    }
+}
+
+/// Asks, and asks again for a while where the hand still moves or an earlier SAVE is too near.
+///
+/// # Errors
+/// As the link says.
+pub async fn once_at_rest<T: Attempt, F: Future<Output = Result<T, RequestError>>>(
+    ask: impl Fn() -> F,
+) -> Result<T, RequestError> {
+    let until = Instant::now() + RESTS_WITHIN;
+    loop {
+        let end = ask().await?;
+        let wait = match end.not_sent() {
+            None | Some(NotSent::Armed) => return Ok(end),
+            Some(NotSent::TooSoon { wait }) => wait,
+            Some(NotSent::Moving | NotSent::RestUnknown | NotSent::Holding) => AGAIN_AFTER,
+        };
+        if Instant::now() >= until {
+            return Ok(end);
+        }
+        sleep(wait).await;
+    }
+}

@@ -1,0 +1,88 @@
+//! What takes several steps at a hand, each task written once as an async function. The window and the command line call the
+//! same. A task tells its steps as they begin and gives its result at the end; it asks a person nothing itself and draws nothing.
+
+pub mod apply;
+pub mod calibrate;
+#[cfg(test)]
+mod fake;
+pub mod gesture;
+pub mod hand;
+pub mod place;
+pub mod play;
+pub mod read;
+pub mod reset;
+pub mod save;
+pub mod series;
+#[cfg(test)]
+mod tests;
+
+pub use crate::tasks::hand::{Hand, Reach};
+
+use crate::link::RequestError;
+use crate::params::danger::Danger;
+use crate::params::rows::ParamId;
+use crate::params::values::Params;
+
+/// Why a task ended before it wrote anything to the hand.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TaskError {
+    /// A row that has to be known could not be read.
+    #[error("cannot read {}: {why}", id.name())]
+    NotRead {
+        /// The first such row.
+        id: ParamId,
+        /// Why.
+        why: RequestError,
+    },
+    /// No hand was reached at its place.
+    #[error("the hand does not answer")]
+    NotReached,
+    /// It would make joints hit harder than before, or change what the hand is found by, and nobody said that this is
+    /// meant.
+    #[error("nobody said that this is meant")]
+    NotMeant(Risks),
+    /// The backup, or the note that goes before a SAVE, could not be written.
+    #[error("cannot make a backup, nothing was written to the hand: {message}")]
+    NoBackup {
+        /// The system's words.
+        message: String,
+    },
+    /// The link could not take the request.
+    #[error(transparent)]
+    NotAsked(#[from] RequestError),
+}
+
+/// What a person should mean before a task does it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Risks {
+    /// Joints that will hit harder than before.
+    pub dangers: Vec<Danger>,
+    /// Rows by which the hand is found, with their new values.
+    pub places: Params,
+}
+
+/// What a person agreed to.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Consent {
+    /// To whatever it does.
+    Given,
+    /// To these joints' hitting harder, and to nothing else.
+    To(Vec<Danger>),
+}
+
+impl Consent {
+    /// Fails if there is a risk that nobody agreed to.
+    pub(crate) fn check(&self, risks: &Risks) -> Result<(), TaskError> {
+        let is_meant = match self {
+            Self::Given => true,
+            Self::To(agreed) => {
+                let mut dangers = risks.dangers.iter();
+                dangers.all(|danger| agreed.contains(danger)) && risks.places.is_empty()
+            }
+        };
+        match is_meant {
+            true => Ok(()),
+            false => Err(TaskError::NotMeant(risks.clone())),
+        }
+    }
+}

@@ -1,0 +1,373 @@
+//! A change of what a hand is found by, so that nobody is left with a hand they cannot reach: backup, look whether the new place
+//! is free, write, look at both places, let a person keep it or take it back, and save it if they want.
+
+use crate::hand::Moment;
+use crate::link::RequestError;
+use crate::params::backups::Backups;
+use crate::params::place::{Moved, Place, Places, command};
+use crate::params::rows::{ParamId, Value};
+use crate::params::values::{Params, decoded, span_of};
+use crate::record::Saved;
+use crate::store::on_thread;
+use crate::tasks::hand::{Hand, Reach, rests};
+use crate::tasks::save::{back_up, save_noted};
+use crate::tasks::{TaskError, read};
+use std::path::PathBuf;
+use std::time::Duration;
+use tokio::time::timeout;
+
+/// A person has this long to say that the hand is where it should be.
+pub const KEEP_WITHIN: Duration = Duration::from_secs(15);
+/// Rounds of looking for a hand: one that changes its speed may need a moment.
+const ROUNDS: u8 = 3;
+
+/// What is to be changed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlaceChange {
+    /// Which row.
+    pub id: ParamId,
+    /// What it holds.
+    pub before: Value,
+    /// What it is to hold.
+    pub wanted: Value,
+    /// Where the hand is found before and after.
+    pub places: Places,
+    /// Whether this wire finds the hand by it, and the change may act at once.
+    pub is_followed: bool,
+}
+
+/// Who decides. Neither question is asked before the hand was found again.
+pub trait Person: Send {
+    /// Whether the change stays; false takes it back.
+    fn keeps(&mut self) -> impl Future<Output = bool> + Send;
+    /// Whether a change that stays goes into flash.
+    fn saves(&mut self) -> impl Future<Output = bool> + Send;
+}
+
+/// What is told on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlaceStep {
+    /// Its parameters are read and kept in a file.
+    BackingUp,
+    /// What the hand holds, once it is kept.
+    BackedUp(PathBuf, Params),
+    /// The hand, or another one, is looked for there.
+    Looking(Place),
+    /// The value is written there.
+    Writing(Place),
+    /// There, or held and waiting for power: a person says whether it stays, within [`KEEP_WITHIN`].
+    Keeping(Place),
+    /// It is taken back.
+    Returning,
+    /// Kept: a person says whether it goes into flash.
+    Offering(Place),
+    /// SAVE is under way.
+    Saving(Place),
+}
+
+/// How it ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PlaceEnd {
+    /// The hand was not reached for the write, or was not known to rest. Nothing was written.
+    NotWritten,
+    /// Another hand answers at the new place. Nothing was written.
+    Occupied,
+    /// The hand said no, or did not take it, and is where it was.
+    NotTaken {
+        /// The protocol's word for it, if the hand said no.
+        reason: Option<String>,
+    },
+    /// It was taken back: the hand is as it was before.
+    Back,
+    /// It could not be taken back: the hand is there and holds the new value.
+    NotBack(Place),
+    /// Kept; with what is known of flash, if SAVE was asked for.
+    Kept {
+        /// Where the hand answers now.
+        at: Place,
+        /// The result of SAVE.
+        saved: Option<Saved>,
+    },
+    /// Kept, and SAVE went out where it was; since then no hand answers at either place.
+    Unseen(Saved),
+    /// No hand answers at either place.
+    Nowhere,
+}
+
+impl PlaceEnd {
+    /// Where the hand is; `None` = nobody knows.
+    #[must_use]
+    pub const fn place(&self) -> Option<Place> {
+        match self {
+            Self::NotWritten | Self::Occupied | Self::NotTaken { .. } | Self::Back => {
+                Some(Place::Old)
+            }
+            Self::NotBack(at) | Self::Kept { at, .. } => Some(*at),
+            Self::Unseen(_) | Self::Nowhere => None,
+        }
+    }
+}
+
+/// The result.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlaceReport {
+    /// What the hand held before.
+    pub backup: PathBuf,
+    /// Where the write sent the hand; `None` if there was none.
+    pub moved: Option<Moved>,
+    /// How it ended.
+    pub end: PlaceEnd,
+    /// Why the files of the hand could not be kept up, if they could not.
+    pub not_noted: Option<String>,
+}
+
+/// Changes it.
+///
+/// # Errors
+/// [`TaskError`]: then nothing was written.
+pub async fn change_place<R: Reach>(
+    reach: &mut R,
+    change: &PlaceChange,
+    backups: &Backups,
+    person: &mut impl Person,
+    mut tell: impl FnMut(PlaceStep),
+) -> Result<PlaceReport, TaskError> {
+    tell(PlaceStep::BackingUp);
+    let hand = reach.reach(&change.places.old).await;
+    let hand = hand.ok_or(TaskError::NotReached)?;
+    let params = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
+    drop(hand);
+    // What a person was shown may be older: what the hand holds now is what it gets back.
+    let change = &PlaceChange {
+        before: params.get(change.id).unwrap_or(change.before),
+        ..change.clone()
+    };
+    let backup = back_up(backups, &params, "before apply").await?;
+    tell(PlaceStep::BackedUp(backup.clone(), params.clone()));
+    let mut run = Run {
+        reach,
+        change,
+        backups,
+        tell: &mut tell,
+        not_noted: None,
+    };
+    let moved = run.go(Place::Old, change.wanted).await;
+    let end = match &moved {
+        None => PlaceEnd::NotWritten,
+        Some(Went::Occupied) => PlaceEnd::Occupied,
+        Some(Went::Nowhere) => PlaceEnd::Nowhere,
+        // A third value: the hand is where it was, and would be lost once somebody saves.
+        Some(Went::Stayed { holds, .. }) if *holds != change.before => {
+            run.bring_back(Place::Old).await
+        }
+        Some(Went::Stayed { refused, .. }) => PlaceEnd::NotTaken {
+            reason: refused.clone(),
+        },
+        Some(Went::There) => run.decide(Place::New, params, person).await,
+        Some(Went::Waits) => run.decide(Place::Old, params, person).await,
+    };
+    Ok(PlaceReport {
+        backup,
+        moved: moved.map(Went::moved),
+        end,
+        not_noted: run.not_noted,
+    })
+}
+
+/// Where a hand is after a write.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Went {
+    Occupied,
+    There,
+    Waits,
+    Stayed {
+        holds: Value,
+        refused: Option<String>,
+    },
+    Nowhere,
+}
+
+impl Went {
+    fn moved(self) -> Moved {
+        match self {
+            Self::Occupied => Moved::Occupied,
+            Self::There => Moved::There,
+            Self::Waits => Moved::Waits,
+            Self::Stayed {
+                refused: Some(reason),
+                ..
+            } => Moved::Refused { reason },
+            Self::Stayed { refused: None, .. } => Moved::Stayed,
+            Self::Nowhere => Moved::Nowhere,
+        }
+    }
+}
+
+struct Run<'a, R, T> {
+    reach: &'a mut R,
+    change: &'a PlaceChange,
+    backups: &'a Backups,
+    tell: &'a mut T,
+    not_noted: Option<String>,
+}
+
+impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
+    /// What a hand that answers there holds in the row; `None` if nobody does.
+    async fn holds(&mut self, at: Place) -> Option<Value> {
+        (self.tell)(PlaceStep::Looking(at));
+        let hand = self.reach.reach(self.change.places.endpoint(at)).await?;
+        let span = span_of(self.change.id);
+        let bytes = read::group(&hand, span).await.ok()?;
+        decoded(self.change.id, span, &bytes)
+    }
+
+    /// Writes a value where the hand is and looks where it answers then; `None` if nothing could be written.
+    async fn go(&mut self, from: Place, value: Value) -> Option<Went> {
+        // Back at its old place, a value is only put back.
+        let is_back_there = from == Place::Old && value == self.change.before;
+        let follows = self.change.is_followed && !is_back_there;
+        // A new id may be another hand's; a hand of another serial speed cannot be heard here.
+        let may_be_taken = follows && self.change.id == ParamId::HandId;
+        if may_be_taken && self.holds(from.other()).await.is_some() {
+            return Some(Went::Occupied);
+        }
+        (self.tell)(PlaceStep::Writing(from));
+        let hand = self.reach.reach(self.change.places.endpoint(from)).await?;
+        // The link cannot know that this write wants rest.
+        if !rests(&hand).await {
+            return None;
+        }
+        let refused = match hand.write(command(self.change.id, value)?).await {
+            Err(RequestError::Refused { reason, .. }) => Some(reason),
+            Err(RequestError::NotConnected | RequestError::Full { .. }) => return None,
+            // A missing answer proves nothing.
+            Ok(()) | Err(_) => None,
+        };
+        drop(hand);
+        for round in 0..ROUNDS {
+            let may_be_there = follows && (round > 0 || refused.is_none());
+            if may_be_there && self.holds(from.other()).await.is_some() {
+                return Some(Went::There);
+            }
+            match self.holds(from).await {
+                Some(holds) if holds == value => return Some(Went::Waits),
+                Some(holds) => return Some(Went::Stayed { holds, refused }),
+                None => {}
+            }
+        }
+        Some(Went::Nowhere)
+    }
+
+    /// The hand answers: a person keeps the change, or it is taken back.
+    async fn decide(&mut self, at: Place, params: Params, person: &mut impl Person) -> PlaceEnd {
+        (self.tell)(PlaceStep::Keeping(at));
+        let keeps = timeout(KEEP_WITHIN, person.keeps()).await;
+        if !keeps.unwrap_or(false) {
+            (self.tell)(PlaceStep::Returning);
+            return self.take_back(at).await;
+        }
+        if at == Place::New {
+            self.adopt(Place::New, Place::Old).await;
+        }
+        (self.tell)(PlaceStep::Offering(at));
+        match person.saves().await {
+            true => self.save(at, params).await,
+            false => PlaceEnd::Kept { at, saved: None },
+        }
+    }
+
+    /// What is known of the hand at one place is found at another too.
+    async fn adopt(&mut self, to: Place, from: Place) {
+        let places = &self.change.places;
+        let former = self.backups.beside(places.endpoint(from));
+        let there = self.backups.beside(places.endpoint(to));
+        if let Err(error) = on_thread(move || there.adopt(&former)).await {
+            self.not_noted.get_or_insert(error.to_string());
+        }
+    }
+
+    /// Finds the hand and gives it back what it held.
+    async fn take_back(&mut self, last: Place) -> PlaceEnd {
+        let mut end = PlaceEnd::Nowhere;
+        for _round in 0..ROUNDS {
+            end = PlaceEnd::Nowhere;
+            let others = self.change.is_followed.then(|| last.other());
+            for at in [last].into_iter().chain(others) {
+                match self.holds(at).await {
+                    Some(holds) if holds == self.change.before => return PlaceEnd::Back,
+                    Some(_) => match self.bring_back(at).await {
+                        PlaceEnd::NotWritten => end = PlaceEnd::NotBack(at),
+                        end => return end,
+                    },
+                    None => {}
+                }
+            }
+        }
+        end
+    }
+
+    async fn bring_back(&mut self, from: Place) -> PlaceEnd {
+        match self.go(from, self.change.before).await {
+            None => PlaceEnd::NotWritten,
+            // At a place of its own, or held where it is: both is as before.
+            Some(Went::There | Went::Waits) => PlaceEnd::Back,
+            Some(Went::Occupied | Went::Stayed { .. }) => PlaceEnd::NotBack(from),
+            Some(Went::Nowhere) => PlaceEnd::Nowhere,
+        }
+    }
+
+    async fn save(&mut self, at: Place, mut params: Params) -> PlaceEnd {
+        let unsaved = PlaceEnd::Kept { at, saved: None };
+        let place = self.change.places.endpoint(at);
+        let Some(hand) = self.reach.reach(place).await else {
+            return unsaved;
+        };
+        params.put(self.change.id, self.change.wanted);
+        let there = self.backups.beside(place);
+        let tell = &mut self.tell;
+        let ended = save_noted(&hand, &there, &params, || tell(PlaceStep::Saving(at))).await;
+        drop(hand);
+        let (saved, not_noted) = match ended {
+            Ok(ended) => ended,
+            Err(error) => {
+                self.not_noted.get_or_insert(error.to_string());
+                return unsaved;
+            }
+        };
+        if let Some(why) = not_noted {
+            self.not_noted.get_or_insert(why);
+        }
+        // Once it is switched off and on the hand may be at the other place.
+        if !(at == Place::New && saved == Saved::Confirmed) {
+            self.adopt(at.other(), at).await;
+        }
+        // Some hands let a new id or speed act at SAVE.
+        let acts = matches!(
+            saved,
+            Saved::Confirmed | Saved::ReadBack | Saved::Unknown { .. }
+        );
+        if at == Place::Old && self.change.is_followed && acts {
+            return self.locate(saved).await;
+        }
+        let saved = Some(saved);
+        PlaceEnd::Kept { at, saved }
+    }
+
+    async fn locate(&mut self, saved: Saved) -> PlaceEnd {
+        for _round in 0..ROUNDS {
+            for at in [Place::Old, Place::New] {
+                if self.holds(at).await.is_some() {
+                    let saved = Some(saved);
+                    return PlaceEnd::Kept { at, saved };
+                }
+            }
+        }
+        PlaceEnd::Unseen(saved)
+    }
+}
+
+/// When a change that waits for a person is taken back, if the question was asked at this moment.
+#[must_use]
+pub fn taken_back_at(asked: Moment) -> Moment {
+    asked.plus(KEEP_WITHIN)
+}

@@ -1,0 +1,231 @@
+//! A sequence of poses on a hand that a person armed: each pose with its speed and force, then its dwell. Whoever else moves
+//! the hand ends it.
+
+use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
+use crate::link::{Clock, LinkStatus, MotionTurn};
+use crate::poses::player::{Cue, End, Pace, Phase, Player};
+use crate::record::{LinkState, Record};
+use crate::tasks::hand::Hand;
+use std::time::Duration;
+use tokio::sync::mpsc;
+use tokio::time::timeout;
+
+/// How often time is looked at where nothing is read.
+const TICK: Duration = Duration::from_millis(10);
+/// Angles older than this are not gone by.
+const FRESH_FOR: Duration = Duration::from_millis(250);
+
+/// What a sequence begins with.
+#[derive(Debug, Clone)]
+pub struct PlayStart {
+    /// The poses.
+    pub cues: Vec<Cue>,
+    /// Whether it begins again at its end.
+    pub looped: bool,
+    /// Through, or one step.
+    pub pace: Pace,
+    /// The arming that a person gave for it.
+    pub epoch: ArmEpoch,
+    /// The turn at moving the hand.
+    pub turn: MotionTurn,
+    /// Joints that are left alone.
+    pub locked: PerDof<bool>,
+    /// What was read until now.
+    pub seen: HandSample,
+    /// The program's clock.
+    pub clock: Clock,
+}
+
+/// What a person may want while it runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PlayCommand {
+    /// Hold where the hand is, until resumed.
+    Pause,
+    /// Go on.
+    Resume(Pace),
+    /// End it and hold where the hand is.
+    End,
+    /// Leave these joints alone.
+    Lock(PerDof<bool>),
+}
+
+/// Where a sequence stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PlayView {
+    /// The step, 0 the first.
+    pub at: usize,
+    /// What it does.
+    pub phase: Phase,
+    /// Steps that ran into their time limit.
+    pub late: u32,
+}
+
+/// What is told on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlayStep {
+    /// It stands elsewhere now.
+    View(PlayView),
+    /// The hand was told this; joints that are `None` were left alone.
+    Sent(Setpoints),
+}
+
+/// Plays. Ends with the reason.
+pub async fn play<H: Hand>(
+    hand: &H,
+    start: PlayStart,
+    mut commands: mpsc::Receiver<PlayCommand>,
+    mut tell: impl FnMut(PlayStep),
+) -> End {
+    let clock = start.clock;
+    let mut records = hand.records();
+    let mut run = Run {
+        turn: start.turn,
+        hand,
+        player: Player::start(start.cues, start.looped, start.pace, clock.now()),
+        epoch: start.epoch,
+        locked: start.locked,
+        sample: start.seen,
+        clock,
+    };
+    let mut shown = None;
+    loop {
+        run.tick(&mut tell);
+        let view = run.view();
+        if shown.replace(view) != Some(view) {
+            tell(PlayStep::View(view));
+        }
+        if let Phase::Ended(end) = view.phase {
+            return end;
+        }
+        tokio::select! {
+            biased;
+            command = commands.recv() => match command {
+                Some(command) => run.obey(command, &mut tell),
+                None => run.player.end(End::TakenOver),
+            },
+            record = timeout(TICK, records.next()) => {
+                if let Ok(Some(Record::Reading { sample, .. })) = record {
+                    run.sample = *sample;
+                }
+            }
+        }
+    }
+}
+
+struct Run<'a, H> {
+    hand: &'a H,
+    turn: MotionTurn,
+    player: Player,
+    epoch: ArmEpoch,
+    locked: PerDof<bool>,
+    sample: HandSample,
+    clock: Clock,
+}
+
+impl<H: Hand> Run<'_, H> {
+    const fn view(&self) -> PlayView {
+        PlayView {
+            at: self.player.at(),
+            phase: self.player.phase(),
+            late: self.player.late(),
+        }
+    }
+
+    fn obey(&mut self, command: PlayCommand, tell: &mut impl FnMut(PlayStep)) {
+        match command {
+            PlayCommand::Pause => {
+                if self.player.pause() {
+                    self.hold_here(tell);
+                }
+            }
+            PlayCommand::Resume(pace) => self.player.resume(pace, self.clock.now()),
+            PlayCommand::End => {
+                self.player.end(End::Person);
+                self.hold_here(tell);
+            }
+            PlayCommand::Lock(locked) => self.locked = locked,
+        }
+    }
+
+    fn tick(&mut self, tell: &mut impl FnMut(PlayStep)) {
+        if self.player.is_over() {
+            return;
+        }
+        if let Some(why) = reason(&self.hand.status(), self.epoch) {
+            self.player.end(why);
+            return;
+        }
+        let Some(angles) = self.angles() else { return };
+        // A locked joint never arrives and is not waited for: it counts as where it should be.
+        let targets = self.player.targets();
+        let seen = PerDof::from_fn(|dof| {
+            let target = targets[dof].filter(|_| self.locked[dof]).map(Angle::get);
+            Some(target.unwrap_or_else(|| angles[dof].raw()))
+        });
+        if let Some(cue) = self.player.tick(self.clock.now(), &seen) {
+            let mut setpoints = Setpoints::none(self.epoch);
+            for (dof, to) in self.free(&cue.targets) {
+                setpoints.speed[dof] = Some(cue.speed);
+                setpoints.force[dof] = Some(cue.force);
+                setpoints.angle[dof] = Some(Target::Go(to));
+            }
+            self.send(setpoints, tell);
+        }
+    }
+
+    /// Angles that are fresh enough to go by.
+    fn angles(&self) -> Option<PerDof<AngleReading>> {
+        let now = self.clock.now();
+        let angle = self
+            .sample
+            .angle
+            .filter(|angle| angle.age(now) <= FRESH_FOR)?;
+        Some(angle.value)
+    }
+
+    fn free(&self, targets: &PerDof<Option<Angle>>) -> Vec<(Dof, Angle)> {
+        let free = targets.iter().filter(|(dof, _)| !self.locked[*dof]);
+        free.filter_map(|(dof, to)| Some((dof, (*to)?))).collect()
+    }
+
+    /// The targets of the free joints become where they are. Nothing is sent that is not fresh.
+    fn hold_here(&self, tell: &mut impl FnMut(PlayStep)) {
+        let Some(pose) = self
+            .angles()
+            .and_then(|all| all.map(AngleReading::hold).all())
+        else {
+            return;
+        };
+        let mut setpoints = Setpoints::none(self.epoch);
+        for (dof, at) in self.free(&pose.map(Some)) {
+            setpoints.angle[dof] = Some(Target::Go(at));
+        }
+        if self.hand.set(self.turn, &setpoints) {
+            tell(PlayStep::Sent(setpoints));
+        }
+    }
+
+    fn send(&mut self, setpoints: Setpoints, tell: &mut impl FnMut(PlayStep)) {
+        if setpoints.is_empty() {
+            return;
+        }
+        if self.hand.set(self.turn, &setpoints) {
+            tell(PlayStep::Sent(setpoints));
+        } else {
+            self.player.end(End::TakenOver);
+        }
+    }
+}
+
+/// Why a sequence in this arming must end now, if it must.
+fn reason(status: &LinkStatus, epoch: ArmEpoch) -> Option<End> {
+    if !status.state.is_live() {
+        Some(End::LinkLost)
+    } else if status.state == LinkState::Fault {
+        Some(End::Fault)
+    } else if status.armed != Some(epoch) {
+        Some(End::Disarmed)
+    } else {
+        None
+    }
+}

@@ -1,0 +1,88 @@
+//! Reading what a hand keeps. Writes nothing.
+
+use crate::hand::Span;
+use crate::link::RequestError;
+use crate::params::rows::ParamId;
+use crate::params::values::{Params, SPANS};
+use crate::tasks::TaskError;
+use crate::tasks::hand::{AGAIN_AFTER, Hand, REACHED_WITHIN, answers};
+use std::time::Duration;
+use tokio::time::sleep;
+
+/// Tries to read a group: an answer is lost, and a lost link comes back.
+const TRIES: u32 = 4;
+/// How often the time is waited out in which an earlier answer may still come: once after each that was lost.
+const WAITS: u32 = TRIES;
+
+/// What was read.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Rows {
+    /// The rows that could be read.
+    pub params: Params,
+    /// Why others could not, group by group.
+    pub troubles: Vec<RequestError>,
+}
+
+impl Rows {
+    /// All rows that are needed.
+    ///
+    /// # Errors
+    /// [`TaskError::NotRead`] with the first that is missing.
+    pub fn with(self, is_needed: impl Fn(ParamId) -> bool) -> Result<Params, TaskError> {
+        let missing = |id: &ParamId| is_needed(*id) && self.params.get(*id).is_none();
+        let Some(id) = ParamId::all().into_iter().find(missing) else {
+            return Ok(self.params);
+        };
+        let why = self.troubles.into_iter().next();
+        Err(TaskError::NotRead {
+            id,
+            why: why.unwrap_or(RequestError::LinkLost),
+        })
+    }
+}
+
+/// Reads all rows, group by group; `took` is told each group as it comes.
+pub async fn rows<H: Hand>(hand: &H, mut took: impl FnMut(Span, &[u8])) -> Rows {
+    let mut rows = Rows::default();
+    for span in SPANS {
+        match group(hand, span).await {
+            Ok(bytes) => {
+                rows.params.take(span, &bytes);
+                took(span, &bytes);
+            }
+            Err(error) => rows.troubles.push(error),
+        }
+    }
+    rows
+}
+
+/// Reads some memory, and tries again where that may help.
+///
+/// # Errors
+/// As the link says, at the last try.
+pub async fn group<H: Hand>(hand: &H, span: Span) -> Result<Vec<u8>, RequestError> {
+    let (mut tries, mut waits) = (TRIES, WAITS);
+    loop {
+        match hand.read(span).await {
+            Ok(bytes) => return Ok(bytes),
+            Err(error @ (RequestError::Refused { .. } | RequestError::TooLong { .. })) => {
+                return Err(error);
+            }
+            // Nothing was asked, so this is no try.
+            Err(RequestError::Ambiguous { wait_s, .. }) if waits > 0 => {
+                waits -= 1;
+                sleep(Duration::from_secs(wait_s)).await;
+                continue;
+            }
+            Err(error @ RequestError::Ambiguous { .. }) => return Err(error),
+            Err(error) if tries <= 1 => return Err(error),
+            Err(error) => {
+                tries -= 1;
+                sleep(AGAIN_AFTER).await;
+                if !answers(hand, REACHED_WITHIN).await {
+                    return Err(error);
+                }
+            }
+        }
+    }
+}

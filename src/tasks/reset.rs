@@ -1,0 +1,154 @@
+//! Back to the factory's parameters, with a backup first, and where the hand answers then (manual 2.6.5).
+
+use crate::link::RequestError;
+use crate::params::backups::Backups;
+use crate::params::place::{Place, Places, factory_place};
+use crate::params::rows::ParamId;
+use crate::params::values::Params;
+use crate::record::{NotSent, Reset};
+use crate::store::on_thread;
+use crate::tasks::hand::{Hand, Reach, once_at_rest};
+use crate::tasks::save::back_up;
+use crate::tasks::{TaskError, read};
+use crate::transport::Endpoint;
+use std::path::PathBuf;
+
+/// Rounds of looking for the hand: one that starts again needs a few seconds.
+const ROUNDS: u8 = 3;
+
+/// What is told on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ResetStep {
+    /// Its parameters are read and kept in a file.
+    BackingUp,
+    /// RESET_PARA goes out.
+    Sending,
+    /// The hand is looked for there; the new place is the factory's.
+    Looking(Place),
+}
+
+/// How it ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ResetEnd {
+    /// It was not sent, and why, if the link says so.
+    NotSent(Option<NotSent>),
+    /// The hand said no.
+    Refused {
+        /// The protocol's word for it.
+        reason: String,
+    },
+    /// A hand answers there.
+    Found {
+        /// Where.
+        at: Place,
+        /// What it holds.
+        params: Params,
+        /// Rows that are not as at delivery.
+        left: Vec<ParamId>,
+    },
+    /// No hand answers at either place.
+    Nowhere,
+}
+
+/// The result.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ResetReport {
+    /// What the hand held before.
+    pub backup: PathBuf,
+    /// Whether the hand acknowledged it.
+    pub is_acknowledged: bool,
+    /// How it ended.
+    pub end: ResetEnd,
+    /// Why the files of the hand could not be kept up, if they could not.
+    pub not_noted: Option<String>,
+}
+
+/// Where a hand is found before and after a reset.
+#[must_use]
+pub fn places(hand: &Endpoint) -> Places {
+    Places {
+        old: hand.clone(),
+        new: factory_place(hand),
+    }
+}
+
+/// Resets.
+///
+/// # Errors
+/// [`TaskError`]: then nothing was written.
+pub async fn reset<R: Reach>(
+    reach: &mut R,
+    places: &Places,
+    backups: &Backups,
+    mut tell: impl FnMut(ResetStep),
+) -> Result<ResetReport, TaskError> {
+    tell(ResetStep::BackingUp);
+    let hand = reach.reach(&places.old).await;
+    let hand = hand.ok_or(TaskError::NotReached)?;
+    let before = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
+    let backup = back_up(backups, &before, "before reset").await?;
+    tell(ResetStep::Sending);
+    let sent = once_at_rest(|| hand.reset()).await;
+    drop(hand);
+    let mut report = ResetReport {
+        backup,
+        is_acknowledged: matches!(sent, Ok(Reset::Acknowledged)),
+        end: ResetEnd::Nowhere,
+        not_noted: None,
+    };
+    match sent {
+        Ok(Reset::NotSent(why)) => report.end = ResetEnd::NotSent(Some(why)),
+        Ok(Reset::Refused { reason }) => report.end = ResetEnd::Refused { reason },
+        // Without an answer it may have acted.
+        Ok(Reset::Acknowledged | Reset::Unanswered) | Err(RequestError::LinkLost) => {
+            // Whatever the answer was: what is in flash now is not what was saved.
+            let noting = backups.clone();
+            let forgotten = on_thread(move || noting.forget_saved()).await;
+            report.end = find(reach, places, &mut tell).await;
+            let adopted = adopt(backups, places, &report.end).await;
+            report.not_noted = forgotten.and(adopted).err().map(|error| error.to_string());
+        }
+        Err(error) => return Err(error.into()),
+    }
+    Ok(report)
+}
+
+/// Looks at the factory's place first, then where the hand was.
+async fn find<R: Reach>(
+    reach: &mut R,
+    places: &Places,
+    tell: &mut impl FnMut(ResetStep),
+) -> ResetEnd {
+    for _round in 0..ROUNDS {
+        for at in [Place::New, Place::Old] {
+            if at == Place::Old && places.old == places.new {
+                continue;
+            }
+            tell(ResetStep::Looking(at));
+            let Some(hand) = reach.reach(places.endpoint(at)).await else {
+                continue;
+            };
+            let rows = read::rows(&hand, |_, _| ()).await;
+            if rows.params.is_empty() {
+                continue;
+            }
+            let left = rows.params.differences(&Params::factory());
+            return ResetEnd::Found {
+                at,
+                left: left.into_iter().map(|row| row.id).collect(),
+                params: rows.params,
+            };
+        }
+    }
+    ResetEnd::Nowhere
+}
+
+/// What is known of the hand is found at its new place too.
+async fn adopt(backups: &Backups, places: &Places, end: &ResetEnd) -> std::io::Result<()> {
+    let ResetEnd::Found { at, .. } = end else {
+        return Ok(());
+    };
+    let there = backups.beside(places.endpoint(*at));
+    let former = backups.clone();
+    on_thread(move || there.adopt(&former)).await
+}

@@ -1,0 +1,142 @@
+//! SAVE: the hand's parameters into its flash, with a backup first and notes of what went out and what came of it
+//! (manual 2.6.4).
+
+use crate::hand::Span;
+use crate::link::RequestError;
+use crate::params::backups::Backups;
+use crate::params::danger::worse;
+use crate::params::values::Params;
+use crate::record::{SaveDoubt, Saved};
+use crate::store::calendar::since_1970;
+use crate::store::on_thread;
+use crate::tasks::hand::{Hand, once_at_rest};
+use crate::tasks::{Consent, Risks, TaskError, read};
+use std::io;
+use std::path::PathBuf;
+use std::time::{Duration, SystemTime};
+use tokio::time::sleep;
+
+/// The result of a SAVE may come this late; another program must not take it for the result of its own.
+const APART: Duration = Duration::from_secs(6);
+
+/// What is needed for it.
+#[derive(Debug, Clone)]
+pub struct Save {
+    /// Where backup and notes go.
+    pub backups: Backups,
+    /// What the hand would wake up with so far: only what hits harder than this has to be meant.
+    pub before: Params,
+    /// What a person agreed to.
+    pub consent: Consent,
+}
+
+/// What is told on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SaveStep {
+    /// A group was read.
+    Read(Span, Vec<u8>),
+    /// What a person agreed to.
+    Meant(Risks),
+    /// The backup is written, and a SAVE of another program waited for.
+    BackingUp,
+    /// SAVE goes out; its result is awaited.
+    Saving,
+}
+
+/// The result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SaveReport {
+    /// What the hand held.
+    pub params: Params,
+    /// Where that was kept.
+    pub backup: PathBuf,
+    /// What is known of flash.
+    pub saved: Saved,
+    /// Why this could not be noted.
+    pub not_noted: Option<String>,
+}
+
+/// Saves.
+///
+/// # Errors
+/// [`TaskError`]: then no SAVE went out.
+pub async fn save<H: Hand>(
+    hand: &H,
+    task: &Save,
+    mut tell: impl FnMut(SaveStep),
+) -> Result<SaveReport, TaskError> {
+    let took = |span, bytes: &[u8]| tell(SaveStep::Read(span, bytes.to_vec()));
+    let params = read::rows(hand, took).await.with(|_| true)?;
+    let risks = Risks {
+        dangers: worse(&task.before, &params),
+        ..Risks::default()
+    };
+    task.consent.check(&risks)?;
+    tell(SaveStep::Meant(risks));
+    tell(SaveStep::BackingUp);
+    let backup = back_up(&task.backups, &params, "before save").await?;
+    if let Some(ago) = task.backups.since_attempt(SystemTime::now()) {
+        sleep(APART.saturating_sub(ago)).await;
+    }
+    let (saved, not_noted) = save_noted(hand, &task.backups, &params, || {
+        tell(SaveStep::Saving);
+    })
+    .await?;
+    Ok(SaveReport {
+        params,
+        backup,
+        saved,
+        not_noted,
+    })
+}
+
+/// Keeps what a hand holds.
+pub(crate) async fn back_up(
+    backups: &Backups,
+    params: &Params,
+    why: &'static str,
+) -> Result<PathBuf, TaskError> {
+    let (backups, params) = (backups.clone(), params.clone());
+    on_thread(move || backups.back_up(&params, why, since_1970()))
+        .await
+        .map_err(no_backup)
+}
+
+/// Notes the attempt, sends SAVE, and notes the result; why that could not be noted, if it could not.
+pub(crate) async fn save_noted<H: Hand>(
+    hand: &H,
+    backups: &Backups,
+    params: &Params,
+    goes_out: impl FnOnce(),
+) -> Result<(Saved, Option<String>), TaskError> {
+    let (noting, attempt) = (backups.clone(), params.clone());
+    on_thread(move || noting.note_attempt(&attempt, since_1970()))
+        .await
+        .map_err(no_backup)?;
+    goes_out();
+    let ended = once_at_rest(|| hand.save()).await;
+    // What was not sent must not be noted as of unknown result.
+    let noted = match &ended {
+        Ok(saved) => saved.clone(),
+        Err(RequestError::LinkLost) => Saved::Unknown {
+            why: SaveDoubt::LinkLost,
+        },
+        Err(error) => Saved::Refused {
+            reason: error.to_string(),
+        },
+    };
+    let (noting, result) = (backups.clone(), noted.clone());
+    let not_noted = on_thread(move || noting.note_result(&result)).await.err();
+    match ended {
+        Ok(_) | Err(RequestError::LinkLost) => {
+            Ok((noted, not_noted.map(|error| error.to_string())))
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+fn no_backup(error: io::Error) -> TaskError {
+    TaskError::NoBackup {
+        message: error.to_string(),
+    }
+}

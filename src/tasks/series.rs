@@ -1,0 +1,248 @@
+//! A series of grasp trials on a hand that a person armed: readings in, setpoints out, every reading judged as it comes, and
+//! every stop looked after until feedback shows rest. Decides nothing about trials.
+
+use crate::hand::{ArmEpoch, HandSample, PerDof, Speed};
+use crate::link::{Clock, LinkStatus, MotionTurn, PollRates, Records};
+use crate::record::{Hold, Record};
+use crate::tasks::hand::Hand;
+use crate::trials::limits::{Abort, LinkView};
+use crate::trials::plan::{PlanError, TrialPlan, TrialSetting};
+use crate::trials::recording::TrialMark;
+use crate::trials::runner::Stage;
+use crate::trials::series::{SeriesOrder, TrialSeries};
+use crate::trials::summary::Trial;
+use std::pin::pin;
+use std::time::Duration;
+use tokio::time::{Instant, timeout};
+
+/// How often a series wants the hand to be read; no line is slower for it than it can be.
+pub const RATES: PollRates = PollRates {
+    state_hz: 500.0,
+    tactile_hz: 60.0,
+    settings_hz: 5.0,
+};
+/// How often time is looked at where nothing is read.
+const TICK: Duration = Duration::from_millis(5);
+/// How long feedback may take to show rest; the link raises its alarm after half a second.
+const REST_WITHIN: Duration = Duration::from_secs(3);
+
+/// Where a series stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeriesView {
+    /// Trials that began.
+    pub number: usize,
+    /// Trials in all.
+    pub total: usize,
+    /// What is tried; `None` between two trials.
+    pub setting: Option<TrialSetting>,
+    /// Whether it looks for the contact.
+    pub is_probing: bool,
+    /// What the hand does.
+    pub stage: Stage,
+}
+
+impl SeriesView {
+    fn of(series: &TrialSeries) -> Self {
+        let (number, total) = series.progress();
+        Self {
+            number,
+            total,
+            setting: series.setting(),
+            is_probing: series.is_probing(),
+            stage: series.stage(),
+        }
+    }
+}
+
+/// What is told on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SeriesStep {
+    /// It stands elsewhere now.
+    View(SeriesView),
+    /// Something happened in the trial that runs.
+    Mark(TrialMark),
+    /// A trial is over.
+    Trial(Box<Trial>),
+}
+
+/// Whether what was told could be kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Told {
+    /// It could.
+    Kept,
+    /// It could not: the series ends.
+    Lost,
+}
+
+/// What feedback says after a stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stop {
+    /// The hand rests, so long after the stop.
+    Confirmed {
+        /// From the stop to rest.
+        after: Duration,
+    },
+    /// It does not show rest.
+    NotConfirmed,
+    /// The link is gone.
+    LinkLost,
+}
+
+/// How it ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeriesReport {
+    /// Why it ended early, if it did.
+    pub aborted: Option<Abort>,
+    /// What feedback says of the stop that followed, if one did.
+    pub stop: Option<Stop>,
+}
+
+/// What a series begins with.
+#[derive(Debug, Clone)]
+pub struct SeriesStart {
+    /// What to try.
+    pub plan: TrialPlan,
+    /// The arming that a person gave for it.
+    pub epoch: ArmEpoch,
+    /// The turn at moving the hand.
+    pub turn: MotionTurn,
+    /// What was read until now.
+    pub seen: HandSample,
+    /// The program's clock.
+    pub clock: Clock,
+}
+
+/// Runs a series. `ended` resolves when a person ends it. At the end the hand is not armed any more.
+///
+/// # Errors
+/// [`PlanError`]: the plan makes no sense, and nothing was sent.
+pub async fn series<H: Hand>(
+    hand: &H,
+    start: SeriesStart,
+    ended: impl Future<Output = Abort>,
+    mut tell: impl FnMut(SeriesStep) -> Told,
+) -> Result<SeriesReport, PlanError> {
+    let clock = start.clock;
+    let mut series = TrialSeries::start(start.plan, start.epoch, clock.now())?;
+    let mut records = hand.records();
+    let turn = start.turn;
+    hand.read_at(RATES);
+    let mut sample = start.seen;
+    let mut ended = pin!(ended);
+    let mut shown = Shown::default();
+    let mut stop = None;
+    while !series.is_over() {
+        let mut order = None;
+        tokio::select! {
+            biased;
+            why = &mut ended => order = series.end(why, clock.now()),
+            record = timeout(TICK, records.next()) => {
+                if let Ok(Some(Record::Reading { sample: newest, fresh })) = record {
+                    sample = *newest;
+                    series.take(&sample, fresh);
+                }
+                let view = link_view(&hand.status());
+                order = order.or(series.tick(&sample, view, clock.now()));
+            }
+        }
+        if let Some(SeriesOrder::Set(setpoints)) = &order {
+            hand.set(turn, setpoints);
+        }
+        if shown.tell(&mut series, &mut tell) == Told::Lost {
+            order = series.end(Abort::NotKept, clock.now()).or(order);
+        }
+        if order == Some(SeriesOrder::Stop) {
+            stop = Some(hold(hand, &mut records).await);
+        }
+    }
+    shown.tell(&mut series, &mut tell);
+    hand.read_at(PollRates::default());
+    if stop.is_none() {
+        hand.disarm();
+    }
+    Ok(SeriesReport {
+        aborted: series.aborted(),
+        stop,
+    })
+}
+
+/// What a trial looks at of the link.
+fn link_view(status: &LinkStatus) -> LinkView {
+    LinkView {
+        state: status.state,
+        armed: status.armed,
+    }
+}
+
+/// What was told already.
+#[derive(Default)]
+struct Shown {
+    view: Option<SeriesView>,
+    marks: usize,
+}
+
+impl Shown {
+    /// Tells what is new: marks before the trial that they belong to, and where the series stands last.
+    fn tell(
+        &mut self,
+        series: &mut TrialSeries,
+        tell: &mut impl FnMut(SeriesStep) -> Told,
+    ) -> Told {
+        let mut told = Told::Kept;
+        let mut also = |step| {
+            if tell(step) == Told::Lost {
+                told = Told::Lost;
+            }
+        };
+        while let Some(trial) = series.finished() {
+            for mark in trial.recording.marks().iter().skip(self.marks) {
+                also(SeriesStep::Mark(*mark));
+            }
+            self.marks = 0;
+            also(SeriesStep::Trial(Box::new(trial)));
+        }
+        if let Some(recording) = series.recording() {
+            for mark in recording.marks().iter().skip(self.marks) {
+                also(SeriesStep::Mark(*mark));
+            }
+            self.marks = recording.marks().len();
+        }
+        let view = SeriesView::of(series);
+        if self.view.replace(view) != Some(view) {
+            also(SeriesStep::View(view));
+        }
+        told
+    }
+}
+
+/// Holds, and waits for what feedback says of it.
+pub async fn hold<H: Hand>(hand: &H, records: &mut Records) -> Stop {
+    hand.stop();
+    let begun = Instant::now();
+    while begun.elapsed() < REST_WITHIN {
+        let status = hand.status();
+        if !status.state.is_live() {
+            return Stop::LinkLost;
+        }
+        if let Hold::Confirmed { at, rest } = status.hold
+            && status.armed.is_none()
+        {
+            let after = rest.since(at);
+            return Stop::Confirmed { after };
+        }
+        let _record = timeout(TICK, records.next()).await;
+    }
+    Stop::NotConfirmed
+}
+
+/// The limits that a hand is armed with for a plan: gentle, and no stronger than its smallest threshold.
+#[must_use]
+pub fn arm_limits(plan: &TrialPlan) -> crate::link::ArmRequest {
+    use crate::hand::Force;
+    let least = plan.grid.forces.iter().min().copied();
+    let force = least.map_or(Force::GENTLE, |least| least.min(Force::GENTLE));
+    crate::link::ArmRequest {
+        speed: PerDof::splat(Speed::GENTLE),
+        force: PerDof::splat(force),
+    }
+}

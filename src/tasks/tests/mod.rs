@@ -1,0 +1,7 @@
+//! What tasks ask of a hand and what they say of it, on a hand that is only a memory and a script.
+
+mod place;
+mod play;
+mod rest;
+mod rows;
+mod series;

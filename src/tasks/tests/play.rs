@@ -1,0 +1,234 @@
+//! What a sequence sends and what ends it, on a hand that only notes what it is told.
+
+use crate::hand::command::stored_gesture;
+use crate::hand::{
+    Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target, UserGesture,
+};
+use crate::link::RequestError;
+use crate::poses::library::PoseId;
+use crate::poses::player::{Cue, End, Pace, Phase};
+use crate::record::LinkState;
+use crate::tasks::fake::{Asked, FakeHand, Fate, Said, WELL};
+use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, PlayView, play};
+use crate::tasks::{Hand, gesture};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use tokio::sync::mpsc;
+use tokio::task::JoinHandle;
+use tokio::time::sleep;
+
+fn cue(pose: u64, angle: i16) -> Cue {
+    Cue {
+        pose: PoseId(pose),
+        targets: PerDof::splat(Some(Angle::nearest(angle))),
+        speed: Speed::nearest(350),
+        force: Force::nearest(900),
+        dwell: Duration::from_millis(50),
+        limit: Duration::from_secs(5),
+    }
+}
+
+/// A sequence of two poses that plays, on a hand at 420.
+struct Bench {
+    hand: FakeHand,
+    commands: Option<mpsc::Sender<PlayCommand>>,
+    steps: Arc<Mutex<Vec<PlayStep>>>,
+    task: JoinHandle<End>,
+}
+
+impl Bench {
+    fn start(pace: Pace, locked: PerDof<bool>) -> Self {
+        let hand = FakeHand::new();
+        hand.arm_as(1);
+        let start = PlayStart {
+            cues: vec![cue(1, 700), cue(2, 200)],
+            looped: false,
+            pace,
+            epoch: ArmEpoch(1),
+            turn: hand.take_turn(),
+            locked,
+            seen: HandSample::default(),
+            clock: hand.clock,
+        };
+        let (commands, wanted) = mpsc::channel(4);
+        let steps = Arc::new(Mutex::new(Vec::new()));
+        let (told, link) = (Arc::clone(&steps), hand.clone());
+        let task = tokio::spawn(async move {
+            play(&link, start, wanted, |step| told.lock().unwrap().push(step)).await
+        });
+        Self {
+            hand,
+            commands: Some(commands),
+            steps,
+            task,
+        }
+    }
+
+    async fn playing() -> Self {
+        let bench = Self::start(Pace::Through, PerDof::splat(false));
+        sleep(Duration::from_millis(1)).await;
+        bench.at(600, 1).await;
+        bench
+    }
+
+    /// The hand is there for so many readings, 10 ms apart.
+    async fn at(&self, angle: i16, readings: usize) {
+        for _ in 0..readings {
+            self.hand.says(Said { angle, ..WELL });
+            sleep(Duration::from_millis(10)).await;
+        }
+    }
+
+    async fn command(&self, command: PlayCommand) {
+        let commands = self.commands.as_ref().unwrap();
+        commands.send(command).await.unwrap();
+        sleep(Duration::from_millis(1)).await;
+    }
+
+    fn moves(&self) -> Vec<Setpoints> {
+        let asked = self.hand.asked().into_iter();
+        let moves = asked.map(|asked| match asked {
+            Asked::Move(setpoints) => setpoints,
+            other => panic!("{other:?}"),
+        });
+        moves.collect()
+    }
+
+    /// Where the index finger was sent since the last call.
+    fn sent(&self) -> Vec<Option<i16>> {
+        let moves = self.moves().into_iter();
+        moves
+            .map(|all| all.angle[Dof::Index].map(Target::raw))
+            .collect()
+    }
+
+    fn view(&self) -> PlayView {
+        let steps = self.steps.lock().unwrap();
+        let mut views = steps.iter().rev().filter_map(|step| match step {
+            PlayStep::View(view) => Some(*view),
+            PlayStep::Sent(_) => None,
+        });
+        views.next().unwrap()
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_sequence_goes_from_pose_to_pose_and_ends() {
+    let locked = PerDof::from_fn(|dof| dof == Dof::ThumbBend);
+    let bench = Bench::start(Pace::Through, locked);
+    sleep(Duration::from_millis(1)).await;
+    bench.at(500, 1).await;
+    bench.at(690, 3).await;
+    let mut wanted = Setpoints::none(ArmEpoch(1));
+    for dof in Dof::ALL.into_iter().filter(|dof| !locked[*dof]) {
+        wanted.speed[dof] = Some(Speed::nearest(350));
+        wanted.force[dof] = Some(Force::nearest(900));
+        wanted.angle[dof] = Some(Target::Go(Angle::nearest(700)));
+    }
+    assert_eq!(bench.moves(), [wanted], "a locked joint is left alone");
+    bench.at(690, 10).await;
+    assert_eq!(bench.sent(), [Some(200)]);
+    bench.at(200, 20).await;
+    assert_eq!(bench.task.await.unwrap(), End::Finished);
+    assert_eq!(bench.hand.asked(), []);
+}
+
+#[tokio::test(start_paused = true)]
+async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
+    type Break = fn(&mut Bench);
+    let ways: [(Break, End); 7] = [
+        (|bench| bench.hand.stop(), End::Disarmed),
+        (|bench| bench.hand.disarm(), End::Disarmed),
+        (
+            |bench| bench.hand.facts().status.state = LinkState::Fault,
+            End::Fault,
+        ),
+        (
+            |bench| bench.hand.facts().status.state = LinkState::Offline,
+            End::LinkLost,
+        ),
+        (|bench| bench.hand.arm_as(2), End::Disarmed),
+        (|bench| drop(bench.commands.take()), End::TakenOver),
+        (
+            |bench| {
+                let commands = bench.commands.as_ref().unwrap();
+                commands.try_send(PlayCommand::End).unwrap();
+            },
+            End::Person,
+        ),
+    ];
+    for (break_off, want) in ways {
+        let mut bench = Bench::playing().await;
+        break_off(&mut bench);
+        sleep(Duration::from_millis(20)).await;
+        assert_eq!(bench.view().phase, Phase::Ended(want));
+        bench.hand.asked();
+        // Even an arming later does not bring it back.
+        bench.hand.arm_as(9);
+        bench.at(700, 1000).await;
+        assert_eq!(bench.hand.asked(), [], "{want:?}");
+        assert_eq!(bench.task.await.unwrap(), want);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn whoever_takes_the_turn_ends_a_sequence() {
+    let bench = Bench::playing().await;
+    bench.hand.asked();
+    let _another = bench.hand.take_turn();
+    bench.at(700, 20).await;
+    assert_eq!(bench.hand.asked(), []);
+    assert_eq!(bench.task.await.unwrap(), End::TakenOver);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_pause_holds_and_waits_for_a_person() {
+    let bench = Bench::playing().await;
+    bench.sent();
+    bench.command(PlayCommand::Pause).await;
+    assert_eq!(bench.sent(), [Some(600)], "holds where it is");
+    bench.at(610, 1000).await;
+    assert_eq!(bench.sent(), []);
+    assert_eq!(bench.view().phase, Phase::Paused);
+    bench.command(PlayCommand::Resume(Pace::Through)).await;
+    bench.at(610, 1).await;
+    assert_eq!(bench.sent(), [Some(700)]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn nothing_is_sent_by_angles_that_are_old() {
+    let bench = Bench::playing().await;
+    bench.sent();
+    sleep(Duration::from_millis(300)).await;
+    bench.command(PlayCommand::Pause).await;
+    assert_eq!(bench.sent(), [], "where it is now is not known");
+}
+
+#[tokio::test(start_paused = true)]
+async fn one_step_pauses_after_one_pose() {
+    let bench = Bench::start(Pace::OneStep, PerDof::splat(false));
+    sleep(Duration::from_millis(1)).await;
+    bench.at(690, 50).await;
+    assert_eq!(bench.sent(), [Some(700)]);
+    assert_eq!(bench.view().phase, Phase::Paused);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stored_gesture_is_written_and_read_back() {
+    let to = UserGesture::nearest(14);
+    let angles = PerDof::splat(Angle::nearest(300));
+    let hand = FakeHand::new();
+    let held = gesture::store(&hand, to, angles).await.unwrap();
+    assert_eq!(held, Some(PerDof::splat(300)));
+    let write = crate::hand::HandCommand::StoreGesture(to, angles);
+    let read = Asked::Read(stored_gesture(to));
+    assert_eq!(hand.asked(), [Asked::Write(write), read]);
+
+    let refused = RequestError::Refused {
+        address: 1066,
+        reason: "0x02".into(),
+    };
+    let fate = Fate::Fails(refused.clone());
+    hand.script(move |_| fate.clone());
+    assert_eq!(gesture::store(&hand, to, angles).await, Err(refused));
+}

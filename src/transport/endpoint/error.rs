@@ -1,0 +1,44 @@
+//! Why a text is no endpoint, in words for the person who wrote it. Reads no text.
+
+/// Why a text is no endpoint.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum EndpointError {
+    /// The part before the colon is unknown or missing.
+    #[error(
+        "'{text}' names no kind of link: write sim:, rs485:PORT, rtu:PORT, tcp:HOST, can:INTERFACE, slcan:PORT or usbcan:PORT"
+    )]
+    Kind {
+        /// What was given.
+        text: String,
+    },
+    /// The part after the colon is missing.
+    #[error("'{text}' is incomplete: write for example {example}")]
+    Place {
+        /// What was given.
+        text: String,
+        /// The kind of link.
+        kind: &'static str,
+        /// A right one.
+        example: &'static str,
+    },
+    /// A key that this kind does not have.
+    #[error("'{key}' is not a setting of '{kind}:'; the settings are {known}")]
+    Key {
+        /// What was given.
+        key: String,
+        /// The kind of link.
+        kind: &'static str,
+        /// The keys it has.
+        known: &'static str,
+    },
+    /// A value that does not fit its key.
+    #[error("{key}={value} is not possible: {key} is {want}")]
+    Value {
+        /// The key.
+        key: String,
+        /// What was given.
+        value: String,
+        /// What it must be.
+        want: &'static str,
+    },
+}

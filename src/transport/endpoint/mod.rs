@@ -1,0 +1,298 @@
+//! Endpoints: where a hand is, in one spelling for command line, config, window and files. Opens nothing.
+pub(crate) mod error;
+pub mod packing;
+mod parse;
+pub mod route;
+
+pub use crate::transport::endpoint::error::EndpointError;
+use crate::transport::endpoint::packing::Packing;
+use std::fmt;
+
+/// Serial speed of a hand as delivered (manual 2.2).
+pub const DEFAULT_BAUD: u32 = 115_200;
+/// Port of the hand's Modbus TCP server (manual 1.3.2).
+pub const DEFAULT_TCP_PORT: u16 = 6000;
+/// Unit id that the manual prints for Modbus TCP (2.5).
+pub const DEFAULT_UNIT: u8 = 255;
+/// CAN bit rate as delivered (manual 2.3).
+pub const DEFAULT_BITRATE: u32 = 1_000_000;
+/// Bus id of a hand as delivered (manual 2.6.1).
+pub const DEFAULT_ID: u8 = 1;
+/// Scenario of the built-in hand when none is named.
+pub const DEFAULT_SCENARIO: &str = "idle";
+/// Where a hand is and how it is spoken to. The spelling is that of [`fmt::Display`] and `FromStr`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Endpoint {
+    /// `sim:?seed=7&scenario=grasp`: the built-in hand, in this process.
+    Sim {
+        /// Seed of everything random in it.
+        seed: u64,
+        /// What it does.
+        scenario: String,
+    },
+    /// `rs485:/dev/ttyUSB0?baud=115200&id=1`: private framing.
+    Rs485(SerialLine),
+    /// `rtu:/dev/ttyUSB0?baud=115200&id=1`: Modbus RTU.
+    Rtu(SerialLine),
+    /// `tcp:192.168.11.210:6000?unit=255`: Modbus TCP.
+    Tcp {
+        /// Name or address, without brackets.
+        host: String,
+        /// TCP port.
+        port: u16,
+        /// Modbus unit id.
+        unit: u8,
+        /// How single bytes stand in words, where a person says so; else the link finds out.
+        packing: Option<Packing>,
+    },
+    /// `can:can0?id=1`: SocketCAN.
+    Can {
+        /// Network interface.
+        interface: String,
+        /// Hand id, 1..=16383.
+        id: u16,
+    },
+    /// `slcan:/dev/ttyACM0?bitrate=1000000&id=1`: CAN over a serial adapter.
+    Slcan {
+        /// Serial port of the adapter.
+        port: String,
+        /// CAN bit rate.
+        bitrate: u32,
+        /// Hand id, 1..=16383.
+        id: u16,
+    },
+    /// `usbcan:/dev/ttyUSB0?baud=115200&id=1`: CAN over the maker's own adapter.
+    UsbCan {
+        /// Serial port of the adapter.
+        port: String,
+        /// Bits a second on its serial side. Its bit rate on CAN is its own affair.
+        baud: u32,
+        /// Hand id, 1..=16383.
+        id: u16,
+    },
+}
+
+/// A serial port, its speed and the id of the hand on it.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct SerialLine {
+    /// Path or name of the port.
+    pub port: String,
+    /// Bits a second.
+    pub baud: u32,
+    /// Hand id, 1..=254.
+    pub id: u8,
+    /// As in [`Endpoint::Tcp`]; never in `rs485:`, which has no words.
+    pub packing: Option<Packing>,
+}
+
+impl Endpoint {
+    /// The built-in hand with its defaults.
+    #[must_use]
+    pub fn sim() -> Self {
+        Self::Sim {
+            seed: 1,
+            scenario: DEFAULT_SCENARIO.into(),
+        }
+    }
+
+    /// True for the built-in hand.
+    #[must_use]
+    pub const fn is_sim(&self) -> bool {
+        matches!(self, Self::Sim { .. })
+    }
+
+    /// Where and whom, for files kept by hand: the endpoint without the id, and the id or unit.
+    #[must_use]
+    pub fn place_and_id(&self) -> (String, u16) {
+        let place = format!("{}:{}", self.kind(), self.place());
+        match self {
+            Self::Sim { seed, .. } => (format!("sim:?seed={seed}"), 1),
+            Self::Rs485(line) | Self::Rtu(line) => {
+                (format!("{place}?baud={}", line.baud), u16::from(line.id))
+            }
+            Self::Tcp { unit, .. } => (place, u16::from(*unit)),
+            Self::Can { id, .. } => (place, *id),
+            Self::Slcan { bitrate, id, .. } => (format!("{place}?bitrate={bitrate}"), *id),
+            Self::UsbCan { baud, id, .. } => (format!("{place}?baud={baud}"), *id),
+        }
+    }
+
+    /// True if the hand is on a CAN bus.
+    #[must_use]
+    pub const fn is_can(&self) -> bool {
+        matches!(
+            self,
+            Self::Can { .. } | Self::Slcan { .. } | Self::UsbCan { .. }
+        )
+    }
+
+    /// What a person looks at when it fails: the port, the address, the interface.
+    #[must_use]
+    pub fn place(&self) -> String {
+        match self {
+            Self::Sim { .. } => "the simulated hand".into(),
+            Self::Rs485(line) | Self::Rtu(line) => line.port.clone(),
+            Self::Tcp { host, port, .. } if host.contains(':') => format!("[{host}]:{port}"),
+            Self::Tcp { host, port, .. } => format!("{host}:{port}"),
+            Self::Can { interface, .. } => interface.clone(),
+            Self::Slcan { port, .. } | Self::UsbCan { port, .. } => port.clone(),
+        }
+    }
+
+    /// The serial port it is reached through, if it is.
+    #[must_use]
+    pub fn port(&self) -> Option<&str> {
+        match self {
+            Self::Rs485(line) | Self::Rtu(line) => Some(&line.port),
+            Self::Slcan { port, .. } | Self::UsbCan { port, .. } => Some(port),
+            Self::Sim { .. } | Self::Tcp { .. } | Self::Can { .. } => None,
+        }
+    }
+
+    /// The same hand through another serial port. Endpoints without one stay as they are.
+    #[must_use]
+    pub fn through(&self, path: &str) -> Self {
+        let mut moved = self.clone();
+        match &mut moved {
+            Self::Rs485(line) | Self::Rtu(line) => path.clone_into(&mut line.port),
+            Self::Slcan { port, .. } | Self::UsbCan { port, .. } => path.clone_into(port),
+            Self::Sim { .. } | Self::Tcp { .. } | Self::Can { .. } => {}
+        }
+        moved
+    }
+
+    /// The part before the colon.
+    #[must_use]
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Sim { .. } => "sim",
+            Self::Rs485(_) => "rs485",
+            Self::Rtu(_) => "rtu",
+            Self::Tcp { .. } => "tcp",
+            Self::Can { .. } => "can",
+            Self::Slcan { .. } => "slcan",
+            Self::UsbCan { .. } => "usbcan",
+        }
+    }
+}
+
+impl fmt::Display for Endpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sim { seed, scenario } => write!(f, "sim:?seed={seed}&scenario={scenario}"),
+            Self::Rs485(line) | Self::Rtu(line) => {
+                write!(
+                    f,
+                    "{}:{}?baud={}&id={}",
+                    self.kind(),
+                    line.port,
+                    line.baud,
+                    line.id
+                )?;
+                packing_key(f, line.packing)
+            }
+            Self::Tcp { unit, packing, .. } => {
+                write!(f, "tcp:{}?unit={unit}", self.place())?;
+                packing_key(f, *packing)
+            }
+            Self::Can { interface, id } => write!(f, "can:{interface}?id={id}"),
+            Self::Slcan { port, bitrate, id } => {
+                write!(f, "slcan:{port}?bitrate={bitrate}&id={id}")
+            }
+            Self::UsbCan { port, baud, id } => write!(f, "usbcan:{port}?baud={baud}&id={id}"),
+        }
+    }
+}
+
+fn packing_key(f: &mut fmt::Formatter<'_>, packing: Option<Packing>) -> fmt::Result {
+    packing.map_or(Ok(()), |packing| write!(f, "&packing={packing}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_spelling_reads_back_as_itself() {
+        for (text, full) in [
+            ("sim:", "sim:?seed=1&scenario=idle"),
+            ("sim:?seed=7&scenario=grasp", "sim:?seed=7&scenario=grasp"),
+            ("rs485:/dev/ttyUSB0", "rs485:/dev/ttyUSB0?baud=115200&id=1"),
+            ("rs485:COM5?id=7&baud=921600", "rs485:COM5?baud=921600&id=7"),
+            (
+                "rtu:/dev/ttyUSB0?baud=19200",
+                "rtu:/dev/ttyUSB0?baud=19200&id=1",
+            ),
+            ("tcp:192.168.11.210", "tcp:192.168.11.210:6000?unit=255"),
+            ("tcp:127.0.0.1:6001?unit=1", "tcp:127.0.0.1:6001?unit=1"),
+            ("tcp:[::1]:6001", "tcp:[::1]:6001?unit=255"),
+            ("tcp:::1", "tcp:[::1]:6000?unit=255"),
+            (
+                "tcp:127.0.0.1?packing=high",
+                "tcp:127.0.0.1:6000?unit=255&packing=high",
+            ),
+            (
+                "rtu:COM3?packing=one&id=2",
+                "rtu:COM3?baud=115200&id=2&packing=one",
+            ),
+            (
+                "tcp:[::1]?packing=low",
+                "tcp:[::1]:6000?unit=255&packing=low",
+            ),
+            ("can:can0?id=16383", "can:can0?id=16383"),
+            (
+                "slcan:/dev/ttyACM0?bitrate=500000",
+                "slcan:/dev/ttyACM0?bitrate=500000&id=1",
+            ),
+            ("usbcan:COM4?id=7", "usbcan:COM4?baud=115200&id=7"),
+        ] {
+            let endpoint: Endpoint = text.parse().unwrap();
+            assert_eq!(endpoint.to_string(), full);
+            assert_eq!(full.parse::<Endpoint>().unwrap(), endpoint);
+        }
+    }
+
+    #[test]
+    fn the_place_is_what_a_person_looks_at() {
+        for (text, place) in [
+            ("sim:", "the simulated hand"),
+            ("rs485:/dev/ttyUSB0", "/dev/ttyUSB0"),
+            ("tcp:[::1]:6001?unit=1", "[::1]:6001"),
+            ("tcp:127.0.0.1", "127.0.0.1:6000"),
+            ("can:can0?id=3", "can0"),
+        ] {
+            assert_eq!(text.parse::<Endpoint>().unwrap().place(), place);
+        }
+    }
+
+    #[test]
+    fn wrong_spellings_say_what_is_wrong() {
+        for (text, part) in [
+            ("", "names no kind"),
+            ("/dev/ttyUSB0", "names no kind"),
+            ("usb:/dev/ttyUSB0", "names no kind"),
+            ("rs485:", "is incomplete"),
+            ("rs485:/dev/x?id=0", "1 to 254"),
+            ("rs485:/dev/x?id=255", "1 to 254"),
+            ("rs485:/dev/x?speed=1", "is not a setting"),
+            ("rs485:/dev/x?baud=fast", "not possible"),
+            ("tcp::6000", "is incomplete"),
+            ("tcp:::1]6000", "is incomplete"),
+            ("tcp:host:99999", "1 to 65535"),
+            ("tcp:host:0", "1 to 65535"),
+            ("tcp:host?unit=256", "0 to 255"),
+            ("tcp:host?packing=middle", "low, high or one"),
+            ("tcp:host?packing=", "low, high or one"),
+            ("rs485:/dev/x?packing=high", "is not a setting"),
+            ("can:can0?id=16384", "16383"),
+            ("slcan:/dev/x?bitrate=83333", "800000 or 1000000"),
+            ("usbcan:", "is incomplete"),
+            ("usbcan:/dev/x?bitrate=500000", "is not a setting"),
+            ("usbcan:/dev/x?baud=9", "300 to 4000000"),
+            ("sim:?seed=-1", "whole number"),
+        ] {
+            let error = text.parse::<Endpoint>().unwrap_err().to_string();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! How the text of an endpoint is read. Opens nothing.
+
+use crate::transport::endpoint::error::EndpointError;
+use crate::transport::endpoint::packing::Packing;
+use crate::transport::endpoint::{
+    DEFAULT_BAUD, DEFAULT_BITRATE, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
+    Endpoint, SerialLine,
+};
+use std::str::FromStr;
+
+/// CAN bit rates that serial adapters have a code for (Lawicel `S0` to `S8`).
+const SLCAN_BITRATES: [u32; 9] = [
+    10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000, 800_000, 1_000_000,
+];
+/// The same in words.
+const SLCAN_WANT: &str =
+    "10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000 or 1000000 bits a second";
+/// Largest id on a CAN bus (manual 2.3).
+const CAN_ID_MAX: u16 = 16_383;
+
+impl FromStr for Endpoint {
+    type Err = EndpointError;
+
+    fn from_str(text: &str) -> Result<Self, EndpointError> {
+        let unknown = || EndpointError::Kind { text: text.into() };
+        let (kind, rest) = text.trim().split_once(':').ok_or_else(unknown)?;
+        let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
+        let keys = Query {
+            text,
+            place,
+            pairs: query,
+        };
+        match kind {
+            "sim" => keys.sim(),
+            "rs485" => Ok(Endpoint::Rs485(keys.serial("rs485", "rs485:/dev/ttyUSB0")?)),
+            "rtu" => Ok(Endpoint::Rtu(keys.serial("rtu", "rtu:/dev/ttyUSB0")?)),
+            "tcp" => keys.tcp(),
+            "can" => keys.can(),
+            "slcan" => keys.slcan(),
+            "usbcan" => keys.usbcan(),
+            _ => Err(unknown()),
+        }
+    }
+}
+
+/// The parts of an endpoint's text.
+struct Query<'a> {
+    text: &'a str,
+    place: &'a str,
+    pairs: &'a str,
+}
+
+impl Query<'_> {
+    fn pairs(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.pairs
+            .split('&')
+            .filter(|pair| !pair.is_empty())
+            .map(|pair| pair.split_once('=').unwrap_or((pair, "")))
+    }
+
+    fn place(&self, kind: &'static str, example: &'static str) -> Result<String, EndpointError> {
+        if self.place.is_empty() {
+            return Err(EndpointError::Place {
+                text: self.text.into(),
+                kind,
+                example,
+            });
+        }
+        Ok(self.place.into())
+    }
+
+    fn sim(&self) -> Result<Endpoint, EndpointError> {
+        let (mut seed, mut scenario) = (1, DEFAULT_SCENARIO.to_owned());
+        for (key, value) in self.pairs() {
+            match key {
+                "seed" => seed = number(key, value, "a whole number")?,
+                "scenario" if !value.is_empty() => value.clone_into(&mut scenario),
+                _ => return Err(unknown_key(key, "sim", "seed and scenario")),
+            }
+        }
+        Ok(Endpoint::Sim { seed, scenario })
+    }
+
+    fn serial(
+        &self,
+        kind: &'static str,
+        example: &'static str,
+    ) -> Result<SerialLine, EndpointError> {
+        let mut line = SerialLine {
+            port: self.place(kind, example)?,
+            baud: DEFAULT_BAUD,
+            id: DEFAULT_ID,
+            packing: None,
+        };
+        let known = if kind == "rtu" {
+            "baud, id and packing"
+        } else {
+            "baud and id"
+        };
+        for (key, value) in self.pairs() {
+            match key {
+                "packing" if kind == "rtu" => {
+                    line.packing = Some(number(key, value, Packing::WANT)?);
+                }
+                "baud" => line.baud = serial_speed(key, value)?,
+                "id" => line.id = in_range(key, value, 1..=254, "a whole number from 1 to 254")?,
+                _ => return Err(unknown_key(key, kind, known)),
+            }
+        }
+        Ok(line)
+    }
+
+    fn tcp(&self) -> Result<Endpoint, EndpointError> {
+        let place = self.place("tcp", "tcp:192.168.11.210:6000")?;
+        let (host, port) = split_host(&place);
+        let port = match port {
+            Some(port) => in_range("port", port, 1..=65_535, "a whole number from 1 to 65535")?,
+            None => DEFAULT_TCP_PORT,
+        };
+        if host.is_empty() || host.contains(['[', ']']) {
+            return Err(EndpointError::Place {
+                text: self.text.into(),
+                kind: "tcp",
+                example: "tcp:192.168.11.210:6000",
+            });
+        }
+        let (mut unit, mut packing) = (DEFAULT_UNIT, None);
+        for (key, value) in self.pairs() {
+            match key {
+                "unit" => unit = number(key, value, "a whole number from 0 to 255")?,
+                "packing" => packing = Some(number(key, value, Packing::WANT)?),
+                _ => return Err(unknown_key(key, "tcp", "unit and packing")),
+            }
+        }
+        Ok(Endpoint::Tcp {
+            host: host.into(),
+            port,
+            unit,
+            packing,
+        })
+    }
+
+    fn can(&self) -> Result<Endpoint, EndpointError> {
+        let interface = self.place("can", "can:can0")?;
+        let mut id = u16::from(DEFAULT_ID);
+        for (key, value) in self.pairs() {
+            match key {
+                "id" => id = can_id(key, value)?,
+                _ => return Err(unknown_key(key, "can", "id")),
+            }
+        }
+        Ok(Endpoint::Can { interface, id })
+    }
+
+    fn slcan(&self) -> Result<Endpoint, EndpointError> {
+        let port = self.place("slcan", "slcan:/dev/ttyACM0")?;
+        let (mut bitrate, mut id) = (DEFAULT_BITRATE, u16::from(DEFAULT_ID));
+        for (key, value) in self.pairs() {
+            match key {
+                "bitrate" => {
+                    bitrate = number(key, value, SLCAN_WANT)?;
+                    if !SLCAN_BITRATES.contains(&bitrate) {
+                        return Err(wrong_value(key, value, SLCAN_WANT));
+                    }
+                }
+                "id" => id = can_id(key, value)?,
+                _ => return Err(unknown_key(key, "slcan", "bitrate and id")),
+            }
+        }
+        Ok(Endpoint::Slcan { port, bitrate, id })
+    }
+
+    fn usbcan(&self) -> Result<Endpoint, EndpointError> {
+        let port = self.place("usbcan", "usbcan:/dev/ttyUSB0")?;
+        let (mut baud, mut id) = (DEFAULT_BAUD, u16::from(DEFAULT_ID));
+        for (key, value) in self.pairs() {
+            match key {
+                "baud" => baud = serial_speed(key, value)?,
+                "id" => id = can_id(key, value)?,
+                _ => return Err(unknown_key(key, "usbcan", "baud and id")),
+            }
+        }
+        Ok(Endpoint::UsbCan { port, baud, id })
+    }
+}
+
+/// Splits `host:port`, `[v6]:port`, `host` and a bare `v6`.
+fn split_host(place: &str) -> (&str, Option<&str>) {
+    if let Some(rest) = place.strip_prefix('[') {
+        let (host, port) = rest.split_once(']').unwrap_or((rest, ""));
+        return (host, port.strip_prefix(':'));
+    }
+    match place.rsplit_once(':') {
+        Some((host, port)) if !host.contains(':') => (host, Some(port)),
+        _ => (place, None),
+    }
+}
+
+fn unknown_key(key: &str, kind: &'static str, known: &'static str) -> EndpointError {
+    EndpointError::Key {
+        key: key.into(),
+        kind,
+        known,
+    }
+}
+
+fn number<T: FromStr>(key: &str, value: &str, want: &'static str) -> Result<T, EndpointError> {
+    value
+        .parse()
+        .map_err(|_not_one| wrong_value(key, value, want))
+}
+
+fn wrong_value(key: &str, value: &str, want: &'static str) -> EndpointError {
+    EndpointError::Value {
+        key: key.into(),
+        value: value.into(),
+        want,
+    }
+}
+
+fn serial_speed(key: &str, value: &str) -> Result<u32, EndpointError> {
+    in_range(key, value, 300..=4_000_000, "a speed from 300 to 4000000")
+}
+
+fn can_id(key: &str, value: &str) -> Result<u16, EndpointError> {
+    in_range(key, value, 1..=CAN_ID_MAX, "a whole number from 1 to 16383")
+}
+
+fn in_range<T: FromStr + PartialOrd>(
+    key: &str,
+    value: &str,
+    range: std::ops::RangeInclusive<T>,
+    want: &'static str,
+) -> Result<T, EndpointError> {
+    let parsed: T = number(key, value, want)?;
+    if range.contains(&parsed) {
+        return Ok(parsed);
+    }
+    Err(wrong_value(key, value, want))
+}

@@ -1,0 +1,159 @@
+//! The columns of every table of trials: what the window, the report and the command line show of a trial, from one list.
+
+use crate::trials::measure::metrics::JointMetrics;
+
+/// What a column shows of one joint in one trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Metric {
+    /// Highest force above the threshold.
+    Overshoot,
+    /// Highest force.
+    Peak,
+    /// Force at the end of the dwell.
+    Steady,
+    /// From the command to the contact, by force.
+    Contact,
+    /// From the command to the contact, by touch.
+    Touch,
+    /// From the contact to the steady force.
+    Settle,
+    /// From the command to the motion.
+    DeadTime,
+    /// What was lost from peak to steady.
+    Relaxation,
+    /// Slips during the dwell.
+    Slips,
+    /// Highest current.
+    Current,
+    /// Rise of the temperature.
+    Heat,
+    /// Readings of the force a second.
+    Rate,
+}
+
+/// Which values of a column are the better ones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Better {
+    /// The smaller.
+    Lower,
+    /// The larger.
+    Higher,
+}
+
+/// One column.
+#[derive(Debug, Clone, Copy)]
+pub struct TrialColumn {
+    /// What it shows.
+    pub metric: Metric,
+    /// Its name.
+    pub name: &'static str,
+    /// Its word in the line of a trial on the command line; `None` = it is not part of it.
+    pub word: Option<&'static str>,
+    /// Its unit; empty for a count.
+    pub unit: &'static str,
+    /// Digits after the point.
+    pub decimals: usize,
+    /// Which values are the better ones.
+    pub better: Better,
+    /// How to get it.
+    pub value: fn(&JointMetrics) -> Option<f64>,
+}
+
+const MS_PER_S: f64 = 1000.0;
+
+/// All columns, in the order in which tables show them.
+pub static COLUMNS: [TrialColumn; 12] = [
+    column(Metric::Overshoot, "Overshoot", |own| own.overshoot_g)
+        .unit("g", 0)
+        .word("overshoot"),
+    column(Metric::Peak, "Peak", |own| own.peak_force_g)
+        .unit("g", 0)
+        .word("peak"),
+    column(Metric::Steady, "Steady", |own| own.steady_force_g)
+        .unit("g", 0)
+        .word("steady")
+        .higher(),
+    column(Metric::Contact, "To contact", |own| own.time_to_contact_s)
+        .unit("s", 3)
+        .word("contact"),
+    column(Metric::Touch, "To touch", |own| own.time_to_touch_s).unit("s", 3),
+    column(Metric::Settle, "Settles", |own| own.settle_time_s).unit("s", 2),
+    column(Metric::DeadTime, "Dead time", |own| {
+        own.dead_time_s.map(|time_s| time_s * MS_PER_S)
+    })
+    .unit("ms", 0)
+    .word("dead time"),
+    column(Metric::Relaxation, "Relaxes", |own| own.relaxation_g).unit("g", 0),
+    column(Metric::Slips, "Slips", |own| {
+        let count = own.slip_count.and_then(|count| u32::try_from(count).ok());
+        count.map(f64::from)
+    }),
+    column(Metric::Current, "Current", |own| own.peak_current_ma).unit("mA", 0),
+    column(Metric::Heat, "Warmer", |own| own.temperature_rise_c).unit("°C", 0),
+    column(Metric::Rate, "Reads/s", |own| own.rate_hz).higher(),
+];
+
+const fn column(
+    metric: Metric,
+    name: &'static str,
+    value: fn(&JointMetrics) -> Option<f64>,
+) -> TrialColumn {
+    TrialColumn {
+        metric,
+        name,
+        word: None,
+        unit: "",
+        decimals: 0,
+        better: Better::Lower,
+        value,
+    }
+}
+
+impl TrialColumn {
+    const fn unit(self, unit: &'static str, decimals: usize) -> Self {
+        Self {
+            unit,
+            decimals,
+            ..self
+        }
+    }
+
+    const fn word(self, word: &'static str) -> Self {
+        Self {
+            word: Some(word),
+            ..self
+        }
+    }
+
+    const fn higher(self) -> Self {
+        Self {
+            better: Better::Higher,
+            ..self
+        }
+    }
+
+    /// Name and unit.
+    #[must_use]
+    pub fn title(&self) -> String {
+        match self.unit {
+            "" => self.name.to_owned(),
+            unit => format!("{}, {unit}", self.name),
+        }
+    }
+
+    /// The value with its digits, or "-".
+    #[must_use]
+    pub fn text(&self, joint: &JointMetrics) -> String {
+        number((self.value)(joint), self.decimals)
+    }
+}
+
+/// A number with so many digits, or "-".
+#[must_use]
+pub fn number(value: Option<f64>, decimals: usize) -> String {
+    // Adding zero takes the sign from a zero.
+    value.map_or_else(
+        || "-".to_owned(),
+        |value| format!("{:.decimals$}", value + 0.0),
+    )
+}

@@ -1,0 +1,211 @@
+//! What ends a trial before its time: faults, heat, force, a lost or disarmed link, old readings. Pure; stops nothing itself.
+
+use crate::hand::{ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Timed};
+use crate::record::LinkState;
+use crate::trials::plan::Limits;
+use std::time::Duration;
+
+/// Forces and angles older than this are not watched any more, so nothing may go on by them.
+pub const BLIND_AFTER: Duration = Duration::from_millis(600);
+/// On a slow line faults take turns with the fingertips while something moves.
+pub const FAULT_BLIND_AFTER: Duration = Duration::from_secs(2);
+/// Temperatures are read more seldom.
+pub const HEAT_BLIND_AFTER: Duration = Duration::from_secs(3);
+
+/// Why a trial, and its series, ended early. Only a person who arms starts another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Abort {
+    /// A person ended it.
+    #[error("ended by a person")]
+    Person,
+    /// Stop, disarming, another controller, or another arming.
+    #[error("the hand is no longer armed")]
+    Disarmed,
+    /// The link was lost. Where the hand is now is not known.
+    #[error("the link was lost")]
+    LinkLost,
+    /// A drive reports a fault.
+    #[error("{} reports a fault: {}", dof.name(), faults.iter().map(Fault::name).collect::<Vec<_>>().join(", "))]
+    Fault {
+        /// The first such joint.
+        dof: Dof,
+        /// Its faults.
+        faults: Faults,
+    },
+    /// A joint is as warm as the limit.
+    #[error("{} is at {celsius} °C, the limit is {limit}", dof.name())]
+    Heat {
+        /// The joint.
+        dof: Dof,
+        /// Its temperature.
+        celsius: u8,
+        /// The limit.
+        limit: u8,
+    },
+    /// The force of a joint reached the ceiling.
+    #[error("{} presses with {grams} g, the ceiling is {ceiling}", dof.name())]
+    Ceiling {
+        /// The joint.
+        dof: Dof,
+        /// Force above its reading at rest.
+        grams: i32,
+        /// The ceiling.
+        ceiling: i16,
+    },
+    /// A joint did not reach its target in time.
+    #[error("{} did not reach {target} in time", dof.name())]
+    Unreached {
+        /// The joint.
+        dof: Dof,
+        /// Where it should be.
+        target: i16,
+    },
+    /// The speed and threshold that were set are not confirmed by reading back.
+    #[error("the hand does not confirm the speed and force threshold that were set for {}", dof.name())]
+    LimitsRefused {
+        /// The joint.
+        dof: Dof,
+    },
+    /// A reading that the limits depend on is missing, old or invalid.
+    #[error("the {what} of {} cannot be watched: it is unknown or old", dof.name())]
+    Blind {
+        /// Which.
+        what: &'static str,
+        /// The joint.
+        dof: Dof,
+    },
+    /// The hand stayed too warm to begin.
+    #[error("{} stayed at {celsius} °C or more; trials begin below {limit}", dof.name())]
+    TooWarm {
+        /// The joint.
+        dof: Dof,
+        /// Its temperature.
+        celsius: u8,
+        /// Where it may begin.
+        limit: u8,
+    },
+    /// The samples could not be stored or shown.
+    #[error("the samples could not be stored or shown")]
+    NotKept,
+    /// The slow trial that should measure the contact found none.
+    #[error("{} found no contact to approach", dof.name())]
+    NoContact {
+        /// The joint.
+        dof: Dof,
+    },
+}
+
+/// The link as a trial sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LinkView {
+    /// Where it stands.
+    pub state: LinkState,
+    /// The current arming.
+    pub armed: Option<ArmEpoch>,
+}
+
+/// The first reason to end now, gravest first.
+#[must_use]
+pub fn reason(
+    link: LinkView,
+    epoch: ArmEpoch,
+    seen: &Feedback<'_>,
+    limits: &Limits,
+) -> Option<Abort> {
+    if !link.state.is_live() {
+        return Some(Abort::LinkLost);
+    }
+    fault(seen.sample)
+        .or_else(|| (link.armed != Some(epoch)).then_some(Abort::Disarmed))
+        .or_else(|| blind(seen))
+        .or_else(|| ceiling(seen, limits.ceiling_g))
+        .or_else(|| heat(seen.sample, limits.stop_c))
+}
+
+/// The readings, and the time at which they are judged.
+#[derive(Debug, Clone, Copy)]
+pub struct Feedback<'a> {
+    /// The newest of everything.
+    pub sample: &'a HandSample,
+    /// Force of each joint at rest, g, once it is known.
+    pub rest_g: &'a PerDof<Option<f64>>,
+    /// Now.
+    pub now: Moment,
+}
+
+fn fault(sample: &HandSample) -> Option<Abort> {
+    let faults = sample.faults?.value;
+    let (dof, faults) = faults.iter().find(|(_, faults)| !faults.is_empty())?;
+    let faults = *faults;
+    Some(Abort::Fault { dof, faults })
+}
+
+fn blind(seen: &Feedback<'_>) -> Option<Abort> {
+    fn old<T>(group: &Option<Timed<T>>, now: Moment, most: Duration) -> bool {
+        group.as_ref().is_none_or(|group| group.age(now) > most)
+    }
+    let Feedback { sample, now, .. } = *seen;
+    let dof = Dof::Little;
+    let groups = [
+        ("angle", old(&sample.angle, now, BLIND_AFTER)),
+        ("force", old(&sample.force, now, BLIND_AFTER)),
+        ("fault", old(&sample.faults, now, FAULT_BLIND_AFTER)),
+        (
+            "temperature",
+            old(&sample.temperature, now, HEAT_BLIND_AFTER),
+        ),
+    ];
+    if let Some((what, _)) = groups.into_iter().find(|(_, is_old)| *is_old) {
+        return Some(Abort::Blind { what, dof });
+    }
+    let forces = sample.force?.value;
+    let senseless = forces
+        .iter()
+        .find(|(_, force)| force.documented().is_none());
+    if let Some((dof, _)) = senseless {
+        return Some(Abort::Blind { what: "force", dof });
+    }
+    let temperatures = sample.temperature?.value;
+    let mut unknown = temperatures.iter();
+    let (dof, _) = unknown.find(|(_, celsius)| celsius.documented().is_none())?;
+    Some(Abort::Blind {
+        what: "temperature",
+        dof,
+    })
+}
+
+fn ceiling(seen: &Feedback<'_>, ceiling: i16) -> Option<Abort> {
+    let forces = seen.sample.force?.value;
+    let above = |dof: Dof, raw: i16| f64::from(raw) - seen.rest_g[dof].unwrap_or(0.0);
+    let (dof, grams) = forces
+        .iter()
+        .map(|(dof, force)| (dof, above(dof, force.raw())))
+        .find(|(_, grams)| *grams >= f64::from(ceiling))?;
+    // The sensor's range is some thousand grams either way.
+    #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+    let grams = grams.round() as i32;
+    Some(Abort::Ceiling {
+        dof,
+        grams,
+        ceiling,
+    })
+}
+
+fn heat(sample: &HandSample, limit: u8) -> Option<Abort> {
+    let (dof, celsius) = warmest(sample)?;
+    (celsius >= limit).then_some(Abort::Heat {
+        dof,
+        celsius,
+        limit,
+    })
+}
+
+/// The warmest joint whose temperature makes sense.
+#[must_use]
+pub fn warmest(sample: &HandSample) -> Option<(Dof, u8)> {
+    let temperatures = sample.temperature?.value;
+    temperatures
+        .iter()
+        .filter_map(|(dof, celsius)| Some((dof, celsius.documented()?)))
+        .max_by_key(|(_, celsius)| *celsius)
+}

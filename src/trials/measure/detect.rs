@@ -1,0 +1,143 @@
+//! When a curve begins to rise, and how noisy it is. Knows no joint and no trial.
+
+use crate::trials::measure::curve::{Curve, CurvePoint};
+
+/// The middle value; of an even number the mean of the two. `None` of nothing.
+#[must_use]
+pub fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let (low, high) = (sorted.len().checked_sub(1)? / 2, sorted.len() / 2);
+    Some((sorted.get(low)? + sorted.get(high)?) / 2.0)
+}
+
+/// Level and noise of a curve at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RestLevel {
+    /// The median.
+    pub level: f64,
+    /// The standard deviation that the median deviation stands for, so that single wild values do not count.
+    pub sigma: f64,
+}
+
+/// Values below which nothing can be said of a curve's noise.
+const REST_LEAST: usize = 3;
+
+/// Level and noise between two times; `None` with fewer than 3 values.
+#[must_use]
+pub fn rest(curve: &Curve, from: f64, to: f64) -> Option<RestLevel> {
+    /// Of a normal distribution, its standard deviation by its median deviation.
+    const BY_MEDIAN: f64 = 1.4826;
+    let values = curve.values(from, to);
+    if values.len() < REST_LEAST {
+        return None;
+    }
+    let level = median(&values)?;
+    let away: Vec<f64> = values.iter().map(|value| (value - level).abs()).collect();
+    Some(RestLevel {
+        level,
+        sigma: median(&away)? * BY_MEDIAN,
+    })
+}
+
+/// A line is drawn between readings no further apart than this, s. Farther apart, nobody knows what lay between, and a
+/// reading counts from when it was there: late, never early.
+const LINE_MAX_S: f64 = 0.06;
+
+/// When a curve first passes a level for good: two values in a row beyond it, on the line between the last value before
+/// and the first beyond, if they are near each other. `None` if it does not, or if the first value known already is beyond.
+#[must_use]
+pub fn passes(points: impl Iterator<Item = CurvePoint>, level: f64) -> Option<f64> {
+    let mut before: Option<CurvePoint> = None;
+    let mut first: Option<f64> = None;
+    for point in points {
+        if point.v < level {
+            before = Some(point);
+            first = None;
+            continue;
+        }
+        if let Some(at) = first {
+            return Some(at);
+        }
+        let from = before?;
+        let share = (level - from.v) / (point.v - from.v).max(f64::EPSILON);
+        let apart = point.t - from.t;
+        first = Some(if apart > LINE_MAX_S {
+            point.t
+        } else {
+            from.t + apart * share.clamp(0.0, 1.0)
+        });
+    }
+    None
+}
+
+/// When a curve begins to leave its rest in a ramp: it passes `level` for good, and the line from there to `double` the
+/// level is drawn back to zero, but not beyond the last value that was below a third of the level.
+#[must_use]
+pub fn begins(curve: &Curve, from: f64, level: f64) -> Option<f64> {
+    let points = || curve.between(from, f64::INFINITY);
+    let one = passes(points(), level)?;
+    let last_low = points()
+        .take_while(|point| point.t <= one)
+        .filter(|point| point.v < level / 3.0)
+        .last()?;
+    let two = points().find(|point| point.t > one && point.v >= 2.0 * level);
+    let back = two.map_or(one, |two| {
+        let slope = (two.v - level) / (two.t - one).max(f64::EPSILON);
+        one - level / slope.max(f64::EPSILON)
+    });
+    Some(back.clamp(last_low.t, one))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_is_the_middle_and_of_nothing_there_is_none() {
+        assert_eq!(median(&[]), None);
+        assert_eq!(median(&[f64::NAN]), None);
+        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Some(2.5));
+    }
+
+    #[test]
+    fn a_single_wild_value_is_no_rise_and_no_noise() {
+        let mut points: Vec<(f64, f64)> = (0..100).map(|n| (f64::from(n) * 0.01, 0.0)).collect();
+        points[50].1 = 900.0;
+        let curve: Curve = points.into_iter().collect();
+        assert_eq!(passes(curve.between(0.0, 1.0), 10.0), None);
+        assert_eq!(rest(&curve, 0.0, 1.0).unwrap().sigma, 0.0);
+    }
+
+    #[test]
+    fn a_ramp_begins_where_it_leaves_zero_within_a_sample() {
+        for start in [0.2, 0.203, 0.2071] {
+            let ramp = |t: f64| ((t - start) * 400.0).max(0.0);
+            let curve: Curve = (0..100)
+                .map(|n| f64::from(n) * 0.01)
+                .map(|t| (t, ramp(t)))
+                .collect();
+            let seen = begins(&curve, 0.0, 3.0).unwrap();
+            assert!((seen - start).abs() < 0.003, "{start} {seen}");
+        }
+    }
+
+    #[test]
+    fn between_readings_far_apart_nothing_is_made_up() {
+        let rare = |apart: f64| {
+            let values = [0.0, 0.0, 9.0, 9.0].into_iter().enumerate();
+            let points = values.map(|(n, v)| (f64::from(u32::try_from(n).unwrap()) * apart, v));
+            passes(points.collect::<Curve>().between(0.0, 9.0), 0.9).unwrap()
+        };
+        assert!((rare(0.05) - 0.055).abs() < 1e-9);
+        assert!((rare(0.3) - 0.6).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_was_beyond_from_the_first_has_no_beginning() {
+        let curve: Curve = (0..10).map(|n| (f64::from(n), 50.0)).collect();
+        assert_eq!(passes(curve.between(0.0, 9.0), 10.0), None);
+        assert_eq!(begins(&curve, 0.0, 10.0), None);
+    }
+}

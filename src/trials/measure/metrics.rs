@@ -1,0 +1,285 @@
+//! The metrics of one recorded trial, joint by joint. Pure; what cannot be known is `None`, never zero.
+//!
+//! Times are those at which replies arrived, counted from the moment at which the closing command was given to the
+//! link. Errors, with T the time between two reads (see `rate_hz`, `longest_gap_s`) and S the noise of the force at rest:
+//!
+//! * times: T late at most; for contact and motion less, as they are drawn back along the rise where T is up to 60 ms. T of
+//!   touch is that of the fingertips, which a slow line reads more seldom than forces. A command waits for the request on
+//!   the wire before it, so dead time and time to contact hold up to one transaction more (15 ms on a slow hand);
+//! * motion: half a unit of ANGLE_ACT more, which is 12 ms at speed 25 and nothing at 250;
+//! * forces: the reading at rest is taken away, so a sensor's offset does not count. A peak is the highest reading: too
+//!   low if the force peaked between two reads, too high by up to 2 S. At the sensor's end it is a lower bound (`clipped`);
+//! * contact by force: at 15 g or 5 S, whichever is more; by touch: at 0.1 N;
+//! * steady force: a median, within S; settle time: to within 5 %, 3 S or 10 g of it, whichever is most;
+//! * temperatures are whole degrees, read some times a second.
+
+use crate::hand::{Dof, Status};
+use crate::trials::measure::curve::{Curve, CurvePoint, JointCurves};
+use crate::trials::measure::detect::{RestLevel, begins, median, passes, rest};
+use crate::trials::measure::slip::{SlipEvent, slips};
+use crate::trials::plan::{TrialPlan, TrialSetting};
+use crate::trials::recording::{TrialEvent, TrialRecording, seconds};
+use serde::{Deserialize, Serialize};
+
+/// How long before the command counts as rest.
+const REST_S: f64 = 0.45;
+/// Way that is motion, units of ANGLE_ACT: between two whole readings, where neither is favoured.
+const MOTION: f64 = 2.5;
+/// Least force that is contact, g, and how many times the noise.
+const CONTACT_G: f64 = 15.0;
+const CONTACT_SIGMAS: f64 = 5.0;
+/// Normal force of a fingertip that is contact, N.
+const TOUCH_N: f64 = 0.1;
+/// Readings at or beyond it are the sensor's end (manual 2.6.16), g.
+const FORCE_END_G: f64 = 4000.0;
+/// The steady force is that of the last part of the dwell, s at most …
+const STEADY_S: f64 = 0.5;
+/// … and of no fewer readings than these.
+const STEADY_LEAST: usize = 5;
+/// How near to the steady force counts as settled: share, g, and multiples of the noise.
+const SETTLED_SHARE: f64 = 0.05;
+const SETTLED_G: f64 = 10.0;
+const SETTLED_SIGMAS: f64 = 3.0;
+/// A joint whose angle stays within 2 for this long stands still, s.
+const STILL_S: f64 = 0.1;
+const STILL: f64 = 2.0;
+
+/// The metrics of one joint in a trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JointMetrics {
+    /// The joint.
+    #[serde(rename = "joint")]
+    pub dof: Dof,
+    /// Reading of the force sensor before the command, g; all forces below are counted from it.
+    pub rest_force_g: Option<f64>,
+    /// Noise of it, g: standard deviation.
+    pub noise_g: Option<f64>,
+    /// From the command to the motion, s.
+    pub dead_time_s: Option<f64>,
+    /// Whether the fingertip felt something before the command; not known without touch.
+    pub contact_at_start: Option<bool>,
+    /// From the command to the contact, by force, s.
+    pub time_to_contact_s: Option<f64>,
+    /// From the command to the contact, by touch, s.
+    pub time_to_touch_s: Option<f64>,
+    /// Angle at the contact, by force, or else by touch; units of ANGLE_ACT.
+    pub contact_angle: Option<f64>,
+    /// From the command to the stop, s: as the drive says, or where it does not, by its angle.
+    pub time_to_stop_s: Option<f64>,
+    /// Highest force, g.
+    pub peak_force_g: Option<f64>,
+    /// Whether the sensor was at its end, so that the force was higher than that.
+    pub clipped: Option<bool>,
+    /// Highest force above the threshold, g; negative if it stayed below.
+    pub overshoot_g: Option<f64>,
+    /// From the contact until the force stays near its steady value, s.
+    pub settle_time_s: Option<f64>,
+    /// Force at the end of the dwell, g.
+    pub steady_force_g: Option<f64>,
+    /// Drop from peak to steady force, g.
+    pub relaxation_g: Option<f64>,
+    /// Highest current, mA.
+    pub peak_current_ma: Option<f64>,
+    /// Highest temperature during and after, above that before, °C.
+    pub temperature_rise_c: Option<f64>,
+    /// STATUS at the end of the dwell, in a word.
+    pub end_status: Option<String>,
+    /// Slips during the dwell; `None` if touch told too little to know.
+    pub slip_count: Option<usize>,
+    /// Readings of the force a second.
+    pub rate_hz: Option<f64>,
+    /// Longest time between two of them, s.
+    pub longest_gap_s: Option<f64>,
+    /// The slips.
+    #[serde(default, rename = "slip", skip_serializing_if = "Vec::is_empty")]
+    pub slips: Vec<SlipEvent>,
+}
+
+/// Measures a recorded trial, joint by joint in register order.
+#[must_use]
+pub fn measure(
+    recording: &TrialRecording,
+    plan: &TrialPlan,
+    setting: TrialSetting,
+) -> Vec<JointMetrics> {
+    let Some(command) = recording.when(TrialEvent::Close) else {
+        return Vec::new();
+    };
+    let ends = [TrialEvent::Release, TrialEvent::Aborted];
+    let end = ends.into_iter().find_map(|what| recording.when(what));
+    let end = end.or_else(|| recording.rows().last().map(|row| row.at));
+    let end_s = end.map_or(0.0, |end| seconds(command, end));
+    let threshold_g = f64::from(setting.force.get());
+    let span = DwellSpan { end_s, threshold_g };
+    plan.joints()
+        .map(|dof| measure_joint(dof, &JointCurves::of(recording, dof), span))
+        .collect()
+}
+
+/// When the dwell ends, seconds from the command, and what the threshold was.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DwellSpan {
+    /// Of the release, or of what ended the trial.
+    pub end_s: f64,
+    /// FORCE_SET, g.
+    pub threshold_g: f64,
+}
+
+/// Measures one joint; its command was at 0.
+#[must_use]
+pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMetrics {
+    let end = span.end_s;
+    let at_rest = rest(&curves.force, -REST_S, 0.0);
+    let force = at_rest.map(|rest| curves.force.less(rest.level));
+    let force = force.unwrap_or_default();
+    let motion = motion_start(&curves.angle);
+    let touched = touched_before(&curves.normal);
+    let (contact, touch) = match touched {
+        Some(true) => (None, None),
+        _ => (
+            at_rest.and_then(|rest| contact(&force, rest, end)),
+            passes(curves.normal.between(-REST_S, end), TOUCH_N).filter(|at| *at >= 0.0),
+        ),
+    };
+    let pressed = contact.is_some() || touched == Some(true);
+    let stop = motion.and_then(|from| stop(curves, from, end));
+    let peak = highest(&force, end).filter(|_| pressed);
+    let steady = stop.and_then(|stop| steady(&force, stop, end));
+    let steady = steady.filter(|_| pressed);
+    let held = stop.and_then(|stop| slips(curves, stop, end));
+    JointMetrics {
+        dof,
+        rest_force_g: at_rest.map(|rest| rest.level),
+        noise_g: at_rest.map(|rest| rest.sigma),
+        dead_time_s: motion,
+        contact_at_start: touched,
+        time_to_contact_s: contact,
+        time_to_touch_s: touch,
+        contact_angle: contact.or(touch).and_then(|at| curves.angle.at(at)),
+        time_to_stop_s: stop,
+        peak_force_g: peak,
+        clipped: peak.map(|_| is_clipped(&curves.force, end)),
+        overshoot_g: peak.map(|peak| peak - span.threshold_g),
+        settle_time_s: settle(&force, contact, steady.zip(at_rest), end),
+        steady_force_g: steady,
+        relaxation_g: peak.zip(steady).map(|(peak, steady)| peak - steady),
+        peak_current_ma: highest(&curves.current, end),
+        temperature_rise_c: temperature_rise(&curves.temperature),
+        end_status: status_at(&curves.status, end),
+        slip_count: held.as_ref().map(Vec::len),
+        rate_hz: rate(&force, end),
+        longest_gap_s: longest_gap(&force, end),
+        slips: held.unwrap_or_default(),
+    }
+}
+
+fn motion_start(angle: &Curve) -> Option<f64> {
+    let still = rest(angle, -REST_S, 0.0)?;
+    let away: Curve = angle
+        .points()
+        .iter()
+        .map(|point| (point.t, (point.v - still.level).abs()))
+        .collect();
+    begins(&away, 0.0, MOTION)
+}
+
+/// Whether the fingertip felt something before the command.
+fn touched_before(normal: &Curve) -> Option<bool> {
+    let before = median(&normal.values(-REST_S, 0.0))?;
+    Some(before >= TOUCH_N)
+}
+
+fn contact(force: &Curve, rest: RestLevel, end: f64) -> Option<f64> {
+    let level = CONTACT_G.max(CONTACT_SIGMAS * rest.sigma);
+    passes(force.between(-REST_S, end), level).filter(|at| *at >= 0.0)
+}
+
+/// When the drive first says that it stopped after it said that it moves; without its word, when it stands still.
+fn stop(curves: &JointCurves, from: f64, end: f64) -> Option<f64> {
+    let stopped = |point: &CurvePoint| status(point.v).is_some_and(Status::is_stopped);
+    let mut said = curves.status.between(0.0, end).skip_while(stopped);
+    if said.next().is_some() {
+        return said.find(stopped).map(|point| point.t);
+    }
+    let angles: Vec<CurvePoint> = curves.angle.between(from, end).collect();
+    angles.iter().enumerate().find_map(|(at, first)| {
+        let rest = angles.get(at..)?;
+        let last = rest.last()?;
+        let mut soon = rest.iter().take_while(|p| p.t <= first.t + STILL_S);
+        let moved = (first.v - curves.angle.at(0.0)?).abs() >= MOTION;
+        let is_still = soon.all(|p| (p.v - first.v).abs() <= STILL);
+        (moved && is_still && last.t >= first.t + STILL_S).then_some(first.t)
+    })
+}
+
+fn highest(curve: &Curve, end: f64) -> Option<f64> {
+    curve
+        .between(0.0, end)
+        .map(|point| point.v)
+        .reduce(f64::max)
+}
+
+fn is_clipped(raw: &Curve, end: f64) -> bool {
+    raw.between(0.0, end).any(|point| point.v >= FORCE_END_G)
+}
+
+fn steady(force: &Curve, stop: f64, end: f64) -> Option<f64> {
+    let window = STEADY_S.min((end - stop) / 2.0);
+    let values = force.values(end - window, end);
+    median(&values).filter(|_| values.len() >= STEADY_LEAST)
+}
+
+fn settle(
+    force: &Curve,
+    contact: Option<f64>,
+    steady: Option<(f64, RestLevel)>,
+    end: f64,
+) -> Option<f64> {
+    let (contact, (steady, rest)) = (contact?, steady?);
+    let band = (SETTLED_SHARE * steady.abs())
+        .max(SETTLED_G)
+        .max(SETTLED_SIGMAS * rest.sigma);
+    let outside = |point: &CurvePoint| (point.v - steady).abs() > band;
+    let last = force.between(contact, end).rfind(outside);
+    let settled = match last {
+        None => contact,
+        Some(last) => force.between(contact, end).find(|p| p.t > last.t)?.t,
+    };
+    Some(settled - contact)
+}
+
+/// The temperature is followed to the end of the recording: heat comes late.
+fn temperature_rise(temperature: &Curve) -> Option<f64> {
+    let before = median(&temperature.values(f64::NEG_INFINITY, 0.0))?;
+    Some(highest(temperature, f64::INFINITY)? - before)
+}
+
+fn status(code: f64) -> Option<Status> {
+    // The curve holds bytes.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "checked to be a byte"
+    )]
+    let raw = (0.0..=255.0).contains(&code).then_some(code as u8)?;
+    Some(Status::from_raw(raw))
+}
+
+fn status_at(codes: &Curve, end: f64) -> Option<String> {
+    let last = codes.between(0.0, end).next_back()?;
+    Some(match status(last.v)? {
+        Status::Unknown(raw) => format!("unknown_{raw}"),
+        known => known.name().into(),
+    })
+}
+
+fn rate(force: &Curve, end: f64) -> Option<f64> {
+    let count = u32::try_from(force.between(0.0, end).count()).ok()?;
+    (count > 1 && end > 0.0).then(|| f64::from(count) / end)
+}
+
+fn longest_gap(force: &Curve, end: f64) -> Option<f64> {
+    let times = force.between(0.0, end).map(|point| point.t);
+    let next = times.clone().skip(1);
+    times.zip(next).map(|(a, b)| b - a).reduce(f64::max)
+}

@@ -1,0 +1,193 @@
+//! Slips of a held object: jumps of friction or of the tangential force's direction. Computes from curves, nothing else.
+
+use crate::trials::measure::curve::{Curve, JointCurves};
+use crate::trials::measure::detect::median;
+use serde::{Deserialize, Serialize};
+
+/// Normal force below which there is nothing to slip, N.
+const HELD_N: f64 = 0.2;
+/// The reference: the median of this many seconds before.
+const BEFORE_S: f64 = 0.5;
+/// Rise of tangential by normal force that is a slip.
+const RATIO_JUMP: f64 = 0.12;
+/// Turn of the tangential force that is a slip, degrees.
+const TURN_DEG: f64 = 25.0;
+/// Slips nearer to each other than this are one.
+const APART_S: f64 = 0.4;
+/// Values that are needed before a jump can be told.
+const BEFORE_LEAST: usize = 3;
+/// Tangential and normal force that are read together are at most this far apart.
+const TOGETHER_S: f64 = 0.001;
+
+/// One slip of the object on a fingertip.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SlipEvent {
+    /// When it was first seen, seconds from the closing command.
+    pub at_s: f64,
+    /// Largest rise of tangential by normal force over what it was before.
+    pub ratio_jump: f64,
+    /// Largest turn of the tangential force, degrees; `None` if the direction was not known.
+    pub turn_deg: Option<f64>,
+}
+
+/// One moment of holding.
+#[derive(Debug, Clone, Copy)]
+struct HeldMoment {
+    t: f64,
+    ratio: f64,
+    direction: Option<f64>,
+}
+
+/// The slips from one time to another; `None` if the fingertip told too little to know.
+///
+/// A jump counts if two readings in a row show it, so slips are seen one reading late and those shorter than two
+/// readings (40 ms on a sensor of 50 Hz) are missed.
+#[must_use]
+pub fn slips(curves: &JointCurves, from: f64, to: f64) -> Option<Vec<SlipEvent>> {
+    let held = moments(curves, from, to);
+    if held.len() <= BEFORE_LEAST {
+        return None;
+    }
+    let mut found: Vec<SlipEvent> = Vec::new();
+    let mut pending: Option<SlipEvent> = None;
+    let mut last = f64::NEG_INFINITY;
+    for (at, now) in held.iter().enumerate() {
+        let earlier = held.get(..at).unwrap_or_default();
+        let jump = jump(earlier, now, last);
+        match (jump, pending.take()) {
+            (None, _) => {}
+            (Some(slip), None) => pending = Some(slip),
+            (Some(slip), Some(first)) => {
+                let near = found.last_mut().filter(|_| first.at_s - last < APART_S);
+                match near {
+                    Some(known) => known.widen(&slip),
+                    None => {
+                        let mut first = first;
+                        first.widen(&slip);
+                        found.push(first);
+                    }
+                }
+                last = now.t;
+                pending = Some(slip);
+            }
+        }
+    }
+    Some(found)
+}
+
+impl SlipEvent {
+    fn widen(&mut self, other: &Self) {
+        self.ratio_jump = self.ratio_jump.max(other.ratio_jump);
+        self.turn_deg = match (self.turn_deg, other.turn_deg) {
+            (Some(a), Some(b)) => Some(a.max(b)),
+            (a, b) => a.or(b),
+        };
+    }
+}
+
+fn moments(curves: &JointCurves, from: f64, to: f64) -> Vec<HeldMoment> {
+    let near = |curve: &Curve, t: f64| {
+        let mut points = curve.between(t - TOGETHER_S, t + TOGETHER_S);
+        points.next().map(|point| point.v)
+    };
+    curves
+        .normal
+        .between(from, to)
+        .filter(|normal| normal.v >= HELD_N)
+        .filter_map(|normal| {
+            let tangential = near(&curves.tangential, normal.t)?;
+            Some(HeldMoment {
+                t: normal.t,
+                ratio: tangential / normal.v,
+                direction: near(&curves.direction, normal.t),
+            })
+        })
+        .collect()
+}
+
+/// How a moment differs from those before it. Moments of a slip that is going on are no measure.
+fn jump(earlier: &[HeldMoment], now: &HeldMoment, slipping: f64) -> Option<SlipEvent> {
+    let recent = |moment: &&HeldMoment| moment.t >= now.t - BEFORE_S;
+    let calm = |moment: &&HeldMoment| moment.t < slipping - APART_S || moment.t > slipping;
+    let before: Vec<&HeldMoment> = earlier.iter().filter(recent).filter(calm).collect();
+    if before.len() < BEFORE_LEAST {
+        return None;
+    }
+    let ratios: Vec<f64> = before.iter().map(|moment| moment.ratio).collect();
+    let ratio_jump = now.ratio - median(&ratios)?;
+    let turn_deg = turn(&before, now);
+    let is_slip = ratio_jump >= RATIO_JUMP || turn_deg.is_some_and(|turn| turn >= TURN_DEG);
+    is_slip.then_some(SlipEvent {
+        at_s: now.t,
+        ratio_jump,
+        turn_deg,
+    })
+}
+
+/// Degrees between a direction and the middle of those before, the short way round.
+fn turn(before: &[&HeldMoment], now: &HeldMoment) -> Option<f64> {
+    let direction = now.direction?;
+    let round = |degrees: f64| (degrees + 180.0).rem_euclid(360.0) - 180.0;
+    let first = before.iter().find_map(|moment| moment.direction)?;
+    let away: Vec<f64> = before
+        .iter()
+        .filter_map(|moment| Some(round(moment.direction? - first)))
+        .collect();
+    Some(round(direction - first - median(&away)?).abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grip of 5 N read 50 times a second for 3 s.
+    fn grip(ratio: impl Fn(f64) -> f64, direction: impl Fn(f64) -> f64) -> JointCurves {
+        let times = || (0..150).map(|n| f64::from(n) * 0.02);
+        JointCurves {
+            normal: times().map(|t| (t, 5.0)).collect(),
+            tangential: times().map(|t| (t, 5.0 * ratio(t))).collect(),
+            direction: times()
+                .map(|t| (t, direction(t).rem_euclid(360.0)))
+                .collect(),
+            ..JointCurves::default()
+        }
+    }
+
+    #[test]
+    fn a_steady_grip_does_not_slip_and_silence_is_unknown() {
+        let wander = |t: f64| 0.2 + 0.03 * (1.3 * t).sin();
+        let still = grip(wander, |t| 358.0 + 4.0 * t.sin());
+        assert_eq!(slips(&still, 0.0, 3.0), Some(Vec::new()));
+        assert_eq!(slips(&JointCurves::default(), 0.0, 3.0), None);
+    }
+
+    #[test]
+    fn a_jump_of_friction_is_one_slip_at_its_time() {
+        let bump = |t: f64| if (1.5..1.7).contains(&t) { 0.5 } else { 0.2 };
+        let found = slips(&grip(bump, |_| 10.0), 0.0, 3.0).unwrap();
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0].at_s - 1.5).abs() < 0.021);
+        assert!((found[0].ratio_jump - 0.3).abs() < 0.01);
+        assert!(found[0].turn_deg.unwrap() < 1.0);
+    }
+
+    #[test]
+    fn a_turn_through_north_is_a_slip_and_two_far_apart_are_two() {
+        let turns = |t: f64| match t {
+            t if t < 1.0 => 350.0,
+            t if t < 2.0 => 30.0,
+            _ => 90.0,
+        };
+        let found = slips(&grip(|_| 0.2, turns), 0.0, 3.0).unwrap();
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!((found[0].turn_deg.unwrap() - 40.0).abs() < 1.0);
+        assert!((found[1].at_s - 2.0).abs() < 0.021);
+        assert!((found[1].turn_deg.unwrap() - 60.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn one_wild_reading_is_no_slip() {
+        let wild = |t: f64| if (1.49..1.51).contains(&t) { 0.9 } else { 0.2 };
+        assert_eq!(slips(&grip(wild, |_| 10.0), 0.0, 3.0), Some(Vec::new()));
+    }
+}

@@ -1,0 +1,710 @@
+//! What a series of grasp trials is to do: one type for window, command line and files. Checked once; runs nothing.
+
+use crate::hand::impact::{overshoot_g, two_stage_overshoot_g};
+use crate::hand::{Angle, Dof, Force, OutOfRange, PerDof, Speed};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// Trials in one series: a day of them.
+pub const TRIALS_MAX: usize = 1000;
+/// Longest dwell, rest or wait that a plan may ask for.
+pub const WAIT_MAX: Duration = Duration::from_secs(600);
+/// Shortest dwell: less leaves no steady force to measure.
+pub const DWELL_MIN: Duration = Duration::from_millis(300);
+/// A joint has at least this way to close, so that its motion can be told from noise.
+pub const WAY_MIN: i16 = 30;
+/// Highest temperature that a limit may be set to, °C: from here on the hand itself is near its fault.
+pub const TEMPERATURE_MAX: u8 = 75;
+/// A measured contact is approached fast up to this far before it, units of ANGLE_ACT, unless said otherwise.
+pub const MARGIN: i16 = 40;
+
+/// A series of grasp trials. In files it is the table `plan` of `session.toml` and `trial_plan` of the settings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrialPlan {
+    /// Speeds, thresholds and how often each.
+    #[serde(flatten)]
+    pub grid: TrialGrid,
+    /// Time held, from the stop on.
+    #[serde(rename = "dwell_s", with = "seconds")]
+    pub dwell: Duration,
+    /// What ends it.
+    #[serde(flatten)]
+    pub limits: Limits,
+    /// How the object is approached.
+    #[serde(flatten)]
+    pub approach: Approach,
+    /// Start angle of each joint; `None` leaves it where it is.
+    #[serde(with = "by_joint")]
+    pub start: PerDof<Option<Angle>>,
+    /// Angle that each joint closes to; `None` leaves it out.
+    #[serde(with = "by_joint")]
+    pub close: PerDof<Option<Angle>>,
+    /// In the words of a person.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+    /// Words to find it by.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+    /// Keys of a later version, kept as they are.
+    #[serde(flatten)]
+    pub others: toml::Table,
+}
+
+/// How the object is approached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "ApproachKeys", into = "ApproachKeys")]
+pub enum Approach {
+    /// At the setting's speed all the way.
+    OneStage,
+    /// Fast at first, then at the setting's speed.
+    TwoStage {
+        /// Speed of the first stage.
+        fast: Speed,
+        /// When the second begins, joint by joint.
+        until: Until,
+    },
+}
+
+/// When the slow stage of a joint begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Until {
+    /// At this angle, where the joint stops by itself.
+    Angle(Angle),
+    /// This far before the contact that a first, slow trial of the series measured.
+    Measured {
+        /// Units of ANGLE_ACT, 0..=500.
+        margin: i16,
+    },
+    /// When the proximity of its fingertip has risen by this many counts.
+    Proximity(i32),
+    /// When its fingertip feels this, g, or its force sensor so much more than before.
+    Touch(Force),
+}
+
+/// One cell of the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct TrialSetting {
+    /// SPEED_SET at the contact.
+    pub speed: Speed,
+    /// FORCE_SET.
+    #[serde(rename = "force_threshold_g")]
+    pub force: Force,
+}
+
+impl std::fmt::Display for TrialSetting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (speed, force) = (self.speed.get(), self.force.get());
+        write!(f, "speed {speed}, threshold {force} g")
+    }
+}
+
+/// Every speed with every threshold, repeated.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TrialGrid {
+    /// Speeds at the contact.
+    pub speeds: Vec<Speed>,
+    /// Force thresholds.
+    #[serde(rename = "forces_g")]
+    pub forces: Vec<Force>,
+    /// Trials of each cell.
+    pub repeats: usize,
+    /// Time between two trials.
+    #[serde(rename = "rest_s", with = "seconds")]
+    pub rest: Duration,
+}
+
+impl TrialGrid {
+    /// One speed and threshold.
+    #[must_use]
+    pub fn once(setting: TrialSetting) -> Self {
+        Self {
+            speeds: vec![setting.speed],
+            forces: vec![setting.force],
+            repeats: 1,
+            rest: Duration::ZERO,
+        }
+    }
+
+    /// Settings in the order of the trials: the gentlest first, all repeats of one before the next.
+    #[must_use]
+    pub fn settings(&self) -> Vec<TrialSetting> {
+        let each = |speed: &Speed| {
+            let speed = *speed;
+            self.forces.iter().map(move |force| TrialSetting {
+                speed,
+                force: *force,
+            })
+        };
+        let mut cells: Vec<TrialSetting> = self.speeds.iter().flat_map(each).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        let repeated = |cell| std::iter::repeat_n(cell, self.repeats);
+        cells.into_iter().flat_map(repeated).collect()
+    }
+}
+
+/// What ends a trial and the series with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Force on any joint, g above its reading at rest, at which the trial is stopped. It comes after the force: a
+    /// peak that is over between two reads is seen and not prevented.
+    pub ceiling_g: i16,
+    /// Temperature of any joint, °C, at which it is stopped …
+    pub stop_c: u8,
+    /// … and below which all joints must be before the next trial begins.
+    pub start_c: u8,
+}
+
+impl Default for Limits {
+    /// The rated grip of a finger; temperatures well below those at which the hand protects itself.
+    fn default() -> Self {
+        Self {
+            ceiling_g: Force::RATED.get(),
+            stop_c: 60,
+            start_c: 50,
+        }
+    }
+}
+
+impl Default for TrialPlan {
+    /// One gentle trial of the index finger, from open.
+    fn default() -> Self {
+        let index = |angle| PerDof::from_fn(|dof| (dof == Dof::Index).then_some(angle));
+        Self {
+            grid: TrialGrid {
+                rest: Duration::from_secs(1),
+                ..TrialGrid::once(TrialSetting {
+                    speed: Speed::SLOWEST_MEASURED,
+                    force: Force::GENTLE,
+                })
+            },
+            dwell: Duration::from_secs(1),
+            limits: Limits::default(),
+            approach: Approach::OneStage,
+            start: index(Angle::MAX),
+            close: index(Angle::MIN),
+            note: String::new(),
+            tags: Vec::new(),
+            others: toml::Table::new(),
+        }
+    }
+}
+
+/// How an approach stands in files: none of these keys for one stage.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct ApproachKeys {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fast_speed: Option<Speed>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    until: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    until_value: Option<i64>,
+}
+
+impl From<Approach> for ApproachKeys {
+    fn from(approach: Approach) -> Self {
+        match approach {
+            Approach::OneStage => Self::default(),
+            Approach::TwoStage { fast, until } => Self {
+                fast_speed: Some(fast),
+                until: Some(until.name().into()),
+                until_value: Some(until.value().into()),
+            },
+        }
+    }
+}
+
+impl TryFrom<ApproachKeys> for Approach {
+    type Error = UntilError;
+
+    fn try_from(keys: ApproachKeys) -> Result<Self, UntilError> {
+        match (keys.fast_speed, keys.until, keys.until_value) {
+            (None, None, None) => Ok(Self::OneStage),
+            (Some(fast), Some(name), Some(value)) => Ok(Self::TwoStage {
+                fast,
+                until: Until::new(&name, value)?,
+            }),
+            _ => Err(UntilError::Incomplete),
+        }
+    }
+}
+
+/// Why the end of a fast approach cannot be taken.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum UntilError {
+    /// Only some of the three keys of an approach in two stages.
+    #[error("an approach in two stages needs fast_speed, until and until_value")]
+    Incomplete,
+    /// Nothing has this name.
+    #[error("'{0}' is no end of an approach")]
+    Name(String),
+    /// An angle or a force outside its range.
+    #[error(transparent)]
+    Range(#[from] OutOfRange),
+    /// A margin or counts beyond any sense.
+    #[error("{0} is too large")]
+    TooLarge(i64),
+}
+
+impl Until {
+    /// By its name in files and its number.
+    ///
+    /// # Errors
+    /// [`UntilError`]: the name is not known, or the number is out of range.
+    pub fn new(name: &str, value: i64) -> Result<Self, UntilError> {
+        let too_large = |_| UntilError::TooLarge(value);
+        match name {
+            "angle" => Ok(Self::Angle(Angle::new(value)?)),
+            "measured" => i16::try_from(value)
+                .map(|margin| Self::Measured { margin })
+                .map_err(too_large),
+            "proximity" => i32::try_from(value).map(Self::Proximity).map_err(too_large),
+            "touch_g" => Ok(Self::Touch(Force::new(value)?)),
+            _ => Err(UntilError::Name(name.into())),
+        }
+    }
+
+    /// Stable name for files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Angle(_) => "angle",
+            Self::Measured { .. } => "measured",
+            Self::Proximity(_) => "proximity",
+            Self::Touch(_) => "touch_g",
+        }
+    }
+
+    /// Its number.
+    #[must_use]
+    pub fn value(self) -> i32 {
+        match self {
+            Self::Angle(angle) => angle.get().into(),
+            Self::Measured { margin } => margin.into(),
+            Self::Proximity(counts) => counts,
+            Self::Touch(force) => force.get().into(),
+        }
+    }
+}
+
+/// A time as seconds.
+mod seconds {
+    use crate::trials::plan::WAIT_MAX;
+    use serde::de::Error as _;
+    use serde::{Deserialize as _, Deserializer, Serializer};
+    use std::time::Duration;
+
+    pub(super) fn serialize<S: Serializer>(time: &Duration, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_f64(time.as_secs_f64())
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Duration, D::Error> {
+        let seconds = f64::deserialize(from)?;
+        let time = Duration::try_from_secs_f64(seconds).map_err(D::Error::custom)?;
+        match time <= WAIT_MAX {
+            true => Ok(time),
+            false => Err(D::Error::custom(format!("{seconds} s is too long"))),
+        }
+    }
+}
+
+/// Angles by the names of their joints; a joint without one has no key.
+mod by_joint {
+    use crate::hand::{Angle, Dof, PerDof};
+    use serde::{Deserialize as _, Deserializer, Serializer};
+    use std::collections::BTreeMap;
+
+    pub(super) fn serialize<S: Serializer>(
+        angles: &PerDof<Option<Angle>>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        let known = angles.iter();
+        to.collect_map(known.filter_map(|(dof, angle)| Some((dof, (*angle)?))))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<PerDof<Option<Angle>>, D::Error> {
+        let named = BTreeMap::<Dof, Angle>::deserialize(from)?;
+        Ok(PerDof::from_fn(|dof| named.get(&dof).copied()))
+    }
+}
+
+/// Why a plan cannot be run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// No joint closes.
+    #[error("no joint takes part: name at least one")]
+    NoJoint,
+    /// A joint whose start is not known to be further open than its target.
+    #[error(
+        "{} would close from {start} to {close}: it needs a start at least {WAY_MIN} above its target, 1000 is open", dof.name()
+    )]
+    NoWay {
+        /// The joint.
+        dof: Dof,
+        /// Where it stands.
+        start: i16,
+        /// Where it goes.
+        close: i16,
+    },
+    /// A joint takes part and no start is given for it.
+    #[error("{} takes part and has no start", dof.name())]
+    NoStart {
+        /// The joint.
+        dof: Dof,
+    },
+    /// The stages change outside the way.
+    #[error("the slow stage of {} would begin at {at}, outside its way from {start} to {close}", dof.name())]
+    Stage {
+        /// The joint.
+        dof: Dof,
+        /// Where the stages change.
+        at: i16,
+        /// Where it stands.
+        start: i16,
+        /// Where it goes.
+        close: i16,
+    },
+    /// The first stage is slower than the second.
+    #[error("the approach at {fast} is slower than the contact at {speed}")]
+    SlowApproach {
+        /// Of the first stage.
+        fast: i16,
+        /// Of the second.
+        speed: i16,
+    },
+    /// A proximity or a margin out of range.
+    #[error("the approach ends at {got}, which is not between 1 and {most}")]
+    Until {
+        /// The value given.
+        got: i32,
+        /// The largest.
+        most: i32,
+    },
+    /// A touch of 0 g.
+    #[error("a touch of 0 g is reached before anything is touched")]
+    NoTouch,
+    /// No cell in the grid.
+    #[error(
+        "there is nothing to try: name a speed and a force threshold, and try them at least once"
+    )]
+    Empty,
+    /// Speed 0 never arrives.
+    #[error("speed 0 does not move")]
+    NoSpeed,
+    /// More than a series holds.
+    #[error("{got} trials are too many: at most {TRIALS_MAX}")]
+    TooMany {
+        /// How many.
+        got: usize,
+    },
+    /// A dwell that is too short or too long.
+    #[error("a dwell of {ms} ms is not between 300 and 600000")]
+    Dwell {
+        /// Milliseconds.
+        ms: u128,
+    },
+    /// A rest that is too long.
+    #[error("a rest of {ms} ms is longer than 600000")]
+    Rest {
+        /// Milliseconds.
+        ms: u128,
+    },
+    /// A force ceiling that is below the threshold, or that the sensor cannot show.
+    #[error("a force ceiling of {got} g is not between {least} (the largest threshold) and 4000")]
+    Ceiling {
+        /// The value given.
+        got: i16,
+        /// The smallest allowed.
+        least: i16,
+    },
+    /// Temperatures in the wrong order.
+    #[error("the temperatures {start} and {stop} must rise and stay at or below {TEMPERATURE_MAX}")]
+    Temperature {
+        /// At which trials begin.
+        start: u8,
+        /// At which they end.
+        stop: u8,
+    },
+}
+
+impl TrialPlan {
+    /// Checks everything that can be checked without the hand.
+    ///
+    /// # Errors
+    /// [`PlanError`]: the first thing that is wrong.
+    pub fn check(&self) -> Result<(), PlanError> {
+        if self.joints().next().is_none() {
+            return Err(PlanError::NoJoint);
+        }
+        for (dof, start, close) in self.ways() {
+            let start = start.ok_or(PlanError::NoStart { dof })?.get();
+            let close = close.get();
+            if start - close < WAY_MIN {
+                return Err(PlanError::NoWay { dof, start, close });
+            }
+        }
+        self.check_grid()?;
+        self.check_approach()?;
+        let ms = self.dwell.as_millis();
+        if !(DWELL_MIN..=WAIT_MAX).contains(&self.dwell) {
+            return Err(PlanError::Dwell { ms });
+        }
+        self.check_limits()
+    }
+
+    fn check_grid(&self) -> Result<(), PlanError> {
+        let grid = &self.grid;
+        if grid.speeds.is_empty() || grid.forces.is_empty() || grid.repeats == 0 {
+            return Err(PlanError::Empty);
+        }
+        let cells = grid.speeds.len().saturating_mul(grid.forces.len());
+        let got = cells.saturating_mul(grid.repeats);
+        if got > TRIALS_MAX {
+            return Err(PlanError::TooMany { got });
+        }
+        if grid.speeds.contains(&Speed::MIN) {
+            return Err(PlanError::NoSpeed);
+        }
+        if grid.rest > WAIT_MAX {
+            let ms = grid.rest.as_millis();
+            return Err(PlanError::Rest { ms });
+        }
+        Ok(())
+    }
+
+    fn check_approach(&self) -> Result<(), PlanError> {
+        let Approach::TwoStage { fast, until } = self.approach else {
+            return Ok(());
+        };
+        let slowest_first = self.grid.speeds.iter().find(|speed| **speed > fast);
+        if let Some(speed) = slowest_first {
+            let (fast, speed) = (fast.get(), speed.get());
+            return Err(PlanError::SlowApproach { fast, speed });
+        }
+        let within = |got: i32, most: i32| match (1..=most).contains(&got) {
+            true => Ok(()),
+            false => Err(PlanError::Until { got, most }),
+        };
+        match until {
+            Until::Angle(at) => self.check_stage(at),
+            Until::Measured { margin } => within(margin.into(), 500),
+            Until::Proximity(counts) => within(counts, 16_000_000),
+            Until::Touch(Force::MIN) => Err(PlanError::NoTouch),
+            Until::Touch(_) => Ok(()),
+        }
+    }
+
+    fn check_stage(&self, at: Angle) -> Result<(), PlanError> {
+        let outside = |(_, start, close): &(Dof, Option<Angle>, Angle)| {
+            at <= *close || start.is_none_or(|start| at >= start)
+        };
+        match self.ways().find(outside) {
+            None => Ok(()),
+            Some((dof, start, close)) => Err(PlanError::Stage {
+                dof,
+                at: at.get(),
+                start: start.map_or(0, Angle::get),
+                close: close.get(),
+            }),
+        }
+    }
+
+    fn check_limits(&self) -> Result<(), PlanError> {
+        let Limits {
+            ceiling_g: got,
+            stop_c: stop,
+            start_c: start,
+        } = self.limits;
+        let least = self.grid.forces.iter().map(|force| force.get()).max();
+        let least = least.unwrap_or_default().max(1);
+        if !(least..=4000).contains(&got) {
+            return Err(PlanError::Ceiling { got, least });
+        }
+        if start >= stop || stop > TEMPERATURE_MAX {
+            return Err(PlanError::Temperature { start, stop });
+        }
+        Ok(())
+    }
+
+    /// The joints that take part, in register order.
+    pub fn joints(&self) -> impl Iterator<Item = Dof> {
+        self.ways().map(|(dof, ..)| dof)
+    }
+
+    /// The first joint that would have to move and is locked.
+    #[must_use]
+    pub fn locked(&self, locked: &PerDof<bool>) -> Option<Dof> {
+        let moves = |dof: &Dof| self.close[*dof].is_some() || self.start[*dof].is_some();
+        Dof::ALL.into_iter().find(|dof| moves(dof) && locked[*dof])
+    }
+
+    /// What a person should expect at most above the threshold on a rigid object, g, and the setting it is of.
+    #[must_use]
+    pub fn expected(&self) -> Option<(TrialSetting, f64)> {
+        let peak = |setting: TrialSetting| {
+            let (speed, force) = (setting.speed.get().into(), setting.force.get().into());
+            match self.approach {
+                Approach::OneStage => overshoot_g(speed, force),
+                Approach::TwoStage { .. } => two_stage_overshoot_g(speed, force),
+            }
+        };
+        let settings = self.grid.settings().into_iter();
+        settings
+            .map(|setting| (setting, peak(setting)))
+            .max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
+    /// Whether a first, slow trial has to find the contact.
+    #[must_use]
+    pub const fn measures_contact(&self) -> bool {
+        matches!(
+            self.approach,
+            Approach::TwoStage {
+                until: Until::Measured { .. },
+                ..
+            }
+        )
+    }
+
+    fn ways(&self) -> impl Iterator<Item = (Dof, Option<Angle>, Angle)> {
+        Dof::ALL
+            .into_iter()
+            .filter_map(|dof| Some((dof, self.start[dof], self.close[dof]?)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The index finger from open to bent, once.
+    fn index(speed: i16, force: i16) -> TrialPlan {
+        let mut plan = TrialPlan {
+            grid: TrialGrid::once(TrialSetting {
+                speed: Speed::nearest(speed),
+                force: Force::nearest(force),
+            }),
+            limits: Limits {
+                ceiling_g: 4000,
+                ..Limits::default()
+            },
+            ..TrialPlan::default()
+        };
+        plan.start[Dof::Index] = Some(Angle::MAX);
+        plan.close[Dof::Index] = Some(Angle::nearest(100));
+        plan
+    }
+
+    fn two_stage(mut plan: TrialPlan, until: Until) -> TrialPlan {
+        plan.approach = Approach::TwoStage {
+            fast: Speed::MAX,
+            until,
+        };
+        plan
+    }
+
+    fn wrong(change: impl Fn(&mut TrialPlan)) -> PlanError {
+        let mut plan = index(250, 500);
+        plan.check().unwrap();
+        change(&mut plan);
+        plan.check().unwrap_err()
+    }
+
+    #[test]
+    fn a_plan_that_makes_no_sense_is_refused_with_the_reason() {
+        let dof = Dof::Index;
+        assert_eq!(wrong(|p| p.close[dof] = None), PlanError::NoJoint);
+        assert_eq!(wrong(|p| p.start[dof] = None), PlanError::NoStart { dof });
+        let near = wrong(|p| p.start[dof] = Some(Angle::nearest(129)));
+        let (start, close) = (129, 100);
+        assert_eq!(near, PlanError::NoWay { dof, start, close });
+        assert_eq!(wrong(|p| p.grid.repeats = 0), PlanError::Empty);
+        assert_eq!(wrong(|p| p.grid.forces.clear()), PlanError::Empty);
+        let got = 1001;
+        assert_eq!(wrong(|p| p.grid.repeats = 1001), PlanError::TooMany { got });
+        assert_eq!(
+            wrong(|p| p.grid.speeds.push(Speed::MIN)),
+            PlanError::NoSpeed
+        );
+        assert!(matches!(
+            wrong(|p| p.dwell = Duration::ZERO),
+            PlanError::Dwell { ms: 0 }
+        ));
+        assert!(matches!(
+            wrong(|p| p.grid.rest = Duration::from_secs(601)),
+            PlanError::Rest { .. }
+        ));
+        let (got, least) = (499, 500);
+        assert_eq!(
+            wrong(|p| p.limits.ceiling_g = 499),
+            PlanError::Ceiling { got, least }
+        );
+        assert!(matches!(
+            wrong(|p| p.limits.stop_c = 76),
+            PlanError::Temperature { .. }
+        ));
+        assert!(matches!(
+            wrong(|p| p.limits.start_c = 60),
+            PlanError::Temperature { .. }
+        ));
+    }
+
+    #[test]
+    fn stages_that_make_no_sense_are_refused() {
+        for until in [
+            Until::Angle(Angle::MAX),
+            Until::Angle(Angle::nearest(100)),
+            Until::Measured { margin: 0 },
+            Until::Proximity(0),
+            Until::Touch(Force::MIN),
+        ] {
+            assert!(
+                two_stage(index(25, 500), until).check().is_err(),
+                "{until:?}"
+            );
+        }
+        let mut slow = two_stage(index(250, 500), Until::Proximity(5000));
+        slow.check().unwrap();
+        slow.approach = Approach::TwoStage {
+            fast: Speed::nearest(100),
+            until: Until::Proximity(5000),
+        };
+        let (fast, speed) = (100, 250);
+        assert_eq!(slow.check(), Err(PlanError::SlowApproach { fast, speed }));
+    }
+
+    #[test]
+    fn a_grid_tries_each_cell_as_often_as_asked_the_gentlest_first() {
+        let grid = TrialGrid {
+            speeds: [250, 25, 250].map(Speed::nearest).into(),
+            forces: [500, 100].map(Force::nearest).into(),
+            repeats: 2,
+            rest: Duration::ZERO,
+        };
+        let order: Vec<(i16, i16)> = grid
+            .settings()
+            .iter()
+            .map(|setting| (setting.speed.get(), setting.force.get()))
+            .collect();
+        let cells = [(25, 100), (25, 500), (250, 100), (250, 500)];
+        let twice: Vec<(i16, i16)> = cells.into_iter().flat_map(|cell| [cell, cell]).collect();
+        assert_eq!(order, twice);
+    }
+
+    #[test]
+    fn the_first_plan_of_all_can_be_run_and_is_gentle() {
+        let plan = TrialPlan::default();
+        assert_eq!(plan.check(), Ok(()));
+        assert!(plan.expected().is_some_and(|(_, peak)| peak < 100.0));
+    }
+
+    #[test]
+    fn a_locked_joint_that_would_move_is_found() {
+        let plan = TrialPlan::default();
+        let only = |dof| PerDof::from_fn(|each| each == dof);
+        assert_eq!(plan.locked(&only(Dof::Ring)), None);
+        assert_eq!(plan.locked(&only(Dof::Index)), Some(Dof::Index));
+    }
+}

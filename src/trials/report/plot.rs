@@ -1,0 +1,138 @@
+//! Lines over time as a picture in SVG, for a page that is read without a program. Knows no trial.
+
+use crate::trials::measure::curve::Curve;
+use askama::Template;
+
+/// Size of a picture and of the room around the lines, points.
+const WIDTH: f64 = 640.0;
+const HEIGHT: f64 = 180.0;
+const LEFT: f64 = 52.0;
+const RIGHT: f64 = 8.0;
+const TOP: f64 = 8.0;
+const BOTTOM: f64 = 24.0;
+/// Points of a line: two for each of more columns than there are pixels.
+const POINTS_MAX: usize = 1280;
+/// Strokes that a page has.
+pub(crate) const STROKES: usize = 6;
+
+/// One line.
+#[derive(Debug)]
+struct PlotLine {
+    stroke: usize,
+    points: Vec<[f64; 2]>,
+}
+
+/// When something happened.
+#[derive(Debug)]
+struct PlotMark {
+    at_s: f64,
+    what: String,
+}
+
+/// A picture.
+#[derive(Debug, Template)]
+#[template(path = "plot.svg", escape = "html")]
+pub(crate) struct Plot {
+    name: &'static str,
+    from_s: f64,
+    to_s: f64,
+    lines: Vec<PlotLine>,
+    level: Option<f64>,
+    marks: Vec<PlotMark>,
+    /// Lowest and highest of what is shown.
+    extent: Option<(f64, f64)>,
+}
+
+impl Plot {
+    /// An empty one over a stretch of time. `name` is what it shows, with its unit.
+    pub(crate) const fn new(name: &'static str, from_s: f64, to_s: f64) -> Self {
+        Self {
+            name,
+            from_s,
+            to_s,
+            lines: Vec::new(),
+            level: None,
+            marks: Vec::new(),
+            extent: None,
+        }
+    }
+
+    /// Adds a line in one of the page's strokes, 0 the first.
+    pub(crate) fn add(&mut self, stroke: usize, curve: &Curve) {
+        let points = curve.decimated(POINTS_MAX);
+        for [_, value] in &points {
+            self.include(*value);
+        }
+        let stroke = stroke % STROKES;
+        self.lines.push(PlotLine { stroke, points });
+    }
+
+    /// Shows a level to compare with.
+    pub(crate) fn set_level(&mut self, level: f64) {
+        self.include(level);
+        self.level = Some(level);
+    }
+
+    /// Shows when something happened.
+    pub(crate) fn mark(&mut self, at_s: f64, what: String) {
+        self.marks.push(PlotMark { at_s, what });
+    }
+
+    fn include(&mut self, value: f64) {
+        let (low, high) = self.extent.unwrap_or((value, value));
+        self.extent = Some((low.min(value), high.max(value)));
+    }
+
+    fn range(&self) -> (f64, f64) {
+        self.extent.map_or((0.0, 1.0), |(low, high)| {
+            let room = ((high - low) * 0.05).max(0.5);
+            (low - room, high + room)
+        })
+    }
+
+    fn x(&self, at_s: &f64) -> String {
+        let span_s = (self.to_s - self.from_s).max(1e-3);
+        let share = ((at_s - self.from_s) / span_s).clamp(0.0, 1.0);
+        format!("{:.1}", LEFT + share * (WIDTH - LEFT - RIGHT))
+    }
+
+    fn y(&self, value: f64) -> String {
+        let (low, high) = self.range();
+        let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
+        format!("{:.1}", HEIGHT - BOTTOM - share * (HEIGHT - TOP - BOTTOM))
+    }
+
+    fn level_y(&self) -> Option<String> {
+        self.level.map(|level| self.y(level))
+    }
+
+    fn path(&self, line: &PlotLine) -> String {
+        let place = |[at_s, value]: &[f64; 2]| format!("{},{} ", self.x(at_s), self.y(*value));
+        line.points.iter().map(place).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_peak_of_one_reading_among_many_is_drawn() {
+        let curve: Curve = (0..100_000)
+            .map(|n| (f64::from(n) * 1e-4, if n == 54_321 { 999.0 } else { 0.0 }))
+            .collect();
+        let mut plot = Plot::new("Force, g", 0.0, 10.0);
+        plot.add(0, &curve);
+        let drawn = &plot.lines[0].points;
+        assert!(drawn.len() <= POINTS_MAX);
+        assert!(drawn.iter().any(|[_, v]| (*v - 999.0).abs() < 1e-9));
+    }
+
+    #[test]
+    fn text_cannot_leave_its_place() {
+        let mut plot = Plot::new("<b>", 0.0, 0.0);
+        plot.mark(f64::NAN, "\"><x>".into());
+        let svg = plot.render().unwrap();
+        assert!(!svg.contains("<b>") && !svg.contains("<x>"), "{svg}");
+    }
+}

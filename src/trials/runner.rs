@@ -1,0 +1,488 @@
+//! One running trial: samples and time in, setpoints out. Sends nothing, reads no clock, arms nothing.
+
+use crate::hand::{Angle, Dof, Force, Groups, HandSample, Moment, PerDof, Speed, Status, Target};
+use crate::hand::{ArmEpoch, Setpoints};
+use crate::trials::limits::{Abort, Feedback, LinkView, reason};
+use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
+use crate::trials::recording::{TrialEvent, TrialRecording};
+use std::time::Duration;
+
+/// Time at the start before the closing command: what is read in it is the rest that forces are counted from.
+pub const QUIET: Duration = Duration::from_millis(500);
+/// Longest wait until the hand shows the speed and threshold that were set.
+const LIMITS_WITHIN: Duration = Duration::from_secs(4);
+/// Longest way to the start and back, at a gentle speed.
+const WAY_WITHIN: Duration = Duration::from_secs(20);
+/// Recorded after the release.
+const AFTER: Duration = Duration::from_millis(300);
+/// Angles this near to each other are the same.
+const STILL_COUNTS: i16 = 2;
+/// A joint that reports a stop and stands still for this long has stopped.
+const STILL_FOR: Duration = Duration::from_millis(200);
+/// One that stands still for this long has stopped, whatever it reports: at speed 1 a joint makes three counts in it.
+const STILL_ANYWAY: Duration = Duration::from_millis(1800);
+/// Counts of ANGLE_ACT a second for each unit of SPEED_SET, at least (half of the position's 3.04).
+const COUNTS_PER_SPEED: f64 = 1.5;
+/// Extra time allowed for closing: the dead time, the ramps, a slow wire.
+const CLOSE_SLACK: Duration = Duration::from_secs(4);
+/// Weight of gravity: newtons of a gram.
+const N_PER_G: f64 = 0.009_806_65;
+
+/// What one joint does in the closing.
+#[derive(Debug, Clone, Copy)]
+struct ClosingJoint {
+    dof: Dof,
+    close: Angle,
+    /// Where it goes at first, if it is not all the way.
+    halt: Option<Angle>,
+    slow: bool,
+    moved: bool,
+    still: Option<(Moment, i16)>,
+    from: i16,
+    /// Proximity at the command.
+    proximity: Option<i32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum RunnerPhase {
+    Begin,
+    Preparing { since: Moment },
+    Quiet { since: Moment },
+    Closing { since: Moment },
+    Dwelling { since: Moment },
+    Releasing { since: Moment },
+    After { since: Moment },
+    Over,
+}
+
+/// What the hand does in a series, for display.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// Between two trials: it rests, or cools.
+    Resting,
+    /// It goes to its start.
+    Preparing,
+    /// It is still, and its limits are being confirmed.
+    Quiet,
+    /// It closes.
+    Closing,
+    /// It holds.
+    Dwelling,
+    /// It opens.
+    Releasing,
+    /// Nothing any more.
+    Over,
+}
+
+/// How a trial ended.
+pub type Ending = Result<(), Abort>;
+
+/// A running trial.
+#[derive(Debug, Clone)]
+pub struct Runner {
+    plan: TrialPlan,
+    setting: TrialSetting,
+    epoch: ArmEpoch,
+    phase: RunnerPhase,
+    joints: PerDof<Option<ClosingJoint>>,
+    rest: PerDof<Mean>,
+    /// Where all joints stand still on their way to the start, and since when.
+    pose: Option<(Moment, PerDof<i16>)>,
+    recording: TrialRecording,
+    ending: Option<Ending>,
+}
+
+/// A running mean.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    sum: f64,
+    count: u32,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count = self.count.saturating_add(1);
+    }
+
+    fn get(self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / f64::from(self.count))
+    }
+}
+
+impl Runner {
+    /// A trial of a plan that was checked. `contact`: angles at which a first trial met the object.
+    #[must_use]
+    pub fn new(
+        plan: &TrialPlan,
+        setting: TrialSetting,
+        contact: &PerDof<Option<Angle>>,
+        epoch: ArmEpoch,
+    ) -> Self {
+        let joints = PerDof::from_fn(|dof| {
+            let close = plan.close[dof]?;
+            Some(ClosingJoint {
+                dof,
+                close,
+                halt: halt(plan, contact[dof], dof),
+                slow: plan.approach == Approach::OneStage,
+                moved: false,
+                still: None,
+                from: 0,
+                proximity: None,
+            })
+        });
+        Self {
+            plan: plan.clone(),
+            setting,
+            epoch,
+            phase: RunnerPhase::Begin,
+            joints,
+            rest: PerDof::splat(Mean::default()),
+            pose: None,
+            recording: TrialRecording::default(),
+            ending: None,
+        }
+    }
+
+    /// The recording so far.
+    #[must_use]
+    pub const fn recording(&self) -> &TrialRecording {
+        &self.recording
+    }
+
+    /// What the hand does now.
+    #[must_use]
+    pub const fn stage(&self) -> Stage {
+        match self.phase {
+            RunnerPhase::Begin | RunnerPhase::Preparing { .. } => Stage::Preparing,
+            RunnerPhase::Quiet { .. } => Stage::Quiet,
+            RunnerPhase::Closing { .. } => Stage::Closing,
+            RunnerPhase::Dwelling { .. } => Stage::Dwelling,
+            RunnerPhase::Releasing { .. } | RunnerPhase::After { .. } => Stage::Releasing,
+            RunnerPhase::Over => Stage::Over,
+        }
+    }
+
+    /// How it ended, once it has.
+    #[must_use]
+    pub const fn ending(&self) -> Option<Ending> {
+        self.ending
+    }
+
+    /// Returns the recording.
+    #[must_use]
+    pub fn into_recording(self) -> TrialRecording {
+        self.recording
+    }
+
+    /// Ends it early. The first reason stays.
+    pub fn abort(&mut self, why: Abort, now: Moment) {
+        if self.ending.is_none() {
+            self.recording.mark(now, TrialEvent::Aborted);
+            self.phase = RunnerPhase::Over;
+            self.ending = Some(Err(why));
+        }
+    }
+
+    /// Takes a sample.
+    pub fn take(&mut self, sample: &HandSample, fresh: Groups) {
+        if self.ending.is_some() {
+            return;
+        }
+        self.recording.push(sample, fresh);
+        let quiet = matches!(self.phase, RunnerPhase::Quiet { .. });
+        if quiet && fresh.contains(crate::hand::Group::Force) {
+            for (dof, mean) in self.rest.iter_mut() {
+                let force = sample.force.and_then(|force| force.value[dof].documented());
+                if let Some(force) = force {
+                    mean.add(force.into());
+                }
+            }
+        }
+    }
+
+    /// Advances the time. Returns what to send now, if anything.
+    pub fn tick(&mut self, sample: &HandSample, link: LinkView, now: Moment) -> Option<Setpoints> {
+        if self.ending.is_some() {
+            return None;
+        }
+        let rest_g = self.rest.map(Mean::get);
+        let seen = Feedback {
+            sample,
+            rest_g: &rest_g,
+            now,
+        };
+        if let Some(why) = reason(link, self.epoch, &seen, &self.plan.limits) {
+            self.abort(why, now);
+            return None;
+        }
+        match self.phase {
+            RunnerPhase::Begin => Some(self.prepare(now)),
+            RunnerPhase::Preparing { since } => self.preparing(sample, since, now),
+            RunnerPhase::Quiet { since } => self.quiet(sample, since, now),
+            RunnerPhase::Closing { since } => self.closing(sample, since, now),
+            RunnerPhase::Dwelling { since } if now.since(since) >= self.plan.dwell => {
+                Some(self.release(now))
+            }
+            RunnerPhase::Releasing { since } => {
+                if self.there(sample, since, now) {
+                    self.recording.mark(now, TrialEvent::Released);
+                    self.phase = RunnerPhase::After { since: now };
+                }
+                None
+            }
+            RunnerPhase::After { since } if now.since(since) >= AFTER => {
+                self.phase = RunnerPhase::Over;
+                self.ending = Some(Ok(()));
+                None
+            }
+            _ => None,
+        }
+    }
+
+    fn setpoints(&self) -> Setpoints {
+        Setpoints::none(self.epoch)
+    }
+
+    /// To the start, gently.
+    fn prepare(&mut self, now: Moment) -> Setpoints {
+        self.recording.mark(now, TrialEvent::Prepare);
+        self.phase = RunnerPhase::Preparing { since: now };
+        self.to_start()
+    }
+
+    fn to_start(&self) -> Setpoints {
+        let mut setpoints = self.setpoints();
+        for (dof, start) in self.plan.start.iter() {
+            if let Some(start) = start {
+                setpoints.speed[dof] = Some(Speed::GENTLE);
+                setpoints.force[dof] = Some(self.setting.force.min(Force::GENTLE));
+                setpoints.angle[dof] = Some(Target::Go(*start));
+            }
+        }
+        setpoints
+    }
+
+    /// True if all joints stand still at their starts; ends the trial if that takes too long. A joint that still moves
+    /// would finish its way at the closing speed.
+    fn there(&mut self, sample: &HandSample, since: Moment, now: Moment) -> bool {
+        // Only what was asked for after the command tells of it.
+        let angle = sample.angle.filter(|angle| angle.asked >= since);
+        let away = self.plan.start.iter().find_map(|(dof, start)| {
+            let start = (*start)?.get();
+            let near = angle.is_some_and(|angle| {
+                let seen = angle.value[dof].documented();
+                seen.is_some_and(|seen| start.abs_diff(seen) <= Angle::ARRIVED_WITHIN)
+            });
+            (!near).then_some((dof, start))
+        });
+        let still = angle.is_some_and(|angle| self.is_still(&angle.value.map(|v| v.raw()), now));
+        let (dof, target) = match away {
+            None if still => return true,
+            None => self.first_start(),
+            Some(away) => away,
+        };
+        if now.since(since) >= WAY_WITHIN {
+            self.abort(Abort::Unreached { dof, target }, now);
+        }
+        false
+    }
+
+    /// The joint that is named where none is away and one still moves.
+    fn first_start(&self) -> (Dof, i16) {
+        let mut starts = self.plan.start.iter();
+        let first = starts.find_map(|(dof, start)| Some((dof, (*start)?.get())));
+        first.unwrap_or((Dof::Little, Angle::MAX.get()))
+    }
+
+    fn is_still(&mut self, pose: &PerDof<i16>, now: Moment) -> bool {
+        let near = |from: &PerDof<i16>| {
+            let mut joints = Dof::ALL.into_iter();
+            joints.all(|dof| from[dof].abs_diff(pose[dof]) <= STILL_COUNTS.unsigned_abs())
+        };
+        match self.pose {
+            Some((since, from)) if near(&from) => now.since(since) >= STILL_FOR,
+            _ => {
+                self.pose = Some((now, *pose));
+                false
+            }
+        }
+    }
+
+    fn preparing(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<Setpoints> {
+        if !self.there(sample, since, now) {
+            return None;
+        }
+        self.recording.mark(now, TrialEvent::Limits);
+        self.phase = RunnerPhase::Quiet { since: now };
+        let mut setpoints = self.setpoints();
+        for (dof, _) in self.joints.iter().filter(|(_, joint)| joint.is_some()) {
+            setpoints.speed[dof] = Some(self.first_speed());
+            setpoints.force[dof] = Some(self.setting.force);
+        }
+        Some(setpoints)
+    }
+
+    const fn first_speed(&self) -> Speed {
+        match self.plan.approach {
+            Approach::OneStage => self.setting.speed,
+            Approach::TwoStage { fast, .. } => fast,
+        }
+    }
+
+    /// Closes once the hand was quiet and shows the limits: no finger closes with a threshold that is not known.
+    fn quiet(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<Setpoints> {
+        if now.since(since) < QUIET {
+            return None;
+        }
+        if let Some(dof) = self.unconfirmed(sample, since) {
+            if now.since(since) >= LIMITS_WITHIN {
+                self.abort(Abort::LimitsRefused { dof }, now);
+            }
+            return None;
+        }
+        let angle = sample.angle?.value;
+        self.recording.mark(now, TrialEvent::Close);
+        self.phase = RunnerPhase::Closing { since: now };
+        let mut setpoints = self.setpoints();
+        for (dof, joint) in self.joints.iter_mut() {
+            let Some(joint) = joint else { continue };
+            joint.from = angle[dof].raw();
+            let tip = sample.tactile[dof.finger()].as_ref();
+            joint.proximity = tip.map(|tip| tip.value.proximity);
+            setpoints.angle[dof] = Some(Target::Go(joint.halt.unwrap_or(joint.close)));
+        }
+        Some(setpoints)
+    }
+
+    /// The first joint whose limits were not read back since they were set.
+    fn unconfirmed(&self, sample: &HandSample, since: Moment) -> Option<Dof> {
+        let (speed, force) = (self.first_speed(), self.setting.force);
+        let speeds = sample.speed_set.filter(|read| read.asked > since);
+        let forces = sample.force_set.filter(|read| read.asked > since);
+        self.plan.joints().find(|dof| {
+            speeds.is_none_or(|read| read.value[*dof] != Some(speed))
+                || forces.is_none_or(|read| read.value[*dof] != Some(force))
+        })
+    }
+
+    fn closing(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<Setpoints> {
+        let mut setpoints = self.setpoints();
+        let rest_g = self.rest.map(Mean::get);
+        let mut all_stopped = true;
+        for (dof, joint) in self.joints.iter_mut() {
+            let Some(joint) = joint else { continue };
+            joint.look(sample, since, now);
+            if !joint.slow && joint.begins_slow(self.plan.approach, sample, rest_g[dof]) {
+                joint.slow = true;
+                joint.still = None;
+                setpoints.speed[dof] = Some(self.setting.speed);
+                setpoints.angle[dof] = Some(Target::Go(joint.close));
+                self.recording.mark(now, TrialEvent::Slow(dof));
+            }
+            all_stopped &= joint.has_stopped(sample, now);
+        }
+        let too_late = now.since(since) >= self.close_within();
+        if all_stopped || too_late {
+            let what = if all_stopped {
+                TrialEvent::Stopped
+            } else {
+                TrialEvent::NotStopped
+            };
+            self.recording.mark(now, what);
+            self.phase = RunnerPhase::Dwelling { since: now };
+        }
+        (!setpoints.is_empty()).then_some(setpoints)
+    }
+
+    /// The longest that the whole way can take at the setting's speed.
+    fn close_within(&self) -> Duration {
+        let speed = f64::from(self.setting.speed.get().max(1));
+        Duration::from_secs_f64(1000.0 / (COUNTS_PER_SPEED * speed)) + CLOSE_SLACK
+    }
+
+    fn release(&mut self, now: Moment) -> Setpoints {
+        self.recording.mark(now, TrialEvent::Release);
+        self.phase = RunnerPhase::Releasing { since: now };
+        self.to_start()
+    }
+}
+
+/// Where a joint halts before its slow stage.
+fn halt(plan: &TrialPlan, contact: Option<Angle>, dof: Dof) -> Option<Angle> {
+    let Approach::TwoStage { until, .. } = plan.approach else {
+        return None;
+    };
+    match until {
+        Until::Angle(angle) => Some(angle),
+        Until::Measured { margin } => {
+            let start = plan.start[dof].unwrap_or(Angle::MAX);
+            let before = Angle::nearest(contact?.get().saturating_add(margin));
+            Some(before.min(start))
+        }
+        Until::Proximity(_) | Until::Touch(_) => None,
+    }
+}
+
+impl ClosingJoint {
+    /// Whether its fast stage is over.
+    fn begins_slow(&self, approach: Approach, sample: &HandSample, rest_g: Option<f64>) -> bool {
+        let Approach::TwoStage { until, .. } = approach else {
+            return false;
+        };
+        let tip = sample.tactile[self.dof.finger()].map(|tip| tip.value);
+        match until {
+            Until::Angle(_) | Until::Measured { .. } => {
+                let angle = sample
+                    .angle
+                    .and_then(|angle| angle.value[self.dof].documented());
+                let near = |halt: Angle| angle.is_some_and(|at| at <= halt.get() + STILL_COUNTS);
+                self.halt.is_none_or(near)
+            }
+            Until::Proximity(rise) => {
+                let now = tip.map(|tip| tip.proximity);
+                let risen = now.zip(self.proximity);
+                risen.is_some_and(|(now, before)| now.saturating_sub(before) >= rise)
+            }
+            Until::Touch(grams) => {
+                let grams = f64::from(grams.get());
+                let felt = tip.and_then(|tip| tip.normal()).map(f64::from);
+                let force = sample
+                    .force
+                    .and_then(|force| force.value[self.dof].documented());
+                felt.is_some_and(|newtons| newtons >= grams * N_PER_G)
+                    || force
+                        .zip(rest_g)
+                        .is_some_and(|(force, rest)| f64::from(force) - rest >= grams)
+            }
+        }
+    }
+
+    /// Notes whether it moves.
+    fn look(&mut self, sample: &HandSample, since: Moment, now: Moment) {
+        let Some(angle) = sample.angle.filter(|angle| angle.asked >= since) else {
+            return;
+        };
+        let seen = angle.value[self.dof].raw();
+        let status = sample.status.filter(|status| status.asked >= since);
+        let says = status.map(|status| status.value[self.dof]);
+        self.moved |= says == Some(Status::Grasping)
+            || seen.abs_diff(self.from) > STILL_COUNTS.unsigned_abs() + 1;
+        match self.still {
+            Some((_, at)) if seen.abs_diff(at) <= STILL_COUNTS.unsigned_abs() => {}
+            _ => self.still = Some((now, seen)),
+        }
+    }
+
+    /// Whether it has stopped: at its target, at its force, or at an obstacle.
+    fn has_stopped(&self, sample: &HandSample, now: Moment) -> bool {
+        let Some((since, _)) = self.still.filter(|_| self.slow) else {
+            return false;
+        };
+        let still = now.since(since);
+        let says = sample.status.map(|status| status.value[self.dof]);
+        let says_so = self.moved && says.is_some_and(Status::is_stopped);
+        still >= STILL_ANYWAY || (says_so && still >= STILL_FOR)
+    }
+}

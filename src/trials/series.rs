@@ -1,0 +1,318 @@
+//! A series of trials: which is next, the rest between two, and what ends the series. Sends nothing and reads no clock.
+
+use crate::hand::{Angle, Groups, HandSample, Moment, PerDof, Speed};
+use crate::hand::{ArmEpoch, Setpoints};
+use crate::trials::limits::{Abort, LinkView, warmest};
+use crate::trials::measure::metrics::measure;
+use crate::trials::plan::{Approach, PlanError, TrialPlan, TrialSetting};
+use crate::trials::recording::TrialRecording;
+use crate::trials::runner::{Runner, Stage};
+use crate::trials::summary::{EarlyEnd, Trial, TrialKind, TrialSummary};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Longest wait for a hand that is too warm to start.
+pub const COOLING_MAX: Duration = Duration::from_secs(900);
+/// Speed at which the contact is looked for.
+const PROBE_SPEED: Speed = Speed::SLOWEST_MEASURED;
+
+/// What to tell the link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SeriesOrder {
+    /// New targets and limits.
+    Set(Setpoints),
+    /// Hold now, before anything else.
+    Stop,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct PlannedTrial {
+    /// Which of the trials of its setting, from 1; `None` = it finds the contact.
+    repeat: Option<usize>,
+    setting: TrialSetting,
+}
+
+#[derive(Debug, Clone)]
+enum SeriesPhase {
+    Waiting { since: Moment, rest: Duration },
+    Running(Box<Runner>, PlannedTrial),
+    Over,
+}
+
+/// A running series.
+#[derive(Debug, Clone)]
+pub struct TrialSeries {
+    plan: TrialPlan,
+    epoch: ArmEpoch,
+    queue: VecDeque<PlannedTrial>,
+    total: usize,
+    phase: SeriesPhase,
+    contact: PerDof<Option<Angle>>,
+    number: usize,
+    done: VecDeque<Trial>,
+    aborted: Option<Abort>,
+}
+
+impl TrialSeries {
+    /// Starts a series in an arming that a person gave. Nothing is sent before the first [`Self::tick`].
+    ///
+    /// # Errors
+    /// [`PlanError`]: the plan makes no sense, and nothing begins.
+    pub fn start(plan: TrialPlan, epoch: ArmEpoch, now: Moment) -> Result<Self, PlanError> {
+        plan.check()?;
+        let queue = cells(&plan);
+        Ok(Self {
+            total: queue.len(),
+            queue,
+            phase: SeriesPhase::Waiting {
+                since: now,
+                rest: Duration::ZERO,
+            },
+            plan,
+            epoch,
+            contact: PerDof::splat(None),
+            number: 0,
+            done: VecDeque::new(),
+            aborted: None,
+        })
+    }
+
+    /// True once nothing is sent any more.
+    #[must_use]
+    pub const fn is_over(&self) -> bool {
+        matches!(self.phase, SeriesPhase::Over)
+    }
+
+    /// Why it ended early, if it did.
+    #[must_use]
+    pub const fn aborted(&self) -> Option<Abort> {
+        self.aborted
+    }
+
+    /// Trials that began, and trials in all.
+    #[must_use]
+    pub const fn progress(&self) -> (usize, usize) {
+        (self.number, self.total)
+    }
+
+    /// What the hand does now.
+    #[must_use]
+    pub fn stage(&self) -> Stage {
+        match &self.phase {
+            SeriesPhase::Waiting { .. } => Stage::Resting,
+            SeriesPhase::Running(runner, _) => runner.stage(),
+            SeriesPhase::Over => Stage::Over,
+        }
+    }
+
+    /// The setting of the current trial; `None` between two.
+    #[must_use]
+    pub const fn setting(&self) -> Option<TrialSetting> {
+        match &self.phase {
+            SeriesPhase::Running(_, cell) => Some(cell.setting),
+            SeriesPhase::Waiting { .. } | SeriesPhase::Over => None,
+        }
+    }
+
+    /// Whether the current trial looks for the contact.
+    #[must_use]
+    pub fn is_probing(&self) -> bool {
+        matches!(&self.phase, SeriesPhase::Running(_, cell) if cell.repeat.is_none())
+    }
+
+    /// The recording of the current trial; `None` between two.
+    #[must_use]
+    pub fn recording(&self) -> Option<&TrialRecording> {
+        match &self.phase {
+            SeriesPhase::Running(runner, _) => Some(runner.recording()),
+            SeriesPhase::Waiting { .. } | SeriesPhase::Over => None,
+        }
+    }
+
+    /// The settings of the trials that did not begin yet.
+    pub fn ahead(&self) -> impl Iterator<Item = TrialSetting> {
+        self.queue.iter().map(|cell| cell.setting)
+    }
+
+    /// The next finished trial. Each is returned once.
+    pub fn finished(&mut self) -> Option<Trial> {
+        self.done.pop_front()
+    }
+
+    /// Ends it. Returns the stop that has to follow, if it ran.
+    pub fn end(&mut self, why: Abort, now: Moment) -> Option<SeriesOrder> {
+        if self.is_over() {
+            return None;
+        }
+        if let SeriesPhase::Running(runner, _) = &mut self.phase {
+            runner.abort(why, now);
+        }
+        Some(self.fail(why))
+    }
+
+    /// Takes a sample.
+    pub fn take(&mut self, sample: &HandSample, fresh: Groups) {
+        if let SeriesPhase::Running(runner, _) = &mut self.phase {
+            runner.take(sample, fresh);
+        }
+    }
+
+    /// Advances the time. Returns what to send now, if anything.
+    pub fn tick(
+        &mut self,
+        sample: &HandSample,
+        link: LinkView,
+        now: Moment,
+    ) -> Option<SeriesOrder> {
+        match &mut self.phase {
+            SeriesPhase::Waiting { since, rest } => {
+                let (since, rest) = (*since, *rest);
+                self.wait(sample, link, Wait { since, rest, now })
+            }
+            SeriesPhase::Running(runner, _) => {
+                let setpoints = runner.tick(sample, link, now);
+                match runner.ending() {
+                    None => setpoints.map(SeriesOrder::Set),
+                    Some(Err(why)) => Some(self.fail(why)),
+                    Some(Ok(())) => self.next(now),
+                }
+            }
+            SeriesPhase::Over => None,
+        }
+    }
+
+    fn wait(&mut self, sample: &HandSample, link: LinkView, wait: Wait) -> Option<SeriesOrder> {
+        let Wait { since, rest, now } = wait;
+        if !link.state.is_live() {
+            return Some(self.fail(Abort::LinkLost));
+        }
+        if link.armed != Some(self.epoch) {
+            return Some(self.fail(Abort::Disarmed));
+        }
+        if now.since(since) < rest {
+            return None;
+        }
+        let limit = self.plan.limits.start_c;
+        // Temperatures that are not known yet are waited for; the trial itself does not begin without them.
+        let (dof, celsius) = warmest(sample)?;
+        if celsius >= limit {
+            let waited = now.since(since) >= rest + COOLING_MAX;
+            return waited.then(|| {
+                self.fail(Abort::TooWarm {
+                    dof,
+                    celsius,
+                    limit,
+                })
+            });
+        }
+        let Some(cell) = self.queue.pop_front() else {
+            self.phase = SeriesPhase::Over;
+            return None;
+        };
+        self.number += 1;
+        let mut plan = self.plan.clone();
+        if cell.repeat.is_none() {
+            plan.approach = Approach::OneStage;
+        }
+        let runner = Runner::new(&plan, cell.setting, &self.contact, self.epoch);
+        self.phase = SeriesPhase::Running(Box::new(runner), cell);
+        self.tick(sample, link, now)
+    }
+
+    /// A trial ended normally.
+    fn next(&mut self, now: Moment) -> Option<SeriesOrder> {
+        let trial = self.close_trial()?;
+        let missing = self.learn_contact(&trial.summary);
+        self.done.push_back(trial);
+        if let Some(why) = missing {
+            return Some(self.fail(why));
+        }
+        self.phase = if self.queue.is_empty() {
+            SeriesPhase::Over
+        } else {
+            SeriesPhase::Waiting {
+                since: now,
+                rest: self.plan.grid.rest,
+            }
+        };
+        None
+    }
+
+    /// Takes the contact angles of a probe; the reason to end if one is missing.
+    fn learn_contact(&mut self, trial: &TrialSummary) -> Option<Abort> {
+        if !trial.is_probe() {
+            return None;
+        }
+        for joint in &trial.joints {
+            let Some(angle) = joint.contact_angle else {
+                continue;
+            };
+            // Between 0 and 1000 as all angles are.
+            #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+            let angle = angle.round() as i64;
+            self.contact[joint.dof] = Some(Angle::nearest(angle));
+        }
+        let missing = self.plan.joints().find(|dof| self.contact[*dof].is_none());
+        missing.map(|dof| Abort::NoContact { dof })
+    }
+
+    fn close_trial(&mut self) -> Option<Trial> {
+        let SeriesPhase::Running(runner, cell) =
+            std::mem::replace(&mut self.phase, SeriesPhase::Over)
+        else {
+            return None;
+        };
+        let aborted = runner.ending().and_then(Result::err);
+        let recording = runner.into_recording();
+        let summary = TrialSummary {
+            number: self.number,
+            kind: match cell.repeat {
+                None => TrialKind::Probe,
+                Some(_) => TrialKind::Trial,
+            },
+            repeat: cell.repeat,
+            setting: cell.setting,
+            aborted: aborted.map(EarlyEnd::Here),
+            samples: None,
+            rows: recording.rows().len(),
+            rows_lost: recording.lost(),
+            joints: measure(&recording, &self.plan, cell.setting),
+            others: toml::Table::new(),
+        };
+        Some(Trial { summary, recording })
+    }
+
+    fn fail(&mut self, why: Abort) -> SeriesOrder {
+        let trial = self.close_trial();
+        self.done.extend(trial);
+        self.aborted.get_or_insert(why);
+        self.queue.clear();
+        self.phase = SeriesPhase::Over;
+        SeriesOrder::Stop
+    }
+}
+
+struct Wait {
+    since: Moment,
+    rest: Duration,
+    now: Moment,
+}
+
+/// The trials in order; where the contact has to be measured, a slow one at the smallest threshold goes first.
+fn cells(plan: &TrialPlan) -> VecDeque<PlannedTrial> {
+    let least = plan.grid.forces.iter().min();
+    let probe = least.filter(|_| plan.measures_contact());
+    let probe = probe.map(|force| PlannedTrial {
+        repeat: None,
+        setting: TrialSetting {
+            speed: PROBE_SPEED,
+            force: *force,
+        },
+    });
+    let settings = plan.grid.settings().into_iter().enumerate();
+    let trials = settings.map(|(at, setting)| PlannedTrial {
+        repeat: Some(at % plan.grid.repeats.max(1) + 1),
+        setting,
+    });
+    probe.into_iter().chain(trials).collect()
+}

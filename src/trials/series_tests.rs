@@ -1,0 +1,367 @@
+//! A series against a hand that is only numbers: what is sent when, and what ends it. No link and no simulated hand.
+
+use crate::hand::{
+    Angle, AngleReading, Dof, Faults, Force, ForceReading, Group, Groups, HandSample, Moment,
+    PerDof, Speed, Status, Target, TemperatureReading, Timed,
+};
+use crate::hand::{ArmEpoch, Setpoints};
+use crate::record::LinkState;
+use crate::trials::limits::{Abort, LinkView};
+use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
+use crate::trials::series::{SeriesOrder, TrialSeries};
+use crate::trials::summary::{Trial, TrialKind};
+use std::time::Duration;
+
+const EPOCH: ArmEpoch = ArmEpoch(3);
+const STEP: Duration = Duration::from_millis(10);
+
+/// Angles that follow their targets at 500 a second, and readings that can be spoilt.
+#[derive(Debug, Clone)]
+struct Hand {
+    now: Moment,
+    angle: PerDof<i16>,
+    target: PerDof<i16>,
+    speed: PerDof<Option<Speed>>,
+    force: PerDof<Option<Force>>,
+    grams: i16,
+    celsius: u8,
+    /// The force was last read then.
+    force_at: Option<Moment>,
+    takes_limits: bool,
+    link: LinkView,
+}
+
+impl Hand {
+    fn new() -> Self {
+        Self {
+            now: Moment::from_micros(1_000_000),
+            angle: PerDof::splat(700),
+            target: PerDof::splat(700),
+            speed: PerDof::splat(None),
+            force: PerDof::splat(None),
+            grams: -7,
+            celsius: 31,
+            force_at: None,
+            takes_limits: true,
+            link: LinkView {
+                state: LinkState::Armed,
+                armed: Some(EPOCH),
+            },
+        }
+    }
+
+    fn obey(&mut self, setpoints: &Setpoints) {
+        for dof in Dof::ALL {
+            if let Some(Target::Go(angle)) = setpoints.angle[dof] {
+                self.target[dof] = angle.get();
+            }
+            if self.takes_limits {
+                self.speed[dof] = setpoints.speed[dof].or(self.speed[dof]);
+                self.force[dof] = setpoints.force[dof].or(self.force[dof]);
+            }
+        }
+    }
+
+    fn step(&mut self) {
+        self.now = self.now.plus(STEP);
+        for dof in Dof::ALL {
+            let way = self.target[dof] - self.angle[dof];
+            self.angle[dof] += way.clamp(-5, 5);
+        }
+    }
+
+    fn sample(&self) -> HandSample {
+        fn timed<T>(value: T, at: Moment) -> Option<Timed<T>> {
+            Some(Timed {
+                value,
+                asked: at,
+                received: at,
+            })
+        }
+        let now = self.now;
+        let status = |dof: Dof| match self.target[dof] - self.angle[dof] {
+            0 => Status::PositionReached,
+            way if way < 0 => Status::Grasping,
+            _ => Status::Releasing,
+        };
+        HandSample {
+            angle: timed(self.angle.map(AngleReading::new), now),
+            force: timed(
+                PerDof::splat(ForceReading::new(self.grams)),
+                self.force_at.unwrap_or(now),
+            ),
+            faults: timed(PerDof::splat(Faults::default()), now),
+            status: timed(PerDof::from_fn(status), now),
+            temperature: timed(PerDof::splat(TemperatureReading::new(self.celsius)), now),
+            speed_set: timed(self.speed, now),
+            force_set: timed(self.force, now),
+            ..HandSample::default()
+        }
+    }
+}
+
+fn plan(speed: i16, repeats: usize) -> TrialPlan {
+    let mut plan = TrialPlan {
+        start: PerDof::splat(None),
+        close: PerDof::splat(None),
+        approach: Approach::OneStage,
+        dwell: Duration::from_millis(600),
+        grid: TrialGrid {
+            repeats,
+            rest: Duration::from_secs(2),
+            ..TrialGrid::once(TrialSetting {
+                speed: Speed::nearest(speed),
+                force: Force::nearest(400),
+            })
+        },
+        limits: Limits::default(),
+        ..TrialPlan::default()
+    };
+    plan.start[Dof::Index] = Some(Angle::MAX);
+    plan.close[Dof::Index] = Some(Angle::nearest(200));
+    plan
+}
+
+/// What was sent, with its time, and how it went.
+struct Ran {
+    sent: Vec<(Moment, SeriesOrder)>,
+    trials: Vec<Trial>,
+    aborted: Option<Abort>,
+}
+
+/// Runs for at most two minutes. `meanwhile` spoils the hand; it is told how far the index finger is.
+fn run(plan: TrialPlan, mut meanwhile: impl FnMut(&mut Hand)) -> Ran {
+    let mut hand = Hand::new();
+    let mut fresh = Groups::NONE;
+    for group in [
+        Group::Angle,
+        Group::Force,
+        Group::Status,
+        Group::Temperature,
+    ] {
+        fresh.insert(group);
+    }
+    let mut series = TrialSeries::start(plan, EPOCH, hand.now).unwrap();
+    let mut sent = Vec::new();
+    for _ in 0..12_000 {
+        hand.step();
+        meanwhile(&mut hand);
+        let sample = hand.sample();
+        series.take(&sample, fresh);
+        if let Some(order) = series.tick(&sample, hand.link, hand.now) {
+            sent.push((hand.now, order));
+            if let SeriesOrder::Set(setpoints) = order {
+                assert_eq!(setpoints.epoch, EPOCH);
+                hand.obey(&setpoints);
+            }
+        }
+    }
+    assert!(series.is_over());
+    let trials = std::iter::from_fn(|| series.finished()).collect();
+    Ran {
+        sent,
+        trials,
+        aborted: series.aborted(),
+    }
+}
+
+/// Ends by this reason, with one stop, and nothing after it.
+fn check(why: Abort, plan: TrialPlan, meanwhile: impl FnMut(&mut Hand)) {
+    let ran = run(plan, meanwhile);
+    assert_eq!(ran.aborted, Some(why));
+    let stops = ran
+        .sent
+        .iter()
+        .filter(|(_, order)| *order == SeriesOrder::Stop);
+    assert_eq!(stops.count(), 1, "{why}");
+    assert_eq!(ran.sent.last().unwrap().1, SeriesOrder::Stop, "{why}");
+}
+
+fn setpoints(order: &SeriesOrder) -> Setpoints {
+    match order {
+        SeriesOrder::Set(setpoints) => *setpoints,
+        SeriesOrder::Stop => panic!("a stop"),
+    }
+}
+
+#[test]
+fn each_trial_opens_sets_the_limits_closes_by_angle_alone_and_opens() {
+    let ran = run(plan(250, 2), |_| ());
+    assert_eq!(ran.aborted, None);
+    assert_eq!(ran.sent.len(), 8);
+    let one: Vec<Setpoints> = ran.sent[..4]
+        .iter()
+        .map(|(_, order)| setpoints(order))
+        .collect();
+    let index = |n: usize| {
+        let set = one[n];
+        (
+            set.speed[Dof::Index].map(Speed::get),
+            set.force[Dof::Index].map(Force::get),
+            set.angle[Dof::Index].map(|target: Target| target.raw()),
+        )
+    };
+    assert_eq!(index(0), (Some(200), Some(400), Some(1000)));
+    assert_eq!(index(1), (Some(250), Some(400), None));
+    assert_eq!(index(2), (None, None, Some(200)));
+    assert_eq!(index(3), (Some(200), Some(400), Some(1000)));
+    for set in &one {
+        let others = Dof::ALL.into_iter().filter(|dof| *dof != Dof::Index);
+        for dof in others {
+            assert!(
+                set.angle[dof].is_none() && set.speed[dof].is_none() && set.force[dof].is_none()
+            );
+        }
+    }
+    let dwelt = ran.sent[3].0.since(ran.sent[2].0);
+    // 800 at 500 a second, the stillness of 200 ms, the dwell of 600.
+    assert!((2300..2600).contains(&dwelt.as_millis()), "{dwelt:?}");
+    // The way back, its stillness, what is recorded after, the rest.
+    let rested = ran.sent[4].0.since(ran.sent[3].0);
+    assert!((3900..4500).contains(&rested.as_millis()), "{rested:?}");
+    let summaries = ran.trials.iter().map(|trial| &trial.summary);
+    let kinds: Vec<(TrialKind, Option<usize>)> =
+        summaries.map(|own| (own.kind, own.repeat)).collect();
+    assert_eq!(
+        kinds,
+        [(TrialKind::Trial, Some(1)), (TrialKind::Trial, Some(2))]
+    );
+}
+
+fn closing(hand: &Hand) -> bool {
+    hand.target[Dof::Index] == 200 && hand.angle[Dof::Index] < 900
+}
+
+#[test]
+fn what_cannot_be_watched_ends_it() {
+    let dof = Dof::Little;
+    let what = "force";
+    check(Abort::Blind { what, dof }, plan(250, 2), |hand| {
+        if closing(hand) && hand.force_at.is_none() {
+            hand.force_at = Some(hand.now);
+        }
+    });
+    check(Abort::Blind { what, dof }, plan(250, 2), |hand| {
+        if closing(hand) {
+            hand.grams = 5000;
+        }
+    });
+    let what = "temperature";
+    check(Abort::Blind { what, dof }, plan(250, 2), |hand| {
+        if closing(hand) {
+            hand.celsius = 255;
+        }
+    });
+}
+
+#[test]
+fn a_lost_or_changed_arming_ends_it_and_so_does_a_lost_link() {
+    for link in [
+        LinkView {
+            state: LinkState::Holding,
+            armed: None,
+        },
+        LinkView {
+            state: LinkState::Armed,
+            armed: Some(ArmEpoch(4)),
+        },
+    ] {
+        check(Abort::Disarmed, plan(250, 2), |hand| {
+            if closing(hand) {
+                hand.link = link;
+            }
+        });
+        // Also in the rest between two trials, where nothing moves.
+        check(Abort::Disarmed, plan(250, 2), |hand| {
+            if hand.now > Moment::from_micros(9_000_000) {
+                hand.link = link;
+            }
+        });
+    }
+    check(Abort::LinkLost, plan(250, 2), |hand| {
+        if closing(hand) {
+            hand.link.state = LinkState::Offline;
+        }
+    });
+}
+
+#[test]
+fn no_finger_closes_before_the_hand_shows_the_limits() {
+    let dof = Dof::Index;
+    let ran = run(plan(250, 2), |hand| hand.takes_limits = false);
+    assert_eq!(ran.aborted, Some(Abort::LimitsRefused { dof }));
+    let closed = ran.sent.iter().filter_map(|(_, order)| match order {
+        SeriesOrder::Set(set) => set.angle[dof].map(|target| target.raw()),
+        SeriesOrder::Stop => None,
+    });
+    assert!(closed.into_iter().all(|angle| angle == 1000));
+}
+
+#[test]
+fn heat_and_force_end_it_and_force_counts_from_rest() {
+    let dof = Dof::Little;
+    let (celsius, limit) = (60, 60);
+    let heat = Abort::Heat {
+        dof: Dof::ThumbRotate,
+        celsius,
+        limit,
+    };
+    check(heat, plan(250, 2), |hand| {
+        if closing(hand) {
+            hand.celsius = 60;
+        }
+    });
+    let (grams, ceiling) = (2000, 2000);
+    let force = Abort::Ceiling {
+        dof,
+        grams,
+        ceiling,
+    };
+    check(force, plan(250, 2), |hand| {
+        hand.grams = if closing(hand) { 1993 } else { -7 };
+    });
+    let ran = run(plan(250, 1), |hand| {
+        hand.grams = if closing(hand) { 1992 } else { -7 };
+    });
+    assert_eq!(ran.aborted, None, "1999 g above rest");
+}
+
+#[test]
+fn a_contact_that_was_not_found_is_not_approached() {
+    let mut plan = plan(25, 3);
+    plan.approach = Approach::TwoStage {
+        fast: Speed::MAX,
+        until: Until::Measured { margin: 40 },
+    };
+    let dof = Dof::Index;
+    let ran = run(plan, |_| ());
+    assert_eq!(ran.aborted, Some(Abort::NoContact { dof }));
+    assert_eq!(ran.trials.len(), 1);
+    assert_eq!(ran.trials[0].summary.kind, TrialKind::Probe);
+}
+
+#[test]
+fn a_hand_that_stays_warm_is_waited_for_a_quarter_of_an_hour() {
+    let mut series = TrialSeries::start(plan(250, 1), EPOCH, Moment::ZERO).unwrap();
+    let mut hand = Hand::new();
+    hand.celsius = 55;
+    let later = |s: u64| Moment::from_micros(s * 1_000_000);
+    assert_eq!(series.tick(&hand.sample(), hand.link, later(899)), None);
+    assert!(!series.is_over());
+    let stop = series.tick(&hand.sample(), hand.link, later(901));
+    assert_eq!(stop, Some(SeriesOrder::Stop));
+    assert!(matches!(series.aborted(), Some(Abort::TooWarm { .. })));
+}
+
+#[test]
+fn a_person_ends_it_at_any_time_and_only_once() {
+    let mut series = TrialSeries::start(plan(250, 1), EPOCH, Moment::ZERO).unwrap();
+    assert_eq!(
+        series.end(Abort::Person, Moment::ZERO),
+        Some(SeriesOrder::Stop)
+    );
+    assert_eq!(series.end(Abort::Person, Moment::ZERO), None);
+    let hand = Hand::new();
+    assert_eq!(series.tick(&hand.sample(), hand.link, hand.now), None);
+    assert_eq!(series.aborted(), Some(Abort::Person));
+}

@@ -1,0 +1,34 @@
+//! Where the link stands, in a word and a colour.
+
+use crate::link::Dialling;
+use crate::record::LinkState;
+use crate::ui::kit::look::Pane;
+use crate::ui::text::{Text, main, words};
+use egui::Color32;
+
+/// The word and the colour for where the link stands.
+pub(crate) fn link_words(pane: &Pane<'_>) -> (Text, Color32) {
+    let palette = pane.look.palette;
+    let link = &pane.state.hand().link;
+    match link.state {
+        // A hand that never answered is not reached yet; only one that did can be lost.
+        LinkState::Offline
+            if link.trouble.is_some() && pane.state.hand().sample.angle.is_some() =>
+        {
+            (main::STATE_LOST, palette.bad)
+        }
+        LinkState::Offline if link.dialling != Dialling::Idle => {
+            (main::STATE_CONNECTING, palette.warn)
+        }
+        state => {
+            let color = match state {
+                LinkState::Offline => palette.faint,
+                LinkState::Identifying | LinkState::Holding => palette.warn,
+                LinkState::Monitoring => palette.ok,
+                LinkState::Armed => palette.armed,
+                LinkState::Fault => palette.bad,
+            };
+            (words::link_state(state), color)
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! What happened in a recording, as lines of words: what a person did, how drives changed, what the link did.
+
+use crate::app::hand::{Play, Preset};
+use crate::app::readings::fault_recorder::{EventKind, PersonAct, Recording};
+use crate::hand::Faults;
+use crate::history::{Mark, MarkKind};
+use crate::ui::kit::look::Look;
+use crate::ui::text::{faults, main, panels, poses, words};
+use egui::Color32;
+
+/// One line of the list.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct EventLine {
+    /// When, in seconds since the start of the program.
+    pub(crate) at_s: f64,
+    /// What.
+    pub(crate) text: String,
+    /// Of its mark.
+    pub(crate) color: Color32,
+}
+
+/// Everything that happened, oldest first.
+pub(crate) fn lines(look: Look, recording: &Recording) -> Vec<EventLine> {
+    let events = recording.events.iter().map(|event| {
+        let (text, color) = event_words(look, &event.what);
+        EventLine {
+            at_s: event.at.secs(),
+            text,
+            color,
+        }
+    });
+    let marks = recording
+        .history
+        .marks(recording.from.secs(), recording.to.secs());
+    let marks = marks.filter_map(|mark| mark_line(look, mark));
+    let mut all: Vec<EventLine> = events.chain(marks).collect();
+    all.sort_by(|one, two| one.at_s.total_cmp(&two.at_s));
+    all
+}
+
+/// A mark of the history; a fault's is told better by the drive's own words.
+fn mark_line(look: Look, mark: &Mark) -> Option<EventLine> {
+    let palette = look.palette;
+    let (text, color) = match &mark.kind {
+        MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
+        MarkKind::Stop => (panels::MARK_STOP, palette.bad),
+        MarkKind::HoldConfirmed => (panels::MARK_HELD, palette.ok),
+        MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
+        MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
+        MarkKind::Gesture(_) => (panels::MARK_GESTURE, palette.accent),
+        MarkKind::Note(_) => (panels::MARK_NOTE, palette.text),
+        MarkKind::Fault => return None,
+    };
+    let text = look.say(text);
+    let text = match &mark.kind {
+        MarkKind::Gesture(number) => format!("{text} {number}"),
+        MarkKind::Note(words) => words.to_string(),
+        _ => text.to_owned(),
+    };
+    Some(EventLine {
+        at_s: mark.at.secs(),
+        text,
+        color,
+    })
+}
+
+fn event_words(look: Look, what: &EventKind) -> (String, Color32) {
+    let palette = look.palette;
+    match what {
+        EventKind::PersonAct(deed) => (deed_words(look, deed), palette.accent),
+        EventKind::Status(dof, status) => {
+            let joint = look.say(words::dof(*dof));
+            let color = if status.is_protective() {
+                palette.bad
+            } else {
+                palette.muted
+            };
+            let title = words::status(*status, look.language).title;
+            (format!("{joint}: {title}"), color)
+        }
+        EventKind::Faults(dof, bits) => {
+            let joint = look.say(words::dof(*dof));
+            let color = if bits.is_empty() {
+                palette.ok
+            } else {
+                palette.bad
+            };
+            (format!("{joint}: {}", fault_words(look, *bits)), color)
+        }
+    }
+}
+
+/// The titles of all bits that are set.
+fn fault_words(look: Look, bits: Faults) -> String {
+    if bits.is_empty() {
+        return look.say(faults::NO_FAULT_BITS).into();
+    }
+    let titles = bits
+        .iter()
+        .map(|bit| words::fault(bit, look.language).title);
+    titles.collect::<Vec<_>>().join(" + ")
+}
+
+fn deed_words(look: Look, deed: &PersonAct) -> String {
+    let joint = |dof| look.say(words::dof(dof));
+    let all = look.say(faults::DEED_ALL);
+    match deed {
+        PersonAct::Disarm => look.say(faults::DEED_DISARM).into(),
+        PersonAct::Target(dof, angle) => {
+            format!(
+                "{} {} {}",
+                joint(*dof),
+                look.say(faults::DEED_TARGET),
+                angle.get()
+            )
+        }
+        PersonAct::Force(dof, force) => {
+            format!(
+                "{} {} {}",
+                joint(*dof),
+                look.say(faults::DEED_FORCE),
+                force.get()
+            )
+        }
+        PersonAct::Speed(dof, speed) => {
+            format!(
+                "{} {} {}",
+                joint(*dof),
+                look.say(faults::DEED_SPEED),
+                speed.get()
+            )
+        }
+        PersonAct::ForceOfAll(force) => {
+            format!("{all} {} {}", look.say(faults::DEED_FORCE), force.get())
+        }
+        PersonAct::SpeedOfAll(speed) => {
+            format!("{all} {} {}", look.say(faults::DEED_SPEED), speed.get())
+        }
+        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), look.say(faults::DEED_LOCK)),
+        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), look.say(faults::DEED_UNLOCK)),
+        PersonAct::Preset(Preset::Open) => look.say(main::OPEN).into(),
+        PersonAct::Preset(Preset::Half) => look.say(main::HALF).into(),
+        PersonAct::Preset(Preset::Close) => look.say(main::CLOSE).into(),
+        PersonAct::Pose(name) => format!("{} {name}", look.say(poses::RECALL_NAME)),
+        PersonAct::Angles => look.say(faults::DEED_ANGLES).into(),
+        PersonAct::Play(play) => {
+            let verb = match play {
+                Play::Start(_) => poses::START,
+                Play::Step(_) => poses::STEP,
+                Play::Pause => poses::PAUSE,
+                Play::Resume => poses::RESUME,
+                Play::End | Play::Dry(_) | Play::EndDry => poses::END,
+            };
+            format!("{}: {}", look.say(faults::DEED_SEQUENCE), look.say(verb))
+        }
+        PersonAct::ClearErrors => look.say(panels::CLEAR).into(),
+    }
+}

@@ -1,0 +1,121 @@
+//! Light on the hand: one key light, a soft fill, the sky, and what they lose in folds and shadows.
+
+use crate::hand::kinematics::Pose;
+use crate::ui::hand::bars::{Bars, Near};
+use crate::ui::hand::camera::{Camera, EYE_MM};
+use crate::ui::hand::part::{Coat, Part};
+use crate::ui::hand::solid::Skin;
+use crate::ui::theme::{self, Material, Studio};
+use egui::Color32;
+use glam::{Affine3, Vec3};
+
+/// How the key light falls off to the right and downwards, per millimetre.
+const FALL_PER_MM: f32 = 0.0016;
+
+/// The light of one picture.
+#[derive(Debug)]
+pub(crate) struct Light {
+    studio: &'static Studio,
+    bars: Bars,
+    /// Old values: everything fades towards this colour.
+    pub(crate) veil: Option<(Color32, f32)>,
+}
+
+/// The light on one part.
+pub(crate) struct Shade<'a> {
+    light: &'a Light,
+    near: Near,
+    coat: Coat,
+}
+
+impl Light {
+    /// The light on a hand in this pose.
+    pub(crate) fn new(studio: &'static Studio, camera: &Camera, pose: &Pose) -> Self {
+        Self {
+            studio,
+            bars: Bars::new(camera, pose, studio.key),
+            veil: None,
+        }
+    }
+
+    /// The light on a part; `frame` is the part's as the eye sees it.
+    pub(crate) fn on(&self, part: &Part<'_>, frame: &Affine3) -> Shade<'_> {
+        let middle = frame.transform_point3(part.solid.middle);
+        Shade {
+            light: self,
+            near: self.bars.near(part.segment, middle, part.solid.radius),
+            coat: part.coat,
+        }
+    }
+}
+
+impl Shade<'_> {
+    /// The colour of a corner, as seen from the eye.
+    pub(crate) fn color(&self, skin: Skin, at: Vec3, normal: Vec3) -> Color32 {
+        let eye = (Vec3::Z * EYE_MM - at).normalize();
+        let (facing, studio) = (normal.dot(eye).max(0.0), self.light.studio);
+        let material = self.material(skin);
+        let (sky, key) = self.near.left(at, normal);
+        // The lamp is not far away: what is near it is brighter.
+        let key = key * (1.0 + (at.y - at.x) * FALL_PER_MM);
+        let lit = (normal.dot(studio.key) * 0.87 + 0.13).max(0.0) * key * studio.key_power;
+        let fill = normal.dot(studio.fill).max(0.0) * (0.5 + 0.5 * sky) * studio.fill_power;
+        let ambient = studio.ground + (studio.sky - studio.ground) * (0.5 + 0.5 * normal.y);
+        let light = lit + fill + ambient * sky;
+        let spark = normal
+            .dot((studio.key + eye).normalize())
+            .max(0.0)
+            .powi(material.sharp);
+        let mirror = material.mirror * soft_boxes(normal * (2.0 * facing) - eye);
+        let rim = (1.0 - facing).powi(3) * studio.rim * (0.7 + 0.3 * normal.y);
+        let around = (mirror + rim) * (0.3 + 0.7 * sky);
+        let plus = spark * material.shine * key + rim.max(0.0) * 0.25;
+        let mut rgb = material.base * (light + around) + plus;
+        let mut blend = |color: Color32, strength: f32, share: f32| {
+            rgb = rgb.lerp(theme::linear(color) * strength, share);
+        };
+        if let Some((color, share)) = self.coat.heat.filter(|_| skin == Skin::Pad) {
+            // Heat is read by its colour: shade takes little of it.
+            blend(color, 0.55 + 0.45 * light, share);
+        }
+        if let Some((color, share)) = self.coat.glow {
+            blend(color, 0.35 + 0.65 * light, share);
+        }
+        if let Some((color, share)) = self.light.veil {
+            blend(color, 1.0, share);
+        }
+        let glass = self.coat.glass;
+        let alpha = if glass > 0.0 {
+            glass + (0.75 - glass) * (1.0 - facing).powi(2)
+        } else {
+            1.0
+        };
+        theme::lit(rgb, alpha)
+    }
+
+    fn material(&self, skin: Skin) -> Material {
+        let studio = self.light.studio;
+        let like = match skin {
+            Skin::Metal => studio.metal,
+            Skin::Plate => studio.plate,
+            Skin::Hinge => studio.hinge,
+            Skin::Rubber => studio.rubber,
+            Skin::Pad | Skin::Plain => studio.pad,
+        };
+        let own = self.coat.color.filter(|_| skin == Skin::Plain);
+        Material {
+            base: own.map_or(like.base, theme::linear),
+            ..like
+        }
+    }
+}
+
+/// What polished metal mirrors: a wide soft box above, a narrow one at each side, a dark floor.
+fn soft_boxes(way: Vec3) -> f32 {
+    step(-0.1, 0.55, way.y) * 0.75 + step(0.55, 0.95, way.x) * 0.35 + step(0.5, 0.9, -way.x) * 0.25
+}
+
+fn step(from: f32, to: f32, at: f32) -> f32 {
+    let part = ((at - from) / (to - from)).clamp(0.0, 1.0);
+    part * part * (3.0 - 2.0 * part)
+}

@@ -1,0 +1,21 @@
+//! The drawn hand: a solid moved by the true kinematics, with what its fingertips feel.
+//!
+//! One mesh path for everything: [`solid`] builds shapes once, [`shape`] holds their lengths, [`light`] and [`render`] make
+//! one plain mesh of them as a [`camera`] sees them, so that OpenGL, the software window and pictures without a display show the same. [`scene`] says
+//! what is to be seen, [`view`] from where, [`tile`] keeps small pictures; [`panel`] alone knows the program's state.
+
+mod bars;
+mod camera;
+mod light;
+pub(crate) mod panel;
+mod part;
+pub(crate) mod pointed;
+mod reach;
+mod render;
+mod scene;
+mod shape;
+mod solid;
+#[cfg(test)]
+mod tests;
+mod tile;
+mod view;

@@ -1,0 +1,243 @@
+//! The drawn hand in the window: what the state says goes into the picture, and the finger that was chosen comes out.
+
+use crate::app::action::Action;
+use crate::app::hand::Freshness;
+use crate::hand::kinematics::Side;
+use crate::hand::{Finger, PerDof, PerFinger};
+use crate::sim::Scenario;
+use crate::transport::Endpoint;
+use crate::ui::hand::pointed::{self, Place};
+use crate::ui::hand::scene::{HandPicture, TipLoad};
+use crate::ui::hand::shape::Held;
+use crate::ui::hand::tile;
+use crate::ui::hand::view::HandView;
+use crate::ui::kit::controls::{self, Button, Weight};
+use crate::ui::kit::format;
+use crate::ui::kit::look::{Look, Pane};
+use crate::ui::text::{panels, touch as text, words};
+use crate::ui::theme;
+use crate::ui::touch::fingertip::{Sense as Meant, Tip};
+use egui::{Align2, Id, Rect, Role, Sense, Ui, WidgetInfo, vec2};
+
+/// The drawn hand with the names of its fingers.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct HandPanel(HandView);
+
+impl HandPanel {
+    /// Draws the hand and returns the finger that was chosen.
+    pub(crate) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        pane: &mut Pane<'_>,
+        tips: &PerFinger<Option<Tip>>,
+        (id, chosen): (Id, Finger),
+    ) -> Option<Finger> {
+        let look = pane.look;
+        let mut place = rect;
+        let (width, height) = theme::HAND_NUMBERS_ROOM;
+        let named = (rect.width() >= width && rect.height() >= height)
+            .then(|| controls::take_top(&mut place, theme::HAND_HEAD))
+            .and_then(|heads| heads_ui(ui, heads, pane, (id, chosen)));
+        let response = ui.interact(place, id, Sense::click_and_drag());
+        response
+            .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
+        let picture = HandPicture {
+            lit: pointed::pointed(ui, Place::Row),
+            ..picture(pane, tips)
+        };
+        let answer = self.0.ui(ui, place, response, look.palette, &picture);
+        unknown_note(ui, look, place, &picture);
+        side_ui(ui, place, pane, id);
+        if let Some(dof) = answer.joint {
+            pointed::point(ui, Place::Hand, dof);
+        }
+        let finger = answer.joint.map(crate::hand::Dof::finger);
+        let clicked = finger.filter(|_| answer.response.clicked());
+        answer.response.on_hover_text(finger.map_or_else(
+            || look.say(panels::HAND_PICTURE_TIP).to_owned(),
+            |finger| said(pane, finger),
+        ));
+        named.or(clicked)
+    }
+}
+
+/// Draws a pose alone: for tiles and dry runs. `shares` of the way to open; a finger with an unknown joint is a shell.
+pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
+    tile::pose_ui(ui, look.palette, rect, &HandPicture::of(look.side, shares));
+}
+
+fn picture(pane: &Pane<'_>, tips: &PerFinger<Option<Tip>>) -> HandPicture {
+    let state = pane.state.hand();
+    let angle = state.sample.angle;
+    let actual = PerDof::from_fn(|dof| {
+        let raw = angle?.value[dof].documented()?;
+        Some(f32::from(raw) / 1000.0)
+    });
+    let target = PerDof::from_fn(|dof| {
+        let target = state.joints[dof].target.filter(|_| state.is_armed())?;
+        Some(f32::from(target.get()) / 1000.0)
+    });
+    HandPicture {
+        target,
+        is_stale: pane.freshness(angle.map(|angle| angle.asked)) == Freshness::Stale,
+        tips: tips.map(|tip| tip.as_ref().map(load).unwrap_or_default()),
+        held: state.endpoint.as_ref().and_then(held),
+        ..HandPicture::of(pane.look.side, &actual)
+    }
+}
+
+/// What a fingertip feels; nothing of old values.
+fn load(tip: &Tip) -> TipLoad {
+    if tip.stale {
+        return TipLoad::default();
+    }
+    let (shear, degrees) = tip.shear.unwrap_or_default();
+    let (right, tipwards) = degrees.to_radians().sin_cos();
+    let normal = tip.normal_n.filter(|_| tip.sense == Meant::Fine);
+    TipLoad {
+        heat: tip.heat.iter().flatten().copied().reduce(f32::max),
+        force: normal.map(|normal| [normal, shear * tipwards, shear * right]),
+    }
+}
+
+/// What waits before the built-in hand: its scenario says so. Of any other hand nobody knows.
+fn held(endpoint: &Endpoint) -> Option<Held> {
+    let Endpoint::Sim { scenario, .. } = endpoint else {
+        return None;
+    };
+    Some(match scenario.parse().ok()? {
+        Scenario::Free => return None,
+        Scenario::Rigid => Held::Block,
+        Scenario::Fragile => Held::Cup,
+        Scenario::Idle | Scenario::Grasp | Scenario::Faults | Scenario::Extremes => Held::Ball,
+    })
+}
+
+/// Says under the picture what a grey finger stands for.
+fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
+    if shown.actual.all().is_none() {
+        let place = picture.with_min_y(picture.bottom() - theme::PAD);
+        controls::Label::new(look.say(text::UNKNOWN), look.palette.muted)
+            .small()
+            .center()
+            .put(ui, place);
+    }
+}
+
+/// In a corner of the picture: which hand is drawn, and the way to the other one.
+fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>, id: Id) {
+    let look = pane.look;
+    let words = look.say(match look.side {
+        Side::Right => text::RIGHT_HAND,
+        Side::Left => text::LEFT_HAND,
+    });
+    let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
+    let corner = picture.right_bottom() - vec2(width, theme::CONTROL);
+    let place = Rect::from_min_size(corner, vec2(width, theme::CONTROL));
+    let button = Button::new(words, look.say(text::SIDE_TIP)).weight(Weight::Quiet);
+    if button.put(ui, look, place, id.with("side")).clicked() {
+        pane.actions.push(Action::Side(look.side.other()));
+    }
+}
+
+/// A finger with its force, as a sentence reads it.
+fn said(pane: &Pane<'_>, finger: Finger) -> String {
+    let look = pane.look;
+    let block = pane.state.hand().sample.tactile[finger].map(|block| block.value);
+    format!(
+        "{}: {} {} N, {} {} N",
+        look.say(words::finger(finger)),
+        look.say(panels::TIP_NORMAL),
+        format::newtons(block.map(|block| block.normal_n)),
+        look.say(panels::TIP_SHEAR),
+        format::newtons(block.map(|block| block.tangential_n)),
+    )
+}
+
+/// The fingers by name in one row over the picture, each with its normal force.
+fn heads_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>, (id, chosen): (Id, Finger)) -> Option<Finger> {
+    let look = pane.look;
+    let mut picked = None;
+    let width = row.width() / 5.0;
+    for (finger, at) in Finger::ALL.into_iter().zip(0u8..) {
+        let left = row.left() + width * f32::from(at);
+        let place = Rect::from_min_size(egui::pos2(left, row.top()), vec2(width, row.height()));
+        let place = place.shrink2(vec2(1.0, 0.0));
+        let name = format!("{}: {}", look.say(text::DRAWN), said(pane, finger));
+        let button = Button::new("", look.say(panels::TIP_TIP))
+            .named(&name)
+            .choice(finger == chosen);
+        if button.ground(ui, look, place, id.with(finger)).clicked() {
+            picked = Some(finger);
+        }
+        let (upper, lower) = place.split_top_bottom_at_fraction(0.5);
+        let block = pane.state.hand().sample.tactile[finger];
+        let freshness = pane.state.hand().tip_freshness(finger);
+        let color = look.value(freshness, look.palette.dof[finger.bend()]);
+        let normal = block.map(|block| block.value.normal_n);
+        let finger = look.say(words::finger(finger)).to_owned();
+        let newtons = format!("{} N", format::newtons(normal));
+        for (place, words, font, color) in [
+            (upper, finger, theme::small(), look.palette.muted),
+            (lower, newtons, theme::number(), color),
+        ] {
+            controls::paint_text(ui, place, Align2::CENTER_CENTER, &words, font, color);
+        }
+    }
+    picked
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+
+    #[test]
+    fn only_the_built_in_hand_has_an_object_drawn() {
+        for (endpoint, wanted) in [
+            ("sim:", Some(Held::Ball)),
+            ("sim:?scenario=free", None),
+            ("sim:?scenario=rigid", Some(Held::Block)),
+            ("sim:?scenario=fragile", Some(Held::Cup)),
+            ("sim:?scenario=grasp", Some(Held::Ball)),
+            ("tcp:127.0.0.1:6000", None),
+            ("rs485:/dev/ttyUSB0", None),
+        ] {
+            assert_eq!(held(&endpoint.parse().unwrap()), wanted, "{endpoint}");
+        }
+    }
+
+    #[test]
+    fn old_or_senseless_forces_have_no_arrow() {
+        let fine = Tip {
+            heat: [
+                Some(0.1),
+                None,
+                Some(0.7),
+                None,
+                None,
+                None,
+                None,
+                Some(0.2),
+            ],
+            normal_n: Some(3.0),
+            shear: Some((2.0, 90.0)),
+            ..Tip::default()
+        };
+        let load_of = load(&fine);
+        let [normal, tipwards, right] = load_of.force.unwrap();
+        assert_eq!((load_of.heat, normal), (Some(0.7), 3.0));
+        assert!(tipwards.abs() < 1e-5 && (right - 2.0).abs() < 1e-5);
+        let beyond = Tip {
+            sense: Meant::Beyond,
+            ..fine
+        };
+        assert_eq!(load(&beyond).force, None);
+        let old = Tip {
+            stale: true,
+            ..fine
+        };
+        assert_eq!(load(&old), TipLoad::default());
+    }
+}

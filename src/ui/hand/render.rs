@@ -1,0 +1,200 @@
+//! Solids on their way to the screen: back faces, order, smooth edges. One plain mesh comes out.
+
+use crate::hand::kinematics::Segment;
+use crate::ui::hand::camera::{Camera, EYE_MM};
+use crate::ui::hand::light::Light;
+use crate::ui::hand::part::Part;
+use crate::ui::hand::solid::Face;
+use egui::epaint::{Vertex, WHITE_UV};
+use egui::{Color32, Mesh, Pos2};
+use glam::{Mat3, Vec3};
+
+/// Depth before and behind the middle that is told apart, and steps in a millimetre.
+const DEPTH_MM: f32 = 300.0;
+const DEPTH_STEPS: f32 = 100.0;
+/// A corner that no face seen so far has.
+const UNSEEN: u32 = u32::MAX;
+
+/// A triangle that is seen.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    corners: [u32; 3],
+    segment: Option<Segment>,
+    /// Bit n: beyond side n nothing of the same shape is seen.
+    edges: u8,
+}
+
+/// Draws parts into a mesh; keeps its buffers from frame to frame.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Sketch {
+    seen: Vec<Seen>,
+    /// Depth in the upper half, number of the triangle in the lower.
+    order: Vec<u32>,
+    /// How near each vertex is.
+    depths: Vec<f32>,
+    /// Of the part in work: which faces are seen, and the vertices of its corners.
+    fronts: Vec<bool>,
+    vertices: Vec<u32>,
+}
+
+impl Sketch {
+    /// Draws all parts into the mesh, the farthest triangles first. `feather` is the width of a soft edge in points.
+    pub(crate) fn draw(
+        &mut self,
+        camera: &Camera,
+        light: &Light,
+        parts: &[Part<'_>],
+        feather: f32,
+        mesh: &mut Mesh,
+    ) {
+        mesh.clear();
+        self.seen.clear();
+        self.order.clear();
+        self.depths.clear();
+        for part in parts {
+            self.part(camera, light, part, mesh);
+        }
+        self.order.sort_unstable();
+        for number in &self.order {
+            let Some(face) = self.seen.get((number & 0xFFFF) as usize) else {
+                continue;
+            };
+            let [a, b, c] = face.corners;
+            for (side, ends) in [[a, b, c], [b, c, a], [c, a, b]].into_iter().enumerate() {
+                if face.edges & (1 << side) != 0 {
+                    soft_edge(mesh, ends, feather);
+                }
+            }
+            mesh.indices.extend([a, b, c]);
+        }
+    }
+
+    fn part(&mut self, camera: &Camera, light: &Light, part: &Part<'_>, mesh: &mut Mesh) {
+        let frame = camera.hand * part.frame;
+        let eye = frame.inverse().transform_point3(Vec3::Z * EYE_MM);
+        self.fronts.clear();
+        self.fronts.extend(
+            part.solid
+                .faces
+                .iter()
+                .map(|face| face.normal.dot(eye) > face.offset),
+        );
+        self.vertices.clear();
+        self.vertices.resize(part.solid.corners.len(), UNSEEN);
+        let shade = light.on(part, &frame);
+        let Mat3 {
+            x_axis,
+            y_axis,
+            z_axis,
+        } = frame.matrix3;
+        let turn = Mat3::from_cols(x_axis.normalize(), y_axis.normalize(), z_axis.normalize());
+        let near = frame.matrix3.row(2);
+        for (face, _) in part
+            .solid
+            .faces
+            .iter()
+            .zip(&self.fronts)
+            .filter(|(_, front)| **front)
+        {
+            let mut depth = 0.0;
+            let corners = face.corners.map(|number| {
+                let vertex = self.vertices.get_mut(usize::from(number));
+                let corner = part.solid.corners.get(usize::from(number));
+                let Some((vertex, corner)) = vertex.zip(corner) else {
+                    return 0;
+                };
+                if *vertex == UNSEEN {
+                    let (at, normal) = (frame.transform_point3(corner.at), turn * corner.normal);
+                    *vertex = u32::try_from(mesh.vertices.len()).unwrap_or(0);
+                    let color = shade.color(corner.skin, at, normal);
+                    mesh.vertices.push(Vertex {
+                        pos: camera.project(at),
+                        uv: WHITE_UV,
+                        color,
+                    });
+                    self.depths.push(at.z);
+                }
+                depth += self.depths.get(*vertex as usize).copied().unwrap_or(0.0);
+                *vertex
+            });
+            let number = u32::try_from(self.seen.len()).unwrap_or(0) & 0xFFFF;
+            let depth = depth / 3.0 + face.lift + near.dot(face.aside);
+            self.order.push(depth_steps(depth) << 16 | number);
+            self.seen.push(Seen {
+                corners,
+                segment: part.segment,
+                edges: self.edges(face),
+            });
+        }
+    }
+
+    fn edges(&self, face: &Face) -> u8 {
+        let goes_on = |beyond: u16| {
+            self.fronts
+                .get(usize::from(beyond))
+                .copied()
+                .unwrap_or(false)
+        };
+        let sides = face.beyond.into_iter().enumerate();
+        sides
+            .map(|(side, beyond)| u8::from(!goes_on(beyond)) << side)
+            .sum()
+    }
+
+    /// The segment of the hand that is seen at a place of the mesh drawn last.
+    pub(crate) fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<Segment> {
+        let corner = |at: u32| {
+            mesh.vertices
+                .get(at as usize)
+                .map_or(Pos2::ZERO, |vertex| vertex.pos)
+        };
+        let holds = |seen: &&Seen| {
+            let [a, b, c] = seen.corners.map(corner);
+            let side = |from: Pos2, to: Pos2| (to - from).rot90().dot(place - from);
+            let sides = [side(a, b), side(b, c), side(c, a)];
+            sides.iter().all(|side| *side <= 0.0) || sides.iter().all(|side| *side >= 0.0)
+        };
+        let nearest_first = self.order.iter().rev();
+        let seen = nearest_first.filter_map(|number| self.seen.get((number & 0xFFFF) as usize));
+        seen.filter(|seen| seen.segment.is_some())
+            .find(holds)?
+            .segment
+    }
+}
+
+/// Depth as a number of 16 bits, the nearest the largest.
+fn depth_steps(near_mm: f32) -> u32 {
+    let steps = ((near_mm + DEPTH_MM) * DEPTH_STEPS).clamp(0.0, f32::from(u16::MAX));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to 16 bits"
+    )]
+    let steps = steps as u32;
+    steps
+}
+
+/// A seam along the side between the first two corners, away from the third, that fades to nothing: meshes have no other
+/// way to be smooth.
+fn soft_edge(mesh: &mut Mesh, corners: [u32; 3], feather: f32) {
+    let [from, to, _] = corners;
+    let found = corners.map(|at| mesh.vertices.get(at as usize).copied());
+    let [Some(one), Some(two), Some(three)] = found else {
+        return;
+    };
+    let out = (two.pos - one.pos).rot90();
+    let out = out * (feather / out.length_sq().sqrt().max(f32::MIN_POSITIVE));
+    let out = if out.dot(three.pos - one.pos) > 0.0 {
+        -out
+    } else {
+        out
+    };
+    let faded = |vertex: Vertex| Vertex {
+        pos: vertex.pos + out,
+        color: Color32::TRANSPARENT,
+        ..vertex
+    };
+    let first = u32::try_from(mesh.vertices.len()).unwrap_or(0);
+    mesh.vertices.extend([faded(one), faded(two)]);
+    mesh.indices.extend([from, first, to, to, first, first + 1]);
+}

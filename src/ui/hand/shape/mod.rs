@@ -1,0 +1,81 @@
+//! The shapes, modelled from the lengths of the hand: rings of lofts in millimetres, each in the frame of its segment.
+
+use crate::hand::Finger;
+use crate::hand::kinematics::Segment;
+use crate::ui::hand::solid::{Solid, Soup};
+use glam::Vec3;
+use std::sync::LazyLock;
+
+mod finger;
+mod held;
+mod palm;
+mod rings;
+mod thumb;
+
+pub(crate) use held::{Held, arrow, held};
+
+use Segment::{Index1, Index2, Little2, Middle2, Palm, Thumb1, Thumb2, Thumb3, Thumb4};
+
+/// The shapes of the hand, each once: neighbouring fingers share theirs. The second set is for small pictures.
+static SHAPES: [LazyLock<[Solid; 9]>; 2] = [
+    LazyLock::new(|| models(false)),
+    LazyLock::new(|| models(true)),
+];
+
+fn models(is_small: bool) -> [Solid; 9] {
+    [
+        Palm, Index1, Little2, Middle2, Index2, Thumb1, Thumb2, Thumb3, Thumb4,
+    ]
+    .map(|segment| model(segment, is_small))
+}
+
+fn model(segment: Segment, is_small: bool) -> Solid {
+    let mut soup = Soup::new(is_small);
+    match segment {
+        Palm => palm::palm(&mut soup),
+        Thumb1 => thumb::foot(&mut soup),
+        Thumb2 => thumb::second(&mut soup),
+        Thumb3 => thumb::third(&mut soup),
+        Thumb4 => thumb::fourth(&mut soup),
+        Little2 => finger::second(&mut soup, 43.8, 0.88),
+        Middle2 => finger::second(&mut soup, 57.6, 1.02),
+        Segment::Ring2 | Index2 => finger::second(&mut soup, 53.9, 1.0),
+        Segment::Little1 | Segment::Ring1 | Segment::Middle1 | Index1 => finger::first(&mut soup),
+    }
+    soup.solid()
+}
+
+/// The shape of a segment.
+pub(crate) fn solid(segment: Segment, is_small: bool) -> &'static Solid {
+    let [large, small] = &SHAPES;
+    let [
+        palm,
+        first,
+        little,
+        middle,
+        index,
+        turret,
+        second,
+        third,
+        fourth,
+    ] = &**if is_small { small } else { large };
+    match segment {
+        Palm => palm,
+        Segment::Little1 | Segment::Ring1 | Segment::Middle1 | Index1 => first,
+        Little2 => little,
+        Middle2 => middle,
+        Segment::Ring2 | Index2 => index,
+        Thumb1 => turret,
+        Thumb2 => second,
+        Thumb3 => third,
+        Thumb4 => fourth,
+    }
+}
+
+/// Out of a fingertip's pad, and along it to the tip: in the frame of [`Segment::tip`].
+pub(crate) const fn pad_ways(finger: Finger) -> [Vec3; 2] {
+    match finger {
+        Finger::Thumb => [Vec3::new(-0.176, 0.984, 0.0), Vec3::new(0.984, 0.176, 0.0)],
+        _ => [Vec3::NEG_X, Vec3::Y],
+    }
+}

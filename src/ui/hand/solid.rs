@@ -1,0 +1,265 @@
+//! Rigid shapes as triangles: lofts through rings and patches on them, welded, with smooth normals. Made once, never per frame.
+
+use glam::{Affine3, Vec3};
+use std::collections::HashMap;
+use std::f32::consts::TAU;
+
+/// What a surface is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Skin {
+    /// Light grey metal.
+    Metal,
+    /// The plate in the palm.
+    Plate,
+    /// Dark metal of hinges.
+    Hinge,
+    /// Dark rubber.
+    Rubber,
+    /// A fingertip's sensor.
+    Pad,
+    /// What has the colour it is given: an object, an arrow.
+    Plain,
+}
+
+/// One ring of a loft: where its middle is along the path and in front of it, how far it reaches to the front, to the
+/// back and to each side, and how square it is (2 = an ellipse).
+pub(crate) type Ring = [f32; 6];
+
+/// A corner of a finished shape.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Corner {
+    pub(crate) at: Vec3,
+    pub(crate) normal: Vec3,
+    pub(crate) skin: Skin,
+}
+
+/// A triangle of a finished shape.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Face {
+    pub(crate) corners: [u16; 3],
+    /// The faces of the same skin beyond its sides; [`NONE`] where there is none.
+    pub(crate) beyond: [u16; 3],
+    /// It is seen from where this way counts more than the offset.
+    pub(crate) normal: Vec3,
+    pub(crate) offset: f32,
+    /// See [`Shard`].
+    pub(crate) lift: f32,
+    pub(crate) aside: Vec3,
+}
+
+/// A finished shape in the frame of its segment, and a ball that holds it.
+#[derive(Debug)]
+pub(crate) struct Solid {
+    pub(crate) corners: Vec<Corner>,
+    pub(crate) faces: Vec<Face>,
+    pub(crate) middle: Vec3,
+    pub(crate) radius: f32,
+}
+
+/// No face.
+pub(crate) const NONE: u16 = u16::MAX;
+/// Surfaces whose normals differ by more than this make an edge.
+const EDGE_COS: f32 = 0.35;
+
+/// A triangle on its way to a solid, counter-clockwise as seen from outside.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shard {
+    pub(crate) at: [Vec3; 3],
+    pub(crate) skin: Skin,
+    /// How much nearer to the eye it counts than it is: what lies on a surface is drawn over it.
+    pub(crate) lift: f32,
+    /// How far beside its place it counts: the near one of two plates is drawn over what is between them, the far one under it.
+    pub(crate) aside: Vec3,
+}
+
+/// Triangles on their way to a solid. A small one, for small pictures, has a third of them.
+#[derive(Debug)]
+pub(crate) struct Soup {
+    shards: Vec<Shard>,
+    pub(crate) is_small: bool,
+}
+
+impl Soup {
+    /// Nothing yet.
+    pub(crate) const fn new(is_small: bool) -> Self {
+        Self {
+            shards: Vec::new(),
+            is_small,
+        }
+    }
+
+    /// Adds a closed tube through rings. `base` has x to the side, y along, z to the front. Each list of rings has its own
+    /// skin and goes on where the one before ended.
+    pub(crate) fn loft(
+        &mut self,
+        base: &Affine3,
+        around: u8,
+        bands: &[(Skin, &[Ring])],
+    ) -> &mut [Shard] {
+        let (around, each) = if self.is_small {
+            (around - around / 3, 2)
+        } else {
+            (around, 1)
+        };
+        // Both ends of a band stay, whatever is left out between them.
+        let left = |(skin, rings): &(Skin, &[Ring])| -> Vec<(Skin, Ring)> {
+            let kept = rings
+                .iter()
+                .enumerate()
+                .filter(|(at, _)| at % each == 0 || at + 1 == rings.len());
+            kept.map(|(_, ring)| (*skin, *ring)).collect()
+        };
+        let rings: Vec<(Skin, Ring)> = bands.iter().flat_map(left).collect();
+        let row = |(skin, ring): &(Skin, Ring)| {
+            let turn = |step: u8| (f32::from(step) + 0.5) / f32::from(around);
+            let places = (0..=around).map(|step| base.transform_point3(point(ring, turn(step))));
+            (*skin, places.collect::<Vec<_>>())
+        };
+        let end = |ring: Option<&(Skin, Ring)>| {
+            ring.map(|(skin, [along, rise, ..])| {
+                let middle = base.transform_point3(Vec3::new(0.0, *along, *rise));
+                (*skin, vec![middle; usize::from(around) + 1])
+            })
+        };
+        let rows = end(rings.first()).into_iter().chain(rings.iter().map(row));
+        self.grid(rows.chain(end(rings.last())))
+    }
+
+    /// Adds a sheet: `place` gives a point for each pair of shares from -1 to 1, along and across as a loft goes.
+    pub(crate) fn sheet(
+        &mut self,
+        steps: u8,
+        skin: Skin,
+        place: impl Fn(f32, f32) -> Vec3,
+    ) -> &mut [Shard] {
+        let steps = if self.is_small { steps / 2 } else { steps };
+        let share = |step: u8| f32::from(step) / f32::from(steps) * 2.0 - 1.0;
+        let row = |along: u8| {
+            (0..=steps)
+                .map(|across| place(share(along), share(across)))
+                .collect()
+        };
+        self.grid((0..=steps).map(|along| (skin, row(along))))
+    }
+
+    /// Adds what is between rows of places; a strip has the skin of its second row.
+    fn grid(&mut self, rows: impl Iterator<Item = (Skin, Vec<Vec3>)>) -> &mut [Shard] {
+        let (first, mut before) = (self.shards.len(), Vec::new());
+        for (skin, row) in rows {
+            for (one, two) in before.windows(2).zip(row.windows(2)) {
+                if let (&[a, b], &[c, d]) = (one, two) {
+                    let shard = |at| Shard {
+                        at,
+                        skin,
+                        lift: 0.0,
+                        aside: Vec3::ZERO,
+                    };
+                    self.shards.extend([shard([a, d, b]), shard([a, c, d])]);
+                }
+            }
+            before = row;
+        }
+        self.shards.get_mut(first..).unwrap_or_default()
+    }
+
+    /// Welds the triangles, smooths their normals and finds neighbours. Triangles without area are dropped.
+    pub(crate) fn solid(self) -> Solid {
+        let shards: Vec<_> = self
+            .shards
+            .iter()
+            .filter(|shard| shard.area().length() > 1e-3)
+            .collect();
+        let mut places: HashMap<Key, Vec<(Vec3, Vec3)>> = HashMap::new();
+        let mut edges = HashMap::new();
+        for (shard, number) in shards.iter().zip(0u16..) {
+            for (from, to) in shard.sides() {
+                places
+                    .entry(from)
+                    .or_default()
+                    .push((shard.area(), shard.area().normalize_or_zero()));
+                edges.insert((from, to, shard.skin), number);
+            }
+        }
+        let (mut corners, mut known) = (Vec::new(), HashMap::new());
+        let faces = shards.iter().map(|shard| {
+            let own = shard.area().normalize_or_zero();
+            let numbers = shard.at.map(|at| {
+                let near = places.get(&key(at)).into_iter().flatten();
+                let smooth = near.filter(|(_, other)| other.dot(own) > EDGE_COS);
+                let normal = smooth
+                    .map(|(area, _)| *area)
+                    .sum::<Vec3>()
+                    .normalize_or_zero();
+                *known
+                    .entry((key(at), key(normal), shard.skin))
+                    .or_insert_with(|| {
+                        corners.push(Corner {
+                            at,
+                            normal,
+                            skin: shard.skin,
+                        });
+                        u16::try_from(corners.len() - 1).unwrap_or(NONE)
+                    })
+            });
+            let beyond = shard
+                .sides()
+                .map(|(from, to)| edges.get(&(to, from, shard.skin)).copied());
+            let [a, ..] = shard.at;
+            Face {
+                corners: numbers,
+                beyond: beyond.map(|face| face.unwrap_or(NONE)),
+                normal: own,
+                offset: own.dot(a),
+                lift: shard.lift,
+                aside: shard.aside,
+            }
+        });
+        let faces = faces.collect();
+        let (low, high) = corners
+            .iter()
+            .fold((Vec3::MAX, Vec3::MIN), |(low, high), corner| {
+                (low.min(corner.at), high.max(corner.at))
+            });
+        Solid {
+            corners,
+            faces,
+            middle: low.midpoint(high),
+            radius: low.distance(high) / 2.0,
+        }
+    }
+}
+
+impl Shard {
+    /// Square to the triangle, as long as twice its area.
+    pub(crate) fn area(&self) -> Vec3 {
+        let [a, b, c] = self.at;
+        (b - a).cross(c - a)
+    }
+
+    fn sides(&self) -> [(Key, Key); 3] {
+        let [a, b, c] = self.at.map(key);
+        [(a, b), (b, c), (c, a)]
+    }
+}
+
+/// A place on a ring; `turn` goes from 0 to 1, from one side over the front (0.25).
+pub(crate) fn point(ring: &Ring, turn: f32) -> Vec3 {
+    let [along, rise, front, back, side, square] = *ring;
+    let (sin, cos) = (turn * TAU).sin_cos();
+    let out = (sin.abs().powf(square) + cos.abs().powf(square)).powf(-1.0 / square);
+    let reach = if sin > 0.0 { front } else { back };
+    Vec3::new(out * cos * side, along, rise + out * sin * reach)
+}
+
+/// A place that is told from others.
+type Key = [i32; 3];
+
+/// Places nearer than a hundredth of a millimetre are one.
+fn key(at: Vec3) -> Key {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a hand is smaller than 21 km"
+    )]
+    let whole = |part: f32| (part * 100.0).round() as i32;
+    at.to_array().map(whole)
+}

@@ -1,0 +1,279 @@
+//! The drawn hand, looked at by its mesh.
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+use crate::app::settings::Theme;
+use crate::hand::kinematics::{Pose, Segment, Side, tip_pad};
+use crate::hand::{Dof, Finger, PerDof};
+use crate::sim::Scenario;
+use crate::sim::object::Object;
+use crate::ui::hand::camera::{Camera, Turn};
+use crate::ui::hand::reach::REACH;
+use crate::ui::hand::render::Sketch;
+use crate::ui::hand::scene::HandPicture;
+use crate::ui::hand::shape::{self, Held};
+use crate::ui::hand::view::{HandView, Setting, TURN, draw};
+use crate::ui::theme::Palette;
+use egui::{
+    Context, Event, Id, Mesh, Modifiers, PointerButton, Pos2, RawInput, Rect, Sense, pos2, vec2,
+};
+use glam::Vec3;
+
+const SIDES: [Side; 2] = [Side::Right, Side::Left];
+
+fn setting(side: Side, size: f32) -> Setting {
+    Setting {
+        turn: HandView::default().turn(side),
+        rect: Rect::from_min_size(pos2(30.0, 50.0), vec2(size, size)),
+        theme: Theme::Dark,
+        feather: 1.0,
+    }
+}
+
+fn camera(setting: &Setting, side: Side) -> Camera {
+    let reach = REACH.iter().map(|at| side.frame().transform_point3(*at));
+    Camera::new(setting.turn, setting.rect, reach)
+}
+
+/// Fingers, bend and rotation of the thumb.
+fn posed(side: Side, [fingers, bend, swing]: [f32; 3]) -> HandPicture {
+    let shares = [fingers, fingers, fingers, fingers, bend, swing].map(Some);
+    HandPicture::of(side, &PerDof::new(shares))
+}
+
+fn drawn(picture: &HandPicture, setting: &Setting) -> (Sketch, Mesh) {
+    let (mut sketch, mut mesh) = (Sketch::default(), Mesh::default());
+    draw(&mut sketch, picture, setting, &mut mesh);
+    (sketch, mesh)
+}
+
+#[test]
+fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
+    let turns = [
+        TURN,
+        Turn {
+            yaw: 3.0,
+            pitch: 1.2,
+        },
+        Turn {
+            yaw: -1.6,
+            pitch: -1.2,
+        },
+    ];
+    for (side, turn) in SIDES
+        .into_iter()
+        .flat_map(|side| turns.map(|turn| (side, turn)))
+    {
+        for step in 0..=8u8 {
+            let share = f32::from(step) / 8.0;
+            let mut picture = posed(side, [share, 1.0 - share, share]);
+            picture.held = Some(Held::Ball);
+            let setting = Setting {
+                turn,
+                ..setting(side, 400.0)
+            };
+            let (_, mesh) = drawn(
+                &HandPicture {
+                    held: None,
+                    ..picture
+                },
+                &setting,
+            );
+            let (count, room) = (mesh.indices.len() / 3, setting.rect.expand(6.0));
+            assert!(
+                (3000..8000).contains(&count),
+                "{count} triangles with their seams"
+            );
+            assert!(mesh.is_valid());
+            for vertex in mesh.vertices {
+                assert!(
+                    room.contains(vertex.pos),
+                    "{share} {turn:?}: {}",
+                    vertex.pos
+                );
+            }
+            let (_, small) = drawn(
+                &picture,
+                &Setting {
+                    rect: Rect::from_min_size(Pos2::ZERO, vec2(90.0, 90.0)),
+                    ..setting
+                },
+            );
+            assert!(small.vertices.iter().all(|vertex| !vertex.pos.any_nan()));
+            assert!(small.indices.len() / 3 < count);
+        }
+    }
+}
+
+#[test]
+fn fingers_close_towards_who_looks() {
+    for side in SIDES {
+        let camera = camera(&setting(side, 300.0), side);
+        for finger in Finger::ALL {
+            let near = |share: f32| {
+                let picture = posed(side, [share, share, 1.0]);
+                let pose = Pose::of_shares(side, &picture.actual.map(Option::unwrap));
+                camera.hand.transform_point3(pose.tip(finger)).z
+            };
+            if finger != Finger::Thumb {
+                assert!(near(0.75) > near(1.0) + 20.0 && near(0.5) > near(0.75) + 15.0);
+                assert!(near(0.0) > near(1.0) + 30.0, "{side:?} {finger:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_left_hand_is_the_mirror_image_on_the_screen() {
+    let [right, left] = SIDES.map(|side| {
+        let setting = setting(side, 300.0);
+        let (_, mesh) = drawn(&posed(side, [0.4, 0.6, 0.8]), &setting);
+        mesh.calc_bounds()
+            .translate(-setting.rect.center().to_vec2())
+    });
+    assert!((right.left() + left.right()).abs() < 2.5 && (right.right() + left.left()).abs() < 2.5);
+    assert!((right.top() - left.top()).abs() < 1.0 && (right.left() - left.left()).abs() > 20.0);
+}
+
+#[test]
+fn the_joint_under_the_pointer_is_the_one_drawn_there() {
+    for side in SIDES {
+        let setting = setting(side, 400.0);
+        let camera = camera(&setting, side);
+        // Open, the pads are seen; closed, the backs of the fingers.
+        for (shares, out) in [([1.0; 3], 1.0), ([0.0, 1.0, 1.0], -16.0)] {
+            let picture = posed(side, shares);
+            let (sketch, mesh) = drawn(&picture, &setting);
+            let pose = Pose::of_shares(side, &picture.actual.map(Option::unwrap));
+            for finger in Finger::ALL {
+                let [ahead, up] = shape::pad_ways(finger);
+                let out = if finger == Finger::Thumb { 0.0 } else { out };
+                let at = tip_pad(finger) + ahead * out - up * 6.0;
+                let seen = pose.frame(Segment::tip(finger)).transform_point3(at);
+                let place = camera.project(camera.hand.transform_point3(seen));
+                let found = sketch.segment_at(&mesh, place);
+                assert_eq!(
+                    found.and_then(Segment::dof),
+                    Some(finger.bend()),
+                    "{shares:?} {finger:?}"
+                );
+            }
+            assert_eq!(sketch.segment_at(&mesh, setting.rect.right_top()), None);
+            let palm = camera.project(camera.hand.transform_point3(Vec3::new(0.0, 14.0, 80.0)));
+            assert_eq!(sketch.segment_at(&mesh, palm), Some(Segment::Palm));
+        }
+    }
+}
+
+#[test]
+fn only_what_is_off_target_has_a_ghost() {
+    let palette = Palette::of(Theme::Light);
+    let count = |dof: Dof, off: f32, is_known: bool| {
+        let mut picture = posed(Side::Right, [0.5; 3]);
+        picture.target = picture.actual;
+        picture.target[dof] = Some(0.5 + off);
+        if !is_known {
+            picture.actual[Dof::Index] = None;
+        }
+        picture.parts(palette, false).1.len() - Segment::ALL.len()
+    };
+    assert_eq!(count(Dof::Index, 0.02, true), 0);
+    assert_eq!(count(Dof::Index, 0.10, true), 2);
+    assert_eq!(count(Dof::ThumbBend, -0.10, true), 3);
+    assert_eq!(count(Dof::ThumbRotate, 0.10, true), 4);
+    assert_eq!(count(Dof::Index, 0.10, false), 0);
+}
+
+#[test]
+fn the_simulated_hand_meets_what_is_drawn_before_it() {
+    for (scenario, shown) in [
+        (Scenario::Idle, Held::Ball),
+        (Scenario::Rigid, Held::Block),
+        (Scenario::Fragile, Held::Cup),
+    ] {
+        let object = shape::held(shown);
+        let places = || object.corners.iter().map(|corner| corner.at);
+        let (low, high) = (
+            places().fold(Vec3::MAX, Vec3::min),
+            places().fold(Vec3::MIN, Vec3::max),
+        );
+        let faces = || {
+            object
+                .faces
+                .iter()
+                .filter(|face| face.offset > face.normal.dot(object.middle))
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "an angle of at most 1000")]
+        let shares = Object::of(scenario)
+            .contacts
+            .map(|met| met.map_or(0.32, |met| met.angle as f32 / 1000.0));
+        let pose = Pose::of_shares(Side::Right, &shares);
+        for finger in Finger::ALL {
+            let segment = Segment::tip(finger);
+            let corners = shape::solid(segment, false).corners.iter();
+            let gap = corners.map(|corner| {
+                let at = pose.frame(segment).transform_point3(corner.at);
+                let out = faces().map(|face| face.normal.dot(at) - face.offset);
+                // The cup is open at an end.
+                out.fold((low - at).max(at - high).max_element(), f32::max)
+            });
+            let gap = gap.fold(f32::MAX, f32::min);
+            assert!((-8.0..8.0).contains(&gap), "{shown:?} {finger:?}: {gap} mm");
+        }
+    }
+}
+
+#[test]
+fn a_drag_turns_the_hand_and_a_double_click_turns_it_back() {
+    let (context, mut view) = (Context::default(), HandView::default());
+    let mut time = 0.0;
+    let mut pass = |view: &mut HandView, events: Vec<Event>| {
+        time += 0.05;
+        let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(300.0, 300.0)));
+        let input = RawInput {
+            screen_rect,
+            time: Some(time),
+            events,
+            ..RawInput::default()
+        };
+        let mut found = None;
+        let mut output = context.run_ui(input, |ui| {
+            let rect = ui.max_rect();
+            let response = ui.interact(rect, Id::unique("hand"), Sense::click_and_drag());
+            let picture = posed(Side::Right, [1.0; 3]);
+            found = view
+                .ui(ui, rect, response, Palette::of(Theme::Dark), &picture)
+                .joint;
+        });
+        output.textures_delta.clear();
+        found
+    };
+    let to = |x: f32, y: f32| Event::PointerMoved(pos2(x, y));
+    let press = |pressed: bool, x: f32| Event::PointerButton {
+        pos: pos2(x, 150.0),
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    pass(&mut view, vec![to(150.0, 150.0)]);
+    pass(&mut view, vec![press(true, 150.0)]);
+    pass(&mut view, vec![to(190.0, 150.0)]);
+    pass(&mut view, vec![to(210.0, 150.0)]);
+    pass(&mut view, vec![press(false, 210.0)]);
+    let turned = view.turn.unwrap();
+    assert!((turned.yaw - TURN.yaw).abs() > 0.2 && (turned.pitch - TURN.pitch).abs() < 1e-3);
+    for _ in 0..2 {
+        pass(&mut view, vec![press(true, 210.0)]);
+        pass(&mut view, vec![press(false, 210.0)]);
+    }
+    assert_eq!(view.turn, None);
+    // A finger is found where it is drawn, and lights up there.
+    let lit: Vec<_> = (10..140u8)
+        .filter_map(|y| pass(&mut view, vec![to(125.0, f32::from(y))]))
+        .collect();
+    assert!(
+        lit.contains(&Dof::Middle) || lit.contains(&Dof::Ring),
+        "{lit:?}"
+    );
+    assert_eq!(pass(&mut view, vec![to(5.0, 5.0)]), None);
+    let (last, _) = view.drawn.unwrap();
+    assert_eq!(last.lit, None);
+}

@@ -1,0 +1,59 @@
+//! The frame behind a control: on the secondary button, the bytes it sends on each wire, to copy. Sends nothing.
+
+use crate::hand::HandCommand;
+use crate::link::traffic::compose::{Recipe, RecipeForm, RecipeWire};
+use crate::ui::kit::look::Pane;
+use crate::ui::text::main;
+use crate::ui::theme;
+use egui::{Id, RichText, Ui};
+
+/// Width of the menu.
+const WIDTH: f32 = theme::MENU_WIDE;
+
+/// Gives the control with this id its menu. `command` is what the control would send as it stands.
+pub(crate) fn frame_menu_ui(ui: &Ui, pane: &Pane<'_>, id: Id, command: &HandCommand) {
+    let Some(response) = ui.ctx().read_response(id) else {
+        return;
+    };
+    egui::Popup::context_menu(&response)
+        .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.set_width(WIDTH);
+            menu_ui(ui, pane, id.with("wire"), command);
+        });
+}
+
+fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, id: Id, command: &HandCommand) {
+    let look = pane.look;
+    let endpoint = pane.state.hand().endpoint.as_ref();
+    let current = endpoint.map_or(RecipeWire::Rs485, RecipeWire::of);
+    let chosen = ui.data(|data| data.get_temp::<RecipeWire>(id));
+    let mut wire = chosen.unwrap_or(current);
+    ui.label(RichText::new(look.say(main::FRAME_TITLE)).font(theme::title()));
+    ui.horizontal(|ui| {
+        for each in RecipeWire::ALL {
+            ui.selectable_value(&mut wire, each, each.name());
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, wire));
+    let recipe = Recipe::new(command, wire, endpoint);
+    let hex = recipe.text(RecipeForm::Hex);
+    egui::Frame::new()
+        .fill(look.palette.sunken)
+        .inner_margin(theme::GAP)
+        .corner_radius(theme::ROUND_SMALL)
+        .show(ui, |ui| {
+            ui.set_width(WIDTH - 2.0 * theme::GAP);
+            ui.label(RichText::new(&hex).font(theme::number()));
+        });
+    ui.horizontal(|ui| {
+        ui.label(look.say(main::FRAME_COPY));
+        for form in RecipeForm::ALL {
+            if ui.button(form.name()).clicked() {
+                ui.ctx().copy_text(recipe.text(form));
+            }
+        }
+    });
+    let hint = RichText::new(look.say(main::FRAME_HINT)).font(theme::small());
+    ui.label(hint.color(look.palette.muted));
+}

@@ -1,0 +1,432 @@
+//! The few widgets that everything is made of: placed by rectangle, painted from the theme, named for accessibility.
+
+use crate::ui::kit::look::Look;
+use crate::ui::theme::{self, Icon};
+use egui::{
+    Align2, Color32, CornerRadius, Event, FontId, Id, PointerButton, Pos2, Rect, Response, Role,
+    Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
+};
+
+/// A text at a place. Cut with dots if it is too long, and then whole in its tooltip.
+#[derive(Debug, Clone)]
+pub(crate) struct Label<'a> {
+    text: &'a str,
+    font: FontId,
+    color: Color32,
+    align: Align2,
+    name: Option<&'a str>,
+    shorter: Option<&'a str>,
+}
+
+impl<'a> Label<'a> {
+    /// Running text, left and centred in height.
+    pub(crate) const fn new(text: &'a str, color: Color32) -> Self {
+        Self {
+            text,
+            font: theme::body(),
+            color,
+            align: Align2::LEFT_CENTER,
+            name: None,
+            shorter: None,
+        }
+    }
+
+    /// With another font.
+    pub(crate) fn font(mut self, font: FontId) -> Self {
+        self.font = font;
+        self
+    }
+
+    /// Small.
+    pub(crate) fn small(self) -> Self {
+        self.font(theme::small())
+    }
+
+    /// With digits of one width.
+    pub(crate) fn number(self) -> Self {
+        self.font(theme::number())
+    }
+
+    /// Against the right edge.
+    pub(crate) fn right(mut self) -> Self {
+        self.align = Align2::RIGHT_CENTER;
+        self
+    }
+
+    /// In the middle.
+    pub(crate) fn center(mut self) -> Self {
+        self.align = Align2::CENTER_CENTER;
+        self
+    }
+
+    /// Names what the text is the value of, for accessibility.
+    pub(crate) fn named(mut self, name: &'a str) -> Self {
+        self.name = Some(name);
+        self
+    }
+
+    /// What is drawn where there is no room for the whole text; the whole is told on demand.
+    pub(crate) fn shorter(mut self, text: &'a str) -> Self {
+        self.shorter = Some(text);
+        self
+    }
+
+    /// The text that is drawn in this much room.
+    fn fitting(&self, ui: &Ui, width: f32) -> &'a str {
+        match self.shorter {
+            Some(shorter) if text_width(ui, self.text, self.font.clone()) > width => shorter,
+            _ => self.text,
+        }
+    }
+
+    /// Draws it.
+    pub(crate) fn put(self, ui: &mut Ui, rect: Rect) -> Response {
+        // Not allocated: that would take the list's cursor back to the end of this rectangle.
+        let id = ui.next_auto_id();
+        ui.skip_ahead_auto_ids(1);
+        let mut response = ui.interact(rect, id, Sense::hover());
+        let drawn = self.fitting(ui, rect.width());
+        let elided = paint_text(ui, rect, self.align, drawn, self.font, self.color);
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
+        if let Some(name) = self.name {
+            ui.ctx().accesskit_node_builder(response.id, |node| {
+                node.set_label(name);
+            });
+        }
+        if elided || drawn != self.text {
+            response = response.on_hover_text(self.text);
+        }
+        response
+    }
+}
+
+/// Paints text inside a rectangle, cut with dots; true if it was cut.
+pub(crate) fn paint_text(
+    ui: &Ui,
+    rect: Rect,
+    align: Align2,
+    text: &str,
+    font: FontId,
+    color: Color32,
+) -> bool {
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(rect.width().max(0.0));
+    let galley = ui.painter().layout_job(job);
+    let elided = galley.elided;
+    let at = align.align_size_within_rect(galley.size(), rect).min;
+    ui.painter().galley(at, galley, color);
+    elided
+}
+
+/// Width of a text on one line.
+pub(crate) fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
+    ui.painter()
+        .layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER)
+        .size()
+        .x
+}
+
+/// How a button looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Weight {
+    /// One of many.
+    Normal,
+    /// The one that is chosen of several.
+    Chosen,
+    /// The main thing to do.
+    Strong,
+    /// No ground until the pointer is there.
+    Quiet,
+    /// Setpoints pass.
+    Armed,
+    /// What cannot simply be taken back.
+    Danger,
+    /// Stop.
+    Stop,
+}
+
+/// A button at a place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Button<'a> {
+    /// What it says.
+    pub(crate) text: &'a str,
+    /// What a screen reader says; the text if `None`.
+    pub(crate) name: Option<&'a str>,
+    /// What it does, in a sentence.
+    pub(crate) tip: &'a str,
+    /// Why it cannot be pressed now.
+    pub(crate) disabled: Option<&'a str>,
+    /// How it looks.
+    pub(crate) weight: Weight,
+    /// On or off, if it is a switch.
+    pub(crate) selected: Option<bool>,
+    /// A sign in place of the text, which stays the name.
+    pub(crate) icon: Option<Icon>,
+}
+
+impl<'a> Button<'a> {
+    /// An ordinary button.
+    pub(crate) const fn new(text: &'a str, tip: &'a str) -> Self {
+        Self {
+            text,
+            name: None,
+            tip,
+            disabled: None,
+            weight: Weight::Normal,
+            selected: None,
+            icon: None,
+        }
+    }
+
+    /// With another look.
+    pub(crate) const fn weight(mut self, weight: Weight) -> Self {
+        self.weight = weight;
+        self
+    }
+
+    /// With a longer name for accessibility.
+    pub(crate) const fn named(mut self, name: &'a str) -> Self {
+        self.name = Some(name);
+        self
+    }
+
+    /// Disabled for this reason.
+    pub(crate) const fn disabled(mut self, reason: Option<&'a str>) -> Self {
+        self.disabled = reason;
+        self
+    }
+
+    /// One of a row of which one is chosen.
+    pub(crate) const fn choice(mut self, selected: bool) -> Self {
+        self.selected = Some(selected);
+        self.weight = if selected {
+            Weight::Chosen
+        } else {
+            Weight::Quiet
+        };
+        self
+    }
+
+    /// With a sign in place of its text, which stays its name.
+    pub(crate) const fn icon(mut self, icon: Icon) -> Self {
+        self.icon = Some(icon);
+        self
+    }
+
+    /// Draws it and says whether it was pressed.
+    pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
+        let response = self.ground(ui, look, rect, id);
+        let color = self.text_color(look);
+        if let Some(icon) = self.icon {
+            sign(ui, rect, icon, color);
+            return response;
+        }
+        let font = match self.weight {
+            Weight::Stop => theme::large(),
+            _ => theme::body(),
+        };
+        let inner = rect.shrink2(vec2(theme::STEP, 0.0));
+        paint_text(ui, inner, Align2::CENTER_CENTER, self.text, font, color);
+        response
+    }
+
+    /// The button without its text, for those that paint their own.
+    pub(crate) fn ground(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
+        let enabled = self.disabled.is_none() && ui.is_enabled();
+        let sense = if enabled {
+            Sense::click()
+        } else {
+            Sense::hover()
+        };
+        let response = ui.interact(rect, id, sense);
+        let name = self.name.unwrap_or(self.text);
+        response.widget_info(|| match self.selected {
+            Some(selected) => WidgetInfo::selected(Role::Button, enabled, selected, name),
+            None => WidgetInfo::labeled(Role::Button, enabled, name),
+        });
+        let (fill, edge) = self.colors(look, &response);
+        let round = if self.weight == Weight::Stop {
+            theme::ROUND
+        } else {
+            theme::ROUND_SMALL
+        };
+        ui.painter().rect(
+            rect,
+            CornerRadius::same(round),
+            fill,
+            Stroke::new(1.0, edge),
+            StrokeKind::Inside,
+        );
+        focus_ring(ui, look, &response, rect);
+        match self.disabled {
+            Some(reason) => response.on_hover_text(format!("{}\n{reason}", self.tip)),
+            None => response
+                .on_hover_text(self.tip)
+                .on_hover_cursor(egui::CursorIcon::PointingHand),
+        }
+    }
+
+    /// The colour of what is written on it.
+    pub(crate) fn text_color(self, look: Look) -> Color32 {
+        let palette = look.palette;
+        match (self.disabled, self.weight) {
+            (Some(_), _) => palette.faint,
+            (None, Weight::Normal | Weight::Chosen) => palette.text,
+            (None, Weight::Quiet) => palette.muted,
+            (None, Weight::Strong | Weight::Stop) => palette.on_strong,
+            (None, Weight::Armed) => palette.on_armed,
+            (None, Weight::Danger) => palette.bad,
+        }
+    }
+
+    fn colors(self, look: Look, response: &Response) -> (Color32, Color32) {
+        let palette = look.palette;
+        let hot = response.hovered() && self.disabled.is_none();
+        if self.disabled.is_some() {
+            return match self.weight {
+                Weight::Quiet => (Color32::TRANSPARENT, Color32::TRANSPARENT),
+                _ => (palette.card, palette.edge),
+            };
+        }
+        match self.weight {
+            Weight::Normal if hot => (palette.control_hover, palette.faint),
+            Weight::Normal => (palette.control, palette.edge),
+            Weight::Quiet if hot => (palette.control, Color32::TRANSPARENT),
+            Weight::Quiet => (Color32::TRANSPARENT, Color32::TRANSPARENT),
+            Weight::Chosen => (palette.wash(palette.accent), palette.accent),
+            Weight::Strong => (palette.accent, palette.accent),
+            Weight::Armed => (palette.armed, palette.armed),
+            Weight::Danger if hot => (palette.wash(palette.bad), palette.bad),
+            Weight::Danger => (palette.control, palette.bad),
+            Weight::Stop if hot => (palette.stop_hover, palette.stop_edge),
+            Weight::Stop => (palette.stop, palette.stop_edge),
+        }
+    }
+}
+
+/// A thin ring around what has the keyboard.
+pub(crate) fn focus_ring(ui: &Ui, look: Look, response: &Response, rect: Rect) {
+    if response.has_focus() {
+        let round = CornerRadius::same(theme::ROUND_SMALL + 2);
+        let stroke = Stroke::new(theme::FOCUS_LINE, look.palette.accent);
+        ui.painter()
+            .rect_stroke(rect.expand(2.0), round, stroke, StrokeKind::Outside);
+    }
+}
+
+/// The ground of a card; what is left inside its padding.
+pub(crate) fn card(ui: &Ui, look: Look, rect: Rect) -> Rect {
+    ui.painter().rect(
+        rect,
+        CornerRadius::same(theme::ROUND),
+        look.palette.card,
+        Stroke::new(1.0, look.palette.edge),
+        StrokeKind::Inside,
+    );
+    rect.shrink(theme::PAD)
+}
+
+/// A card with a title; the title row's free right part, and what is below.
+pub(crate) fn titled_card(ui: &mut Ui, look: Look, rect: Rect, title: &str) -> (Rect, Rect) {
+    let inner = card(ui, look, rect);
+    let (row, rest) = inner.split_top_bottom_at_y(inner.top() + theme::CONTROL);
+    let width = text_width(ui, title, theme::title()).min(row.width()) + 1.0;
+    let (left, right) = row.split_left_right_at_x(row.left() + width);
+    Label::new(title, look.palette.text)
+        .font(theme::title())
+        .put(ui, left);
+    let rest = rest.with_min_y(rest.top() + theme::GAP);
+    (right.with_min_x(right.left() + theme::GAP), rest)
+}
+
+/// True in the frame in which a place is pressed, or its button clicked by a key or a screen reader. A stop does not
+/// wait for the release, and is not lost where a slow frame sees press, release and a pointer that is gone already.
+pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
+    if !ui.is_enabled() {
+        return false;
+    }
+    let down = |event: &Event| match event {
+        Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed: true,
+            ..
+        } => response.rect.contains(*pos),
+        _ => false,
+    };
+    let (went_down, by_pointer) = ui.input(|input| {
+        let went_down = input.events.iter().any(down);
+        (went_down, input.pointer.primary_released())
+    });
+    went_down || response.clicked() && !by_pointer
+}
+
+/// A round lamp.
+pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
+    let painter = ui.painter();
+    painter.circle_filled(
+        center,
+        theme::LAMP + theme::HALO,
+        color.gamma_multiply(0.22),
+    );
+    painter.circle_filled(center, theme::LAMP, color);
+}
+
+/// A sign in the middle of a place.
+pub(crate) fn sign(ui: &Ui, rect: Rect, sign: Icon, color: Color32) {
+    let center = Align2::CENTER_CENTER;
+    ui.painter()
+        .text(rect.center(), center, sign, theme::icon(), color);
+}
+
+/// A warning sign of the given height.
+pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
+    let font = theme::icon_high(rect.height());
+    let center = Align2::CENTER_CENTER;
+    ui.painter()
+        .text(rect.center(), center, theme::WARNING, font, color);
+}
+
+/// A small closed or open padlock.
+pub(crate) fn padlock(ui: &Ui, rect: Rect, color: Color32, closed: Lock) {
+    let icon = match closed {
+        Lock::Closed => theme::LOCKED,
+        Lock::Open => theme::UNLOCKED,
+    };
+    sign(ui, rect, icon, color);
+}
+
+/// How a padlock is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Lock {
+    /// Shut.
+    Closed,
+    /// Open.
+    Open,
+}
+
+/// Cuts a piece of the given width from the right, with a gap.
+pub(crate) fn take_right(rect: &mut Rect, width: f32) -> Rect {
+    let (rest, piece) = rect.split_left_right_at_x(rect.right() - width);
+    *rect = rest.with_max_x(rest.right() - theme::GAP);
+    piece
+}
+
+/// Cuts a piece of the given width from the left, with a gap.
+pub(crate) fn take_left(rect: &mut Rect, width: f32) -> Rect {
+    let (piece, rest) = rect.split_left_right_at_x(rect.left() + width);
+    *rect = rest.with_min_x(rest.left() + theme::GAP);
+    piece
+}
+
+/// Cuts a piece of the given height from the top, with a gap.
+pub(crate) fn take_top(rect: &mut Rect, height: f32) -> Rect {
+    let (piece, rest) = rect.split_top_bottom_at_y(rect.top() + height);
+    *rect = rest.with_min_y(rest.top() + theme::GAP);
+    piece
+}
+
+/// A piece of the given height around the middle.
+pub(crate) fn middle(rect: Rect, height: f32) -> Rect {
+    Rect::from_center_size(rect.center(), vec2(rect.width(), height.min(rect.height())))
+}

@@ -1,0 +1,95 @@
+//! What every part of the window is given: the state, the colours, the language, and where to put actions.
+
+use crate::app::action::Action;
+use crate::app::hand::Freshness;
+use crate::app::settings::Language;
+use crate::app::state::State;
+use crate::hand::kinematics::Side;
+use crate::hand::{Dof, Moment};
+use crate::ui::text::{Text, main, tune};
+use crate::ui::theme::Palette;
+use egui::{Color32, Id};
+
+/// Colours, language and hand of this frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Look {
+    /// Colours.
+    pub(crate) palette: &'static Palette,
+    /// Language.
+    pub(crate) language: Language,
+    /// The hand that is drawn.
+    pub(crate) side: Side,
+}
+
+impl Look {
+    /// As the settings say.
+    pub(crate) fn of(state: &State) -> Self {
+        Self {
+            palette: Palette::of(state.settings.theme),
+            language: state.settings.language,
+            side: state.settings.side,
+        }
+    }
+
+    /// A text in the window's language.
+    pub(crate) const fn say(self, text: Text) -> &'static str {
+        text.of(self.language)
+    }
+
+    /// The colour of a value of this freshness that would be `live`.
+    pub(crate) fn value(self, freshness: Freshness, live: Color32) -> Color32 {
+        match freshness {
+            Freshness::Live => live,
+            Freshness::Stale | Freshness::Unknown => self.palette.faint,
+        }
+    }
+}
+
+/// One pass over one part of the window.
+pub(crate) struct Pane<'a> {
+    /// What is shown.
+    pub(crate) state: &'a State,
+    /// How it looks.
+    pub(crate) look: Look,
+    /// What the person asked for.
+    pub(crate) actions: &'a mut Vec<Action>,
+    /// The field being typed into.
+    pub(crate) typing: &'a mut Typing,
+    /// Set where an explanation was asked for: it is shown from the next frame on.
+    pub(crate) explain: &'a mut Option<Explain>,
+}
+
+/// What is to be explained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Explain {
+    /// What is and was wrong.
+    Faults,
+    /// What this joint's drive says.
+    Drive(Dof),
+}
+
+impl Pane<'_> {
+    /// Why nothing that moves the hand can be asked for now.
+    pub(crate) fn unready(&self) -> Option<&'static str> {
+        if self.state.hand().runs_series() {
+            return Some(self.look.say(tune::RUNS));
+        }
+        (!self.state.hand().is_armed()).then(|| self.look.say(main::NOT_ARMED))
+    }
+
+    /// How fresh something asked for at `asked` is.
+    pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
+        self.state.hand().freshness(asked)
+    }
+}
+
+/// The one field that is being typed into. Nothing in it counts before Enter.
+#[derive(Debug, Default)]
+pub(crate) struct Typing {
+    /// Which field.
+    pub(crate) field: Option<Id>,
+    /// What was typed so far.
+    pub(crate) text: String,
+    /// The field whose text was refused at the last Enter.
+    pub(crate) refused: Option<Id>,
+}

@@ -1,0 +1,104 @@
+//! The plots there are: which lines stand in each, and on what scale. Draws nothing.
+
+use crate::app::settings::PlotKind;
+use crate::hand::{Dof, Finger, PerDof, Quantity, QuantityRow, Touch};
+use crate::history::Series;
+use crate::ui::text::{Text, panels, plots};
+
+/// One of the stacked plots.
+#[derive(Debug)]
+pub(crate) struct Panel {
+    /// What it is called in the settings.
+    pub(crate) kind: PlotKind,
+    /// Title with unit.
+    pub(crate) title: Text,
+    /// Digits and scale.
+    pub(crate) row: &'static QuantityRow,
+}
+
+/// All, from top to bottom.
+pub(crate) const PANELS: [Panel; 6] = [
+    Panel {
+        kind: PlotKind::Force,
+        title: panels::PLOT_FORCE,
+        row: Quantity::Force.row(),
+    },
+    Panel {
+        kind: PlotKind::Normal,
+        title: plots::NORMAL,
+        row: Touch::Normal.row(),
+    },
+    Panel {
+        kind: PlotKind::Tangential,
+        title: plots::TANGENTIAL,
+        row: Touch::Tangential.row(),
+    },
+    Panel {
+        kind: PlotKind::Current,
+        title: panels::PLOT_CURRENT,
+        row: Quantity::Current.row(),
+    },
+    Panel {
+        kind: PlotKind::Temperature,
+        title: panels::PLOT_TEMPERATURE,
+        row: Quantity::Temperature.row(),
+    },
+    Panel {
+        kind: PlotKind::Angle,
+        title: panels::PLOT_ANGLE,
+        row: Quantity::Angle.row(),
+    },
+];
+
+/// One line of a plot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct PlotLine {
+    /// Where its points come from.
+    pub(crate) series: Series,
+    /// Whose colour it has.
+    pub(crate) dof: Dof,
+    /// True for what was asked of the hand and not measured.
+    pub(crate) wished: bool,
+}
+
+impl Panel {
+    /// The lines of all parts that are not hidden; those that were asked for come first, under the measured ones.
+    pub(crate) fn lines(&self, hidden: &PerDof<bool>) -> Vec<PlotLine> {
+        let joint = |quantity| {
+            Dof::ALL.into_iter().map(move |dof| PlotLine {
+                series: Series::Joint(quantity, dof),
+                dof,
+                wished: quantity == Quantity::TargetAngle,
+            })
+        };
+        let tip = |touch| {
+            Finger::ALL.into_iter().map(move |finger| PlotLine {
+                series: Series::Tip(touch, finger),
+                dof: finger.bend(),
+                wished: false,
+            })
+        };
+        let all: Vec<PlotLine> = match self.kind {
+            PlotKind::Force => joint(Quantity::Force).collect(),
+            PlotKind::Normal => tip(Touch::Normal).collect(),
+            PlotKind::Tangential => tip(Touch::Tangential).collect(),
+            PlotKind::Current => joint(Quantity::Current).collect(),
+            PlotKind::Temperature => joint(Quantity::Temperature).collect(),
+            PlotKind::Angle => joint(Quantity::TargetAngle)
+                .chain(joint(Quantity::Angle))
+                .collect(),
+        };
+        all.into_iter().filter(|line| !hidden[line.dof]).collect()
+    }
+
+    /// The measured ones only: those that figures are told of.
+    pub(crate) fn measured(&self, hidden: &PerDof<bool>) -> Vec<PlotLine> {
+        let lines = self.lines(hidden).into_iter();
+        lines.filter(|line| !line.wished).collect()
+    }
+
+    /// A value as it is shown.
+    pub(crate) fn value(&self, value: f64) -> String {
+        format!("{value:.*}", self.row.decimals)
+    }
+}

@@ -1,0 +1,362 @@
+//! One fingertip in detail: how near its grip is to slipping, its force in space, its forces and channels over time.
+
+use crate::app::hand::Freshness;
+use crate::app::readings::friction::{Grip, Hold, NEAR};
+use crate::hand::Touch;
+use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::history::{Series, Trace};
+use crate::ui::joints::track::{Actual, Track};
+use crate::ui::kit::controls;
+use crate::ui::kit::controls::Label;
+use crate::ui::kit::format;
+use crate::ui::kit::look::{Look, Pane};
+use crate::ui::text::{Text, panels, touch as text};
+use crate::ui::theme;
+use crate::ui::touch::fingertip::Tip;
+use crate::ui::touch::table as touch_table;
+use crate::ui::touch::tip_channels::{TipChannels, columns};
+use crate::ui::touch::tip_space;
+use crate::ui::touch::tip_space::Force;
+use egui::{Align2, Id, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2};
+
+/// Friction that is taken until a person chooses one, in percent: rubber on smooth plastic is about this.
+const FRICTION_PERCENT: i16 = 50;
+/// The largest friction that can be chosen, in percent.
+const FRICTION_MAX: i16 = 150;
+/// Seconds of force shown.
+const SECONDS: f64 = 10.0;
+/// The compass ends at this many times the chosen friction.
+const COMPASS_END_RATIO: f32 = 1.5;
+/// Smallest end of the force axis, in newtons.
+const FORCE_END: f64 = 1.0;
+
+/// Which fingertip, and what friction is reckoned with.
+#[derive(Debug, Clone)]
+pub(crate) struct TipDetail {
+    /// The fingertip.
+    pub(crate) finger: Finger,
+    friction_percent: i16,
+    traces: [Trace; 2],
+    holds: PerFinger<Hold>,
+    channels: TipChannels,
+}
+
+impl Default for TipDetail {
+    fn default() -> Self {
+        Self {
+            finger: Finger::Index,
+            friction_percent: FRICTION_PERCENT,
+            traces: Default::default(),
+            holds: PerFinger::default(),
+            channels: TipChannels::default(),
+        }
+    }
+}
+
+impl TipDetail {
+    fn friction(&self) -> f32 {
+        f32::from(self.friction_percent) / 100.0
+    }
+
+    /// Follows all grips, so that an alarm neither flickers nor waits until its fingertip is chosen.
+    pub(crate) fn follow(&mut self, pane: &Pane<'_>) {
+        for finger in Finger::ALL {
+            let block = pane.state.hand().sample.tactile[finger];
+            let live = pane.state.hand().tip_freshness(finger) == Freshness::Live;
+            let block = block.filter(|_| live).map(|block| block.value);
+            self.holds[finger] = self.holds[finger].next(Grip::of(block.as_ref()), self.friction());
+        }
+    }
+
+    /// How the grip of a fingertip stood when it was looked at last.
+    pub(crate) fn hold(&self, finger: Finger) -> Hold {
+        self.holds[finger]
+    }
+
+    /// Compass, force in space, readings, forces and channels over time: as many as find room.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, tip: Option<&Tip>) {
+        let mut body = rect;
+        let stacked = ((rect.height() - theme::GAP) / 2.0).floor();
+        let is_wide = rect.width() >= theme::TIP_DETAIL_WIDE;
+        let size = if stacked >= theme::TIP_SQUARE_LEAST {
+            stacked.min(rect.width() * 0.22)
+        } else {
+            rect.height().min(rect.width() * 0.22)
+        };
+        let mut squares = controls::take_left(&mut body, size);
+        let compass = controls::take_top(&mut squares, size);
+        self.compass_ui(ui, compass, pane);
+        let space = if stacked >= theme::TIP_SQUARE_LEAST {
+            Some(squares.with_max_y(squares.top() + size))
+        } else {
+            is_wide.then(|| controls::take_left(&mut body, size).with_max_y(rect.top() + size))
+        };
+        if let Some(space) = space {
+            let force = Force {
+                tip,
+                friction: self.friction(),
+                color: color_of(self.hold(self.finger), pane.look.palette),
+            };
+            tip_space::ui(ui, pane.look, space, Id::unique("force in space"), force);
+        }
+        let width = (body.width() * 0.28).clamp(theme::TIP_READINGS.0, theme::TIP_READINGS.1);
+        let readings = controls::take_left(&mut body, width);
+        self.readings_ui(ui, readings, pane);
+        body.min.x += theme::GAP;
+        if body.height() >= theme::TIP_BOTH_PLOTS {
+            let forces = body.height() * 0.36;
+            let forces = controls::take_top(&mut body, forces);
+            self.forces_ui(ui, forces, pane);
+        }
+        self.channels.ui(ui, body, pane, self.finger);
+    }
+
+    fn block<'a>(&self, pane: &Pane<'a>) -> (Option<&'a TactileBlock>, Freshness) {
+        let block = pane.state.hand().sample.tactile[self.finger].as_ref();
+        let freshness = pane.state.hand().tip_freshness(self.finger);
+        (block.map(|block| &block.value), freshness)
+    }
+
+    /// Looking onto the fingertip, tip up: the ring is the friction, the dot the force as it is now.
+    fn compass_ui(&self, ui: &Ui, rect: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let palette = look.palette;
+        let (center, radius) = (rect.center(), rect.width() / 2.0 - theme::STEP);
+        let painter = ui.painter();
+        painter.circle(
+            center,
+            radius,
+            palette.sunken,
+            Stroke::new(1.0, palette.edge),
+        );
+        for turn in 0..4u8 {
+            let way = Vec2::angled(f32::from(turn) * std::f32::consts::FRAC_PI_2);
+            painter.line_segment(
+                [center, center + way * radius],
+                Stroke::new(1.0, palette.grid),
+            );
+        }
+        let ring = radius / COMPASS_END_RATIO;
+        painter.circle(
+            center,
+            ring,
+            palette.wash(palette.ok),
+            Stroke::new(theme::FOCUS_LINE, palette.ok),
+        );
+        painter.circle_stroke(center, ring * (1.0 - NEAR), Stroke::new(1.0, palette.grid));
+        let up =
+            Rect::from_center_size(center - vec2(0.0, radius - theme::GAP), theme::COMPASS_WORD);
+        let text = look.say(panels::TIP_UP);
+        controls::paint_text(
+            ui,
+            up,
+            Align2::CENTER_CENTER,
+            text,
+            theme::tiny(),
+            palette.faint,
+        );
+        let (block, freshness) = self.block(pane);
+        let (Grip::Ratio(ratio), Some(block)) = (Grip::of(block), block) else {
+            return;
+        };
+        let Some(degrees) = block.direction_deg() else {
+            return;
+        };
+        let color = look.value(freshness, color_of(self.hold(self.finger), palette));
+        let (sin, cos) = f32::from(degrees).to_radians().sin_cos();
+        let part = (ratio / self.friction().max(0.01)).min(COMPASS_END_RATIO);
+        needle(painter, center, vec2(sin, -cos) * (ring * part), color);
+    }
+
+    fn readings_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let mut rest = rect;
+        let (block, freshness) = self.block(pane);
+        let grip = Grip::of(block);
+        let friction = self.friction();
+        let newtons = |value: Option<f32>| format!("{} N", format::newtons(value));
+        let ratio = match grip {
+            Grip::Ratio(ratio) => format!("{ratio:.2}"),
+            Grip::Unknown | Grip::Loose => format::UNKNOWN.into(),
+        };
+        let margin = grip.margin(friction).map_or_else(
+            || format::UNKNOWN.to_owned(),
+            |margin| format!("{:.0} %", margin * 100.0),
+        );
+        let plain = look.palette.text;
+        let direction = block.map_or_else(
+            || format::UNKNOWN.to_owned(),
+            |block| touch_table::direction(block, look),
+        );
+        let check = block.map(|block| block.check_ok());
+        let (check, check_color) = match check {
+            None => (format::UNKNOWN, plain),
+            Some(true) => (look.say(text::CHECK_OK), plain),
+            Some(false) => (look.say(text::CHECK_DIFFERS), look.palette.warn),
+        };
+        let hold = self.hold(self.finger);
+        let rows: [(Text, String, egui::Color32); 6] = [
+            (
+                panels::TIP_NORMAL,
+                newtons(block.map(|block| block.normal_n)),
+                plain,
+            ),
+            (
+                panels::TIP_SHEAR,
+                newtons(block.map(|block| block.tangential_n)),
+                plain,
+            ),
+            (text::DIRECTION, direction, plain),
+            (panels::TIP_RATIO, ratio, plain),
+            (text::CHECK, check.to_owned(), check_color),
+            (panels::TIP_MARGIN, margin, color_of(hold, look.palette)),
+        ];
+        let row = (rect.height() / 8.0).min(theme::CONTROL);
+        for (caption, value, color) in &rows {
+            let place = controls::take_top(&mut rest, row);
+            rest.min.y -= theme::GAP;
+            Label::new(look.say(*caption), look.palette.muted)
+                .small()
+                .put(ui, place);
+            let label = Label::new(value, look.value(freshness, *color))
+                .number()
+                .right();
+            let response = label.named(look.say(*caption)).put(ui, place);
+            if *caption == text::CHECK {
+                response.on_hover_text(look.say(text::CHECK_TIP));
+            }
+        }
+        let place = controls::take_top(&mut rest, row);
+        rest.min.y -= theme::GAP;
+        self.verdict_ui(ui, place, look);
+        self.friction_ui(ui, rest.with_max_y(rest.top() + row), look);
+    }
+
+    /// How the grip stands, in words; the alarm on a ground of its own.
+    fn verdict_ui(&self, ui: &mut Ui, place: Rect, look: Look) {
+        let hold = self.hold(self.finger);
+        let color = color_of(hold, look.palette);
+        if hold == Hold::Slips {
+            let ground = place.expand2(vec2(theme::STEP, 0.0));
+            let wash = look.palette.wash(color);
+            ui.painter().rect_filled(ground, theme::STEP, wash);
+        }
+        Label::new(look.say(words_of(hold)), color).put(ui, place);
+    }
+
+    fn friction_ui(&mut self, ui: &mut Ui, rect: Rect, look: Look) {
+        let caption = format!("{} {:.2}", look.say(panels::TIP_FRICTION), self.friction());
+        let width = controls::text_width(ui, &caption, theme::small()) + theme::GAP;
+        let (left, right) = rect.split_left_right_at_x(rect.left() + width);
+        Label::new(&caption, look.palette.muted)
+            .small()
+            .put(ui, left);
+        let track = Track {
+            name: look.say(panels::TIP_FRICTION_NAME),
+            tip: look.say(panels::TIP_FRICTION_TIP),
+            disabled: None,
+            max: FRICTION_MAX,
+            step: 1,
+            target: Some(self.friction_percent),
+            actual: None,
+            draws: Actual::Bar,
+            color: look.palette.accent,
+            tick: Some(FRICTION_PERCENT),
+            rough_from: None,
+            peak: None,
+        };
+        if let Some(percent) = track.put(ui, look, right, Id::unique("tip friction")) {
+            self.friction_percent = percent.max(1);
+        }
+    }
+
+    fn forces_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+        let look = pane.look;
+        let palette = look.palette;
+        let mut body = rect;
+        let legend = controls::take_top(&mut body, theme::MESSAGE_LINE);
+        body.min.y -= theme::STEP;
+        let lines = [
+            (
+                Touch::Normal,
+                panels::TIP_NORMAL,
+                palette.dof[self.finger.bend()],
+            ),
+            (Touch::Tangential, panels::TIP_SHEAR, palette.muted),
+        ];
+        let mut left = legend;
+        for (_, text, color) in lines {
+            let text = format!("{}, N", look.say(text));
+            let width = controls::text_width(ui, &text, theme::small());
+            let place = controls::take_left(&mut left, width + theme::PAD);
+            let dash = pos2(place.left(), place.center().y);
+            ui.painter().line_segment(
+                [dash, dash + vec2(theme::GAP, 0.0)],
+                Stroke::new(2.0, color),
+            );
+            Label::new(&text, palette.muted)
+                .small()
+                .put(ui, place.with_min_x(place.left() + theme::PAD));
+        }
+        ui.painter().rect_filled(body, 0.0, palette.sunken);
+        let now = pane.state.now.secs();
+        let span = (now - SECONDS, now);
+        let mut end = FORCE_END;
+        for ((touch, _, _), trace) in lines.iter().zip(&mut self.traces) {
+            let series = Series::Tip(*touch, self.finger);
+            let history = &pane.state.hand().history;
+            history.trace(series, span.0, span.1, columns(body), trace);
+            end = trace.points().map(|point| point[1]).fold(end, f64::max);
+        }
+        let top = Rect::from_min_size(body.min + vec2(theme::STEP, 0.0), theme::CHANNEL_WORD);
+        let painter = ui.painter_at(body);
+        for ((_, _, color), trace) in lines.iter().zip(&self.traces) {
+            for segment in &trace.segments {
+                let points = segment
+                    .iter()
+                    .map(|[at_s, value]| place_of(body, (at_s - span.0) / SECONDS, value / end))
+                    .collect();
+                painter.add(Shape::line(points, Stroke::new(theme::LINE, *color)));
+            }
+        }
+        Label::new(&format!("{end:.1}"), palette.faint)
+            .font(theme::number_small())
+            .put(ui, top);
+    }
+}
+
+/// How a grip stands, in words.
+const fn words_of(hold: Hold) -> Text {
+    match hold {
+        Hold::Unknown => panels::TIP_UNKNOWN,
+        Hold::Loose => panels::TIP_LOOSE,
+        Hold::Firm => panels::TIP_HOLDS,
+        Hold::Near => panels::TIP_NEAR,
+        Hold::Slips => panels::TIP_SLIPS,
+    }
+}
+
+/// The colour of how a grip stands.
+const fn color_of(hold: Hold, palette: &theme::Palette) -> egui::Color32 {
+    match hold {
+        Hold::Unknown | Hold::Loose => palette.faint,
+        Hold::Firm => palette.ok,
+        Hold::Near => palette.warn,
+        Hold::Slips => palette.bad,
+    }
+}
+
+fn needle(painter: &Painter, from: Pos2, by: Vec2, color: egui::Color32) {
+    painter.line_segment([from, from + by], Stroke::new(theme::ARROW_LINE, color));
+    painter.circle_filled(from + by, theme::LAMP + 1.0, color);
+}
+
+/// A point of a plot by its shares of width and height.
+fn place_of(rect: Rect, across: f64, up: f64) -> Pos2 {
+    #[expect(clippy::cast_possible_truncation, reason = "shares of a screen")]
+    let (across, up) = (across as f32, up as f32);
+    pos2(
+        rect.left() + rect.width() * across,
+        rect.bottom() - rect.height() * up * 0.94,
+    )
+}

@@ -1,0 +1,86 @@
+//! The columns of the table of trials, and how what stands in them is said and ordered. Draws nothing.
+
+use crate::hand::Status;
+use crate::trials::TrialSetting;
+use crate::trials::columns::{COLUMNS, Metric, TrialColumn, number};
+use crate::ui::kit::format;
+use crate::ui::kit::look::Look;
+use crate::ui::text::{Text, tune, words};
+use std::cmp::Ordering;
+
+/// The head of a column, with its unit; `None` if the window has no room for it.
+const fn title(metric: Metric) -> Option<Text> {
+    match metric {
+        Metric::Overshoot => Some(tune::COLUMN_OVER),
+        Metric::Peak => Some(tune::COLUMN_PEAK),
+        Metric::Steady => Some(tune::COLUMN_STEADY),
+        Metric::Contact => Some(tune::COLUMN_CONTACT),
+        Metric::Settle => Some(tune::COLUMN_SETTLE),
+        Metric::DeadTime => Some(tune::COLUMN_DEAD),
+        Metric::Relaxation => Some(tune::COLUMN_RELAX),
+        Metric::Slips => Some(tune::COLUMN_SLIPS),
+        Metric::Current => Some(tune::COLUMN_CURRENT),
+        Metric::Heat => Some(tune::COLUMN_HEAT),
+        Metric::Touch | Metric::Rate => None,
+    }
+}
+
+/// The columns that the window shows, with their heads.
+pub(crate) fn shown() -> impl Iterator<Item = (&'static TrialColumn, Text)> {
+    let titled = |column: &'static TrialColumn| Some((column, title(column.metric)?));
+    COLUMNS.iter().filter_map(titled)
+}
+
+/// By number; what is not known goes last.
+pub(crate) fn order(a: Option<f64>, b: Option<f64>, falling: bool) -> Ordering {
+    match (a, b) {
+        (Some(a), Some(b)) if falling => b.total_cmp(&a),
+        (Some(a), Some(b)) => a.total_cmp(&b),
+        (a, b) => b.is_some().cmp(&a.is_some()),
+    }
+}
+
+/// What the drive said in the end, in words; a name that this program does not know stays as it is.
+pub(crate) fn end_words(look: Look, name: Option<&str>) -> String {
+    let Some(name) = name else {
+        return format::UNKNOWN.to_owned();
+    };
+    let mut known = (0..=u8::MAX).map(Status::from_raw);
+    known
+        .find(|status| !matches!(status, Status::Unknown(_)) && status.name() == name)
+        .map_or_else(
+            || name.to_owned(),
+            |status| words::status(status, look.language).title.to_owned(),
+        )
+}
+
+/// Speed and threshold.
+pub(crate) fn setting_words(setting: TrialSetting) -> String {
+    format!("{} / {} g", setting.speed.get(), setting.force.get())
+}
+
+/// Mean, and lowest to highest; of nothing nothing.
+pub(crate) fn spread(values: &[f64], digits: usize) -> (String, String) {
+    let count = u32::try_from(values.len()).unwrap_or(u32::MAX);
+    let low = values.iter().copied().reduce(f64::min);
+    let high = values.iter().copied().reduce(f64::max);
+    let (Some(low), Some(high)) = (low, high) else {
+        return ("-".into(), String::new());
+    };
+    let mean = values.iter().sum::<f64>() / f64::from(count);
+    let range = format!("{low:.digits$}..{high:.digits$}");
+    (number(Some(mean), digits), range)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spread_is_the_mean_and_the_ends_and_of_nothing_nothing() {
+        let said = |mean: &str, range: &str| (mean.to_owned(), range.to_owned());
+        assert_eq!(spread(&[10.0, 40.0, 25.0], 0), said("25", "10..40"));
+        assert_eq!(spread(&[0.125, 0.5], 2), said("0.31", "0.12..0.50"));
+        assert_eq!(spread(&[], 2), said("-", ""));
+    }
+}

@@ -1,0 +1,80 @@
+//! The views of the window.
+
+use crate::ui::text::{Text, main, tune};
+
+/// The parts of the window that can be looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum View {
+    /// Plots, fingertips, faults and gestures together.
+    #[default]
+    Live,
+    /// The fingertips, large.
+    Touch,
+    /// The plan of grasp trials, and the series that runs.
+    Tune,
+    /// What trials came to.
+    Compare,
+    /// Faults, statuses and messages.
+    Faults,
+    /// The person's poses, sequences of them, and the gestures in the hand.
+    Poses,
+    /// What the hand keeps: live, staged, saved; its flash.
+    Device,
+    /// The link and its settings.
+    Connection,
+    /// What goes over the wire, frame by frame.
+    Traffic,
+}
+
+impl View {
+    /// All, in the order of the tabs.
+    pub const ALL: [Self; 9] = [
+        Self::Live,
+        Self::Touch,
+        Self::Tune,
+        Self::Compare,
+        Self::Faults,
+        Self::Poses,
+        Self::Device,
+        Self::Connection,
+        Self::Traffic,
+    ];
+
+    /// Stable lower-case name for the command line and files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Live => "live",
+            Self::Touch => "touch",
+            Self::Tune => "tune",
+            Self::Compare => "compare",
+            Self::Faults => "faults",
+            Self::Poses => "poses",
+            Self::Device => "device",
+            Self::Connection => "connection",
+            Self::Traffic => "traffic",
+        }
+    }
+
+    /// The view with this name.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        // What this view was called before poses were added.
+        let name = if name == "gestures" { "poses" } else { name };
+        Self::ALL.into_iter().find(|view| view.name() == name)
+    }
+
+    pub(crate) const fn title(self) -> Text {
+        match self {
+            Self::Live => main::TAB_LIVE,
+            Self::Touch => main::TAB_TOUCH,
+            Self::Tune => tune::TAB,
+            Self::Compare => tune::TAB_COMPARE,
+            Self::Faults => main::TAB_FAULTS,
+            Self::Poses => main::TAB_POSES,
+            Self::Device => main::TAB_DEVICE,
+            Self::Connection => main::TAB_CONNECTION,
+            Self::Traffic => main::TAB_TRAFFIC,
+        }
+    }
+}

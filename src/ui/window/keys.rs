@@ -1,0 +1,350 @@
+//! Every key that acts everywhere: one table for what it does, what it is called, and the list that shows it. Keys of
+//! one control, such as the arrows of a track, are that control's own. Carries nothing out.
+
+use crate::hand::Dof;
+use crate::ui::text::{Text, keys, main, panels, words};
+use crate::ui::view::View;
+use egui::{Event, InputState, Key, Modifiers, Ui};
+
+/// What a key asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wish {
+    /// Hold now.
+    Stop,
+    /// Arm, or disarm.
+    ArmOrNot,
+    /// All joints open.
+    Open,
+    /// All joints half closed.
+    Half,
+    /// All joints bent.
+    Close,
+    /// The keyboard goes to this joint's angle.
+    Joint(Dof),
+    /// The four fingers move together, or not.
+    LinkFingers,
+    /// The next unit of angles.
+    AngleUnit,
+    /// Tare all fingertips.
+    Tare,
+    /// Take the last taring back.
+    UndoTare,
+    /// Write a note.
+    Note,
+    /// Let the plots stand, or follow.
+    Pause,
+    /// Open a view.
+    View(View),
+    /// The other language.
+    Language,
+    /// The other colours.
+    Theme,
+    /// Show the list of keys, or hide it.
+    List,
+}
+
+/// One key and what it asks for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    pub(crate) modifiers: Modifiers,
+    pub(crate) key: Key,
+    pub(crate) wish: Wish,
+}
+
+const fn row(modifiers: Modifiers, key: Key, wish: Wish) -> Row {
+    Row {
+        modifiers,
+        key,
+        wish,
+    }
+}
+
+const NONE: Modifiers = Modifiers::NONE;
+/// What may let the hand move wants two keys, so that a book on the keyboard moves nothing.
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const COMMAND: Modifiers = Modifiers::COMMAND;
+
+/// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
+pub(crate) static ROWS: [Row; 31] = [
+    row(NONE, Key::Space, Wish::Stop),
+    row(NONE, Key::Escape, Wish::Stop),
+    row(SHIFT, Key::A, Wish::ArmOrNot),
+    row(SHIFT, Key::O, Wish::Open),
+    row(SHIFT, Key::H, Wish::Half),
+    row(SHIFT, Key::C, Wish::Close),
+    row(COMMAND, Key::Num1, Wish::View(View::Live)),
+    row(COMMAND, Key::Num2, Wish::View(View::Touch)),
+    row(COMMAND, Key::Num3, Wish::View(View::Faults)),
+    row(COMMAND, Key::Num4, Wish::View(View::Poses)),
+    row(COMMAND, Key::Num5, Wish::View(View::Device)),
+    row(COMMAND, Key::Num6, Wish::View(View::Connection)),
+    row(COMMAND, Key::Num7, Wish::View(View::Traffic)),
+    row(COMMAND, Key::Num8, Wish::View(View::Tune)),
+    row(COMMAND, Key::Num9, Wish::View(View::Compare)),
+    row(NONE, Key::Num1, Wish::Joint(Dof::Little)),
+    row(NONE, Key::Num2, Wish::Joint(Dof::Ring)),
+    row(NONE, Key::Num3, Wish::Joint(Dof::Middle)),
+    row(NONE, Key::Num4, Wish::Joint(Dof::Index)),
+    row(NONE, Key::Num5, Wish::Joint(Dof::ThumbBend)),
+    row(NONE, Key::Num6, Wish::Joint(Dof::ThumbRotate)),
+    row(NONE, Key::L, Wish::LinkFingers),
+    row(NONE, Key::U, Wish::AngleUnit),
+    row(SHIFT, Key::T, Wish::UndoTare),
+    row(NONE, Key::T, Wish::Tare),
+    row(NONE, Key::P, Wish::Pause),
+    row(NONE, Key::N, Wish::Note),
+    row(COMMAND, Key::L, Wish::Language),
+    row(COMMAND, Key::D, Wish::Theme),
+    row(NONE, Key::F1, Wish::List),
+    row(NONE, Key::Questionmark, Wish::List),
+];
+
+impl Row {
+    /// As it stands on the keyboard: `Shift+A`.
+    pub(crate) fn name(self) -> String {
+        let key = match self.key {
+            Key::Escape => "Esc",
+            Key::Questionmark => "?",
+            key => key.name(),
+        };
+        match self.modifiers {
+            SHIFT => format!("Shift+{key}"),
+            COMMAND if cfg!(target_os = "macos") => format!("Cmd+{key}"),
+            COMMAND => format!("Ctrl+{key}"),
+            _ => key.to_owned(),
+        }
+    }
+
+    fn is_meant(self, event: &Event) -> bool {
+        match event {
+            Event::Key { key, modifiers, .. } => {
+                let plain = self.modifiers == NONE && self.key != Key::Questionmark;
+                // A letter with Shift is another key than without.
+                let alone = !plain || !modifiers.shift && !modifiers.command && !modifiers.alt;
+                *key == self.key && alone && modifiers.matches_logically(self.modifiers)
+            }
+            _ => false,
+        }
+    }
+}
+
+impl Wish {
+    /// What it does, in words.
+    pub(crate) const fn words(self) -> Text {
+        match self {
+            Self::Stop => keys::STOP,
+            Self::ArmOrNot => keys::ARM,
+            Self::Open => main::OPEN,
+            Self::Half => main::HALF,
+            Self::Close => main::CLOSE,
+            Self::Joint(dof) => words::dof(dof),
+            Self::LinkFingers => keys::LINK,
+            Self::AngleUnit => keys::UNIT,
+            Self::Tare => panels::TARE_ALL,
+            Self::UndoTare => keys::UNDO_TARE,
+            Self::Note => keys::NOTE,
+            Self::Pause => keys::PAUSE,
+            Self::View(view) => view.title(),
+            Self::Language => keys::LANGUAGE,
+            Self::Theme => keys::THEME,
+            Self::List => keys::LIST,
+        }
+    }
+
+    /// The names of its keys, for tips and the list.
+    pub(crate) fn keys(self) -> String {
+        let own = ROWS.iter().filter(|row| row.wish == self);
+        let names: Vec<String> = own.map(|row| row.name()).collect();
+        names.join(", ")
+    }
+}
+
+/// Takes the keys that act everywhere out of the input before any control sees them; what they ask for, in their order.
+/// Letters and Space belong to a text field that has the keyboard; Esc never does.
+pub(crate) fn take(ui: &Ui) -> Vec<Wish> {
+    let typing = ui.ctx().text_edit_focused();
+    ui.input_mut(|input| take_from(input, typing))
+}
+
+/// While a series of trials runs any key is a stop: all are taken out of the input. A key that was held down before does
+/// not count, and Esc goes on to close what is open.
+pub(crate) fn take_any(ui: &Ui) -> Vec<Wish> {
+    ui.input_mut(take_any_from)
+}
+
+fn take_any_from(input: &mut InputState) -> Vec<Wish> {
+    let mut wishes = Vec::new();
+    input.events.retain(|event| match event {
+        Event::Key {
+            key,
+            pressed: true,
+            repeat: false,
+            ..
+        } => {
+            wishes = vec![Wish::Stop];
+            *key == Key::Escape
+        }
+        Event::Text(_) | Event::Ime(_) | Event::Paste(_) | Event::Cut | Event::Copy => {
+            wishes = vec![Wish::Stop];
+            false
+        }
+        Event::Key { .. } => false,
+        _ => true,
+    });
+    wishes
+}
+
+fn take_from(input: &mut InputState, typing: bool) -> Vec<Wish> {
+    let mut wishes = Vec::new();
+    let mut opens_a_field = false;
+    input.events.retain(|event| {
+        let meant = ROWS
+            .iter()
+            .find(|row| row.is_meant(event) || row.is_stop(event));
+        let Some(row) = meant.filter(|row| !typing || row.key == Key::Escape) else {
+            return true;
+        };
+        if let Event::Key {
+            pressed: true,
+            repeat: false,
+            ..
+        } = event
+        {
+            wishes.push(row.wish);
+            opens_a_field |= row.wish == Wish::Note;
+        }
+        // Esc goes on: it also closes menus and dialogs.
+        row.key == Key::Escape
+    });
+    if opens_a_field {
+        // The same press must not write its letter into the field that it opens.
+        input
+            .events
+            .retain(|event| !matches!(event, Event::Text(_)));
+    }
+    wishes
+}
+
+impl Row {
+    /// A stop is meant whatever else is held down.
+    fn is_stop(self, event: &Event) -> bool {
+        matches!(event, Event::Key { key, .. } if *key == self.key && self.wish == Wish::Stop)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn event(row: Row, repeat: bool) -> Event {
+        Event::Key {
+            key: row.key,
+            physical_key: None,
+            pressed: true,
+            repeat,
+            modifiers: Modifiers {
+                ctrl: row.modifiers.command,
+                ..row.modifiers
+            },
+        }
+    }
+
+    fn taken(events: Vec<Event>, typing: bool) -> (Vec<Wish>, usize) {
+        let mut input = InputState::default();
+        input.events = events;
+        let wishes = take_from(&mut input, typing);
+        (wishes, input.events.len())
+    }
+
+    #[test]
+    fn every_row_does_what_it_says_and_no_row_is_hidden_by_another() {
+        for row in ROWS {
+            let left = usize::from(row.key == Key::Escape);
+            let wanted = (vec![row.wish], left);
+            assert_eq!(taken(vec![event(row, false)], false), wanted, "{row:?}");
+        }
+    }
+
+    #[test]
+    fn a_held_key_asks_once_and_is_not_passed_on() {
+        for row in ROWS.into_iter().filter(|row| row.key != Key::Escape) {
+            assert_eq!(taken(vec![event(row, true)], false), (vec![], 0), "{row:?}");
+        }
+    }
+
+    #[test]
+    fn who_types_is_left_alone_but_for_escape() {
+        for row in ROWS {
+            let wanted = if row.key == Key::Escape {
+                vec![Wish::Stop]
+            } else {
+                vec![]
+            };
+            assert_eq!(taken(vec![event(row, false)], true), (wanted, 1), "{row:?}");
+        }
+    }
+
+    #[test]
+    fn what_may_let_the_hand_move_wants_shift() {
+        for row in ROWS {
+            let moves = matches!(
+                row.wish,
+                Wish::ArmOrNot | Wish::Open | Wish::Half | Wish::Close
+            );
+            assert_eq!(
+                moves,
+                row.modifiers == SHIFT && row.key != Key::T,
+                "{row:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn while_trials_run_any_key_is_a_stop_and_a_held_one_is_not() {
+        let press = |repeat| row(NONE, Key::F7, Wish::List).pressed(repeat);
+        for (events, wishes) in [
+            (vec![press(false)], vec![Wish::Stop]),
+            (vec![press(true)], vec![]),
+            (vec![Event::Text("x".into())], vec![Wish::Stop]),
+            (vec![Event::PointerGone], vec![]),
+        ] {
+            let mut input = InputState::default();
+            input.events.clone_from(&events);
+            assert_eq!(take_any_from(&mut input), wishes, "{events:?}");
+        }
+    }
+
+    impl Row {
+        fn pressed(self, repeat: bool) -> Event {
+            event(self, repeat)
+        }
+    }
+
+    #[test]
+    fn a_stop_is_meant_whatever_is_held_down() {
+        for key in [Key::Space, Key::Escape] {
+            for modifiers in [Modifiers::SHIFT, Modifiers::CTRL, Modifiers::ALT] {
+                let held = row(modifiers, key, Wish::Stop);
+                assert_eq!(taken(vec![event(held, false)], false).0, [Wish::Stop]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_note_does_not_begin_with_its_own_key() {
+        let note = ROWS.into_iter().find(|row| row.wish == Wish::Note);
+        let events = note.map(|row| vec![event(row, false), Event::Text("n".into())]);
+        assert_eq!(
+            taken(events.unwrap_or_default(), false),
+            (vec![Wish::Note], 0)
+        );
+    }
+
+    #[test]
+    fn keys_have_the_names_that_stand_on_them() {
+        assert_eq!(Wish::Stop.keys(), "Space, Esc");
+        assert_eq!(Wish::ArmOrNot.keys(), "Shift+A");
+        assert_eq!(Wish::List.keys(), "F1, ?");
+        assert_eq!(Wish::Joint(Dof::Index).keys(), "4");
+    }
+}

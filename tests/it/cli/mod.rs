@@ -1,0 +1,30 @@
+//! The command line as scripts meet it: the real program in processes of its own, on loopback and pseudo-terminals only.
+
+#[cfg(unix)]
+mod can;
+#[cfg(unix)]
+mod doctor;
+#[cfg(unix)]
+mod doors;
+#[cfg(unix)]
+mod interop;
+#[cfg(unix)]
+mod loss;
+#[cfg(unix)]
+mod params;
+mod pictures;
+#[cfg(unix)]
+mod quirks;
+#[cfg(unix)]
+mod scan;
+#[cfg(unix)]
+mod several;
+#[cfg(unix)]
+mod trial;
+#[cfg(unix)]
+mod tune;
+mod usage;
+#[cfg(unix)]
+mod wire;
+#[cfg(unix)]
+mod wires;

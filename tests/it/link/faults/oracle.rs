@@ -1,0 +1,488 @@
+//! What must hold on every schedule, whatever the faults: checked on the wire's log and on the events.
+
+use crate::link::faults::order::{Story, Wish};
+use crate::link::faults::tap::{Log, Sent};
+use crate::setup::body::{Protocol, STAMPS_END, stamped};
+use crate::setup::client::{Client, LinkEvent, Outcome, Request, Ticket};
+use handscope::hand::register::{Access, Element, by_address};
+use handscope::hand::{
+    AngleReading, Finger, Group, Groups, HandSample, Moment, PerDof, Target, Timed,
+};
+use handscope::link::RequestError;
+use handscope::record::{Disarmed, Hold, LinkState};
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// The stamp is cut to a tenth of a millisecond.
+const STAMP_STEP: Duration = Duration::from_micros(100);
+/// Hold frames are at most this far apart: the repeat, and one exchange that was under way …
+const HOLD_GAP_MAX: Duration = Duration::from_millis(40 + 350);
+/// … which over CAN is a read of eleven pieces through an adapter, and a hold of two.
+const HOLD_GAP_MAX_PIECES: Duration = Duration::from_millis(40 + 500 + 160);
+/// Without faults every group is newer than this, on the slowest wire: forty pieces of a fingertip sweep at 15 ms each.
+const FRESH_WITHIN: Duration = Duration::from_millis(2000);
+/// Without faults the pose is newer than this …
+const POSE_WITHIN: Duration = Duration::from_millis(300);
+/// … and in pieces, between which that sweep lies.
+const POSE_WITHIN_PIECES: Duration = Duration::from_millis(1300);
+
+/// How often the oracles had something to judge.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Seen {
+    pub(crate) wires: BTreeMap<Protocol, u64>,
+    pub(crate) faults: u64,
+    pub(crate) fresh_states: u64,
+    pub(crate) fresh_tips: u64,
+    pub(crate) wishes: u64,
+    pub(crate) setpoint_frames: u64,
+    pub(crate) hold_frames: u64,
+    pub(crate) arm_asks: u64,
+    pub(crate) armed: u64,
+    pub(crate) stops_pressed: u64,
+    pub(crate) stops_seen: u64,
+    pub(crate) confirmed: u64,
+    pub(crate) losses: u64,
+    pub(crate) reconnects: u64,
+    pub(crate) answers: u64,
+    pub(crate) full: u64,
+    pub(crate) disturbed: u64,
+}
+
+impl Seen {
+    pub(crate) fn add(&mut self, more: &Self) {
+        for (wire, schedules) in &more.wires {
+            *self.wires.entry(*wire).or_default() += schedules;
+        }
+        self.faults += more.faults;
+        self.fresh_states += more.fresh_states;
+        self.fresh_tips += more.fresh_tips;
+        self.wishes += more.wishes;
+        self.setpoint_frames += more.setpoint_frames;
+        self.hold_frames += more.hold_frames;
+        self.arm_asks += more.arm_asks;
+        self.armed += more.armed;
+        self.stops_pressed += more.stops_pressed;
+        self.stops_seen += more.stops_seen;
+        self.confirmed += more.confirmed;
+        self.losses += more.losses;
+        self.reconnects += more.reconnects;
+        self.answers += more.answers;
+        self.full += more.full;
+        self.disturbed += more.disturbed;
+    }
+}
+
+/// Watches one schedule.
+pub(crate) struct Witness {
+    seed: u64,
+    protocol: Protocol,
+    log: Log,
+    pub(crate) seen: Seen,
+    states: Vec<(Moment, LinkState)>,
+    poses: Vec<(Moment, PerDof<AngleReading>)>,
+    newest: HandSample,
+    stops: Vec<Moment>,
+    open: BTreeMap<Ticket, (Moment, Request)>,
+    jobs: Vec<(Moment, Moment)>,
+    wishes: Vec<Wish>,
+    quiet: Moment,
+    /// The adapter gives back what is sent.
+    pub(crate) echoes: bool,
+}
+
+impl Witness {
+    pub(crate) fn new(seed: u64, protocol: Protocol, log: Log) -> Self {
+        Self {
+            seed,
+            protocol,
+            log,
+            seen: Seen {
+                wires: BTreeMap::from([(protocol, 1)]),
+                ..Seen::default()
+            },
+            states: vec![(Moment::ZERO, LinkState::Offline)],
+            poses: Vec::new(),
+            newest: HandSample::default(),
+            stops: Vec::new(),
+            open: BTreeMap::new(),
+            jobs: Vec::new(),
+            wishes: Vec::new(),
+            quiet: Moment::ZERO,
+            echoes: false,
+        }
+    }
+
+    /// The faults end.
+    pub(crate) fn quiet(&mut self, now: Moment) {
+        self.quiet = now;
+    }
+
+    pub(crate) fn wished(&mut self, wishes: &PerDof<Option<Target>>, now: Moment) {
+        for (dof, wish) in wishes.iter() {
+            if let Some(Target::Go(angle)) = wish {
+                self.seen.wishes += 1;
+                self.wishes.push(Wish {
+                    at: now,
+                    joint: dof.index(),
+                    angle: angle.get(),
+                    states: self.states.len(),
+                });
+            }
+        }
+    }
+
+    pub(crate) fn stop_pressed(&mut self, link: &Client, now: Moment) {
+        if link.status().state.is_live() {
+            self.stops.push(now);
+            self.seen.stops_pressed += 1;
+        }
+    }
+
+    pub(crate) fn asked(&mut self, ticket: Ticket, request: Request, now: Moment) {
+        self.open.insert(ticket, (now, request));
+    }
+
+    pub(crate) fn event(&mut self, event: &LinkEvent, now: Moment) {
+        match event {
+            LinkEvent::Sample { sample, fresh } => self.sample(sample, *fresh, now),
+            LinkEvent::State { at, state } => {
+                let (_, before) = *self.states.last().unwrap();
+                self.transition(before, *state);
+                self.states.push((*at, *state));
+            }
+            LinkEvent::ArmRefused { .. } => {}
+            LinkEvent::Done { ticket, result } => self.done(*ticket, result, now),
+        }
+    }
+
+    fn transition(&mut self, before: LinkState, after: LinkState) {
+        use LinkState::{Armed, Fault, Holding, Identifying, Monitoring, Offline};
+        let fits = match after {
+            Armed => before == Monitoring,
+            Identifying => before == Offline,
+            Monitoring => before != Offline,
+            Fault => before.is_live(),
+            Holding | Offline => true,
+        };
+        assert!(fits, "seed {}: {before:?} -> {after:?}", self.seed);
+        self.seen.armed += u64::from(after == Armed);
+        self.seen.losses += u64::from(after == Offline);
+    }
+
+    /// No value may be older than the request that it is said to answer.
+    fn sample(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+        if fresh.contains(Group::Current) {
+            let current = sample.current.unwrap();
+            for (_, reading) in current.value.iter() {
+                self.check_stamp(&current, u32::from(reading.raw().cast_unsigned()));
+            }
+            self.seen.fresh_states += 1;
+        }
+        if fresh.contains(Group::Force) {
+            let force = sample.force.unwrap();
+            for (_, reading) in force.value.iter() {
+                self.check_stamp(&force, u32::from(reading.raw().cast_unsigned()));
+            }
+        }
+        for finger in Finger::ALL {
+            if fresh.contains(Group::Tactile(finger)) {
+                let block = sample.tactile[finger].unwrap();
+                for stamp in block.value.raw {
+                    self.check_stamp(&block, stamp);
+                }
+                self.seen.fresh_tips += 1;
+            }
+        }
+        if let Some(angle) = sample.angle
+            && fresh.contains(Group::Angle)
+        {
+            self.poses.push((now, angle.value));
+        }
+        self.newest = *sample;
+    }
+
+    fn check_stamp<T>(&self, value: &Timed<T>, stamp: u32) {
+        let made = stamped(stamp);
+        let fresh = made.plus(STAMP_STEP) >= value.asked && made <= value.received;
+        if !fresh {
+            let sent = self.log.take();
+            let last = sent.get(sent.len().saturating_sub(12)..);
+            println!("last requests: {last:#?}");
+        }
+        assert!(
+            fresh,
+            "seed {}: asked {:?}, received {:?}, but made {made:?}",
+            self.seed, value.asked, value.received
+        );
+    }
+
+    fn done(&mut self, ticket: Ticket, result: &Result<Outcome, RequestError>, now: Moment) {
+        let Some((since, request)) = self.open.remove(&ticket) else {
+            panic!(
+                "seed {}: {ticket:?} answered twice or never asked",
+                self.seed
+            )
+        };
+        self.jobs.push((since, now));
+        if let (Request::Read(asked), Ok(Outcome::Memory { span, bytes })) = (request, result) {
+            assert_eq!(
+                (asked, usize::from(asked.len)),
+                (*span, bytes.len()),
+                "seed {}",
+                self.seed
+            );
+        }
+        self.seen.answers += 1;
+    }
+
+    /// The state that held at a moment, and those that began or ended in it.
+    fn states_at(&self, at: Moment) -> impl Iterator<Item = LinkState> {
+        let ended = self
+            .states
+            .iter()
+            .rposition(|(since, _)| *since < at)
+            .unwrap_or(0);
+        self.states[ended..]
+            .iter()
+            .take_while(move |(since, _)| *since <= at)
+            .map(|(_, state)| *state)
+    }
+
+    pub(crate) fn finish(&mut self, link: &Client, now: Moment) {
+        assert!(now.since(Moment::ZERO) < STAMPS_END);
+        let sent = self.log.take();
+        for frame in &sent {
+            self.check_range(frame);
+            self.check_motion(frame);
+        }
+        self.check_stops(&sent);
+        self.check_recovery(link, now);
+        self.story(&sent, now).check();
+        let stats = link.stats();
+        self.seen.reconnects += stats.reconnects;
+        assert_eq!(stats.dropped_events, 0, "seed {}", self.seed);
+        let status = link.status();
+        assert!(
+            !status.other_controller
+                && status.disarmed != Some(Disarmed::OtherController)
+                && (self.echoes || !status.echoes),
+            "seed {}: nobody else was on the line: {status:?} {stats:?}",
+            self.seed
+        );
+        assert!(
+            self.seen.armed <= self.seen.arm_asks,
+            "seed {}: armed by itself",
+            self.seed
+        );
+        assert!(
+            self.open.is_empty(),
+            "seed {}: never answered: {:?}",
+            self.seed,
+            self.open
+        );
+        self.seen.disturbed +=
+            stats.timeouts + stats.checksum_errors + stats.foreign_replies + stats.refusals;
+    }
+
+    fn story<'a>(&'a self, sent: &'a [Sent], end: Moment) -> Story<'a> {
+        Story {
+            seed: self.seed,
+            protocol: self.protocol,
+            sent,
+            states: &self.states,
+            wishes: &self.wishes,
+            jobs: &self.jobs,
+            quiet: self.quiet,
+            end,
+        }
+    }
+
+    /// No write outside the manual's addresses and ranges.
+    fn check_range(&self, frame: &Sent) {
+        let Some(mut rest) = frame.written.as_deref() else {
+            return;
+        };
+        let mut at = frame.address;
+        while !rest.is_empty() {
+            let row = by_address(at).unwrap_or_else(|| panic!("seed {}: {frame:?}", self.seed));
+            assert_eq!(
+                row.access,
+                Access::ReadWrite,
+                "seed {}: {frame:?}",
+                self.seed
+            );
+            let value = match row.element {
+                Element::Byte => i32::from(rest[0]),
+                _ => i32::from(i16::from_le_bytes([rest[0], rest[1]])),
+            };
+            assert!(row.allows(value), "seed {}: {frame:?}", self.seed);
+            rest = &rest[usize::from(row.element_len())..];
+            at += row.element_len();
+        }
+    }
+
+    /// Motion only while armed; otherwise only a hold, which repeats what the hand said of itself.
+    fn check_motion(&mut self, frame: &Sent) {
+        if !frame.is_motion() {
+            return;
+        }
+        if self
+            .states_at(frame.at)
+            .any(|state| state == LinkState::Armed)
+        {
+            self.seen.setpoint_frames += 1;
+            return;
+        }
+        self.seen.hold_frames += 1;
+        let state: Vec<_> = self.states_at(frame.at).collect();
+        assert!(
+            state.iter().any(|state| state.is_live()),
+            "seed {}: {frame:?} {state:?}",
+            self.seed
+        );
+        let second = self.protocol.in_pieces() && frame.address == 1494;
+        assert!(
+            frame.address == 1486 || second,
+            "seed {}: {frame:?} {state:?}",
+            self.seed
+        );
+        let targets: Vec<i16> = frame
+            .written
+            .as_ref()
+            .unwrap()
+            .chunks(2)
+            .map(|pair| i16::from_le_bytes([pair[0], pair[1]]))
+            .collect();
+        let first = usize::from(frame.address - 1486) / 2;
+        let before = self.poses.partition_point(|(at, _)| *at <= frame.at);
+        let known = self.poses[..before].iter().rev().any(|(_, pose)| {
+            let pose = pose.as_array().map(|angle| angle.raw());
+            pose[first..].starts_with(&targets)
+        });
+        let leaves = targets.iter().all(|target| *target == -1);
+        assert!(
+            known || leaves,
+            "seed {}: {frame:?} is no pose the hand was in",
+            self.seed
+        );
+    }
+
+    /// A stop is the next thing on the wire, unless the link is lost first.
+    fn check_stops(&mut self, sent: &[Sent]) {
+        for pressed in self.stops.clone() {
+            let lost = self
+                .states
+                .iter()
+                .find(|(at, state)| *at >= pressed && *state == LinkState::Offline);
+            let lost = lost.map_or(Moment::from_micros(u64::MAX), |(at, _)| *at);
+            let under_way = sent.iter().rfind(|frame| frame.at <= pressed);
+            let mut after = sent
+                .iter()
+                .filter(|frame| frame.at > pressed && frame.at < lost)
+                .skip_while(|frame| under_way.is_some_and(|write| self.completes(frame, write)));
+            let Some(next) = after.next() else { continue };
+            // Within a stop that is under way, reads that watch for rest may come first.
+            let already = self
+                .states_at(pressed)
+                .any(|state| state == LinkState::Holding);
+            if !already {
+                assert!(
+                    next.is_motion() && next.address == 1486,
+                    "seed {}: stop at {pressed:?}, then {next:?}",
+                    self.seed
+                );
+            }
+            self.seen.stops_seen += 1;
+            self.check_repeats(pressed, lost, sent);
+        }
+    }
+
+    /// True for the second piece of a write that was under way.
+    fn completes(&self, frame: &Sent, write: &Sent) -> bool {
+        self.protocol.in_pieces()
+            && frame.written.is_some()
+            && write.written.is_some()
+            && frame.address == write.address + 8
+    }
+
+    /// Hold goes out again and again until rest is seen.
+    fn check_repeats(&self, pressed: Moment, lost: Moment, sent: &[Sent]) {
+        let end = self
+            .states
+            .iter()
+            .find(|(at, state)| *at > pressed && *state != LinkState::Holding);
+        let end = end.map_or(lost, |(at, _)| (*at).min(lost));
+        let longest = if self.protocol.in_pieces() {
+            HOLD_GAP_MAX_PIECES
+        } else {
+            HOLD_GAP_MAX
+        };
+        let mut last = pressed;
+        for frame in sent
+            .iter()
+            .filter(|frame| frame.at > pressed && frame.at < end && frame.is_motion())
+        {
+            assert!(
+                frame.at.since(last) <= longest,
+                "seed {}: hold paused at {last:?}",
+                self.seed
+            );
+            last = frame.at;
+        }
+    }
+
+    /// Without faults the link is live and fresh again, and every stop has ended in a verdict.
+    fn check_recovery(&mut self, link: &Client, now: Moment) {
+        let status = link.status();
+        assert!(status.state.is_live(), "seed {}: {status:?}", self.seed);
+        assert!(
+            status.state != LinkState::Holding,
+            "seed {}: {status:?} at {now:?}",
+            self.seed
+        );
+        let longest = if self.protocol.in_pieces() {
+            POSE_WITHIN_PIECES
+        } else {
+            POSE_WITHIN
+        };
+        self.check_age("angle", self.newest.angle.as_ref(), now, longest);
+        self.check_freshness(now);
+        self.seen.confirmed += u64::from(matches!(status.hold, Hold::Confirmed { .. }));
+    }
+
+    fn check_freshness(&self, now: Moment) {
+        let HandSample {
+            angle_set,
+            force_set,
+            speed_set,
+            force,
+            current,
+            faults,
+            status,
+            temperature,
+            tactile,
+            ..
+        } = &self.newest;
+        let longest = FRESH_WITHIN;
+        self.check_age("angle_set", angle_set.as_ref(), now, longest);
+        self.check_age("force_set", force_set.as_ref(), now, longest);
+        self.check_age("speed_set", speed_set.as_ref(), now, longest);
+        self.check_age("force", force.as_ref(), now, longest);
+        self.check_age("current", current.as_ref(), now, longest);
+        self.check_age("faults", faults.as_ref(), now, longest);
+        self.check_age("status", status.as_ref(), now, longest);
+        self.check_age("temperature", temperature.as_ref(), now, longest);
+        for (finger, block) in tactile.iter() {
+            self.check_age(&format!("{finger:?}"), block.as_ref(), now, longest);
+        }
+    }
+
+    fn check_age<T>(&self, name: &str, value: Option<&Timed<T>>, now: Moment, longest: Duration) {
+        let age = value.map(|value| value.age(now));
+        assert!(
+            age.is_some_and(|age| age < longest),
+            "seed {}: {name} is {age:?} old",
+            self.seed
+        );
+    }
+}

@@ -1,0 +1,313 @@
+//! One schedule: a wire with seeded faults, a hand, and somebody who arms, drags, asks and stops; then quiet.
+
+use crate::link::faults::dial::FaultyDial;
+use crate::link::faults::oracle::{Seen, Witness};
+use crate::link::faults::tap::{Lie, Log};
+use crate::setup::body::{Adapter, Protocol, Quirks};
+use crate::setup::client::{Client, LinkEvent, Request};
+use crate::setup::hand;
+use crate::setup::link;
+use crate::setup::time::in_virtual_time;
+use handscope::hand::Setpoints;
+use handscope::hand::{Angle, Dof, Fault, Force, Gesture, GestureRoute, HandCommand, Span, Target};
+use handscope::link::handle::REQUESTS_MAX;
+use handscope::link::{Clock, LinkConfig, PollRates, RequestError};
+use handscope::record::LinkState;
+use handscope::sim::{Personality, Scenario, SharedHand, SimConfig};
+use handscope::transport::{FaultOdds, FaultPlan, Pace};
+use std::sync::{Arc, Mutex};
+use tokio::time::{Duration, Instant, sleep_until};
+
+/// Virtual time with faults, and without, for the link to come back.
+const FAULTY: Duration = Duration::from_millis(1500);
+const QUIET: Duration = Duration::from_millis(3500);
+
+/// What is made wrong on purpose, to see that the oracles notice.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Sabotage {
+    /// The device tells what was so long ago.
+    pub(crate) lag: Duration,
+    /// The log of the wire is wrong.
+    pub(crate) lie: Lie,
+    /// The wire never comes back.
+    pub(crate) gone: bool,
+}
+
+/// Runs a whole schedule in virtual time.
+pub(crate) fn run_seed(seed: u64, sabotage: Sabotage) -> Seen {
+    in_virtual_time(async { Schedule::new(seed, sabotage).run().await })
+}
+
+struct Schedule {
+    rng: fastrand::Rng,
+    clock: Clock,
+    hand: SharedHand,
+    dial: Arc<FaultyDial>,
+    link: Client,
+    witness: Witness,
+    sabotage: Sabotage,
+}
+
+fn odds(rng: &mut fastrand::Rng, protocol: Protocol) -> FaultOdds {
+    let mut chance = |most: f64| if rng.bool() { rng.f64() * most } else { 0.0 };
+    let (delay, hang_up) = (chance(0.1), chance(0.004));
+    let (drop, corrupt) = (chance(0.15), chance(0.15));
+    // A cut frame and its double make one frame of wrong bytes, which the 8-bit sum passes once in 256.
+    let (truncate, duplicate) = if rng.bool() {
+        (rng.f64() * 0.1, 0.0)
+    } else {
+        (0.0, rng.f64() * 0.2)
+    };
+    let odds = FaultOdds {
+        drop,
+        delay,
+        corrupt,
+        truncate,
+        duplicate,
+        hang_up,
+    };
+    match protocol {
+        Protocol::Rs485 | Protocol::Rtu => odds,
+        // TCP loses and changes nothing; it delays and breaks.
+        Protocol::Tcp => FaultOdds {
+            delay,
+            hang_up,
+            ..FaultOdds::default()
+        },
+        // CAN's own check finds a changed or cut frame, which is sent again. A read has up to forty frames.
+        Protocol::Can => FaultOdds {
+            drop: drop / 4.0,
+            delay: delay / 4.0,
+            corrupt: 0.0,
+            truncate: 0.0,
+            ..odds
+        },
+        // An adapter's text has no check: a changed digit is another value. The device spoils lines so that it shows.
+        Protocol::Slcan => FaultOdds {
+            drop: drop / 4.0,
+            delay: delay / 4.0,
+            corrupt: 0.0,
+            ..odds
+        },
+    }
+}
+
+fn pace(rng: &mut fastrand::Rng, protocol: Protocol) -> Option<Pace> {
+    let bauds = match protocol {
+        Protocol::Tcp => return None,
+        // A record of 16 bytes takes 160 bits, as a frame of eight does with its head, stuffing and end.
+        Protocol::Can => [None, Some(500_000), Some(1_000_000)],
+        Protocol::Rs485 | Protocol::Rtu | Protocol::Slcan => [None, Some(115_200), Some(921_600)],
+    };
+    bauds[rng.usize(..3)].map(|baud| Pace { baud })
+}
+
+fn endpoint(protocol: Protocol, pace: Option<Pace>) -> String {
+    match (protocol, pace) {
+        (Protocol::Tcp, _) => "tcp:test".into(),
+        (Protocol::Can, _) => "can:test".into(),
+        (Protocol::Slcan, _) => "slcan:test".into(),
+        (Protocol::Rs485, None) => "sim:".into(),
+        (Protocol::Rtu, None) => "rtu:test".into(),
+        (Protocol::Rs485, Some(pace)) => format!("rs485:test?baud={}", pace.baud),
+        (Protocol::Rtu, Some(pace)) => format!("rtu:test?baud={}", pace.baud),
+    }
+}
+
+fn quirks(rng: &mut fastrand::Rng, protocol: Protocol, lag: Duration) -> Quirks {
+    let turnaround = Duration::from_micros(rng.u64(1_000..15_000));
+    let one_in = match protocol {
+        Protocol::Rs485 => 0,
+        _ if rng.bool() => 0,
+        Protocol::Rtu | Protocol::Tcp => rng.u32(4..40),
+        Protocol::Can | Protocol::Slcan => rng.u32(16..400),
+    };
+    let mut odd = || rng.u8(..4) == 0;
+    let adapter = Adapter {
+        echoes: odd(),
+        mute: odd(),
+        stamps: odd(),
+    };
+    Quirks {
+        turnaround,
+        one_in: Arc::new(one_in.into()),
+        adapter,
+        lag,
+        ..Quirks::default()
+    }
+}
+
+impl Schedule {
+    fn new(seed: u64, sabotage: Sabotage) -> Self {
+        let mut rng = fastrand::Rng::with_seed(seed);
+        let clock = Clock::start();
+        let protocol = Protocol::ALL[rng.usize(..Protocol::ALL.len())];
+        if std::env::var_os("HANDSCOPE_SEED").is_some() {
+            println!("seed {seed}: {protocol:?}");
+        }
+        let config = SimConfig {
+            seed,
+            id: 1,
+            scenario: Scenario::Idle,
+            personality: Personality::default(),
+        };
+        let hand = hand::shared(config);
+        let pace = pace(&mut rng, protocol);
+        let plan = FaultPlan {
+            seed,
+            out: odds(&mut rng, protocol),
+            back: odds(&mut rng, protocol),
+            delay_max: Duration::from_millis(rng.u64(1..900)),
+            // The framing's 8-bit sum lets one in 15 double flips pass; what it must catch is a single one.
+            flips_max: 1,
+            pace,
+        };
+        let log = Log::new(clock, sabotage.lie);
+        let dial = Arc::new(FaultyDial {
+            hand: hand.clone(),
+            log: log.clone(),
+            plan,
+            quirks: quirks(&mut rng, protocol, sabotage.lag),
+            protocol,
+            state: Mutex::default(),
+        });
+        let rates = if rng.u8(..8) == 0 {
+            PollRates::FULL
+        } else {
+            PollRates::default()
+        };
+        let link = link::open(LinkConfig {
+            rates,
+            clock,
+            ..link::config(&endpoint(protocol, pace), dial.clone())
+        });
+        let mut witness = Witness::new(seed, protocol, log);
+        witness.echoes = protocol == Protocol::Slcan && dial.quirks.adapter.echoes;
+        Self {
+            rng,
+            clock,
+            hand,
+            dial,
+            link,
+            witness,
+            sabotage,
+        }
+    }
+
+    async fn run(mut self) -> Seen {
+        let end = Instant::now() + FAULTY;
+        while Instant::now() < end {
+            let pause = Duration::from_millis(self.rng.u64(1..120));
+            self.drain_for(pause).await;
+            self.act();
+        }
+        self.dial.quiet();
+        self.witness.quiet(self.clock.now());
+        if self.sabotage.gone {
+            self.dial.cut(true);
+        }
+        self.hand
+            .with(|hand, now| hand.write(1004, &[1], now))
+            .unwrap();
+        self.drain_for(QUIET).await;
+        self.witness.finish(&self.link, self.clock.now());
+        self.witness.seen.faults = self.dial.faults();
+        self.witness.seen
+    }
+
+    /// Takes events for a while, each as it comes.
+    async fn drain_for(&mut self, length: Duration) {
+        let until = Instant::now() + length;
+        loop {
+            let event = tokio::select! {
+                biased;
+                event = self.link.event() => event.expect("the session lives as long as its handle"),
+                () = sleep_until(until) => return,
+            };
+            self.witness.event(&event, self.clock.now());
+            if let LinkEvent::State {
+                state: LinkState::Armed,
+                ..
+            } = event
+            {
+                self.set();
+            }
+        }
+    }
+
+    /// Something that a person or the world does.
+    fn act(&mut self) {
+        match self.rng.u8(..40) {
+            0..=9 => self.arm(),
+            10..=19 => self.set(),
+            20..=25 => self.stop(),
+            26 | 27 => self.link.disarm(),
+            28 | 29 => self.ask(Request::Command(HandCommand::ClearErrors)),
+            30 | 31 => self.ask(Request::Command(HandCommand::Gesture(
+                Gesture::MIN,
+                GestureRoute::Register1008,
+            ))),
+            32 | 33 => {
+                let len = self.rng.u16(1..60);
+                self.ask(Request::Read(Span::new(1000, len)));
+            }
+            34 => self
+                .hand
+                .with(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall)),
+            35 | 36 => self.dial.cut(self.rng.bool()),
+            37 => self.flood(),
+            _ => {
+                self.arm();
+                self.stop();
+            }
+        }
+    }
+
+    fn arm(&mut self) {
+        self.witness.seen.arm_asks += 1;
+        self.link.arm(link::gentle());
+    }
+
+    fn set(&mut self) {
+        let Some(epoch) = self.link.status().armed else {
+            return;
+        };
+        let mut wish = Setpoints::none(epoch);
+        for _ in 0..self.rng.u8(1..4) {
+            let dof = Dof::ALL[self.rng.usize(..6)];
+            wish.angle[dof] = Some(Target::Go(Angle::nearest(self.rng.i16(0..=1000))));
+            wish.force[dof] = self.rng.bool().then_some(Force::RATED);
+        }
+        self.witness.wished(&wish.angle, self.clock.now());
+        self.link.set(&wish);
+    }
+
+    fn stop(&mut self) {
+        self.witness.stop_pressed(&self.link, self.clock.now());
+        self.link.stop();
+    }
+
+    fn ask(&mut self, request: Request) {
+        match self.link.ask(request) {
+            Ok(ticket) => self.witness.asked(ticket, request, self.clock.now()),
+            Err(RequestError::Full { .. }) => self.witness.seen.full += 1,
+            Err(error) => assert_eq!(error, RequestError::NotConnected),
+        }
+    }
+
+    /// More requests at once than may wait.
+    fn flood(&mut self) {
+        if !self.link.status().state.is_live() {
+            return;
+        }
+        let before = self.witness.seen.full;
+        for n in 0..2 * REQUESTS_MAX as u16 {
+            self.ask(Request::Read(Span::new(1000, 1 + n % 8)));
+        }
+        let refused = self.witness.seen.full - before;
+        assert!(
+            refused >= REQUESTS_MAX as u64,
+            "{refused} of too many refused"
+        );
+    }
+}

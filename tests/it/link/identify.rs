@@ -1,0 +1,130 @@
+//! Getting to know a hand: bounded in time on the slowest line, and no match for a stop.
+
+use crate::setup::client::Client;
+use crate::setup::link;
+use handscope::codec::rs485::{Request, RequestDecoder, encode_read_reply, encode_write_ack};
+use handscope::hand::Span;
+use handscope::link::Quirks;
+use handscope::record::LinkState;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream};
+use tokio::time::{Instant, sleep, timeout};
+
+/// All questions but the first.
+const WITHIN: Duration = Duration::from_millis(500);
+
+/// A hand that answers for its id, takes writes, and is silent on everything else.
+#[derive(Clone, Default)]
+struct Shy {
+    asked: Arc<Mutex<Vec<(Instant, Request)>>>,
+}
+
+impl Shy {
+    async fn serve(self, mut wire: DuplexStream) {
+        let mut decoder = RequestDecoder::default();
+        let mut chunk = [0; 512];
+        while let Ok(len @ 1..) = wire.read(&mut chunk).await {
+            decoder.push(&chunk[..len]);
+            while let Some(request) = decoder.next() {
+                let now = Instant::now();
+                let reply = match &request {
+                    Request::Read { id, span } if span.address == 1000 => {
+                        encode_read_reply(*id, 1000, &vec![*id; usize::from(span.len)])
+                    }
+                    Request::Read { .. } => None,
+                    Request::Write { id, address, .. } => Some(encode_write_ack(*id, *address, 1)),
+                };
+                self.asked.lock().unwrap().push((now, request));
+                if let Some(reply) = reply {
+                    wire.write_all(&reply).await.unwrap();
+                }
+            }
+        }
+    }
+
+    fn asked(&self) -> Vec<(Instant, Request)> {
+        self.asked.lock().unwrap().clone()
+    }
+}
+
+fn open(hand: &Shy) -> Client {
+    let hand = hand.clone();
+    let dial = link::behind(move |_, far| drop(tokio::spawn(hand.clone().serve(far))));
+    link::connect("rs485:test?baud=19200", dial)
+}
+
+async fn live(link: &Client) {
+    let look = async {
+        while !link.status().state.is_live() {
+            sleep(Duration::from_micros(200)).await;
+        }
+    };
+    timeout(Duration::from_secs(5), look).await.unwrap();
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_answers_nothing_but_its_id_is_live_within_half_a_second_and_unwritten() {
+    let hand = Shy::default();
+    let link = open(&hand);
+    let begun = Instant::now();
+    live(&link).await;
+    assert!(begun.elapsed() < WITHIN, "{:?}", begun.elapsed());
+    let known = Quirks {
+        hand_id: Some(1),
+        ..Quirks::default()
+    };
+    assert_eq!(
+        link.status().quirks,
+        known,
+        "silence is not taken for an answer"
+    );
+    let asked = hand.asked();
+    assert!(asked.len() > 4, "{asked:?}");
+    let mut spans: Vec<Span> = Vec::new();
+    for (_, request) in asked {
+        let Request::Read { span, .. } = request else {
+            panic!("{request:?} writes");
+        };
+        assert!(
+            !spans.contains(&span),
+            "{span:?} was given up and asked again"
+        );
+        spans.push(span);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_ends_the_questions_and_is_the_next_thing_on_the_wire() {
+    let hand = Shy::default();
+    let link = open(&hand);
+    while hand.asked().len() < 3 {
+        sleep(Duration::from_millis(1)).await;
+    }
+    assert_eq!(link.status().state, LinkState::Identifying);
+    let (before, pressed) = (hand.asked().len(), Instant::now());
+    link.stop();
+    while hand.asked().len() == before {
+        sleep(Duration::from_millis(1)).await;
+    }
+    let (at, next) = hand.asked()[before].clone();
+    assert!(
+        matches!(next, Request::Write { address: 1486, .. }),
+        "{next:?}"
+    );
+    let waited = at.duration_since(pressed);
+    assert!(waited < Duration::from_millis(120), "{waited:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn closing_ends_the_questions() {
+    let hand = Shy::default();
+    let link = open(&hand);
+    while hand.asked().len() < 3 {
+        sleep(Duration::from_millis(1)).await;
+    }
+    let before = hand.asked().len();
+    drop(link);
+    sleep(Duration::from_secs(2)).await;
+    assert_eq!(hand.asked().len(), before);
+}

@@ -1,0 +1,16 @@
+//! The link to a hand over every wire: what it asks, what it takes for true, and how it ends. Virtual time nearly everywhere.
+
+mod back;
+mod can;
+#[cfg(target_os = "linux")]
+mod can_vm;
+mod faults;
+mod identify;
+mod others;
+mod packing;
+mod rates;
+mod scan;
+mod settings;
+mod several_hands;
+mod stop;
+mod tap;

@@ -1,0 +1,326 @@
+//! Who else is on the line: adapters that give back what is sent, and other controllers. On a virtual bus, in virtual time.
+
+use crate::setup::body::Quirks;
+use crate::setup::client::{Client, Outcome, Request};
+use crate::setup::device;
+use crate::setup::hand;
+use crate::setup::link::{self, ask, pass};
+use handscope::codec::can::{read_request, to_record};
+use handscope::hand::Setpoints;
+use handscope::hand::{
+    Angle, Dof, Force, Gesture, GestureRoute, HandCommand, Span, Target, register,
+};
+use handscope::link::{LinkStatus, RequestError};
+use handscope::record::{Disarmed, LinkState};
+use handscope::sim::SharedHand;
+use handscope::sim::serve::{can, rs485};
+use handscope::transport::{Dial, Endpoint, Pipe, pair};
+use std::sync::{Arc, Mutex};
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::sync::mpsc;
+use tokio::time::{Duration, timeout};
+
+const SOON: Duration = Duration::from_secs(3);
+/// A rival that is not heard of any more is forgotten after five seconds.
+const FORGOTTEN: Duration = Duration::from_secs(6);
+
+/// A line with one hand, ourselves, and room for another speaker.
+struct Bus {
+    hand: SharedHand,
+    /// Bytes come in pieces of this length.
+    piece: usize,
+    echo: bool,
+    mute: Arc<Mutex<bool>>,
+    others: Mutex<Option<mpsc::Sender<Vec<u8>>>>,
+}
+
+impl Bus {
+    fn new(piece: usize, echo: bool) -> Arc<Self> {
+        Arc::new(Self {
+            hand: hand::plain(),
+            piece,
+            echo,
+            mute: Arc::default(),
+            others: Mutex::default(),
+        })
+    }
+
+    /// Another speaker says this, on the line that is open now.
+    async fn say(&self, frame: &[u8]) {
+        let line = self.others.lock().unwrap().clone().unwrap();
+        line.send(frame.to_vec()).await.unwrap();
+    }
+
+    fn journal(&self) -> Vec<u16> {
+        self.hand.with(|hand, _| {
+            let all = hand.journal().iter();
+            all.map(|entry| entry.address).collect()
+        })
+    }
+}
+
+/// Everybody hears what everybody says; we hear ourselves only through an adapter that echoes.
+struct Line {
+    ours: Pipe,
+    hand: Pipe,
+    others: mpsc::Receiver<Vec<u8>>,
+    piece: usize,
+    echo: bool,
+    mute: Arc<Mutex<bool>>,
+}
+
+impl Line {
+    async fn run(mut self) {
+        let (mut asked, mut answered) = ([0; 512], [0; 512]);
+        loop {
+            tokio::select! {
+                biased;
+                read = self.hand.read(&mut answered) => {
+                    let Ok(len @ 1..) = read else { return };
+                    self.tell_us(&answered[..len]).await;
+                }
+                read = self.ours.read(&mut asked) => {
+                    let Ok(len @ 1..) = read else { return };
+                    if self.echo {
+                        self.tell_us(&asked[..len]).await;
+                    }
+                    self.tell_hand(&asked[..len]).await;
+                }
+                said = self.others.recv() => {
+                    let Some(said) = said else { return };
+                    self.tell_us(&said).await;
+                    self.tell_hand(&said).await;
+                }
+            }
+        }
+    }
+
+    async fn tell_us(&mut self, bytes: &[u8]) {
+        for piece in bytes.chunks(self.piece) {
+            let _gone = self.ours.write_all(piece).await;
+            // Each piece is read by itself.
+            tokio::task::yield_now().await;
+        }
+    }
+
+    async fn tell_hand(&mut self, bytes: &[u8]) {
+        if !*self.mute.lock().unwrap() {
+            let _gone = self.hand.write_all(bytes).await;
+        }
+    }
+}
+
+impl Dial for Bus {
+    fn dial(&self, endpoint: &Endpoint) -> link::Dialled {
+        let (near, ours) = pair();
+        let (far, at_hand) = pair();
+        let (say, others) = mpsc::channel(64);
+        *self.others.lock().unwrap() = Some(say);
+        let (hand, quirks) = (self.hand.clone(), Quirks::default());
+        match endpoint {
+            Endpoint::Rtu(_) => drop(tokio::spawn(device::modbus_rtu(hand, at_hand, quirks, 1))),
+            Endpoint::Tcp { .. } => {
+                drop(tokio::spawn(device::modbus_tcp(hand, at_hand, quirks, 1)));
+            }
+            Endpoint::Can { .. } => drop(tokio::spawn(can::serve(hand, at_hand))),
+            _ => drop(tokio::spawn(rs485::serve(hand, at_hand))),
+        }
+        let line = Line {
+            ours,
+            hand: far,
+            others,
+            piece: self.piece,
+            echo: self.echo,
+            mute: Arc::clone(&self.mute),
+        };
+        tokio::spawn(line.run());
+        link::opened(near)
+    }
+}
+
+fn open(bus: &Arc<Bus>, endpoint: &str) -> Client {
+    link::connect(endpoint, Arc::clone(bus) as Arc<dyn Dial>)
+}
+
+async fn until(link: &mut Client, wanted: impl Fn(&LinkStatus) -> bool) -> LinkStatus {
+    link::until(link, SOON, wanted).await
+}
+
+async fn arm(link: &mut Client) {
+    until(link, |status| status.state.is_live()).await;
+    pass(link, Duration::from_millis(200)).await;
+    link.arm(link::gentle());
+    until(link, |status| status.armed.is_some()).await;
+}
+
+async fn asked(link: &mut Client, command: HandCommand) -> Result<Outcome, RequestError> {
+    let done = timeout(SOON, ask(link, Request::Command(command))).await;
+    done.unwrap()
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_adapter_that_echoes_is_recognised_and_its_echoes_are_left_out_however_they_are_cut() {
+    for wire in ["rs485:test", "rtu:test"] {
+        for (echo, piece) in [(true, 1), (true, 3), (true, 7), (true, 512), (false, 5)] {
+            let bus = Bus::new(piece, echo);
+            let mut link = open(&bus, wire);
+            arm(&mut link).await;
+            let mut setpoints = Setpoints::none(link.status().armed.unwrap());
+            setpoints.angle[Dof::Index] = Some(Target::Go(Angle::nearest(500)));
+            link.set(&setpoints);
+            // Over RTU this is function 06, whose reply is like its request.
+            let cleared = asked(&mut link, HandCommand::ClearErrors).await;
+            assert_eq!(cleared, Ok(Outcome::Acknowledged), "{wire} {piece}");
+            pass(&mut link, Duration::from_secs(2)).await;
+            let (status, stats) = (link.status(), link.stats());
+            assert_eq!(status.echoes, echo, "{wire} {piece}");
+            assert_eq!(
+                (status.state, status.other_controller),
+                (LinkState::Armed, false)
+            );
+            let bad = [
+                stats.timeouts,
+                stats.checksum_errors,
+                stats.resyncs,
+                stats.foreign_replies,
+                stats.foreign_requests,
+                stats.reconnects,
+            ];
+            assert_eq!(
+                bad, [0; 6],
+                "{wire} echo {echo} in pieces of {piece}: {stats:?}"
+            );
+            let clears = bus.journal().iter().filter(|at| **at == 1004).count();
+            assert_eq!(clears, 1);
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_echo_is_never_taken_for_the_hands_acknowledgement() {
+    for wire in ["rs485:test", "rtu:test"] {
+        let bus = Bus::new(4, true);
+        let mut link = open(&bus, wire);
+        until(&mut link, |status| status.echoes).await;
+        *bus.mute.lock().unwrap() = true;
+        let cleared = asked(&mut link, HandCommand::ClearErrors).await;
+        assert!(
+            matches!(
+                cleared,
+                Err(RequestError::Timeout { .. } | RequestError::LinkLost)
+            ),
+            "{wire}: {cleared:?}"
+        );
+        assert!(!bus.journal().contains(&1004));
+    }
+}
+
+/// What another controller may say on each wire.
+fn request_of_another(wire: &str) -> Vec<u8> {
+    match wire {
+        // Angles of hand 1: manual 2.2.1, sum reckoned by hand.
+        "rs485:test" => vec![0xEB, 0x90, 1, 4, 0x11, 0x0A, 6, 12, 0x32],
+        "rtu:test" => {
+            let mut frame = vec![1, 3, 6, 0x0A, 0, 6];
+            frame.extend(device::crc(&frame));
+            frame
+        }
+        _ => {
+            let span = Span::new(register::FORCE_ACT.address, 8);
+            to_record(&read_request(1, span).unwrap()).to_vec()
+        }
+    }
+}
+
+async fn another_talks(link: &mut Client, bus: &Bus, frame: &[u8], times: u32) {
+    for _ in 0..times {
+        bus.say(frame).await;
+        pass(link, Duration::from_millis(50)).await;
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn another_controller_is_noticed_and_disarms_once_and_arming_again_is_the_persons_word() {
+    for wire in ["rs485:test", "rtu:test", "can:test"] {
+        let bus = Bus::new(512, false);
+        let mut link = open(&bus, wire);
+        let frame = request_of_another(wire);
+        arm(&mut link).await;
+        another_talks(&mut link, &bus, &frame, 10).await;
+        let status = link.status();
+        assert!(status.other_controller, "{wire}: {:?}", link.stats());
+        assert_eq!(
+            (status.armed, status.disarmed),
+            (None, Some(Disarmed::OtherController))
+        );
+        assert!((3..=10).contains(&link.stats().foreign_requests), "{wire}");
+        arm(&mut link).await;
+        another_talks(&mut link, &bus, &frame, 40).await;
+        let status = link.status();
+        assert!(
+            status.other_controller && status.armed.is_some(),
+            "{wire}: {status:?}"
+        );
+        pass(&mut link, FORGOTTEN).await;
+        let status = link.status();
+        assert!(
+            !status.other_controller && status.armed.is_some(),
+            "{wire}: {status:?}"
+        );
+        another_talks(&mut link, &bus, &frame, 10).await;
+        assert_eq!(
+            link.status().disarmed,
+            Some(Disarmed::OtherController),
+            "{wire}: again"
+        );
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn setpoints_that_another_client_changes_are_noticed_over_tcp_too() {
+    for wire in ["tcp:127.0.0.1:6000", "rs485:test"] {
+        let bus = Bus::new(512, false);
+        let mut link = open(&bus, wire);
+        arm(&mut link).await;
+        pass(&mut link, SOON).await;
+        assert!(!link.status().other_controller);
+        bus.hand
+            .with(|hand, now| {
+                hand.write(register::SPEED_SET.address, &[7, 0].repeat(6), now)
+                    .map(drop)
+            })
+            .unwrap();
+        let status = until(&mut link, |status| status.other_controller).await;
+        assert_eq!(
+            (status.armed, status.disarmed),
+            (None, Some(Disarmed::OtherController))
+        );
+        assert_eq!(link.stats().foreign_requests, 1);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_we_do_ourselves_is_no_other_controller() {
+    for wire in ["tcp:127.0.0.1:6000", "rs485:test", "rtu:test", "can:test"] {
+        let bus = Bus::new(512, false);
+        let mut link = open(&bus, wire);
+        arm(&mut link).await;
+        let epoch = link.status().armed.unwrap();
+        for step in 0..200i16 {
+            let mut setpoints = Setpoints::none(epoch);
+            setpoints.angle[Dof::Index] = Some(Target::Go(Angle::nearest(1000 - 4 * step)));
+            setpoints.force[Dof::Index] = Some(Force::nearest(300 + step));
+            link.set(&setpoints);
+            pass(&mut link, Duration::from_millis(60)).await;
+        }
+        let gesture = HandCommand::Gesture(Gesture::nearest(3), GestureRoute::default());
+        asked(&mut link, gesture).await.unwrap();
+        pass(&mut link, FORGOTTEN).await;
+        let status = link.status();
+        assert!(
+            !status.other_controller && status.armed.is_some(),
+            "{wire}: {status:?}"
+        );
+        assert_eq!(link.stats().foreign_requests, 0, "{wire}");
+    }
+}

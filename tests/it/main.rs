@@ -1,0 +1,28 @@
+//! What the program promises, tried from outside, one folder an area. `setup` is the one way to put a program, a link or a
+//! simulated hand up for a test.
+#![cfg(test)]
+#![allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_possible_wrap,
+    reason = "numbers of tests are small, and clippy.toml cannot excuse them"
+)]
+
+mod cli;
+mod fuzz;
+#[cfg(unix)]
+mod journal;
+mod layers;
+mod link;
+mod looks;
+mod manual;
+mod place_changes;
+mod program;
+#[cfg(unix)]
+mod session;
+mod setup;
+mod sim;
+mod trials;
+mod view;
+mod window;

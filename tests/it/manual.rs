@@ -1,0 +1,169 @@
+//! The README and the manual: short, without dead links, and shown by `handscope help`.
+
+use handscope::manual::TOPICS;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const README: &str = include_str!("../../README.md");
+/// A README is read in one sitting; the rest is in the manual.
+const README_MAX_BYTES: usize = 8192;
+/// Columns of the narrowest common terminal, which shows the pages line by line.
+const COLUMNS: usize = 80;
+
+/// Exit status, standard output, standard error.
+fn handscope(args: &[&str]) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_handscope"))
+        .args(args)
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+#[test]
+fn the_readme_is_short_and_its_links_lead_somewhere() {
+    assert!(
+        README.len() <= README_MAX_BYTES,
+        "README.md has {} bytes",
+        README.len()
+    );
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let targets = README
+        .split("](")
+        .skip(1)
+        .map(|rest| rest.split(')').next().unwrap());
+    let mut files = 0;
+    for target in targets.filter(|target| !target.starts_with("http")) {
+        if let Some(section) = target.strip_prefix('#') {
+            let headings = README.lines().filter_map(|line| line.strip_prefix("## "));
+            let mut anchors = headings.map(|title| title.to_lowercase().replace(' ', "-"));
+            assert!(anchors.any(|anchor| anchor == section), "#{section}");
+            continue;
+        }
+        assert!(root.join(target).exists(), "{target}");
+        files += 1;
+    }
+    assert!(files > TOPICS.len(), "only {files} links");
+    for topic in TOPICS {
+        assert!(
+            README.contains(&format!("(assets/manual/{}.md)", topic.name)),
+            "{}",
+            topic.name
+        );
+    }
+}
+
+#[test]
+fn every_page_is_a_topic_and_fits_a_terminal() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/manual");
+    let mut pages: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let mut topics: Vec<String> = TOPICS
+        .iter()
+        .map(|topic| format!("{}.md", topic.name))
+        .collect();
+    pages.sort();
+    topics.sort();
+    assert_eq!(pages, topics);
+    for topic in TOPICS {
+        for line in topic.text.lines() {
+            assert!(
+                line.chars().count() <= COLUMNS,
+                "{}.md: too long: {line}",
+                topic.name
+            );
+        }
+    }
+}
+
+#[test]
+fn help_lists_commands_and_topics_and_shows_every_topic() {
+    let (code, all, _) = handscope(&["help"]);
+    assert_eq!(code, Some(0));
+    assert_eq!(all, handscope(&["--help"]).1);
+    for word in ["snapshot", "watch", "params", "Exit status"] {
+        assert!(all.contains(word), "{word}");
+    }
+    for topic in TOPICS {
+        assert!(
+            all.contains(&format!("  {:9}  {}", topic.name, topic.about)),
+            "{}",
+            topic.name
+        );
+        let (code, page, err) = handscope(&["help", topic.name]);
+        assert_eq!((code, err.as_str()), (Some(0), ""), "{}", topic.name);
+        let title = topic
+            .text
+            .lines()
+            .next()
+            .unwrap()
+            .strip_prefix("# ")
+            .unwrap();
+        assert!(page.starts_with(&format!("{title}\n===")), "{page}");
+        assert_eq!(handscope(&["help", &topic.name.to_uppercase()]).1, page);
+    }
+}
+
+#[test]
+fn help_of_a_command_is_what_the_command_says_itself() {
+    for command in [&["watch"][..], &["params"], &["params", "apply"], &["help"]] {
+        let (code, help, err) = handscope(&[&["help"], command].concat());
+        assert_eq!((code, err.as_str()), (Some(0), ""), "{command:?}");
+        assert_eq!(
+            help,
+            handscope(&[command, &["--help"]].concat()).1,
+            "{command:?}"
+        );
+        assert!(help.contains("Usage: handscope"), "{help}");
+    }
+}
+
+#[test]
+fn the_help_of_snapshot_names_every_view() {
+    let help = handscope(&["snapshot", "--help"]).1;
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    let views = handscope::ui::View::ALL.map(handscope::ui::View::name);
+    assert!(help.contains(&format!("({})", views.join(", "))), "{help}");
+}
+
+#[test]
+fn an_unknown_word_is_wrong_usage_with_one_sentence_and_the_nearest_names() {
+    for (words, said) in [
+        (&["wirring"][..], "nearest are wiring"),
+        (&["whatch"], "nearest are watch"),
+        (&["params", "sav"], "nearest are save"),
+        (
+            &["wiring", "can"],
+            "'wiring' is a topic: 'handscope help wiring'",
+        ),
+    ] {
+        let (code, out, err) = handscope(&[&["help"], words].concat());
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{words:?}");
+        assert_eq!(err.lines().count(), 1, "{err}");
+        assert!(
+            err.starts_with("handscope: ") && err.contains(said),
+            "{err}"
+        );
+    }
+}
+
+#[test]
+fn the_poses_of_the_manual_are_a_file_that_is_taken_whole() {
+    let page = handscope::manual::topic("files").unwrap().text;
+    let section = page.split("## Poses\n").nth(1).unwrap();
+    let example = section
+        .split("```")
+        .nth(1)
+        .unwrap()
+        .strip_prefix("toml")
+        .unwrap();
+    let library = handscope::poses::file::read(example).unwrap();
+    assert_eq!((library.poses.len(), library.sequences.len()), (1, 1));
+}

@@ -1,0 +1,250 @@
+//! What is kept from one start to the next, what is told of a start, and what another window may not do.
+
+use crate::program::Bench;
+use crate::setup::program::{env, start};
+use handscope::app::action::Action;
+use handscope::app::env::Env;
+use handscope::app::files::settings_file::load;
+use handscope::app::notices::NoticeKind;
+use handscope::app::program::App;
+use handscope::app::settings::{Settings, Theme};
+use handscope::app::trials::TrialAction;
+use handscope::hand::{Angle, Dof, Force, Speed};
+use handscope::history::Trace;
+use handscope::link::{Clock, LinkTrouble};
+use handscope::record::LinkState;
+use handscope::transport::TransportError;
+use handscope::trials::plan::TrialPlan;
+use handscope::trials::plan_settings;
+use std::path::{Path, PathBuf};
+use tokio::time::{Duration, sleep};
+
+async fn run(app: &mut App, clock: Clock, millis: u64) {
+    for _ in 0..millis / 10 {
+        sleep(Duration::from_millis(10)).await;
+        app.logic(clock.now());
+    }
+}
+
+async fn close(app: &mut App, clock: Clock) {
+    while !app.close(clock.now()) {
+        run(app, clock, 10).await;
+    }
+}
+
+/// A program in front of the built-in hand, with settings in this file.
+async fn begun(path: Option<PathBuf>, settings: Settings) -> (App, Clock) {
+    let env = Env {
+        settings_path: path,
+        ..env()
+    };
+    let clock = env.clock;
+    let mut app = start(env, settings, None);
+    run(&mut app, clock, 1000).await;
+    (app, clock)
+}
+
+fn told(app: &App) -> Vec<NoticeKind> {
+    let notices = app.state().notices.iter();
+    notices.map(|notice| notice.what.clone()).collect()
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_first_start_shows_the_simulated_hand_live_and_writes_nothing() {
+    use handscope::hand::Quantity;
+    use handscope::history::Series;
+    let (app, _) = begun(None, Settings::default()).await;
+    let (state, hand) = (app.state(), app.state().hand());
+    assert_eq!(hand.link.state, LinkState::Monitoring);
+    assert!(hand.is_simulated());
+    assert_eq!(hand.stats.writes, 0);
+    assert!(hand.stats.state_hz > 50.0, "{:?}", hand.stats);
+    assert_eq!(state.settings.endpoint, None, "a start is not a choice");
+    let mut line = Trace::default();
+    let series = Series::Joint(Quantity::Angle, Dof::Index);
+    hand.history.trace(series, 0.0, 1.0, 800, &mut line);
+    assert_eq!(line.segments.len(), 1);
+    assert!(line.points().count() > 50);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_cannot_be_reached_is_told_in_words() {
+    let settings = Settings {
+        endpoint: Some("warp:9".into()),
+        ..Settings::default()
+    };
+    let env = env();
+    let clock = env.clock;
+    let mut app = start(env, settings, Some("sim:?scenario=party"));
+    run(&mut app, clock, 200).await;
+    let unknown = |what: &NoticeKind| {
+        let io = matches!(
+            what,
+            NoticeKind::NoLink(LinkTrouble::Transport(TransportError::Io { .. }))
+        );
+        io
+    };
+    assert!(told(&app).iter().any(unknown), "{:?}", told(&app));
+    app.open(None, clock.now());
+    run(&mut app, clock, 10).await;
+    let text = "warp:9".into();
+    assert!(told(&app).contains(&NoticeKind::EndpointIgnored { text }));
+}
+
+#[tokio::test(start_paused = true)]
+async fn settings_are_kept_and_setpoints_never() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("settings.toml");
+    let (mut app, clock) = begun(Some(path.clone()), Settings::default()).await;
+    app.act(Action::Arm, clock.now());
+    run(&mut app, clock, 100).await;
+    for action in [
+        Action::Target(Dof::Index, Angle::nearest(777)),
+        Action::Force(Dof::Index, Force::nearest(888)),
+        Action::Speed(Dof::Index, Speed::nearest(111)),
+        Action::Lock(Dof::Ring, true),
+        Action::Theme(Theme::Light),
+    ] {
+        app.act(action, clock.now());
+    }
+    run(&mut app, clock, 100).await;
+    close(&mut app, clock).await;
+    let text = std::fs::read_to_string(&path).unwrap();
+    let table: toml::Table = text.parse().unwrap();
+    let mut keys: Vec<_> = table.keys().map(String::as_str).collect();
+    keys.sort_unstable();
+    assert_eq!(
+        keys,
+        [
+            "angle_unit",
+            "gesture_names",
+            "gesture_route",
+            "gesture_store",
+            "language",
+            "layout",
+            "plot_window",
+            "plots",
+            "side",
+            "theme"
+        ]
+    );
+    let setpoints = ["777", "888", "111"];
+    assert!(
+        !setpoints.iter().any(|value| text.contains(value)),
+        "{text}"
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_plan_of_trials_is_kept_and_moves_nothing_when_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("settings.toml");
+    let (mut app, clock) = begun(Some(path.clone()), Settings::default()).await;
+    let mut plan = TrialPlan::default();
+    plan.grid.repeats = 7;
+    let write = Action::Trial(TrialAction::Plan(Box::new(plan.clone())));
+    app.act(write, clock.now());
+    close(&mut app, clock).await;
+    let settings = load(&path).settings;
+    let (app, _) = begun(None, settings.clone()).await;
+    let state = app.state();
+    assert_eq!(state.trials.plan, plan);
+    assert!(!state.hand().is_armed() && !state.hand().runs_series());
+    assert_eq!(state.hand().stats.writes, 0);
+    let newer: toml::Table = "repeats = \"as often as it takes\"".parse().unwrap();
+    let newer = Settings {
+        trial_plan: Some(newer.into()),
+        ..settings
+    };
+    let app = App::new(env(), newer.clone());
+    let state = app.state();
+    assert_eq!(state.trials.plan, TrialPlan::default());
+    let ignored = |what: &NoticeKind| matches!(what, NoticeKind::PlanIgnored { .. });
+    assert!(told(&app).iter().any(ignored));
+    assert_eq!(
+        state.settings.trial_plan, newer.trial_plan,
+        "it stays until another is written"
+    );
+    assert!(plan_settings::from_settings(state.settings.trial_plan.as_ref()).is_err());
+}
+
+/// Turns a path into a folder, so that no file can be written there.
+fn block(path: &Path) {
+    std::fs::create_dir_all(path.with_extension("new.toml")).unwrap();
+}
+
+#[tokio::test(start_paused = true)]
+async fn settings_are_written_when_they_change_and_a_failure_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("settings.toml");
+    let (mut app, clock) = begun(Some(path.clone()), Settings::default()).await;
+    assert!(!path.exists(), "nothing changed");
+    app.act(Action::Theme(Theme::Light), clock.now());
+    run(&mut app, clock, 2000).await;
+    assert_eq!(load(&path).settings.theme, Theme::Light);
+    block(&path);
+    app.act(Action::Theme(Theme::Dark), clock.now());
+    run(&mut app, clock, 2000).await;
+    let failed = |what: &NoticeKind| matches!(what, NoticeKind::SettingsNotSaved { .. });
+    assert!(told(&app).iter().any(failed), "{:?}", told(&app));
+    assert_eq!(
+        load(&path).settings.theme,
+        Theme::Light,
+        "the old one is whole"
+    );
+    let begun = clock.now();
+    close(&mut app, clock).await;
+    assert!(
+        clock.now().since(begun) < Duration::from_secs(1),
+        "what cannot be written holds nobody up"
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn another_hand_at_the_same_address_is_said_and_a_simulated_one_is_not_kept() {
+    use crate::setup::hand::{numbered, shared};
+    use crate::setup::link::to_hand;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("settings.toml");
+    let book = handscope::link::quirks::book::QuirkBook::path(&path);
+    let (_app, _) = begun(Some(path.clone()), Settings::default()).await;
+    assert!(!book.exists());
+    let differs = |what: &NoticeKind| matches!(what, NoticeKind::HandDiffers { .. });
+    let not_kept = |what: &NoticeKind| matches!(what, NoticeKind::SheetNotKept { .. });
+    for (id, expected) in [(1, false), (1, false), (2, true), (2, false)] {
+        // Over Modbus TCP any id answers.
+        let env = Env {
+            dial: to_hand(shared(numbered(id))),
+            settings_path: Some(path.clone()),
+            ..env()
+        };
+        let clock = env.clock;
+        let mut app = start(env, Settings::default(), Some("tcp:127.0.0.1"));
+        run(&mut app, clock, 3000).await;
+        let sheet = app.state().hand().sheet.clone().unwrap();
+        assert_eq!((sheet.hand_id, sheet.first_seen.len()), (Some(id), 10));
+        let said = told(&app).into_iter().filter(differs).count();
+        assert_eq!(said, usize::from(expected), "once is enough");
+    }
+    std::fs::write(&book, "version = ").unwrap();
+    let env = Env {
+        dial: to_hand(shared(numbered(3))),
+        settings_path: Some(path.clone()),
+        ..env()
+    };
+    let clock = env.clock;
+    let mut app = start(env, Settings::default(), Some("tcp:127.0.0.1"));
+    run(&mut app, clock, 3000).await;
+    assert!(told(&app).iter().any(not_kept), "{:?}", told(&app));
+}
+
+#[tokio::test(start_paused = true)]
+async fn staged_rows_of_one_hand_are_not_those_of_another() {
+    use handscope::params::rows::{ParamId, Value};
+    let mut bench = Bench::live().await;
+    let id = ParamId::DefaultSpeed(Dof::Index);
+    bench.act(Action::Stage(id, Some(Value::Number(50))));
+    bench.act(Action::Connect("rs485:y".parse().unwrap()));
+    bench.run(1000).await;
+    assert!(bench.hand().params.all_staged().is_empty());
+}

@@ -1,0 +1,161 @@
+//! The whole program without its window, in virtual time, in front of a simulated hand on a wire: what a person asks, what
+//! reaches the hand, and what is told.
+
+mod keeping;
+mod lost_replies;
+mod motion;
+mod parameters;
+mod playing;
+mod tuning;
+
+use crate::setup::hand;
+use crate::setup::line::{Dialled, Line, Trouble};
+use crate::setup::link::to_hand;
+use crate::setup::program::{env, start};
+use handscope::app::action::Action;
+use handscope::app::env::Env;
+use handscope::app::hand::HandState;
+use handscope::app::notices::NoticeKind;
+use handscope::app::program::App;
+use handscope::app::settings::Settings;
+use handscope::app::state::State;
+use handscope::hand::{Angle, Dof};
+use handscope::link::Clock;
+use handscope::record::LinkState;
+use handscope::sim::{JournalEntry, Personality, SharedHand, SimConfig};
+use handscope::transport::Dial;
+use std::sync::Arc;
+use tempfile::TempDir;
+use tokio::time::{Duration, Instant, sleep};
+
+/// ANGLE_SET (manual 2.6.11).
+const ANGLE_SET: u16 = 1486;
+
+/// The program in front of a hand.
+struct Bench {
+    app: App,
+    clock: Clock,
+    hand: SharedHand,
+    _folder: TempDir,
+    /// Writes to the hand that are not looked at any more.
+    seen: usize,
+}
+
+impl Bench {
+    /// With a hand that has nothing in its reach, live since a second.
+    async fn live() -> Self {
+        let hand = hand::begin(hand::free(SimConfig::default()));
+        Self::on(to_hand(hand.clone()), hand, "rs485:x").await
+    }
+
+    async fn on(dial: Arc<dyn Dial>, hand: SharedHand, endpoint: &str) -> Self {
+        let folder = TempDir::new().unwrap();
+        let env = Env {
+            dial,
+            settings_path: Some(folder.path().join("settings.toml")),
+            ..env()
+        };
+        let clock = env.clock;
+        let app = start(env, Settings::default(), Some(endpoint));
+        let mut bench = Self {
+            app,
+            clock,
+            hand,
+            _folder: folder,
+            seen: 0,
+        };
+        bench.run(1000).await;
+        assert_eq!(bench.hand().link.state, LinkState::Monitoring);
+        bench
+    }
+
+    /// Over a line on which the next answer can be made to go wrong, once so many angles were written.
+    async fn on_line(endpoint: &str, angles: usize) -> (Self, Arc<Line>) {
+        let mut line = Line::new(Personality::default(), ANGLE_SET, Trouble::None);
+        line.nth = angles;
+        let line = Arc::new(line);
+        let dial = Arc::new(Dialled(Arc::clone(&line)));
+        let bench = Self::on(dial, line.hand.clone(), endpoint).await;
+        (bench, line)
+    }
+
+    async fn armed() -> Self {
+        let mut bench = Self::live().await;
+        bench.arm().await;
+        bench
+    }
+
+    async fn arm(&mut self) {
+        self.act(Action::Arm);
+        self.run(100).await;
+        assert!(self.hand().is_armed());
+        self.forget();
+    }
+
+    async fn run(&mut self, millis: u64) {
+        for _ in 0..millis / 10 {
+            sleep(Duration::from_millis(10)).await;
+            self.app.logic(self.clock.now());
+        }
+    }
+
+    /// Lets time go by until it is so.
+    async fn until(&mut self, what: &str, is_so: impl Fn(&State) -> bool) {
+        let over = Instant::now() + Duration::from_secs(60);
+        while !is_so(self.app.state()) {
+            assert!(Instant::now() < over, "{what}");
+            self.run(10).await;
+        }
+    }
+
+    fn act(&mut self, action: Action) {
+        self.app.act(action, self.clock.now());
+    }
+
+    fn state(&self) -> &State {
+        self.app.state()
+    }
+
+    fn hand(&self) -> &HandState {
+        self.app.state().hand()
+    }
+
+    fn angle(&self, dof: Dof) -> i16 {
+        self.hand().sample.angle.unwrap().value[dof].raw()
+    }
+
+    fn target(&self, dof: Dof) -> Option<i16> {
+        self.hand().joints[dof].target.map(Angle::get)
+    }
+
+    fn told(&self) -> Vec<NoticeKind> {
+        let notices = self.state().notices.iter();
+        notices.map(|notice| notice.what.clone()).collect()
+    }
+
+    /// What was written to the hand since [`Self::forget`].
+    fn written(&self) -> Vec<JournalEntry> {
+        self.hand
+            .with(|hand, _| hand.journal()[self.seen..].to_vec())
+    }
+
+    fn forget(&mut self) {
+        self.seen = self.hand.with(|hand, _| hand.journal().len());
+    }
+
+    /// Addresses of what was written.
+    fn addresses(&self) -> Vec<u16> {
+        self.written().iter().map(|entry| entry.address).collect()
+    }
+}
+
+/// What goes wrong with the next answer on a line.
+fn spoil(line: &Line, trouble: Trouble) {
+    *line.trouble.lock().unwrap() = trouble;
+}
+
+/// The shorts of a write.
+fn shorts(entry: &JournalEntry) -> Vec<i16> {
+    let (pairs, _) = entry.bytes.as_chunks::<2>();
+    pairs.iter().map(|pair| i16::from_le_bytes(*pair)).collect()
+}

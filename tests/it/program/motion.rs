@@ -1,0 +1,400 @@
+//! Moving the hand: nothing before a person arms, exactly what they ask afterwards, and a stop from everywhere.
+
+use crate::program::{ANGLE_SET, Bench, shorts, spoil};
+use crate::setup::hand;
+use crate::setup::line::Trouble;
+use crate::setup::link::{missing, to_hand};
+use crate::setup::program::{env, start};
+use handscope::app::action::Action;
+use handscope::app::env::Env;
+use handscope::app::hand::Preset;
+use handscope::app::hand::gestures::GestureProgress;
+use handscope::app::notices::{Asked, NoticeKind};
+use handscope::app::settings::Settings;
+use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, HandSample, Moment, Speed, Timed};
+use handscope::link::RequestError;
+use handscope::record::{ArmRefusal, Hold, LinkState, Record, WriteFate};
+use handscope::sim::SimConfig;
+use handscope::transport::Endpoint;
+use tokio::time::{Duration, sleep};
+
+const SPEED_SET: u16 = 1522;
+const FORCE_SET: u16 = 1498;
+const GESTURE: u16 = 1008;
+
+#[tokio::test(start_paused = true)]
+async fn nothing_is_told_by_starting_connecting_or_dragging_while_not_armed() {
+    let mut bench = Bench::live().await;
+    for dof in Dof::ALL {
+        bench.act(Action::Target(dof, Angle::MIN));
+        bench.act(Action::Force(dof, Force::RATED));
+        bench.act(Action::Speed(dof, Speed::MAX));
+        bench.act(Action::Lock(dof, true));
+        bench.act(Action::Lock(dof, false));
+    }
+    bench.act(Action::Preset(Preset::Open));
+    bench.act(Action::Gesture(Gesture::MIN));
+    bench.run(500).await;
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+    let at = bench.angle(Dof::Index);
+    assert_eq!(
+        bench.target(Dof::Index),
+        Some(at),
+        "the slider shows where the joint is"
+    );
+    let kept = bench.hand().joints[Dof::Index].force;
+    assert_eq!(kept, Force::RATED, "kept for arming");
+}
+
+#[tokio::test(start_paused = true)]
+async fn arming_sends_the_staged_limits_and_no_angle() {
+    let mut bench = Bench::live().await;
+    bench.act(Action::Speed(Dof::Ring, Speed::MIN));
+    bench.act(Action::Arm);
+    bench.run(300).await;
+    assert!(bench.hand().is_armed());
+    let mut speeds = [Speed::GENTLE.get(); 6];
+    speeds[Dof::Ring as usize] = Speed::MIN.get();
+    let written = bench.written();
+    let sent: Vec<_> = written
+        .iter()
+        .map(|one| (one.address, shorts(one)))
+        .collect();
+    let forces = vec![Force::GENTLE.get(); 6];
+    assert_eq!(sent, [(SPEED_SET, speeds.to_vec()), (FORCE_SET, forces)]);
+    assert_eq!(bench.target(Dof::Ring), Some(bench.angle(Dof::Ring)));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_is_not_there_cannot_be_armed_nor_asked_and_a_stop_says_so() {
+    let env = Env {
+        dial: crate::setup::link::dial(|_| missing("x".into())),
+        ..env()
+    };
+    let clock = env.clock;
+    let mut app = start(env, Settings::default(), Some("rs485:x"));
+    for action in [Action::Arm, Action::Stop, Action::ClearErrors] {
+        app.act(action, clock.now());
+    }
+    let told: Vec<_> = app
+        .state()
+        .notices
+        .iter()
+        .map(|one| one.what.clone())
+        .collect();
+    let (what, error) = (Asked::ClearErrors, RequestError::NotConnected);
+    assert_eq!(
+        told,
+        [
+            NoticeKind::RequestFailed { what, error },
+            NoticeKind::StopNotSent,
+            NoticeKind::ArmRefused(ArmRefusal::Offline),
+        ],
+        "the newest first"
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_armed_joint_goes_where_it_is_told_and_a_locked_one_never() {
+    let mut bench = Bench::armed().await;
+    bench.act(Action::Target(Dof::Index, Angle::nearest(300)));
+    bench.run(100).await;
+    let [only] = &bench.written()[..] else {
+        panic!("{:?}", bench.written());
+    };
+    assert_eq!(only.address, ANGLE_SET);
+    assert_eq!(shorts(only), [-1, -1, -1, 300, -1, -1]);
+    bench.act(Action::Lock(Dof::Ring, true));
+    bench.run(1000).await;
+    bench.forget();
+    bench.act(Action::Target(Dof::Ring, Angle::MIN));
+    bench.act(Action::Force(Dof::Ring, Force::MIN));
+    bench.act(Action::Speed(Dof::Ring, Speed::MAX));
+    bench.run(300).await;
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+    let ring = bench.angle(Dof::Ring);
+    assert_eq!(
+        (bench.target(Dof::Index), bench.target(Dof::Ring)),
+        (Some(300), Some(ring))
+    );
+    bench.act(Action::Preset(Preset::Close));
+    bench.run(300).await;
+    let written = bench.written();
+    let angles: Vec<_> = written
+        .iter()
+        .filter(|one| one.address == ANGLE_SET)
+        .collect();
+    assert!(!angles.is_empty());
+    for one in angles {
+        let raw = shorts(one);
+        assert_eq!(
+            (raw[Dof::Ring as usize], raw[Dof::Little as usize]),
+            (-1, 0)
+        );
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_armed_joint_moves_and_stop_holds_it() {
+    let mut bench = Bench::armed().await;
+    let start = bench.angle(Dof::Index);
+    bench.act(Action::Target(Dof::Index, Angle::MIN));
+    bench.run(700).await;
+    let under_way = bench.angle(Dof::Index);
+    assert!(
+        under_way < start - 50 && under_way > 100,
+        "{start} {under_way}"
+    );
+    bench.act(Action::Stop);
+    assert!(!bench.hand().is_armed());
+    bench.act(Action::Target(Dof::Index, Angle::MAX));
+    bench.run(1500).await;
+    let hand = bench.hand();
+    assert!(
+        matches!(hand.link.hold, Hold::Confirmed { .. }),
+        "{:?}",
+        hand.link
+    );
+    let is_told = |what: &NoticeKind| matches!(what, NoticeKind::HoldConfirmed { .. });
+    assert!(bench.told().iter().any(is_told));
+    let rest = bench.angle(Dof::Index);
+    assert!(rest < start, "nothing passes after stop");
+    bench.run(500).await;
+    assert!((bench.angle(Dof::Index) - rest).abs() <= 3);
+    assert_eq!(bench.target(Dof::Index), Some(bench.angle(Dof::Index)));
+}
+
+#[tokio::test(start_paused = true)]
+async fn stop_works_in_every_live_state_and_again() {
+    let mut bench = Bench::live().await;
+    for _ in 0..3 {
+        bench.forget();
+        bench.act(Action::Stop);
+        bench.run(30).await;
+        assert_eq!(bench.hand().link.state, LinkState::Holding);
+        bench.act(Action::Stop);
+        bench.run(1000).await;
+        assert!(bench.addresses().contains(&ANGLE_SET), "the pose is held");
+    }
+    assert!(!bench.told().contains(&NoticeKind::StopNotSent));
+}
+
+#[tokio::test(start_paused = true)]
+async fn another_hand_inherits_nothing() {
+    let mut bench = Bench::armed().await;
+    bench.act(Action::Target(Dof::Index, Angle::nearest(900)));
+    bench.run(20).await;
+    bench.act(Action::Connect("rs485:y".parse().unwrap()));
+    let other: Endpoint = "rs485:y".parse().unwrap();
+    while bench.hand().endpoint.as_ref() != Some(&other) {
+        bench.run(10).await;
+    }
+    assert_eq!(bench.hand().sample, HandSample::default());
+    assert_eq!(bench.target(Dof::Index), None);
+    assert!(!bench.hand().is_armed());
+    bench.run(1000).await;
+    bench.forget();
+    bench.run(1000).await;
+    assert!(!bench.hand().is_armed());
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn leaving_an_armed_hand_holds_it_first() {
+    let mut bench = Bench::armed().await;
+    bench.act(Action::Target(Dof::Index, Angle::MIN));
+    bench.run(300).await;
+    bench.act(Action::Disconnect);
+    assert!(bench.hand().endpoint.is_some());
+    bench.run(700).await;
+    assert_eq!(bench.hand().endpoint, None);
+    bench.act(Action::Connect("rs485:x".parse().unwrap()));
+    bench.run(500).await;
+    assert_eq!(bench.hand().link.state, LinkState::Monitoring);
+    let rest = bench.angle(Dof::Index);
+    assert!(rest > 300, "the same hand, where it was held: {rest}");
+    bench.run(500).await;
+    assert!((bench.angle(Dof::Index) - rest).abs() <= 3);
+}
+
+#[tokio::test(start_paused = true)]
+async fn closing_holds_an_armed_hand_first_and_ends_in_time() {
+    let mut bench = Bench::armed().await;
+    bench.act(Action::Speed(Dof::Index, Speed::MAX));
+    bench.act(Action::Target(Dof::Index, Angle::MIN));
+    bench.run(150).await;
+    let asked = bench.clock.now();
+    assert!(!bench.app.close(asked), "the hand is under way");
+    while !bench.app.close(bench.clock.now()) {
+        bench.run(10).await;
+    }
+    assert!(bench.clock.now().since(asked) <= Duration::from_millis(620));
+    assert_ne!(bench.hand().link.hold, Hold::None);
+    let mut idle = Bench::live().await;
+    let now = idle.clock.now();
+    while !idle.app.close(idle.clock.now()) {
+        // Settings may have to be written.
+        tokio::task::yield_now().await;
+    }
+    assert!(
+        idle.clock.now().since(now) < Duration::from_millis(100),
+        "a hand that was only watched is left at once"
+    );
+    idle.run(100).await;
+    assert_eq!(idle.addresses(), [0_u16; 0]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn gestures_need_arming_a_route_and_free_joints() {
+    let mut bench = Bench::armed().await;
+    bench.act(Action::GestureRoute(GestureRoute::Off));
+    bench.act(Action::Gesture(Gesture::MIN));
+    bench.act(Action::GestureRoute(GestureRoute::Register1008));
+    bench.act(Action::Lock(Dof::Ring, true));
+    bench.act(Action::Gesture(Gesture::MIN));
+    bench.run(300).await;
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+    let dof = Dof::Ring;
+    for told in [
+        NoticeKind::GesturesOff,
+        NoticeKind::GestureWouldMoveLocked { dof },
+    ] {
+        assert!(bench.told().contains(&told), "{told:?}");
+    }
+    bench.act(Action::Lock(Dof::Ring, false));
+    bench.run(100).await;
+    bench.forget();
+    bench.act(Action::Gesture(Gesture::MIN));
+    bench.run(300).await;
+    assert_eq!(bench.addresses(), [GESTURE]);
+    let last = bench.hand().gestures.last.unwrap();
+    assert_eq!(last.progress, GestureProgress::Acknowledged);
+    let what = Asked::Gesture(Gesture::MIN);
+    assert!(bench.told().contains(&NoticeKind::Acknowledged { what }));
+    let at = bench.angle(Dof::Index);
+    assert_eq!(bench.target(Dof::Index), Some(at), "the sliders go along");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_flood_of_records_is_taken_a_frame_at_a_time_and_nothing_is_lost() {
+    let mut bench = Bench::live().await;
+    let before = bench.hand().sample.angle.unwrap().asked;
+    sleep(Duration::from_secs(3)).await;
+    let now = bench.clock.now();
+    let age = |angle: Option<Timed<_>>| -> Duration { now.since(angle.unwrap().asked) };
+    bench.app.logic(now);
+    let first = age(bench.hand().sample.angle);
+    assert!(
+        first > Duration::from_millis(100),
+        "the rest waits: {first:?}"
+    );
+    for _ in 0..20 {
+        bench.app.logic(now);
+    }
+    let last = age(bench.hand().sample.angle);
+    assert!(last < Duration::from_millis(50), "{last:?}");
+    assert!(bench.hand().sample.angle.unwrap().asked > before);
+    assert_eq!(bench.hand().stats.dropped_events, 0);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_request_that_the_lost_link_took_along_is_told() {
+    let (mut bench, line) = Bench::on_line("rs485:x", 1).await;
+    // The pose is held before anything is cleared; with that the line goes.
+    spoil(&line, Trouble::Gone(Duration::from_secs(2)));
+    bench.act(Action::ClearErrors);
+    bench.run(1000).await;
+    assert!(!bench.hand().link.state.is_live());
+    let told = bench.told();
+    let failed = told.iter().find_map(|what| match what {
+        NoticeKind::RequestFailed { what, error } => Some((*what, error.clone())),
+        _ => None,
+    });
+    assert_eq!(failed, Some((Asked::ClearErrors, RequestError::LinkLost)));
+    bench.run(5000).await;
+    bench.forget();
+    bench.run(1000).await;
+    assert_eq!(bench.hand().link.state, LinkState::Monitoring);
+    assert_eq!(
+        bench.addresses(),
+        [0_u16; 0],
+        "it is not sent once the hand is back"
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_while_the_link_is_gone_says_so_and_nothing_goes_out_later() {
+    let (mut bench, line) = Bench::on_line("rs485:x", 0).await;
+    bench.arm().await;
+    bench.act(Action::Target(Dof::Index, Angle::MIN));
+    bench.run(100).await;
+    spoil(&line, Trouble::Gone(Duration::from_secs(2)));
+    bench.run(500).await;
+    assert!(!bench.hand().link.state.is_live());
+    assert_eq!(bench.target(Dof::Index), None);
+    bench.forget();
+    bench.act(Action::Stop);
+    assert!(bench.told().contains(&NoticeKind::StopNotSent));
+    bench.run(5000).await;
+    assert_eq!(bench.hand().link.state, LinkState::Monitoring);
+    assert!(!bench.hand().is_armed());
+    assert!(bench.told().contains(&NoticeKind::Reconnected));
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn records_come_in_the_order_in_which_it_happened() {
+    let hand = hand::begin(hand::free(SimConfig::default()));
+    let config = crate::setup::link::config("rs485:x", to_hand(hand));
+    let (link, mut records) = handscope::link::open(config, &tokio::runtime::Handle::current());
+    sleep(Duration::from_secs(1)).await;
+    link.arm(crate::setup::link::gentle());
+    sleep(Duration::from_millis(200)).await;
+    link.stop();
+    sleep(Duration::from_secs(1)).await;
+    let all: Vec<Record> = std::iter::from_fn(|| records.try_next()).collect();
+    let states = all.iter().filter_map(|record| match record {
+        Record::State { state, .. } => Some(*state),
+        _ => None,
+    });
+    assert_eq!(
+        states.collect::<Vec<_>>(),
+        [
+            LinkState::Identifying,
+            LinkState::Monitoring,
+            LinkState::Armed,
+            // A stop disarms first, in the same step.
+            LinkState::Monitoring,
+            LinkState::Holding,
+            LinkState::Monitoring,
+        ]
+    );
+    let at = |record: &Record| -> Moment {
+        match record {
+            Record::Reading { sample, .. } => sample.angle.map_or(Moment::ZERO, |all| all.received),
+            Record::State { at, .. }
+            | Record::Sent { at, .. }
+            | Record::Answered { at, .. }
+            | Record::ArmRefused { at, .. } => *at,
+        }
+    };
+    let is_write = |record: &&Record| !matches!(record, Record::Reading { .. });
+    let moments: Vec<_> = all.iter().filter(is_write).map(at).collect();
+    assert!(moments.is_sorted(), "{moments:?}");
+    let (mut open, mut last) = (None, 0);
+    for record in &all {
+        match record {
+            Record::Sent { number, .. } => {
+                assert_eq!((open.replace(*number), *number), (None, last + 1));
+                last = *number;
+            }
+            Record::Answered { number, fate, .. } => {
+                assert_eq!(open.take(), Some(*number), "each right after its write");
+                assert_eq!(*fate, WriteFate::Acknowledged);
+            }
+            _ => {}
+        }
+    }
+    assert!(last >= 3 && open.is_none(), "limits and a stop");
+    assert_eq!(records.lost(), 0);
+}

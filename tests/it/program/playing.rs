@@ -1,0 +1,184 @@
+//! Poses and sequences: what they send, and what ends them.
+
+use crate::program::{ANGLE_SET, Bench, shorts, spoil};
+use crate::setup::line::Trouble;
+use handscope::app::action::Action;
+use handscope::app::hand::gestures::StoreVerdict;
+use handscope::app::hand::{Play, Preset};
+use handscope::app::notices::NoticeKind;
+use handscope::hand::{Angle, Dof, Fault, Force, GestureStore, PerDof, Speed, UserGesture};
+use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
+use handscope::poses::library::{Millis, PoseId, SequenceId};
+use handscope::poses::player::{End, Phase};
+use tokio::time::Duration;
+
+/// Two poses, each captured and then edited, and a sequence of both.
+fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
+    let mut ids = Vec::new();
+    for (name, angle) in [("A", 700), ("B", 300)] {
+        bench.act(Action::Capture(name.into()));
+        let id = bench.state().poses.newest.unwrap();
+        for dof in Dof::ALL {
+            let edit = PoseEdit::Angle(dof, Angle::nearest(angle));
+            bench.act(Action::Library(LibraryEdit::Pose(id, edit)));
+        }
+        ids.push(id);
+    }
+    bench.act(Action::Library(LibraryEdit::NewSequence("S".into())));
+    let own = bench.state().poses.newest_sequence.unwrap();
+    for (at, pose) in ids.iter().enumerate() {
+        let dwell = Millis::nearest(50);
+        for edit in [SequenceEdit::Add(*pose), SequenceEdit::Dwell(at, dwell)] {
+            bench.act(Action::Library(LibraryEdit::Sequence(own, edit)));
+        }
+    }
+    (ids[0], own)
+}
+
+fn phase(bench: &Bench) -> Option<Phase> {
+    let run = bench.hand().sequence.as_ref();
+    run.map(|run| run.view.phase)
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_captured_pose_is_the_one_the_hand_has_and_an_old_one_is_refused() {
+    let (mut bench, line) = Bench::on_line("rs485:x", 0).await;
+    bench.act(Action::Capture("Pose".into()));
+    bench.act(Action::Capture("Pose".into()));
+    let poses = &bench.state().poses.library.poses;
+    let names: Vec<_> = poses.iter().map(|pose| pose.name.as_str()).collect();
+    assert_eq!(names, ["Pose", "Pose 2"]);
+    let at = PerDof::from_fn(|dof| Angle::nearest(bench.angle(dof)));
+    assert_eq!(poses[0].angles, at);
+    spoil(&line, Trouble::Gone(Duration::from_secs(60)));
+    bench.run(1000).await;
+    bench.act(Action::Capture("Pose".into()));
+    assert_eq!(bench.state().poses.library.poses.len(), 2);
+    assert!(bench.told().contains(&NoticeKind::PoseUnknown));
+    assert_eq!(bench.addresses(), [0_u16; 0], "capturing sends nothing");
+}
+
+#[tokio::test(start_paused = true)]
+async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arms() {
+    let mut bench = Bench::live().await;
+    let (a, own) = library(&mut bench);
+    for play in [Play::Start(own), Play::Step(own), Play::Resume, Play::End] {
+        bench.act(Action::Play(play));
+    }
+    bench.act(Action::Recall(a));
+    bench.act(Action::TryAngles(PerDof::splat(Angle::MAX)));
+    bench.run(300).await;
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+    assert!(!bench.hand().is_armed() && bench.hand().sequence.is_none());
+    bench.arm().await;
+    bench.act(Action::Lock(Dof::Ring, true));
+    for edit in [
+        PoseEdit::Leave(Dof::Little, true),
+        PoseEdit::Speed(Speed::nearest(350)),
+        PoseEdit::Force(Force::nearest(900)),
+    ] {
+        bench.act(Action::Library(LibraryEdit::Pose(a, edit)));
+    }
+    bench.run(100).await;
+    bench.forget();
+    bench.act(Action::Recall(a));
+    bench.run(300).await;
+    let written = bench.written();
+    let mut sent: Vec<_> = written
+        .iter()
+        .map(|one| (one.address, shorts(one)))
+        .collect();
+    sent.dedup();
+    // SPEED_SET and FORCE_SET from the middle finger on, then the angles.
+    assert_eq!(
+        sent,
+        [
+            (1526, vec![350; 4]),
+            (1502, vec![900; 4]),
+            (ANGLE_SET, vec![-1, -1, 700, 700, 700, 700]),
+        ]
+    );
+    assert_eq!(bench.target(Dof::Index), Some(700));
+    assert_eq!(bench.target(Dof::Ring), Some(bench.angle(Dof::Ring)));
+}
+
+#[tokio::test(start_paused = true)]
+async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
+    type Break = fn(&mut Bench);
+    let ways: [(Break, End); 6] = [
+        (|bench| bench.act(Action::Stop), End::Disarmed),
+        (|bench| bench.act(Action::Disarm), End::Disarmed),
+        (
+            |bench| {
+                bench
+                    .hand
+                    .with(|hand, _| hand.inject_fault(Dof::Index, Fault::OverTemperature))
+            },
+            End::Fault,
+        ),
+        (|bench| bench.act(Action::Play(Play::End)), End::Person),
+        (
+            |bench| bench.act(Action::Target(Dof::Index, Angle::MAX)),
+            End::TakenOver,
+        ),
+        (
+            |bench| bench.act(Action::Preset(Preset::Open)),
+            End::TakenOver,
+        ),
+    ];
+    for (break_off, want) in ways {
+        let mut bench = Bench::armed().await;
+        let (_, own) = library(&mut bench);
+        bench.act(Action::Play(Play::Start(own)));
+        bench.run(200).await;
+        assert!(bench.hand().runs_sequence());
+        break_off(&mut bench);
+        bench.run(3000).await;
+        let Some(Phase::Ended(end)) = phase(&bench) else {
+            panic!("{want:?}: {:?}", phase(&bench));
+        };
+        let by_fault = want == End::Fault && end == End::Disarmed;
+        assert!(end == want || by_fault, "{end:?} for {want:?}");
+        // Even an arming later does not bring it back.
+        bench.act(Action::Arm);
+        bench.run(300).await;
+        bench.forget();
+        bench.act(Action::Play(Play::Resume));
+        bench.run(5000).await;
+        assert_eq!(bench.addresses(), [0_u16; 0], "{want:?}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_dry_run_sends_nothing_even_while_armed() {
+    let mut bench = Bench::armed().await;
+    let (_, own) = library(&mut bench);
+    bench.act(Action::Play(Play::Dry(own)));
+    assert!(bench.state().poses.preview.is_some());
+    bench.run(5000).await;
+    bench.act(Action::Play(Play::EndDry));
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_gesture_is_stored_and_judged_and_not_even_read_while_that_is_off() {
+    let gesture = UserGesture::nearest(14);
+    let angles = PerDof::splat(Angle::nearest(300));
+    let mut bench = Bench::live().await;
+    bench.act(Action::GestureStore(GestureStore::Off));
+    bench.act(Action::StoreGesture(gesture, angles));
+    bench.act(Action::ReadGesture(gesture));
+    bench.run(300).await;
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+    assert!(bench.hand().gestures.upload.is_none());
+    let notices = bench.state().notices.iter();
+    let off: Vec<_> = notices.map(|one| (one.what.clone(), one.count)).collect();
+    assert_eq!(off, [(NoticeKind::GestureStoreOff, 2)]);
+    bench.act(Action::GestureStore(GestureStore::Register1066));
+    bench.act(Action::StoreGesture(gesture, angles));
+    let verdict = |bench: &Bench| bench.hand().gestures.upload.unwrap().verdict;
+    assert_eq!(verdict(&bench), StoreVerdict::Writing);
+    bench.run(300).await;
+    assert_eq!(bench.addresses(), [1066]);
+    assert_eq!(verdict(&bench), StoreVerdict::Same);
+}

@@ -1,0 +1,161 @@
+//! Series of trials in the window: what they need, and what ends them.
+
+use crate::program::{Bench, spoil};
+use crate::setup::line::Trouble;
+use handscope::app::action::Action;
+use handscope::app::hand::Preset;
+use handscope::app::notices::NoticeKind;
+use handscope::app::trials::{StartRefusal, TrialAction};
+use handscope::hand::{Angle, Dof, PerDof, Speed};
+use handscope::trials::Abort;
+use handscope::trials::plan::TrialPlan;
+use handscope::trials::summary::EarlyEnd;
+use tokio::time::Duration;
+
+fn start(bench: &mut Bench) {
+    bench.act(Action::Trial(TrialAction::Start));
+}
+
+/// A series that runs.
+async fn running() -> Bench {
+    let mut bench = Bench::armed().await;
+    start(&mut bench);
+    bench.run(300).await;
+    assert!(bench.hand().runs_series());
+    bench
+}
+
+fn refusal(bench: &Bench) -> Option<StartRefusal> {
+    bench.hand().start_refusal(&bench.state().trials.plan)
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_series_needs_an_arming_and_free_joints() {
+    let mut bench = Bench::live().await;
+    start(&mut bench);
+    assert_eq!(refusal(&bench), Some(StartRefusal::NotArmed));
+    assert!(bench.state().trials.sessions.is_empty());
+    bench.run(300).await;
+    assert_eq!(
+        bench.addresses(),
+        [0_u16; 0],
+        "writing a plan and asking sends nothing"
+    );
+    bench.arm().await;
+    bench.act(Action::Lock(Dof::Index, true));
+    bench.run(100).await;
+    bench.forget();
+    start(&mut bench);
+    assert_eq!(refusal(&bench), Some(StartRefusal::Locked(Dof::Index)));
+    bench.run(300).await;
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_plan_that_makes_no_sense_sends_nothing() {
+    let mut bench = Bench::armed().await;
+    let mut senseless = TrialPlan::default();
+    senseless.grid.speeds = vec![Speed::MIN];
+    bench.act(Action::Trial(TrialAction::Plan(Box::new(senseless))));
+    start(&mut bench);
+    bench.run(300).await;
+    assert!(!bench.hand().runs_series());
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn nothing_else_moves_the_hand_while_a_series_runs() {
+    let mut bench = running().await;
+    bench.run(500).await;
+    let others = |bench: &Bench| -> Vec<i16> {
+        let dofs = Dof::ALL.into_iter().filter(|dof| *dof != Dof::Index);
+        dofs.map(|dof| bench.angle(dof)).collect()
+    };
+    let before = others(&bench);
+    for action in [
+        Action::Target(Dof::Ring, Angle::MIN),
+        Action::Preset(Preset::Close),
+        Action::TryAngles(PerDof::splat(Angle::MIN)),
+        Action::Speed(Dof::Index, Speed::MAX),
+    ] {
+        bench.act(action);
+    }
+    bench.run(1000).await;
+    assert!(bench.hand().runs_series());
+    assert!(bench.told().contains(&NoticeKind::SeriesRuns));
+    for (now, before) in others(&bench).iter().zip(before) {
+        assert!((now - before).abs() <= 3);
+    }
+    assert_ne!(bench.hand().joints[Dof::Index].speed, Speed::MAX);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_a_disarming_a_lost_link_and_another_hand_end_a_series() {
+    type Break = fn(&mut Bench);
+    let ways: [(Break, Abort); 3] = [
+        (|bench| bench.act(Action::Stop), Abort::Person),
+        (|bench| bench.act(Action::Disarm), Abort::Disarmed),
+        (|bench| bench.act(Action::Disconnect), Abort::LinkLost),
+    ];
+    for (break_off, why) in ways {
+        let mut bench = running().await;
+        break_off(&mut bench);
+        bench.run(3000).await;
+        check_ended(&bench, why);
+        bench.forget();
+        bench.run(3000).await;
+        assert_eq!(bench.addresses(), [0_u16; 0], "{why:?}");
+    }
+    let (mut bench, line) = Bench::on_line("rs485:x", 0).await;
+    bench.arm().await;
+    start(&mut bench);
+    bench.run(300).await;
+    spoil(&line, Trouble::Gone(Duration::from_secs(5)));
+    bench.run(3000).await;
+    check_ended(&bench, Abort::LinkLost);
+}
+
+fn check_ended(bench: &Bench, why: Abort) {
+    let trials = &bench.state().trials;
+    assert!(!bench.hand().runs_series() && !bench.hand().is_armed());
+    let [session] = &trials.sessions[..] else {
+        panic!("{why:?}");
+    };
+    // A hand that is left is stopped by a person first.
+    let by_stop =
+        why == Abort::LinkLost && session.head.aborted == Some(EarlyEnd::Here(Abort::Person));
+    assert!(
+        session.head.aborted == Some(EarlyEnd::Here(why)) || by_stop,
+        "{why:?}: {:?}",
+        session.head.aborted
+    );
+    assert_eq!(trials.running, None);
+}
+
+#[tokio::test(start_paused = true)]
+async fn note_and_tags_stay_with_their_session() {
+    let mut bench = running().await;
+    let id = bench.state().trials.running.unwrap();
+    let session = |bench: &Bench| bench.state().trials.session(id).cloned();
+    bench.act(Action::Trial(TrialAction::Note(id, "an egg".into())));
+    bench.act(Action::Trial(TrialAction::Tags(id, " egg, raw ,".into())));
+    let head = session(&bench).unwrap().head;
+    assert_eq!(head.note, "an egg");
+    assert_eq!(head.tags, ["egg", "raw"]);
+    bench.act(Action::Trial(TrialAction::Forget(id)));
+    assert_eq!(bench.state().trials.to_confirm, None);
+    assert!(session(&bench).is_some(), "what runs is not forgotten");
+    bench.act(Action::Stop);
+    bench.run(2000).await;
+    for (answer, is_left) in [
+        (TrialAction::CancelForget, true),
+        (TrialAction::ConfirmForget, false),
+    ] {
+        bench.act(Action::Trial(TrialAction::Forget(id)));
+        assert_eq!(bench.state().trials.to_confirm, Some(id));
+        bench.act(Action::Trial(answer));
+        assert_eq!(session(&bench).is_some(), is_left);
+        assert_eq!(bench.state().trials.to_confirm, None);
+    }
+    assert_eq!(bench.state().trials.plan, TrialPlan::default());
+}

@@ -1,0 +1,207 @@
+//! The real window with a real mouse, on a display in memory and in front of a hand in another process: what is pressed
+//! reaches the hand, and each step looks as the headless pictures say. Where Xvfb or xdotool is missing this is skipped.
+
+use crate::session::alone;
+use crate::session::display::Display;
+use crate::session::program::{Hand, REST, Window};
+use crate::session::twin::Twin;
+use handscope::app::action::Action;
+use handscope::app::settings::Language;
+use handscope::hand::{Angle, Dof};
+use handscope::ui::View;
+use std::time::{Duration, Instant};
+
+/// Share of pixels that may differ: lines in plots run on, live numbers flicker, a list of frames scrolls. Which
+/// view it is, the nearest of all pictures tells.
+const TOLERANCE: f64 = 0.03;
+/// A picture that is not there by then does not come, on a machine with other work.
+const WITHIN: Duration = Duration::from_secs(30);
+
+const ATTEMPTS: usize = 4;
+
+struct Session {
+    display: Display,
+    hand: Hand,
+    window: Window,
+    twin: Twin,
+    _other: Hand,
+}
+
+impl Session {
+    fn start(display: Display, more: &[&str]) -> Self {
+        let hand = Hand::start();
+        let window = Window::start(display.name(), &hand, more);
+        Self::with(display, hand, window)
+    }
+
+    fn with(display: Display, hand: Hand, window: Window) -> Self {
+        let other = Hand::start();
+        let twin = Twin::start(&other.endpoint);
+        Self {
+            display,
+            hand,
+            window,
+            twin,
+            _other: other,
+        }
+    }
+
+    /// Waits until the display shows this view and language more than any other, and nothing else than it should.
+    fn looks(&mut self, step: &str, view: View, language: Language) {
+        let begun = Instant::now();
+        loop {
+            self.twin.pass(Duration::from_millis(200));
+            let (nearest, words, differs) = self.twin.nearest(&self.display.pixels());
+            if (nearest, words) == (view, language) && differs <= TOLERANCE {
+                println!("{step}: {:.2} % of the pixels differ", differs * 100.0);
+                return;
+            }
+            assert!(
+                begun.elapsed() < WITHIN,
+                "{step}: shows {nearest:?} in {words:?}, {differs} differs"
+            );
+        }
+    }
+
+    fn click(&mut self, name: &str) {
+        let at = self.twin.middle(name);
+        self.display.click(at);
+    }
+
+    /// The setpoints after the index was dragged. On a machine with other work the feedback may have grown old and the
+    /// hand be disarmed, as it should; then a person arms it again.
+    fn arm_and_drag(&mut self) -> Vec<i16> {
+        for _ in 0..ATTEMPTS {
+            self.click("Arm the hand");
+            self.twin.act(Action::Arm);
+            self.looks("armed", View::Live, Language::En);
+            self.drag("Index angle target", 0.95, 0.6);
+            if let Some(asked) = self.hand.is_soon_set_to(Dof::Index, 700) {
+                return asked;
+            }
+        }
+        panic!("the index does not follow the mouse");
+    }
+
+    /// Drags the handle of a track, which stands at `from`, to `to`; both are shares of the track.
+    fn drag(&mut self, name: &str, from: f64, to: f64) {
+        let [left, top, width, height] = self.twin.place(name);
+        let at = |share: f64| [left + width * share, top + height / 2.0];
+        self.display.move_to(at(from));
+        self.display.press();
+        for step in 1..=5 {
+            self.display
+                .move_to(at(from + (to - from) * f64::from(step) / 5.0));
+        }
+        self.display.release();
+        self.display.move_to([4.0, 896.0]);
+    }
+}
+
+fn session(more: &[&str]) {
+    let _alone = alone();
+    let Some(display) = Display::start() else {
+        return;
+    };
+    let mut session = Session::start(display, more);
+    session.looks("start", View::Live, Language::En);
+    let open = session.hand.read("ANGLE_SET");
+    assert_eq!(
+        open,
+        session.hand.read("ANGLE_SET"),
+        "nothing moved by itself"
+    );
+
+    session.drag("Index angle target", 0.95, 0.4);
+    assert_eq!(
+        session.hand.read("ANGLE_SET"),
+        open,
+        "not armed: nothing moves"
+    );
+    let asked = session.arm_and_drag();
+    let index = asked[Dof::Index.index()];
+    session
+        .twin
+        .act(Action::Target(Dof::Index, Angle::new(index).unwrap()));
+    session
+        .hand
+        .reads_at_most("ANGLE_ACT", Dof::Index, index + 20);
+    let stands = session.hand.read("ANGLE_ACT");
+    for dof in Dof::ALL.into_iter().filter(|dof| *dof != Dof::Index) {
+        assert!(
+            stands[dof.index()] >= 950,
+            "{dof:?} was not dragged: {stands:?}"
+        );
+    }
+    session.looks("dragged", View::Live, Language::En);
+
+    session.drag("Middle angle target", 0.95, 0.05);
+    session.click("STOP");
+    let held = session.hand.rests_where_it_stands();
+    assert!(
+        held[Dof::Middle.index()] > 60,
+        "it was stopped on its way: {held:?}"
+    );
+    session.twin.act(Action::Target(
+        Dof::Middle,
+        Angle::new(held[Dof::Middle.index()]).unwrap(),
+    ));
+    session.twin.pass(Duration::from_secs(3));
+    session.twin.act(Action::Stop);
+
+    session.click("Language");
+    session.twin.act(Action::Language(Language::Zh));
+    session.looks("Chinese", View::Live, Language::Zh);
+    session.click("语言");
+    session.twin.act(Action::Language(Language::En));
+    for (name, view) in [
+        ("Touch", View::Touch),
+        ("Faults", View::Faults),
+        ("Poses", View::Poses),
+        ("Connection", View::Connection),
+        ("Traffic", View::Traffic),
+        ("Live", View::Live),
+    ] {
+        session.click(name);
+        session.looks(name, view, Language::En);
+        session.twin.view = view;
+    }
+    let stands = session.hand.rests_where_it_stands();
+    let moved = held
+        .iter()
+        .zip(&stands)
+        .map(|(held, stands)| held.abs_diff(*stands));
+    assert!(
+        moved.max() <= Some(REST),
+        "looking moves nothing: {held:?}, {stands:?}"
+    );
+    session.display.close("Handscope");
+    session.window.ends_well();
+}
+
+#[test]
+fn a_session_with_the_mouse_in_the_window_with_opengl() {
+    session(&[]);
+}
+
+#[test]
+fn a_session_with_the_mouse_in_the_window_without_opengl() {
+    session(&["--software"]);
+}
+
+#[test]
+fn where_opengl_does_not_start_the_window_opens_without_it_and_says_so() {
+    let _alone = alone();
+    let Some(display) = Display::start_without_opengl() else {
+        return;
+    };
+    let hand = Hand::start();
+    let window = Window::start_without_drivers(display.name(), &hand);
+    let mut session = Session::with(display, hand, window);
+    session.looks("without OpenGL", View::Live, Language::En);
+    let arguments = session.window.arguments();
+    assert!(arguments.contains("--software-because"), "{arguments}");
+    assert!(arguments.contains(&session.hand.endpoint), "{arguments}");
+    session.display.close("Handscope");
+    session.window.ends_well();
+}

@@ -1,0 +1,100 @@
+//! The same program without a display, in the same state: where things stand in the window, and what it should look like.
+
+use crate::session::display::SIZE;
+use handscope::app::action::Action;
+use handscope::app::settings::{Language, Theme};
+use handscope::shell::headless::canvas::Picture;
+use handscope::shell::headless::driver::{Driver, Scene};
+use handscope::ui::View;
+use std::time::Duration;
+
+/// Pixels that differ by more than this in a channel count as different; edges of letters differ by less.
+const CHANNEL: u8 = 48;
+
+/// A program whose window is drawn in memory.
+pub(crate) struct Twin {
+    driver: Driver,
+    pub(crate) view: View,
+}
+
+impl Twin {
+    /// Connects to a hand of its own.
+    pub(crate) fn start(hand: &str) -> Self {
+        let mut driver = Driver::start(&Scene {
+            endpoint: hand.parse().unwrap(),
+            size: SIZE,
+            scale: 1.0,
+            theme: Theme::Dark,
+            language: Language::En,
+        })
+        .unwrap();
+        driver.connect().unwrap();
+        let view = View::Live;
+        Self { driver, view }
+    }
+
+    pub(crate) fn pass(&mut self, time: Duration) {
+        self.driver.run_for(time, |_| ());
+    }
+
+    /// Does what the mouse did in the real window.
+    pub(crate) fn act(&mut self, action: Action) {
+        let now = self.driver.now();
+        self.driver.cockpit().app().act(action, now);
+        self.pass(Duration::from_millis(100));
+    }
+
+    pub(crate) fn picture(&mut self, view: View) -> Picture {
+        self.driver.picture(view)
+    }
+
+    /// Left, top, width and height of what has this name.
+    pub(crate) fn place(&mut self, name: &str) -> [f64; 4] {
+        let view = self.view;
+        let labels = self.picture(view).labels;
+        let found = labels.as_array().unwrap().iter().find(|label| {
+            let role = label["role"].as_str().unwrap();
+            label["name"] == name && role != "label"
+        });
+        let rect = &found.unwrap_or_else(|| panic!("no {name} in {view:?}"))["rect"];
+        [0, 1, 2, 3].map(|side| rect[side].as_f64().unwrap())
+    }
+
+    pub(crate) fn middle(&mut self, name: &str) -> [f64; 2] {
+        let [left, top, width, height] = self.place(name);
+        [left + width / 2.0, top + height / 2.0]
+    }
+
+    /// The view and language whose picture is nearest to these pixels, and the share of pixels that differ from it.
+    pub(crate) fn nearest(&mut self, pixels: &[[u8; 3]]) -> (View, Language, f64) {
+        let before = self.driver.cockpit().state().settings.language;
+        let mut all = Vec::new();
+        for language in [Language::En, Language::Zh] {
+            self.act(Action::Language(language));
+            for view in View::ALL {
+                let differs = difference(&self.picture(view), pixels);
+                all.push((view, language, differs));
+            }
+        }
+        self.act(Action::Language(before));
+        all.sort_by(|one, other| one.2.total_cmp(&other.2));
+        println!("nearest: {:?}, next: {:?}", all[0], all[1]);
+        all[0]
+    }
+}
+
+fn difference(picture: &Picture, pixels: &[[u8; 3]]) -> f64 {
+    let drawn = picture.rgba.chunks_exact(4);
+    assert_eq!(drawn.len(), pixels.len());
+    let far = |one: &u8, other: &u8| one.abs_diff(*other) > CHANNEL;
+    let differing = drawn.zip(pixels).filter(|(drawn, shown)| {
+        let mut channels = drawn.iter().zip(shown.iter());
+        channels.any(|(one, other)| far(one, other))
+    });
+    ratio(differing.count(), pixels.len())
+}
+
+fn ratio(part: usize, whole: usize) -> f64 {
+    let number = |count: usize| f64::from(u32::try_from(count).unwrap());
+    number(part) / number(whole)
+}

@@ -1,0 +1,149 @@
+//! A link to whatever a test puts behind a wire in memory, and what every test does with one.
+
+use crate::setup::client;
+use crate::setup::client::{Client, LinkEvent, Outcome, Request};
+use crate::setup::hand;
+use futures::FutureExt as _;
+use futures::future::{BoxFuture, ready};
+use handscope::hand::{Force, PerDof, Speed};
+use handscope::link::{ArmRequest, Clock, LinkConfig, LinkStatus, PollRates, RequestError};
+use handscope::record::LinkState;
+use handscope::sim::Hands;
+use handscope::transport::{BoxedWire, Dial, Endpoint, Pipe, TransportError, Wire, pair};
+use std::sync::Arc;
+use tokio::time::{Duration, sleep, timeout};
+
+/// Far more than anything takes that a test waits for without a limit of its own.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A request that has no end by then has none.
+const ENDS_WITHIN: Duration = Duration::from_secs(10);
+
+/// How a wire is dialled: at once, or not at all.
+pub(crate) type Dialled = BoxFuture<'static, Result<BoxedWire, TransportError>>;
+
+/// A dialled wire.
+pub(crate) fn opened(wire: impl Wire) -> Dialled {
+    let wire: BoxedWire = Box::new(wire);
+    ready(Ok(wire)).boxed()
+}
+
+/// Nothing is at this place.
+pub(crate) fn missing(place: String) -> Dialled {
+    ready(Err(TransportError::Missing { place })).boxed()
+}
+
+/// Dials by a function.
+struct By<F>(F);
+
+impl<F: Fn(&Endpoint) -> Dialled + Send + Sync + 'static> Dial for By<F> {
+    fn dial(&self, endpoint: &Endpoint) -> Dialled {
+        (self.0)(endpoint)
+    }
+}
+
+/// Opens what the function gives.
+pub(crate) fn dial(open: impl Fn(&Endpoint) -> Dialled + Send + Sync + 'static) -> Arc<dyn Dial> {
+    Arc::new(By(open))
+}
+
+/// Opens a new wire in memory each time, and gives its far end away.
+pub(crate) fn behind(far: impl Fn(&Endpoint, Pipe) + Send + Sync + 'static) -> Arc<dyn Dial> {
+    dial(move |endpoint| {
+        let (ours, its) = pair();
+        far(endpoint, its);
+        opened(ours)
+    })
+}
+
+/// Opens wires to simulated hands, which speak what the endpoint speaks.
+pub(crate) fn to_hand(hands: impl Into<Hands>) -> Arc<dyn Dial> {
+    let hands: Hands = hands.into();
+    behind(move |endpoint, far| drop(hand::serve(hands.clone(), endpoint, far)))
+}
+
+/// A link as the program opens it. Its time begins now.
+pub(crate) fn config(endpoint: &str, dial: Arc<dyn Dial>) -> LinkConfig {
+    LinkConfig {
+        endpoint: endpoint.parse().unwrap(),
+        rates: PollRates::default(),
+        clock: Clock::start(),
+        dial,
+        wake: Arc::new(|| ()),
+    }
+}
+
+pub(crate) fn open(config: LinkConfig) -> Client {
+    client::open(config)
+}
+
+/// Opens a link as the program does it.
+pub(crate) fn connect(endpoint: &str, dial: Arc<dyn Dial>) -> Client {
+    open(config(endpoint, dial))
+}
+
+/// Takes events until the link is as wanted; how it stands then.
+pub(crate) async fn until(
+    link: &mut Client,
+    within: Duration,
+    wanted: impl Fn(&LinkStatus) -> bool,
+) -> LinkStatus {
+    let seen = timeout(within, async {
+        loop {
+            let status = link.status();
+            if wanted(&status) {
+                return status;
+            }
+            while link.try_event().is_some() {}
+            sleep(Duration::from_millis(1)).await;
+        }
+    })
+    .await;
+    seen.unwrap_or_else(|_| panic!("{:?} {:?}", link.status(), link.stats()))
+}
+
+/// Waits until the hand is read.
+pub(crate) async fn live(link: &mut Client) {
+    until(link, PATIENCE, |status| {
+        status.state == LinkState::Monitoring
+    })
+    .await;
+}
+
+/// Time passes, and events are taken.
+pub(crate) async fn pass(link: &mut Client, length: Duration) {
+    let _over = timeout(length, async { while link.event().await.is_some() {} }).await;
+}
+
+/// The next event that is as wanted.
+pub(crate) async fn event(link: &mut Client, wanted: impl Fn(&LinkEvent) -> bool) -> LinkEvent {
+    let found = timeout(PATIENCE, async {
+        loop {
+            let event = link.event().await.unwrap();
+            if wanted(&event) {
+                return event;
+            }
+        }
+    });
+    found.await.expect("the event comes")
+}
+
+/// What becomes of a request that has a place in the queue.
+pub(crate) async fn ask(link: &mut Client, request: Request) -> Result<Outcome, RequestError> {
+    let ours = link.ask(request).unwrap();
+    let is_ours =
+        |event: &LinkEvent| matches!(event, LinkEvent::Done { ticket, .. } if *ticket == ours);
+    let done = timeout(ENDS_WITHIN, event(link, is_ours)).await;
+    match done.expect("every request comes to an end") {
+        LinkEvent::Done { result, .. } => result,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Asks for an arming with gentle limits.
+pub(crate) fn gentle() -> ArmRequest {
+    ArmRequest {
+        speed: PerDof::splat(Speed::GENTLE),
+        force: PerDof::splat(Force::GENTLE),
+    }
+}

@@ -1,0 +1,16 @@
+//! How a test puts up what it tries: simulated hands on wires, links, the program with its window, and the real program as a
+//! process. Claims nothing.
+
+pub(crate) mod body;
+pub(crate) mod client;
+pub(crate) mod device;
+pub(crate) mod hand;
+pub(crate) mod line;
+pub(crate) mod link;
+pub(crate) mod process;
+pub(crate) mod program;
+pub(crate) mod skipped;
+pub(crate) mod states;
+pub(crate) mod time;
+pub(crate) mod view;
+pub(crate) mod window;

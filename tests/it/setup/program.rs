@@ -1,0 +1,104 @@
+//! The program with its window, on a runtime of its own, with nobody to choose files and nothing on disk unless a test says so.
+
+use crate::setup::time::Time;
+use handscope::app::action::Action;
+use handscope::app::connect::SimDial;
+use handscope::app::env::Env;
+use handscope::app::files::choose::NoChoice;
+use handscope::app::program::App;
+use handscope::app::settings::Settings;
+use handscope::app::state::State;
+use handscope::hand::Moment;
+use handscope::link::Clock;
+use handscope::shell::Cockpit;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::runtime::{EnterGuard, Handle, Runtime};
+
+/// What a program is given in front of the built-in hand. Its time begins now.
+pub(crate) fn env() -> Env {
+    let clock = Clock::start();
+    Env {
+        runtime: Handle::current(),
+        clock,
+        dial: Arc::new(SimDial::new(clock)),
+        wake: Arc::new(|| ()),
+        files: Arc::new(NoChoice),
+        settings_path: None,
+    }
+}
+
+/// Starts a program, with this hand or the one of its settings.
+pub(crate) fn start(env: Env, settings: Settings, hand: Option<&str>) -> App {
+    let now = env.clock.now();
+    let mut app = App::new(env, settings);
+    app.open(hand.map(|hand| hand.parse().unwrap()), now);
+    app
+}
+
+/// A program, its window and the time it lives in.
+pub(crate) struct Program {
+    pub(crate) cockpit: Cockpit,
+    clock: Clock,
+    runtime: Runtime,
+}
+
+impl Program {
+    /// Starts with what `set_up` gives: it is called inside the runtime.
+    pub(crate) fn start(
+        time: Time,
+        hand: Option<&str>,
+        set_up: impl FnOnce() -> (Env, Settings),
+    ) -> Self {
+        let runtime = time.runtime();
+        let inside = runtime.enter();
+        let (env, settings) = set_up();
+        let clock = env.clock;
+        let cockpit = Cockpit::new(start(env, settings, hand));
+        drop(inside);
+        Self {
+            cockpit,
+            clock,
+            runtime,
+        }
+    }
+
+    pub(crate) fn state(&self) -> &State {
+        self.cockpit.state()
+    }
+
+    /// For what needs the runtime's time.
+    pub(crate) fn enter(&self) -> EnterGuard<'_> {
+        self.runtime.enter()
+    }
+
+    pub(crate) fn now(&self) -> Moment {
+        let _inside = self.runtime.enter();
+        self.clock.now()
+    }
+
+    /// Asks for something as a view does.
+    pub(crate) fn act(&mut self, action: Action) {
+        let _inside = self.runtime.enter();
+        self.cockpit.app().act(action, self.clock.now());
+    }
+
+    /// Time goes by, and the program looks at what came.
+    pub(crate) fn tick(&mut self, step: Duration) {
+        self.runtime
+            .block_on(async { tokio::time::sleep(step).await });
+        self.logic();
+    }
+
+    /// The program looks at what came.
+    pub(crate) fn logic(&mut self) {
+        let _inside = self.runtime.enter();
+        self.cockpit.logic(self.clock.now());
+    }
+
+    /// Draws the window.
+    pub(crate) fn ui(&mut self, ui: &mut egui::Ui) {
+        let _inside = self.runtime.enter();
+        self.cockpit.ui(ui, self.clock.now());
+    }
+}

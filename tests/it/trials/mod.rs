@@ -1,0 +1,4 @@
+//! Grasp trials on the simulated hand.
+
+mod hidden;
+mod series;

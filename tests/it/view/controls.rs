@@ -1,0 +1,507 @@
+//! The window against hand-made states: what is there, what may be pressed, what it asks for. No hand, no renderer.
+
+use crate::setup::states;
+use crate::setup::view::{self, LARGE, SMALL, Shown};
+use egui::accesskit::{Role, Toggled};
+use egui::{Key, Modifiers, Rect, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use handscope::app::action::Action;
+use handscope::app::settings::{Language, Theme};
+use handscope::app::state::State;
+use handscope::hand::{Angle, Dof, Force, Gesture, Speed};
+use handscope::record::{Hold, LinkState};
+use handscope::ui::View;
+
+fn open_at(state: State, view: View, size: Vec2) -> Harness<'static, Shown> {
+    view::open(state, view, view::display(size))
+}
+
+fn open(state: State) -> Harness<'static, Shown> {
+    open_at(state, View::Live, LARGE)
+}
+
+fn actions(harness: &mut Harness<'static, Shown>) -> Vec<Action> {
+    harness.run_steps(2);
+    std::mem::take(&mut harness.state_mut().actions)
+}
+
+fn in_chinese(mut state: State) -> State {
+    state.settings.language = Language::Zh;
+    state
+}
+
+#[test]
+fn stop_is_there_whole_and_enabled_in_every_view_language_size_and_state() {
+    let states: [fn() -> State; 5] = [
+        states::empty,
+        states::live,
+        states::armed,
+        states::faulted,
+        states::lost,
+    ];
+    let small = states.into_iter().map(|make| (make, SMALL));
+    for (make, size) in small.chain([(states[1], LARGE)]) {
+        for view in View::ALL {
+            for (state, name) in [(make(), "STOP"), (in_chinese(make()), "停止")] {
+                let mut harness = open_at(state, view, size);
+                let stop = harness.get_by_role_and_label(Role::Button, name);
+                assert!(!stop.accesskit_node().is_disabled());
+                let screen = Rect::from_min_size(egui::Pos2::ZERO, size);
+                assert!(screen.contains_rect(stop.rect()), "{:?}", stop.rect());
+                assert!(stop.rect().width() >= 120.0 && stop.rect().height() >= 36.0);
+                stop.click();
+                assert_eq!(actions(&mut harness), [Action::Stop]);
+            }
+        }
+    }
+}
+
+#[test]
+fn space_and_escape_stop_from_anywhere() {
+    for key in [Key::Space, Key::Escape] {
+        for view in View::ALL {
+            let mut harness = open_at(states::armed(), view, LARGE);
+            harness.key_press(key);
+            assert_eq!(actions(&mut harness), [Action::Stop], "{key:?} {view:?}");
+        }
+    }
+}
+
+#[test]
+fn space_on_a_button_that_has_the_keyboard_stops_and_does_not_press_it() {
+    let mut harness = open(states::live());
+    harness.get_by_label("Arm the hand").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Space);
+    assert_eq!(actions(&mut harness), [Action::Stop]);
+}
+
+#[test]
+fn escape_stops_while_typing_and_space_types() {
+    let mut harness = open_at(states::armed(), View::Connection, LARGE);
+    harness
+        .get_by_role_and_label(Role::TextInput, "Scenario")
+        .focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Space);
+    assert_eq!(actions(&mut harness), []);
+    harness
+        .get_by_role_and_label(Role::TextInput, "Scenario")
+        .focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Escape);
+    assert_eq!(actions(&mut harness), [Action::Stop]);
+}
+
+#[test]
+fn every_control_has_its_name() {
+    let harness = open(states::armed());
+    for joint in [
+        "Little",
+        "Ring",
+        "Middle",
+        "Index",
+        "Thumb bend",
+        "Thumb rotate",
+    ] {
+        for (role, what) in [
+            (Role::Slider, "angle target"),
+            (Role::Slider, "force threshold"),
+            (Role::Slider, "speed"),
+            (Role::TextInput, "angle number"),
+            (Role::TextInput, "force number"),
+            (Role::TextInput, "speed number"),
+            (Role::CheckBox, "lock"),
+        ] {
+            harness.get_by_role_and_label(role, &format!("{joint} {what}"));
+        }
+    }
+    for name in [
+        "Disarm the hand",
+        "Open all",
+        "Hold",
+        "Clear errors",
+        "Pause the plots",
+        "Thresholds",
+        "Plot window: 5 min",
+        "Gesture 1 open",
+        "Gesture 14 cup",
+        "Save pose",
+        "Theme",
+        "Language",
+        "Link state: Armed",
+    ] {
+        harness.get_by_label(name);
+    }
+}
+
+#[test]
+fn angles_can_be_moved_only_while_armed_and_not_locked() {
+    for state in [
+        states::empty(),
+        states::live(),
+        states::faulted(),
+        states::lost(),
+    ] {
+        let harness = open(state);
+        for name in [
+            "Index angle target",
+            "Index angle number",
+            "Open all",
+            "Gesture 1",
+        ] {
+            let node = harness.query_all_by_label_contains(name).next().unwrap();
+            assert!(node.accesskit_node().is_disabled(), "{name}");
+        }
+        let force = harness.get_by_label("Index force threshold");
+        assert!(!force.accesskit_node().is_disabled());
+    }
+    let harness = open(states::armed());
+    let index = harness.get_by_label("Index angle target");
+    assert!(!index.accesskit_node().is_disabled());
+    let locked = harness.get_by_label("Thumb rotate angle target");
+    assert!(locked.accesskit_node().is_disabled());
+    let lock = harness.get_by_label("Thumb rotate lock");
+    assert_eq!(lock.accesskit_node().toggled(), Some(Toggled::True));
+}
+
+#[test]
+fn dragging_a_track_asks_for_targets() {
+    let mut harness = open(states::armed());
+    let rect = harness.get_by_label("Index angle target").rect();
+    harness.drag_at(rect.center());
+    harness.run_steps(1);
+    harness.hover_at(rect.right_center());
+    harness.run_steps(1);
+    harness.drop_at(rect.right_center());
+    let asked = actions(&mut harness);
+    assert!(!asked.is_empty());
+    for action in &asked {
+        assert!(
+            matches!(action, Action::Target(Dof::Index, _)),
+            "{action:?}"
+        );
+    }
+    assert_eq!(asked.last(), Some(&Action::Target(Dof::Index, Angle::MAX)));
+}
+
+#[test]
+fn a_locked_or_disarmed_track_asks_for_nothing_when_dragged() {
+    for (state, name) in [
+        (states::live(), "Index angle target"),
+        (states::armed(), "Thumb rotate angle target"),
+    ] {
+        let mut harness = open(state);
+        let rect = harness.get_by_label(name).rect();
+        harness.drag_at(rect.center());
+        harness.run_steps(1);
+        harness.hover_at(rect.left_center());
+        harness.run_steps(1);
+        harness.drop_at(rect.left_center());
+        assert_eq!(actions(&mut harness), []);
+    }
+}
+
+#[test]
+fn arrows_step_by_ten_and_with_shift_by_a_hundred() {
+    let mut harness = open(states::armed());
+    for (key, modifiers, want) in [
+        (Key::ArrowRight, Modifiers::NONE, 310),
+        (Key::ArrowLeft, Modifiers::NONE, 290),
+        (Key::ArrowRight, Modifiers::SHIFT, 400),
+        (Key::ArrowLeft, Modifiers::SHIFT, 200),
+    ] {
+        harness.get_by_label("Index angle target").focus();
+        harness.run_steps(2);
+        harness.key_press_modifiers(modifiers, key);
+        let want = Action::Target(Dof::Index, Angle::nearest(want));
+        assert_eq!(actions(&mut harness), [want]);
+    }
+}
+
+#[test]
+fn a_typed_number_counts_only_with_enter() {
+    let mut harness = open(states::armed());
+    let field = |harness: &Harness<'static, Shown>| {
+        harness
+            .get_by_role_and_label(Role::TextInput, "Ring force number")
+            .focus();
+    };
+    let retype = |harness: &mut Harness<'static, Shown>, text: &str| {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.run_steps(1);
+        harness
+            .get_by_role_and_label(Role::TextInput, "Ring force number")
+            .type_text(text);
+        harness.run_steps(2);
+    };
+    field(&harness);
+    harness.run_steps(2);
+    retype(&mut harness, "750");
+    assert_eq!(actions(&mut harness), [], "nothing before Enter");
+    harness.key_press(Key::Enter);
+    let want = Action::Force(Dof::Ring, Force::nearest(750));
+    assert_eq!(actions(&mut harness), [want]);
+    for wrong in ["9000", "1,5", "-1", ""] {
+        field(&harness);
+        harness.run_steps(2);
+        retype(&mut harness, wrong);
+        harness.key_press(Key::Enter);
+        assert_eq!(actions(&mut harness), [], "{wrong}");
+    }
+    field(&harness);
+    harness.run_steps(2);
+    retype(&mut harness, "900");
+    harness.key_press(Key::Tab);
+    assert_eq!(actions(&mut harness), [], "leaving the field is no Enter");
+}
+
+#[test]
+fn force_and_speed_are_staged_while_not_armed() {
+    let mut harness = open(states::live());
+    harness.get_by_label("Little speed").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    let want = Action::Speed(Dof::Little, Speed::nearest(210));
+    assert_eq!(actions(&mut harness), [want]);
+}
+
+#[test]
+fn what_is_not_known_is_a_dash() {
+    let harness = open(states::empty());
+    for (name, value) in [
+        ("Index actual angle", "-"),
+        ("Index live force", "- g"),
+        ("Index current and temperature", "- mA   - °C"),
+        ("Index status", "-"),
+        ("Index normal force", "-"),
+        ("Thumb direction", "-"),
+    ] {
+        let node = harness
+            .query_all_by_role(Role::Label)
+            .find(|node| node.accesskit_node().label().as_deref() == Some(name))
+            .unwrap_or_else(|| panic!("{name}"));
+        assert_eq!(node.value().unwrap().trim(), value, "{name}");
+    }
+    let target = harness.get_by_label("Index angle target");
+    assert_eq!(target.accesskit_node().numeric_value(), None);
+    harness.get_by_label("Not read yet");
+    harness.get_by_label("NO HAND");
+}
+
+#[test]
+fn old_values_show_their_age_and_a_lost_link_is_said_in_words() {
+    let harness = open(states::lost());
+    harness.get_by_label("Age 2.4 s");
+    harness.get_by_label("LINK LOST");
+    harness.get_by_label("Next try in 0.6 s");
+    let body = harness.get_by_label_contains("may still be moving or gripping");
+    assert!(body.value().unwrap().contains("5 requests"));
+    assert!(
+        harness
+            .get_by_label("Arm the hand")
+            .accesskit_node()
+            .is_disabled()
+    );
+    assert!(
+        harness
+            .get_by_label("Clear errors")
+            .accesskit_node()
+            .is_disabled()
+    );
+    assert!(harness.query_by_label("No faults").is_none());
+    harness.get_by_label("No faults when last read");
+}
+
+#[test]
+fn an_unconfirmed_stop_is_an_alarm() {
+    let alarm = || {
+        let mut state = states::live();
+        let at = state.now;
+        state.hand_mut().link.state = LinkState::Holding;
+        state.hand_mut().link.hold = Hold::Alarm { at };
+        state
+    };
+    open(alarm()).get_by_label("STOP NOT CONFIRMED");
+    open(in_chinese(alarm())).get_by_label("停止未确认");
+}
+
+#[test]
+fn faults_are_listed_with_advice_and_over_temperature_is_said_to_stay() {
+    let harness = open_at(states::faulted(), View::Faults, LARGE);
+    harness.get_by_label("Index: Stall");
+    harness.get_by_label("What to do: Free the finger or open it, then clear errors.");
+    harness.get_by_label_contains("Clear errors cannot end it");
+    let mut harness = open(states::faulted());
+    harness.get_by_label("Clear errors").click();
+    assert_eq!(actions(&mut harness), [Action::ClearErrors]);
+    harness.get_by_label("Show faults").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().window.view(), View::Faults);
+}
+
+#[test]
+fn simulated_is_badged_and_a_real_hand_is_not() {
+    for view in View::ALL {
+        open_at(states::live(), view, LARGE).get_by_label("SIMULATED");
+        let real = open_at(states::lost(), view, LARGE);
+        assert!(real.query_by_label("SIMULATED").is_none());
+    }
+}
+
+#[test]
+fn arming_and_disarming_is_one_press() {
+    let mut harness = open(states::live());
+    harness.get_by_label("Arm the hand").click();
+    assert_eq!(actions(&mut harness), [Action::Arm]);
+    let mut harness = open(states::armed());
+    harness.get_by_label("Disarm the hand").click();
+    assert_eq!(actions(&mut harness), [Action::Disarm]);
+}
+
+#[test]
+fn gestures_start_by_number_and_take_names() {
+    let mut harness = open(states::armed());
+    harness.get_by_label("Gesture 7").click();
+    let seven = Gesture::nearest(7);
+    assert_eq!(actions(&mut harness), [Action::Gesture(seven)]);
+    let mut harness = open_at(states::armed(), View::Poses, LARGE);
+    harness.get_by_label("Stored in the hand").click();
+    harness.run_steps(2);
+    harness.get_by_label("Gesture route");
+    harness.get_by_label("Gesture 40");
+    harness.get_by_label("Name gestures").click();
+    harness.run_steps(2);
+    harness.get_by_label("Name of gesture 7").focus();
+    harness.run_steps(2);
+    harness.get_by_label("Name of gesture 7").type_text("point");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    assert_eq!(
+        actions(&mut harness),
+        [Action::NameGesture(seven, "point".into())]
+    );
+}
+
+#[test]
+fn the_connection_is_spelled_as_everywhere() {
+    let mut harness = open_at(states::empty(), View::Connection, LARGE);
+    harness.get_by_label("Kind of link: Modbus TCP").click();
+    harness.run_steps(2);
+    harness.get_by_label("Connect").click();
+    let endpoint = "tcp:192.168.11.210:6000?unit=255".parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+    harness.get_by_label("Kind of link: RS485").click();
+    harness.run_steps(2);
+    assert!(
+        harness
+            .get_by_label("Connect")
+            .accesskit_node()
+            .is_disabled(),
+        "no port yet"
+    );
+    harness.get_by_label("Refresh").click();
+    assert_eq!(actions(&mut harness), [Action::FindPorts]);
+}
+
+#[test]
+fn the_form_is_filled_from_an_rtu_endpoint() {
+    let mut state = states::empty();
+    let endpoint: handscope::transport::Endpoint =
+        "rtu:/dev/ttyUSB3?baud=57600&id=4".parse().unwrap();
+    state.hand_mut().endpoint = Some(endpoint.clone());
+    let mut harness = open_at(state, View::Connection, LARGE);
+    harness.get_by_label("Connect").click();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+}
+
+#[test]
+fn a_can_interface_and_a_can_adapter_can_be_chosen() {
+    let mut harness = open_at(states::empty(), View::Connection, LARGE);
+    harness.get_by_label("Kind of link: CAN").click();
+    harness.run_steps(2);
+    harness.get_by_label("Connect").click();
+    let endpoint = "can:can0?id=1".parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+
+    for url in [
+        "slcan:/dev/ttyACM0?bitrate=500000&id=7",
+        "usbcan:/dev/ttyUSB0?baud=9600&id=7",
+    ] {
+        let mut state = states::empty();
+        let endpoint: handscope::transport::Endpoint = url.parse().unwrap();
+        state.hand_mut().endpoint = Some(endpoint.clone());
+        let mut harness = open_at(state, View::Connection, LARGE);
+        harness.get_by_label("Connect").click();
+        assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+    }
+
+    let mut harness = open_at(states::empty(), View::Connection, LARGE);
+    harness.get_by_label("Kind of link: Maker's CAN").click();
+    harness.run_steps(2);
+    let port = |harness: &Harness<'static, Shown>, text: &str| {
+        let field = harness.get_by_role_and_label(Role::TextInput, "Serial port");
+        match text {
+            "" => field.focus(),
+            text => field.type_text(text),
+        }
+    };
+    port(&harness, "");
+    harness.run_steps(2);
+    port(&harness, "COM4");
+    harness.run_steps(2);
+    harness.get_by_label("Connect").click();
+    let endpoint = "usbcan:COM4?baud=115200&id=1".parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+}
+
+#[test]
+fn the_link_lamp_opens_the_connection_and_tabs_open_their_views() {
+    let mut harness = open(states::live());
+    harness.get_by_label("Link state: Monitoring").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().window.view(), View::Connection);
+    harness.get_by_role_and_label(Role::Button, "Touch").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().window.view(), View::Touch);
+}
+
+#[test]
+fn theme_language_window_and_pause_are_asked_for() {
+    let mut harness = open(states::live());
+    harness.get_by_label("Theme").click();
+    assert_eq!(actions(&mut harness), [Action::Theme(Theme::Light)]);
+    harness.get_by_label("Language").click();
+    assert_eq!(actions(&mut harness), [Action::Language(Language::Zh)]);
+    harness.get_by_label("Pause the plots").click();
+    assert_eq!(actions(&mut harness), [Action::PausePlots(true)]);
+    let node = harness.get_by_label("Pause the plots");
+    assert_eq!(node.accesskit_node().toggled(), Some(Toggled::True));
+}
+
+#[test]
+fn joints_do_not_overlap_and_stay_on_the_screen() {
+    for size in [SMALL, LARGE, vec2(3840.0, 2160.0)] {
+        for state in [states::armed(), in_chinese(states::armed())] {
+            let harness = open_at(state, View::Live, size);
+            let mut rects: Vec<Rect> = harness
+                .query_all_by_role(Role::Slider)
+                .chain(harness.query_all_by_role(Role::TextInput))
+                .map(|node| node.rect())
+                .collect();
+            assert_eq!(rects.len(), 40);
+            let screen = Rect::from_min_size(egui::Pos2::ZERO, size);
+            while let Some(rect) = rects.pop() {
+                assert!(screen.contains_rect(rect), "{size} {rect}");
+                assert!(rect.width() >= 40.0, "{size} {rect}");
+                for other in &rects {
+                    assert!(
+                        !rect.shrink(0.5).intersects(*other),
+                        "{size} {rect} {other}"
+                    );
+                }
+            }
+        }
+    }
+}

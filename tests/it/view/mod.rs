@@ -1,0 +1,5 @@
+//! The window against hand-made states. No hand, no link.
+
+mod controls;
+mod places;
+mod plots;

@@ -1,0 +1,599 @@
+//! The plots against a history that is known: time, zoom, cursors, notes, what is shown and what is copied. No hand.
+
+use crate::setup::states;
+use crate::setup::view::{self, LARGE, SMALL, Shown};
+use egui::accesskit::{Role, Toggled};
+use egui::{Event, Key, Modifiers, Pos2, Rect, Vec2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use handscope::app::action::Action;
+use handscope::app::settings::{Language, PlotKind, PlotWindow};
+use handscope::app::state::State;
+use handscope::hand::{Dof, ForceReading, Group, Groups, HandSample, Moment, PerDof, Timed};
+use handscope::history::{History, MarkKind};
+use handscope::ui::View;
+use std::time::Duration;
+
+fn open_at(state: State, size: Vec2) -> Harness<'static, Shown> {
+    view::open(state, View::Live, view::display(size).with_step_dt(0.02))
+}
+
+/// A hundred seconds of force, at 100 Hz: each joint rises by 10 g a second, from 100 g times its number; between 60
+/// and 62 s nothing was measured, and at 95.5 s the index finger was hit once.
+fn known() -> State {
+    let mut state = states::empty();
+    state.now = Moment::from_micros(100_000_000);
+    let mut history = History::new();
+    let mut fresh = Groups::NONE;
+    fresh.insert(Group::Force);
+    for tick in 0..=10_000_u64 {
+        if (6001..6200).contains(&tick) {
+            continue;
+        }
+        let at = Moment::from_micros(tick * 10_000);
+        let grams = |dof: Dof| {
+            let hit = dof == Dof::Index && tick == 9550;
+            let base = 100 * i16::try_from(dof.index()).unwrap();
+            if hit {
+                2500
+            } else {
+                base + i16::try_from(tick / 10).unwrap()
+            }
+        };
+        let sample = HandSample {
+            force: Some(Timed {
+                value: PerDof::from_fn(|dof| ForceReading::new(grams(dof))),
+                asked: at,
+                received: at,
+            }),
+            ..HandSample::default()
+        };
+        history.push(&sample, fresh);
+    }
+    state.hand_mut().history = history;
+    state
+}
+
+fn open() -> Harness<'static, Shown> {
+    open_at(known(), LARGE)
+}
+
+fn rect(harness: &Harness<'static, Shown>, role: Role, name: &str) -> Rect {
+    harness.get_by_role_and_label(role, name).rect()
+}
+
+fn ground(harness: &Harness<'static, Shown>) -> Rect {
+    rect(harness, Role::Image, "Plots over time")
+}
+
+/// A place in the topmost plot, at a part of its width.
+fn at(harness: &Harness<'static, Shown>, part: f32) -> Pos2 {
+    let ground = ground(harness);
+    pos2(ground.left() + ground.width() * part, ground.top() + 60.0)
+}
+
+fn hover(harness: &mut Harness<'static, Shown>, part: f32) {
+    let place = at(harness, part);
+    harness.hover_at(place);
+    harness.run_steps(3);
+}
+
+fn drag(harness: &mut Harness<'static, Shown>, from: Pos2, to: Pos2) {
+    harness.hover_at(from);
+    harness.step();
+    harness.drag_at(from);
+    harness.step();
+    for step in 1_u8..=10 {
+        harness.hover_at(from.lerp(to, f32::from(step) / 10.0));
+        harness.step();
+    }
+    harness.drop_at(to);
+    harness.run_steps(3);
+}
+
+fn press(harness: &mut Harness<'static, Shown>, name: &str) {
+    harness.get_by_label(name).click();
+    harness.remove_cursor();
+    harness.run_steps(3);
+}
+
+/// The words of a named reading.
+fn reading(harness: &Harness<'static, Shown>, name: &str) -> Option<String> {
+    let mut all = harness.query_all_by_role(Role::Label);
+    let found = all.find(|node| node.accesskit_node().label().as_deref() == Some(name))?;
+    found.value()
+}
+
+fn force_at_pointer(harness: &Harness<'static, Shown>) -> Vec<f64> {
+    let text = reading(harness, "Force, g under the pointer").expect("a reading");
+    text.split(' ')
+        .map(|word| word.parse().unwrap_or(f64::NAN))
+        .collect()
+}
+
+/// The time under a part of the plots, read from the little finger's ramp.
+fn time_at(harness: &mut Harness<'static, Shown>, part: f32) -> f64 {
+    hover(harness, part);
+    force_at_pointer(harness)[0] / 10.0
+}
+
+fn near(one: f64, two: f64, by: f64) {
+    assert!((one - two).abs() <= by, "{one} is not {two}");
+}
+
+fn is_held(harness: &Harness<'static, Shown>) -> bool {
+    let node = harness.get_by_label("Pause the plots");
+    node.accesskit_node().toggled() == Some(Toggled::True)
+}
+
+fn pass(harness: &mut Harness<'static, Shown>, time: Duration) {
+    let now = harness.state().state.now.plus(time);
+    harness.state_mut().state.now = now;
+    harness.run_steps(2);
+}
+
+#[test]
+fn the_values_under_the_pointer_are_read_out_while_live() {
+    let mut harness = open();
+    hover(&mut harness, 0.5);
+    assert!(!is_held(&harness));
+    let values = force_at_pointer(&harness);
+    for (n, value) in values.iter().enumerate() {
+        near(
+            *value,
+            950.0 + 100.0 * f64::from(u8::try_from(n).unwrap()),
+            2.0,
+        );
+    }
+    harness.remove_cursor();
+    harness.run_steps(2);
+    assert_eq!(reading(&harness, "Force, g under the pointer"), None);
+}
+
+#[test]
+fn the_wheel_zooms_around_the_pointer_and_a_double_click_follows_again() {
+    let mut harness = open();
+    let before = time_at(&mut harness, 0.25);
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: vec2(0.0, 180.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    assert!(is_held(&harness));
+    near(time_at(&mut harness, 0.25), before, 0.15);
+    let width = (time_at(&mut harness, 0.95) - time_at(&mut harness, 0.05)) / 0.9;
+    near(width, 5.0, 0.3);
+    let place = at(&harness, 0.5);
+    for _ in 0..2 {
+        harness.drag_at(place);
+        harness.step();
+        harness.drop_at(place);
+        harness.step();
+    }
+    harness.run_steps(3);
+    assert!(!is_held(&harness));
+    near(time_at(&mut harness, 0.5), 95.0, 0.15);
+}
+
+#[test]
+fn a_drag_moves_in_time_and_shift_marks_what_to_zoom_into() {
+    let mut harness = open();
+    let (from, to) = (at(&harness, 0.2), at(&harness, 0.7));
+    drag(&mut harness, from, to);
+    assert!(is_held(&harness));
+    near(time_at(&mut harness, 0.5), 90.0, 0.2);
+    let (from, to) = (at(&harness, 0.4), at(&harness, 0.6));
+    harness.event_modifiers(Event::PointerMoved(from), Modifiers::SHIFT);
+    harness.step();
+    for (place, pressed) in [(from, true), (to, true), (to, false)] {
+        harness.event_modifiers(Event::PointerMoved(place), Modifiers::SHIFT);
+        if place == from || !pressed {
+            let event = Event::PointerButton {
+                pos: place,
+                button: egui::PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::SHIFT,
+            };
+            harness.event_modifiers(event, Modifiers::SHIFT);
+        }
+        harness.step();
+    }
+    harness.run_steps(3);
+    let width = (time_at(&mut harness, 0.9) - time_at(&mut harness, 0.1)) / 0.8;
+    near(width, 2.0, 0.3);
+}
+
+#[test]
+fn a_pause_stands_still_and_loses_nothing() {
+    let mut harness = open();
+    press(&mut harness, "Pause the plots");
+    pass(&mut harness, Duration::from_secs(3));
+    near(time_at(&mut harness, 0.5), 95.0, 0.15);
+    press(&mut harness, "Pause the plots");
+    near(time_at(&mut harness, 0.5), 98.0, 0.15);
+}
+
+#[test]
+fn an_hour_can_be_chosen_and_a_hit_of_one_measurement_is_told_in_it() {
+    let mut harness = open();
+    press(&mut harness, "Plot window: 1 h");
+    assert_eq!(harness.state().state.settings.plot_window, PlotWindow::H1);
+    let words: Vec<_> = harness.query_all_by_label("min and max").collect();
+    assert!(!words.is_empty(), "it says that it is decimated");
+    drop(words);
+    press(&mut harness, "Plot window: 5 s");
+    assert!(harness.query_by_label("min and max").is_none());
+}
+
+#[test]
+fn cursors_tell_the_figures_of_all_measurements() {
+    let mut harness = open();
+    press(&mut harness, "Cursors");
+    let handle = |harness: &Harness<'static, Shown>, name: &str| {
+        let node = harness.get_by_role_and_label(Role::Slider, name);
+        (
+            node.rect().center(),
+            node.accesskit_node().numeric_value().unwrap(),
+        )
+    };
+    near(handle(&harness, "Cursor A").1, 100.0 - 20.0 / 3.0, 1e-6);
+    let ground = ground(&harness);
+    for (name, part) in [("Cursor A", 0.4), ("Cursor B", 0.6)] {
+        let (from, _) = handle(&harness, name);
+        let to = pos2(ground.left() + ground.width() * part, from.y);
+        drag(&mut harness, from, to);
+    }
+    let (_, a) = handle(&harness, "Cursor A");
+    let (_, b) = handle(&harness, "Cursor B");
+    near(a, 94.0, 0.05);
+    near(b, 96.0, 0.05);
+    assert!(!is_held(&harness), "moving a cursor moves no plot");
+    let figures = |name: &str| -> Vec<f64> {
+        let text = reading(&harness, name).expect("a row");
+        text.split(' ').map(|word| word.parse().unwrap()).collect()
+    };
+    let little = figures("Little Force, g");
+    let want = [
+        10.0 * a,
+        10.0 * b,
+        10.0 * (b - a),
+        10.0,
+        10.0 * a,
+        10.0 * b,
+        5.0 * (a + b),
+    ];
+    for (got, want) in little.iter().zip(want) {
+        near(*got, want, 1.5);
+    }
+    // The hit lies between: largest shows it, and the mean counts it once.
+    let index = figures("Index Force, g");
+    near(index[5], 2500.0, 0.01);
+    near(
+        index[6],
+        300.0 + 5.0 * (a + b) + (2500.0 - 1255.0) / 200.0,
+        1.5,
+    );
+}
+
+#[test]
+fn a_cursor_in_a_gap_has_no_value_and_figures_can_be_of_each_plot() {
+    let mut state = known();
+    state.now = Moment::from_micros(64_000_000);
+    let mut harness = open_at(state, LARGE);
+    press(&mut harness, "Plot window: 5 s");
+    press(&mut harness, "Cursors");
+    // A at 60.67 s, B at 62.33 s.
+    let row = reading(&harness, "Little Force, g").unwrap();
+    let words: Vec<&str> = row.split(' ').collect();
+    assert_eq!(words[0], "-", "{row}");
+    assert_eq!(words[2], "-", "{row}");
+    near(words[4].parse().unwrap(), 620.0, 1.0);
+    press(&mut harness, "Figures of the next plot");
+    assert!(reading(&harness, "Little Current, mA").is_some());
+}
+
+#[test]
+fn a_note_stands_at_the_moment_of_its_key() {
+    for size in [SMALL, LARGE] {
+        let mut harness = open_at(known(), size);
+        // A keyboard brings both at once.
+        let key = Event::Key {
+            key: Key::N,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        harness
+            .input_mut()
+            .events
+            .extend([key, Event::Text("n".into())]);
+        harness.run_steps(3);
+        let field = harness.get_by_role_and_label(Role::TextInput, "Words of the note");
+        assert!(field.is_focused());
+        assert_eq!(field.value().unwrap_or_default(), "");
+        field.type_text("slips here");
+        harness.state_mut().actions.clear();
+        pass(&mut harness, Duration::from_secs(4));
+        // A space between words is a space, and no stop.
+        harness.key_press(Key::Space);
+        harness.run_steps(2);
+        assert_eq!(harness.state().actions, []);
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        let at = Moment::from_micros(100_000_000);
+        assert_eq!(
+            harness.state().actions,
+            [Action::Note(at, "slips here".into())]
+        );
+        assert!(harness.query_by_label("Words of the note").is_none());
+        // It is told where its line is.
+        hover(&mut harness, 0.6);
+        harness.run_steps(60);
+        assert!(harness.query_by_label_contains("slips here").is_some());
+    }
+}
+
+#[test]
+fn escape_stops_while_a_note_is_written_and_a_letter_in_another_field_opens_none() {
+    let mut harness = open();
+    harness.key_press(Key::N);
+    harness.run_steps(3);
+    harness.state_mut().actions.clear();
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(harness.state().actions, [Action::Stop]);
+    press(&mut harness, "Cancel");
+    assert!(harness.query_by_label("Words of the note").is_none());
+    harness.get_by_label("Index force number").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::N);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Words of the note").is_none());
+}
+
+/// The numbers beside the plot of force; what a wheel or a drag does to them.
+fn force_scale(harness: &Harness<'static, Shown>) -> Rect {
+    rect(harness, Role::Button, "Value scale: Force, g")
+}
+
+/// The upper and the lower end of the scale of force, as its fields tell.
+fn force_ends(harness: &mut Harness<'static, Shown>) -> [f64; 2] {
+    press(harness, "Value scale: Force, g");
+    let ends = ["Upper end: Force, g", "Lower end: Force, g"].map(|name| {
+        let node = harness.get_by_role_and_label(Role::TextInput, name);
+        node.value().unwrap().parse().unwrap()
+    });
+    // Two presses in short order would be a double click.
+    harness.run_steps(30);
+    press(harness, "Value scale: Force, g");
+    harness.run_steps(30);
+    ends
+}
+
+#[test]
+fn a_value_scale_is_dragged_zoomed_and_automatic_again() {
+    let mut harness = open();
+    assert!(harness.query_by_label("fixed scale").is_none());
+    let [high, low] = force_ends(&mut harness);
+    assert!(high >= 1500.0 && low <= 0.0, "{low} to {high}");
+    let axis = force_scale(&harness);
+    // Half of its height down: the scale moves up by half of what it spans.
+    drag(
+        &mut harness,
+        axis.center_top() + vec2(0.0, axis.height() * 0.3),
+        axis.center_top() + vec2(0.0, axis.height() * 0.8),
+    );
+    harness.get_by_label("fixed scale");
+    assert!(!is_held(&harness), "time goes on");
+    let [moved_high, moved_low] = force_ends(&mut harness);
+    near(moved_high - moved_low, high - low, 1.0);
+    near(moved_high - high, (high - low) * 0.5, (high - low) * 0.1);
+    // New values do not move it.
+    pass(&mut harness, Duration::from_secs(9));
+    near(force_ends(&mut harness)[0], moved_high, 0.1);
+    harness.hover_at(axis.center());
+    harness.step();
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: vec2(0.0, 180.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    harness.remove_cursor();
+    let [zoomed_high, zoomed_low] = force_ends(&mut harness);
+    near(
+        zoomed_high - zoomed_low,
+        (high - low) / 2.0,
+        (high - low) * 0.05,
+    );
+    for _ in 0..2 {
+        harness.drag_at(axis.center());
+        harness.step();
+        harness.drop_at(axis.center());
+        harness.step();
+    }
+    harness.run_steps(30);
+    harness.remove_cursor();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("fixed scale").is_none());
+}
+
+#[test]
+fn the_ends_of_a_value_scale_are_typed_and_one_that_passes_the_other_takes_it_along() {
+    let mut harness = open();
+    press(&mut harness, "Value scale: Force, g");
+    for (name, typed) in [
+        ("Upper end: Force, g", "900"),
+        ("Lower end: Force, g", "-100,5"),
+    ] {
+        let field = harness.get_by_role_and_label(Role::TextInput, name);
+        field.focus();
+        harness.run_steps(2);
+        let field = harness.get_by_role_and_label(Role::TextInput, name);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        field.type_text(typed);
+        harness.run_steps(2);
+        assert_eq!(harness.state().actions, [], "{name}");
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+    }
+    press(&mut harness, "Value scale: Force, g");
+    harness.run_steps(30);
+    let [high, low] = force_ends(&mut harness);
+    near(high, 900.0, 0.01);
+    near(low, -100.5, 0.01);
+    press(&mut harness, "Value scale: Force, g");
+    press(&mut harness, "Automatic");
+    harness.run_steps(30);
+    assert!(force_ends(&mut harness)[0] >= 1500.0);
+    assert_eq!(harness.state().actions, []);
+}
+
+fn copied(harness: &mut Harness<'static, Shown>) -> String {
+    harness.get_by_label("Copy as CSV").click();
+    let mut text = None;
+    for _ in 0..4 {
+        harness.step();
+        let commands = &harness.output().platform_output.commands;
+        text = text.or_else(|| {
+            commands.iter().find_map(|command| match command {
+                egui::OutputCommand::CopyText(text) => Some(text.clone()),
+                _ => None,
+            })
+        });
+    }
+    text.expect("something was copied")
+}
+
+#[test]
+fn what_is_shown_is_copied_with_heads_and_units_and_gaps_are_empty() {
+    let mut state = known();
+    state.now = Moment::from_micros(64_000_000);
+    state
+        .hand_mut()
+        .history
+        .mark(Moment::from_micros(61_000_000), MarkKind::Stop);
+    let mut harness = open_at(state, LARGE);
+    press(&mut harness, "Plot window: 5 s");
+    for joint in ["Little", "Ring", "Middle", "Thumb bend", "Thumb rotate"] {
+        press(&mut harness, &format!("History: {joint}"));
+    }
+    press(&mut harness, "More for the plots");
+    for plot in ["Current, mA", "Temperature, °C"] {
+        harness.get_by_role_and_label(Role::CheckBox, plot).click();
+        harness.run_steps(3);
+    }
+    let csv = copied(&mut harness);
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(
+        lines[0],
+        "time_s,target_angle_index,angle_index,force_index_g,event".replace(
+            "target_angle_index,angle_index,force_index_g",
+            heads(lines[0])
+        )
+    );
+    let force = lines[0]
+        .split(',')
+        .position(|head| head == "force_index_g")
+        .unwrap();
+    let cell = |line: &str, n: usize| line.split(',').nth(n).unwrap().to_owned();
+    assert_eq!(cell(lines[1], 0), "59.000000");
+    assert_eq!(cell(lines[1], force), "890");
+    // 59 to 60 s, a break, the stop, 62 to 64 s.
+    assert_eq!(lines.len(), 1 + 101 + 1 + 1 + 201);
+    assert_eq!(cell(lines[102], force), "");
+    assert_eq!(lines[103], "61.000000,,,,stop");
+    assert_eq!(cell(lines[104], force), "920");
+}
+
+/// The order of the plots is not what is tested.
+fn heads(line: &str) -> &str {
+    let line = line.strip_prefix("time_s,").unwrap();
+    line.strip_suffix(",event").unwrap()
+}
+
+#[test]
+fn plots_are_shown_and_hidden_and_the_last_one_stays() {
+    let mut harness = open();
+    let mut state = known();
+    state.settings.language = Language::Zh;
+    drop(open_at(state, LARGE));
+    press(&mut harness, "More for the plots");
+    let force = harness.get_by_role_and_label(Role::CheckBox, "Force, g");
+    force.click();
+    harness.run_steps(3);
+    assert!(!harness.state().state.settings.plots.shows(PlotKind::Force));
+    for name in ["Current, mA", "Temperature, °C"] {
+        harness.get_by_role_and_label(Role::CheckBox, name).click();
+        harness.run_steps(3);
+    }
+    let last = harness.get_by_role_and_label(Role::CheckBox, "Angle, 0 bent to 1000 open");
+    assert!(last.accesskit_node().is_disabled());
+    let tips = harness.get_by_role_and_label(Role::CheckBox, "Normal force at the tips, N");
+    tips.click();
+    harness.run_steps(3);
+    assert!(harness.state().state.settings.plots.shows(PlotKind::Normal));
+}
+
+#[test]
+fn a_hidden_joint_is_neither_read_out_nor_in_the_table() {
+    let mut harness = open();
+    press(&mut harness, "History: Little");
+    hover(&mut harness, 0.5);
+    assert_eq!(force_at_pointer(&harness).len(), 5);
+    press(&mut harness, "Cursors");
+    assert_eq!(reading(&harness, "Little Force, g"), None);
+    assert!(reading(&harness, "Ring Force, g").is_some());
+}
+
+#[test]
+fn switches_table_and_plots_stay_apart_at_every_size_and_in_both_languages() {
+    for size in [SMALL, LARGE, vec2(2560.0, 1440.0)] {
+        for (language, cursors) in [(Language::En, "Cursors"), (Language::Zh, "游标")] {
+            let mut state = known();
+            state.settings.language = language;
+            PlotKind::ALL
+                .into_iter()
+                .for_each(|kind| state.settings.plots.set(kind, true));
+            let mut harness = open_at(state, size);
+            press(&mut harness, cursors);
+            let area = if language == Language::En {
+                "Plots over time"
+            } else {
+                "时间曲线区"
+            };
+            let ground = rect(&harness, Role::Image, area);
+            let card = (ground.left() - 60.0)..=(ground.right() + 20.0);
+            let screen = Rect::from_min_size(Pos2::ZERO, size);
+            let roles = [
+                Role::Button,
+                Role::Slider,
+                Role::TextInput,
+                Role::CheckBox,
+                Role::ComboBox,
+            ];
+            let mut all: Vec<Rect> = roles
+                .into_iter()
+                .flat_map(|role| harness.query_all_by_role(role))
+                .map(|node| node.rect())
+                .filter(|place| {
+                    card.contains(&place.left()) && place.top() < ground.bottom() + 200.0
+                })
+                .collect();
+            all.push(ground);
+            assert!(all.len() > 12 && ground.height() > 50.0);
+            while let Some(one) = all.pop() {
+                assert!(screen.contains_rect(one), "{size} {one}");
+                for other in &all {
+                    assert!(!one.shrink(0.5).intersects(*other), "{size} {one} {other}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! Claims about the view that explains the hand: what was missed is shown until seen, words are a click away, the log.
+
+use crate::setup::window::{Bench, LARGE, Role};
+use handscope::hand::{Dof, Fault};
+use handscope::sim::SimConfig;
+
+/// A stall of the index finger that came and went.
+fn missed() -> Bench {
+    let mut bench = Bench::live();
+    bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
+    bench.wait(1500);
+    bench.hand(|hand, now| {
+        let one = handscope::hand::register::CLEAR_ERROR.address;
+        hand.write(one, &[1], now).map(drop).unwrap();
+    });
+    bench.wait(500);
+    assert!(!bench.shows("FAULT"));
+    bench
+}
+
+#[test]
+fn a_fault_that_went_unseen_is_told_of_everywhere_until_a_person_says_that_they_saw_it() {
+    let mut bench = missed();
+    for view in ["Live", "Poses", "Faults", "Live"] {
+        bench.click_first_button(view);
+        bench.run(60);
+        assert!(
+            bench.shows("Faults: 1 unseen"),
+            "{view}: opening a view is not seeing"
+        );
+        assert!(bench.shows("Index unseen fault"), "{view}");
+    }
+    bench.click("Faults: 1 unseen");
+    bench.run(60);
+    assert!(bench.shows("over, not seen yet"));
+    assert!(
+        !bench.texts_with("lasted 1.5 s").is_empty(),
+        "{:?}",
+        bench.texts_with("lasted")
+    );
+    assert!(
+        bench.is_disabled(Role::Button, "Forget"),
+        "not before it was seen"
+    );
+    bench.click("Seen: Index: Stall");
+    bench.run(60);
+    assert!(!bench.shows("Faults: 1 unseen") && !bench.shows("Index unseen fault"));
+    assert!(bench.shows("over"), "it stays in the list");
+    assert!(bench.is_disabled(Role::Button, "All seen"));
+    bench.click("Forget");
+    bench.run(60);
+    assert!(!bench.shows("over"));
+    assert!(
+        bench.writes().iter().all(|write| write.bytes == [1]),
+        "ours: none"
+    );
+}
+
+#[test]
+fn all_faults_are_seen_at_once_and_unseen_when_they_come_again() {
+    let mut bench = missed();
+    bench.hand(|hand, _| hand.inject_fault(Dof::Ring, Fault::Motor));
+    bench.wait(200);
+    bench.click_button("Faults");
+    bench.run(60);
+    assert!(bench.shows("Faults: 2 unseen"));
+    bench.click("All seen");
+    bench.run(60);
+    assert!(bench.texts_with("unseen").is_empty());
+    bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
+    bench.wait(200);
+    assert!(bench.shows("Faults: 1 unseen"));
+    assert!(!bench.texts_with("came 2 times").is_empty());
+}
+
+#[test]
+fn the_status_of_a_joint_is_one_click_away_from_its_explanation() {
+    let mut bench = Bench::live();
+    bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
+    bench.hand(|hand, _| hand.inject_fault(Dof::Ring, Fault::Motor));
+    bench.wait(200);
+    bench.click("Index status, explained");
+    bench.run(60);
+    assert!(bench.shows("Index · says now: Stall"));
+    let labels = bench.all(Role::Label);
+    let top = |text: &str| {
+        labels
+            .iter()
+            .find(|(name, _)| name == text)
+            .unwrap()
+            .1
+            .top()
+    };
+    assert!(
+        top("Index: Stall") < top("Ring: Motor abnormal"),
+        "the asked one first"
+    );
+    bench.click("Drive Ring");
+    bench.run(60);
+    assert!(bench.shows("Ring · says now: Motor abnormal"));
+    bench.click("Show all drives");
+    bench.run(60);
+    assert!(bench.texts_with("says now").is_empty());
+}
+
+#[test]
+fn who_meets_a_word_for_the_first_time_finds_it_explained_without_any_fault() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.wait(500);
+    for (view, stall, language) in [
+        ("Faults", "Stall: ", "Language"),
+        ("故障", "堵转故障：", "语言"),
+    ] {
+        bench.click_first_button(view);
+        bench.run(60);
+        assert_eq!(bench.texts_with(stall).len(), 1, "{stall}");
+        bench.click_first_button(language);
+        bench.run(60);
+    }
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn a_hot_drive_is_said_to_cool_with_a_time_once_it_falls() {
+    let mut bench = Bench::live();
+    bench.hand(|hand, _| {
+        hand.inject_fault(Dof::Middle, Fault::OverTemperature);
+        hand.warm(Dof::Middle, 99.0);
+    });
+    bench.wait(3000);
+    bench.click_button("Faults");
+    bench.run(60);
+    assert!(!bench.texts_with("no estimate yet").is_empty());
+    bench.wait(25_000);
+    let told = bench.texts_with("more until 70 °C");
+    assert_eq!(told.len(), 1, "{:?}", bench.texts_with("°C"));
+    assert!(!bench.texts_with("70 °C is assumed").is_empty());
+    // At 99 °C and towards 25 °C in 60 s, it needs 30 s in all.
+    assert!(
+        told[0].contains("about 5 s") || told[0].contains("about 10 s"),
+        "{told:?}"
+    );
+    bench.wait(12_000);
+    assert!(!bench.shows("FAULT"), "it ended by itself");
+}
+
+#[test]
+fn the_log_keeps_what_was_dismissed_and_is_filtered_and_copied() {
+    let mut bench = missed();
+    bench.click("Arm the hand");
+    bench.run(200);
+    bench.click_button("STOP");
+    bench.wait(1000);
+    let rest = bench.all(Role::Button).into_iter().map(|(name, _)| name);
+    let rest = rest
+        .into_iter()
+        .find(|name| name.starts_with("Close: Feedback shows rest"));
+    bench.click(&rest.unwrap());
+    bench.run(60);
+    assert!(
+        bench.shows("No messages"),
+        "a fault has its own place in the overview"
+    );
+    bench.click_button("Faults");
+    bench.run(60);
+    let copy = |bench: &mut Bench| bench.click_to_copy("Copy: Messages").unwrap();
+    let all = copy(&mut bench);
+    assert!(
+        all.contains("warning  Index: Stall") && all.contains("info  Feedback shows rest"),
+        "{all}"
+    );
+    assert!(
+        all.find("Feedback") < all.find("Index: Stall"),
+        "newest first"
+    );
+    bench.click("Level: Warnings");
+    bench.run(60);
+    let some = copy(&mut bench);
+    assert!(
+        some.contains("Stall") && !some.contains("Feedback"),
+        "{some}"
+    );
+    bench.click("Level: All");
+    bench.type_into("Filter messages", "REST");
+    bench.run(60);
+    let some = copy(&mut bench);
+    assert!(
+        !some.contains("Stall") && some.contains("Feedback"),
+        "{some}"
+    );
+    bench.type_into("Filter messages", "nothing like it");
+    bench.run(60);
+    assert!(bench.shows("No message passes the filter."));
+}
+
+/// A stall in the middle of a movement, with a person's hand on it, and its recording's end.
+fn recorded() -> Bench {
+    let mut bench = Bench::armed();
+    bench.drag("Index angle target", 1.0, 0.3);
+    bench.wait(1500);
+    bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
+    bench.wait(2000);
+    bench.click_button("Faults");
+    bench.run(60);
+    bench.click("Clear errors");
+    bench.wait(500);
+    bench.click("Recordings");
+    bench.run(60);
+    assert!(!bench.texts_with("Recording a fault, ends in").is_empty());
+    bench.wait(13_000);
+    bench
+}
+
+#[test]
+fn what_happened_around_a_fault_can_be_looked_at_and_saved_and_nothing_is_sent() {
+    let mut bench = recorded();
+    let before = bench.writes().len();
+    assert!(bench.shows("Recordings (1)"));
+    bench.click("Open: Index: Stall");
+    bench.run(60);
+    assert!(bench.shows("Recording: Index: Stall"));
+    let texts = bench.texts();
+    let list = texts.iter().position(|text| text == "What happened");
+    let texts = texts.get(list.unwrap()..).unwrap();
+    let place = |part: &str| {
+        let found = texts.iter().position(|text| text.starts_with(part));
+        found.unwrap_or_else(|| panic!("no '{part}' in {texts:?}"))
+    };
+    let story = [
+        "Index target 2",
+        "Index: Stall",
+        "Clear errors",
+        "Index: no fault",
+    ];
+    let story = story.map(place);
+    assert!(story.is_sorted(), "{story:?}");
+    bench.click("5 s around");
+    bench.run(60);
+    bench.click("Save CSV");
+    bench.wait(400);
+    let text = std::fs::read_to_string(bench.folder().join("handscope-fault.csv")).unwrap();
+    let head: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    for column in [
+        "angle_index",
+        "force_index_g",
+        "normal_thumb_N",
+        "target_angle_index",
+        "status_index",
+        "faults_index",
+        "event",
+    ] {
+        assert!(head.contains(&column), "{column}");
+    }
+    for line in ["armed", "target index", "fault", "clear errors"] {
+        assert!(
+            text.lines()
+                .any(|row| row.rsplit(',').next().unwrap().starts_with(line)),
+            "{line}"
+        );
+    }
+    assert!(text.lines().count() > 1500);
+    assert_eq!(
+        bench.writes().len(),
+        before,
+        "nothing is played back to the hand"
+    );
+    bench.click("Back");
+    bench.run(60);
+    assert!(bench.shows("over, not seen yet") && bench.shows("Recordings (1)"));
+}
+
+#[test]
+fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
+    let mut bench = recorded();
+    bench.unplug();
+    bench.wait(1000);
+    bench.click("Recording: Index: Stall");
+    bench.run(60);
+    assert!(bench.shows("Plots of the recording"));
+    let listed: Vec<bool> = bench
+        .state()
+        .hand()
+        .recorder
+        .iter()
+        .map(|one| one.opened)
+        .collect();
+    assert_eq!(listed, [true]);
+    assert!(bench.state().hand().recorder.bytes() < 4_000_000);
+    bench.click("Drive Ring");
+    bench.run(60);
+    assert!(!bench.shows("Plots of the recording"), "tiles lead back");
+}
+
+#[test]
+fn no_two_controls_overlap_in_an_opened_recording() {
+    for size in [egui::vec2(1024.0, 640.0), LARGE] {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.wait(400);
+        bench.hand(|hand, _| hand.inject_fault(Dof::ThumbRotate, Fault::OverTemperature));
+        bench.wait(17_000);
+        bench.click_first_button("Faults");
+        bench.run(60);
+        bench.click("Recordings (1)");
+        bench.run(60);
+        crate::window::layout::check(&bench, size, "STOP", &format!("{size} list"));
+        bench.click("Open: Thumb rotate: Over-temperature");
+        bench.run(60);
+        crate::window::layout::check(&bench, size, "STOP", &format!("{size} recording"));
+        bench.click_first_button("Language");
+        bench.run(60);
+        crate::window::layout::check(&bench, size, "停止", &format!("{size} in Chinese"));
+    }
+}

@@ -1,0 +1,152 @@
+//! What a person does with the joints beside dragging one: presets, links, all at once, units, the frame behind a control.
+
+use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, Role, SPEED_SET};
+use handscope::hand::{Dof, Speed};
+
+#[test]
+fn a_preset_goes_at_the_speeds_that_are_set_and_leaves_locked_joints() {
+    let mut bench = Bench::armed();
+    bench.drag("Index speed", 0.2, 0.9);
+    bench.run(200);
+    let speed = bench.state().hand().joints[Dof::Index].speed;
+    assert!(speed > Speed::GENTLE);
+    bench.click("Ring lock");
+    bench.run(60);
+    let before = bench.writes().len();
+    let ring = bench.angle(Dof::Ring);
+    bench.click("Half");
+    bench.run(3000);
+    let writes = bench.writes();
+    let sent: Vec<u16> = writes[before..].iter().map(|write| write.address).collect();
+    let is_angle = |address: &u16| (ANGLE_SET..ANGLE_SET + 12).contains(address);
+    assert!(!sent.is_empty() && sent.iter().all(is_angle), "{sent:?}");
+    assert_eq!(bench.state().hand().joints[Dof::Index].speed, speed);
+    assert!(
+        (bench.angle(Dof::Index) - 500).abs() < 30,
+        "{}",
+        bench.angle(Dof::Index)
+    );
+    assert!((bench.angle(Dof::Ring) - ring).abs() < 10);
+}
+
+#[test]
+fn without_arming_no_preset_can_be_pressed() {
+    let bench = Bench::live();
+    for name in ["Open all", "Half", "Close"] {
+        assert!(bench.is_disabled(Role::Button, name), "{name}");
+    }
+}
+
+#[test]
+fn linked_fingers_go_as_far_as_the_one_that_is_moved() {
+    let mut bench = Bench::armed();
+    bench.click("Link");
+    bench.run(60);
+    bench.drag("Index angle target", 1.0, 0.7);
+    bench.run(60);
+    let joints = bench.state().hand().joints;
+    let target = |dof: Dof| joints[dof].target.unwrap().get();
+    for dof in [Dof::Little, Dof::Ring, Dof::Middle] {
+        assert!((target(dof) - target(Dof::Index)).abs() <= 12, "{dof:?}");
+    }
+    assert!(target(Dof::Index) < 800);
+    assert!(target(Dof::ThumbBend) > 950, "the thumb is apart");
+}
+
+#[test]
+fn all_joints_take_one_threshold_and_one_speed() {
+    let mut bench = Bench::armed();
+    let before = bench.writes().len();
+    bench.drag("All force threshold", 0.2, 0.5);
+    bench.drag("All speed", 0.2, 0.4);
+    bench.run(500);
+    let joints = bench.state().hand().joints;
+    let first = joints[Dof::Little];
+    assert!(first.force.get() > 1200 && first.speed.get() > 300);
+    for dof in Dof::ALL {
+        assert_eq!(
+            (joints[dof].force, joints[dof].speed),
+            (first.force, first.speed)
+        );
+    }
+    let writes = bench.writes();
+    let last = |address: u16| {
+        writes[before..]
+            .iter()
+            .rev()
+            .find(|write| write.address == address)
+    };
+    assert_eq!(last(FORCE_SET).unwrap().shorts(), [first.force.get(); 6]);
+    assert_eq!(last(SPEED_SET).unwrap().shorts(), [first.speed.get(); 6]);
+}
+
+#[test]
+fn angles_are_typed_in_the_unit_that_is_shown_with_a_decimal_comma() {
+    let mut bench = Bench::armed();
+    bench.click("Angle unit");
+    bench.run(60);
+    assert_eq!(bench.typed("Index angle number"), "176.0");
+    bench.type_into("Index angle number", "98,0");
+    bench.key(egui::Key::Enter);
+    bench.run(60);
+    assert_eq!(
+        bench.state().hand().joints[Dof::Index]
+            .target
+            .unwrap()
+            .get(),
+        500
+    );
+    bench.click("Angle unit");
+    bench.run(60);
+    assert_eq!(bench.typed("Index angle number"), "50.0");
+}
+
+#[test]
+fn the_wheel_moves_only_the_track_that_has_the_keyboard() {
+    let mut bench = Bench::armed();
+    let target = |bench: &Bench| {
+        bench.state().hand().joints[Dof::Index]
+            .target
+            .unwrap()
+            .get()
+    };
+    let before = target(&bench);
+    bench.wheel("Index angle target", -1.0);
+    assert_eq!(target(&bench), before, "not focused");
+    bench.drag("Index angle target", 1.0, 0.8);
+    let dragged = target(&bench);
+    bench.wheel("Index angle target", -1.0);
+    assert_eq!(target(&bench), dragged - 10);
+    bench.wheel("Index angle target", 1.0);
+    assert_eq!(target(&bench), dragged);
+}
+
+#[test]
+fn the_secondary_button_shows_the_frame_and_copies_it() {
+    let mut bench = Bench::live();
+    let writes = bench.writes().len();
+    bench.click_secondary("Index force threshold");
+    bench.run(100);
+    assert!(
+        bench.shows("EB 90 01 05 12 E0 05 F4 01 F2"),
+        "{:?}",
+        bench.texts_with("EB 90")
+    );
+    bench.click("Modbus TCP");
+    bench.run(60);
+    let copied = bench.click_copy("Hex");
+    assert_eq!(
+        copied.as_deref(),
+        Some("00 01 00 00 00 09 FF 10 05 E0 00 01 02 01 F4")
+    );
+    assert_eq!(bench.writes().len(), writes);
+}
+
+#[test]
+fn a_rough_pair_of_speed_and_threshold_is_said_with_its_figure() {
+    let mut bench = Bench::live();
+    assert!(!bench.shows("Index impact warning"));
+    bench.drag("Index speed", 0.2, 0.95);
+    bench.run(60);
+    assert!(bench.shows("Index impact warning"));
+}

@@ -1,0 +1,224 @@
+//! Claims about the keyboard: what each key does, in which order Tab walks, and that everything has a name.
+
+use crate::setup::window::{Bench, Role};
+use egui::{Key, Modifiers};
+use handscope::app::settings::{AngleUnit, Language, Theme};
+use handscope::hand::Dof;
+use handscope::ui::View;
+
+/// Nodes that a person can act on.
+const INTERACTIVE: [Role; 7] = [
+    Role::Button,
+    Role::CheckBox,
+    Role::ComboBox,
+    Role::Link,
+    Role::Slider,
+    Role::SpinButton,
+    Role::TextInput,
+];
+
+#[test]
+fn arming_by_key_needs_what_arming_by_click_needs() {
+    let mut bench = Bench::live();
+    bench.key(Key::A);
+    bench.wait(300);
+    assert!(
+        !bench.state().hand().is_armed(),
+        "one key alone arms nothing"
+    );
+    bench.key_with(Modifiers::SHIFT, Key::A);
+    bench.wait(300);
+    assert!(bench.state().hand().is_armed());
+    bench.key_with(Modifiers::SHIFT, Key::A);
+    bench.wait(300);
+    assert!(!bench.state().hand().is_armed());
+}
+
+#[test]
+fn presets_by_key_move_only_an_armed_hand() {
+    let mut bench = Bench::live();
+    for key in [Key::O, Key::H, Key::C] {
+        bench.key_with(Modifiers::SHIFT, key);
+        bench.wait(200);
+    }
+    assert_eq!(bench.writes().len(), 0, "not armed");
+    bench.key_with(Modifiers::SHIFT, Key::A);
+    bench.wait(300);
+    bench.key_with(Modifiers::SHIFT, Key::H);
+    bench.wait(6000);
+    assert!(
+        (bench.angle(Dof::Index) - 500).abs() < 30,
+        "{}",
+        bench.angle(Dof::Index)
+    );
+}
+
+#[test]
+fn a_number_gives_the_keyboard_to_a_joint_and_arrows_then_move_it() {
+    let mut bench = Bench::live();
+    bench.key(Key::Num4);
+    assert!(
+        bench.is_focused("Index force threshold"),
+        "not armed: the threshold"
+    );
+    bench.key_with(Modifiers::SHIFT, Key::A);
+    bench.wait(300);
+    for (key, name) in [
+        (Key::Num1, "Little"),
+        (Key::Num2, "Ring"),
+        (Key::Num3, "Middle"),
+        (Key::Num5, "Thumb bend"),
+        (Key::Num6, "Thumb rotate"),
+        (Key::Num4, "Index"),
+    ] {
+        bench.key(key);
+        bench.step();
+        assert!(bench.is_focused(&format!("{name} angle target")), "{name}");
+    }
+    bench.key_with(Modifiers::SHIFT, Key::ArrowLeft);
+    bench.wait(100);
+    let target = bench.state().hand().joints[Dof::Index]
+        .target
+        .unwrap()
+        .get();
+    assert_eq!(target, 900, "ten steps of ten");
+}
+
+#[test]
+fn switches_of_the_window_have_keys() {
+    let mut bench = Bench::live();
+    bench.key_with(Modifiers::COMMAND, Key::L);
+    assert_eq!(bench.state().settings.language, Language::Zh);
+    bench.key_with(Modifiers::COMMAND, Key::L);
+    bench.key_with(Modifiers::COMMAND, Key::D);
+    assert_eq!(bench.state().settings.theme, Theme::Light);
+    bench.key(Key::U);
+    assert_eq!(bench.state().settings.angle_unit, AngleUnit::Degrees);
+    bench.key(Key::T);
+    bench.wait(100);
+    assert!(bench.state().hand().tare.can_undo());
+    bench.key_with(Modifiers::SHIFT, Key::T);
+    bench.wait(100);
+    assert!(!bench.state().hand().tare.can_undo());
+    bench.key(Key::P);
+    bench.step();
+    assert!(bench.is_on("Pause the plots"), "the plots hold still");
+    for (key, name) in [
+        (Key::Num2, "touch"),
+        (Key::Num3, "faults"),
+        (Key::Num4, "poses"),
+        (Key::Num5, "device"),
+        (Key::Num6, "connection"),
+        (Key::Num7, "traffic"),
+        (Key::Num1, "live"),
+    ] {
+        bench.key_with(Modifiers::COMMAND, key);
+        assert_eq!(bench.view(), View::by_name(name).unwrap());
+    }
+    assert_eq!(bench.writes().len(), 0, "none of them writes");
+}
+
+#[test]
+fn keys_are_letters_while_somebody_types() {
+    let mut bench = Bench::live();
+    bench.key(Key::N);
+    bench.step();
+    for key in [Key::U, Key::P, Key::T, Key::Num4] {
+        bench.key(key);
+    }
+    bench.key_with(Modifiers::SHIFT, Key::A);
+    bench.wait(300);
+    assert!(!bench.state().hand().is_armed());
+    assert_eq!(bench.state().settings.angle_unit, AngleUnit::Raw);
+    assert!(!bench.state().hand().tare.can_undo());
+}
+
+#[test]
+fn the_list_of_keys_opens_and_closes_and_stop_works_over_it() {
+    let mut bench = Bench::armed();
+    for open in [Key::F1, Key::Questionmark] {
+        bench.key(open);
+        bench.step();
+        assert!(bench.shows("Shift+A") && bench.shows("Arm or disarm"));
+        bench.key(open);
+        bench.step();
+        assert!(!bench.shows("Shift+A"));
+    }
+    bench.click_button("Keys");
+    bench.step();
+    assert!(bench.shows("Shift+A"));
+    bench.click_button("Close the list of keys");
+    bench.step();
+    assert!(!bench.shows("Shift+A"));
+    bench.key(Key::F1);
+    bench.step();
+    bench.click_button("STOP");
+    bench.wait(200);
+    assert!(
+        !bench.state().hand().is_armed(),
+        "the list does not cover STOP"
+    );
+    assert!(!bench.shows("Shift+A"), "a press beside it closes it");
+    bench.key_with(Modifiers::SHIFT, Key::A);
+    bench.wait(300);
+    bench.key(Key::F1);
+    bench.key(Key::Space);
+    bench.wait(200);
+    assert!(!bench.state().hand().is_armed(), "and Space stops over it");
+}
+
+#[test]
+fn everything_that_can_be_used_has_a_name_in_every_view_and_language() {
+    let mut bench = Bench::armed();
+    for language in [Language::En, Language::Zh] {
+        for view in View::ALL {
+            bench.show(view);
+            bench.step();
+            for role in INTERACTIVE {
+                for (name, rect) in bench.all(role) {
+                    assert!(
+                        !name.trim().is_empty(),
+                        "{role:?} at {rect} in {view:?}, {language:?}"
+                    );
+                }
+            }
+        }
+        bench.key_with(Modifiers::COMMAND, Key::L);
+    }
+}
+
+#[test]
+fn tab_walks_from_the_top_bar_over_the_joints_to_the_view() {
+    let mut bench = Bench::armed();
+    let mut walked = Vec::new();
+    for _ in 0..200 {
+        bench.key(Key::Tab);
+        bench.step();
+        let Some(name) = bench.focused() else {
+            continue;
+        };
+        if walked.first() == Some(&name) {
+            break;
+        }
+        walked.push(name);
+    }
+    let at = |name: &str| {
+        let found = walked.iter().position(|one| one == name);
+        found.unwrap_or_else(|| panic!("Tab never comes to {name}: {walked:?}"))
+    };
+    let order = [
+        "STOP",
+        "Disarm the hand",
+        "Touch",
+        "Little angle target",
+        "Little force threshold",
+        "Little speed",
+        "Ring angle target",
+        "Thumb rotate speed",
+        "Open all",
+        "Pause the plots",
+    ];
+    for pair in order.windows(2) {
+        assert!(at(pair[0]) < at(pair[1]), "{pair:?} in {walked:?}");
+    }
+}

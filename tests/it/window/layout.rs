@@ -1,0 +1,258 @@
+//! Claims about places: STOP is always whole and free, and nothing that can be pressed lies on another thing.
+
+use crate::setup::window::{Bench, LARGE, Role};
+use egui::{Pos2, Rect, Vec2, vec2};
+use handscope::sim::SimConfig;
+
+const SIZES: [Vec2; 3] = [vec2(1024.0, 640.0), LARGE, vec2(2560.0, 1440.0)];
+/// Tabs, STOP, theme and language, as each language calls them.
+const ENGLISH: Names = Names {
+    tabs: ["Live", "Touch", "Faults", "Poses", "Connection"],
+    stop: "STOP",
+    theme: "Theme",
+    language: "Language",
+};
+const CHINESE: Names = Names {
+    tabs: ["总览", "触觉", "故障", "姿态", "连接"],
+    stop: "停止",
+    theme: "主题",
+    language: "语言",
+};
+
+struct Names {
+    tabs: [&'static str; 5],
+    stop: &'static str,
+    theme: &'static str,
+    language: &'static str,
+}
+
+pub(crate) fn check(bench: &Bench, size: Vec2, stop: &str, when: &str) {
+    let screen = Rect::from_min_size(Pos2::ZERO, size);
+    assert!(!bench.is_disabled(Role::Button, stop), "{when}");
+    let place = bench.rect(Role::Button, stop);
+    assert!(screen.contains_rect(place), "{when}: STOP at {place}");
+    let mut all: Vec<(String, Rect)> = [
+        Role::Button,
+        Role::Slider,
+        Role::TextInput,
+        Role::CheckBox,
+        Role::ComboBox,
+    ]
+    .into_iter()
+    .flat_map(|role| bench.all(role))
+    .collect();
+    assert!(all.len() > 40, "{when}: {}", all.len());
+    while let Some((name, rect)) = all.pop() {
+        assert!(!name.is_empty(), "{when}: something at {rect} has no name");
+        assert!(screen.contains_rect(rect), "{when}: {name} at {rect}");
+        for (other, place) in &all {
+            let apart = !rect.shrink(0.5).intersects(*place);
+            assert!(apart, "{when}: {name} {rect} on {other} {place}");
+        }
+    }
+}
+
+/// The state in which most can be pressed, with names being typed and each form of the connection.
+#[test]
+fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
+    for size in SIZES {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.wait(400);
+        bench.click("Arm the hand");
+        bench.wait(200);
+        assert!(bench.state().hand().is_armed());
+        bench.drag("Index angle target", 1.0, 0.6);
+        check(&bench, size, "STOP", &format!("{size} armed"));
+        bench.click_first_button("Poses");
+        bench.run(60);
+        bench.click("Stored in the hand");
+        bench.run(60);
+        bench.click("Name gestures");
+        bench.run(60);
+        assert!(bench.all(Role::TextInput).len() > 40);
+        check(&bench, size, "STOP", &format!("{size} naming"));
+        bench.click_first_button("Live");
+        bench.run(60);
+        check(&bench, size, "STOP", &format!("{size} naming in the strip"));
+        bench.click_first_button("Connection");
+        bench.run(60);
+        for kind in ["RS485", "Modbus TCP", "Simulated"] {
+            bench.click(&format!("Kind of link: {kind}"));
+            bench.run(60);
+            check(&bench, size, "STOP", &format!("{size} {kind}"));
+        }
+        assert!(
+            bench.state().hand().is_armed(),
+            "looking around disarms nothing"
+        );
+    }
+}
+
+/// Poses with one chosen, and a sequence with steps: where most fields of these views are.
+#[test]
+fn no_two_controls_overlap_among_poses_and_steps() {
+    for size in SIZES {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.wait(400);
+        bench.click_first_button("Poses");
+        bench.run(60);
+        bench.click("Save the pose the hand has now");
+        bench.run(60);
+        for _ in 0..8 {
+            bench.click("Save pose");
+            bench.run(60);
+        }
+        check(&bench, size, "STOP", &format!("{size} poses"));
+        bench.click("Sequences");
+        bench.run(60);
+        bench.click("New sequence");
+        bench.run(60);
+        for _ in 0..7 {
+            bench.click("Add");
+            bench.run(60);
+        }
+        check(&bench, size, "STOP", &format!("{size} steps"));
+    }
+}
+
+fn check_all_views(mut bench: Bench, size: Vec2) {
+    for names in [&ENGLISH, &CHINESE] {
+        for theme in ["first", "second"] {
+            for tab in names.tabs {
+                // In Chinese a tab and a button of its view are called the same: the tab comes first.
+                bench.click_first_button(tab);
+                bench.run(60);
+                check(&bench, size, names.stop, &format!("{size} {tab} {theme}"));
+            }
+            bench.click_first_button(names.theme);
+            bench.run(40);
+        }
+        bench.click_first_button(names.language);
+        bench.run(60);
+    }
+}
+
+#[test]
+fn stop_is_free_and_no_two_controls_overlap_while_watching() {
+    for size in SIZES {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.run(400);
+        check_all_views(bench, size);
+    }
+}
+
+#[test]
+fn stop_is_free_and_no_two_controls_overlap_with_a_fault_and_a_lost_link() {
+    for size in SIZES {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.run(400);
+        bench.hand(|hand, _| {
+            hand.inject_fault(handscope::hand::Dof::Index, handscope::hand::Fault::Stall);
+        });
+        bench.run(200);
+        bench.unplug();
+        bench.run(400);
+        assert!(bench.shows("LINK LOST") && bench.shows("FAULT"));
+        check_all_views(bench, size);
+    }
+}
+
+/// Where the joints end and where the fingertips begin.
+fn borders(bench: &Bench) -> (f32, f32) {
+    let joints = bench.rect(Role::Splitter, "Border: Joints").center().x;
+    let side = bench.rect(Role::Splitter, "Border: Fingertips and faults");
+    (joints, side.center().x)
+}
+
+fn drag_border(bench: &mut Bench, name: &str, by: Vec2) {
+    let from = bench.rect(Role::Splitter, name);
+    // Beside the button in its middle.
+    let from = from.lerp_inside(if by.x == 0.0 {
+        vec2(0.2, 0.5)
+    } else {
+        vec2(0.5, 0.2)
+    });
+    bench.drag_from_to(from, from + by);
+    bench.run(60);
+}
+
+#[test]
+fn a_border_is_dragged_is_kept_and_comes_back() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.run(200);
+    let designed = borders(&bench);
+    let (joints, _) = designed;
+    drag_border(&mut bench, "Border: Joints", vec2(60.0, 0.0));
+    // What shares the rest of the window keeps its share of it.
+    let (_, side) = borders(&bench);
+    drag_border(&mut bench, "Border: Fingertips and faults", vec2(50.0, 0.0));
+    let (wide, right) = borders(&bench);
+    assert!((wide - joints - 60.0).abs() <= 2.0, "{joints} {wide}");
+    assert!((right - side - 50.0).abs() <= 2.0, "{side} {right}");
+    let kept = bench.state().settings.layout;
+    assert!(kept.joints.share.is_some() && kept.side.share.is_some());
+    // As far as it goes, and no further.
+    drag_border(&mut bench, "Border: Joints", vec2(-900.0, 0.0));
+    assert_eq!(
+        bench.rect(Role::Splitter, "Border: Joints").center().x,
+        // The harness leaves eight points around the window.
+        8.0 + 8.0 + 384.0 + 4.0
+    );
+    check(&bench, LARGE, "STOP", "narrow joints");
+    drag_border(&mut bench, "Border: Joints", vec2(900.0, 0.0));
+    check(&bench, LARGE, "STOP", "wide joints");
+    bench.click("Window menu");
+    bench.run(60);
+    bench.click("Reset layout");
+    bench.run(200);
+    assert_eq!(borders(&bench), designed);
+    assert!(
+        bench.writes().is_empty(),
+        "nothing of this reaches the hand"
+    );
+}
+
+#[test]
+fn every_room_but_the_plots_can_be_shut_and_opened_again() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.run(400);
+    let title = "Fingertips and faults";
+    for room in ["Joints", "Fingertips", "Faults", "Poses", title] {
+        bench.click(&format!("Collapse {room}"));
+        bench.run(60);
+        check(&bench, LARGE, "STOP", &format!("{room} shut"));
+        bench.click(&format!("Expand {room}"));
+        bench.run(60);
+        assert_eq!(
+            bench.state().settings.layout,
+            handscope::app::layout::Layout::default()
+        );
+    }
+}
+
+#[test]
+fn shut_joints_still_show_angle_force_and_lamp() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.run(400);
+    bench.click("Collapse Joints");
+    bench.run(60);
+    assert!(bench.all(Role::Slider).is_empty());
+    for joint in [
+        "Little",
+        "Ring",
+        "Middle",
+        "Index",
+        "Thumb bend",
+        "Thumb rotate",
+    ] {
+        assert!(bench.shows(joint), "{joint}");
+        assert!(
+            bench
+                .reading(&format!("{joint} actual angle"))
+                .trim()
+                .parse::<i16>()
+                .is_ok()
+        );
+        assert!(bench.reading(&format!("{joint} live force")).ends_with('g'));
+    }
+}

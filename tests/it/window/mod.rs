@@ -1,0 +1,18 @@
+//! The real program behind its real window, driven by labels against the simulated hand over the real link. Virtual time.
+
+mod cards;
+mod compare;
+mod device;
+mod faults;
+mod joints;
+mod keys;
+mod layout;
+mod motion;
+mod plots;
+mod poses;
+mod scan;
+mod start;
+mod touch;
+mod traffic;
+mod trouble;
+mod tune;

@@ -1,0 +1,66 @@
+//! The plots of the running program: what is saved, and what a note leaves behind.
+
+use crate::setup::window::{Bench, LARGE};
+use handscope::app::notices::NoticeKind;
+use handscope::history::MarkKind;
+use handscope::sim::SimConfig;
+use std::path::PathBuf;
+
+/// Presses an entry of the menu and waits for the file.
+fn saved(bench: &mut Bench, entry: &str) -> (PathBuf, usize) {
+    bench.click("More for the plots");
+    bench.run(60);
+    bench.click(entry);
+    for _ in 0..200 {
+        bench.run(20);
+        // Files are written on a thread of their own, in real time.
+        std::thread::yield_now();
+        let found = bench
+            .state()
+            .notices
+            .iter()
+            .find_map(|notice| match &notice.what {
+                NoticeKind::Saved { path, entries } => Some((path.clone(), *entries)),
+                _ => None,
+            });
+        if let Some(found) = found {
+            return found;
+        }
+    }
+    panic!("nothing was saved");
+}
+
+#[test]
+fn what_the_plots_show_is_saved_as_csv_and_as_png_while_the_window_goes_on() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.wait(2000);
+    let before = bench.now();
+    let (path, rows) = saved(&mut bench, "Save as CSV");
+    assert!(bench.now() > before && rows > 150, "{rows}");
+    let csv = std::fs::read_to_string(path).unwrap();
+    assert!(csv.starts_with("time_s,") && csv.contains("force_index_g"));
+    assert_eq!(csv.lines().count(), 1 + rows);
+
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.wait(2000);
+    let (path, _) = saved(&mut bench, "Save as PNG");
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let reader = png::Decoder::new(file).read_info().unwrap();
+    let (width, height) = (reader.info().width, reader.info().height);
+    assert!(width > 800 && height > 600, "{width} x {height}");
+    assert_eq!(bench.writes().len(), 0);
+}
+
+#[test]
+fn a_note_is_kept_in_the_history() {
+    let mut bench = Bench::live();
+    bench.key(egui::Key::N);
+    bench.run(60);
+    bench.type_into("Words of the note", "before the squeeze");
+    bench.click("Keep");
+    bench.run(60);
+    let now = bench.now().secs();
+    let note = MarkKind::note("before the squeeze").unwrap();
+    let marks = bench.state().hand().history.marks(now - 2.0, now);
+    assert_eq!(marks.filter(|mark| mark.kind == note).count(), 1);
+}

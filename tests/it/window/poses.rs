@@ -1,0 +1,398 @@
+//! Claims about poses: kept, taken, played, stored in the hand, read from files; and that none of it moves a hand unasked.
+
+use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, GESTURE, Role, SPEED_SET, Write};
+use egui::Key;
+use handscope::app::hand::gestures::StoreVerdict;
+use handscope::app::notices::NoticeKind;
+use handscope::hand::Dof;
+use handscope::poses::player::{End, Phase};
+
+const LEAVE: i16 = -1;
+/// Where gesture 20 lies, as the field has it.
+const GESTURE_20: u16 = 1138;
+
+fn pose(bench: &mut Bench, angle: i16) {
+    let bytes: Vec<u8> = [angle; 6].into_iter().flat_map(i16::to_le_bytes).collect();
+    bench.hand(|hand, now| hand.write(ANGLE_SET, &bytes, now).unwrap());
+    bench.wait(2500);
+}
+
+fn open(bench: &mut Bench) {
+    bench.click_first_button("Poses");
+    bench.run(60);
+}
+
+fn enter(bench: &mut Bench, field: &str, text: &str) {
+    bench.type_into(field, text);
+    bench.key(Key::Enter);
+    bench.run(60);
+}
+
+/// Two poses, 500 and 1000, in a sequence; the hand at 1000 and armed.
+fn with_sequence() -> Bench {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    pose(&mut bench, 500);
+    bench.click("Save the pose the hand has now");
+    pose(&mut bench, 1000);
+    bench.click("Save pose");
+    bench.run(60);
+    bench.click("Sequences");
+    bench.run(60);
+    bench.click("New sequence");
+    bench.run(60);
+    for _ in 0..2 {
+        bench.click("Add");
+        bench.run(60);
+    }
+    bench.click("Arm the hand");
+    bench.run(300);
+    assert!(bench.state().hand().is_armed());
+    bench
+}
+
+fn phase(bench: &Bench) -> Phase {
+    bench.state().hand().sequence.as_ref().unwrap().view.phase
+}
+
+#[test]
+fn a_captured_pose_is_renamed_and_taken_with_speed_and_force_first() {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    assert!(bench.shows("No poses yet"));
+    pose(&mut bench, 500);
+    let before = bench.writes().len();
+    bench.click("Save the pose the hand has now");
+    bench.run(100);
+    enter(&mut bench, "Name", "Cup");
+    enter(&mut bench, "Pose Speed", "300");
+    enter(&mut bench, "Pose Force, g", "700");
+    bench.click("Little leave alone");
+    bench.run(60);
+    let all = bench.all_disabled("Go to Cup");
+    assert_eq!(
+        all,
+        [true, true],
+        "on the tile and in the editor: not armed"
+    );
+    pose(&mut bench, 1000);
+    assert_eq!(bench.writes().len(), before + 1, "only what the test wrote");
+    bench.click("Ring lock");
+    bench.click("Arm the hand");
+    bench.run(300);
+    let armed = bench.writes().len();
+    bench.click_first_button("Go to Cup");
+    bench.wait(3000);
+    let writes = bench.writes().split_off(armed);
+    let order: Vec<u16> = writes.iter().map(|write| write.address / 12 * 12).collect();
+    let is = |write: &Write, first: u16| (first..first + 12).contains(&write.address);
+    let runs = |first: u16| writes.iter().filter(|write| is(write, first)).count();
+    assert_eq!(
+        (runs(SPEED_SET), runs(FORCE_SET), runs(ANGLE_SET)),
+        (1, 1, 1),
+        "{order:?}"
+    );
+    assert!(is(&writes[0], SPEED_SET) && is(&writes[1], FORCE_SET) && is(&writes[2], ANGLE_SET));
+    assert_eq!(
+        writes[0].shorts(),
+        [300; 4],
+        "neither the left nor the locked joint"
+    );
+    assert_eq!(writes[1].shorts(), [700; 4]);
+    let angles = writes[2].shorts();
+    assert_eq!(angles[..2], [LEAVE, LEAVE]);
+    assert!(
+        angles[2..].iter().all(|angle| (angle - 500).abs() <= 5),
+        "{angles:?}"
+    );
+    for dof in [Dof::Little, Dof::Ring] {
+        assert!((bench.angle(dof) - 1000).abs() <= 5, "{dof:?}");
+    }
+}
+
+#[test]
+fn a_gesture_is_stored_read_back_judged_and_then_plays() {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    bench.click("Stored in the hand");
+    bench.run(60);
+    assert!(bench.is_disabled(Role::Button, "Upload"), "no angles yet");
+    enter(&mut bench, "User gesture", "20");
+    pose(&mut bench, 600);
+    bench.click("From the hand");
+    bench.run(60);
+    enter(&mut bench, "Index gesture angle", "850");
+    pose(&mut bench, 1000);
+    let before = bench.writes().len();
+    assert!(bench.is_disabled(Role::Button, "Test"), "not armed");
+    bench.click("Upload");
+    bench.wait(600);
+    let writes = bench.writes().split_off(before);
+    assert_eq!(writes.len(), 1, "{writes:?}");
+    assert_eq!(writes[0].address, GESTURE_20);
+    assert_eq!(writes[0].shorts()[Dof::Index.index()], 850);
+    let upload = bench.state().hand().gestures.upload.unwrap();
+    assert_eq!(upload.verdict, StoreVerdict::Same);
+    assert!(bench.shows("Read back the same: the hand holds it"));
+    assert!(
+        (bench.angle(Dof::Index) - 1000).abs() <= 5,
+        "storing moves nothing"
+    );
+    bench.click("Arm the hand");
+    bench.run(300);
+    bench.click("Gesture 20");
+    bench.wait(4000);
+    assert_eq!(bench.addresses().last(), Some(&GESTURE));
+    assert!((bench.angle(Dof::Index) - 850).abs() <= 5);
+    assert!((bench.angle(Dof::Ring) - 600).abs() <= 5);
+}
+
+#[test]
+fn a_sequence_runs_pauses_resumes_and_finishes() {
+    let mut bench = with_sequence();
+    let armed = bench.writes().len();
+    bench.click("Start");
+    bench.run(600);
+    bench.click("Pause");
+    bench.run(100);
+    assert_eq!(phase(&bench), Phase::Paused);
+    bench.wait(3000);
+    let rest = bench.angle(Dof::Index);
+    assert!((510..=990).contains(&rest), "held on its way: {rest}");
+    let paused = bench.writes().len();
+    bench.wait(5000);
+    assert_eq!(bench.writes().len(), paused, "a pause sends nothing");
+    bench.click("Resume");
+    bench.wait(3000);
+    assert!((bench.angle(Dof::Index) - 500).abs() <= 25);
+    bench.wait(6000);
+    assert_eq!(phase(&bench), Phase::Ended(End::Finished));
+    assert!(bench.writes().len() > armed);
+}
+
+#[test]
+fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
+    type Break = fn(&mut Bench);
+    let breaks: [(Break, End); 3] = [
+        (|bench| bench.key(Key::Space), End::Disarmed),
+        (
+            |bench| {
+                bench.hand(|hand, _| {
+                    hand.inject_fault(Dof::Ring, handscope::hand::Fault::Motor);
+                });
+            },
+            End::Fault,
+        ),
+        (Bench::unplug, End::LinkLost),
+    ];
+    for (break_off, want) in breaks {
+        let mut bench = with_sequence();
+        bench.click("Start");
+        bench.run(600);
+        break_off(&mut bench);
+        bench.wait(3000);
+        assert_eq!(phase(&bench), Phase::Ended(want));
+        bench.plug();
+        let ended = bench.writes().len();
+        bench.wait(8000);
+        assert_eq!(bench.writes().len(), ended, "{want:?}");
+        assert!(!bench.state().hand().is_armed());
+    }
+}
+
+#[test]
+fn one_step_is_one_step() {
+    let mut bench = with_sequence();
+    bench.click("Step");
+    bench.wait(6000);
+    assert_eq!(phase(&bench), Phase::Paused);
+    assert!((bench.angle(Dof::Index) - 500).abs() <= 5);
+    let after = bench.writes().len();
+    bench.wait(3000);
+    assert_eq!(bench.writes().len(), after);
+}
+
+#[test]
+fn a_dry_run_shows_the_steps_and_writes_nothing() {
+    let mut bench = with_sequence();
+    let armed = bench.writes().len();
+    bench.click("Dry run");
+    bench.run(400);
+    assert!(bench.shows("Dry run, step 1"));
+    bench.wait(5000);
+    assert!(bench.shows("Dry run, step 2"));
+    bench.click("End dry run");
+    bench.run(100);
+    assert_eq!(bench.writes().len(), armed);
+    assert!((bench.angle(Dof::Index) - 1000).abs() <= 5);
+}
+
+#[test]
+fn an_exported_file_comes_back_and_a_bad_one_changes_nothing() {
+    let mut bench = with_sequence();
+    bench.click("Export");
+    bench.run(400);
+    let path = bench.folder().join("handscope-poses.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replacen("ring = ", "ring = 9", 1)).unwrap();
+    let before = bench.state().poses.library.clone();
+    let writes = bench.writes().len();
+    bench.click("Import");
+    bench.run(400);
+    assert_eq!(bench.state().poses.library, before);
+    let refused = bench
+        .state()
+        .notices
+        .iter()
+        .find_map(|notice| match &notice.what {
+            NoticeKind::PosesRefused { error, .. } => Some(error.clone()),
+            _ => None,
+        });
+    assert_eq!(refused.unwrap().field.as_deref(), Some("ring"));
+    std::fs::write(&path, text).unwrap();
+    bench.click("Import");
+    bench.run(400);
+    let library = &bench.state().poses.library;
+    assert_eq!((library.poses.len(), library.sequences.len()), (4, 2));
+    bench.click("Undo");
+    bench.run(100);
+    assert_eq!(bench.state().poses.library, before);
+    assert_eq!(bench.writes().len(), writes, "files move nothing");
+}
+
+fn pose_names(bench: &Bench) -> Vec<&str> {
+    let poses = bench.state().poses.library.poses.iter();
+    poses.map(|pose| pose.name.as_str()).collect()
+}
+
+fn steps(bench: &Bench) -> Vec<&str> {
+    let library = &bench.state().poses.library;
+    let steps = library.sequences[0].steps.iter();
+    let name = |pose| library.pose(pose).unwrap().name.as_str();
+    steps.map(|step| name(step.pose)).collect()
+}
+
+#[test]
+fn poses_are_put_in_order_by_dragging_and_by_alt_and_arrows_and_nothing_moves() {
+    let mut bench = with_sequence();
+    let before = bench.writes().len();
+    bench.click("My poses");
+    bench.run(60);
+    bench.click("Save pose");
+    bench.run(60);
+    assert_eq!(pose_names(&bench), ["Pose", "Pose 2", "Pose 3"]);
+    bench.drag_to("Pose Pose 3", "Pose Pose");
+    assert_eq!(pose_names(&bench), ["Pose 3", "Pose", "Pose 2"]);
+    bench.drag_to("Pose Pose 3", "Pose Pose 2");
+    assert_eq!(pose_names(&bench), ["Pose", "Pose 2", "Pose 3"]);
+    bench.click("Pose Pose 2");
+    bench.run(60);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowRight);
+    assert_eq!(pose_names(&bench), ["Pose", "Pose 3", "Pose 2"]);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowUp);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowLeft);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowLeft);
+    assert_eq!(
+        pose_names(&bench),
+        ["Pose 2", "Pose", "Pose 3"],
+        "the first stays the first"
+    );
+    assert_eq!(bench.writes().len(), before);
+}
+
+#[test]
+fn steps_are_put_in_order_by_dragging_and_by_alt_and_arrows_that_follow_the_step() {
+    let mut bench = with_sequence();
+    let before = bench.writes().len();
+    bench.click("Add");
+    bench.run(60);
+    // All three are the first pose: let the last be the other one.
+    let library = &bench.state().poses.library;
+    assert_eq!(library.sequences[0].steps.len(), 3);
+    enter(&mut bench, "Step 3 speed", "77");
+    let speeds = |bench: &Bench| -> Vec<i16> {
+        let steps = bench.state().poses.library.sequences[0].steps.iter();
+        steps.map(|step| step.speed.get()).collect()
+    };
+    let other = speeds(&bench)[0];
+    assert_eq!(steps(&bench).len(), 3);
+    bench.drag_to("Step 3: Pose", "Step 1: Pose");
+    assert_eq!(speeds(&bench), [77, other, other]);
+    bench.click("Step 1: Pose");
+    bench.run(60);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowDown);
+    assert_eq!(speeds(&bench), [other, 77, other]);
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowDown);
+    assert_eq!(
+        speeds(&bench),
+        [other, other, 77],
+        "the keyboard goes with the step"
+    );
+    bench.key_with(egui::Modifiers::ALT, Key::ArrowDown);
+    assert_eq!(speeds(&bench), [other, other, 77]);
+    assert_eq!(bench.writes().len(), before);
+}
+
+#[test]
+fn a_drag_that_is_stopped_by_esc_leaves_the_order() {
+    let mut bench = with_sequence();
+    bench.click("My poses");
+    bench.run(60);
+    let (from, to) = (
+        bench.rect(Role::Button, "Pose Pose"),
+        bench.rect(Role::Button, "Pose Pose 2"),
+    );
+    bench.drag_and_press(from.center(), to.center(), Key::Escape);
+    assert_eq!(pose_names(&bench), ["Pose", "Pose 2"]);
+}
+
+#[test]
+fn storing_gestures_can_be_switched_off_and_what_is_known_is_said_beside_it() {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    bench.click("Stored in the hand");
+    bench.run(60);
+    enter(&mut bench, "User gesture", "20");
+    assert!(bench.shows("bytes 1138..1149"));
+    assert!(
+        !bench
+            .texts_with("Not known: whether this firmware keeps")
+            .is_empty()
+    );
+    bench.click("Where gestures are stored: Off");
+    bench.run(60);
+    for button in ["Upload", "Read"] {
+        assert!(bench.is_disabled(Role::Button, button), "{button}");
+    }
+    assert!(bench.texts_with("1138").is_empty());
+    bench.click("From the hand");
+    bench.run(60);
+    assert!(bench.is_disabled(Role::Button, "Upload"));
+    bench.click("Where gestures are stored: From 1066");
+    bench.run(60);
+    assert!(!bench.is_disabled(Role::Button, "Upload"));
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn poses_are_found_by_name_and_tag_and_put_in_order_among_those_that_are_found() {
+    let mut bench = with_sequence();
+    bench.click("My poses");
+    bench.run(60);
+    bench.click("Save pose");
+    bench.run(60);
+    bench.click("Pose Pose");
+    bench.run(60);
+    enter(&mut bench, "Tags", "Pinch, small");
+    bench.click("Pose Pose 3");
+    bench.run(60);
+    enter(&mut bench, "Tags", "pinch");
+    bench.type_into("Find poses", "PINCH");
+    assert!(bench.shows("Pose Pose") && bench.shows("Pose Pose 3") && !bench.shows("Pose Pose 2"));
+    bench.drag_to("Pose Pose 3", "Pose Pose");
+    assert_eq!(pose_names(&bench), ["Pose 3", "Pose", "Pose 2"]);
+    bench.type_into("Find poses", "nowhere");
+    assert!(bench.shows("No pose has these words in its name or tags."));
+    bench.type_into("Find poses", "e 2");
+    assert!(bench.shows("Pose Pose 2") && !bench.shows("Pose Pose 3"));
+}

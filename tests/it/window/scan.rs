@@ -1,0 +1,196 @@
+//! Claims about looking for hands: a click finds them, a click connects, nothing is written, nothing is asked unasked.
+
+use crate::setup::window::{Bench, LARGE, Role};
+use crate::window::layout::check;
+use egui::vec2;
+use handscope::app::scan::ScanStage;
+use handscope::record::LinkState;
+use handscope::sim::{SimConfig, SimHand};
+use handscope::transport::{PortFound, UsbFound};
+
+const PORT: &str = "/dev/ttyUSB7";
+const URL: &str = "rs485:/dev/ttyUSB7?baud=115200&id=1";
+
+fn adapter() -> PortFound {
+    PortFound {
+        path: PORT.into(),
+        usb: Some(UsbFound {
+            vendor_id: 0x0403,
+            product_id: 0x6001,
+            serial: Some("A50285BI".into()),
+            maker: Some("FTDI".into()),
+            product: Some("FT232R".into()),
+            location: None,
+            latency_timer_ms: None,
+        }),
+    }
+}
+
+/// The connection view, with an adapter plugged in and the hand behind it.
+fn at_connection(config: SimConfig) -> Bench {
+    let mut bench = Bench::open(config, LARGE);
+    bench.list_ports(vec![adapter()]);
+    bench.wait(200);
+    bench.click_first_button("Connection");
+    bench.run(60);
+    bench
+}
+
+fn is_done(bench: &Bench) -> bool {
+    matches!(bench.state().scan.stage, ScanStage::Done(_))
+}
+
+#[test]
+fn a_click_finds_the_hand_and_a_click_connects_without_a_write() {
+    let mut bench = at_connection(SimConfig::default());
+    bench.click_button("Scan all ports");
+    bench.until(1000, |bench| !bench.state().scan.found.is_empty());
+    assert!(bench.state().scan.is_running(), "further ids are asked");
+    assert!(bench.shows("ID 1, RS485, 115200"));
+    assert!(bench.shows(&format!("{PORT}  FTDI FT232R A50285BI USB 0403:6001")));
+    bench.click(&format!("Connect: {URL}"));
+    assert_eq!(bench.state().scan.stage, ScanStage::Cancelled);
+    bench.until(1000, |bench| {
+        bench.state().hand().link.state == LinkState::Monitoring
+    });
+    assert_eq!(bench.state().hand().endpoint, Some(URL.parse().unwrap()));
+    bench.run(200);
+    assert!(bench.shows(&format!("Connected: {URL}")));
+    assert!(bench.writes().is_empty());
+}
+
+#[test]
+fn progress_is_shown_and_cancel_ends_it_with_what_was_found() {
+    let mut bench = at_connection(SimConfig::default());
+    bench.click("Ids: 1 to 254");
+    bench.run(40);
+    bench.click_button("Scan all ports");
+    bench.run(400);
+    let progress = bench.reading("Scan progress");
+    // One hand answers at once, so that 253 further ids of its line are left of 2032 questions: 16 s.
+    assert!(
+        progress.contains("/ 2032 questions, time left about 16 s"),
+        "{progress}"
+    );
+    assert!(bench.is_disabled(Role::Button, "Scan address") || !bench.shows("Scan address"));
+    bench.click_button("Cancel");
+    bench.run(60);
+    assert!(bench.shows("Cancelled. 1 hand answered"));
+    let dials = bench.dials();
+    bench.wait(5000);
+    assert_eq!(bench.dials(), dials, "nothing is asked any more");
+    assert!(bench.writes().is_empty());
+}
+
+#[test]
+fn each_way_to_find_nothing_has_its_words() {
+    let far = SimConfig {
+        id: 99,
+        ..SimConfig::default()
+    };
+    let mut bench = at_connection(far);
+    assert!(!bench.texts_with("Nothing was scanned yet").is_empty());
+    bench.click_button("Scan all ports");
+    bench.until(8000, is_done);
+    bench.run(40);
+    assert!(
+        !bench
+            .texts_with("a hand may have an id above 10")
+            .is_empty()
+    );
+    bench.list_ports(Vec::new());
+    bench.click_button("Scan all ports");
+    bench.until(1000, is_done);
+    bench.run(40);
+    assert!(
+        !bench
+            .texts_with("no serial port and no CAN interface")
+            .is_empty()
+    );
+    bench.list_ports(vec![adapter()]);
+    bench.unplug();
+    bench.click_button("Scan all ports");
+    bench.until(1000, is_done);
+    bench.run(40);
+    assert!(bench.shows("Nothing could be scanned:"));
+    assert!(!bench.texts_with("is not there").is_empty());
+}
+
+#[test]
+fn the_port_of_the_connected_hand_is_left_alone_with_words() {
+    let mut bench = at_connection(SimConfig::default());
+    bench.click_button("Scan all ports");
+    bench.until(1000, |bench| !bench.state().scan.found.is_empty());
+    bench.click(&format!("Connect: {URL}"));
+    bench.until(1000, |bench| {
+        bench.state().hand().link.state == LinkState::Monitoring
+    });
+    let dials = bench.dials();
+    bench.click_button("Scan all ports");
+    bench.until(1000, is_done);
+    bench.run(40);
+    assert!(!bench.texts_with("Disconnect first to scan it").is_empty());
+    assert_eq!(bench.dials(), dials);
+    assert_eq!(bench.state().hand().link.state, LinkState::Monitoring);
+}
+
+#[test]
+fn an_address_is_asked_only_when_the_button_is_pressed() {
+    let mut bench = at_connection(SimConfig::default());
+    let dials = bench.dials();
+    for address in [
+        "192.168.11.210:6000",
+        "192.168.123.210:6000",
+        "192.168.123.211:6000",
+    ] {
+        bench.click_button(address);
+        bench.run(40);
+        assert_eq!(bench.typed("Address or range"), address);
+    }
+    bench.wait(3000);
+    assert_eq!(bench.dials(), dials, "offering is not asking");
+    assert_eq!(bench.state().scan.stage, ScanStage::Never);
+    for (wrong, words) in [("10.0.0.0/8", "more than 1024"), ("a b", "is not a host")] {
+        bench.type_into("Address or range", wrong);
+        assert!(bench.is_disabled(Role::Button, "Scan address"), "{wrong}");
+        assert!(!bench.texts_with(words).is_empty(), "{wrong}");
+    }
+    bench.type_into("Address or range", "127.0.0.5:6001");
+    bench.click_button("Disconnect");
+    bench.run(200);
+    bench.hand(SimHand::switch_off);
+    bench.click_button("Scan address");
+    bench.until(4000, is_done);
+    assert_eq!(
+        bench.dials(),
+        dials + 2,
+        "two units of one address, no port"
+    );
+    assert!(
+        !bench
+            .texts_with("Check power, cable and address")
+            .is_empty()
+    );
+}
+
+#[test]
+fn in_a_small_window_the_scan_takes_the_place_of_the_form_and_gives_it_back() {
+    let size = vec2(1024.0, 640.0);
+    let mut bench = Bench::open(SimConfig::default(), size);
+    bench.list_ports(vec![adapter()]);
+    bench.wait(200);
+    bench.click_first_button("Connection");
+    bench.run(60);
+    assert!(!bench.shows("Scan all ports"));
+    bench.click_button("Find hands");
+    bench.run(40);
+    bench.click_button("Scan all ports");
+    bench.until(1000, |bench| !bench.state().scan.found.is_empty());
+    assert!(bench.shows(&format!("Connect: {URL}")));
+    check(&bench, size, "STOP", "scanning");
+    bench.type_into("Address or range", "10.0.0.0/8");
+    check(&bench, size, "STOP", "a wrong address");
+    bench.click_button("Type it in");
+    bench.run(40);
+    assert!(bench.shows("Kind of link: RS485"));
+}

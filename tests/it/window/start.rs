@@ -1,0 +1,167 @@
+//! Claims about watching: what the first start shows, and that nothing but arming leads to a write.
+
+use crate::setup::program::{Program, env};
+use crate::setup::time::Time;
+use crate::setup::window::{Bench, LARGE, Role};
+use handscope::app::settings::Settings;
+use handscope::hand::Dof;
+use handscope::record::LinkState;
+use handscope::shell::headless::canvas::Canvas;
+use handscope::sim::SimConfig;
+use std::time::Duration;
+
+const JOINTS: [&str; 6] = [
+    "Little",
+    "Ring",
+    "Middle",
+    "Index",
+    "Thumb bend",
+    "Thumb rotate",
+];
+
+#[test]
+fn the_first_start_is_live_within_a_second_badged_disarmed_and_writes_nothing() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.until(1000, |bench| {
+        bench.state().hand().link.state == LinkState::Monitoring
+            && bench.reading("Thumb normal force") != "-"
+    });
+    bench.wait(1000);
+    assert!(bench.shows("SIMULATED"));
+    assert!(bench.shows("Link state: Monitoring"));
+    assert!(!bench.is_disabled(Role::Button, "Arm the hand"));
+    assert!(!bench.shows("Disarm the hand"));
+    for (dof, joint) in Dof::ALL.into_iter().zip(JOINTS) {
+        let shown: i16 = bench
+            .reading(&format!("{joint} actual angle"))
+            .parse()
+            .unwrap();
+        assert!((shown - bench.angle(dof)).abs() <= 3, "{joint} {shown}");
+        let handle = bench.handle(&format!("{joint} angle target")).unwrap();
+        assert!((handle - f64::from(shown)).abs() <= 3.0, "{joint} {handle}");
+        assert!(bench.is_disabled(Role::Slider, &format!("{joint} angle target")));
+    }
+    assert!(bench.state().hand().stats.state_hz > 50.0);
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn looking_around_writes_nothing() {
+    let mut bench = Bench::live();
+    for tab in ["Touch", "Faults", "Poses", "Connection", "Live"] {
+        bench.click_button(tab);
+        bench.run(100);
+    }
+    for name in ["Theme", "Theme", "Pause the plots", "Thresholds"] {
+        bench.click(name);
+        bench.run(100);
+    }
+    bench.click("Language");
+    bench.run(100);
+    bench.click("语言");
+    bench.run(100);
+    assert!(bench.shows("Link state: Monitoring"));
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn connecting_and_disconnecting_write_nothing() {
+    let mut bench = Bench::live();
+    bench.click_button("Connection");
+    bench.run(100);
+    bench.click_button("Disconnect");
+    bench.wait(200);
+    assert!(bench.shows("NOT CONNECTED") && !bench.shows("SIMULATED"));
+    assert_eq!(bench.reading("Index actual angle"), "-");
+    bench.click_button("Connect");
+    bench.wait(1000);
+    assert!(bench.shows("SIMULATED") && bench.shows("Link state: Monitoring"));
+    assert_eq!(bench.reading("Index actual angle"), "1000");
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn how_bytes_stand_in_words_can_be_said_for_modbus_and_is_part_of_the_address() {
+    let mut bench = Bench::live();
+    bench.click_button("Connection");
+    for (kind, has_words) in [("RS485", false), ("Modbus RTU", true), ("Modbus TCP", true)] {
+        bench.click_button(&format!("Kind of link: {kind}"));
+        bench.run(60);
+        assert_eq!(bench.shows("Modbus bytes: as the hand shows"), has_words);
+    }
+    bench.click_button("Modbus bytes: as the hand shows");
+    bench.run(200);
+    bench.click("low first");
+    bench.run(200);
+    assert_eq!(
+        bench
+            .texts_with("tcp:192.168.11.210:6000?unit=255&packing=low")
+            .len(),
+        1
+    );
+    bench.click_button("Modbus bytes: low first");
+    bench.run(200);
+    bench.click("as the hand shows");
+    bench.run(200);
+    assert!(bench.texts_with("packing=").is_empty());
+    assert_eq!(bench.writes(), [], "nothing is connected by choosing");
+}
+
+#[test]
+fn without_arming_no_control_of_the_joints_writes() {
+    let mut bench = Bench::live();
+    for joint in JOINTS {
+        bench.drag(&format!("{joint} angle target"), 0.9, 0.1);
+        bench.drag(&format!("{joint} force threshold"), 0.2, 0.6);
+        bench.drag(&format!("{joint} speed"), 0.2, 0.6);
+    }
+    for name in ["Open all", "Gesture 1", "Index lock"] {
+        bench.click(name);
+    }
+    bench.wait(500);
+    assert_eq!(bench.writes(), []);
+    assert_eq!(bench.angle(Dof::Index), 1000);
+    let staged = bench.handle("Index speed").unwrap();
+    assert!(staged > 500.0, "kept for arming: {staged}");
+}
+
+#[test]
+fn stop_without_arming_holds_the_pose_it_sees() {
+    let mut bench = Bench::live();
+    bench.click_button("STOP");
+    bench.wait(1000);
+    let writes = bench.writes();
+    assert!(!writes.is_empty());
+    for write in &writes {
+        assert_eq!((write.address, write.shorts()), (1486, vec![1000; 6]));
+    }
+    assert!(bench.shows("Link state: Monitoring"));
+}
+
+/// The list beside each headless picture.
+#[test]
+fn the_list_of_labels_has_stop_the_badge_and_every_joint_with_its_value() {
+    let set_up = || (env(), Settings::default());
+    let mut program = Program::start(Time::Virtual, None, set_up);
+    for _ in 0..50 {
+        program.tick(Duration::from_millis(20));
+    }
+    let mut canvas = Canvas::new((1440, 900), 1.0);
+    let now = program.now();
+    let picture = canvas.picture(now.secs(), |ui| program.ui(ui));
+    let list = picture.labels.as_array().unwrap();
+    let find = |role: &str, name: &str| {
+        list.iter()
+            .find(|entry| entry["role"] == role && entry["name"] == name)
+            .unwrap_or_else(|| panic!("no {role} {name}"))
+    };
+    assert_eq!(find("button", "STOP")["disabled"], false);
+    find("label", "SIMULATED");
+    for joint in JOINTS {
+        let target = &find("slider", &format!("{joint} angle target"))["value"];
+        assert_eq!(target, &serde_json::json!(1000.0), "{joint}");
+        let actual = &find("label", &format!("{joint} actual angle"))["value"];
+        assert_eq!(actual.as_str().map(str::trim), Some("1000"), "{joint}");
+        find("label", &format!("{joint} live force"));
+    }
+}
