@@ -3,9 +3,12 @@
 use crate::ui::kit::look::Look;
 use crate::ui::theme::{self, Icon};
 use egui::{
-    Align2, Color32, CornerRadius, Event, FontId, Id, PointerButton, Pos2, Rect, Response, Role,
-    Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
+    Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, PointerButton, Pos2,
+    Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
 };
+
+/// Characters that fit in a line that is typed.
+const EDIT_MAX: usize = 128;
 
 /// A text at a place. Cut with dots if it is too long, and then whole in its tooltip.
 #[derive(Debug, Clone)]
@@ -16,6 +19,7 @@ pub(crate) struct Label<'a> {
     align: Align2,
     name: Option<&'a str>,
     shorter: Option<&'a str>,
+    wraps: bool,
 }
 
 impl<'a> Label<'a> {
@@ -28,6 +32,7 @@ impl<'a> Label<'a> {
             align: Align2::LEFT_CENTER,
             name: None,
             shorter: None,
+            wraps: false,
         }
     }
 
@@ -69,6 +74,34 @@ impl<'a> Label<'a> {
     pub(crate) fn shorter(mut self, text: &'a str) -> Self {
         self.shorter = Some(text);
         self
+    }
+
+    /// Over as many lines as it needs.
+    pub(crate) fn wrap(mut self) -> Self {
+        self.wraps = true;
+        self
+    }
+
+    /// Draws it where `ui` is.
+    pub(crate) fn ui(self, ui: &mut Ui) -> Response {
+        let text = self.fitting(ui, ui.available_width());
+        let rich = RichText::new(text).font(self.font).color(self.color);
+        let label = egui::Label::new(rich);
+        let response = ui.add(if self.wraps {
+            label.wrap()
+        } else {
+            label.truncate()
+        });
+        if let Some(name) = self.name {
+            ui.ctx().accesskit_node_builder(response.id, |node| {
+                node.set_label(name);
+            });
+        }
+        if text == self.text {
+            return response;
+        }
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
+        response.on_hover_text(self.text)
     }
 
     /// The text that is drawn in this much room.
@@ -162,6 +195,8 @@ pub(crate) struct Button<'a> {
     pub(crate) selected: Option<bool>,
     /// A sign in place of the text, which stays the name.
     pub(crate) icon: Option<Icon>,
+    /// How high it is, points.
+    pub(crate) height: f32,
 }
 
 impl<'a> Button<'a> {
@@ -175,7 +210,14 @@ impl<'a> Button<'a> {
             weight: Weight::Normal,
             selected: None,
             icon: None,
+            height: theme::CONTROL,
         }
+    }
+
+    /// As high as what matters most.
+    pub(crate) const fn large(mut self) -> Self {
+        self.height = theme::CONTROL_LARGE;
+        self
     }
 
     /// With another look.
@@ -213,6 +255,24 @@ impl<'a> Button<'a> {
         self
     }
 
+    /// Draws it where `ui` is, as wide as what it says; a justified layout makes it wider.
+    pub(crate) fn ui(self, ui: &mut Ui, look: Look) -> Response {
+        let width = match self.icon {
+            Some(_) => self.height.max(theme::CONTROL),
+            None => text_width(ui, self.text, self.font()) + 2.0 * theme::PAD,
+        };
+        let height = self.height.max(ui.spacing().interact_size.y);
+        let (id, rect) = ui.allocate_space(vec2(width, height));
+        self.put(ui, look, rect, id)
+    }
+
+    const fn font(&self) -> FontId {
+        match self.weight {
+            Weight::Stop => theme::large(),
+            _ => theme::body(),
+        }
+    }
+
     /// Draws it and says whether it was pressed.
     pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
         let response = self.ground(ui, look, rect, id);
@@ -221,10 +281,7 @@ impl<'a> Button<'a> {
             sign(ui, rect, icon, color);
             return response;
         }
-        let font = match self.weight {
-            Weight::Stop => theme::large(),
-            _ => theme::body(),
-        };
+        let font = self.font();
         let inner = rect.shrink2(vec2(theme::STEP, 0.0));
         paint_text(ui, inner, Align2::CENTER_CENTER, self.text, font, color);
         response
@@ -312,6 +369,75 @@ pub(crate) fn focus_ring(ui: &Ui, look: Look, response: &Response, rect: Rect) {
         ui.painter()
             .rect_stroke(rect.expand(2.0), round, stroke, StrokeKind::Outside);
     }
+}
+
+/// A card as wide as `ui`.
+pub(crate) fn card_ui<R>(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let frame = Frame::new()
+        .fill(look.palette.card)
+        .stroke(Stroke::new(1.0, look.palette.edge))
+        .corner_radius(theme::ROUND)
+        .inner_margin(theme::PAD);
+    let shown = frame.show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        add(ui)
+    });
+    shown.inner
+}
+
+/// The title of a card, and what stands at the right end of its row, from right to left.
+pub(crate) fn head_ui<R>(
+    ui: &mut Ui,
+    look: Look,
+    title: &str,
+    right: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    let row = ui.horizontal(|ui| {
+        ui.set_min_height(theme::CONTROL);
+        let title = RichText::new(title).font(theme::title());
+        ui.add(egui::Label::new(title.color(look.palette.text)));
+        let left = Layout::right_to_left(Align::Center);
+        ui.with_layout(left, right).inner
+    });
+    row.inner
+}
+
+/// A line of text that counts as it is typed.
+pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> Response {
+    let edit = egui::TextEdit::singleline(text)
+        .hint_text(hint.to_owned())
+        .char_limit(EDIT_MAX)
+        .margin(theme::FIELD_INSET)
+        .desired_width(ui.available_width());
+    let response = ui.add(edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
+        info.current_text_value = Some(text.clone());
+        info
+    });
+    response
+}
+
+/// One of several, from a list that opens; true if another one was chosen.
+pub(crate) fn choose_ui<T: Clone + PartialEq>(
+    ui: &mut Ui,
+    name: &str,
+    chosen: &mut T,
+    all: &[(T, &str)],
+) -> bool {
+    let text = all.iter().find(|(value, _)| value == chosen);
+    let before = chosen.clone();
+    let shown = egui::ComboBox::from_id_salt(name)
+        .selected_text(text.map_or("-", |(_, text)| text))
+        .show_ui(ui, |ui| {
+            for (value, text) in all {
+                ui.selectable_value(chosen, value.clone(), *text);
+            }
+        });
+    ui.ctx().accesskit_node_builder(shown.response.id, |node| {
+        node.set_label(name);
+    });
+    *chosen != before
 }
 
 /// The ground of a card; what is left inside its padding.

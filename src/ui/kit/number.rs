@@ -2,7 +2,10 @@
 
 use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::{Look, Typing};
+use crate::ui::text::main;
 use crate::ui::theme;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Align2, Id, Key, Rect, Role, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
 use std::ops::RangeInclusive;
 
@@ -27,6 +30,12 @@ pub(crate) struct NumberField<'a> {
 }
 
 impl NumberField<'_> {
+    /// Draws the field where `ui` is. The number that was typed and confirmed with Enter in this frame.
+    pub(crate) fn ui(self, ui: &mut Ui, look: Look, typing: &mut Typing) -> Option<f64> {
+        let (id, rect) = ui.allocate_space(vec2(theme::FIELD, theme::CONTROL));
+        self.put(ui, look, typing, rect, id)
+    }
+
     /// Draws the field. The number that was typed and confirmed with Enter in this frame.
     pub(crate) fn put(
         self,
@@ -48,7 +57,8 @@ impl NumberField<'_> {
                     refused: None,
                 };
             }
-        } else if typing.field == Some(id) && typing.refused != Some(id) {
+        } else if typing.field == Some(id) && (typing.refused != Some(id) || self.disabled.is_some())
+        {
             *typing = Typing::default();
         }
         let mut text = if typing.field == Some(id) {
@@ -57,6 +67,9 @@ impl NumberField<'_> {
             shown
         };
         let response = self.edit(ui, look, typing, &mut text, rect, id);
+        if response.gained_focus() {
+            select_all(ui, id, &text);
+        }
         if typing.field == Some(id) {
             typing.text.clone_from(&text);
             typing.refused = typing.refused.filter(|_| !response.changed());
@@ -64,10 +77,18 @@ impl NumberField<'_> {
         let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let parsed = strict(&text, decimals).filter(|value| self.range.contains(value));
         let (from, to) = (self.range.start(), self.range.end());
-        response.on_hover_text(match self.disabled {
-            Some(reason) => reason.to_owned(),
-            None => format!("{} {from}..{to}", self.tip),
-        });
+        if typing.refused == Some(id) {
+            // Over what is beside the field, so that nothing moves under the pointer.
+            let text = format!("{} {from}..{to}", look.say(main::ONLY_FROM_TO));
+            let layer = response.layer_id;
+            egui::Tooltip::always_open(ui.ctx().clone(), layer, id.with("refused"), &response)
+                .show(|ui| ui.colored_label(look.palette.bad, text));
+        } else {
+            response.on_hover_text(match self.disabled {
+                Some(reason) => reason.to_owned(),
+                None => format!("{} {from}..{to}", self.tip),
+            });
+        }
         if !entered || typing.field != Some(id) {
             return None;
         }
@@ -133,6 +154,15 @@ impl NumberField<'_> {
         });
         response
     }
+}
+
+/// Marks all of the field's text, so that what is typed next takes its place.
+fn select_all(ui: &Ui, id: Id, text: &str) {
+    let mut state = TextEditState::load(ui.ctx(), id).unwrap_or_default();
+    let end = CCursor::new(text.chars().count());
+    let all = CCursorRange::two(CCursor::default(), end);
+    state.cursor.set_char_range(Some(all));
+    state.store(ui.ctx(), id);
 }
 
 /// A number written with plain digits and nothing else: no group marks, no full-width digit. Where decimals are wanted

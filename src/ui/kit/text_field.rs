@@ -1,7 +1,7 @@
 //! A line of text that counts when it is left, and not when it is left with Esc. Knows nothing of what it names.
 
 use crate::ui::theme;
-use egui::{Id, Key, Rect, Role, TextEdit, Ui, WidgetInfo};
+use egui::{Id, Key, Rect, Role, TextEdit, Ui, WidgetInfo, vec2};
 
 /// A text field at a place.
 #[derive(Debug, Clone, Copy)]
@@ -17,6 +17,12 @@ pub(crate) struct TextField<'a> {
 }
 
 impl TextField<'_> {
+    /// Draws it where `ui` is, over the width that is left. What was typed, once it was left with something new in it.
+    pub(crate) fn ui(self, ui: &mut Ui, typed: &mut Option<(Id, String)>) -> Option<String> {
+        let (id, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
+        self.put(ui, typed, rect, id)
+    }
+
     /// Draws it. What was typed, once it was left with something new in it.
     pub(crate) fn put(
         self,

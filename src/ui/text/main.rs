@@ -4,6 +4,7 @@ use crate::ui::text::phrase::texts;
 
 texts! {
     SIMULATED: "SIMULATED", "仿真";
+    ONLY_FROM_TO: "Only a number within", "只接受此范围内的数字：";
     SIMULATED_TIP: "This is the built-in hand. No real hand is connected.", "这是内置的仿真手，没有连接真实的灵巧手。";
     REAL_HAND: "HAND", "真机";
     NO_HAND: "NO HAND", "无连接";
