@@ -259,6 +259,13 @@ async fn after_a_factory_reset_no_row_is_shown_as_it_was() {
         "the hand holds another"
     );
     assert_ne!(bench.hand().param_freshness(INDEX), Freshness::Live);
+    for _ in 0..500 {
+        bench.run(10).await;
+        bench.app.look_at_params(bench.clock.now());
+    }
+    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Live);
+    let read = live(&bench, INDEX);
+    assert_ne!(read, Some(Value::Number(100)), "the hand holds another");
 }
 
 #[tokio::test(start_paused = true)]

@@ -90,7 +90,17 @@ impl Person {
         self.look();
     }
 
+    /// Presses a button as soon as it can be pressed.
     fn press(&mut self, name: &str) {
+        let begun = Instant::now();
+        let button = |harness: &Harness<'static, Program>| {
+            let node = harness.get_by_role_and_label(Role::Button, name);
+            !node.accesskit_node().is_disabled()
+        };
+        while !button(&self.harness) {
+            assert!(begun.elapsed() < PATIENCE, "{name} stays disabled");
+            self.look();
+        }
         self.harness
             .get_by_role_and_label(Role::Button, name)
             .click();
