@@ -19,12 +19,15 @@ pub enum Room {
     Joints,
     /// Fingertips over faults; its border is at its left.
     Side,
-    /// The fingertips; their border is below.
-    Tips,
-    /// The faults, over which the fingertips' border stands.
+    /// The faults below the fingertips; their border is above.
     Faults,
     /// Poses and gestures; its border is above.
     Strip,
+}
+
+impl Room {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Joints, Self::Side, Self::Faults, Self::Strip];
 }
 
 /// How one room stands.
@@ -108,8 +111,6 @@ pub struct Layout {
     pub joints: RoomLayout,
     /// See [`Room::Side`].
     pub side: RoomLayout,
-    /// See [`Room::Tips`].
-    pub tips: RoomLayout,
     /// See [`Room::Faults`].
     pub faults: RoomLayout,
     /// See [`Room::Strip`].
@@ -123,7 +124,6 @@ impl Layout {
         match room {
             Room::Joints => self.joints,
             Room::Side => self.side,
-            Room::Tips => self.tips,
             Room::Faults => self.faults,
             Room::Strip => self.strip,
         }
@@ -135,7 +135,6 @@ impl Layout {
         match room {
             Room::Joints => self.joints = standing,
             Room::Side => self.side = standing,
-            Room::Tips => self.tips = standing,
             Room::Faults => self.faults = standing,
             Room::Strip => self.strip = standing,
         }
@@ -189,13 +188,7 @@ mod tests {
             window: [1920.0, 1080.0].into(),
             ..Layout::default()
         };
-        for room in [
-            Room::Joints,
-            Room::Side,
-            Room::Tips,
-            Room::Faults,
-            Room::Strip,
-        ] {
+        for room in [Room::Joints, Room::Side, Room::Faults, Room::Strip] {
             let standing = RoomLayout {
                 shut: true,
                 ..RoomLayout::default()

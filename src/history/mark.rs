@@ -16,6 +16,8 @@ pub enum MarkKind {
     Armed,
     /// Stop was pressed.
     Stop,
+    /// Stop was pressed, and could not be sent.
+    StopNotSent,
     /// Feedback showed that the hand rests.
     HoldConfirmed,
     /// A drive reported a fault.
@@ -50,6 +52,7 @@ impl MarkKind {
         match self {
             Self::Armed => "armed".into(),
             Self::Stop => "stop".into(),
+            Self::StopNotSent => "stop not sent".into(),
             Self::HoldConfirmed => "at rest".into(),
             Self::Fault => "fault".into(),
             Self::LinkLost => "link lost".into(),

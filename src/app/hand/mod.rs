@@ -4,6 +4,7 @@ pub mod connection;
 pub mod gestures;
 pub mod joint;
 pub mod motion;
+pub mod mover;
 pub mod news;
 pub(crate) mod open;
 pub(crate) mod pending;

@@ -5,6 +5,7 @@ use crate::app::hand::preset::Preset;
 use crate::app::hand::{Freshness, HandState};
 use crate::app::notices::{NoticeKind, Notices};
 use crate::hand::{Angle, Dof, Finger, Force, Moment, PerDof, Setpoints, Speed, Target};
+use crate::history::MarkKind;
 use crate::link::ArmRequest;
 use crate::poses::library::Pose;
 use crate::record::LinkState;
@@ -16,7 +17,10 @@ impl HandState {
     pub(crate) fn stop(&mut self, notices: &mut Notices, now: Moment) {
         match &self.open {
             Some(open) if self.link.state.is_live() => open.link.stop(),
-            _ => notices.push(now, NoticeKind::StopNotSent),
+            _ => {
+                notices.push(now, NoticeKind::StopNotSent);
+                self.history.mark(now, MarkKind::StopNotSent);
+            }
         }
         if let Some(run) = &mut self.series {
             run.end(Abort::Person);

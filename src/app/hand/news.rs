@@ -149,7 +149,7 @@ impl HandState {
     }
 
     fn found(&mut self, notices: &mut Notices, now: Moment) {
-        notices.withdraw(|what| matches!(what, NoticeKind::NoLink(_)));
+        notices.withdraw(|what| matches!(what, NoticeKind::NoLink(_) | NoticeKind::StopNotSent));
         if self.was_live {
             self.history.mark(now, MarkKind::Reconnected);
             notices.push(now, NoticeKind::Reconnected);

@@ -44,6 +44,7 @@ fn mark_line(look: Look, mark: &Mark) -> Option<EventLine> {
     let (text, color) = match &mark.kind {
         MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
         MarkKind::Stop => (panels::MARK_STOP, palette.bad),
+        MarkKind::StopNotSent => (panels::MARK_STOP_NOT_SENT, palette.bad),
         MarkKind::HoldConfirmed => (panels::MARK_HELD, palette.ok),
         MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
         MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),

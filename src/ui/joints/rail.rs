@@ -1,103 +1,84 @@
-//! The joints when their column is shut: name, lamp, actual angle and force of each. Sets nothing.
+//! The joints where they are not set: name, lamp, actual angle and force of each. Sets nothing.
 
+use crate::app::action::Action;
 use crate::app::layout::Room;
 use crate::hand::{Dof, Quantity};
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::newest::newest;
 use crate::ui::joints::row::Row;
-use crate::ui::kit::border::{ask, title};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
+use crate::ui::kit::controls::{self, Button, Label};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{layout, main};
 use crate::ui::theme;
 use crate::ui::window::rooms::toggled;
-use egui::{Align2, CornerRadius, Id, Rect, Ui, pos2, vec2};
+use egui::{Align, CornerRadius, Layout, Ui, vec2};
 
-/// Lines of one joint: name, angle, force.
-const LINES: u8 = 3;
-
-/// Draws the rail.
-pub(crate) fn rail_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+/// Draws the rail. Where joints can be set, its head opens their column.
+pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
     let look = pane.look;
-    let mut inner = controls::card(ui, look, rect);
-    let head = controls::take_top(&mut inner, theme::CONTROL);
-    let name = format!(
-        "{} {}",
-        look.say(layout::OPEN),
-        look.say(title(Room::Joints))
-    );
-    let button = Button::new(look.say(main::JOINTS), look.say(layout::OPEN_TIP))
-        .named(&name)
-        .weight(Weight::Normal);
-    let place = head.expand2(vec2(theme::STEP, 0.0));
-    let response = button.ground(ui, look, place, Id::unique("open joints"));
-    let words = place.shrink2(vec2(theme::GAP, 0.0));
-    let color = look.palette.text;
-    let left = Align2::LEFT_CENTER;
-    controls::paint_text(
-        ui,
-        words,
-        left,
-        look.say(main::JOINTS),
-        theme::body(),
-        color,
-    );
-    let (right, sign) = (Align2::RIGHT_CENTER, theme::TO_RIGHT);
-    ui.painter()
-        .text(words.right_center(), right, sign, theme::icon(), color);
-    if response.clicked() {
-        ask(pane, toggled(&pane.state.settings.layout, Room::Joints));
-    }
-    let most = f32::from(LINES) * theme::CONTROL + theme::PAD;
-    let height = (inner.height() / 6.0).min(most);
-    for (at, dof) in Dof::ALL.into_iter().enumerate() {
-        let top = inner.top() + height * f32::from(u8::try_from(at).unwrap_or(0));
-        let place = Rect::from_min_size(pos2(inner.left(), top), vec2(inner.width(), height));
-        joint_ui(ui, place.shrink2(vec2(0.0, theme::STEP / 2.0)), pane, dof);
-    }
+    controls::card_ui(ui, look, |ui| {
+        ui.set_min_height(ui.available_height());
+        let title = look.say(main::JOINTS);
+        if can_open {
+            let name = format!("{} {title}", look.say(layout::OPEN));
+            let button = Button::new(title, look.say(layout::OPEN_TIP)).named(&name);
+            let wide = Layout::top_down_justified(Align::Center);
+            if ui
+                .with_layout(wide, |ui| button.ui(ui, look))
+                .inner
+                .clicked()
+            {
+                let layout = toggled(&pane.state.settings.layout, Room::Joints);
+                pane.actions.push(Action::Layout(layout));
+            }
+        } else {
+            Label::new(title, look.palette.text)
+                .font(theme::title())
+                .ui(ui);
+        }
+        ui.add_space(theme::STEP);
+        for dof in Dof::ALL {
+            joint_ui(ui, pane, dof);
+            ui.add_space(theme::GAP);
+        }
+    });
 }
 
-fn joint_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, dof: Dof) {
+fn joint_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
     let look = pane.look;
     let palette = look.palette;
     let row = Row::new(dof, pane);
-    let bar = rect.with_max_x(rect.left() + theme::BAR);
-    ui.painter()
-        .rect_filled(bar, CornerRadius::same(theme::ROUND_TINY), row.color);
-    let inner = rect.with_min_x(bar.right() + theme::GAP);
-    let height = inner.height() / f32::from(LINES);
-    let line = |n: f32| {
-        let top = inner.top() + n * height;
-        Rect::from_min_max(pos2(inner.left(), top), pos2(inner.right(), top + height))
-    };
-    let drive = DriveWords::of(pane, dof);
-    let head = line(0.0);
-    let lamp = pos2(head.right() - theme::LAMP, head.center().y);
-    controls::lamp(ui, lamp, drive.lamp);
-    let words = head.with_max_x(lamp.x - theme::GAP);
-    let name = row.named(pane, main::STATUS);
-    Label::new(row.name, palette.text)
-        .small()
-        .put(ui, words)
-        .on_hover_text(format!("{name}: {}", drive.title));
-    let (angle, freshness) = newest(pane, dof, pane.state.hand().sample.angle);
-    let text = format::whole(angle.map(|angle| i64::from(angle.raw())), 4);
-    Label::new(&text, look.value(freshness, palette.text))
-        .number()
-        .right()
-        .named(&row.named(pane, main::NAME_ANGLE_ACTUAL))
-        .put(ui, line(1.0));
-    let (force, freshness) = newest(pane, dof, pane.state.hand().sample.force);
-    let text = format::with_unit(
-        force.map(|force| i64::from(force.raw())),
-        4,
-        Quantity::Force.row().unit,
-    );
-    Label::new(&text, look.value(freshness, palette.text))
-        .number()
-        .right()
-        .named(&row.named(pane, main::NAME_FORCE_ACTUAL))
-        .put(ui, line(2.0));
+    let shown = ui.horizontal(|ui| {
+        ui.add_space(theme::BAR + theme::STEP);
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let drive = DriveWords::of(pane, dof);
+            let status = format!("{}: {}", row.named(pane, main::STATUS), drive.title);
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = theme::STEP;
+                let lamp = ui.allocate_space(vec2(theme::PAD, theme::PAD)).1;
+                controls::lamp(ui, lamp.center(), drive.lamp);
+                let name = Label::new(row.name, palette.text).small().ui(ui);
+                name.on_hover_text(status);
+            });
+            ui.with_layout(Layout::top_down(Align::Max), |ui| {
+                let (angle, freshness) = newest(pane, dof, pane.state.hand().sample.angle);
+                let text = format::whole(angle.map(|angle| i64::from(angle.raw())), 4);
+                let name = row.named(pane, main::NAME_ANGLE_ACTUAL);
+                let number = Label::new(&text, look.value(freshness, palette.text));
+                number.number().named(&name).ui(ui);
+                let (force, freshness) = newest(pane, dof, pane.state.hand().sample.force);
+                let force = force.map(|force| i64::from(force.raw()));
+                let text = format::with_unit(force, 4, Quantity::Force.row().unit);
+                let name = row.named(pane, main::NAME_FORCE_ACTUAL);
+                let number = Label::new(&text, look.value(freshness, palette.text));
+                number.number().named(&name).ui(ui);
+            });
+        });
+    });
+    let place = shown.response.rect;
+    let bar = place.with_max_x(place.left() + theme::BAR);
+    let round = CornerRadius::same(theme::ROUND_TINY);
+    ui.painter().rect_filled(bar, round, row.color);
 }

@@ -315,11 +315,18 @@ impl<'a> Button<'a> {
             StrokeKind::Inside,
         );
         focus_ring(ui, look, &response, rect);
+        let tip = match self.disabled {
+            Some(reason) => format!("{}\n{reason}", self.tip).trim().to_owned(),
+            None => self.tip.to_owned(),
+        };
+        let response = if tip.is_empty() {
+            response
+        } else {
+            response.on_hover_text(tip)
+        };
         match self.disabled {
-            Some(reason) => response.on_hover_text(format!("{}\n{reason}", self.tip)),
-            None => response
-                .on_hover_text(self.tip)
-                .on_hover_cursor(egui::CursorIcon::PointingHand),
+            Some(_) => response,
+            None => response.on_hover_cursor(egui::CursorIcon::PointingHand),
         }
     }
 

@@ -1,6 +1,5 @@
 //! What every view is built from: texts, controls, cards, lists, borders.
 
-pub(crate) mod border;
 pub(crate) mod card;
 #[cfg(test)]
 pub(crate) mod card_tests;

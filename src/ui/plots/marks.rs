@@ -57,6 +57,7 @@ fn mark_look(pane: &Pane<'_>, kind: &MarkKind) -> (Text, Color32) {
     match kind {
         MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
         MarkKind::Stop => (panels::MARK_STOP, palette.bad),
+        MarkKind::StopNotSent => (panels::MARK_STOP_NOT_SENT, palette.bad),
         MarkKind::HoldConfirmed => (panels::MARK_HELD, palette.ok),
         MarkKind::Fault => (panels::MARK_FAULT, palette.warn),
         MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),

@@ -20,6 +20,7 @@ texts! {
     PLOT_EMPTY: "Nothing measured in this time", "此时间段内没有数据";
     NOW: "now", "现在";
     MARK_STOP: "Stop", "停止";
+    MARK_STOP_NOT_SENT: "Stop not sent", "停止未发出";
     MARK_FAULT: "Fault", "故障";
     MARK_RECONNECT: "Reconnected", "重新连接";
     MARK_GESTURE: "Gesture", "手势";

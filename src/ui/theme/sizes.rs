@@ -10,8 +10,8 @@ pub(crate) const PAD: f32 = 12.0;
 pub(crate) const TOP_BAR: f32 = 56.0;
 /// Height of the row of tabs.
 pub(crate) const TABS: f32 = 36.0;
-/// Height of a banner.
-pub(crate) const BANNER: f32 = 44.0;
+/// Height of the line with warnings and messages.
+pub(crate) const STATUS: f32 = 40.0;
 /// Height of a button or field.
 pub(crate) const CONTROL: f32 = 24.0;
 /// Height of a button that matters.

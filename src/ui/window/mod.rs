@@ -1,12 +1,25 @@
 //! The whole window: where each part stands, which keys act everywhere. Holds view state only, no hand.
-pub(crate) mod banner;
+//!
+//! ```text
+//! +----------------------------------------------------------+
+//! | header: hand, link, rates                      arm, STOP |
+//! | status: warning, what moves the hand, message, note      |
+//! | tabs                              keys, theme, language, ≡ |
+//! +----------+-----------------------------------------------+
+//! | joints   | view                                          |
+//! |          |   Live: plots         | hand and fingertips   |
+//! |          |                       +---------------------- |
+//! |          |                       | faults                |
+//! |          |   --------------------+---------------------- |
+//! |          |   poses and gestures                          |
+//! +----------+-----------------------------------------------+
+//! ```
+pub(crate) mod header;
 pub(crate) mod key_list;
 pub(crate) mod keys;
-pub(crate) mod menu;
 pub(crate) mod message_log;
-pub(crate) mod note_bar;
 pub(crate) mod rooms;
-pub(crate) mod top_bar;
+pub(crate) mod status;
 
 use crate::app::action::Action;
 use crate::app::hand::{Play, Preset};
@@ -22,7 +35,6 @@ use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
 use crate::ui::joints::row::Row;
-use crate::ui::kit::border::{border_ui, shut_ui};
 use crate::ui::kit::card::CardView;
 use crate::ui::kit::look::{Explain, Look, Pane, Typing};
 use crate::ui::params::DeviceView;
@@ -37,13 +49,13 @@ use crate::ui::trials::compare::CompareView;
 use crate::ui::view::View;
 use crate::ui::window::key_list::KeyList;
 use crate::ui::window::keys::Wish;
-use crate::ui::window::note_bar::NoteBar;
-use crate::ui::window::rooms::{Body, Overview, Side};
+use crate::ui::window::rooms::{RoomSize, Rooms};
+use crate::ui::window::status::StatusLine;
 
 use crate::ui::touch::{self, TouchView};
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
-use egui::{Rect, Ui};
+use egui::{Frame, Margin, Panel, Rect, Stroke, Ui};
 
 /// What the window remembers between frames: the open tab, text in progress, what is hidden.
 #[derive(Debug, Default)]
@@ -54,7 +66,8 @@ pub struct Window {
     joints: JointsView,
     plots: PlotView,
     faults: FaultsView,
-    note: NoteBar,
+    status: StatusLine,
+    rooms: Rooms,
     key_list: KeyList,
     cards: CardView,
     poses: PoseView,
@@ -158,7 +171,7 @@ impl Window {
                 None
             }
             Wish::Note => {
-                self.note.open(state.now);
+                self.status.open_note(state.now);
                 None
             }
             Wish::View(view) => {
@@ -194,54 +207,86 @@ impl Window {
     }
 
     fn parts_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let whole = ui.max_rect();
-        ui.painter()
-            .rect_filled(whole, 0.0, pane.look.palette.window);
-        let (bar, mut body) = whole.split_top_bottom_at_y(whole.top() + theme::TOP_BAR);
-        let covered = body;
-        let bar = top_bar::stop_first_ui(ui, bar, pane);
-        if is_covered(pane.state) {
+        let palette = pane.look.palette;
+        ui.painter().rect_filled(ui.max_rect(), 0.0, palette.window);
+        self.rooms.begin(pane.state.settings.layout);
+        let is_free = !is_covered(pane.state);
+        let header = Frame::new()
+            .fill(palette.card)
+            .stroke(Stroke::new(1.0, palette.edge))
+            .inner_margin(Margin::symmetric(12, 8));
+        let asked = bar_ui(ui, ("header", theme::TOP_BAR), header, |ui| {
+            header::header_ui(ui, pane, is_free)
+        });
+        if asked {
+            self.view = View::Connection;
+        }
+        let status = Frame::new().inner_margin(Margin {
+            bottom: 0,
+            ..MARGIN
+        });
+        let height = theme::STATUS + theme::GAP;
+        let asked = bar_ui(ui, ("status", height), status, |ui| {
+            self.status.ui(ui, pane)
+        });
+        self.view = asked.unwrap_or(self.view);
+        // What is below is covered by a card; what is above stays bright.
+        let covered = ui.available_rect_before_wrap();
+        if !is_free {
             self.key_list.hide();
             ui.disable();
         }
-        if top_bar::top_bar_ui(ui, bar, pane) {
-            self.view = View::Connection;
-        }
-        for banner in banner::banners(pane) {
-            let height = banner.height(ui, body.width(), pane.look);
-            let (place, rest) = body.split_top_bottom_at_y(body.top() + height);
-            if let Some(view) = banner.ui(ui, place, pane.look) {
-                self.view = view;
-            }
-            body = rest;
-        }
-        if self.note.is_open() {
-            let (place, rest) = body.split_top_bottom_at_y(body.top() + theme::BANNER);
-            self.note.ui(ui, place, pane);
-            body = rest;
-        }
-        let below = body;
-        let (tabs, body) = body.split_top_bottom_at_y(body.top() + theme::TABS);
-        if top_bar::tabs_ui(ui, tabs, pane, &mut self.view) {
+        let tabs = Frame::new().inner_margin(Margin::symmetric(8, 2));
+        let keys_asked = bar_ui(ui, ("tabs", theme::TABS), tabs, |ui| {
+            header::tabs_ui(ui, pane, &mut self.view)
+        });
+        if keys_asked {
             self.key_list.toggle();
         }
-        let body = Rect::from_min_max(body.min, body.max - egui::vec2(theme::GAP, theme::GAP));
-        let body = body.with_min_x(body.left() + theme::GAP);
-        let layout = pane.state.settings.layout;
-        let body = Body::of(body, whole.width(), &layout);
-        if layout.joints.shut {
-            joint_rail::rail_ui(ui, body.joints, pane);
-        } else {
-            border_ui(ui, pane, &body.border);
-            self.joints.ui(ui, body.joints, pane);
-        }
-        self.view_ui(ui, body.view, pane);
+        let below = ui.available_rect_before_wrap();
+        let body = Frame::new().inner_margin(Margin { top: 2, ..MARGIN });
+        egui::CentralPanel::no_frame().frame(body).show(ui, |ui| {
+            self.joints_ui(ui, pane);
+            let rect = ui.available_rect_before_wrap();
+            self.view_ui(ui, rect, pane);
+        });
         self.key_list.ui(ui, below, pane.look);
         let card = guard::card_of(pane.state, pane.look);
         let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
         let card = card.or_else(|| compare::card_of(pane.state, pane.look));
         let asked = self.cards.ui(ui, covered, pane.look, card);
         pane.actions.extend(asked);
+    }
+
+    /// The joints at the left of `ui`: all of each where they are set, else a rail with what matters.
+    fn joints_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let sets_joints = matches!(
+            self.view,
+            View::Live | View::Touch | View::Poses | View::Tune
+        );
+        if pane.state.settings.layout.joints.shut || !sets_joints {
+            let frame = Frame::new().inner_margin(Margin {
+                right: 8,
+                ..Margin::ZERO
+            });
+            let rail = Panel::left("rail").frame(frame).resizable(false);
+            let rail = rail.exact_size(theme::JOINTS_RAIL + theme::GAP);
+            rail.show_separator_line(false).show(ui, |ui| {
+                joint_rail::rail_ui(ui, pane, sets_joints);
+            });
+            return;
+        }
+        let designed = ui.ctx().content_rect().width() * theme::JOINTS_SHARE;
+        let size = RoomSize {
+            designed: designed.clamp(theme::JOINTS_LEAST, theme::JOINTS_MOST) + theme::GAP,
+            least: theme::JOINTS_LEAST + theme::GAP,
+            rest: theme::PLOTS_LEAST + theme::GAP + theme::SIDE_LEAST,
+        };
+        let Self { rooms, joints, .. } = self;
+        rooms.room_ui(ui, pane, (Room::Joints, size), |ui, pane| {
+            let rect = ui.available_rect_before_wrap();
+            joints.ui(ui, rect, pane);
+        });
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
@@ -267,34 +312,46 @@ impl Window {
             self.plots_ui(ui, rect, pane);
             return;
         }
-        let layout = pane.state.settings.layout;
-        let rooms = Overview::of(rect, &layout, touch::overview_height);
-        for border in &rooms.borders {
-            let shut = layout.room(border.room).shut;
-            let inner = border.room == Room::Tips && (layout.side.shut || layout.faults.shut);
-            if !shut && !inner {
-                border_ui(ui, pane, border);
-            }
-        }
-        if layout.strip.shut {
-            shut_ui(ui, pane, rooms.strip, Room::Strip, Side::Bottom);
-        } else if pose_tiles::strip_ui(ui, rooms.strip, pane) {
+        let Self { rooms, touch, .. } = self;
+        let strip = if rect.height() < theme::STRIP_ROOMY {
+            theme::STRIP_LEAST
+        } else {
+            theme::STRIP
+        };
+        let strip = RoomSize {
+            designed: strip + theme::GAP,
+            least: theme::STRIP_LEAST + theme::GAP,
+            rest: theme::UPPER_LEAST,
+        };
+        let mut poses_asked = false;
+        rooms.room_ui(ui, pane, (Room::Strip, strip), |ui, pane| {
+            let rect = ui.available_rect_before_wrap();
+            poses_asked = pose_tiles::strip_ui(ui, rect, pane);
+        });
+        let side = (rect.width() * theme::SIDE_SHARE).clamp(theme::SIDE_LEAST, theme::SIDE_MOST);
+        let side = RoomSize {
+            designed: side + theme::GAP,
+            least: theme::SIDE_LEAST + theme::GAP,
+            rest: theme::PLOTS_LEAST,
+        };
+        rooms.room_ui(ui, pane, (Room::Side, side), |ui, pane| {
+            let column = ui.available_rect_before_wrap();
+            let faults = RoomSize {
+                designed: column.height() - touch::overview_height(column),
+                least: theme::FAULTS_LEAST + theme::GAP,
+                rest: theme::TIPS_LEAST,
+            };
+            rooms.room_ui(ui, pane, (Room::Faults, faults), |ui, pane| {
+                let rect = ui.available_rect_before_wrap();
+                faults::faults_card_ui(ui, rect, pane);
+            });
+            let rect = ui.available_rect_before_wrap();
+            touch.small_ui(ui, rect, pane);
+        });
+        let rect = ui.available_rect_before_wrap();
+        self.plots_ui(ui, rect, pane);
+        if poses_asked {
             self.view = View::Poses;
-        }
-        self.plots_ui(ui, rooms.plots, pane);
-        if layout.side.shut {
-            shut_ui(ui, pane, rooms.side, Room::Side, Side::Right);
-            return;
-        }
-        if layout.tips.shut {
-            shut_ui(ui, pane, rooms.tips, Room::Tips, Side::Top);
-        } else {
-            self.touch.small_ui(ui, rooms.tips, pane);
-        }
-        if layout.faults.shut {
-            shut_ui(ui, pane, rooms.faults, Room::Faults, Side::Bottom);
-        } else {
-            faults::faults_card_ui(ui, rooms.faults, pane);
         }
     }
 
@@ -313,9 +370,23 @@ impl Window {
     fn plots_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         self.plots.ui(ui, rect, pane);
         if std::mem::take(&mut self.plots.note_asked) {
-            self.note.open(pane.state.now);
+            self.status.open_note(pane.state.now);
         }
     }
+}
+
+const MARGIN: Margin = Margin::same(8);
+
+/// A row of the window of this name and height, over its whole width.
+fn bar_ui<R>(
+    ui: &mut Ui,
+    (name, height): (&'static str, f32),
+    frame: Frame,
+    add: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    let bar = Panel::top(name).frame(frame).resizable(false);
+    let bar = bar.exact_size(height).show_separator_line(false);
+    bar.show(ui, add).inner
 }
 
 /// Gives one part of the window the whole place. What it asks for goes nowhere.

@@ -1,0 +1,63 @@
+//! What moves the hand now, so that every view can tell it.
+
+use crate::app::hand::HandState;
+use crate::app::hand::gestures::GestureProgress;
+use crate::app::procedures::procedure::Procedure;
+use crate::hand::Gesture;
+use crate::poses::library::SequenceId;
+use crate::record::{Hold, LinkState, Rest};
+
+/// What moves the hand now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mover {
+    /// Stop was pressed; feedback does not show rest yet.
+    Stop,
+    /// A calibration of its force sensors.
+    Calibration,
+    /// A series of trials: the trial, and how many there are.
+    Series(usize, usize),
+    /// A sequence, and its step, 0 the first.
+    Sequence(SequenceId, usize),
+    /// A stored gesture.
+    Gesture(Gesture),
+    /// Setpoints of a person.
+    Setpoints,
+    /// Nothing that this program asked for.
+    Unknown,
+}
+
+impl HandState {
+    /// What moves the hand now; `None` while it rests and nothing is about to move it, or nothing is known of it.
+    #[must_use]
+    pub fn mover(&self) -> Option<Mover> {
+        if !self.link.state.is_live() {
+            return None;
+        }
+        if self.link.state == LinkState::Holding || matches!(self.link.hold, Hold::Asked { .. }) {
+            return Some(Mover::Stop);
+        }
+        if let Some(Procedure::Calibrate(card)) = &self.procedure
+            && card.stage.is_doing()
+        {
+            return Some(Mover::Calibration);
+        }
+        if let Some(run) = &self.series {
+            return Some(Mover::Series(run.view.number, run.view.total));
+        }
+        if let Some(run) = self.sequence.as_ref().filter(|run| run.is_running()) {
+            return Some(Mover::Sequence(run.sequence, run.view.at));
+        }
+        if self.link.rest != Rest::Moving {
+            return None;
+        }
+        // A gesture lets all sliders follow the hand; whatever else is sent takes its own joints from it.
+        let follows = self.following.iter().all(|(_, follows)| *follows);
+        let gesture = self.gestures.last.filter(|_| follows);
+        let gesture = gesture.filter(|last| last.progress != GestureProgress::Failed);
+        Some(match gesture {
+            _ if !self.commanded => Mover::Unknown,
+            Some(last) => Mover::Gesture(last.gesture),
+            None => Mover::Setpoints,
+        })
+    }
+}

@@ -1,0 +1,256 @@
+//! The bar that is always there: which hand, how the link is, arm, and STOP. Also the row of tabs.
+
+use crate::app::action::Action;
+use crate::app::settings::{Language, Theme};
+use crate::ui::connection::link_words::link_words;
+use crate::ui::faults::entry as fault_entry;
+use crate::ui::kit::controls::{self, Button, Label, Weight};
+use crate::ui::kit::format;
+use crate::ui::kit::look::{Explain, Look, Pane};
+use crate::ui::text::{Text, faults, keys, main, words};
+use crate::ui::theme;
+use crate::ui::view::View;
+use crate::ui::window::rooms;
+use egui::{Align, Align2, Color32, CornerRadius, Layout, Rect, Response, Ui, pos2, vec2};
+
+/// Draws the bar. STOP can be pressed whatever card is open, the rest only if `is_free`. True if the connection was asked for.
+pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) -> bool {
+    let row = Layout::right_to_left(Align::Center);
+    let shown = ui.with_layout(row, |ui| {
+        stop_ui(ui, pane);
+        if !is_free {
+            ui.disable();
+        }
+        ui.add_space(theme::STEP);
+        arm_ui(ui, pane);
+        unseen_ui(ui, pane);
+        let left = Layout::left_to_right(Align::Center);
+        let shown = ui.with_layout(left, |ui| {
+            badge_ui(ui, pane);
+            let asked = link_ui(ui, pane);
+            figures_ui(ui, pane);
+            asked
+        });
+        shown.inner
+    });
+    shown.inner
+}
+
+fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let button = Button::new(look.say(main::STOP), look.say(main::STOP_TIP)).weight(Weight::Stop);
+    let (id, rect) = ui.allocate_space(vec2(theme::STOP_WIDTH, ui.available_height()));
+    let response = button.ground(ui, look, rect, id);
+    let (center, strong) = (Align2::CENTER_CENTER, look.palette.on_strong);
+    let (upper, lower) = rect.shrink(theme::BAR).split_top_bottom_at_fraction(0.6);
+    let word = look.say(main::STOP);
+    controls::paint_text(ui, upper, center, word, theme::large(), strong);
+    let keys = look.say(main::STOP_KEYS);
+    controls::paint_text(ui, lower, center, keys, theme::small(), strong);
+    if controls::pressed(ui, &response) {
+        pane.actions.push(Action::Stop);
+    }
+}
+
+fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let armed = pane.state.hand().is_armed();
+    let refusal = pane.state.hand().arm_refusal();
+    let refusal = refusal.map(|reason| words::refusal(look, reason));
+    let (text, name, tip) = if armed {
+        (main::DISARM, main::DISARM_NAME, main::DISARM_TIP)
+    } else {
+        (main::ARM, main::ARM_NAME, main::ARM_TIP)
+    };
+    let mut button = Button::new(look.say(text), look.say(tip))
+        .named(look.say(name))
+        .disabled(refusal.as_deref())
+        .weight(if armed { Weight::Armed } else { Weight::Strong });
+    button.selected = Some(armed);
+    let (id, rect) = ui.allocate_space(vec2(theme::ARM_WIDTH, theme::CONTROL_LARGE));
+    if button.put(ui, look, rect, id).clicked() {
+        let action = if armed { Action::Disarm } else { Action::Arm };
+        pane.actions.push(action);
+    }
+}
+
+/// A button with a lamp before its words.
+fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) -> Response {
+    let words = controls::text_width(ui, button.text, theme::body());
+    let size = vec2(words + theme::LAMP_BUTTON, theme::CONTROL_LARGE);
+    let (id, rect) = ui.allocate_space(size);
+    let response = button.ground(ui, look, rect, id);
+    let center = pos2(rect.left() + theme::LAMP_IN_BUTTON, rect.center().y);
+    controls::lamp(ui, center, lamp);
+    let words = rect.with_min_x(rect.left() + theme::WORDS_IN_BUTTON);
+    let (font, color) = (theme::body(), look.palette.text);
+    controls::paint_text(ui, words, Align2::LEFT_CENTER, button.text, font, color);
+    response
+}
+
+/// How many faults nobody has seen yet, from every view; a click opens them.
+fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let Some(color) = fault_entry::unseen_color(pane) else {
+        return;
+    };
+    let look = pane.look;
+    let count = pane.state.hand().faults.unseen().count();
+    let (before, after) = (look.say(faults::UNSEEN_BEFORE), look.say(faults::UNSEEN));
+    let text = format!("{before} {count} {after}");
+    let button = Button::new(text.trim(), look.say(faults::UNSEEN_TIP));
+    if lamp_button_ui(ui, look, button, color).clicked() {
+        *pane.explain = Some(Explain::Faults);
+    }
+}
+
+/// The badge of the built-in hand, or where the real one is.
+fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    let palette = look.palette;
+    let simulated = pane.state.hand().is_simulated();
+    let (text, fill, color) = match (&pane.state.hand().endpoint, simulated) {
+        (_, true) => (main::SIMULATED, palette.simulated, palette.on_simulated),
+        (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
+        (None, _) => (main::NO_HAND, palette.control, palette.muted),
+    };
+    let text = look.say(text);
+    let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+    let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
+    ui.painter().rect_filled(place, theme::ROUND_PILL, fill);
+    let badge = Label::new(text, color).center().put(ui, place);
+    if simulated {
+        badge.on_hover_text(look.say(main::SIMULATED_TIP));
+    }
+    if let (Some(endpoint), false) = (&pane.state.hand().endpoint, simulated) {
+        let text = endpoint.to_string();
+        let most = ui.available_width() * 0.4;
+        let width = controls::text_width(ui, &text, theme::number()) + 1.0;
+        ui.scope(|ui| {
+            ui.set_max_width(width.min(most));
+            Label::new(&text, palette.muted).number().ui(ui)
+        })
+        .inner
+        .on_hover_text(format!("{text}\n{}", look.say(main::ENDPOINT_TIP)));
+    }
+}
+
+fn link_ui(ui: &mut Ui, pane: &Pane<'_>) -> bool {
+    let look = pane.look;
+    let (word, color) = link_words(pane);
+    let word = look.say(word);
+    let name = format!("{}: {word}", look.say(main::LINK_BUTTON));
+    let button = Button::new(word, look.say(main::LINK_TIP))
+        .named(&name)
+        .weight(Weight::Quiet);
+    lamp_button_ui(ui, look, button, color).clicked()
+}
+
+/// How often is read, and what went wrong: each a small caption over a number, as many as there is room for.
+fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    let palette = look.palette;
+    let stats = &pane.state.hand().stats;
+    let live = pane.state.hand().link.state.is_live();
+    let color = if live { palette.text } else { palette.faint };
+    let errors = stats.timeouts
+        + stats.checksum_errors
+        + stats.resyncs
+        + stats.foreign_replies
+        + stats.refusals;
+    let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
+    let error_color = if errors > 0 { palette.warn } else { color };
+    let (state, touch) = (rate(stats.state_hz), rate(stats.tactile_hz));
+    let figures: [(Text, String, Text, Color32); 3] = [
+        (main::RATE_STATE, state, main::RATES_TIP, color),
+        (main::RATE_TACTILE, touch, main::RATES_TIP, color),
+        (
+            main::ERRORS,
+            errors.to_string(),
+            main::ERRORS_TIP,
+            error_color,
+        ),
+    ];
+    for (caption, value, tip, color) in figures {
+        if ui.available_width() < FIGURE {
+            return;
+        }
+        let (size, down) = (vec2(FIGURE, theme::FIGURE), Layout::top_down(Align::Min));
+        ui.allocate_ui_with_layout(size, down, |ui| {
+            ui.set_width(FIGURE);
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let caption = look.say(caption);
+            Label::new(caption, palette.muted).small().ui(ui);
+            let number = Label::new(&value, color).number().named(caption);
+            number.ui(ui).on_hover_text(look.say(tip));
+        });
+    }
+}
+
+/// Room for a figure.
+const FIGURE: f32 = 64.0;
+
+/// Draws the row of tabs, and the switches for theme and language. True if the list of keys was asked for.
+pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut View) -> bool {
+    let look = pane.look;
+    let row = Layout::right_to_left(Align::Center);
+    let shown = ui.with_layout(row, |ui| {
+        rooms::menu_ui(ui, pane);
+        let (theme, language) = (pane.state.settings.theme, pane.state.settings.language);
+        let text = match language {
+            Language::En => "中文",
+            Language::Zh => "English",
+        };
+        let button = Button::new(text, look.say(main::LANGUAGE_TIP))
+            .named(look.say(main::LANGUAGE_NAME))
+            .weight(Weight::Quiet);
+        if button.ui(ui, look).clicked() {
+            pane.actions.push(Action::Language(language.other()));
+        }
+        let icon = match theme {
+            Theme::Dark => theme::DARK,
+            Theme::Light => theme::LIGHT,
+        };
+        let button = Button::new(look.say(main::THEME_NAME), look.say(main::THEME_TIP))
+            .icon(icon)
+            .weight(Weight::Quiet);
+        if button.ui(ui, look).clicked() {
+            pane.actions.push(Action::Theme(theme.other()));
+        }
+        let list = Button::new("?", look.say(keys::BUTTON_TIP))
+            .named(look.say(keys::BUTTON))
+            .weight(Weight::Quiet);
+        let list = list.ui(ui, look).clicked();
+        let left = Layout::left_to_right(Align::Center);
+        ui.with_layout(left, |ui| {
+            ui.spacing_mut().item_spacing.x = theme::STEP;
+            for tab in View::ALL {
+                tab_ui(ui, pane, tab, view);
+            }
+        });
+        list
+    });
+    shown.inner
+}
+
+fn tab_ui(ui: &mut Ui, pane: &Pane<'_>, tab: View, view: &mut View) {
+    let look = pane.look;
+    let is_open = tab == *view;
+    let mut button = Button::new(look.say(tab.title()), "").weight(Weight::Quiet);
+    button.selected = Some(is_open);
+    let response = button.ui(ui, look);
+    let place = response.rect;
+    if is_open {
+        let under = Rect::from_min_max(
+            place.left_bottom() + vec2(theme::PAD, 0.0),
+            place.right_bottom() + vec2(-theme::PAD, 2.0),
+        );
+        let round = CornerRadius::same(1);
+        ui.painter().rect_filled(under, round, look.palette.accent);
+    }
+    if tab == View::Faults {
+        fault_entry::badge_ui(ui, place.right_top() + vec2(2.0, -2.0), pane);
+    }
+    if response.clicked() {
+        *view = tab;
+    }
+}

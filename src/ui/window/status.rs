@@ -1,0 +1,467 @@
+//! The line below the header that every view has: the worst that is to be warned of, what moves the hand now with its end in
+//! reach, the newest message, and the note being written. It has its place always, so nothing moves when it changes.
+
+use crate::app::action::Action;
+use crate::app::hand::mover::Mover;
+use crate::app::hand::{Freshness, Play};
+use crate::app::notices::{Level, NoticeKind};
+use crate::hand::{Dof, Moment};
+use crate::history::NOTE_MAX;
+use crate::link::Dialling;
+use crate::record::{Hold, LinkState};
+use crate::ui::kit::controls::{self, Button, Label, Weight};
+use crate::ui::kit::format;
+use crate::ui::kit::look::Pane;
+use crate::ui::plots::axes::clock;
+use crate::ui::text::{Text, layout, main, notices, plots, words};
+use crate::ui::theme;
+use crate::ui::view::View;
+use egui::text::{LayoutJob, TextFormat, TextWrapping};
+use egui::{
+    Align, Color32, Frame, Key, Layout, Rect, Role, Stroke, TextEdit, Ui, WidgetInfo, vec2,
+};
+use std::time::Duration;
+
+/// A hand that answers sooner is there before a word could be read.
+const ANNOUNCE_AFTER: Duration = Duration::from_millis(500);
+/// How long the newest message is shown.
+const NEWS_FOR: Duration = Duration::from_secs(10);
+/// Width of the note being written, of the field in it, and of what stays for a warning beside it.
+const NOTE_WIDTH: f32 = 440.0;
+
+/// What helps against a warning.
+enum Help {
+    None,
+    /// A view: the button's text, and what it does.
+    View(View, Text, Text),
+    /// It was read.
+    Dismiss(u64),
+}
+
+/// Something that a person must know now.
+struct Warning {
+    title: Text,
+    body: String,
+    aside: String,
+    color: Color32,
+    help: Help,
+}
+
+/// The warnings of now, worst first.
+fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
+    [
+        unsent(pane),
+        alarm(pane),
+        lost(pane),
+        faults(pane),
+        rival(pane),
+        stale(pane),
+        connecting(pane),
+        empty(pane),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn alarm(pane: &Pane<'_>) -> Option<Warning> {
+    matches!(pane.state.hand().link.hold, Hold::Alarm { .. }).then(|| Warning {
+        title: main::ALARM_TITLE,
+        body: pane.look.say(main::ALARM_BODY).into(),
+        aside: String::new(),
+        color: pane.look.palette.bad,
+        help: Help::None,
+    })
+}
+
+fn lost(pane: &Pane<'_>) -> Option<Warning> {
+    let link = &pane.state.hand().link;
+    if link.state != LinkState::Offline && link.state != LinkState::Identifying {
+        return None;
+    }
+    let trouble = link.trouble.as_ref()?;
+    // A hand that has answered may be moving; one that never did is only not reached.
+    let known = pane.state.hand().sample.angle.is_some();
+    let (title, color) = if known {
+        (main::LOST_TITLE, pane.look.palette.bad)
+    } else {
+        (main::UNREACHABLE_TITLE, pane.look.palette.warn)
+    };
+    let cause = notices::trouble(pane.look, trouble);
+    let body = if known {
+        format!("{} {cause}", pane.look.say(main::LOST_BODY))
+    } else {
+        cause
+    };
+    Some(Warning {
+        title,
+        body,
+        aside: retry(pane),
+        color,
+        help: Help::None,
+    })
+}
+
+fn retry(pane: &Pane<'_>) -> String {
+    match pane.state.hand().link.dialling {
+        Dialling::Idle => String::new(),
+        Dialling::Trying { attempt } => {
+            format!("{} {attempt}", pane.look.say(main::LOST_TRYING))
+        }
+        Dialling::Waiting { until, .. } => {
+            let left = until.since(pane.state.now).as_secs_f64();
+            format!("{} {left:.1} s", pane.look.say(main::LOST_RETRY_IN))
+        }
+    }
+}
+
+fn faults(pane: &Pane<'_>) -> Option<Warning> {
+    let faults = pane
+        .state
+        .hand()
+        .sample
+        .faults
+        .filter(|_| pane.state.hand().sample.has_fault())?;
+    let look = pane.look;
+    let list: Vec<String> = Dof::ALL
+        .into_iter()
+        .flat_map(|dof| faults.value[dof].iter().map(move |fault| (dof, fault)))
+        .map(|(dof, fault)| {
+            let title = words::fault(fault, look.language).title;
+            format!("{}: {title}", look.say(words::dof(dof)))
+        })
+        .collect();
+    Some(Warning {
+        title: main::FAULT_TITLE,
+        body: format!(
+            "{}{}{}",
+            list.join(" · "),
+            look.say(main::LIST_END),
+            look.say(main::FAULT_BODY)
+        ),
+        aside: String::new(),
+        color: look.value(pane.freshness(Some(faults.asked)), look.palette.bad),
+        help: Help::View(View::Faults, main::FAULT_SHOW, main::FAULT_SHOW_TIP),
+    })
+}
+
+fn rival(pane: &Pane<'_>) -> Option<Warning> {
+    let link = &pane.state.hand().link;
+    (link.state.is_live() && link.other_controller).then(|| Warning {
+        title: main::RIVAL_TITLE,
+        body: pane.look.say(main::RIVAL_BODY).into(),
+        aside: String::new(),
+        color: pane.look.palette.warn,
+        help: Help::None,
+    })
+}
+
+fn stale(pane: &Pane<'_>) -> Option<Warning> {
+    let asked = pane.state.hand().sample.angle?.asked;
+    let link = &pane.state.hand().link;
+    // While the hand saves, nobody asks it: whoever wanted that sees it where it was wanted.
+    let expected = link.state.is_live() && !link.line_left;
+    (expected && pane.freshness(Some(asked)) == Freshness::Stale).then(|| Warning {
+        title: main::STALE_TITLE,
+        body: format!(
+            "{} {}",
+            pane.look.say(main::STALE_BODY),
+            format::age(pane.state.now.since(asked))
+        ),
+        aside: String::new(),
+        color: pane.look.palette.warn,
+        help: Help::None,
+    })
+}
+
+/// A hand that is asked for the first time, and has not said no yet.
+fn connecting(pane: &Pane<'_>) -> Option<Warning> {
+    let link = &pane.state.hand().link;
+    let hand = pane.state.hand().endpoint.as_ref()?;
+    let asks = matches!(link.state, LinkState::Offline | LinkState::Identifying);
+    // One that answers at once is not announced.
+    let waited = pane.state.now.since(link.since) >= ANNOUNCE_AFTER;
+    (asks && waited && link.trouble.is_none()).then(|| Warning {
+        title: main::CONNECTING_TITLE,
+        body: format!("{} {hand}", pane.look.say(main::CONNECTING_BODY)),
+        aside: retry(pane),
+        color: pane.look.palette.accent,
+        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP),
+    })
+}
+
+fn empty(pane: &Pane<'_>) -> Option<Warning> {
+    pane.state.hand().endpoint.is_none().then(|| Warning {
+        title: main::EMPTY_TITLE,
+        body: pane.look.say(main::EMPTY_BODY).into(),
+        aside: String::new(),
+        color: pane.look.palette.accent,
+        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP),
+    })
+}
+
+/// A stop that could not be sent, until it was read or the hand answers again.
+fn unsent(pane: &Pane<'_>) -> Option<Warning> {
+    let mut all = pane.state.notices.iter();
+    let notice = all.find(|notice| notice.what == NoticeKind::StopNotSent)?;
+    Some(Warning {
+        title: layout::STOP_NOT_SENT,
+        body: pane.look.say(layout::STOP_NOT_SENT_BODY).into(),
+        aside: String::new(),
+        color: pane.look.palette.bad,
+        help: Help::Dismiss(notice.id),
+    })
+}
+
+/// What moves the hand, in words, and what ends it.
+fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
+    let look = pane.look;
+    let say = |text: Text| look.say(text).to_owned();
+    Some(match pane.state.hand().mover()? {
+        Mover::Stop => (say(layout::MOVES_STOP), None),
+        Mover::Calibration => (say(layout::MOVES_CALIBRATION), None),
+        Mover::Series(number, total) => {
+            let words = format!("{} {number} / {total}", look.say(layout::MOVES_SERIES));
+            (words, Some(Action::Stop))
+        }
+        Mover::Sequence(id, step) => {
+            let sequence = pane.state.poses.library.sequence(id);
+            let name = sequence.map_or("", |sequence| sequence.name.as_str());
+            let steps = sequence.map_or(0, |sequence| sequence.steps.len());
+            let title = look.say(layout::MOVES_SEQUENCE);
+            let words = format!(
+                "{title} {name}: {} {} / {steps}",
+                look.say(layout::MOVES_STEP),
+                step + 1
+            );
+            (words, Some(Action::Play(Play::End)))
+        }
+        Mover::Gesture(gesture) => {
+            let name = pane
+                .state
+                .settings
+                .gesture_name(gesture)
+                .unwrap_or_default();
+            let words = format!(
+                "{} {} {name}",
+                look.say(layout::MOVES_GESTURE),
+                gesture.get()
+            );
+            (words.trim().to_owned(), None)
+        }
+        Mover::Setpoints => (say(layout::MOVES_SETPOINTS), None),
+        Mover::Unknown => (say(layout::MOVES_UNKNOWN), None),
+    })
+}
+
+/// The line, and the note that is being written in it.
+#[derive(Debug, Default)]
+pub(crate) struct StatusLine {
+    /// When the note's key was pressed; `None` while none is written.
+    note_at: Option<Moment>,
+    note: String,
+    is_new: bool,
+}
+
+impl StatusLine {
+    /// Opens a note of this moment; one that is being written stays.
+    pub(crate) fn open_note(&mut self, at: Moment) {
+        if self.note_at.is_none() {
+            *self = Self {
+                note_at: Some(at),
+                note: String::new(),
+                is_new: true,
+            };
+        }
+    }
+
+    /// Draws the line. The view that was asked for.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<View> {
+        let warnings = warnings(pane);
+        let worst = warnings.first();
+        let palette = pane.look.palette;
+        let (fill, edge) = match worst {
+            Some(worst) => (palette.wash(worst.color), worst.color),
+            None => (palette.card, palette.edge),
+        };
+        let frame = Frame::new()
+            .fill(fill)
+            .stroke(Stroke::new(1.0, edge))
+            .corner_radius(theme::ROUND)
+            .inner_margin(vec2(theme::PAD, 0.0));
+        let row = Layout::right_to_left(Align::Center);
+        let shown = frame.show(ui, |ui| {
+            ui.with_layout(row, |ui| {
+                ui.set_min_size(ui.available_size());
+                self.note_ui(ui, pane);
+                mover_ui(ui, pane, worst.is_some());
+                let left = Layout::left_to_right(Align::Center);
+                let shown = ui.with_layout(left, |ui| match worst {
+                    Some(worst) => warning_ui(ui, pane, worst, &warnings),
+                    None => {
+                        news_ui(ui, pane);
+                        None
+                    }
+                });
+                shown.inner
+            })
+        });
+        shown.inner.inner
+    }
+
+    fn note_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let Some(at) = self.note_at else { return };
+        let look = pane.look;
+        let cancel = Button::new(
+            look.say(plots::NOTE_CANCEL),
+            look.say(plots::NOTE_CANCEL_TIP),
+        );
+        let cancelled = cancel.ui(ui, look).clicked();
+        let keep = Button::new(look.say(plots::NOTE_KEEP), look.say(plots::NOTE_KEEP_TIP));
+        let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
+        let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 10.0));
+        let words = controls::text_width(ui, &title, theme::body()) + theme::GAP;
+        let edit = TextEdit::singleline(&mut self.note)
+            .char_limit(NOTE_MAX)
+            .hint_text(look.say(plots::NOTE_HINT))
+            .margin(theme::FIELD_INSET)
+            .desired_width((NOTE_WIDTH - words).max(theme::FIELD));
+        let response = ui.add(edit);
+        let text = self.note.clone();
+        response.widget_info(|| {
+            let name = look.say(plots::NOTE_FIELD);
+            let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
+            info.current_text_value = Some(text.clone());
+            info
+        });
+        Label::new(&title, look.palette.text).ui(ui);
+        if std::mem::take(&mut self.is_new) {
+            response.request_focus();
+        }
+        let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if kept || entered {
+            pane.actions
+                .push(Action::Note(at, std::mem::take(&mut self.note)));
+        }
+        if kept || entered || cancelled {
+            *self = Self::default();
+        }
+    }
+}
+
+/// What moves the hand, at the right; nothing where the line has it at the left.
+fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
+    let look = pane.look;
+    let Some((words, end)) = mover(pane) else {
+        return;
+    };
+    if let Some(end) = end {
+        let button = Button::new(look.say(layout::END), look.say(layout::END_TIP));
+        let name = format!("{}: {words}", look.say(layout::END));
+        if button.named(&name).ui(ui, look).clicked() {
+            pane.actions.push(end);
+        }
+    }
+    if is_aside {
+        Label::new(&words, look.palette.text).ui(ui);
+    }
+}
+
+/// Without a warning: what moves the hand, else the newest message, else that nothing does.
+fn news_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    let palette = look.palette;
+    if let Some((words, _)) = mover(pane) {
+        let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
+        controls::lamp(ui, lamp.center(), palette.armed);
+        Label::new(&words, palette.text).ui(ui);
+        return;
+    }
+    let newest = pane.state.notices.log().next();
+    if let Some(newest) = newest.filter(|one| pane.state.now.since(one.at) < NEWS_FOR) {
+        let color = match newest.level {
+            Level::Info => palette.accent,
+            Level::Warn => palette.warn,
+            Level::Alarm => palette.bad,
+        };
+        let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
+        controls::lamp(ui, lamp.center(), color);
+        let words = notices::notice(look, &newest.what);
+        Label::new(&words, palette.text).ui(ui);
+        return;
+    }
+    let words = match pane.state.hand().link.state.is_live() {
+        true => layout::AT_REST,
+        false => layout::NO_HAND,
+    };
+    Label::new(look.say(words), palette.muted).ui(ui);
+}
+
+/// The worst of the warnings, and how many more there are. The view that was asked for.
+fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) -> Option<View> {
+    let look = pane.look;
+    let palette = look.palette;
+    let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
+    let sign = Rect::from_center_size(place.center(), vec2(theme::SIGN, theme::SIGN_HEIGHT));
+    if worst.color == palette.accent {
+        controls::lamp(ui, sign.center(), worst.color);
+    } else {
+        controls::warning_sign(ui, sign, worst.color);
+    }
+    let row = Layout::right_to_left(Align::Center);
+    let shown = ui.with_layout(row, |ui| {
+        let asked = help_ui(ui, pane, &worst.help);
+        if all.len() > 1 {
+            let others: Vec<_> = all.iter().skip(1).map(|one| look.say(one.title)).collect();
+            let more = format!("+{} {}", others.len(), look.say(layout::MORE));
+            let whole = others.join(", ");
+            let label = Label::new(&more, palette.muted).named(&whole).ui(ui);
+            label.on_hover_text(&whole);
+        }
+        if !worst.aside.is_empty() {
+            Label::new(&worst.aside, palette.muted).number().ui(ui);
+        }
+        let left = Layout::left_to_right(Align::Center);
+        ui.with_layout(left, |ui| words_ui(ui, pane, worst));
+        asked
+    });
+    shown.inner
+}
+
+/// Title and sentence over at most two lines; the whole in the tooltip.
+fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
+    let look = pane.look;
+    let title = look.say(warning.title);
+    let mut job = LayoutJob::default();
+    let format = TextFormat::simple(theme::title(), warning.color);
+    job.append(title, 0.0, format);
+    let format = TextFormat::simple(theme::body(), look.palette.text);
+    job.append(&warning.body, theme::GAP, format);
+    job.wrap = TextWrapping {
+        max_width: ui.available_width(),
+        max_rows: 2,
+        ..TextWrapping::default()
+    };
+    let response = ui.add(egui::Label::new(job));
+    let whole = format!("{title}: {}", warning.body);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &whole));
+    response.on_hover_text(&warning.body);
+}
+
+fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) -> Option<View> {
+    let look = pane.look;
+    match help {
+        Help::None => None,
+        Help::View(view, text, tip) => {
+            let button = Button::new(look.say(*text), look.say(*tip));
+            button.ui(ui, look).clicked().then_some(*view)
+        }
+        Help::Dismiss(id) => {
+            let button = Button::new(look.say(layout::UNDERSTOOD), "");
+            if button.ui(ui, look).clicked() {
+                pane.actions.push(Action::Dismiss(*id));
+            }
+            None
+        }
+    }
+}
