@@ -16,13 +16,12 @@ use crate::app::settings::AngleUnit;
 use crate::hand::Dof;
 use crate::ui::joints::row::Row;
 use crate::ui::joints::tracks::all_joints_ui;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right};
+use crate::ui::kit::controls::{self, Button, Label, Weight};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{layout, main};
 use crate::ui::theme;
-use egui::{Id, Rect, Ui, pos2, vec2};
+use egui::{Align, Layout, ScrollArea, Ui, vec2};
 
 /// No line of a row grows higher than this.
 const LINE_MAX: f32 = theme::LINE_HIGH;
@@ -32,6 +31,8 @@ const LINE_MAX: f32 = theme::LINE_HIGH;
 pub(crate) struct JointsView {
     /// The four fingers move together.
     linked: bool,
+    /// Force and speed of each joint are shown; `None` where there is room for them.
+    each: Option<bool>,
 }
 
 impl JointsView {
@@ -41,20 +42,37 @@ impl JointsView {
     }
 
     /// Draws it.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let (mut head, mut rest) = controls::titled_card(ui, look, rect, look.say(main::JOINTS));
-        self.head_ui(ui, &mut head, pane);
-        let below = theme::CONTROL_LARGE + theme::CONTROL + 2.0 * theme::GAP;
-        let height = rest.height() - below;
-        let list = controls::take_top(&mut rest, height);
-        self.list_ui(ui, list, pane);
-        let all = controls::take_top(&mut rest, theme::CONTROL);
-        all_joints_ui(ui, all, pane);
-        buttons_ui(ui, rest.with_max_y(rest.top() + theme::CONTROL_LARGE), pane);
+        controls::card_ui(ui, look, |ui| {
+            ui.set_min_height(ui.available_height());
+            let line = theme::least_line(ui.pixels_per_point());
+            let below = theme::CONTROL_LARGE + theme::CONTROL + 2.0 * theme::GAP;
+            let room = ui.available_height() - theme::CONTROL - theme::STEP - below;
+            let fits = room >= 6.0 * row::height(line, true);
+            let each = self.each.unwrap_or(fits);
+            let head = look.say(main::JOINTS);
+            controls::head_ui(ui, look, head, |ui| self.head_ui(ui, pane, each));
+            let lines = if each { 4.0 } else { 2.0 };
+            let line = ((room / 6.0 - theme::GAP) / lines).clamp(line, LINE_MAX.max(line));
+            ScrollArea::vertical()
+                .max_height(room)
+                .auto_shrink(false)
+                .show(ui, |ui| {
+                    ui.spacing_mut().item_spacing.y = 0.0;
+                    for dof in Dof::ALL {
+                        Row::new(dof, pane).ui(ui, pane, (line, each), self.linked);
+                    }
+                });
+            let size = vec2(ui.available_width(), theme::CONTROL);
+            let (_, all) = ui.allocate_space(size);
+            all_joints_ui(ui, all, pane);
+            presets_ui(ui, pane);
+        });
     }
 
-    fn head_ui(&mut self, ui: &mut Ui, head: &mut Rect, pane: &mut Pane<'_>) {
+    /// What stands at the right of the title, from right to left.
+    fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, each: bool) {
         let look = pane.look;
         let unit = pane.state.settings.angle_unit;
         let text = look.say(match unit {
@@ -62,70 +80,45 @@ impl JointsView {
             AngleUnit::Degrees => main::UNIT_DEGREES,
             AngleUnit::Percent => main::UNIT_PERCENT,
         });
-        let button_width =
-            |ui: &Ui, text: &str| controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP;
-        let place = take_right(head, button_width(ui, text));
         let button = Button::new(text, look.say(main::UNIT_TIP))
             .named(look.say(main::UNIT_NAME))
             .weight(Weight::Quiet);
-        if button
-            .put(ui, look, place, Id::unique("angle unit"))
-            .clicked()
-        {
+        if button.ui(ui, look).clicked() {
             pane.actions.push(Action::AngleUnit(unit.next()));
         }
-        let text = look.say(main::LINK_FINGERS);
-        let place = take_right(head, theme::ICON_BUTTON);
-        let button = Button::new(text, look.say(main::LINK_FINGERS_TIP))
-            .icon(theme::LINKED)
-            .choice(self.linked);
-        if button
-            .put(ui, look, place, Id::unique("link fingers"))
-            .clicked()
-        {
+        let button = Button::new(
+            look.say(main::LINK_FINGERS),
+            look.say(main::LINK_FINGERS_TIP),
+        )
+        .icon(theme::LINKED)
+        .choice(self.linked);
+        if button.ui(ui, look).clicked() {
             self.toggle_link();
         }
-        age_ui(ui, head, pane);
-    }
-
-    fn list_ui(&self, ui: &mut Ui, list: Rect, pane: &mut Pane<'_>) {
-        let least = 3.0 * theme::least_line(ui.pixels_per_point()) + theme::GAP;
-        let height = list.height() / 6.0;
-        if height >= least {
-            let height = height.min(4.0 * LINE_MAX + 2.0 * theme::GAP);
-            self.rows_ui(ui, list, height, pane);
-            return;
+        let button = Button::new(look.say(main::EACH), look.say(main::EACH_TIP))
+            .icon(theme::TUNE)
+            .choice(each);
+        if button.ui(ui, look).clicked() {
+            self.each = Some(!each);
         }
-        ui.scope_builder(egui::UiBuilder::new().max_rect(list), |ui| {
-            egui::ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| {
-                    let size = vec2(list.width(), least * 6.0);
-                    let whole = Rect::from_min_size(ui.cursor().min, size);
-                    self.rows_ui(ui, whole, least, pane);
-                });
-        });
-    }
-
-    fn rows_ui(&self, ui: &mut Ui, list: Rect, height: f32, pane: &mut Pane<'_>) {
-        let mut top = list.top();
-        for dof in Dof::ALL {
-            let rect = Rect::from_min_size(pos2(list.left(), top), vec2(list.width(), height));
-            Row::new(dof, pane).ui(ui, rect, pane, self.linked);
-            top += height;
+        age_ui(ui, pane);
+        let hand = pane.state.hand();
+        let live = pane.freshness(hand.sample.angle.map(|angle| angle.asked)) == Freshness::Live;
+        // A first look must find what comes before moving; the header says why it cannot be armed.
+        if live && !hand.is_armed() && hand.arm_refusal().is_none() {
+            Label::new(look.say(layout::ARM_FIRST), look.palette.accent)
+                .small()
+                .ui(ui);
         }
     }
 }
 
-fn age_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
+/// How old the angles are, where they are not live.
+pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let asked = pane.state.hand().sample.angle.map(|angle| angle.asked);
     let (text, color) = match pane.freshness(asked) {
-        Freshness::Live if pane.state.hand().is_armed() => return,
-        // The bar says why it cannot be armed.
-        Freshness::Live if pane.state.hand().arm_refusal().is_some() => return,
-        // A first look must find what comes before moving.
-        Freshness::Live => (look.say(layout::ARM_FIRST).to_owned(), look.palette.accent),
+        Freshness::Live => return,
         Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),
         Freshness::Stale => {
             let age = asked.map(|asked| pane.state.now.since(asked));
@@ -133,36 +126,30 @@ fn age_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>) {
             (format!("{} {age}", look.say(main::AGE)), look.palette.warn)
         }
     };
-    let width = controls::text_width(ui, &text, theme::small()) + 1.0;
-    let place = take_right(head, width);
-    Label::new(&text, color)
-        .small()
-        .right()
-        .put(ui, place)
-        .on_hover_text(look.say(main::AGE_TIP));
+    let label = Label::new(&text, color).small().ui(ui);
+    label.on_hover_text(look.say(main::AGE_TIP));
 }
 
-fn buttons_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+fn presets_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let width = (rect.width() - 3.0 * theme::GAP) / 4.0;
-    let mut rest = rect;
     let not_armed = pane.unready();
     let presets = [
         (main::OPEN, main::OPEN_TIP, Preset::Open),
         (main::HALF, main::HALF_TIP, Preset::Half),
         (main::CLOSE, main::CLOSE_TIP, Preset::Close),
     ];
-    for (text, tip, preset) in presets {
-        let place = take_left(&mut rest, width);
-        let button = Button::new(look.say(text), look.say(tip)).disabled(not_armed);
-        let id = Id::unique(("preset", preset));
-        if button.put(ui, look, place, id).clicked() {
-            pane.actions.push(Action::Preset(preset));
+    ui.columns(presets.len(), |columns| {
+        for (ui, (text, tip, preset)) in columns.iter_mut().zip(presets) {
+            let button = Button::new(look.say(text), look.say(tip)).large();
+            let wide = Layout::top_down_justified(Align::Center);
+            let button = button.disabled(not_armed);
+            if ui
+                .with_layout(wide, |ui| button.ui(ui, look))
+                .inner
+                .clicked()
+            {
+                pane.actions.push(Action::Preset(preset));
+            }
         }
-    }
-    let hold = Button::new(look.say(main::HOLD), look.say(main::HOLD_TIP));
-    let response = hold.put(ui, look, rest, Id::unique("hold"));
-    if controls::pressed(ui, &response) {
-        pane.actions.push(Action::Stop);
-    }
+    });
 }

@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::app::layout::Room;
 use crate::hand::{Dof, Quantity};
+use crate::ui::joints::age_ui;
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::newest::newest;
 use crate::ui::joints::row::Row;
@@ -37,7 +38,13 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
                 .font(theme::title())
                 .ui(ui);
         }
-        ui.add_space(theme::STEP);
+        // Its place is kept while there is nothing to tell.
+        let size = vec2(ui.available_width(), theme::TEXT_LINE);
+        let down = Layout::top_down(Align::Min);
+        ui.allocate_ui_with_layout(size, down, |ui| {
+            ui.set_min_height(size.y);
+            age_ui(ui, pane);
+        });
         for dof in Dof::ALL {
             joint_ui(ui, pane, dof);
             ui.add_space(theme::GAP);

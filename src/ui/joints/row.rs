@@ -11,10 +11,16 @@ use crate::ui::kit::controls::{Label, Lock, take_left, take_right};
 use crate::ui::kit::look::{Explain, Pane};
 use crate::ui::text::{Text, faults, main, words};
 use crate::ui::theme;
-use egui::{Color32, CornerRadius, Id, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, Id, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// Width of the readings at the right.
 pub(crate) const READING: f32 = theme::READING;
+
+/// The height of a row of such lines.
+pub(crate) fn height(line: f32, each: bool) -> f32 {
+    let lines = if each { 4.0 } else { 2.0 };
+    lines * line + theme::GAP
+}
 
 /// One joint's row, with its names made once.
 pub(crate) struct Row {
@@ -52,73 +58,65 @@ impl Row {
         ui.memory_mut(|memory| memory.request_focus(self.id(part)));
     }
 
-    /// Draws it.
-    pub(crate) fn ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, linked: bool) {
+    /// Draws it in lines of this height: what it is and its angle, and if `each` its force and speed too.
+    pub(crate) fn ui(
+        &self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        (line, each): (f32, bool),
+        linked: bool,
+    ) {
         let palette = pane.look.palette;
-        let line = theme::least_line(ui.pixels_per_point());
-        let roomy = rect.height() >= 4.0 * line + 2.0 * theme::GAP;
+        let size = vec2(ui.available_width(), height(line, each));
+        let (_, rect) = ui.allocate_space(size);
         if ui.rect_contains_pointer(rect) {
             pointed::point(ui, Place::Row, self.dof);
         }
         if pointed::pointed(ui, Place::Hand) == Some(self.dof) {
             let wash = palette.wash(self.color);
-            ui.painter()
-                .rect_filled(rect, CornerRadius::same(theme::ROUND_SMALL), wash);
+            ui.painter().rect_filled(rect, theme::ROUND_SMALL, wash);
         }
-        let bar = Rect::from_min_max(
-            pos2(rect.left(), rect.top() + theme::STEP),
-            pos2(rect.left() + theme::BAR, rect.bottom() - theme::STEP),
-        );
-        ui.painter()
-            .rect_filled(bar, CornerRadius::same(2), self.color);
-        let inner = rect
-            .with_min_x(rect.left() + theme::PAD)
-            .shrink2(vec2(0.0, theme::STEP));
+        let inner = rect.shrink2(vec2(0.0, theme::STEP));
+        let bar = inner.with_max_x(rect.left() + theme::BAR);
+        ui.painter().rect_filled(bar, theme::ROUND_TINY, self.color);
         if self.dof != Dof::Little {
             let stroke = egui::Stroke::new(1.0, palette.grid);
-            ui.painter()
-                .hline(rect.left()..=rect.right(), rect.top(), stroke);
+            ui.painter().hline(rect.x_range(), rect.top(), stroke);
         }
-        let lines = if roomy { 4.0 } else { 3.0 };
-        let height = inner.height() / lines;
-        let line = |n: f32| {
-            let top = inner.top() + n * height;
-            Rect::from_min_max(pos2(inner.left(), top), pos2(inner.right(), top + height))
+        let mut rest = inner.with_min_x(rect.left() + theme::PAD);
+        let mut next = || {
+            let (first, others) = rest.split_top_bottom_at_y(rest.top() + line);
+            rest = others;
+            first
         };
-        self.head_ui(ui, line(0.0), pane, roomy);
-        let mut angle = line(1.0);
+        self.head_ui(ui, next(), pane, each);
+        let mut angle = next();
         let reading = take_right(&mut angle, READING);
         self.angle_ui(ui, angle, pane, linked);
-        if roomy {
-            self.angle_reading_ui(ui, reading, pane);
-            let mut force = line(2.0);
-            let reading = take_right(&mut force, READING);
-            self.force_reading_ui(ui, reading, pane);
-            self.force_ui(ui, force, pane);
-            let mut speed = line(3.0);
-            let reading = take_right(&mut speed, READING);
-            self.drive_reading_ui(ui, reading, pane);
-            self.speed_ui(ui, speed, pane);
-        } else {
+        if !each {
             self.short_reading_ui(ui, reading, pane);
-            let mut left = line(2.0);
-            let right = take_right(&mut left, (inner.width() - theme::GAP) / 2.0);
-            self.force_ui(ui, left, pane);
-            self.speed_ui(ui, right, pane);
+            return;
         }
+        self.angle_reading_ui(ui, reading, pane);
+        let mut force = next();
+        let reading = take_right(&mut force, READING);
+        self.force_reading_ui(ui, reading, pane);
+        self.force_ui(ui, force, pane);
+        let mut speed = next();
+        let reading = take_right(&mut speed, READING);
+        self.drive_reading_ui(ui, reading, pane);
+        self.speed_ui(ui, speed, pane);
     }
 
-    fn head_ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, roomy: bool) {
+    fn head_ui(&self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>, each: bool) {
         let palette = pane.look.palette;
         let mut rest = rect;
         let name = take_left(&mut rest, theme::NAME_COLUMN);
         Label::new(self.name, palette.text).put(ui, name);
         self.lock_ui(ui, take_right(&mut rest, theme::SMALL_BUTTON), pane);
-        if !roomy {
-            rest.max.x += theme::STEP;
+        if !each {
             let drive = take_right(&mut rest, theme::DRIVE_COLUMN);
             self.drive_reading_ui(ui, drive, pane);
-            rest.max.x += theme::STEP;
         }
         self.impact_ui(ui, &mut rest, pane);
         self.status_ui(ui, rest, pane);

@@ -22,7 +22,6 @@ texts! {
     STOP_NOT_SENT: "STOP COULD NOT BE SENT", "停止命令未能发出";
     STOP_NOT_SENT_BODY: "No hand answers. If it moves, switch off its 24 V supply.", "没有灵巧手应答。若仍在运动，请关闭 24 V 电源。";
     UNDERSTOOD: "Understood", "知道了";
-    MORE: "more", "条提示";
     OPEN: "Expand", "展开";
     OPEN_TIP: "Shows this room again.", "重新显示此区域。";
     SIDE: "Fingertips and faults", "指尖与故障";

@@ -78,7 +78,6 @@ texts! {
     TAB_TRAFFIC: "Traffic", "报文";
     TAB_DEVICE: "Device", "参数";
     TAB_CONNECTION: "Connection", "连接";
-    TAB_TIP: "Shows this part of the window. Nothing moves.", "切换到此视图，不会产生动作。";
     THEME_NAME: "Theme", "主题";
     THEME_TIP: "Switches between light on dark and dark on light.", "切换深色与浅色主题。";
     LANGUAGE_NAME: "Language", "语言";
@@ -120,6 +119,8 @@ texts! {
     FRAME_COPY: "Copy as", "复制为";
     FRAME_HINT: "The value as it stands now. Nothing is sent from here.", "按当前值生成，此处不会发送。";
     ALL_JOINTS: "All", "全部";
+    EACH: "Force and speed of each joint", "各自由度的力阈值与速度";
+    EACH_TIP: "Shows or hides the force threshold and the speed of each joint.", "显示或隐藏各自由度的力阈值与速度。";
     LINK_FINGERS: "Link", "联动";
     LINK_FINGERS_TIP: "The four fingers move together: each goes as far as the one you move. The thumb stays apart.", "四指联动：拖动一指，其余三指移动相同的量。大拇指不受影响。";
     UNIT_RAW: "0..1000", "0..1000";
@@ -133,8 +134,6 @@ texts! {
     HALF_TIP: "Bends fingers and thumb half, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲到一半，按设定的速度。大拇指旋转与锁定的自由度不动。";
     CLOSE: "Close", "握拢";
     CLOSE_TIP: "Bends fingers and thumb until their force thresholds stop them, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲，直到力控阈值使其停止，按设定的速度。大拇指旋转与锁定的自由度不动。";
-    HOLD: "Hold", "保持";
-    HOLD_TIP: "The same as STOP: every joint stays where it is.", "与“停止”相同：所有自由度停在原位。";
     AGE: "Age", "距今";
     AGE_TIP: "These values are old. The age counts from the request that brought them.", "这些数值已过时。时间从读取它们的请求算起。";
     NEVER_READ: "Not read yet", "尚未读取";

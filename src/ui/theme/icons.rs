@@ -19,6 +19,8 @@ pub(crate) const MENU: Icon = icons::ICON_MENU.codepoint;
 pub(crate) const LOCKED: Icon = icons::ICON_LOCK.codepoint;
 /// Free to move.
 pub(crate) const UNLOCKED: Icon = icons::ICON_LOCK_OPEN.codepoint;
+/// What can be set.
+pub(crate) const TUNE: Icon = icons::ICON_TUNE.codepoint;
 /// Moves together.
 pub(crate) const LINKED: Icon = icons::ICON_LINK.codepoint;
 /// Look at it.
@@ -38,7 +40,7 @@ pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
 
 /// All of them.
 #[cfg(test)]
-pub(crate) const ALL: [Icon; 15] = [
-    TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, LINKED, WARNING, DARK, LIGHT,
-    CLOSE, PAUSE, PLAY, MORE,
+pub(crate) const ALL: [Icon; 16] = [
+    TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, TUNE, LINKED, WARNING, DARK,
+    LIGHT, CLOSE, PAUSE, PLAY, MORE,
 ];

@@ -38,7 +38,7 @@ pub(crate) const JOINTS_LEAST: f32 = 384.0;
 /// The width of the joints from which more does not help.
 pub(crate) const JOINTS_MOST: f32 = 560.0;
 /// Width of the joints' rail.
-pub(crate) const JOINTS_RAIL: f32 = 116.0;
+pub(crate) const JOINTS_RAIL: f32 = 128.0;
 /// The side column's width as a share of the view.
 pub(crate) const SIDE_SHARE: f32 = 0.4;
 /// Its least width.

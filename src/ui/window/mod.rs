@@ -284,8 +284,7 @@ impl Window {
         };
         let Self { rooms, joints, .. } = self;
         rooms.room_ui(ui, pane, (Room::Joints, size), |ui, pane| {
-            let rect = ui.available_rect_before_wrap();
-            joints.ui(ui, rect, pane);
+            joints.ui(ui, pane);
         });
     }
 

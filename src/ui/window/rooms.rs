@@ -90,8 +90,16 @@ impl Rooms {
             pane.actions.push(Action::Layout(layout));
         } else if let Some(shown) = shown {
             let now = along(shown.response.rect.size(), is_upright);
-            let released = ui.input(|input| input.pointer.any_released());
-            if released && (now - begun).abs() > 1.0 {
+            let place = shown.response.rect.expand(2.0 * theme::GAP);
+            let let_go = ui.input(|input| {
+                let is_drag = input.pointer.any_released() && !input.pointer.any_click();
+                is_drag
+                    && input
+                        .pointer
+                        .interact_pos()
+                        .is_some_and(|at| place.contains(at))
+            });
+            if let_go && (now - begun).abs() > 1.0 {
                 let standing = standing.with_share(now / extent);
                 let layout = self.layout.with(room, standing);
                 pane.actions.push(Action::Layout(layout));

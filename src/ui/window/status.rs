@@ -16,7 +16,7 @@ use crate::ui::plots::axes::clock;
 use crate::ui::text::{Text, layout, main, notices, plots, words};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::text::{LayoutJob, TextFormat, TextWrapping};
+use egui::text::LayoutJob;
 use egui::{
     Align, Color32, Frame, Key, Layout, Rect, Role, Stroke, TextEdit, Ui, WidgetInfo, vec2,
 };
@@ -411,12 +411,9 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
     let row = Layout::right_to_left(Align::Center);
     let shown = ui.with_layout(row, |ui| {
         let asked = help_ui(ui, pane, &worst.help);
-        if all.len() > 1 {
-            let others: Vec<_> = all.iter().skip(1).map(|one| look.say(one.title)).collect();
-            let more = format!("+{} {}", others.len(), look.say(layout::MORE));
-            let whole = others.join(", ");
-            let label = Label::new(&more, palette.muted).named(&whole).ui(ui);
-            label.on_hover_text(&whole);
+        for other in all.iter().skip(1).rev() {
+            let label = Label::new(look.say(other.title), other.color).ui(ui);
+            label.on_hover_text(&other.body);
         }
         if !worst.aside.is_empty() {
             Label::new(&worst.aside, palette.muted).number().ui(ui);
@@ -431,20 +428,12 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
 /// Title and sentence over at most two lines; the whole in the tooltip.
 fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     let look = pane.look;
-    let title = look.say(warning.title);
-    let mut job = LayoutJob::default();
-    let format = TextFormat::simple(theme::title(), warning.color);
-    job.append(title, 0.0, format);
-    let format = TextFormat::simple(theme::body(), look.palette.text);
-    job.append(&warning.body, theme::GAP, format);
-    job.wrap = TextWrapping {
-        max_width: ui.available_width(),
-        max_rows: 2,
-        ..TextWrapping::default()
-    };
+    let title = Label::new(look.say(warning.title), warning.color);
+    title.font(theme::title()).ui(ui);
+    let (font, color) = (theme::body(), look.palette.text);
+    let mut job = LayoutJob::simple(warning.body.clone(), font, color, ui.available_width());
+    job.wrap.max_rows = 2;
     let response = ui.add(egui::Label::new(job));
-    let whole = format!("{title}: {}", warning.body);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &whole));
     response.on_hover_text(&warning.body);
 }
 

@@ -311,6 +311,15 @@ impl Bench {
         self.harness.step();
     }
 
+    /// A box that is ticked or not.
+    pub(crate) fn click_box(&mut self, name: &str) {
+        self.harness
+            .get_by_role_and_label(Role::CheckBox, name)
+            .click();
+        self.harness.remove_cursor();
+        self.harness.step();
+    }
+
     /// Pressed, released and left before the next frame is drawn.
     pub(crate) fn click_within_one_frame(&mut self, name: &str) {
         let at = self.rect(Role::Button, name).center();

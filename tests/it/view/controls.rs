@@ -120,7 +120,6 @@ fn every_control_has_its_name() {
     for name in [
         "Disarm the hand",
         "Open all",
-        "Hold",
         "Clear errors",
         "Pause the plots",
         "Thresholds",
@@ -490,7 +489,8 @@ fn joints_do_not_overlap_and_stay_on_the_screen() {
                 .chain(harness.query_all_by_role(Role::TextInput))
                 .map(|node| node.rect())
                 .collect();
-            assert_eq!(rects.len(), 40);
+            // In a small window force and speed of each joint are folded away; those of all joints stay.
+            assert_eq!(rects.len(), if size == SMALL { 16 } else { 40 });
             let screen = Rect::from_min_size(egui::Pos2::ZERO, size);
             while let Some(rect) = rects.pop() {
                 assert!(screen.contains_rect(rect), "{size} {rect}");

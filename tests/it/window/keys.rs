@@ -105,11 +105,13 @@ fn switches_of_the_window_have_keys() {
     assert!(bench.is_on("Pause the plots"), "the plots hold still");
     for (key, name) in [
         (Key::Num2, "touch"),
-        (Key::Num3, "faults"),
-        (Key::Num4, "poses"),
-        (Key::Num5, "device"),
-        (Key::Num6, "connection"),
-        (Key::Num7, "traffic"),
+        (Key::Num3, "tune"),
+        (Key::Num4, "compare"),
+        (Key::Num5, "faults"),
+        (Key::Num6, "poses"),
+        (Key::Num7, "device"),
+        (Key::Num8, "connection"),
+        (Key::Num9, "traffic"),
         (Key::Num1, "live"),
     ] {
         bench.key_with(Modifiers::COMMAND, key);

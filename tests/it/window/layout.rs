@@ -41,7 +41,7 @@ pub(crate) fn check(bench: &Bench, size: Vec2, stop: &str, when: &str) {
     .into_iter()
     .flat_map(|role| bench.all(role))
     .collect();
-    assert!(all.len() > 40, "{when}: {}", all.len());
+    assert!(all.len() > 24, "{when}: {}", all.len());
     while let Some((name, rect)) = all.pop() {
         assert!(!name.is_empty(), "{when}: something at {rect} has no name");
         assert!(screen.contains_rect(rect), "{when}: {name} at {rect}");
@@ -157,54 +157,51 @@ fn stop_is_free_and_no_two_controls_overlap_with_a_fault_and_a_lost_link() {
     }
 }
 
-/// Where the joints end and where the fingertips begin.
-fn borders(bench: &Bench) -> (f32, f32) {
-    let joints = bench.rect(Role::Splitter, "Border: Joints").center().x;
-    let side = bench.rect(Role::Splitter, "Border: Fingertips and faults");
-    (joints, side.center().x)
+/// The borders between rooms that stand beside each other, from the left.
+fn borders(bench: &Bench) -> Vec<Rect> {
+    let all = bench.all(Role::Splitter).into_iter().map(|(_, rect)| rect);
+    let mut upright: Vec<Rect> = all.filter(|rect| rect.height() > rect.width()).collect();
+    upright.sort_by(|one, other| one.center().x.total_cmp(&other.center().x));
+    upright
 }
 
-fn drag_border(bench: &mut Bench, name: &str, by: Vec2) {
-    let from = bench.rect(Role::Splitter, name);
-    // Beside the button in its middle.
-    let from = from.lerp_inside(if by.x == 0.0 {
-        vec2(0.2, 0.5)
-    } else {
-        vec2(0.5, 0.2)
-    });
-    bench.drag_from_to(from, from + by);
+fn drag_border(bench: &mut Bench, at: usize, by: f32) {
+    let from = borders(bench)[at].center();
+    bench.drag_from_to(from, from + vec2(by, 0.0));
     bench.run(60);
+}
+
+fn menu(bench: &mut Bench, entry: &str) {
+    bench.click("Window menu");
+    bench.run(60);
+    bench.click(entry);
+    bench.run(60);
+    bench.click("Window menu");
+    bench.run(300);
 }
 
 #[test]
 fn a_border_is_dragged_is_kept_and_comes_back() {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.run(200);
+    let at = |bench: &Bench, which: usize| borders(bench)[which].center().x;
     let designed = borders(&bench);
-    let (joints, _) = designed;
-    drag_border(&mut bench, "Border: Joints", vec2(60.0, 0.0));
-    // What shares the rest of the window keeps its share of it.
-    let (_, side) = borders(&bench);
-    drag_border(&mut bench, "Border: Fingertips and faults", vec2(50.0, 0.0));
-    let (wide, right) = borders(&bench);
-    assert!((wide - joints - 60.0).abs() <= 2.0, "{joints} {wide}");
-    assert!((right - side - 50.0).abs() <= 2.0, "{side} {right}");
+    let joints = at(&bench, 0);
+    drag_border(&mut bench, 0, 60.0);
+    assert!((at(&bench, 0) - joints - 60.0).abs() <= 2.0, "{joints}");
+    let side = at(&bench, 1);
+    drag_border(&mut bench, 1, 50.0);
+    assert!((at(&bench, 1) - side - 50.0).abs() <= 2.0, "{side}");
     let kept = bench.state().settings.layout;
     assert!(kept.joints.share.is_some() && kept.side.share.is_some());
-    // As far as it goes, and no further.
-    drag_border(&mut bench, "Border: Joints", vec2(-900.0, 0.0));
-    assert_eq!(
-        bench.rect(Role::Splitter, "Border: Joints").center().x,
-        // The harness leaves eight points around the window.
-        8.0 + 8.0 + 384.0 + 4.0
-    );
-    check(&bench, LARGE, "STOP", "narrow joints");
-    drag_border(&mut bench, "Border: Joints", vec2(900.0, 0.0));
+    drag_border(&mut bench, 0, 900.0);
     check(&bench, LARGE, "STOP", "wide joints");
-    bench.click("Window menu");
-    bench.run(60);
-    bench.click("Reset layout");
-    bench.run(200);
+    // Beyond what the joints need they are a rail.
+    drag_border(&mut bench, 0, -900.0);
+    bench.run(400);
+    assert!(bench.state().settings.layout.joints.shut);
+    check(&bench, LARGE, "STOP", "narrow joints");
+    menu(&mut bench, "Reset layout");
     assert_eq!(borders(&bench), designed);
     assert!(
         bench.writes().is_empty(),
@@ -216,13 +213,16 @@ fn a_border_is_dragged_is_kept_and_comes_back() {
 fn every_room_but_the_plots_can_be_shut_and_opened_again() {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.run(400);
-    let title = "Fingertips and faults";
-    for room in ["Joints", "Fingertips", "Faults", "Poses", title] {
-        bench.click(&format!("Collapse {room}"));
+    for room in ["Joints", "Faults", "Poses", "Fingertips and faults"] {
+        bench.click("Window menu");
         bench.run(60);
+        bench.click_box(room);
+        bench.run(300);
         check(&bench, LARGE, "STOP", &format!("{room} shut"));
-        bench.click(&format!("Expand {room}"));
+        bench.click("Window menu");
         bench.run(60);
+        bench.click_box(room);
+        bench.run(300);
         assert_eq!(
             bench.state().settings.layout,
             handscope::app::layout::Layout::default()
@@ -234,8 +234,10 @@ fn every_room_but_the_plots_can_be_shut_and_opened_again() {
 fn shut_joints_still_show_angle_force_and_lamp() {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.run(400);
-    bench.click("Collapse Joints");
+    bench.click("Window menu");
     bench.run(60);
+    bench.click_box("Joints");
+    bench.run(300);
     assert!(bench.all(Role::Slider).is_empty());
     for joint in [
         "Little",

@@ -118,21 +118,12 @@ fn the_stop_button_holds_a_moving_joint() {
 
 #[test]
 fn a_stop_is_not_lost_in_a_slow_frame_that_sees_the_pointer_gone_already() {
-    for name in ["STOP", "Hold"] {
-        stops(|bench| bench.click_within_one_frame(name));
-    }
+    stops(|bench| bench.click_within_one_frame("STOP"));
 }
 
 #[test]
 fn a_stop_does_not_wait_for_the_release() {
-    for name in ["STOP", "Hold"] {
-        stops(|bench| bench.press(name));
-    }
-}
-
-#[test]
-fn hold_below_the_joints_does_the_same() {
-    stops(|bench| bench.click_button("Hold"));
+    stops(|bench| bench.press("STOP"));
 }
 
 #[test]
