@@ -198,10 +198,11 @@ impl Window {
         ui.painter()
             .rect_filled(whole, 0.0, pane.look.palette.window);
         let (bar, mut body) = whole.split_top_bottom_at_y(whole.top() + theme::TOP_BAR);
-        let covered = body;
         let bar = top_bar::stop_first_ui(ui, bar, pane);
         if is_covered(pane.state) {
             self.key_list.hide();
+            // The card's own veil dims what is below it; header and banners stay bright.
+            ui.visuals_mut().disabled_alpha = 1.0;
             ui.disable();
         }
         if top_bar::top_bar_ui(ui, bar, pane) {
@@ -215,6 +216,7 @@ impl Window {
             }
             body = rest;
         }
+        let covered = body;
         if self.note.is_open() {
             let (place, rest) = body.split_top_bottom_at_y(body.top() + theme::BANNER);
             self.note.ui(ui, place, pane);
