@@ -140,7 +140,7 @@ impl CardView {
         // A banner that comes or goes does not move the card.
         let below_banner = ui.max_rect().top() + theme::TOP_BAR + theme::BANNER;
         let place = shade.with_min_y(below_banner.max(shade.top()));
-        let area = Area::new(Id::new("card"))
+        let area = Area::new(Id::unique("card"))
             .order(Order::Foreground)
             .fixed_pos(shade.min)
             .constrain(false);
@@ -229,9 +229,11 @@ impl CardView {
                 }
             });
         }
-        let row = Layout::right_to_left(Align::Center);
-        let pressed = ui.with_layout(row, |ui| self.choices_ui(ui, look, card, is_new));
-        (pressed.inner, lines.inner_rect.height())
+        let row = ui.horizontal(|ui| {
+            let right = Layout::right_to_left(Align::Center);
+            ui.with_layout(right, |ui| self.choices_ui(ui, look, card, is_new))
+        });
+        (row.inner.inner, lines.inner_rect.height())
     }
 
     /// The buttons. The keyboard goes to the field, else to what is safe, so that Enter does no harm.

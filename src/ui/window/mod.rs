@@ -43,7 +43,7 @@ use crate::ui::window::rooms::{Body, Overview, Side};
 use crate::ui::touch::{self, TouchView};
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
-use egui::{Rect, Ui};
+use egui::{Rect, Ui, UiBuilder};
 
 /// What the window remembers between frames: the open tab, text in progress, what is hidden.
 #[derive(Debug, Default)]
@@ -258,7 +258,10 @@ impl Window {
             View::Compare => self.compare.ui(ui, rect, pane),
             View::Faults => self.faults.ui(ui, rect, pane),
             View::Poses => self.poses.ui(ui, rect, pane),
-            View::Device => self.device.ui(ui, rect, pane),
+            View::Device => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.device.ui(ui, pane));
+            }
             View::Connection => self.connection.ui(ui, rect, pane),
             View::Traffic => self.traffic.ui(ui, rect, pane),
         }
