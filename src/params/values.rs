@@ -74,6 +74,14 @@ impl Params {
         Self(self.iter().filter(|(id, _)| is_meant(*id)).collect())
     }
 
+    /// These rows with others over them.
+    #[must_use]
+    pub fn with(&self, others: &Self) -> Self {
+        let mut all = self.clone();
+        others.iter().for_each(|(id, value)| all.put(id, value));
+        all
+    }
+
     /// Takes what a run of the hand's memory holds. Rows that lie only partly in it stay as they were.
     pub fn take(&mut self, span: Span, bytes: &[u8]) {
         for id in ParamId::all() {

@@ -4,7 +4,7 @@ pub mod quirk_sheet;
 pub mod state;
 pub mod write;
 
-pub use crate::record::quirk_sheet::QuirkSheet;
+pub use crate::record::quirk_sheet::{Fact, QuirkSheet};
 pub use crate::record::state::{ArmRefusal, Disarmed, Hold, LinkState, Rest};
 pub use crate::record::write::{
     Calibrated, Doubt, NotSent, Reset, SaveDoubt, Saved, Verdict, Written,

@@ -99,6 +99,17 @@ pub enum Saved {
     NotSent(NotSent),
 }
 
+impl Saved {
+    /// True unless it is known that nothing was written to flash.
+    #[must_use]
+    pub const fn may_be_in_flash(&self) -> bool {
+        matches!(
+            self,
+            Self::Confirmed | Self::ReadBack | Self::Unknown { .. }
+        )
+    }
+}
+
 /// Why the result of a SAVE is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SaveDoubt {

@@ -4,12 +4,16 @@
 use crate::app::env::Env;
 use crate::app::hand::HandState;
 use crate::app::notices::{NoticeKind, Notices};
+use crate::app::procedures::Procedure;
 use crate::hand::Moment;
 use crate::link::Quirks;
 use crate::link::quirks::book::{self, QuirkBook};
-use crate::record::QuirkSheet;
+use crate::params::place::Place;
+use crate::params::rows::{ParamId, Value};
+use crate::record::{Fact, QuirkSheet, Saved};
 use crate::store::calendar::{day, since_1970};
 use crate::store::{Job, on_thread};
+use crate::tasks::place::{PlaceChange, PlaceEnd};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,6 +27,8 @@ pub(crate) struct QuirkNotes {
     path: Option<PathBuf>,
     noted: Option<(Endpoint, Quirks)>,
     under_way: Option<Job<io::Result<Noted>>>,
+    /// What this program changed itself, and whether it may be in flash: nothing to be warned of.
+    own: Option<(PlaceChange, bool)>,
 }
 
 impl QuirkNotes {
@@ -32,6 +38,7 @@ impl QuirkNotes {
             path: settings.map(QuirkBook::path),
             noted: None,
             under_way: None,
+            own: None,
         }
     }
 
@@ -50,13 +57,20 @@ impl QuirkNotes {
                 notices.push(now, NoticeKind::SheetNotKept { message });
             }
             Some(Ok((before, sheet))) => {
-                if let Some(differs) = difference(before.as_ref(), &sheet) {
+                if let Some(differs) = self.difference(before.as_ref(), &sheet) {
                     notices.push(now, differs);
                 }
                 hand.sheet = Some(sheet);
             }
         }
-        let quirks = hand.link.quirks;
+        if let Some(Procedure::Place(card)) = &hand.procedure
+            && let Some(Ok(report)) = card.stage.end()
+            && let PlaceEnd::Kept { saved, .. } = &report.end
+        {
+            let in_flash = saved.as_ref().is_some_and(Saved::may_be_in_flash);
+            self.own = Some((card.change.clone(), in_flash));
+        }
+        let quirks = self.quirks(hand);
         let endpoint = hand.endpoint.as_ref().filter(|endpoint| !endpoint.is_sim());
         let new = endpoint.filter(|endpoint| {
             let noted = self.noted.as_ref();
@@ -83,13 +97,50 @@ impl QuirkNotes {
         });
         self.under_way = Some(Job::start(&env.runtime, &env.wake, note));
     }
-}
 
-fn difference(before: Option<&QuirkSheet>, now: &QuirkSheet) -> Option<NoticeKind> {
-    let before = before?;
-    let differences = before.differences(now);
-    (!differences.is_empty()).then(|| NoticeKind::HandDiffers {
-        differences,
-        last_seen: before.last_seen.clone(),
-    })
+    /// What the hand answers; after a change that this program made and saved, what it will answer once it is asked again.
+    fn quirks(&self, hand: &HandState) -> Quirks {
+        let mut quirks = hand.link.quirks;
+        let Some((change, true)) = &self.own else {
+            return quirks;
+        };
+        let is_there = hand.endpoint.as_ref().is_some_and(|hand| {
+            let places = [
+                change.places.endpoint(Place::Old),
+                change.places.endpoint(Place::New),
+            ];
+            places.contains(&hand)
+        });
+        let (Value::Number(before), Value::Number(wanted)) = (change.before, change.wanted) else {
+            return quirks;
+        };
+        let field = match change.id {
+            ParamId::HandId => &mut quirks.hand_id,
+            _ => &mut quirks.baud_code,
+        };
+        if is_there && field.map(i32::from) == Some(before) {
+            *field = u8::try_from(wanted).ok();
+        }
+        quirks
+    }
+
+    fn difference(&self, before: Option<&QuirkSheet>, now: &QuirkSheet) -> Option<NoticeKind> {
+        let before = before?;
+        let mut differences = before.differences(now);
+        if let Some((change, _)) = &self.own {
+            let own = [change.before, change.wanted].map(|value| value.to_string());
+            let fact = match change.id {
+                ParamId::HandId => Fact::HandId,
+                _ => Fact::BaudCode,
+            };
+            differences.retain(|differs| {
+                let mut values = [&differs.before, &differs.now].into_iter();
+                differs.fact != fact || !values.all(|value| own.contains(value))
+            });
+        }
+        (!differences.is_empty()).then(|| NoticeKind::HandDiffers {
+            differences,
+            last_seen: before.last_seen.clone(),
+        })
+    }
 }

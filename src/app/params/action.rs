@@ -1,6 +1,5 @@
 //! What a person may request in the Device view.
 
-use crate::hand::Dof;
 use crate::params::rows::ParamId;
 use std::path::PathBuf;
 
@@ -19,8 +18,8 @@ pub enum ParamAction {
     Agree,
     /// Decline: nothing is written.
     Decline,
-    /// Stage the hand's current speed and force as the defaults after power-up, of one joint or of all. Writes nothing.
-    CopyLive(Option<Dof>),
+    /// Stage the hand's current speeds and forces as the defaults after power-up. Writes nothing.
+    CopyLive,
     /// Drop everything that is staged.
     UnstageAll,
     /// Ask for a path, and write a parameter file there.

@@ -7,10 +7,10 @@ use crate::hand::{Moment, Span};
 use crate::link::RequestError;
 use crate::params::backups::{Backup, Backups, Known};
 use crate::params::changes::{RowOutcome, RowVerdict};
-use crate::params::danger::Danger;
+use crate::params::danger::{Danger, worse};
 use crate::params::file::{ParamsFile, ParamsFileError};
 use crate::params::rows::{ParamId, Value};
-use crate::params::values::Params;
+use crate::params::values::{Difference, Params};
 use crate::record::Saved;
 use crate::store::Job;
 use std::collections::BTreeMap;
@@ -55,7 +55,7 @@ pub struct Question {
 pub enum Wanted {
     /// These rows, into the hand's memory.
     Apply(Params),
-    /// What the hand holds, into its flash.
+    /// What the hand holds, into its flash; what is staged is applied first.
     Save,
 }
 
@@ -71,6 +71,8 @@ pub enum SaveEnd {
     },
     /// The hand was gone: no SAVE was sent.
     NotAsked(RequestError),
+    /// What was staged did not all come into force: no SAVE was sent.
+    NotApplied,
     /// With this result, which could not be recorded.
     NotNoted(Saved, String),
 }
@@ -79,6 +81,8 @@ pub enum SaveEnd {
 #[derive(Debug, Default)]
 pub struct ParamsState {
     live: BTreeMap<ParamId, (Value, Moment)>,
+    /// What was read first, before this program changed anything.
+    first: Params,
     staged: Params,
     outcomes: BTreeMap<ParamId, RowOutcome>,
     /// When all rows were read last.
@@ -107,6 +111,8 @@ pub struct ParamsState {
     pub backups: Vec<Backup>,
     /// A file that is compared with the hand.
     pub compared: Option<Compared>,
+    /// What is saved once the running apply is over, and with which dangers.
+    pub(crate) save_next: Option<Vec<Danger>>,
     /// What runs.
     pub(crate) task: Option<ParamsTask>,
     /// The files are being read.
@@ -148,6 +154,40 @@ impl ParamsState {
     #[must_use]
     pub fn to_apply(&self) -> Params {
         self.staged.only(|id| !id.is_place())
+    }
+
+    /// What a SAVE makes last: what the hand holds, with what is staged.
+    #[must_use]
+    pub fn to_save(&self) -> Params {
+        self.live_params().with(&self.to_apply())
+    }
+
+    /// What the hand wakes up with as far as this program knows: what it saved last, else what it read first. Of rows that
+    /// were never read it is what the hand holds.
+    #[must_use]
+    pub fn before_changes(&self, holds: &Params) -> Params {
+        let saved = self.known.saved.as_ref().map(|file| &file.params);
+        let read = holds.with(&self.first);
+        saved.map_or_else(|| read.clone(), |saved| read.with(saved))
+    }
+
+    /// The rows that a SAVE would change for the next power-up, as far as this program knows.
+    #[must_use]
+    pub fn unsaved(&self) -> Vec<Difference> {
+        let before = self.before_changes(&self.live_params());
+        before.differences(&self.to_save())
+    }
+
+    /// The joints that would wake up hitting harder than before, or harder at once.
+    pub(crate) fn save_dangers(&self) -> Vec<Danger> {
+        let (live, after) = (self.live_params(), self.to_save());
+        let mut all = worse(&self.before_changes(&live), &after);
+        for danger in worse(&live, &after) {
+            if !all.contains(&danger) {
+                all.push(danger);
+            }
+        }
+        all
     }
 
     /// What this program saved last.
@@ -214,6 +254,9 @@ impl ParamsState {
         let mut read = Params::default();
         read.take(span, bytes);
         for (id, value) in read.iter() {
+            if self.first.get(id).is_none() {
+                self.first.put(id, value);
+            }
             self.live.insert(id, (value, at));
         }
     }
@@ -234,6 +277,12 @@ impl ParamsState {
             }
         }
         self.outcomes.insert(row.id, row);
+    }
+
+    /// True if all that was staged is in force.
+    pub(crate) fn is_applied(&self) -> bool {
+        let mut ends = self.outcomes.values();
+        self.to_apply().is_empty() && ends.all(|end| end.verdict == RowVerdict::Applied)
     }
 
     /// True while a SAVE is under way.

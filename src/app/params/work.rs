@@ -42,7 +42,7 @@ impl HandState {
                 self.stage_all(&undo);
                 self.apply_rows(undo, Vec::new(), env);
             }
-            ParamAction::Save if self.save_refusal().is_none() => self.save(Vec::new(), env),
+            ParamAction::Save if self.save_refusal().is_none() => self.ask_save(env),
             ParamAction::Agree if self.write_refusal().is_none() => {
                 match self.params.question.take() {
                     Some(Question {
@@ -52,12 +52,19 @@ impl HandState {
                     Some(Question {
                         what: Wanted::Save,
                         dangers,
-                    }) => self.save(dangers, env),
+                    }) if self.params.to_apply().is_empty() => self.save(dangers, env),
+                    Some(Question {
+                        what: Wanted::Save,
+                        dangers,
+                    }) => {
+                        self.apply_rows(self.params.to_apply(), dangers.clone(), env);
+                        self.params.save_next = Some(dangers);
+                    }
                     None => {}
                 }
             }
             ParamAction::Decline => self.params.question = None,
-            ParamAction::CopyLive(dof) => self.copy_live(dof),
+            ParamAction::CopyLive => self.copy_live(),
             ParamAction::UnstageAll => self.params.unstage_all(),
             ParamAction::Open => self.open_params(env.files.open(file::FILE_NAME), env),
             ParamAction::OpenBackup(path) => {
@@ -84,16 +91,13 @@ impl HandState {
         }
     }
 
-    fn copy_live(&mut self, dof: Option<Dof>) {
+    fn copy_live(&mut self) {
         let (sample, now) = (self.sample, self.now);
         let young = |asked: Moment| now.since(asked) <= COPY_WITHIN;
         let is_live = self.link.state.is_live();
         let speeds = sample.speed_set.filter(|all| is_live && young(all.asked));
         let forces = sample.force_set.filter(|all| is_live && young(all.asked));
-        for dof in Dof::ALL
-            .into_iter()
-            .filter(|each| dof.is_none_or(|dof| dof == *each))
-        {
+        for dof in Dof::ALL {
             if let Some(speed) = speeds.and_then(|all| all.value[dof]) {
                 let value = Value::Number(i32::from(speed.get()));
                 self.params.stage(ParamId::DefaultSpeed(dof), Some(value));
@@ -145,14 +149,25 @@ impl HandState {
         self.params.task = Some(ParamsTask::Apply(wanted, task));
     }
 
+    /// Shows what a SAVE would change; where that is nothing, it is done at once.
+    fn ask_save(&mut self, env: &Env) {
+        let params = &mut self.params;
+        if params.unsaved().is_empty() {
+            return self.save(Vec::new(), env);
+        }
+        params.question = Some(Question {
+            what: Wanted::Save,
+            dangers: params.save_dangers(),
+        });
+    }
+
     fn save(&mut self, agreed: Vec<Danger>, env: &Env) {
         let (Some(link), Some(backups)) = (self.link_handle(), self.params.files.clone()) else {
             return;
         };
-        let saved = self.params.known.saved.as_ref();
         let task = Save {
             backups,
-            before: saved.map(|file| file.params.clone()).unwrap_or_default(),
+            before: self.params.before_changes(&Params::default()),
             consent: Consent::To(agreed),
         };
         let task = Running::start(env, |steps| async move {
@@ -181,6 +196,15 @@ impl HandState {
     /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
     pub(crate) fn tick_params(&mut self, env: &Env, notices: &mut Notices, now: Moment) {
         self.params.take_task(now);
+        if !self.params.is_busy()
+            && let Some(agreed) = self.params.save_next.take()
+            && self.params.question.is_none()
+        {
+            match self.params.is_applied() && self.save_refusal().is_none() {
+                true => self.save(agreed, env),
+                false => self.params.save = Some((SaveEnd::NotApplied, now)),
+            }
+        }
         if let Some(read) = Job::take_from(&mut self.params.listing) {
             self.params.show_files(read);
         }

@@ -245,9 +245,7 @@ impl HandState {
                 for (at, step) in steps {
                     match step {
                         PlaceStep::BackedUp(path, params) => {
-                            let saved = self.params.known.saved.as_ref();
-                            let saved = saved.map(|file| file.params.clone()).unwrap_or_default();
-                            card.dangers = worse(&saved, &params);
+                            card.dangers = worse(&self.params.before_changes(&params), &params);
                             card.backup = Some(path);
                         }
                         step => {
@@ -270,6 +268,7 @@ impl HandState {
                 {
                     let there = card.change.places.endpoint(place);
                     settings.endpoint = Some(there.to_string());
+                    self.params.stage(card.change.id, None);
                 }
                 card.stage = ProcedureStage::Over(end);
                 true

@@ -7,7 +7,7 @@ use crate::ui::connection::figures as link_figures;
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, take_left, take_top};
 use crate::ui::kit::look::Pane;
-use crate::ui::params::place_buttons as guarded_entries;
+use crate::ui::params::flash::guarded_ui;
 use crate::ui::text::{Text, quirks as text};
 use crate::ui::theme;
 use egui::{Id, Rect, Ui};
@@ -38,8 +38,10 @@ pub(crate) fn sheet_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
     }
     body.min.y += theme::GAP;
     copy_ui(ui, body, pane);
-    let mut foot = body.with_min_y(body.bottom() - theme::CONTROL);
-    guarded_entries::right_ui(ui, &mut foot, pane);
+    let foot = body.with_min_y(body.bottom() - theme::CONTROL);
+    let right = egui::Layout::right_to_left(egui::Align::Center);
+    let place = egui::UiBuilder::new().max_rect(foot).layout(right);
+    ui.scope_builder(place, |ui| guarded_ui(ui, pane));
 }
 
 fn lines(pane: &Pane<'_>) -> Vec<(Text, String)> {

@@ -9,6 +9,7 @@ use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::params::danger::Danger;
 use crate::ui::kit::card::{Card, Choice, Line, Manner};
 use crate::ui::kit::look::Look;
+use crate::ui::params::table::value_text;
 use crate::ui::text::{cards, device, verdicts, words};
 
 /// The card of what waits for a yes, if something does.
@@ -18,23 +19,67 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
 }
 
 fn card(state: &State, look: Look, question: &Question) -> Card {
+    let hurts = !question.dangers.is_empty();
+    let staged = !state.hand().params.to_apply().is_empty();
     let (title, agree) = match question.what {
         Wanted::Apply(_) => (device::DANGER_APPLY, device::AGREE_APPLY),
-        Wanted::Save => (device::DANGER_SAVE, device::AGREE_SAVE),
+        Wanted::Save if hurts => (device::DANGER_SAVE, device::AGREE_SAVE),
+        Wanted::Save if staged => (device::SAVE_TITLE, device::AGREE_APPLY_SAVE),
+        Wanted::Save => (device::SAVE_TITLE, device::AGREE),
+    };
+    let manner = match hurts {
+        true => Manner::Danger,
+        false => Manner::Main,
     };
     let why = state.hand().write_refusal();
     let why = why.map(|why| look.say(verdicts::refusal(why)).to_owned());
     let back = Choice::new(device::DECLINE, device::DECLINE_TIP, Manner::Safe);
-    let agree = Choice::new(agree, device::AGREE_TIP, Manner::Danger);
+    let agree = Choice::new(agree, device::AGREE_TIP, manner);
+    let mut all = match question.what {
+        Wanted::Apply(_) => Vec::new(),
+        Wanted::Save => changes(state, look),
+    };
+    if hurts {
+        all.extend(lines(look, &question.dangers));
+    }
     Card {
         title: look.say(title).into(),
-        lines: lines(look, &question.dangers),
+        lines: all,
         choices: vec![
             back.does(Action::Param(ParamAction::Decline)),
             agree.does(Action::Param(ParamAction::Agree)).disabled(why),
         ],
         ..Card::default()
     }
+}
+
+/// What a SAVE changes for the next power-up, row by row.
+fn changes(state: &State, look: Look) -> Vec<Line> {
+    let book = &state.hand().params;
+    let say = |text| look.say(text).to_owned();
+    let heads = [
+        device::NAME,
+        device::SAVE_FROM,
+        device::LIVE,
+        device::SAVE_TO,
+    ];
+    let mut lines = vec![
+        Line::Words(say(device::SAVE_CHANGES)),
+        Line::Head(heads.map(say).into()),
+    ];
+    lines.extend(book.unsaved().into_iter().map(|row| {
+        let live = book.live(row.id).map(|(value, _)| value);
+        let values = [row.ours, live, Some(row.theirs)];
+        let name = [verdicts::whole_name(look, row.id)].into_iter();
+        Line::Cells(
+            name.chain(values.map(|value| value_text(row.id, value)))
+                .collect(),
+        )
+    }));
+    if !book.to_apply().is_empty() {
+        lines.push(Line::Note(say(device::SAVE_STAGED)));
+    }
+    lines
 }
 
 /// What is dangerous about these joints, with the measured figures.

@@ -4,72 +4,52 @@ use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::params::compared::Compared;
 use crate::params::rows::{ParamId, Value};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_top};
-use crate::ui::kit::list;
+use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
 use crate::ui::params::flash::moment;
 use crate::ui::params::table::{cell_name, cell_ui, value_text};
 use crate::ui::text::{device, verdicts};
 use crate::ui::theme;
-use egui::{Rect, Role, Ui, UiBuilder, WidgetInfo};
-
-/// Columns of a row: tick with name, the hand, the file.
-fn columns(row: Rect) -> [Rect; 3] {
-    let third = row.width() / 3.0;
-    let (name, rest) = row.split_left_right_at_x(row.left() + third);
-    let (live, file) = rest.split_left_right_at_x(rest.left() + third);
-    [name, live, file]
-}
+use egui::{Grid, Role, ScrollArea, Ui, WidgetInfo};
 
 /// Draws the comparison.
-pub(crate) fn file_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>, compared: &Compared) {
+pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
     let look = pane.look;
     let palette = look.palette;
+    let file = &compared.file;
     let title = format!("{}: {}", look.say(device::COMPARED), compared.name);
-    Label::new(&title, palette.text)
-        .font(theme::title())
-        .put(ui, take_top(&mut body, theme::CONTROL));
-    about_ui(ui, take_top(&mut body, theme::TEXT_LINE), pane, compared);
-    buttons_ui(ui, take_top(&mut body, theme::CONTROL), pane, compared);
-    let head = take_top(&mut body, theme::LIST_LINE);
-    let [name, live, file] = columns(head.with_max_x(head.right() - theme::GAP));
-    for (place, text) in [
-        (name, device::TAKE),
-        (live, device::LIVE),
-        (file, device::IN_FILE),
-    ] {
-        Label::new(look.say(text), palette.muted)
-            .small()
-            .put(ui, place);
-    }
-    list::scroll_ui(ui, body, "compared", |ui, width| {
-        let rows: Vec<_> = compared.file.params.iter().collect();
-        let high = theme::CONTROL + theme::STEP;
-        let places: Vec<Rect> = rows.iter().map(|_| list::piece(ui, width, high)).collect();
-        let unknown = compared.file.unknown_keys();
+    let title = Label::new(&title, palette.text).font(theme::title());
+    title.ui(ui);
+    let parts = [
+        file.hand.clone(),
+        moment(&file.at),
+        verdicts::why(look, &file.why),
+    ];
+    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    Label::new(&parts.join(", "), palette.muted).small().ui(ui);
+    ui.horizontal(|ui| buttons_ui(ui, pane, compared));
+    let unknown = file.unknown_keys();
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let width = ui.available_width() / 3.0 - theme::GAP;
+        let grid = Grid::new("compared").num_columns(3).min_col_width(width);
+        grid.show(ui, |ui| {
+            for text in [device::TAKE, device::LIVE, device::IN_FILE] {
+                Label::new(look.say(text), palette.muted).small().ui(ui);
+            }
+            ui.end_row();
+            for row in file.params.iter() {
+                row_ui(ui, pane, compared, row);
+                ui.end_row();
+            }
+        });
         if !unknown.is_empty() {
             let words = format!("{} {}", look.say(device::UNKNOWN_KEYS), unknown.join(", "));
-            list::wrapped_ui(ui, width, 0.0, &words, palette.warn);
-        }
-        for (row, place) in rows.into_iter().zip(places) {
-            row_ui(ui, place, pane, compared, row);
+            Label::new(&words, palette.warn).small().wrap().ui(ui);
         }
     });
 }
 
-/// Whose values these are, of when, and why they were kept.
-fn about_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>, compared: &Compared) {
-    let file = &compared.file;
-    let why = verdicts::why(pane.look, &file.why);
-    let parts = [file.hand.clone(), moment(&file.at), why];
-    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-    Label::new(&parts.join(", "), pane.look.palette.muted)
-        .small()
-        .put(ui, row);
-}
-
-fn buttons_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, compared: &Compared) {
+fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
     let look = pane.look;
     let count = compared.chosen().iter().count();
     let text = format!("{} ({count})", look.say(device::STAGE_TICKED));
@@ -78,44 +58,28 @@ fn buttons_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, compared: &Compar
         .named(look.say(device::STAGE_TICKED))
         .weight(Weight::Strong)
         .disabled(none);
-    let close = Button::new(
-        look.say(device::CLOSE_FILE),
-        look.say(device::CLOSE_FILE_TIP),
-    );
-    for (button, wish) in [
-        (stage, ParamAction::StageTicked),
-        (close, ParamAction::CloseFile),
-    ] {
-        let width = controls::text_width(ui, button.text, theme::body()) + 2.0 * theme::PAD;
-        let place = take_left(&mut row, width);
-        let id = egui::Id::unique(("compared", format!("{wish:?}")));
-        if button.put(ui, look, place, id).clicked() {
-            pane.actions.push(Action::Param(wish));
-        }
+    if stage.ui(ui, look).clicked() {
+        pane.actions.push(Action::Param(ParamAction::StageTicked));
+    }
+    let (text, tip) = (device::CLOSE_FILE, device::CLOSE_FILE_TIP);
+    if Button::new(look.say(text), look.say(tip))
+        .ui(ui, look)
+        .clicked()
+    {
+        pane.actions.push(Action::Param(ParamAction::CloseFile));
     }
 }
 
-fn row_ui(
-    ui: &mut Ui,
-    row: Rect,
-    pane: &mut Pane<'_>,
-    compared: &Compared,
-    (id, value): (ParamId, Value),
-) {
+fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (ParamId, Value)) {
     let look = pane.look;
     let palette = look.palette;
-    let [name, live, file] = columns(row);
     let words = verdicts::whole_name(look, id);
     let mut ticked = compared.is_ticked(id);
     let tip = match id.is_place() {
         true => device::TICK_PLACE_TIP,
         false => device::TICK_TIP,
     };
-    let tick = ui
-        .scope_builder(UiBuilder::new().max_rect(name), |ui| {
-            ui.checkbox(&mut ticked, &words)
-        })
-        .inner;
+    let tick = ui.checkbox(&mut ticked, &words);
     let label = format!("{} {words}", look.say(device::TAKE));
     tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, ticked, &label));
     if tick.on_hover_text(look.say(tip)).changed() {
@@ -125,14 +89,12 @@ fn row_ui(
     let fresh = pane.state.hand().param_freshness(id);
     let color = look.value(fresh, palette.text);
     let label = cell_name(pane, id, device::LIVE);
-    cell_ui(ui, live, (&label, &value_text(held), color), "");
+    cell_ui(ui, (&label, &value_text(id, held), color), "");
+    let text = value_text(id, Some(value));
     let (words, color) = match held == Some(value) {
-        true => (
-            format!("{value}  {}", look.say(device::SAME)),
-            palette.faint,
-        ),
-        false => (value.to_string(), palette.warn),
+        true => (format!("{text}  {}", look.say(device::SAME)), palette.muted),
+        false => (text, palette.warn),
     };
     let label = cell_name(pane, id, device::IN_FILE);
-    cell_ui(ui, file, (&label, &words, color), "");
+    cell_ui(ui, (&label, &words, color), "");
 }

@@ -6,62 +6,55 @@ use crate::app::params::refusal::Refusal;
 use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_top};
-use crate::ui::kit::list;
+use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
-use crate::ui::params::place_buttons as guarded_entries;
-use crate::ui::text::{device, verdicts};
+use crate::ui::text::{cards, device, verdicts};
 use crate::ui::theme;
-use egui::{Color32, Id, Rect, Ui};
+use egui::{Color32, ScrollArea, Ui};
 
 /// Draws the card: beside the table its parts under each other, below it side by side.
-pub(crate) fn flash_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-    let body = controls::card(ui, pane.look, rect);
-    if rect.height() > rect.width() {
-        let body = entries_ui(ui, body, pane);
-        let (upper, lower) = body.split_top_bottom_at_y(body.top() + theme::DEVICE_SAVE);
-        save_ui(ui, upper.with_max_y(upper.bottom() - theme::GAP), pane);
-        files_ui(ui, lower, pane);
-    } else {
-        let (left, right) = body.split_left_right_at_x(body.center().x);
-        let left = entries_ui(ui, left.with_max_x(left.right() - theme::PAD), pane);
-        save_ui(ui, left, pane);
-        files_ui(ui, right, pane);
-    }
+pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    controls::card_ui(ui, pane.look, |ui| {
+        let height = ui.available_height();
+        ui.set_min_height(height);
+        if height > ui.available_width() {
+            save_ui(ui, pane, height / 2.0);
+            ui.add_space(theme::GAP);
+            files_ui(ui, pane);
+            return;
+        }
+        ui.columns(2, |columns| {
+            if let [left, right] = columns {
+                save_ui(left, pane, height - theme::CONTROL_LARGE);
+                files_ui(right, pane);
+            }
+        });
+    });
 }
 
-/// What is done to the hand only under a card stands at the bottom; the room that is left.
-fn entries_ui(ui: &mut Ui, body: Rect, pane: &mut Pane<'_>) -> Rect {
-    let (rest, mut row) = body.split_top_bottom_at_y(body.bottom() - theme::CONTROL);
-    guarded_entries::left_ui(ui, &mut row, pane);
-    rest.with_max_y(rest.bottom() - theme::GAP)
-}
-
-fn save_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
+fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let look = pane.look;
-    let mut head = take_top(&mut body, theme::CONTROL_LARGE);
-    let title = look.say(device::FLASH);
-    let width = controls::text_width(ui, title, theme::title()) + 1.0;
-    Label::new(title, look.palette.text)
-        .font(theme::title())
-        .put(ui, take_left(&mut head, width));
-    let refusal = pane.state.hand().save_refusal();
-    let reason = refusal.map(|why| look.say(verdicts::refusal(why)));
-    let button = Button::new(look.say(device::SAVE), look.say(device::SAVE_TIP))
-        .weight(Weight::Strong)
-        .disabled(reason);
-    let width = controls::text_width(ui, button.text, theme::body()) + 2.0 * theme::PAD;
-    let place = head.with_min_x((head.right() - width).max(head.left()));
-    if button
-        .put(ui, look, place, Id::unique("save to flash"))
-        .clicked()
-    {
-        pane.actions.push(Action::Param(ParamAction::Save));
-    }
+    let hand = pane.state.hand();
+    let reason = hand.save_refusal();
+    let reason = reason.map(|why| look.say(verdicts::refusal(why)));
+    // Bright only where it is the next thing to do.
+    let unsaved = hand.params.unsaved();
+    let weight = match hand.params.to_apply().is_empty() && !unsaved.is_empty() {
+        true => Weight::Strong,
+        false => Weight::Normal,
+    };
+    let save = Button::new(look.say(device::SAVE), look.say(device::SAVE_TIP));
+    let save = save.weight(weight).disabled(reason);
+    controls::head_ui(ui, look, look.say(device::FLASH), |ui| {
+        if save.ui(ui, look).clicked() {
+            pane.actions.push(Action::Param(ParamAction::Save));
+        }
+    });
     let lines = lines(pane, reason);
-    list::scroll_ui(ui, body, "flash", |ui, width| {
+    let area = ScrollArea::vertical().id_salt("flash").max_height(most);
+    area.show(ui, |ui| {
         for (words, color) in lines {
-            list::wrapped_ui(ui, width, 0.0, &words, color);
+            Label::new(&words, color).small().wrap().ui(ui);
         }
     });
 }
@@ -84,6 +77,17 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     if let Some(reason) = reason.filter(|_| !book.is_busy()) {
         lines.push((reason.to_owned(), palette.muted));
     }
+    if !book.to_apply().is_empty() {
+        lines.push((look.say(device::SAVE_STAGED).into(), palette.warn));
+    }
+    let unsaved = book.unsaved().into_iter();
+    let unsaved: Vec<String> = unsaved
+        .map(|row| verdicts::whole_name(look, row.id))
+        .collect();
+    if !unsaved.is_empty() {
+        let words = format!("{} {}", look.say(device::UNSAVED), unsaved.join(", "));
+        lines.push((words, palette.text));
+    }
     if let Some(file) = &book.known.doubtful {
         let words = format!("{} {}", look.say(device::DOUBTFUL), moment(&file.at));
         lines.push((words, palette.warn));
@@ -95,12 +99,8 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
                 "confirmed" => look.say(device::BY_FRAME),
                 _ => look.say(device::BY_READING),
             };
-            let words = format!(
-                "{} {} ({how})",
-                look.say(device::SAVED_ON),
-                moment(&file.at)
-            );
-            (words, palette.text)
+            let (saved, at) = (look.say(device::SAVED_ON), moment(&file.at));
+            (format!("{saved} {at} ({how})"), palette.text)
         }
     });
     if let Some(error) = &book.unreadable {
@@ -116,48 +116,39 @@ pub(crate) fn moment(stamp: &str) -> String {
     stamp.replace('T', " ").replace('Z', " UTC")
 }
 
-fn files_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
+fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let mut row = take_top(&mut body, theme::CONTROL);
     let nothing = pane.state.hand().params.live_params().is_empty();
     let nothing = nothing.then(|| look.say(verdicts::refusal(Refusal::NothingRead)));
-    let dump = Button::new(look.say(device::DUMP), look.say(device::DUMP_TIP)).disabled(nothing);
-    let open = Button::new(look.say(device::OPEN), look.say(device::OPEN_TIP));
-    for (button, wish) in [(dump, ParamAction::Dump), (open, ParamAction::Open)] {
-        let width = controls::text_width(ui, button.text, theme::body()) + 2.0 * theme::PAD;
-        let place = take_left(&mut row, width);
-        let id = Id::unique(("file", button.text));
-        if button.put(ui, look, place, id).clicked() {
-            pane.actions.push(Action::Param(wish));
+    ui.horizontal(|ui| {
+        let dump = Button::new(look.say(device::DUMP), look.say(device::DUMP_TIP));
+        let open = Button::new(look.say(device::OPEN), look.say(device::OPEN_TIP));
+        if dump.disabled(nothing).ui(ui, look).clicked() {
+            pane.actions.push(Action::Param(ParamAction::Dump));
         }
-    }
-    let title = take_top(&mut body, theme::TITLE_LINE);
-    body.min.y -= theme::STEP;
-    Label::new(look.say(device::BACKUPS), look.palette.text)
-        .font(theme::title())
-        .put(ui, title);
-    let backups = &pane.state.hand().params.backups;
-    let mut wanted = None;
-    list::scroll_ui(ui, body, "backups", |ui, width| {
-        if backups.is_empty() {
-            let words = look.say(device::BACKUPS_NONE);
-            list::wrapped_ui(ui, width, 0.0, words, look.palette.muted);
-        }
-        for backup in backups.iter().rev() {
-            let place = list::piece(ui, width, theme::CONTROL + theme::STEP);
-            if backup_ui(ui, controls::middle(place, theme::CONTROL), pane, backup) {
-                wanted = Some(backup.path.clone());
-            }
+        if open.ui(ui, look).clicked() {
+            pane.actions.push(Action::Param(ParamAction::Open));
         }
     });
-    if let Some(path) = wanted {
-        pane.actions
-            .push(Action::Param(ParamAction::OpenBackup(path)));
-    }
+    let title = Label::new(look.say(device::BACKUPS), look.palette.text);
+    title.font(theme::title()).ui(ui);
+    let backups = &pane.state.hand().params.backups;
+    let most = ui.available_height() - theme::CONTROL - theme::GAP;
+    let area = ScrollArea::vertical().auto_shrink(false).max_height(most);
+    area.id_salt("backups").show(ui, |ui| {
+        if backups.is_empty() {
+            let none = Label::new(look.say(device::BACKUPS_NONE), look.palette.muted);
+            none.small().wrap().ui(ui);
+        }
+        for backup in backups.iter().rev() {
+            backup_ui(ui, pane, backup);
+        }
+    });
+    ui.horizontal(|ui| guarded_ui(ui, pane));
 }
 
-/// One backup as a button; true if it was pressed.
-fn backup_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, backup: &Backup) -> bool {
+/// One backup as a button.
+fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     let look = pane.look;
     let (words, unreadable) = match &backup.about {
         Ok((at, why)) => (format!("{} {}", moment(at), verdicts::why(look, why)), None),
@@ -167,7 +158,29 @@ fn backup_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, backup: &Backup) -> bool 
         }
     };
     let button = Button::new(&words, look.say(device::BACKUP_TIP)).disabled(unreadable.as_deref());
-    button
-        .put(ui, look, rect, Id::unique(("backup", &backup.path)))
-        .clicked()
+    if button.ui(ui, look).clicked() {
+        let wish = ParamAction::OpenBackup(backup.path.clone());
+        pane.actions.push(Action::Param(wish));
+    }
+}
+
+/// The buttons of what is done to a hand only under a card. Each opens its card and does nothing else.
+pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let live = pane.state.hand().link.state.is_live();
+    let reason = (!live).then(|| look.say(cards::NO_HAND));
+    let reset = Button::new(
+        look.say(cards::RESET_ENTRY),
+        look.say(cards::RESET_ENTRY_TIP),
+    );
+    if reset.disabled(reason).ui(ui, look).clicked() {
+        pane.actions.push(Action::FactoryReset);
+    }
+    let calibrate = Button::new(
+        look.say(cards::CALIBRATE_ENTRY),
+        look.say(cards::CALIBRATE_ENTRY_TIP),
+    );
+    if calibrate.disabled(reason).ui(ui, look).clicked() {
+        pane.actions.push(Action::CalibrateForce);
+    }
 }

@@ -5,27 +5,18 @@ pub(crate) mod card;
 pub(crate) mod choices;
 pub(crate) mod file;
 pub(crate) mod flash;
-pub(crate) mod place_buttons;
 pub(crate) mod procedures;
 pub(crate) mod table;
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::app::state::State;
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right, take_top};
+use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
-use crate::ui::params::file as device_file;
-use crate::ui::params::flash as device_flash;
-use crate::ui::params::table as device_table;
 use crate::ui::params::table::Shown;
-use crate::ui::text::{Text, device, verdicts};
-use crate::ui::theme;
-use egui::{Color32, Id, Rect, TextEdit, Ui, vec2};
-
-/// Characters of the filter.
-const FILTER_MAX: usize = 40;
+use crate::ui::text::{device, notices, verdicts};
+use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, Ui};
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
@@ -35,161 +26,118 @@ pub(crate) struct DeviceView {
 }
 
 impl DeviceView {
-    /// Draws the view.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        let mut table = rect;
-        let flash = match rect.width() >= theme::DEVICE_WIDE {
-            true => take_right(&mut table, theme::DEVICE_SIDE),
-            false => {
-                let (upper, lower) = rect.split_top_bottom_at_y(rect.bottom() - theme::DEVICE_FOOT);
-                table = upper.with_max_y(upper.bottom() - theme::GAP);
-                lower
-            }
+    /// Draws the view: flash beside the table, or below it where the window is narrow.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let gap = Margin::same(0);
+        let (flash, gap) = match ui.available_width() >= 860.0 {
+            true => (
+                Panel::right("flash").exact_size(280.0),
+                Margin { left: 8, ..gap },
+            ),
+            false => (
+                Panel::bottom("flash").exact_size(172.0),
+                Margin { top: 8, ..gap },
+            ),
         };
-        device_flash::flash_ui(ui, flash, pane);
-        let mut body = controls::card(ui, pane.look, table);
-        let state = pane.state;
-        if let Some(compared) = &state.hand().params.compared {
-            return device_file::file_ui(ui, body, pane, compared);
-        }
-        self.find_ui(ui, take_top(&mut body, theme::CONTROL), pane);
-        tools_ui(ui, take_top(&mut body, theme::CONTROL), pane);
-        status_ui(ui, take_top(&mut body, theme::TEXT_LINE), pane);
-        device_table::table_ui(ui, body, pane, &self.shown, &mut self.typed);
+        let frame = Frame::new().inner_margin(gap);
+        let flash = flash.frame(frame).show_separator_line(false);
+        flash
+            .resizable(false)
+            .show(ui, |ui| flash::flash_ui(ui, pane));
+        controls::card_ui(ui, pane.look, |ui| {
+            ui.set_min_height(ui.available_height());
+            if let Some(compared) = &pane.state.hand().params.compared {
+                return file::file_ui(ui, pane, compared);
+            }
+            ui.horizontal(|ui| self.find_ui(ui, pane));
+            ui.horizontal(|ui| tools_ui(ui, pane));
+            let (words, color) = status(pane);
+            Label::new(&words, color).small().ui(ui);
+            table::table_ui(ui, pane, &self.shown, &mut self.typed);
+        });
     }
 
-    /// What is shown of the table, and when it was read.
-    fn find_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
+    /// What is shown of the table.
+    fn find_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let refusal = pane.state.hand().read_refusal();
-        let refusal = refusal.map(|why| look.say(verdicts::refusal(why)));
-        let text = look.say(device::READ);
-        let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-        let button = Button::new(text, look.say(device::READ_TIP)).disabled(refusal);
-        let place = take_right(&mut row, width);
-        if button
-            .put(ui, look, place, Id::unique("read rows"))
-            .clicked()
-        {
-            pane.actions.push(Action::Param(ParamAction::Read));
-        }
-        let text = look.say(device::ONLY);
-        let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-        let only = take_right(&mut row, width);
-        let button = Button::new(text, look.say(device::ONLY_TIP)).choice(self.shown.only);
-        if button
-            .put(ui, look, only, Id::unique("only differences"))
-            .clicked()
-        {
-            self.shown.only = !self.shown.only;
-        }
-        let place = row.with_max_x(row.right().min(row.left() + theme::DEVICE_FIND));
-        let edit = TextEdit::singleline(&mut self.shown.words)
-            .id(Id::unique("find parameters"))
-            .font(theme::body())
-            .hint_text(look.say(device::FIND_HINT))
-            .char_limit(FILTER_MAX)
-            .clip_text(true)
-            .align(egui::Align2::LEFT_CENTER)
-            .margin(vec2(theme::GAP, 0.0))
-            .min_size(place.size())
-            .desired_width(place.width() - theme::FIELD_MARGIN);
-        let response = ui.put(place, edit);
-        let value = self.shown.words.clone();
-        response.widget_info(|| {
-            let name = look.say(device::FIND);
-            let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, name);
-            info.current_text_value = Some(value.clone());
-            info
+        ui.scope(|ui| {
+            ui.set_max_width(200.0);
+            let (name, hint) = (look.say(device::FIND), look.say(device::FIND_HINT));
+            controls::edit_ui(ui, name, hint, &mut self.shown.words);
+        });
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let refusal = pane.state.hand().read_refusal();
+            let refusal = refusal.map(|why| look.say(verdicts::refusal(why)));
+            let read = Button::new(look.say(device::READ), look.say(device::READ_TIP));
+            if read.disabled(refusal).ui(ui, look).clicked() {
+                pane.actions.push(Action::Param(ParamAction::Read));
+            }
+            let only = Button::new(look.say(device::ONLY), look.say(device::ONLY_TIP));
+            if only.choice(self.shown.only).ui(ui, look).clicked() {
+                self.shown.only = !self.shown.only;
+            }
         });
     }
 }
 
 /// What is done with what is staged.
-fn tools_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    let state = pane.state;
+fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (look, hand) = (pane.look, pane.state.hand());
     let why = |why: Option<_>| why.map(|why| look.say(verdicts::refusal(why)));
-    let count = state.hand().params.to_apply().iter().count();
-    let apply = match count {
+    let apply = match hand.params.to_apply().iter().count() {
         0 => look.say(device::APPLY).to_owned(),
         count => format!("{} ({count})", look.say(device::APPLY)),
     };
-    let nothing = state.hand().params.all_staged().is_empty();
+    let nothing = hand.params.all_staged().is_empty();
     let nothing = nothing.then(|| look.say(device::WHY_NOTHING_STAGED));
-    let is_known = state.hand().sample.speed_set.is_some() && state.hand().link.state.is_live();
+    let is_known = hand.sample.speed_set.is_some() && hand.link.state.is_live();
     let unknown = (!is_known).then(|| look.say(device::COPY_UNKNOWN));
-    let strong = match state.hand().apply_refusal() {
+    let weight = match hand.apply_refusal() {
         None => Weight::Strong,
         Some(_) => Weight::Normal,
     };
+    let apply = Button::new(&apply, look.say(device::APPLY_TIP))
+        .named(look.say(device::APPLY))
+        .weight(weight);
+    let tool = |text, tip| Button::new(look.say(text), look.say(tip));
+    let undo = tool(device::UNDO, device::UNDO_TIP);
+    let drop = tool(device::UNSTAGE_ALL, device::UNSTAGE_ALL_TIP);
+    let copy = tool(device::COPY, device::COPY_TIP);
     let tools = [
-        (
-            Button::new(&apply, look.say(device::APPLY_TIP))
-                .named(look.say(device::APPLY))
-                .disabled(why(state.hand().apply_refusal()))
-                .weight(strong),
-            ParamAction::Apply,
-        ),
-        (
-            Button::new(look.say(device::UNDO), look.say(device::UNDO_TIP))
-                .disabled(why(state.hand().undo_refusal())),
-            ParamAction::Undo,
-        ),
-        (
-            Button::new(
-                look.say(device::UNSTAGE_ALL),
-                look.say(device::UNSTAGE_ALL_TIP),
-            )
-            .disabled(nothing),
-            ParamAction::UnstageAll,
-        ),
-        (
-            Button::new(look.say(device::COPY), look.say(device::COPY_TIP)).disabled(unknown),
-            ParamAction::CopyLive(None),
-        ),
+        (apply, why(hand.apply_refusal()), ParamAction::Apply),
+        (undo, why(hand.undo_refusal()), ParamAction::Undo),
+        (drop, nothing, ParamAction::UnstageAll),
+        (copy, unknown, ParamAction::CopyLive),
     ];
-    for (button, wish) in tools {
-        let width = controls::text_width(ui, button.text, theme::body()) + 2.0 * theme::PAD;
-        let place = take_left(&mut row, width);
-        let id = Id::unique(("device", format!("{wish:?}")));
-        if button.put(ui, look, place, id).clicked() {
+    for (button, disabled, wish) in tools {
+        if button.disabled(disabled).ui(ui, look).clicked() {
             pane.actions.push(Action::Param(wish));
         }
     }
 }
 
-/// One line: what is going on, or how old it all is.
-fn status_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>) {
-    let (words, color) = status(pane);
-    Label::new(&words, color).small().put(ui, row);
-}
-
+/// What is going on, or how old it all is.
 fn status(pane: &Pane<'_>) -> (String, Color32) {
-    let (look, state): (_, &State) = (pane.look, pane.state);
-    let book = &state.hand().params;
-    let say = |text: Text| look.say(text).to_owned();
+    let (look, hand) = (pane.look, pane.state.hand());
+    let book = &hand.params;
     if let Some(doing) = verdicts::doing(book.doing) {
-        return (say(doing), look.palette.accent);
+        return (look.say(doing).into(), look.palette.accent);
     }
-    if !state.hand().link.state.is_live() {
-        return (say(device::NO_HAND), look.palette.warn);
+    if !hand.link.state.is_live() {
+        return (look.say(device::NO_HAND).into(), look.palette.warn);
     }
     if let Some(error) = &book.trouble {
-        let error = crate::ui::text::notices::request_error(look, error);
+        let error = notices::request_error(look, error);
         let words = format!("{} {error}", look.say(device::TROUBLE));
         return (words, look.palette.warn);
     }
-    match book.read_at {
-        None => (say(device::NOT_READ), look.palette.muted),
+    let words = match book.read_at {
+        None => look.say(device::NOT_READ).into(),
         Some(at) => {
-            let age = format::age(state.now.since(at));
-            let words = format!(
-                "{} {age} {}",
-                look.say(device::READ_AT),
-                look.say(device::AGO)
-            );
-            (words, look.palette.muted)
+            let age = format::age(pane.state.now.since(at));
+            let [read, ago] = [device::READ_AT, device::AGO].map(|text| look.say(text));
+            format!("{read} {age} {ago}")
         }
-    }
+    };
+    (words, look.palette.muted)
 }

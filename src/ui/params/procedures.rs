@@ -20,6 +20,7 @@ use crate::ui::kit::look::Look;
 use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
 use crate::ui::params::choices::{cancel, close, reason, under_way};
+use crate::ui::params::table::value_text;
 use crate::ui::text::{Text, cards, device};
 use std::path::Path;
 
@@ -35,11 +36,12 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     })
 }
 
-const fn title(change: &PlaceChange) -> Text {
+/// The title as a question, and once it was answered.
+const fn titles(change: &PlaceChange) -> [Text; 2] {
     match change.id {
-        ParamId::HandId => cards::CHANGE_ID,
-        ParamId::IpAddress => cards::CHANGE_IP,
-        _ => cards::CHANGE_BAUD,
+        ParamId::HandId => [cards::CHANGE_ID, cards::CHANGING_ID],
+        ParamId::IpAddress => [cards::CHANGE_IP, cards::CHANGING_IP],
+        _ => [cards::CHANGE_BAUD, cards::CHANGING_BAUD],
     }
 }
 
@@ -76,6 +78,7 @@ fn from_to(look: Look, change: &PlaceChange) -> Line {
         _ => cards::FROM_TO_BAUD,
     };
     let (from, to) = (change.before, change.wanted);
+    let [from, to] = [from, to].map(|value| value_text(change.id, Some(value)));
     Line::Words(format!("{}: {from} -> {to}", look.say(name)))
 }
 
@@ -102,7 +105,7 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
         ProcedureAction::Begin,
     );
     Card {
-        title: look.say(title(change)).into(),
+        title: look.say(titles(change)[0]).into(),
         lines,
         choices: vec![cancel(), begin.disabled(reason(state, look))],
         ..Card::default()
@@ -130,18 +133,18 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     match &run.stage {
         ProcedureStage::Asking => ask_change(state, look, run),
         ProcedureStage::Over(Ok(report)) => change_over(look, change, report),
-        ProcedureStage::Over(Err(error)) => not_begun(look, title(change), error),
+        ProcedureStage::Over(Err(error)) => not_begun(look, titles(change)[1], error),
         ProcedureStage::Doing(step, since) => match step {
             PlaceStep::BackingUp | PlaceStep::BackedUp(..) => {
-                under_way(look, title(change), look.say(cards::BACKING_UP), 0.1)
+                under_way(look, titles(change)[1], look.say(cards::BACKING_UP), 0.1)
             }
             PlaceStep::Looking(place) => {
                 let words = at(look, cards::LOOKING, places, *place);
-                under_way(look, title(change), &words, 0.6)
+                under_way(look, titles(change)[1], &words, 0.6)
             }
             PlaceStep::Writing(place) => {
                 let words = at(look, cards::WRITING, places, *place);
-                under_way(look, title(change), &words, 0.4)
+                under_way(look, titles(change)[1], &words, 0.4)
             }
             PlaceStep::Keeping(place) => keep_card(state, look, change, (*place, *since)),
             PlaceStep::Returning => under_way(look, cards::GOING_BACK, "", 0.9),
@@ -271,7 +274,7 @@ fn change_over(look: Look, change: &PlaceChange, report: &PlaceReport) -> Card {
         PlaceEnd::Kept { at: place, saved } => {
             let mut lines = vec![Line::Words(at(look, cards::OVER_KEPT, places, *place))];
             lines.extend(saved_lines(look, places, saved.as_ref()));
-            let is_saved = saved.as_ref().is_some_and(may_be_in_flash);
+            let is_saved = saved.as_ref().is_some_and(Saved::may_be_in_flash);
             if *place == Place::Old && places.new != places.old && is_saved {
                 lines.push(Line::Words(at(look, cards::OVER_WAITS, places, Place::New)));
             }
@@ -283,18 +286,11 @@ fn change_over(look: Look, change: &PlaceChange, report: &PlaceReport) -> Card {
         }
     };
     Card {
-        title: look.say(title(change)).into(),
+        title: look.say(titles(change)[1]).into(),
         lines,
         choices,
         ..Card::default()
     }
-}
-
-const fn may_be_in_flash(saved: &Saved) -> bool {
-    matches!(
-        saved,
-        Saved::Confirmed | Saved::ReadBack | Saved::Unknown { .. }
-    )
 }
 
 fn saved_lines(look: Look, places: &Places, saved: Option<&Saved>) -> Vec<Line> {
@@ -361,7 +357,7 @@ fn ask_reset(state: &State, look: Look, places: &Places) -> Card {
 }
 
 fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
-    let (title, places) = (cards::RESET_TITLE, &run.places);
+    let (title, places) = (cards::RESETTING_TITLE, &run.places);
     match &run.stage {
         ProcedureStage::Asking => ask_reset(state, look, places),
         ProcedureStage::Doing(ResetStep::BackingUp, _) => {
@@ -379,7 +375,7 @@ fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
 }
 
 fn reset_over(look: Look, places: &Places, report: &ResetReport) -> Card {
-    let (title, backup) = (cards::RESET_TITLE, report.backup.as_path());
+    let (title, backup) = (cards::RESETTING_TITLE, report.backup.as_path());
     let mut choices = vec![close()];
     let lines = match &report.end {
         ResetEnd::NotSent(_) => vec![Line::Warning(look.say(cards::RESET_NOT_SENT).into())],

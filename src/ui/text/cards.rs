@@ -16,11 +16,14 @@ texts! {
     CHANGE_ID: "Change the id of the hand?", "更改灵巧手的 ID？";
     CHANGE_BAUD: "Change the serial speed of the hand?", "更改灵巧手的波特率？";
     CHANGE_IP: "Change the IP address of the hand?", "更改灵巧手的 IP 地址？";
+    CHANGING_ID: "Change of the hand's id", "灵巧手 ID 的更改";
+    CHANGING_BAUD: "Change of the hand's serial speed", "灵巧手波特率的更改";
+    CHANGING_IP: "Change of the hand's IP address", "灵巧手 IP 地址的更改";
     FROM_TO_ID: "Id", "ID";
-    FROM_TO_BAUD: "Code of the serial speed", "波特率代码";
+    FROM_TO_BAUD: "Serial speed, baud", "波特率";
     FROM_TO_IP: "IP address", "IP 地址";
-    NOW_AT: "Now at", "当前位置";
-    THEN_AT: "Then at", "更改后位置";
+    NOW_AT: "Now at", "当前通信地址";
+    THEN_AT: "Then at", "更改后通信地址";
     FOLLOWED: "A backup is kept first. Nothing is written if another hand answers at the new place. After the write the hand is looked for there, and unless you keep it within 15 s it goes back.", "先备份。若新位置已有其他灵巧手应答，则不写入。写入后到新位置寻找灵巧手；15 秒内不确认保留，就自动恢复。";
     POWERED: "A backup is kept first. The new value acts only after SAVE and power off and on; until then the hand answers where it is. Unless you keep it within 15 s it goes back.", "先备份。新值在保存并重新上电后才生效，在此之前灵巧手仍在原位置应答；15 秒内不确认保留，就自动恢复。";
     WAY_ASKED: "Looking which way this computer would take to the new address.", "正在查询本机到新地址的路由。";
@@ -70,6 +73,7 @@ texts! {
     CONNECT_TIP: "Connects there. Nothing is written.", "连接到该位置，不写入任何内容。";
 
     RESET_TITLE: "Return to the factory's parameters?", "恢复出厂参数？";
+    RESETTING_TITLE: "Return to the factory's parameters", "恢复出厂参数";
     RESET_WORDS: "Speeds and forces after power-up, id, serial speed and IP address return to what the factory set. A backup is kept first; afterwards the hand is looked for at the factory's place.", "上电速度与力、ID、波特率和 IP 地址都恢复为出厂值。先备份，之后到出厂位置寻找灵巧手。";
     RESET: "Reset", "恢复出厂";
     RESET_TIP: "Keeps a backup, then sends RESET_PARA.", "先备份，再发送 RESET_PARA。";

@@ -23,11 +23,9 @@ texts! {
     UNSTAGE_TIP: "Forgets what is staged here. Writes nothing.", "清除此行暂存值，不写入任何内容。";
     COPY: "Copy live speed and force", "取当前速度与力阈值";
     COPY_TIP: "Stages SPEED_SET and FORCE_SET, as they are read from the hand now, as defaults after power-up, for all joints. Writes nothing.", "把当前从灵巧手读到的 SPEED_SET 与 FORCE_SET 暂存为全部关节的上电默认值，不写入任何内容。";
-    COPY_ONE: "Copy live", "取当前值";
-    COPY_ONE_TIP: "Stages the speed and the force that this joint has now as its defaults after power-up. Writes nothing.", "把此关节当前的速度与力阈值暂存为上电默认值，不写入任何内容。";
     COPY_UNKNOWN: "SPEED_SET and FORCE_SET are not known now.", "SPEED_SET 与 FORCE_SET 目前未知。";
     CHANGE: "Change...", "更改...";
-    CHANGE_TIP: "Changes where the hand is found, step by step and with a way back.", "分步更改灵巧手的位置，并保留退路。";
+    CHANGE_TIP: "Changes where the hand is found, step by step and with a way back.", "分步更改灵巧手的通信地址，并保留退路。";
     CHANGE_NONE: "Type another value first.", "请先输入另一个值。";
 
     CHANGE_SIM: "The simulated hand is always found here.", "仿真手总在此处。";
@@ -41,10 +39,11 @@ texts! {
     MANUAL: "manual", "手册";
     STAGED_TIP: "What this row is to hold once it is applied. Enter stages it; nothing is written by typing.", "应用后此行的值。按回车暂存，输入时不写入任何内容。";
     ADDRESS_HINT: "address", "地址";
+    FOUR_SPEEDS: "4 speeds", "4 种速率";
 
     VERDICT: "verdict", "结果";
 
-    GROUP_PLACE: "Where the hand is found", "灵巧手的位置";
+    GROUP_PLACE: "Where the hand is found", "通信地址";
     GROUP_SPEED: "Speed after power-up", "上电速度";
     GROUP_FORCE: "Force threshold after power-up", "上电力阈值";
     ABOUT_PLACE: "Belongs to one hand. A wrong value hides the hand from this computer.", "每只灵巧手各不相同。值有误时，本机将找不到灵巧手。";
@@ -54,7 +53,7 @@ texts! {
     REDU_RATIO: "Serial speed", "串口速率";
     IP_ADDRESS: "IP address", "IP 地址";
     ABOUT_HAND_ID: "The id on the bus.", "总线上的编号。";
-    ABOUT_REDU_RATIO: "Code of the serial speed: 0 is 115200, 1 is 57600, 2 is 19200, 3 is 921600 baud.", "串口速率代码：0 为 115200，1 为 57600，2 为 19200，3 为 921600 波特。";
+    ABOUT_REDU_RATIO: "In baud.", "单位：波特。";
     ABOUT_IP: "Acts from the next power-up.", "下次上电时生效。";
 
     NO_HAND: "No hand answers. What was read before is old; what was never read is \"-\".", "没有灵巧手应答。先前读到的值已旧，从未读到的显示 \"-\"。";
@@ -112,7 +111,16 @@ texts! {
     FLASH: "Flash", "闪存";
     FLASH_BODY: "Flash itself cannot be read. \"Last saved\" is what this program saved.", "闪存本身无法读取。“上次保存”是本程序所保存的内容。";
     SAVE: "Save to flash", "保存到闪存";
-    SAVE_TIP: "Makes a backup, then lets the hand write all its parameters to flash. Takes up to 3 seconds.", "先备份，然后让灵巧手把全部参数写入闪存，最多 3 秒。";
+    SAVE_TIP: "Shows what would change, makes a backup, then lets the hand write all its parameters to flash. Takes up to 3 seconds.", "先显示将要改变的内容并备份，然后让灵巧手把全部参数写入闪存，最多 3 秒。";
+    SAVE_TITLE: "Save these changes to flash?", "把这些更改保存到闪存？";
+    SAVE_CHANGES: "SAVE writes all parameters of the hand. After the next power-up these are not as before:", "保存会写入灵巧手的全部参数。下次上电后，以下各项与以前不同：";
+    SAVE_FROM: "Until now", "以前";
+    SAVE_TO: "Will be saved", "将保存";
+    SAVE_STAGED: "Rows are staged and not applied. Save to flash applies them first.", "有暂存值尚未应用。保存到闪存时会先应用。";
+    SAVE_NOT_APPLIED: "Not saved: not all that was staged is in force. Each row says why.", "未保存：暂存值未全部生效，原因见各行。";
+    UNSAVED: "Not in flash yet:", "尚未写入闪存：";
+    AGREE: "Save", "保存";
+    AGREE_APPLY_SAVE: "Apply and save", "应用并保存";
     NEVER_SAVED: "This program saved nothing on this hand yet.", "本程序尚未在此灵巧手上保存过。";
     SAVED_ON: "Last saved", "上次保存";
     BY_FRAME: "confirmed by the hand", "灵巧手已确认";
@@ -144,7 +152,7 @@ texts! {
     IN_FILE: "In the file", "文件中";
     TAKE: "Take", "采用";
     TICK_TIP: "Stages this row with the others that are ticked.", "与其他勾选的行一起暂存。";
-    TICK_PLACE_TIP: "Says where another hand may be found: tick it only if it is meant.", "可能是另一只灵巧手的位置：确有需要才勾选。";
+    TICK_PLACE_TIP: "Says where another hand may be found: tick it only if it is meant.", "可能是另一只灵巧手的通信地址：确有需要才勾选。";
     STAGE_TICKED: "Stage ticked rows", "暂存勾选的行";
     STAGE_TICKED_TIP: "Puts the ticked rows beside what the hand holds. Writes nothing.", "把勾选的行放入暂存值，不写入任何内容。";
     STAGE_NONE: "No row is ticked.", "没有勾选任何行。";

@@ -126,6 +126,7 @@ pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
             look.say(device::SAVE_NOT_SENT),
             request_error(look, error)
         ),
+        SaveEnd::NotApplied => look.say(device::SAVE_NOT_APPLIED).into(),
         SaveEnd::NotNoted(told, message) => format!(
             "{} {} {message}",
             saved(look, told),

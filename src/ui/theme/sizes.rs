@@ -201,7 +201,3 @@ pub(crate) const MENU_WIDE: f32 = 440.0;
 pub(crate) const CARD_WIDTH: f32 = 560.0;
 /// Space inside it.
 pub(crate) const CARD_PAD: f32 = 20.0;
-/// The least width of its buttons.
-pub(crate) const CARD_BUTTON: f32 = 96.0;
-/// Width of a cell of its tables.
-pub(crate) const CARD_CELL: f32 = 96.0;

@@ -158,20 +158,3 @@ pub(crate) const GESTURES_FIVE: f32 = 640.0;
 pub(crate) const CAUSE_LEAST: f32 = 26.0;
 /// Least width of a message.
 pub(crate) const MESSAGE_LEAST: f32 = 40.0;
-
-/// Width from which what is in flash stands beside the table of what the hand keeps.
-pub(crate) const DEVICE_WIDE: f32 = 860.0;
-/// Width of the flash beside the table.
-pub(crate) const DEVICE_SIDE: f32 = 272.0;
-/// Height of the flash below the table.
-pub(crate) const DEVICE_FOOT: f32 = 156.0;
-/// Height of SAVE and what came of it, above the files.
-pub(crate) const DEVICE_SAVE: f32 = 240.0;
-/// Width of the field that finds rows.
-pub(crate) const DEVICE_FIND: f32 = 200.0;
-/// Height of a row of what the hand keeps.
-pub(crate) const DEVICE_ROW: f32 = 34.0;
-/// Height of a row that has a button below its field.
-pub(crate) const DEVICE_ROW_HIGH: f32 = 78.0;
-/// Parts of the width for live, staged, saved, factory and range; the name has the rest.
-pub(crate) const DEVICE_COLUMNS: [f32; 5] = [0.15, 0.2, 0.15, 0.145, 0.125];

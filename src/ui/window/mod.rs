@@ -55,7 +55,7 @@ use crate::ui::window::status::StatusLine;
 use crate::ui::touch::{self, TouchView};
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
-use egui::{Frame, Margin, Panel, Rect, Stroke, Ui};
+use egui::{Frame, Margin, Panel, Rect, Stroke, Ui, UiBuilder};
 
 /// What the window remembers between frames: the open tab, text in progress, what is hidden.
 #[derive(Debug, Default)]
@@ -211,6 +211,10 @@ impl Window {
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.window);
         self.rooms.begin(pane.state.settings.layout);
         let is_free = !is_covered(pane.state);
+        if !is_free {
+            // The card's own veil dims what is below it; what is above stays bright.
+            ui.visuals_mut().disabled_alpha = 1.0;
+        }
         let header = Frame::new()
             .fill(palette.card)
             .stroke(Stroke::new(1.0, palette.edge))
@@ -227,6 +231,9 @@ impl Window {
         });
         let height = theme::STATUS + theme::GAP;
         let asked = bar_ui(ui, ("status", height), status, |ui| {
+            if !is_free {
+                ui.disable();
+            }
             self.status.ui(ui, pane)
         });
         self.view = asked.unwrap_or(self.view);
@@ -300,7 +307,10 @@ impl Window {
             View::Compare => self.compare.ui(ui, rect, pane),
             View::Faults => self.faults.ui(ui, rect, pane),
             View::Poses => self.poses.ui(ui, rect, pane),
-            View::Device => self.device.ui(ui, rect, pane),
+            View::Device => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.device.ui(ui, pane));
+            }
             View::Connection => self.connection.ui(ui, rect, pane),
             View::Traffic => self.traffic.ui(ui, rect, pane),
         }

@@ -339,6 +339,7 @@ fn save(end: &SaveEnd) -> String {
         SaveEnd::Told(saved) => saved_name(saved).into(),
         SaveEnd::NoBackup { .. } => "no backup".into(),
         SaveEnd::NotAsked(error) => format!("not asked: {error}"),
+        SaveEnd::NotApplied => "not applied".into(),
         SaveEnd::NotNoted(saved, _) => format!("{}, not noted", saved_name(saved)),
     }
 }
@@ -384,7 +385,7 @@ fn action(words: &[&str], state: &State) -> Action {
         ["agree"] => Action::Param(ParamAction::Agree),
         ["decline"] => Action::Param(ParamAction::Decline),
         ["dump"] => Action::Param(ParamAction::Dump),
-        ["copy", "live"] => Action::Param(ParamAction::CopyLive(None)),
+        ["copy", "live"] => Action::Param(ParamAction::CopyLive),
         ["stage", name, word] => Action::Stage(value(name, word).0, Some(value(name, word).1)),
         ["place", name, word] => Action::ChangePlace(value(name, word).0, value(name, word).1),
         ["reset"] => Action::FactoryReset,

@@ -61,7 +61,7 @@ async fn gentle() -> Bench {
 async fn connecting_staging_and_copying_ask_the_hand_for_nothing() {
     let mut bench = gentle().await;
     stage(&mut bench, INDEX, 250);
-    ask(&mut bench, ParamAction::CopyLive(None));
+    ask(&mut bench, ParamAction::CopyLive);
     ask(&mut bench, ParamAction::StageTicked);
     ask(&mut bench, ParamAction::Tick(INDEX));
     stage(&mut bench, INDEX, 250);

@@ -392,6 +392,16 @@ impl Bench {
         copied
     }
 
+    /// Takes one of the texts of a list that opens.
+    pub(crate) fn choose(&mut self, name: &str, text: &str) {
+        self.harness
+            .get_by_role_and_label(Role::ComboBox, name)
+            .click();
+        self.run(100);
+        self.click_button(text);
+        self.run(100);
+    }
+
     pub(crate) fn key(&mut self, key: Key) {
         self.harness.key_press(key);
         self.harness.step();
@@ -599,6 +609,25 @@ impl Bench {
             (name, pressed.unwrap_or(node.rect()))
         });
         named.filter(|(_, rect)| rect.is_positive()).collect()
+    }
+
+    /// Whether a text is painted in full, and nothing is painted over it.
+    pub(crate) fn is_bright(&self, text: &str) -> bool {
+        let mut found = None;
+        for clipped in &self.harness.output().shapes {
+            match (&clipped.shape, found) {
+                (egui::Shape::Text(shape), _) if shape.galley.text() == text => {
+                    let full = shape.opacity_factor >= 1.0;
+                    found = full.then(|| clipped.shape.visual_bounding_rect());
+                }
+                (egui::Shape::Rect(cover), Some(place)) if cover.fill.a() > 0 => {
+                    let covers = cover.rect.intersect(clipped.clip_rect).intersects(place);
+                    found = found.filter(|_| !covers);
+                }
+                _ => {}
+            }
+        }
+        found.is_some()
     }
 
     /// Colours of the frames that are painted around this place.

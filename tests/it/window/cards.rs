@@ -3,6 +3,8 @@
 use crate::setup::window::{Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
 use egui::{Key, Vec2, vec2};
 use handscope::app::action::Action;
+use handscope::app::notices::NoticeKind;
+use handscope::app::params::action::ParamAction;
 use handscope::app::procedures::{Procedure, ProcedureAction};
 use handscope::app::settings::Language;
 use handscope::hand::{Dof, register};
@@ -71,6 +73,7 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
     let mut bench = on_a_line(Personality::default());
     change_id(&mut bench, 7);
     bench.until(20_000, |bench| bench.shows("Keep the change?"));
+    assert!(!bench.shows("Change the id of the hand?"));
     assert_eq!((id_of(&bench), backups(&bench)), (7, 1));
     assert_eq!(
         bench.state().settings.endpoint.as_deref(),
@@ -78,14 +81,14 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
     );
     bench.click_button("Keep");
     assert!(bench.shows("Save it in the hand?"));
-    assert!(
-        bench.has_reading("Index", "+2502"),
-        "SAVE takes the hard defaults of the factory along"
-    );
-    bench.click_button("Save anyway");
+    bench.click_button("Save");
     bench.until(10_000, |bench| {
         bench.shows("The hand says that it is in flash.")
     });
+    assert!(
+        bench.shows("Change of the hand's id"),
+        "it is no question any more"
+    );
     assert_eq!(count(&bench, SAVE), 1);
     let saved = |bench: &Bench| bench.state().hand().params.known.saved.is_some();
     bench.until(1000, saved);
@@ -196,7 +199,7 @@ fn a_speed_that_acts_at_once_is_followed_kept_saved_and_there_after_power() {
     assert_eq!(code_of(&bench), 2);
     assert!(place(&bench).contains("baud=19200"), "{}", place(&bench));
     bench.click_button("Keep");
-    bench.click_button("Save anyway");
+    bench.click_button("Save");
     bench.until(10_000, |bench| {
         bench.shows("The hand says that it is in flash.")
     });
@@ -214,7 +217,7 @@ fn a_speed_that_acts_at_save_is_found_again_after_it() {
     let mut bench = with_speed("after-save");
     assert_eq!(code_of(&bench), 0);
     bench.click_button("Keep");
-    bench.click_button("Save anyway");
+    bench.click_button("Save");
     let answers = |bench: &Bench| bench.texts_with("The hand answers here:");
     bench.until(60_000, |bench| !answers(bench).is_empty());
     assert_eq!(code_of(&bench), 2);
@@ -297,7 +300,7 @@ fn a_speed_that_waits_for_power_is_kept_with_both_places_and_the_way_to_the_new_
     let mut bench = with_speed("after-power");
     assert_eq!(code_of(&bench), 0);
     bench.click_button("Keep");
-    bench.click_button("Save anyway");
+    bench.click_button("Save");
     bench.until(10_000, |bench| bench.shows("Connect: new place"));
     assert!(bench.shows("Connect: former place"));
     bench.hand(SimHand::power_cycle);
@@ -502,6 +505,12 @@ fn the_cards_fit_the_smallest_window_in_both_languages() {
     }
 }
 
+/// All joints wake up with this speed and this force threshold.
+fn write_defaults(bench: &mut Bench, value: i16) {
+    let bytes = value.to_le_bytes().repeat(12);
+    bench.hand(|hand, now| hand.write(1032, &bytes, now).unwrap());
+}
+
 #[test]
 fn the_card_before_a_save_shows_all_that_is_hard_in_the_smallest_window() {
     for (language, keep, save) in [
@@ -511,6 +520,10 @@ fn the_card_before_a_save_shows_all_that_is_hard_in_the_smallest_window() {
         let mut bench = Bench::kept(SimConfig::default(), "rs485:/dev/hand?id=1", SMALL);
         bench.wait(1500);
         bench.act(Action::Language(language));
+        write_defaults(&mut bench, 100);
+        bench.act(Action::Param(ParamAction::Read));
+        bench.wait(1000);
+        write_defaults(&mut bench, 1000);
         bench.act(Action::ChangePlace(ParamId::HandId, Value::Number(7)));
         bench.act(Action::Procedure(ProcedureAction::Begin));
         bench.until(20_000, |bench| {
@@ -530,8 +543,7 @@ fn the_card_before_a_save_shows_all_that_is_hard_in_the_smallest_window() {
 #[test]
 fn with_gentle_defaults_there_is_nothing_to_warn_of_before_a_save() {
     let mut bench = on_a_line(Personality::default());
-    let bytes = 100_i16.to_le_bytes().repeat(12);
-    bench.hand(|hand, now| hand.write(1032, &bytes, now).unwrap());
+    write_defaults(&mut bench, 100);
     change_id(&mut bench, 7);
     bench.until(20_000, |bench| bench.shows("Keep the change?"));
     bench.click_button("Keep");
@@ -540,4 +552,53 @@ fn with_gentle_defaults_there_is_nothing_to_warn_of_before_a_save() {
     bench.until(10_000, |bench| {
         bench.shows("The hand says that it is in flash.")
     });
+}
+
+#[test]
+fn a_lost_link_and_the_header_stay_bright_above_a_card() {
+    let mut bench = on_a_line(Personality::default());
+    bench.act(Action::FactoryReset);
+    bench.run(200);
+    let card = bench.rect(Role::AlertDialog, "Return to the factory's parameters?");
+    assert!(!bench.is_bright("Joints"), "the view below is dimmed");
+    bench.unplug();
+    bench.until(3_000, |bench| !bench.texts_with("LINK LOST").is_empty());
+    bench.run(100);
+    let title = bench.texts_with("LINK LOST").remove(0);
+    assert!(bench.is_bright(&title), "{title}");
+    assert!(bench.is_bright("STOP") && bench.is_bright("Round trip"));
+    let after = bench.rect(Role::AlertDialog, "Return to the factory's parameters?");
+    assert_eq!(card, after, "nothing moves under the pointer");
+}
+
+#[test]
+fn an_id_that_this_program_changed_is_not_staged_any_more_nor_warned_of() {
+    let config = SimConfig::default();
+    let mut bench = Bench::kept(config, "tcp:127.0.0.1:6000", LARGE);
+    bench.wait(1500);
+    bench.act(Action::Param(ParamAction::Read));
+    bench.wait(1000);
+    let id = ParamId::HandId;
+    bench.act(Action::Stage(id, Some(Value::Number(3))));
+    bench.act(Action::ChangePlace(id, Value::Number(3)));
+    bench.run(100);
+    bench.click_button("Change");
+    bench.until(20_000, |bench| bench.shows("Keep the change?"));
+    bench.click_button("Keep");
+    bench.click_button("Save");
+    bench.until(10_000, |bench| bench.shows("Done"));
+    bench.click_button("Done");
+    assert_eq!(bench.state().hand().params.staged(id), None);
+    bench.hand(SimHand::power_cycle);
+    bench.unplug();
+    bench.wait(1000);
+    bench.plug();
+    bench.until(10_000, |bench| {
+        bench.state().hand().link.state == LinkState::Monitoring
+    });
+    bench.wait(2000);
+    assert_eq!(bench.state().hand().link.quirks.hand_id, Some(3));
+    let mut notices = bench.state().notices.iter();
+    let warned = notices.any(|notice| matches!(notice.what, NoticeKind::HandDiffers { .. }));
+    assert!(!warned, "its own change");
 }

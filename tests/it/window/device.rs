@@ -114,8 +114,23 @@ fn half_a_number_and_one_out_of_range_stage_nothing_and_staging_writes_nothing()
     bench.click("Drop Index speed");
     bench.run(60);
     assert_eq!(staged(&bench, INDEX), None);
-    stage(&mut bench, "Serial speed staged", "4");
-    assert_eq!(staged(&bench, ParamId::ReduRatio), None, "no such speed");
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn the_serial_speed_is_chosen_in_baud_and_shown_in_baud() {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    assert_eq!(bench.reading("Serial speed live"), "115200");
+    bench.choose("Serial speed staged", "19200");
+    let code = Value::Number(2);
+    assert_eq!(staged(&bench, ParamId::ReduRatio), Some(code));
+    bench.choose("Serial speed staged", "115200");
+    assert_eq!(
+        staged(&bench, ParamId::ReduRatio),
+        None,
+        "the hand holds it already"
+    );
     assert_eq!(bench.writes(), []);
 }
 
@@ -468,7 +483,9 @@ fn a_save_that_failed_or_gave_no_result_is_told_so_and_is_not_the_last_saved() {
 #[test]
 fn dangerous_defaults_are_asked_about_before_they_are_saved() {
     let mut bench = Bench::keeping(SimConfig::default());
-    open(&mut bench);
+    ask_for_hard_defaults(&mut bench);
+    bench.click("Apply anyway");
+    settle(&mut bench);
     bench.click("Dump to file");
     bench.run(400);
     bench.click("Open file");
@@ -478,6 +495,10 @@ fn dangerous_defaults_are_asked_about_before_they_are_saved() {
     assert!(
         bench.shows("Save defaults that hit hard?"),
         "beside a file too"
+    );
+    assert!(
+        bench.has_reading("Index", "+2502") && !bench.has_reading("Ring", "+2502"),
+        "only the joint that was changed"
     );
     assert!(!bench.addresses().contains(&SAVE));
     bench.click("Save anyway");
@@ -509,17 +530,13 @@ fn the_filter_and_the_differences_leave_the_rows_that_are_meant() {
 }
 
 #[test]
-fn the_speed_that_the_hand_has_now_is_staged_by_joint_and_for_all() {
+fn the_speed_that_the_hand_has_now_is_staged_for_all() {
     let mut bench = Bench::live();
     let bytes = 300_i16.to_le_bytes().repeat(6);
     bench.hand(|hand, now| hand.write(SPEED_SET, &bytes, now).unwrap());
     bench.wait(3000);
     open(&mut bench);
     let before = bench.writes().len();
-    bench.click("Copy live Index");
-    bench.run(60);
-    assert_eq!(staged(&bench, INDEX), Some(Value::Number(300)));
-    assert_eq!(staged(&bench, ParamId::DefaultSpeed(Dof::Ring)), None);
     bench.click("Copy live speed and force");
     bench.run(60);
     for dof in Dof::ALL {
@@ -624,4 +641,58 @@ fn everything_can_be_reached_in_the_least_window_in_both_languages() {
             "{tab}"
         );
     }
+}
+
+#[test]
+fn what_nobody_changed_is_saved_without_a_warning() {
+    let mut bench = Bench::keeping(SimConfig::default());
+    open(&mut bench);
+    assert_eq!(bench.reading("Thumb rotate force live"), "1000", "hard");
+    bench.click("Save to flash");
+    settle(&mut bench);
+    assert!(bench.all(Role::AlertDialog).is_empty());
+    assert!(bench.addresses().contains(&SAVE));
+}
+
+#[test]
+fn a_save_with_staged_rows_shows_them_applies_them_and_saves_them_in_one_step() {
+    let mut bench = Bench::keeping(SimConfig::default());
+    defaults(&mut bench, 100);
+    open(&mut bench);
+    stage(&mut bench, "Index speed staged", "50");
+    assert!(bench.shows("Rows are staged and not applied. Save to flash applies them first."));
+    assert!(bench.shows("Not in flash yet: Index speed"));
+    bench.click("Save to flash");
+    settle(&mut bench);
+    assert!(bench.shows("Save these changes to flash?"));
+    for value in ["100", "50"] {
+        assert!(bench.has_reading("Index speed", value), "{value}");
+    }
+    assert!(!bench.addresses().contains(&SAVE), "nothing is written yet");
+    bench.click("Apply and save");
+    settle(&mut bench);
+    assert_eq!(bench.reading("Index speed live"), "50");
+    assert_eq!(bench.reading("Index speed last saved"), "50");
+    assert!(bench.shows("Saved: the hand says that its parameters are in flash."));
+    bench.hand(handscope::sim::SimHand::power_cycle);
+    bench.wait(3000);
+    bench.click("Read again");
+    settle(&mut bench);
+    assert_eq!(bench.reading("Index speed live"), "50");
+}
+
+#[test]
+fn a_save_of_staged_rows_that_the_hand_drops_is_not_done_and_says_so() {
+    let mut bench = Bench::keeping(quirk("defaults", "drop"));
+    open(&mut bench);
+    stage(&mut bench, "Index speed staged", "50");
+    bench.click("Save to flash");
+    settle(&mut bench);
+    bench.click("Apply and save");
+    settle(&mut bench);
+    assert_eq!(
+        bench.texts_with("Not saved: not all that was staged").len(),
+        1
+    );
+    assert!(!bench.addresses().contains(&SAVE));
 }
