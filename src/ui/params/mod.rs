@@ -176,7 +176,7 @@ fn status(pane: &Pane<'_>) -> (String, Color32) {
         return (say(device::NO_HAND), look.palette.warn);
     }
     if let Some(error) = &book.trouble {
-        let error = crate::ui::text::notices::request_error(look, error);
+        let error = crate::ui::text::errors::request(look, error);
         let words = format!("{} {error}", look.say(device::TROUBLE));
         return (words, look.palette.warn);
     }

@@ -8,7 +8,7 @@ use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, take_left, take_right};
 use crate::ui::kit::format;
 use crate::ui::kit::look::{Look, Pane};
-use crate::ui::text::{Text, main, notices, words};
+use crate::ui::text::{Text, errors, main, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::{
@@ -69,7 +69,7 @@ fn lost(pane: &Pane<'_>) -> Option<Banner> {
     } else {
         (main::UNREACHABLE_TITLE, pane.look.palette.warn)
     };
-    let cause = notices::trouble(pane.look, trouble);
+    let cause = errors::trouble(pane.look, trouble);
     let body = if known {
         format!("{} {cause}", pane.look.say(main::LOST_BODY))
     } else {

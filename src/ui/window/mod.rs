@@ -43,7 +43,7 @@ use crate::ui::window::rooms::{Body, Overview, Side};
 use crate::ui::touch::{self, TouchView};
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
-use egui::{Rect, Ui};
+use egui::{Rect, Ui, UiBuilder};
 
 /// What the window remembers between frames: the open tab, text in progress, what is hidden.
 #[derive(Debug, Default)]
@@ -257,7 +257,10 @@ impl Window {
             View::Faults => self.faults.ui(ui, rect, pane),
             View::Poses => self.poses.ui(ui, rect, pane),
             View::Device => self.device.ui(ui, rect, pane),
-            View::Connection => self.connection.ui(ui, rect, pane),
+            View::Connection => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.connection.ui(ui, pane));
+            }
             View::Traffic => self.traffic.ui(ui, rect, pane),
         }
     }
