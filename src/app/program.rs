@@ -358,7 +358,7 @@ impl App {
         if let Some(endpoint) = &to {
             // A scan may still ask further ids on the port that is wanted.
             self.scanner.cancel(&mut self.state.scan);
-            self.state.settings.endpoint = Some(endpoint.to_string());
+            self.state.settings.remember(endpoint);
         }
         let State { hands, notices, .. } = &mut self.state;
         let hand = hands.shown_mut();

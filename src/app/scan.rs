@@ -3,8 +3,8 @@
 use crate::app::env::Env;
 use crate::hand::HandId;
 use crate::link::scan::{
-    Found, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanProgress, ScanSummary,
-    start,
+    Found, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanProgress,
+    ScanSummary, Speaks, start,
 };
 use crate::transport::{Endpoint, TransportError};
 use std::sync::Arc;
@@ -33,6 +33,10 @@ pub enum IdRange {
 pub enum ScanWish {
     /// All serial ports and CAN interfaces of this computer.
     Ports(IdRange),
+    /// This serial port, as a line or as a CAN adapter.
+    Port(String, IdRange),
+    /// This CAN interface.
+    Interface(String, IdRange),
     /// These addresses and nothing else.
     Hosts(Hosts),
 }
@@ -130,19 +134,27 @@ impl Scanner {
         if self.handle.is_some() {
             return;
         }
-        let nothing = Local::Named {
-            ports: Vec::new(),
-            can: Vec::new(),
-        };
         *book = ScanState {
             stage: ScanStage::Running,
             wish: Some(wish.clone()),
             ..ScanState::default()
         };
         let (local, hosts, ids) = match wish {
-            ScanWish::Ports(IdRange::Few) => (Local::Listed, Vec::new(), FEW),
-            ScanWish::Ports(IdRange::All) => (Local::Listed, Vec::new(), usize::MAX),
-            ScanWish::Hosts(hosts) => (nothing, vec![hosts], FEW),
+            ScanWish::Ports(ids) => (Local::Listed, Vec::new(), ids),
+            ScanWish::Port(port, ids) => {
+                let wish = PortWish {
+                    port,
+                    usb: None,
+                    speaks: Speaks::Either,
+                };
+                (named(vec![wish], Vec::new()), Vec::new(), ids)
+            }
+            ScanWish::Interface(can, ids) => (named(Vec::new(), vec![can]), Vec::new(), ids),
+            ScanWish::Hosts(hosts) => (named(Vec::new(), Vec::new()), vec![hosts], IdRange::Few),
+        };
+        let ids = match ids {
+            IdRange::Few => FEW,
+            IdRange::All => usize::MAX,
         };
         let config = ScanConfig {
             local,
@@ -176,6 +188,10 @@ impl Scanner {
             self.handle = None;
         }
     }
+}
+
+fn named(ports: Vec<PortWish>, can: Vec<String>) -> Local {
+    Local::Named { ports, can }
 }
 
 #[cfg(test)]

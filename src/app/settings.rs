@@ -3,6 +3,7 @@
 use crate::app::layout::Layout;
 use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute, GestureStore};
+use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -211,6 +212,8 @@ impl ShownPlots {
     }
 }
 
+/// Hands that are remembered: what fits a glance.
+pub const RECENT_MAX: usize = 5;
 /// Characters in the name of a gesture: what fits a button.
 pub const NAME_CHARS_MAX: usize = 32;
 
@@ -220,6 +223,8 @@ pub const NAME_CHARS_MAX: usize = 32;
 pub struct Settings {
     /// The hand of last time, in the spelling of endpoints.
     pub endpoint: Option<String>,
+    /// Hands that a person connected to, the newest first, in the same spelling.
+    pub recent: Vec<String>,
     /// Dark or light.
     pub theme: Theme,
     /// The hand that is drawn: no register says which one it is.
@@ -249,6 +254,15 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The hand of this time, for the next start and for one click.
+    pub(crate) fn remember(&mut self, endpoint: &Endpoint) {
+        let text = endpoint.to_string();
+        self.recent.retain(|other| *other != text);
+        self.recent.insert(0, text.clone());
+        self.recent.truncate(RECENT_MAX);
+        self.endpoint = Some(text);
+    }
+
     /// The name that a person gave to a gesture. Manual: 2.6.7 lists no names by number, so there are no others.
     #[must_use]
     pub fn gesture_name(&self, gesture: Gesture) -> Option<&str> {
@@ -273,6 +287,19 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_last_few_hands_are_remembered_once_each_and_the_newest_first() {
+        let mut settings = Settings::default();
+        for port in [1, 2, 3, 4, 5, 6, 3] {
+            let endpoint = format!("rs485:COM{port}").parse().unwrap();
+            settings.remember(&endpoint);
+        }
+        let ports = ["COM3", "COM6", "COM5", "COM4", "COM2"];
+        let spelled = ports.map(|port| format!("rs485:{port}?baud=115200&id=1"));
+        assert_eq!(settings.recent, spelled);
+        assert_eq!(settings.endpoint.as_ref(), spelled.first());
+    }
 
     #[test]
     fn names_of_gestures_are_lines_that_fit_and_empty_ones_are_none() {

@@ -1,5 +1,31 @@
 //! Why a text is no endpoint, in words for the person who wrote it. Reads no text.
 
+use std::fmt;
+
+/// What a value must be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Want {
+    /// A whole number.
+    Whole,
+    /// A whole number in this range, both ends included.
+    Between(u32, u32),
+    /// A speed in bits a second in this range.
+    Speed(u32, u32),
+    /// One of these, as a list in words.
+    OneOf(&'static str),
+}
+
+impl fmt::Display for Want {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => write!(f, "a whole number"),
+            Self::Between(from, to) => write!(f, "a whole number from {from} to {to}"),
+            Self::Speed(from, to) => write!(f, "a speed from {from} to {to}"),
+            Self::OneOf(all) => write!(f, "{all}"),
+        }
+    }
+}
+
 /// Why a text is no endpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum EndpointError {
@@ -39,6 +65,6 @@ pub enum EndpointError {
         /// What was given.
         value: String,
         /// What it must be.
-        want: &'static str,
+        want: Want,
     },
 }

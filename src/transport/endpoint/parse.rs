@@ -1,6 +1,6 @@
 //! How the text of an endpoint is read. Opens nothing.
 
-use crate::transport::endpoint::error::EndpointError;
+use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::endpoint::packing::Packing;
 use crate::transport::endpoint::{
     DEFAULT_BAUD, DEFAULT_BITRATE, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
@@ -13,8 +13,8 @@ const SLCAN_BITRATES: [u32; 9] = [
     10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000, 800_000, 1_000_000,
 ];
 /// The same in words.
-const SLCAN_WANT: &str =
-    "10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000 or 1000000 bits a second";
+const SLCAN_WANT: Want =
+    Want::OneOf("10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000 or 1000000");
 /// Largest id on a CAN bus (manual 2.3).
 const CAN_ID_MAX: u16 = 16_383;
 
@@ -73,7 +73,7 @@ impl Query<'_> {
         let (mut seed, mut scenario) = (1, DEFAULT_SCENARIO.to_owned());
         for (key, value) in self.pairs() {
             match key {
-                "seed" => seed = number(key, value, "a whole number")?,
+                "seed" => seed = number(key, value, Want::Whole)?,
                 "scenario" if !value.is_empty() => value.clone_into(&mut scenario),
                 _ => return Err(unknown_key(key, "sim", "seed and scenario")),
             }
@@ -100,10 +100,10 @@ impl Query<'_> {
         for (key, value) in self.pairs() {
             match key {
                 "packing" if kind == "rtu" => {
-                    line.packing = Some(number(key, value, Packing::WANT)?);
+                    line.packing = Some(number(key, value, Want::OneOf(Packing::WANT))?);
                 }
                 "baud" => line.baud = serial_speed(key, value)?,
-                "id" => line.id = in_range(key, value, 1..=254, "a whole number from 1 to 254")?,
+                "id" => line.id = in_range(key, value, 1..=254, Want::Between(1, 254))?,
                 _ => return Err(unknown_key(key, kind, known)),
             }
         }
@@ -114,7 +114,7 @@ impl Query<'_> {
         let place = self.place("tcp", "tcp:192.168.11.210:6000")?;
         let (host, port) = split_host(&place);
         let port = match port {
-            Some(port) => in_range("port", port, 1..=65_535, "a whole number from 1 to 65535")?,
+            Some(port) => in_range("port", port, 1..=65_535, Want::Between(1, 65_535))?,
             None => DEFAULT_TCP_PORT,
         };
         if host.is_empty() || host.contains(['[', ']']) {
@@ -127,8 +127,8 @@ impl Query<'_> {
         let (mut unit, mut packing) = (DEFAULT_UNIT, None);
         for (key, value) in self.pairs() {
             match key {
-                "unit" => unit = number(key, value, "a whole number from 0 to 255")?,
-                "packing" => packing = Some(number(key, value, Packing::WANT)?),
+                "unit" => unit = number(key, value, Want::Between(0, 255))?,
+                "packing" => packing = Some(number(key, value, Want::OneOf(Packing::WANT))?),
                 _ => return Err(unknown_key(key, "tcp", "unit and packing")),
             }
         }
@@ -204,13 +204,13 @@ fn unknown_key(key: &str, kind: &'static str, known: &'static str) -> EndpointEr
     }
 }
 
-fn number<T: FromStr>(key: &str, value: &str, want: &'static str) -> Result<T, EndpointError> {
+fn number<T: FromStr>(key: &str, value: &str, want: Want) -> Result<T, EndpointError> {
     value
         .parse()
         .map_err(|_not_one| wrong_value(key, value, want))
 }
 
-fn wrong_value(key: &str, value: &str, want: &'static str) -> EndpointError {
+fn wrong_value(key: &str, value: &str, want: Want) -> EndpointError {
     EndpointError::Value {
         key: key.into(),
         value: value.into(),
@@ -219,18 +219,23 @@ fn wrong_value(key: &str, value: &str, want: &'static str) -> EndpointError {
 }
 
 fn serial_speed(key: &str, value: &str) -> Result<u32, EndpointError> {
-    in_range(key, value, 300..=4_000_000, "a speed from 300 to 4000000")
+    in_range(key, value, 300..=4_000_000, Want::Speed(300, 4_000_000))
 }
 
 fn can_id(key: &str, value: &str) -> Result<u16, EndpointError> {
-    in_range(key, value, 1..=CAN_ID_MAX, "a whole number from 1 to 16383")
+    in_range(
+        key,
+        value,
+        1..=CAN_ID_MAX,
+        Want::Between(1, CAN_ID_MAX.into()),
+    )
 }
 
 fn in_range<T: FromStr + PartialOrd>(
     key: &str,
     value: &str,
     range: std::ops::RangeInclusive<T>,
-    want: &'static str,
+    want: Want,
 ) -> Result<T, EndpointError> {
     let parsed: T = number(key, value, want)?;
     if range.contains(&parsed) {

@@ -1,84 +1,62 @@
-//! How the link goes: state, rates, round trips, counts. Asks for nothing.
+//! How the link goes: state, rates, round trips, counts, and what the line's time goes to. Asks for nothing.
 
-use crate::ui::connection::budget;
+use crate::link::PollGroup;
 use crate::ui::connection::link_words::link_words;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Label, take_left, take_right, take_top};
-use crate::ui::kit::format;
+use crate::ui::kit::controls::{self, Label};
+use crate::ui::kit::format::{self, UNKNOWN};
 use crate::ui::kit::look::Pane;
-use crate::ui::text::{Text, notices, panels};
+use crate::ui::text::{Text, errors, panels};
 use crate::ui::theme;
-use egui::text::LayoutJob;
-use egui::{Color32, FontId, Rect, Ui, pos2, vec2};
+use egui::{Align, Color32, Layout, Ui, vec2};
 
-/// From this height on there is room for the line's budget below the figures.
-const WITH_BUDGET: f32 = theme::BUDGET_FROM;
+/// What the line's time is told in, from the right, and how wide it is.
+const BUDGET: [(Text, f32); 3] = [
+    (panels::BUDGET_COULD, 56.0),
+    (panels::BUDGET_SHARE, 46.0),
+    (panels::BUDGET_NOW, 52.0),
+];
 
-/// True if the card has room for the line's budget below it.
-pub(crate) fn has_budget(rect: Rect) -> bool {
-    rect.height() >= WITH_BUDGET
-}
-
-/// Draws the card.
-pub(crate) fn link_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>) {
+/// Draws the card of the link.
+pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    if has_budget(rect) {
-        let (above, below) = rect.split_top_bottom_at_y(rect.bottom() - budget::HEIGHT);
-        budget::budget_ui(ui, below, pane);
-        rect = above.with_max_y(above.bottom() - theme::GAP);
-    }
-    let (_, mut body) = controls::titled_card(ui, look, rect, look.say(panels::LINK_NOW));
-    let (word, color) = link_words(pane);
-    let mut row = take_top(&mut body, theme::TITLE_LINE);
-    controls::lamp(ui, pos2(row.left() + theme::LAMP_AT, row.center().y), color);
-    row.min.x += theme::INDENT;
-    let since = format::age(pane.state.now.since(pane.state.hand().link.since));
-    let text = format!("{}, {} {since}", look.say(word), look.say(panels::SINCE));
-    Label::new(&text, look.palette.text).put(ui, row);
-    if let Some(endpoint) = &pane.state.hand().endpoint {
-        endpoint_ui(ui, &mut body, pane, &endpoint.to_string());
-    }
-    if let Some(port) = &pane.state.hand().link.moved_to {
-        let text = format!("{} {port}", look.say(panels::MOVED_TO));
-        Label::new(&text, look.palette.warn).put(ui, take_top(&mut body, theme::TEXT_LINE));
-    }
-    if pane.state.hand().link.echoes {
-        paragraph_ui(ui, &mut body, look.say(panels::ECHOES), look.palette.muted);
-    }
-    if let Some(trouble) = &pane.state.hand().link.trouble {
-        let text = notices::trouble(look, trouble);
-        paragraph_ui(ui, &mut body, &text, look.palette.bad);
-    }
-    take_top(&mut body, 0.0);
-    for group in figures(pane) {
-        for (caption, value, color) in group {
-            if body.height() < theme::FIGURE_ROW {
-                return;
-            }
-            let mut row = take_top(&mut body, theme::FIGURE_ROW);
-            body.min.y -= theme::GAP - 2.0;
-            let caption = look.say(caption);
-            let right = take_right(&mut row, theme::COUNT_COLUMN);
-            Label::new(caption, look.palette.muted).put(ui, row);
-            Label::new(&value, color)
-                .number()
-                .right()
-                .named(caption)
-                .put(ui, right);
+    let link = &pane.state.hand().link;
+    controls::card_ui(ui, look, |ui| {
+        controls::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
+        let (word, color) = link_words(pane);
+        let since = format::age(pane.state.now.since(link.since));
+        let since = format!("{}{} {since}", look.say(word), look.say(panels::SINCE));
+        ui.horizontal(|ui| {
+            let lamp = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
+            let (lamp, _) = ui.allocate_exact_size(lamp, egui::Sense::hover());
+            controls::lamp(ui, lamp.center(), color);
+            Label::new(&since, look.palette.text).wrap().ui(ui);
+        });
+        let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
+        if let Some(endpoint) = &pane.state.hand().endpoint {
+            let endpoint = endpoint.to_string();
+            let label = Label::new(&endpoint, look.palette.muted).number();
+            label.wrap().ui(ui);
         }
-        body.min.y += theme::STEP;
-        let stroke = egui::Stroke::new(1.0, look.palette.grid);
-        ui.painter().hline(body.x_range(), body.top(), stroke);
-        body.min.y += theme::STEP + 2.0;
-    }
-}
-
-/// Where the hand is, over as many lines as it needs.
-fn endpoint_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>, text: &str) {
-    let color = pane.look.palette.muted;
-    let mut job = LayoutJob::simple(text.to_owned(), theme::number(), color, body.width());
-    job.wrap.break_anywhere = true;
-    job_ui(ui, body, job);
+        if let Some(port) = &link.moved_to {
+            let text = format!("{} {port}", look.say(panels::MOVED_TO));
+            say(ui, &text, look.palette.warn);
+        }
+        if link.echoes {
+            say(ui, look.say(panels::ECHOES), look.palette.muted);
+        }
+        if let Some(trouble) = &link.trouble {
+            say(ui, &errors::trouble(look, trouble), look.palette.bad);
+        }
+        for group in figures(pane) {
+            ui.separator();
+            for (caption, value, color) in group {
+                let caption = look.say(caption);
+                figure_ui(ui, pane, caption, |ui| {
+                    Label::new(&value, color).number().named(caption).ui(ui);
+                });
+            }
+        }
+    });
 }
 
 type Figures = Vec<(Text, String, Color32)>;
@@ -87,38 +65,24 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     let palette = pane.look.palette;
     let stats = &pane.state.hand().stats;
     let live = pane.state.hand().link.state.is_live();
-    let plain = if live { palette.text } else { palette.faint };
-    let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
-    let trip = |value: Option<_>| format!("{} ms", format::millis(value.filter(|_| live)));
-    let count = |text, value: u64| (text, value.to_string(), palette.text);
-    let bad = |text, value: u64| {
-        (
-            text,
-            value.to_string(),
-            if value > 0 {
-                palette.warn
-            } else {
-                palette.text
-            },
-        )
+    let measured = |text, value: String| match live {
+        true => (text, value, palette.text),
+        false => (text, UNKNOWN.to_owned(), palette.faint),
     };
-    let rates = vec![
-        (panels::STATE_RATE, rate(stats.state_hz), plain),
-        (panels::TACTILE_RATE, rate(stats.tactile_hz), plain),
-        (panels::RTT_P50, trip(stats.rtt_p50), plain),
-        (panels::RTT_P99, trip(stats.rtt_p99), plain),
-        (
-            panels::LINE_USED,
-            if live {
-                budget::percent(stats.line.utilisation)
-            } else {
-                format::UNKNOWN.into()
-            },
-            plain,
-        ),
-    ];
+    let trip = |value| format!("{} ms", format::millis(value));
+    let count = |text, value: u64| (text, value.to_string(), palette.text);
+    let bad = |text, value: u64| match value {
+        0 => count(text, 0),
+        value => (text, value.to_string(), palette.warn),
+    };
     [
-        rates,
+        vec![
+            measured(panels::STATE_RATE, format::hertz(stats.state_hz)),
+            measured(panels::TACTILE_RATE, format::hertz(stats.tactile_hz)),
+            measured(panels::RTT_P50, trip(stats.rtt_p50)),
+            measured(panels::RTT_P99, trip(stats.rtt_p99)),
+            measured(panels::LINE_USED, percent(stats.line.utilisation)),
+        ],
         vec![
             count(panels::READS, stats.state_reads + stats.tactile_reads),
             count(panels::WRITES, stats.writes),
@@ -136,50 +100,90 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     ]
 }
 
-/// A caption, and beside it a value of words over as many lines as it needs.
-pub(crate) fn fact_ui(
-    ui: &mut Ui,
-    body: &mut Rect,
-    (caption, width): (&str, f32),
-    muted: Color32,
-    (value, font, color): (&str, FontId, Color32),
-) {
-    let room = (body.width() - width - theme::GAP).max(1.0);
-    let mut job = LayoutJob::simple(value.to_owned(), font, color, room);
-    // An address has no spaces.
-    job.wrap.break_anywhere = true;
-    let galley = ui.painter().layout_job(job);
-    let height = galley.size().y.max(theme::FIGURE_ROW);
-    let mut row = take_top(body, height);
-    let left = take_left(&mut row, width).with_max_y(row.top() + theme::FIGURE_ROW);
-    Label::new(caption, muted).put(ui, left);
-    let id = ui.next_auto_id();
-    ui.skip_ahead_auto_ids(1);
-    let response = ui.interact(row, id, egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, value));
-    ui.ctx()
-        .accesskit_node_builder(response.id, |node| node.set_label(caption));
-    let lone = galley.size().y < theme::FIGURE_ROW;
-    let down = if lone {
-        (theme::FIGURE_ROW - galley.size().y) / 2.0
-    } else {
-        0.0
+/// Draws the card of the line's time: each group of reads, what it gets and what the wire could give.
+pub(crate) fn budget_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    let line = &pane.state.hand().stats.line;
+    let live = pane.state.hand().link.state.is_live();
+    let row = |ui: &mut Ui, caption: Text, values: [String; 3]| {
+        let caption = look.say(caption);
+        figure_ui(ui, pane, caption, |ui| {
+            for ((head, width), value) in BUDGET.into_iter().zip(values) {
+                let name = format!("{caption}: {}", look.say(head));
+                let (text, color) = match live {
+                    true => (value.as_str(), look.palette.text),
+                    false => (UNKNOWN, look.palette.faint),
+                };
+                cell_ui(ui, width, |ui| {
+                    if !value.is_empty() {
+                        Label::new(text, color).number().named(&name).ui(ui);
+                    }
+                });
+            }
+        });
     };
-    ui.painter()
-        .galley(row.min + vec2(0.0, down), galley, color);
+    controls::card_ui(ui, look, |ui| {
+        controls::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
+        figure_ui(ui, pane, "", |ui| {
+            for (head, width) in BUDGET {
+                let head = Label::new(look.say(head), look.palette.muted).small();
+                cell_ui(ui, width, |ui| drop(head.ui(ui)));
+            }
+        });
+        for (group, used) in PollGroup::ALL.into_iter().zip(&line.groups) {
+            let values = [rate(used.could_hz), percent(used.share), rate(used.hz)];
+            row(ui, name(group), values);
+        }
+        let share = |share| [String::new(), percent(share), String::new()];
+        row(ui, panels::BUDGET_WRITES, share(line.writes));
+        ui.separator();
+        row(ui, panels::LINE_USED, share(line.utilisation));
+    });
 }
 
-/// A text over as many lines as it needs, cut from the top of what is left.
-pub(crate) fn paragraph_ui(ui: &mut Ui, body: &mut Rect, text: &str, color: Color32) {
-    let job = LayoutJob::simple(text.to_owned(), theme::body(), color, body.width());
-    job_ui(ui, body, job);
+/// A caption, and values from the right end.
+fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, caption: &str, add: impl FnOnce(&mut Ui)) {
+    ui.scope(|ui| {
+        ui.spacing_mut().interact_size.y = theme::FIGURE_ROW;
+        ui.spacing_mut().item_spacing.x = theme::STEP;
+        ui.horizontal(|ui| {
+            Label::new(caption, pane.look.palette.muted).ui(ui);
+            ui.with_layout(Layout::right_to_left(Align::Center), add);
+        });
+    });
 }
 
-fn job_ui(ui: &mut Ui, body: &mut Rect, job: LayoutJob) {
-    let text = job.text.clone();
-    let galley = ui.painter().layout_job(job);
-    let place = take_top(body, galley.size().y);
-    let response = ui.allocate_rect(place, egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
-    ui.painter().galley(place.min, galley, Color32::PLACEHOLDER);
+fn cell_ui(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+    let size = vec2(width, theme::FIGURE_ROW);
+    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+        ui.set_min_width(width);
+        add(ui);
+    });
+}
+
+/// A rate, with a digit more where it is slow.
+fn rate(hz: f64) -> String {
+    if hz > 0.0 && hz < 9.95 {
+        return format!("{hz:.1} Hz");
+    }
+    format::hertz(hz)
+}
+
+/// A share in percent.
+fn percent(share: f64) -> String {
+    let percent = share * 100.0;
+    if percent > 0.0 && percent < 9.95 {
+        return format!("{percent:.1} %");
+    }
+    format!("{percent:.0} %")
+}
+
+const fn name(group: PollGroup) -> Text {
+    match group {
+        PollGroup::Motion => panels::GROUP_MOTION,
+        PollGroup::Drives => panels::GROUP_DRIVES,
+        PollGroup::Temperature => panels::GROUP_TEMPERATURE,
+        PollGroup::Tactile => panels::TACTILE_RATE,
+        PollGroup::Settings => panels::GROUP_SETTINGS,
+    }
 }

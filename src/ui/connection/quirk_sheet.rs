@@ -3,77 +3,55 @@
 use crate::link::quirks::baud_of_code;
 use crate::link::quirks::book::{self, QuirkBook};
 use crate::transport::Endpoint;
-use crate::ui::connection::figures as link_figures;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, take_left, take_top};
+use crate::ui::connection::rows::{expert_ui, row_ui};
+use crate::ui::kit::controls::{self, Button, Label};
+use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::Pane;
 use crate::ui::params::flash::guarded_ui;
 use crate::ui::text::{Text, quirks as text};
-use crate::ui::theme;
-use egui::{Id, Rect, Ui};
+use egui::Ui;
 
-/// Height of the card: a title, six lines, and the button.
-pub(crate) const HEIGHT: f32 = theme::FIGURES_CARD;
 /// The edition of the manual by which a code is read; others number differently.
 const EDITION: &str = "V1.0.0";
-/// Width of the captions.
-const CAPTION: f32 = theme::CAPTION_WIDE;
-const COPY_WIDTH: f32 = theme::COPY_BUTTON;
 
 /// Draws the card.
-pub(crate) fn sheet_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+pub(crate) fn sheet_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let (_, mut body) = controls::titled_card(ui, look, rect, look.say(text::SHEET));
-    let live = pane.state.hand().link.state.is_live();
-    let color = if live {
-        look.palette.text
-    } else {
-        look.palette.faint
+    let color = match pane.state.hand().link.state.is_live() {
+        true => look.palette.text,
+        false => look.palette.faint,
     };
-    for (caption, value) in lines(pane) {
-        let caption = (look.say(caption), CAPTION);
-        let value = (value.as_str(), theme::body(), color);
-        link_figures::fact_ui(ui, &mut body, caption, look.palette.muted, value);
-        body.min.y -= theme::GAP - 2.0;
-    }
-    body.min.y += theme::GAP;
-    copy_ui(ui, body, pane);
-    let foot = body.with_min_y(body.bottom() - theme::CONTROL);
-    let right = egui::Layout::right_to_left(egui::Align::Center);
-    let place = egui::UiBuilder::new().max_rect(foot).layout(right);
-    ui.scope_builder(place, |ui| guarded_ui(ui, pane));
-}
-
-fn lines(pane: &Pane<'_>) -> Vec<(Text, String)> {
-    let look = pane.look;
+    let line = |ui: &mut Ui, caption: Text, value: Option<String>| {
+        let caption = look.say(caption);
+        let value = value.unwrap_or_else(|| UNKNOWN.to_owned());
+        row_ui(ui, look, caption, |ui| {
+            Label::new(&value, color).named(caption).wrap().ui(ui);
+        });
+    };
+    let said = |text: Text| look.say(text).to_owned();
     let quirks = &pane.state.hand().link.quirks;
-    let said = |text| look.say(text).to_owned();
-    let or_unknown = |value: Option<String>| value.unwrap_or_else(|| said(text::UNKNOWN));
-    let id = quirks.hand_id.map(|id| id.to_string());
-    let mut lines = vec![
-        (text::HAND_ID, or_unknown(id)),
-        (
-            text::BAUD_CODE,
-            or_unknown(quirks.baud_code.map(|code| baud(pane, code))),
-        ),
-    ];
-    if let Some(packing) = packing(pane) {
-        lines.push((text::PACKING, packing));
-    }
-    let gap = quirks.gap.map(|gap| said(text::gap(gap)));
-    let touch = quirks.touch.map(|touch| said(text::touch(touch)));
-    // On CAN nobody asks for it.
-    if !is_can(pane) {
-        lines.push((text::GAP, or_unknown(gap)));
-    }
-    lines.push((text::TOUCH, or_unknown(touch)));
-    if let Some(sheet) = &pane.state.hand().sheet {
-        lines.push((
-            text::SEEN,
-            format!("{} .. {}", sheet.first_seen, sheet.last_seen),
-        ));
-    }
-    lines
+    controls::card_ui(ui, look, |ui| {
+        controls::head_ui(ui, look, look.say(text::SHEET), |ui| copy_ui(ui, pane));
+        line(ui, text::HAND_ID, quirks.hand_id.map(|id| id.to_string()));
+        if let Some(packing) = packing(pane) {
+            line(ui, text::PACKING, Some(packing));
+        }
+        let touch = quirks.touch.map(|touch| said(text::touch(touch)));
+        line(ui, text::TOUCH, touch);
+        if let Some(sheet) = &pane.state.hand().sheet {
+            let seen = format!("{} .. {}", sheet.first_seen, sheet.last_seen);
+            line(ui, text::SEEN, Some(seen));
+        }
+        expert_ui(ui, look, |ui| {
+            let code = quirks.baud_code.map(|code| baud(pane, code));
+            line(ui, text::BAUD_CODE, code);
+            // On CAN nobody asks for it.
+            if !is_can(pane) {
+                line(ui, text::GAP, quirks.gap.map(|gap| said(text::gap(gap))));
+            }
+        });
+        ui.horizontal(|ui| guarded_ui(ui, pane));
+    });
 }
 
 fn is_can(pane: &Pane<'_>) -> bool {
@@ -110,21 +88,17 @@ fn packing(pane: &Pane<'_>) -> Option<String> {
     })
 }
 
-fn copy_ui(ui: &mut Ui, mut body: Rect, pane: &Pane<'_>) {
+fn copy_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let mut row = take_top(&mut body, theme::CONTROL);
-    let place = take_left(&mut row, COPY_WIDTH);
-    let endpoint = pane.state.hand().endpoint.as_ref();
-    let live = pane.state.hand().link.state.is_live();
-    let off = (!live || endpoint.is_none()).then(|| look.say(text::COPY_OFF));
+    let hand = pane.state.hand();
+    let endpoint = hand.endpoint.as_ref().filter(|_| hand.link.state.is_live());
+    let off = endpoint.is_none().then(|| look.say(text::COPY_OFF));
     let button = Button::new(look.say(text::COPY), look.say(text::COPY_TIP)).disabled(off);
-    if button
-        .put(ui, look, place, Id::unique("copy quirks"))
-        .clicked()
+    if button.ui(ui, look).clicked()
         && let Some(endpoint) = endpoint
     {
-        let found = || book::sheet(endpoint, &pane.state.hand().link.quirks, "");
-        let sheet = pane.state.hand().sheet.clone().unwrap_or_else(found);
+        let found = || book::sheet(endpoint, &hand.link.quirks, "");
+        let sheet = hand.sheet.clone().unwrap_or_else(found);
         ui.ctx().copy_text(QuirkBook::of(sheet).to_toml());
     }
 }

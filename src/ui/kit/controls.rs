@@ -415,6 +415,7 @@ pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) ->
         .hint_text(hint.to_owned())
         .char_limit(EDIT_MAX)
         .margin(theme::FIELD_INSET)
+        .align(Align2::LEFT_CENTER)
         .desired_width(ui.available_width());
     let response = ui.add(edit);
     response.widget_info(|| {

@@ -15,7 +15,7 @@ use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
 use crate::ui::params::table::Shown;
-use crate::ui::text::{device, notices, verdicts};
+use crate::ui::text::{device, errors, verdicts};
 use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, Ui};
 
 /// What the view needs between frames.
@@ -127,7 +127,7 @@ fn status(pane: &Pane<'_>) -> (String, Color32) {
         return (look.say(device::NO_HAND).into(), look.palette.warn);
     }
     if let Some(error) = &book.trouble {
-        let error = notices::request_error(look, error);
+        let error = errors::request(look, error);
         let words = format!("{} {error}", look.say(device::TROUBLE));
         return (words, look.palette.warn);
     }

@@ -3,6 +3,7 @@
 pub(crate) mod cards;
 pub(crate) mod compare;
 pub(crate) mod device;
+pub(crate) mod errors;
 pub(crate) mod faults;
 pub(crate) mod keys;
 pub(crate) mod layout;

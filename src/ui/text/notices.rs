@@ -4,76 +4,18 @@ use crate::app::notices::{Asked, NoticeKind};
 use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
 use crate::hand::Words;
-use crate::link::{LinkTrouble, RequestError};
 use crate::record::Disarmed;
 use crate::record::quirk_sheet::Difference;
 use crate::ui::kit::format;
 use crate::ui::kit::look::Look;
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{device, main, panels, poses, quirks, traffic, trials, tune, words};
+use crate::ui::text::{device, errors, main, panels, poses, quirks, traffic, trials, tune, words};
 
 /// Title, cause and advice of what is wrong with a drive.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
     match what {
         FaultKind::Fault(fault) => words::fault(fault, language),
         FaultKind::Status(status) => words::status(status, language),
-    }
-}
-
-/// Why there is no live hand.
-pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
-    if look.language == Language::En {
-        return format::sentence(&trouble.to_string());
-    }
-    match trouble {
-        LinkTrouble::Transport(error) => format!("线路问题：{error}。"),
-        LinkTrouble::Garbled { place, id } => {
-            format!("{place} 上有应答，但不符合 ID {id}、此速度或此协议：请用扫描查找。")
-        }
-        LinkTrouble::Mute { place, unit } => {
-            format!(
-                "{place} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。"
-            )
-        }
-        LinkTrouble::NoAnswer { id } => {
-            format!("ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议。")
-        }
-        LinkTrouble::Silent { silent } => {
-            format!("灵巧手停止应答：连续 {silent} 次请求没有应答。")
-        }
-        LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。".into(),
-        LinkTrouble::Suspended { slept_s } => {
-            format!("本机休眠了 {slept_s} 秒：之前显示的数据已过时。")
-        }
-    }
-}
-
-/// How a request failed.
-pub(crate) fn request_error(look: Look, error: &RequestError) -> String {
-    if look.language == Language::En {
-        return format::sentence(&error.to_string());
-    }
-    match error {
-        RequestError::NotConnected => "没有连接：未发送任何内容。".into(),
-        RequestError::NotArmed => "未使能：未发送任何内容。".into(),
-        RequestError::Full { limit } => format!("已有 {limit} 个请求在等待：未发送。"),
-        RequestError::TooLong { address, len } => {
-            format!("此线路无法一次读写地址 {address} 起的 {len} 字节。")
-        }
-        RequestError::Timeout { address, after_ms } => {
-            format!("地址 {address} 在 {after_ms} ms 内没有应答：不确定灵巧手是否已执行。")
-        }
-        RequestError::Refused { address, reason } => {
-            format!("灵巧手拒绝了地址 {address}：{reason}。")
-        }
-        RequestError::WrongLength { address, got, want } => {
-            format!("地址 {address} 应答了 {got} 字节，应为 {want} 字节。")
-        }
-        RequestError::Ambiguous { address, wait_s } => {
-            format!("地址 {address} 可能还有迟到的应答：请在 {wait_s} 秒后重试。")
-        }
-        RequestError::LinkLost => "连接断开：不确定灵巧手是否已执行。".into(),
-        RequestError::OutOfRange(error) => format!("超出手册范围：{error}。"),
     }
 }
 
@@ -128,10 +70,18 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
     match what {
         NoticeKind::LinkLost(why) => {
-            format!("{} {}", said(panels::NOTICE_LOST), trouble(look, why))
+            format!(
+                "{} {}",
+                said(panels::NOTICE_LOST),
+                errors::trouble(look, why)
+            )
         }
         NoticeKind::NoLink(why) => {
-            format!("{} {}", said(panels::NOTICE_NO_LINK), trouble(look, why))
+            format!(
+                "{} {}",
+                said(panels::NOTICE_NO_LINK),
+                errors::trouble(look, why)
+            )
         }
         NoticeKind::LatencyTimer { port, ms } => latency_timer(look, port, *ms),
         NoticeKind::Reconnected => said(panels::NOTICE_RECONNECTED),
@@ -153,7 +103,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             format!("{}: {title}", look.say(words::dof(*dof)))
         }
         NoticeKind::RequestFailed { what, error } => {
-            format!("{}: {}", asked(look, *what), request_error(look, error))
+            format!("{}: {}", asked(look, *what), errors::request(look, error))
         }
         NoticeKind::Acknowledged { what } => {
             format!(

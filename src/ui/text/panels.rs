@@ -1,6 +1,7 @@
 //! Sentences of the plots, the fingertips, the fault list, the gestures and the connection.
 
-use crate::ui::text::phrase::texts;
+use crate::sim::Scenario;
+use crate::ui::text::phrase::{Text, texts};
 
 texts! {
     HISTORY: "History", "曲线";
@@ -143,10 +144,8 @@ texts! {
     KIND_CAN: "CAN", "CAN";
     KIND_SLCAN: "CAN adapter", "CAN 适配器";
     KIND_USBCAN: "Maker's CAN", "因时 USB-CAN";
-    KIND_TIP: "How the hand is reached.", "与灵巧手的连接方式。";
     PORT: "Serial port", "串口";
-    PORT_HINT: "/dev/ttyUSB0 or COM5", "/dev/ttyUSB0 或 COM5";
-    PORTS_NONE: "No serial port found. Type its name, or plug in the adapter and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
+    PORTS_NONE: "None found. Type a name, or plug the adapter in and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
     PORTS_REFRESH: "Refresh", "刷新";
     PORTS_REFRESH_TIP: "Looks for serial ports again.", "重新查找串口。";
     PORT_PICK_TIP: "Takes this port.", "选用此串口。";
@@ -154,11 +153,21 @@ texts! {
     HAND_ID: "Hand id", "灵巧手 ID";
     BITRATE: "Bit rate", "CAN 波特率";
     INTERFACE: "Interface", "接口";
-    HOST: "Address", "地址";
-    TCP_PORT: "Port", "端口";
+    HOST: "Address", "网络地址";
     UNIT: "Unit id", "单元标识符";
     SEED: "Seed", "种子";
     SCENARIO: "Scenario", "场景";
+    SCENARIO_IDLE: "Soft ball (idle)", "软球（idle）";
+    SCENARIO_FREE: "Nothing to hold (free)", "无物体（free）";
+    SCENARIO_RIGID: "Hard block (rigid)", "硬块（rigid）";
+    SCENARIO_FRAGILE: "Fragile cup (fragile)", "易碎杯（fragile）";
+    SCENARIO_GRASP: "Grasps by itself (grasp)", "自动抓握（grasp）";
+    SCENARIO_FAULTS: "All faults in turn (faults)", "依次出现各种故障（faults）";
+    SCENARIO_EXTREMES: "Impossible values (extremes)", "异常数值（extremes）";
+    EXPERT: "For experts", "专家选项";
+    SCAN_HERE: "Scan", "扫描";
+    SCAN_HERE_TIP: "Looks for hands here and nowhere else, at all speeds and in all protocols. It only reads.", "仅在此处以各种波特率与协议查找灵巧手。只读取，不写入。";
+    RECENT: "Recent hands", "最近的灵巧手";
     CONNECT: "Connect", "连接";
     CONNECT_TIP: "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
     DISCONNECT: "Disconnect", "断开";
@@ -171,8 +180,8 @@ texts! {
     HINT_USBCAN: "The maker's own USB-CAN adapter, 115200 bit/s on its serial side. Its bit rate on CAN is not set from here: it must be that of the hand, as delivered 1000000 bit/s.", "因时自带的 USB-CAN 适配器，串口侧 115200 bit/s。此处不设置其 CAN 波特率：须与灵巧手一致，出厂为 1000000 bit/s。";
     HINT_TCP: "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
     LINK_NOW: "Link now", "当前连接";
-    ENDPOINT: "Endpoint", "地址";
-    SINCE: "for", "已持续";
+    ENDPOINT: "Endpoint", "通信地址";
+    SINCE: ", for", "，已持续";
     ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
     MOVED_TO: "The adapter is now at", "适配器现位于";
     BUDGET: "The line's time", "线路时间分配";
@@ -199,5 +208,46 @@ texts! {
     REFUSALS: "Refusals", "拒绝";
     RECONNECTS: "Reconnects", "重新连接";
     DROPPED: "Samples dropped", "丢弃样本";
-    FORM_WRONG: "Cannot connect like this:", "无法这样连接：";
+}
+
+/// What the built-in hand does, with the name that endpoints have for it.
+pub(crate) const fn scenario(scenario: Scenario) -> Text {
+    match scenario {
+        Scenario::Idle => SCENARIO_IDLE,
+        Scenario::Free => SCENARIO_FREE,
+        Scenario::Rigid => SCENARIO_RIGID,
+        Scenario::Fragile => SCENARIO_FRAGILE,
+        Scenario::Grasp => SCENARIO_GRASP,
+        Scenario::Faults => SCENARIO_FAULTS,
+        Scenario::Extremes => SCENARIO_EXTREMES,
+    }
+}
+
+/// What a kind of link is called, and what should be known about it, by its name in endpoints.
+pub(crate) fn kind(scheme: &str) -> (Text, Text) {
+    match scheme {
+        "rs485" => (KIND_RS485, HINT_SERIAL),
+        "tcp" => (KIND_TCP, HINT_TCP),
+        "rtu" => (KIND_RTU, HINT_SERIAL),
+        "can" => (KIND_CAN, HINT_CAN),
+        "slcan" => (KIND_SLCAN, HINT_SLCAN),
+        "usbcan" => (KIND_USBCAN, HINT_USBCAN),
+        _ => (KIND_SIM, HINT_SIM),
+    }
+}
+
+/// What a part of an endpoint is called, by its key.
+pub(crate) fn setting(key: &str) -> Text {
+    match key {
+        "port" => PORT,
+        "host" => HOST,
+        "interface" => INTERFACE,
+        "seed" => SEED,
+        "scenario" => SCENARIO,
+        "baud" => BAUD,
+        "bitrate" => BITRATE,
+        "unit" => UNIT,
+        "packing" => crate::ui::text::quirks::PACKING,
+        _ => HAND_ID,
+    }
 }

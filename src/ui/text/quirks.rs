@@ -3,17 +3,17 @@
 use crate::codec::modbus::BytePacking;
 use crate::link::{GapRead, TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
+use crate::transport::Packing;
 use crate::ui::text::phrase::{Text, texts};
 
 texts! {
-    SHEET: "Found out about this hand", "本手识别结果";
+    SHEET: "About this hand", "此手的特性";
     HAND_ID: "HAND_ID", "HAND_ID";
     BAUD_CODE: "REDU_RATIO", "REDU_RATIO";
     PACKING: "Modbus bytes", "Modbus 字节";
     GAP: "Gap 1558..1581", "地址 1558..1581";
     TOUCH: "Fingertips", "指尖";
     SEEN: "Seen", "连接日期";
-    UNKNOWN: "-", "-";
     PACKING_TIP: "How this hand puts single bytes (SAVE, faults) into Modbus words. Choose only if it cannot be found out and its papers say so: a wrong choice writes to the wrong address.", "本手将单字节（SAVE、故障）放入 Modbus 字的方式。仅当无法识别且资料有说明时才手动选择：选错会写到错误的地址。";
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
@@ -34,9 +34,6 @@ texts! {
     COPY: "Copy", "复制";
     COPY_TIP: "Copies this sheet as text, for a report or another computer.", "复制为文本。";
     COPY_OFF: "No hand has answered yet.", "灵巧手尚未应答。";
-    SHORT: "This hand", "本手";
-    SHORT_TIP: "What was found out about this hand.", "本手识别结果。";
-    BUDGET_TIP: "What the line's time goes to.", "线路时间分配。";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
     NOT_KEPT: "What was found out about this hand could not be kept:", "本手识别结果无法写入：";
 }
@@ -57,6 +54,15 @@ pub(crate) const fn packing(packing: BytePacking) -> Text {
         BytePacking::LowFirst => LOW,
         BytePacking::HighFirst => HIGH,
         BytePacking::OnePerWord => ONE,
+    }
+}
+
+/// A packing that a person says.
+pub(crate) const fn chosen(packing: Packing) -> Text {
+    match packing {
+        Packing::Low => LOW,
+        Packing::High => HIGH,
+        Packing::One => ONE,
     }
 }
 

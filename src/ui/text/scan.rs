@@ -1,17 +1,12 @@
 //! Sentences of looking for hands. Decides nothing.
 
 use crate::app::scan::ScanRemark;
-use crate::app::settings::Language;
-use crate::link::scan::ScanHint;
-use crate::ui::kit::format;
 use crate::ui::kit::look::Look;
+use crate::ui::text::errors;
 use crate::ui::text::phrase::texts;
 
 texts! {
     FIND: "Find hands", "查找灵巧手";
-    FIND_TIP: "Looks for hands on this computer's ports, or at an address that you name.", "在本机的端口上，或在您指定的地址上查找灵巧手。";
-    FORM: "Type it in", "手动输入";
-    FORM_TIP: "Back to the fields of one connection.", "返回连接设置。";
     SCAN_PORTS: "Scan all ports", "扫描全部端口";
     SCAN_PORTS_TIP: "Asks on all serial ports and CAN interfaces, at all speeds, in all protocols. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
     SCAN_HOST: "Scan address", "扫描地址";
@@ -25,7 +20,6 @@ texts! {
     IDS_TIP: "Which ids are asked on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
     ADDRESS: "Address or range", "地址或网段";
     ADDRESS_EMPTY: "Type an address first.", "请先输入地址。";
-    ADDRESS_WRONG: "This is no address:", "地址无法识别：";
     PRESET_MAKER: "As delivered", "出厂地址";
     PRESET_FIELD: "Seen on some hands", "部分灵巧手使用";
     PRESET_TIP: "Puts this address into the field. Nothing is asked before you press the button.", "将此地址填入输入框。点击按钮之前不会发送任何内容。";
@@ -54,74 +48,7 @@ texts! {
 pub(crate) fn remark(look: Look, remark: &ScanRemark) -> String {
     match remark {
         ScanRemark::Held { place } => format!("{place}: {}", look.say(HELD)),
-        ScanRemark::Trouble(error) => match look.language {
-            Language::En => format::sentence(&error.to_string()),
-            Language::Zh => format!("线路问题：{error}。"),
-        },
-        ScanRemark::Hint(hint) => match look.language {
-            Language::En => format::sentence(&hint.to_string()),
-            Language::Zh => hint_zh(hint),
-        },
-    }
-}
-
-fn hint_zh(hint: &ScanHint) -> String {
-    match hint {
-        ScanHint::OtherId { endpoint, hand_id } => {
-            format!("{endpoint} 有应答，但 HAND_ID 为 {hand_id}：可能不是灵巧手。")
-        }
-        ScanHint::Refuses { endpoint, reason } => {
-            format!("{endpoint} 有应答，但不给出 HAND_ID（{reason}）：可能不是灵巧手。")
-        }
-        ScanHint::OtherTalk { endpoint } => format!(
-            "{} 上收到给其他主机的应答：另一程序正在使用此线路。请先结束它，或扫描全部 ID。",
-            endpoint.place()
-        ),
-        ScanHint::Garbled {
-            place,
-            bauds,
-            bytes,
-        } => {
-            let bauds: Vec<String> = bauds.iter().map(u32::to_string).collect();
-            format!(
-                "{place} 上有数据，但波特率 {} 下无法识别（{bytes} 字节）：可能波特率不同、是其他设备，或接线接反。",
-                bauds.join("、")
-            )
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_hints_are_in_the_font() {
-        let known = include_str!("../../../assets/fonts/characters.txt");
-        let endpoint = || "rs485:/dev/x".parse().unwrap();
-        for hint in [
-            ScanHint::OtherId {
-                endpoint: endpoint(),
-                hand_id: 7,
-            },
-            ScanHint::Refuses {
-                endpoint: endpoint(),
-                reason: "no".into(),
-            },
-            ScanHint::OtherTalk {
-                endpoint: endpoint(),
-            },
-            ScanHint::Garbled {
-                place: "x".into(),
-                bauds: vec![1, 2],
-                bytes: 3,
-            },
-        ] {
-            let text = hint_zh(&hint);
-            let missing = text
-                .chars()
-                .find(|sign| !sign.is_ascii() && !known.contains(*sign));
-            assert_eq!(missing, None, "{text}");
-        }
+        ScanRemark::Trouble(error) => errors::transport(look, error),
+        ScanRemark::Hint(hint) => errors::hint(look, hint),
     }
 }

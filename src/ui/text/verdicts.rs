@@ -6,9 +6,8 @@ use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::rows::ParamId;
 use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
 use crate::ui::kit::look::Look;
-use crate::ui::text::notices::request_error;
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{device, words};
+use crate::ui::text::{device, errors, words};
 
 /// Why it cannot be done now.
 pub(crate) const fn refusal(why: Refusal) -> Text {
@@ -124,7 +123,7 @@ pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
         SaveEnd::NotAsked(error) => format!(
             "{} {}",
             look.say(device::SAVE_NOT_SENT),
-            request_error(look, error)
+            errors::request(look, error)
         ),
         SaveEnd::NotApplied => look.say(device::SAVE_NOT_APPLIED).into(),
         SaveEnd::NotNoted(told, message) => format!(

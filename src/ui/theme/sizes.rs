@@ -120,10 +120,6 @@ pub(crate) const LANGUAGE: f32 = 56.0;
 pub(crate) const FIGURE: f32 = 34.0;
 /// A small square button.
 pub(crate) const SMALL_BUTTON: f32 = 20.0;
-/// Width of a button that copies.
-pub(crate) const COPY_BUTTON: f32 = 92.0;
-/// Width of the choice between two words.
-pub(crate) const SWAP: f32 = 124.0;
 /// A line of a paragraph.
 pub(crate) const TEXT_LINE: f32 = 16.0;
 /// A line of a list.
@@ -149,16 +145,8 @@ pub(crate) const fn least_line(pixels_per_point: f32) -> f32 {
 pub(crate) const TITLE_LINE: f32 = 20.0;
 /// The highest line that a track is drawn in.
 pub(crate) const LINE_HIGH: f32 = 28.0;
-/// Height of a card of figures.
-pub(crate) const FIGURES_CARD: f32 = 236.0;
-/// Height of the connection's form.
-pub(crate) const CONNECTION_CARD: f32 = 440.0;
-/// Height from which the budget of the line is shown.
-pub(crate) const BUDGET_FROM: f32 = 640.0;
 /// Width of a caption in a row.
 pub(crate) const CAPTION: f32 = 36.0;
-/// Width of a caption in a form.
-pub(crate) const CAPTION_WIDE: f32 = 112.0;
 /// Width of a number field.
 pub(crate) const FIELD: f32 = 52.0;
 /// What the edges of a field take.

@@ -28,12 +28,6 @@ pub(crate) const POSE_TILE: egui::Vec2 = egui::vec2(112.0, 158.0);
 pub(crate) const POSE_FIND: f32 = 200.0;
 /// Width of a time in the list of events.
 pub(crate) const RECORDINGS_TIME: f32 = 54.0;
-/// The scan stands below the form if that leaves it so much: its controls and two hands.
-pub(crate) const SCAN_LEAST: f32 = 260.0;
-/// Height of one found hand: two lines.
-pub(crate) const SCAN_HAND_ROW: f32 = 44.0;
-/// Height of the bar that shows how far a scan is.
-pub(crate) const SCAN_BAR: f32 = 4.0;
 /// Height of a step.
 pub(crate) const STEP_ROW: f32 = 40.0;
 /// Width of the list of sequences.

@@ -311,7 +311,10 @@ impl Window {
                 let place = UiBuilder::new().max_rect(rect);
                 ui.scope_builder(place, |ui| self.device.ui(ui, pane));
             }
-            View::Connection => self.connection.ui(ui, rect, pane),
+            View::Connection => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.connection.ui(ui, pane));
+            }
             View::Traffic => self.traffic.ui(ui, rect, pane),
         }
     }

@@ -13,7 +13,7 @@ use crate::ui::kit::controls::{self, Button, Label, Weight};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
 use crate::ui::plots::axes::clock;
-use crate::ui::text::{Text, layout, main, notices, plots, words};
+use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
@@ -87,7 +87,7 @@ fn lost(pane: &Pane<'_>) -> Option<Warning> {
     } else {
         (main::UNREACHABLE_TITLE, pane.look.palette.warn)
     };
-    let cause = notices::trouble(pane.look, trouble);
+    let cause = errors::trouble(pane.look, trouble);
     let body = if known {
         format!("{} {cause}", pane.look.say(main::LOST_BODY))
     } else {

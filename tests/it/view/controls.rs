@@ -7,6 +7,7 @@ use egui::{Key, Modifiers, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use handscope::app::action::Action;
+use handscope::app::scan::{IdRange, ScanWish};
 use handscope::app::settings::{Language, Theme};
 use handscope::app::state::State;
 use handscope::hand::{Angle, Dof, Force, Gesture, Speed};
@@ -81,13 +82,13 @@ fn space_on_a_button_that_has_the_keyboard_stops_and_does_not_press_it() {
 fn escape_stops_while_typing_and_space_types() {
     let mut harness = open_at(states::armed(), View::Connection, LARGE);
     harness
-        .get_by_role_and_label(Role::TextInput, "Scenario")
+        .get_by_role_and_label(Role::TextInput, "Address or range")
         .focus();
     harness.run_steps(2);
     harness.key_press(Key::Space);
     assert_eq!(actions(&mut harness), []);
     harness
-        .get_by_role_and_label(Role::TextInput, "Scenario")
+        .get_by_role_and_label(Role::TextInput, "Address or range")
         .focus();
     harness.run_steps(2);
     harness.key_press(Key::Escape);
@@ -393,15 +394,146 @@ fn the_connection_is_spelled_as_everywhere() {
     assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
     harness.get_by_label("Kind of link: RS485").click();
     harness.run_steps(2);
-    assert!(
-        harness
-            .get_by_label("Connect")
-            .accesskit_node()
-            .is_disabled(),
-        "no port yet"
-    );
+    let missing = "The port or address is missing";
+    assert!(harness.query_by_label_contains(missing).is_none());
+    harness.get_by_label("Connect").click();
+    assert_eq!(actions(&mut harness), [], "no port yet");
+    harness.get_by_label_contains(missing);
     harness.get_by_label("Refresh").click();
     assert_eq!(actions(&mut harness), [Action::FindPorts]);
+}
+
+#[test]
+fn host_and_port_are_one_field() {
+    for (typed, endpoint) in [
+        ("127.0.0.1:7650", "tcp:127.0.0.1:7650?unit=255"),
+        ("10.0.0.7", "tcp:10.0.0.7:6000?unit=255"),
+        ("[::1]:7650", "tcp:[::1]:7650?unit=255"),
+        ("::1", "tcp:[::1]:6000?unit=255"),
+    ] {
+        let mut harness = open_at(states::empty(), View::Connection, LARGE);
+        harness.get_by_label("Kind of link: Modbus TCP").click();
+        harness.run_steps(2);
+        let field = || (Role::TextInput, "Address");
+        harness.get_by_role_and_label(field().0, field().1).focus();
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.run_steps(1);
+        harness
+            .get_by_role_and_label(field().0, field().1)
+            .type_text(typed);
+        harness.run_steps(2);
+        harness.get_by_label("Connect").click();
+        let endpoint = endpoint.parse().unwrap();
+        assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+    }
+}
+
+#[test]
+fn a_wrong_field_is_told_after_connecting_was_tried_and_in_the_windows_language() {
+    for (language, kind, words) in [
+        (
+            Language::En,
+            "Kind of link: RS485",
+            "The port or address is missing",
+        ),
+        (Language::Zh, "连接方式: RS485", "缺少端口或地址"),
+    ] {
+        let mut state = states::empty();
+        state.settings.language = language;
+        let mut harness = open_at(state, View::Connection, LARGE);
+        harness.get_by_label(kind).click();
+        harness.run_steps(2);
+        assert!(harness.query_by_label_contains(words).is_none());
+        let connect = if language == Language::En {
+            "Connect"
+        } else {
+            "连接"
+        };
+        let buttons = harness.query_all_by_role(Role::Button);
+        let mut named =
+            buttons.filter(|node| node.accesskit_node().label().as_deref() == Some(connect));
+        named.next_back().unwrap().click();
+        drop(named);
+        harness.run_steps(2);
+        harness.get_by_label_contains(words);
+    }
+}
+
+#[test]
+fn speeds_and_scenarios_are_chosen_from_lists() {
+    let mut harness = open_at(states::empty(), View::Connection, LARGE);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Scenario")
+        .click();
+    harness.run_steps(2);
+    harness.get_by_label("Grasps by itself (grasp)").click();
+    harness.run_steps(2);
+    harness.get_by_label("Connect").click();
+    let endpoint = "sim:?seed=1&scenario=grasp".parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+    assert!(harness.query_by_label("Seed").is_none(), "in the drawer");
+    harness.get_by_label("Kind of link: RS485").click();
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Baud")
+        .click();
+    harness.run_steps(2);
+    for speed in ["115200", "57600", "19200", "921600"] {
+        assert!(
+            harness.query_all_by_label(speed).next().is_some(),
+            "{speed}"
+        );
+    }
+}
+
+#[test]
+fn recent_hands_are_one_click_away() {
+    let mut state = states::live();
+    let spelled = ["tcp:127.0.0.1:7650?unit=255", "sim:?seed=1&scenario=idle"];
+    state.settings.recent = spelled.map(str::to_owned).into();
+    let mut harness = open_at(state, View::Connection, LARGE);
+    harness.get_by_label(&format!("Connected: {}", spelled[1]));
+    harness
+        .get_by_label(&format!("Connect: {}", spelled[0]))
+        .click();
+    let endpoint = spelled[0].parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+}
+
+#[test]
+fn the_port_just_typed_can_be_scanned() {
+    for (kind, place, typed, wish) in [
+        (
+            "RS485",
+            "Serial port",
+            "/dev/ttyUSB9",
+            ScanWish::Port("/dev/ttyUSB9".into(), IdRange::Few),
+        ),
+        (
+            "Modbus TCP",
+            "Address",
+            "",
+            ScanWish::Hosts("192.168.11.210:6000".parse().unwrap()),
+        ),
+    ] {
+        let mut harness = open_at(states::empty(), View::Connection, LARGE);
+        harness
+            .get_by_label(&format!("Kind of link: {kind}"))
+            .click();
+        harness.run_steps(2);
+        harness
+            .get_by_role_and_label(Role::TextInput, place)
+            .focus();
+        harness.run_steps(2);
+        if !typed.is_empty() {
+            let field = harness.get_by_role_and_label(Role::TextInput, place);
+            field.type_text(typed);
+        }
+        harness.run_steps(2);
+        harness.get_by_label("Scan").click();
+        assert_eq!(actions(&mut harness), [Action::Scan(wish)]);
+    }
 }
 
 #[test]

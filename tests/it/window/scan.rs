@@ -152,8 +152,11 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
     assert_eq!(bench.state().scan.stage, ScanStage::Never);
     for (wrong, words) in [("10.0.0.0/8", "more than 1024"), ("a b", "is not a host")] {
         bench.type_into("Address or range", wrong);
-        assert!(bench.is_disabled(Role::Button, "Scan address"), "{wrong}");
+        assert!(bench.texts_with(words).is_empty(), "only after an attempt");
+        bench.click_button("Scan address");
+        bench.run(40);
         assert!(!bench.texts_with(words).is_empty(), "{wrong}");
+        assert_eq!(bench.state().scan.stage, ScanStage::Never);
     }
     bench.type_into("Address or range", "127.0.0.5:6001");
     bench.click_button("Disconnect");
@@ -174,23 +177,31 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
 }
 
 #[test]
-fn in_a_small_window_the_scan_takes_the_place_of_the_form_and_gives_it_back() {
+fn in_a_small_window_form_and_scan_scroll_together() {
     let size = vec2(1024.0, 640.0);
     let mut bench = Bench::open(SimConfig::default(), size);
     bench.list_ports(vec![adapter()]);
     bench.wait(200);
     bench.click_first_button("Connection");
     bench.run(60);
-    assert!(!bench.shows("Scan all ports"));
-    bench.click_button("Find hands");
-    bench.run(40);
     bench.click_button("Scan all ports");
     bench.until(1000, |bench| !bench.state().scan.found.is_empty());
     assert!(bench.shows(&format!("Connect: {URL}")));
     check(&bench, size, "STOP", "scanning");
     bench.type_into("Address or range", "10.0.0.0/8");
     check(&bench, size, "STOP", "a wrong address");
-    bench.click_button("Type it in");
-    bench.run(40);
     assert!(bench.shows("Kind of link: RS485"));
+}
+
+#[test]
+fn the_serial_port_that_was_typed_is_scanned_alone() {
+    let mut bench = at_connection(SimConfig::default());
+    bench.click_button("Kind of link: RS485");
+    bench.run(40);
+    bench.type_into("Serial port", "/dev/ttyUSB9");
+    bench.click_button("Scan");
+    bench.until(4000, |bench| !bench.state().scan.found.is_empty());
+    let found = &bench.state().scan.found[0];
+    assert_eq!(found.endpoint.port(), Some("/dev/ttyUSB9"));
+    assert!(bench.writes().is_empty());
 }

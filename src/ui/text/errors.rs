@@ -1,0 +1,404 @@
+//! Every error that reaches a person, as a sentence in the window's language. English is the error's own words, except
+//! where they speak of the command line.
+
+use crate::app::settings::Language;
+use crate::hand::OutOfRange;
+use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
+use crate::link::{LinkTrouble, RequestError};
+use crate::params::file::ParamsFileError;
+use crate::poses::file::{PoseFileCause, PoseFileError};
+use crate::transport::endpoint::error::{EndpointError, Want};
+use crate::transport::{Remedy, TransportError};
+use crate::ui::kit::format::sentence;
+use crate::ui::kit::look::Look;
+use std::fmt::Display;
+
+/// The error's own words in English; else what `zh` makes of it.
+fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> String {
+    match look.language {
+        Language::En => sentence(&error.to_string()),
+        Language::Zh => zh(error),
+    }
+}
+
+/// A port, interface or address. The built-in hand is none and has a name in words.
+fn place(place: &str) -> &str {
+    if place == "the simulated hand" {
+        "仿真手"
+    } else {
+        place
+    }
+}
+
+/// Why a wire could not be opened, or broke.
+pub(crate) fn transport(look: Look, error: &TransportError) -> String {
+    told(look, error, transport_zh)
+}
+
+fn transport_zh(error: &TransportError) -> String {
+    match error {
+        TransportError::Missing { place } => {
+            format!("{place} 不存在：请插入适配器，或选择其他端口。")
+        }
+        TransportError::NotAPort { place } => {
+            format!("{place} 不是串口：请选择适配器的设备，例如 /dev/ttyUSB0。")
+        }
+        TransportError::Permission { place, remedy } => {
+            format!("没有打开 {place} 的权限：{}。", remedy_zh(remedy))
+        }
+        TransportError::Away { place, alike } if alike.is_empty() => {
+            format!("{place} 的 USB 适配器已拔出：请重新插入。")
+        }
+        TransportError::Away { place, alike } => format!(
+            "{place} 的 USB 适配器已拔出：请重新插入；如果要用的是 {}，请连接它。",
+            alike.join("、")
+        ),
+        TransportError::Busy { place, holder } => {
+            let holder = holder.as_deref().unwrap_or("其他程序");
+            format!("{place} 正被 {holder} 使用：请关闭该程序后再连接。")
+        }
+        TransportError::Refused { place } => {
+            format!("{place} 拒绝连接：主机存在，但该端口没有服务；灵巧手自身的端口为 6000。")
+        }
+        TransportError::Silent { place, after_ms } => format!(
+            "{place} 在 {after_ms} ms 内没有应答：请检查电源、线缆与地址，并确认本机有同一网段的地址。"
+        ),
+        TransportError::Name { place } => {
+            format!("无法解析名称 {place}：请检查拼写，或使用数字地址。")
+        }
+        TransportError::HungUp { place } => {
+            format!("{place} 已断开：适配器被拔出，或对方关闭了连接。")
+        }
+        TransportError::Unsupported { kind } => {
+            format!("{kind}: 不经过本机的线路：请指定端口、地址或接口。")
+        }
+        TransportError::LinuxOnly => "can: 连接需要 Linux：请在此使用 slcan: 适配器。".into(),
+        TransportError::BitrateRefused { place, bitrate } => {
+            format!("{place} 上的 CAN 适配器不支持 {bitrate} bit/s：请选择其他波特率。")
+        }
+        TransportError::Io { place: at, message } => {
+            format!("{} 出错：{}。", place(at), system_zh(message))
+        }
+        error => can_zh(error),
+    }
+}
+
+fn can_zh(error: &TransportError) -> String {
+    match error {
+        TransportError::NoInterface { place } => format!(
+            "没有 CAN 接口 {place}：请插入适配器；可用 'ip link show type can' 查看现有接口。"
+        ),
+        TransportError::NotCan { place } => format!(
+            "{place} 不是 CAN 接口：请从 'ip link show type can' 列出的接口中选择，例如 can0。"
+        ),
+        TransportError::InterfaceDown { place } => format!(
+            "CAN 接口 {place} 未启用：请运行 'sudo ip link set {place} up type can bitrate 1000000'。"
+        ),
+        TransportError::NoCan { place } => {
+            format!("无法打开 {place}：本系统的内核不支持 CAN；请改用 slcan: 适配器。")
+        }
+        TransportError::QueueFull { place } => format!(
+            "{place} 无法发送，数据仍在队列中：CAN 总线上没有设备应答；请检查线缆、终端电阻、波特率与灵巧手电源。"
+        ),
+        TransportError::BusOff { place } => format!(
+            "{place} 因错误过多已离开 CAN 总线：请检查波特率、线缆与终端电阻，然后运行 'sudo ip link set {place} down' 并重新启用。"
+        ),
+        TransportError::ErrorPassive { place } => format!(
+            "{place} 错误较多且没有应答：波特率可能不对，或 CAN 总线上没有其他设备；请检查波特率、线缆、终端电阻与灵巧手电源。"
+        ),
+        _ => String::new(),
+    }
+}
+
+fn remedy_zh(remedy: &Remedy) -> String {
+    match remedy {
+        Remedy::JoinGroup(group) => {
+            format!("请运行 'sudo usermod -aG {group} $USER'，然后注销并重新登录")
+        }
+        Remedy::LogInAgain(group) => {
+            format!("您已在 {group} 组中，但登录之后才加入：请注销并重新登录")
+        }
+        Remedy::GiveRight(port) => {
+            format!("请运行 'sudo chmod a+rw {port}'（拔出后失效），或为它添加 udev 规则")
+        }
+        Remedy::Unknown => "请以有权限的用户启动本程序".into(),
+    }
+}
+
+/// Why there is no live hand.
+pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
+    match (look.language, trouble) {
+        (_, LinkTrouble::Transport(error)) => transport(look, error),
+        // Its own words send to the command line; this window scans itself.
+        (Language::En, LinkTrouble::Garbled { place, id }) => format!(
+            "Something answers on {place}, but not as id {id} at this speed and in this protocol: 'Scan' in Connection finds out what it is."
+        ),
+        (Language::En, LinkTrouble::NoAnswer { id }) => format!(
+            "No answer from id {id}: check power, id, baud and protocol of the hand, or let 'Scan' in Connection try them all."
+        ),
+        (Language::En, trouble) => sentence(&trouble.to_string()),
+        (Language::Zh, trouble) => trouble_zh(trouble),
+    }
+}
+
+fn trouble_zh(trouble: &LinkTrouble) -> String {
+    match trouble {
+        LinkTrouble::Transport(error) => transport_zh(error),
+        LinkTrouble::Garbled { place: at, id } => format!(
+            "{} 上有应答，但不符合 ID {id}、此速度或此协议：请用“连接”中的“扫描”查找。",
+            place(at)
+        ),
+        LinkTrouble::Mute { place: at, unit } => format!(
+            "{} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。",
+            place(at)
+        ),
+        LinkTrouble::NoAnswer { id } => format!(
+            "ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议，或用“连接”中的“扫描”逐一尝试。"
+        ),
+        LinkTrouble::Silent { silent } => {
+            format!("灵巧手停止应答：连续 {silent} 次请求没有应答。")
+        }
+        LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。".into(),
+        LinkTrouble::Suspended { slept_s } => {
+            format!("本机休眠了 {slept_s} 秒：之前显示的数据已过时。")
+        }
+    }
+}
+
+/// How a request failed.
+pub(crate) fn request(look: Look, error: &RequestError) -> String {
+    told(look, error, request_zh)
+}
+
+fn request_zh(error: &RequestError) -> String {
+    match error {
+        RequestError::NotConnected => "没有连接：未发送任何内容。".into(),
+        RequestError::NotArmed => "未使能：未发送任何内容。".into(),
+        RequestError::Full { limit } => format!("已有 {limit} 个请求在等待：未发送。"),
+        RequestError::TooLong { address, len } => {
+            format!("此线路无法一次读写地址 {address} 起的 {len} 字节。")
+        }
+        RequestError::Timeout { address, after_ms } => {
+            format!("地址 {address} 在 {after_ms} ms 内没有应答：不确定灵巧手是否已执行。")
+        }
+        RequestError::Refused { address, reason } => {
+            format!("灵巧手拒绝了地址 {address}：{}。", reason_zh(reason))
+        }
+        RequestError::WrongLength { address, got, want } => {
+            format!("地址 {address} 应答了 {got} 字节，应为 {want} 字节。")
+        }
+        RequestError::Ambiguous { address, wait_s } => {
+            format!("地址 {address} 可能还有迟到的应答：请在 {wait_s} 秒后重试。")
+        }
+        RequestError::LinkLost => "连接断开：不确定灵巧手是否已执行。".into(),
+        RequestError::OutOfRange(OutOfRange {
+            what,
+            got,
+            min,
+            max,
+        }) => {
+            format!("{what} 的值 {got} 超出手册范围：{min} 至 {max}。")
+        }
+    }
+}
+
+/// Why what was typed is no endpoint.
+pub(crate) fn endpoint(look: Look, error: &EndpointError) -> String {
+    // The form has the kind of link as buttons: an example without it.
+    let bare = |example: &'static str| example.split_once(':').map_or(example, |(_, rest)| rest);
+    match (look.language, error) {
+        (Language::En, EndpointError::Place { example, .. }) => {
+            format!(
+                "The port or address is missing: type for example {}.",
+                bare(example)
+            )
+        }
+        (Language::Zh, EndpointError::Place { example, .. }) => {
+            format!("缺少端口或地址：例如 {}。", bare(example))
+        }
+        (Language::En, error) => sentence(&error.to_string()),
+        (Language::Zh, EndpointError::Kind { text }) => format!("{text} 没有说明连接方式。"),
+        (Language::Zh, EndpointError::Key { key, kind, .. }) => {
+            format!("{kind}: 没有 {key} 这一项。")
+        }
+        (Language::Zh, EndpointError::Value { key, value, want }) => {
+            format!("{key}={value} 无效：应为{}。", want_zh(*want))
+        }
+    }
+}
+
+fn want_zh(want: Want) -> String {
+    match want {
+        Want::Whole => "整数".into(),
+        Want::Between(from, to) => format!(" {from} 至 {to} 的整数"),
+        Want::Speed(from, to) => format!(" {from} 至 {to} 的波特率"),
+        Want::OneOf(all) => format!(" {}", all.replace(", ", "、").replace(" or ", " 或 ")),
+    }
+}
+
+/// Why a text names no hosts.
+pub(crate) fn hosts(look: Look, error: &HostsError) -> String {
+    told(look, error, |error| match error {
+        HostsError::Host { text } => format!(
+            "{text} 不是主机：请输入地址，例如 192.168.11.210；端口不是 6000 时在后面加上冒号与端口。"
+        ),
+        HostsError::Port { port } => format!("{port} 不是端口：请输入 1 至 65535 的数字。"),
+        HostsError::Range { text } => format!("{text} 不是网段：请输入例如 192.168.11.0/24。"),
+        HostsError::TooWide { prefix } => {
+            format!("/{prefix} 网段超过 {HOSTS_MAX} 个地址：请输入 /22 至 /32 的网段。")
+        }
+        HostsError::Impossible { address } => {
+            format!("灵巧手不可能使用地址 {address}：请输入灵巧手的地址。")
+        }
+    })
+}
+
+/// Why there may be a hand although none answered.
+pub(crate) fn hint(look: Look, hint: &ScanHint) -> String {
+    told(look, hint, |hint| match hint {
+        ScanHint::OtherId { endpoint, hand_id } => {
+            format!("{endpoint} 有应答，但 HAND_ID 为 {hand_id}：可能不是灵巧手。")
+        }
+        ScanHint::Refuses { endpoint, reason } => format!(
+            "{endpoint} 有应答，但不给出 HAND_ID（{}）：可能不是灵巧手。",
+            reason_zh(reason)
+        ),
+        ScanHint::OtherTalk { endpoint } => format!(
+            "{} 上收到给其他主机的应答：另一程序正在使用此线路。请先结束它，或扫描全部 ID。",
+            endpoint.place()
+        ),
+        ScanHint::Garbled {
+            place,
+            bauds,
+            bytes,
+        } => {
+            let bauds: Vec<String> = bauds.iter().map(u32::to_string).collect();
+            format!(
+                "{place} 上有数据，但波特率 {} 下无法识别（{bytes} 字节）：可能波特率不同、是其他设备，或接线接反。",
+                bauds.join("、")
+            )
+        }
+    })
+}
+
+/// Why a file of poses was not taken.
+pub(crate) fn poses(look: Look, error: &PoseFileError) -> String {
+    told(look, error, |error| {
+        let line = error
+            .line
+            .map(|line| format!("第 {line} 行，"))
+            .unwrap_or_default();
+        let field = error.field.as_ref().map(|field| format!("{field}："));
+        let cause = match &error.cause {
+            PoseFileCause::Toml(_) => "格式不对".into(),
+            PoseFileCause::Format { got } => format!("这不是姿态文件，其格式为 {got}"),
+            PoseFileCause::Version { got } => format!("无法读取版本 {got}"),
+            PoseFileCause::Name { name } => format!("名称“{name}”无效：请用一行 1 至 32 个字符"),
+            PoseFileCause::Twice { name } => format!("名称“{name}”使用了两次"),
+            PoseFileCause::NoSuchPose { name } => format!("文件中没有姿态“{name}”"),
+            PoseFileCause::TooMany { got, limit } => format!("{got} 个过多：最多 {limit} 个"),
+            PoseFileCause::Unreadable(message) => system_zh(message),
+        };
+        format!("{line}{}{cause}。", field.unwrap_or_default())
+    })
+}
+
+/// Why a file of parameters was not taken.
+pub(crate) fn params(look: Look, error: &ParamsFileError) -> String {
+    told(look, error, |error| match error {
+        ParamsFileError::Toml(message) => format!("{}。", system_zh(message)),
+        ParamsFileError::Missing { field } => format!("缺少 {field}。"),
+        ParamsFileError::Format { got } => format!("这不是参数文件，其格式为 {got}。"),
+        ParamsFileError::Version { got } => format!("无法读取版本 {got}。"),
+        ParamsFileError::Value { field, got, .. } => format!("{field} 的值 {got} 不允许。"),
+        ParamsFileError::Empty => "文件中没有参数。".into(),
+        ParamsFileError::Unreadable(message) => format!("{}。", system_zh(message)),
+    })
+}
+
+/// What the system said of a file or a device.
+pub(crate) fn system(look: Look, message: &str) -> String {
+    match look.language {
+        Language::En => message.to_owned(),
+        Language::Zh => system_zh(message),
+    }
+}
+
+/// Words of systems and of the readers of files, as they stand somewhere in a message.
+const SYSTEM: [(&str, &str); 25] = [
+    ("Permission denied", "权限不足"),
+    ("Access is denied", "权限不足"),
+    ("Operation not permitted", "不允许此操作"),
+    ("No such file", "文件或文件夹不存在"),
+    ("cannot find", "文件或文件夹不存在"),
+    ("No space left", "磁盘空间不足"),
+    ("quota exceeded", "磁盘空间不足"),
+    ("Read-only file system", "文件系统只读"),
+    ("Is a directory", "这是文件夹，不是文件"),
+    ("Not a directory", "路径中有一项不是文件夹"),
+    ("File exists", "文件已存在"),
+    ("File name too long", "文件名过长"),
+    ("Input/output error", "读写出错"),
+    ("No such device", "设备不存在"),
+    ("resource busy", "设备被占用"),
+    ("Too many open files", "打开的文件过多"),
+    ("Network is unreachable", "网络不可达"),
+    ("No route to host", "无法到达主机"),
+    ("Connection reset", "连接被对方重置"),
+    ("valid UTF-8", "不是文本文件"),
+    ("is not a scenario", "没有此场景"),
+    ("could not go on the bus", "适配器无法接入总线"),
+    ("no folder for backups", "没有备份文件夹"),
+    ("is not a table of samples", "不是采样表"),
+    ("too large", "文件过大"),
+];
+
+fn system_zh(message: &str) -> String {
+    let known = SYSTEM.iter().find(|(en, _)| message.contains(en));
+    let number = |before: &str| {
+        let (_, rest) = message.split_once(before)?;
+        let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+        (!digits.is_empty()).then_some(digits)
+    };
+    match (known, number("line "), number("os error ")) {
+        (Some((_, zh)), ..) => (*zh).to_owned(),
+        (None, Some(line), _) => format!("第 {line} 行格式不对"),
+        (None, None, Some(code)) => format!("系统错误 {code}"),
+        (None, None, None) => format!("系统信息为“{message}”"),
+    }
+}
+
+/// The protocol's word for a refusal.
+pub(crate) fn reason(look: Look, reason: &str) -> String {
+    match look.language {
+        Language::En => reason.to_owned(),
+        Language::Zh => reason_zh(reason),
+    }
+}
+
+fn reason_zh(reason: &str) -> String {
+    let known = [
+        ("Illegal function", "不支持此功能码"),
+        ("Illegal data address", "没有此地址"),
+        ("Illegal data value", "不接受此值"),
+        ("Server device failure", "设备故障"),
+        ("Acknowledge", "已接受，仍在处理"),
+        ("Server device busy", "设备忙"),
+        ("Memory parity error", "存储器校验错误"),
+        ("Gateway path unavailable", "网关没有通路"),
+        (
+            "Gateway target device failed to respond",
+            "网关的目标设备没有应答",
+        ),
+        (
+            "it is not known how this hand",
+            "不清楚本手如何将单字节放入字；在连接的专家选项中选择 Modbus 字节的放法后才能写入",
+        ),
+        (
+            "this hand does not put single bytes",
+            "本手的单字节不是低字节在前，写入是否安全尚不清楚",
+        ),
+    ];
+    let zh = known.iter().find(|(en, _)| reason.starts_with(en));
+    zh.map_or_else(|| system_zh(reason), |(_, zh)| (*zh).to_owned())
+}
