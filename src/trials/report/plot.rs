@@ -31,7 +31,11 @@ struct PlotMark {
 
 /// A picture.
 #[derive(Debug, Template)]
-#[template(path = "plot.svg", config = "src/trials/report/askama.toml", escape = "html")]
+#[template(
+    path = "plot.svg",
+    config = "src/trials/report/askama.toml",
+    escape = "html"
+)]
 pub(crate) struct Plot {
     name: &'static str,
     from_s: f64,

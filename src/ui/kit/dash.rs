@@ -1,7 +1,7 @@
 //! Kinds of strokes: lines of one colour that an eye tells apart. Cuts lines into pieces; knows no plot.
 
 use crate::ui::theme;
-use egui::{Color32, Painter, Pos2, Rect, Stroke};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 
 /// A kind of stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,21 +38,19 @@ impl Dash {
         }
     }
 
-    /// Draws a line.
-    pub(crate) fn line(self, painter: &Painter, places: Vec<Pos2>, stroke: Stroke) {
+    /// A line, in its pieces.
+    pub(crate) fn shapes(self, places: Vec<Pos2>, stroke: Stroke) -> Vec<Shape> {
         if self == Self::Solid {
-            painter.line(places, stroke);
-            return;
+            return vec![Shape::line(places, stroke)];
         }
-        for piece in pieces(&places, self.pattern()) {
-            painter.line(piece, stroke);
-        }
+        let pieces = pieces(&places, self.pattern()).into_iter();
+        pieces.map(|piece| Shape::line(piece, stroke)).collect()
     }
 
     /// Draws a sign of it across the middle of a place.
     pub(crate) fn sample(self, painter: &Painter, place: Rect, stroke: Stroke) {
         let ends = vec![place.left_center(), place.right_center()];
-        self.line(painter, ends, stroke);
+        painter.extend(self.shapes(ends, stroke));
     }
 }
 

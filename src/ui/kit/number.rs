@@ -57,7 +57,8 @@ impl NumberField<'_> {
                     refused: None,
                 };
             }
-        } else if typing.field == Some(id) && (typing.refused != Some(id) || self.disabled.is_some())
+        } else if typing.field == Some(id)
+            && (typing.refused != Some(id) || self.disabled.is_some())
         {
             *typing = Typing::default();
         }

@@ -20,10 +20,6 @@ pub(crate) const PLAN_CAPTION: f32 = 116.0;
 pub(crate) const PLAN_CAPTION_SHORT: f32 = 64.0;
 /// Least height of the force while a series runs.
 pub(crate) const TRIAL_PLOT_LEAST: f32 = 96.0;
-/// Height of a number beside a plot of trials.
-pub(crate) const TRIAL_NUMBER: f32 = 22.0;
-/// Room for a time below a plot of trials.
-pub(crate) const TRIAL_TIME: f32 = 56.0;
 /// Height of the bar that shows how far a series is.
 pub(crate) const TRIAL_BAR: f32 = 6.0;
 /// Height of a row of the table of trials.

@@ -6,7 +6,7 @@ use crate::history::NOTE_MAX;
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right};
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::axes::clock;
+use crate::ui::plots::chart::clock;
 use crate::ui::text::plots;
 use crate::ui::theme;
 use egui::{
@@ -56,7 +56,7 @@ impl NoteBar {
             StrokeKind::Inside,
         );
         let mut rest = controls::middle(ground, theme::CONTROL).shrink2(vec2(theme::PAD, 0.0));
-        let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 10.0));
+        let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
         let width = controls::text_width(ui, &title, theme::title()) + 1.0;
         Label::new(&title, palette.text)
             .font(theme::title())
