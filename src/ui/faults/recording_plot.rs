@@ -2,13 +2,10 @@
 
 use crate::app::readings::fault_recorder::{DriveState, Recording, RecordingId};
 use crate::hand::{Dof, PerDof, Status};
-use crate::history::Trace;
 use crate::ui::kit::controls::Label;
-use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::Look;
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Times, columns};
+use crate::ui::plots::chart::{Chart, ChartView, Curve, Points, Times};
 use crate::ui::plots::panels::{Panel, PlotLine};
-use crate::ui::plots::scales;
 use crate::ui::plots::time_window::Span;
 use crate::ui::text::{faults, words};
 use crate::ui::theme;
@@ -19,8 +16,6 @@ use egui::{Color32, Rect, Stroke, Ui, UiBuilder, vec2};
 pub(crate) struct RecordingCharts {
     of: Option<(RecordingId, Span)>,
     view: ChartView,
-    traces: Vec<Trace>,
-    pointed_s: Option<f64>,
 }
 
 /// What is drawn.
@@ -63,8 +58,7 @@ impl RecordingPlot<'_> {
         let height = panel_height(rect, shown.len());
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            self.lanes_ui(ui, charts.view.time.span(), charts.pointed_s);
-            let mut pointed_s = None;
+            self.lanes_ui(ui, &charts.view);
             for (n, panel) in shown.iter().enumerate() {
                 let is_lowest = n + 1 == shown.len();
                 let height = height
@@ -73,9 +67,9 @@ impl RecordingPlot<'_> {
                     } else {
                         0.0
                     };
-                pointed_s = pointed_s.or(self.panel_ui(ui, panel, (height, is_lowest), charts));
+                self.chart(panel, height, is_lowest)
+                    .ui(ui, &mut charts.view);
             }
-            charts.pointed_s = pointed_s;
         });
     }
 
@@ -84,14 +78,18 @@ impl RecordingPlot<'_> {
     }
 
     /// What each drive said, as a band of colours.
-    fn lanes_ui(&self, ui: &mut Ui, span: Span, pointed_s: Option<f64>) {
+    fn lanes_ui(&self, ui: &mut Ui, view: &ChartView) {
+        let span = view.time.span();
         let palette = self.look.palette;
         ui.horizontal(|ui| {
             ui.set_height(theme::PLOT_CAPTION);
             Label::new(self.look.say(faults::LANES), palette.muted)
                 .small()
                 .ui(ui);
-            for (dof, at_s) in Dof::ALL.into_iter().zip(pointed_s.into_iter().cycle()) {
+            for (dof, at_s) in Dof::ALL
+                .into_iter()
+                .zip(view.pointed_s().into_iter().cycle())
+            {
                 let mut states = self.recording.states(dof).into_iter();
                 let state = states.find(|one| (one.0..=one.1).contains(&at_s));
                 if let Some((_, _, state)) = state.filter(|_| self.is_of_fault(dof)) {
@@ -153,70 +151,35 @@ impl RecordingPlot<'_> {
         all.join(" · ")
     }
 
-    /// One plot; the time that the pointer is at in it.
-    fn panel_ui(
-        &self,
-        ui: &mut Ui,
-        panel: &Panel,
-        (height, is_lowest): (f32, bool),
-        charts: &mut RecordingCharts,
-    ) -> Option<f64> {
-        let history = &self.recording.history;
-        let (from_s, to_s) = charts.view.time.span();
+    fn chart(&self, panel: &Panel, height: f32, is_lowest: bool) -> Chart<'_> {
         let mut lines = panel.lines(&PerDof::splat(false));
         // The joints with the fault come last, over the others.
         lines.sort_by_key(|line| self.is_of_fault(line.dof));
-        let columns = columns(ui);
-        charts
-            .traces
-            .resize_with(lines.len().max(charts.traces.len()), Trace::default);
-        let mut extent = None;
-        for (line, trace) in lines.iter().zip(&mut charts.traces) {
-            history.trace(line.series, from_s, to_s, columns, trace);
-            if let Some(all) = history.summary(line.series, self.span.0, self.span.1) {
-                extent = scales::joined(extent, (all.min.into(), all.max.into()));
-            }
-        }
-        let reading = |line: &PlotLine| {
-            let reading = history.reading(line.series, charts.pointed_s?);
-            let text = reading.map(|reading| panel.value(reading.value.into()));
-            let color = self.look.palette.dof[line.dof];
-            Some((color, text.unwrap_or_else(|| UNKNOWN.to_owned())))
-        };
-        let own = lines
-            .iter()
-            .filter(|line| !line.wished && self.is_of_fault(line.dof));
-        let readings = own.filter_map(reading).collect();
-        let curves = lines.iter().zip(&charts.traces).flat_map(|(line, trace)| {
-            let stroke = self.stroke(line);
-            trace.segments.iter().map(move |points| Curve {
+        let curve = |line: PlotLine| {
+            let is_of_fault = self.is_of_fault(line.dof);
+            let (width, share) = match (is_of_fault, line.wished) {
+                (true, false) => (theme::STRONG, 1.0),
+                (true, true) => (1.0, 0.6),
+                (false, false) => (1.0, 0.35),
+                (false, true) => (1.0, 0.15),
+            };
+            let color = self.look.palette.dof[line.dof].gamma_multiply(share);
+            let points = Points::Measured(&self.recording.history, line.series);
+            Curve {
                 steps: line.wished,
-                ..Curve::new(points, stroke)
-            })
-        });
+                told: (is_of_fault && !line.wished).then_some(panel.row.decimals),
+                ..Curve::new(points, Stroke::new(width, color))
+            }
+        };
         let bad = self.look.palette.bad;
         let faults = self.recording.faults.iter();
-        let times = Times::From(self.fault_s, self.look.say(faults::RECORDING_FAULT));
-        let chart = Chart {
-            title: panel.title,
-            curves: curves.collect(),
+        Chart {
+            curves: lines.into_iter().map(curve).collect(),
             moments: faults.map(|fault| (fault.at.secs(), bad)).collect(),
-            scale: scales::rounded(panel.row.least_scale, extent, height - theme::PLOT_CAPTION),
-            times: is_lowest.then_some(times),
-            readings,
-            is_decimated: charts.traces.iter().any(|trace| trace.decimated),
-            ..Chart::new(self.look, height)
-        };
-        chart.ui(ui, &mut charts.view).pointed_s()
-    }
-
-    fn stroke(&self, line: &PlotLine) -> Stroke {
-        let (width, share) = match (self.is_of_fault(line.dof), line.wished) {
-            (true, false) => (theme::STRONG, 1.0),
-            (true, true) => (1.0, 0.6),
-            (false, false) => (1.0, 0.35),
-            (false, true) => (1.0, 0.15),
-        };
-        Stroke::new(width, self.look.palette.dof[line.dof].gamma_multiply(share))
+            least: panel.row.least_scale,
+            times: Times::From(self.fault_s, self.look.say(faults::RECORDING_FAULT)),
+            is_lowest,
+            ..Chart::new(self.look, panel.title, height)
+        }
     }
 }

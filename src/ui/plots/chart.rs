@@ -1,7 +1,8 @@
 //! The one plot of the program: curves over time in `egui_plot`, with what that lacks. Knows no hand.
 
+use crate::history::{History, Series, Trace};
 use crate::ui::kit::controls::Label;
-use crate::ui::kit::dash::Dash;
+use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::Look;
 use crate::ui::plots::bars;
 use crate::ui::plots::scales::{self, Scales};
@@ -10,13 +11,14 @@ use crate::ui::text::{Text, panels, plots};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{
-    Align, Color32, Layout, Mesh, PointerButton, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
-    Ui, WidgetInfo, pos2, vec2,
+    Align, Color32, Layout, Mesh, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, Ui,
+    WidgetInfo, vec2,
 };
 use egui_plot::{
-    AxisHints, CoordinatesFormatter, Corner, GridMark, HLine, LineStyle, Plot, PlotBounds,
-    PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform, PlotUi, VLine,
+    AxisHints, CoordinatesFormatter, Corner, GridInput, GridMark, HLine, Line, LineStyle, Plot,
+    PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, VLine,
 };
+use std::collections::HashMap;
 use std::ops::RangeInclusive;
 
 /// Most columns that a chart is drawn in.
@@ -24,114 +26,86 @@ const COLUMNS_MOST: f32 = 8192.0;
 /// A marked box that is lower or narrower is not meant in that direction, in points.
 const BOX_LEAST: f32 = 12.0;
 
-/// One unbroken line.
+/// Where the points of a curve come from: seconds and values, oldest first.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Points<'a> {
+    /// As many of what was measured as there are columns of pixels.
+    Measured(&'a History, Series),
+    /// These.
+    Own(&'a [[f64; 2]]),
+}
+
+/// One line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Curve<'a> {
-    /// Seconds and values, oldest first.
-    pub(crate) points: &'a [[f64; 2]],
+    /// Where it leads.
+    pub(crate) points: Points<'a>,
     /// What is taken from each point.
     pub(crate) zero: [f64; 2],
     /// Width and colour.
     pub(crate) stroke: Stroke,
     /// Kind of stroke.
-    pub(crate) dash: Dash,
+    pub(crate) style: LineStyle,
     /// True if a value stands until the next one: nothing was asked for what lies between.
     pub(crate) steps: bool,
+    /// Digits of its value at the pointer, if that is told.
+    pub(crate) told: Option<usize>,
 }
 
 impl<'a> Curve<'a> {
     /// A plain line.
-    pub(crate) const fn new(points: &'a [[f64; 2]], stroke: Stroke) -> Self {
+    pub(crate) const fn new(points: Points<'a>, stroke: Stroke) -> Self {
         Self {
             points,
             zero: [0.0, 0.0],
             stroke,
-            dash: Dash::Solid,
+            style: LineStyle::Solid,
             steps: false,
+            told: None,
         }
     }
 
-    fn places(&self, transform: &PlotTransform) -> impl Iterator<Item = Pos2> {
+    /// The unbroken pieces of it.
+    fn pieces<'b>(&'b self, traces: &'b Traces) -> Vec<(&'b Self, &'b [[f64; 2]])> {
+        match self.points {
+            Points::Own(points) => vec![(self, points)],
+            Points::Measured(_, series) => {
+                let pieces = traces.get(&series).into_iter();
+                let pieces = pieces.flat_map(|trace| &trace.segments);
+                pieces.map(|piece| (self, piece.as_slice())).collect()
+            }
+        }
+    }
+
+    fn line(&self, piece: &[[f64; 2]]) -> Line<'static> {
+        let mut before = None;
+        let points = piece.iter().flat_map(|[at_s, value]| {
+            let (at_s, value) = (at_s - self.zero[0], value - self.zero[1]);
+            let corner = before.replace(value).filter(|_| self.steps);
+            corner
+                .map(|before| [at_s, before])
+                .into_iter()
+                .chain([[at_s, value]])
+        });
+        let line = Line::new("", points.collect::<PlotPoints<'_>>()).stroke(self.stroke);
+        line.style(self.style).allow_hover(false).allow_band(false)
+    }
+
+    fn places(&self, piece: &[[f64; 2]], transform: &PlotTransform) -> impl Iterator<Item = Pos2> {
         let [left, bottom] = transform.bounds().min();
         let [across, up] = transform.dpos_dvalue();
-        let (corner, [zero_s, zero]) = (transform.frame().left_bottom(), self.zero);
-        self.points.iter().map(move |[at_s, value]| {
-            let (x, y) = (
-                (at_s - zero_s - left) * across,
-                (value - zero - bottom) * up,
-            );
+        let corner = transform.frame().left_bottom();
+        piece.iter().map(move |[at_s, value]| {
+            let x = (at_s - self.zero[0] - left) * across;
+            let y = (value - self.zero[1] - bottom) * up;
             #[expect(clippy::cast_possible_truncation, reason = "a place on a screen")]
             let way = vec2(x as f32, y as f32);
             corner + way
         })
     }
-
-    fn draw(&self, transform: &PlotTransform, pixel: f32, mesh: &mut Mesh) -> Vec<Shape> {
-        let stroke = self.stroke;
-        let mut places = self.places(transform);
-        let ends = self.points.first().zip(self.points.last());
-        let width = ends.map_or(0.0, |(first, last)| last[0] - first[0]);
-        let pixels = width * transform.dpos_dvalue_x() / f64::from(pixel);
-        let count = u32::try_from(self.points.len()).unwrap_or(u32::MAX);
-        if let ([_], Some(alone)) = (self.points, self.places(transform).next()) {
-            // A line of one point has no length: what was measured alone is a dot.
-            vec![Shape::circle_filled(alone, stroke.width, stroke.color)]
-        } else if f64::from(count) > pixels + 2.0 && self.dash == Dash::Solid {
-            bars::add(mesh, stroke, pixel, places);
-            Vec::new()
-        } else if self.steps {
-            let mut all: Vec<Pos2> = places.next().into_iter().collect();
-            for place in places {
-                all.extend(all.last().map(|before| pos2(place.x, before.y)));
-                all.push(place);
-            }
-            self.dash.shapes(all, stroke)
-        } else {
-            self.dash.shapes(places.collect(), stroke)
-        }
-    }
 }
 
-/// All lines of a chart, as `egui_plot` draws what is not its own.
-struct Curves<'a> {
-    base: PlotItemBase,
-    curves: &'a [Curve<'a>],
-}
-
-impl PlotItem for Curves<'_> {
-    fn shapes(&self, ui: &Ui, transform: &PlotTransform, shapes: &mut Vec<Shape>) {
-        let pixel = 1.0 / ui.pixels_per_point();
-        for curve in self.curves {
-            let mut mesh = Mesh::default();
-            shapes.extend(curve.draw(transform, pixel, &mut mesh));
-            if !mesh.is_empty() {
-                shapes.push(mesh.into());
-            }
-        }
-    }
-
-    fn initialize(&mut self, _seen: RangeInclusive<f64>) {}
-
-    fn color(&self) -> Color32 {
-        Color32::PLACEHOLDER
-    }
-
-    fn geometry(&self) -> PlotGeometry<'_> {
-        PlotGeometry::None
-    }
-
-    fn bounds(&self) -> PlotBounds {
-        PlotBounds::NOTHING
-    }
-
-    fn base(&self) -> &PlotItemBase {
-        &self.base
-    }
-
-    fn base_mut(&mut self) -> &mut PlotItemBase {
-        &mut self.base
-    }
-}
+type Traces = HashMap<Series, Trace>;
 
 /// How times are told.
 #[derive(Debug, Clone, Copy)]
@@ -149,6 +123,10 @@ pub(crate) struct ChartView {
     pub(crate) time: TimeWindow,
     /// Scales that a person chose.
     pub(crate) scales: Scales,
+    /// Points of lines; of a line that goes on only the newest are fetched.
+    traces: Traces,
+    /// The chart and the time that the pointer is at.
+    pointed: Option<(&'static str, f64)>,
     /// Where a box began that is being marked.
     marked: Option<Pos2>,
 }
@@ -167,14 +145,12 @@ pub(crate) struct Chart<'a> {
     pub(crate) moments: Vec<(f64, Color32)>,
     /// Seconds of two cursors.
     pub(crate) cursors: Option<[f64; 2]>,
-    /// The scale, unless a person chose another one.
-    pub(crate) scale: (f64, f64),
-    /// How times are told; nothing below the chart if `None`.
-    pub(crate) times: Option<Times>,
-    /// Values under the pointer, in the colours of their lines.
-    pub(crate) readings: Vec<(Color32, String)>,
-    /// True if a column of pixels stands for several measurements.
-    pub(crate) is_decimated: bool,
+    /// What is always shown of the values.
+    pub(crate) least: (f64, f64),
+    /// How times are told.
+    pub(crate) times: Times,
+    /// True if they are told below.
+    pub(crate) is_lowest: bool,
     /// Said where there is no line.
     pub(crate) empty: Text,
     /// With caption and axis of time.
@@ -199,31 +175,19 @@ impl ChartResponse {
     }
 }
 
-/// Columns of pixels that a chart would have here.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a width in pixels, clamped"
-)]
-pub(crate) fn columns(ui: &Ui) -> usize {
-    let width = (ui.available_width() - theme::PLOT_AXIS) * ui.pixels_per_point();
-    width.clamp(1.0, COLUMNS_MOST) as usize
-}
-
 impl<'a> Chart<'a> {
     /// Without anything in it.
-    pub(crate) const fn new(look: Look, height: f32) -> Self {
+    pub(crate) const fn new(look: Look, title: Text, height: f32) -> Self {
         Self {
             look,
-            title: panels::HISTORY,
+            title,
             curves: Vec::new(),
             levels: Vec::new(),
             moments: Vec::new(),
             cursors: None,
-            scale: (0.0, 1.0),
-            times: None,
-            readings: Vec::new(),
-            is_decimated: false,
+            least: (0.0, 1.0),
+            times: Times::Clock,
+            is_lowest: true,
             empty: panels::PLOT_EMPTY,
             height,
         }
@@ -232,22 +196,46 @@ impl<'a> Chart<'a> {
     /// Draws it as wide as `ui`. A drag moves in time, the wheel zooms, shift or the right button marks what to zoom
     /// into, a double click takes all of it back.
     pub(crate) fn ui(&self, ui: &mut Ui, view: &mut ChartView) -> ChartResponse {
-        let (from, to) = view.time.span();
+        let mut traces = std::mem::take(&mut view.traces);
+        let (from_s, to_s) = view.time.span();
+        let columns = (ui.available_width() - theme::PLOT_AXIS) * ui.pixels_per_point();
+        let columns = columns.clamp(1.0, COLUMNS_MOST);
+        let (extent, is_decimated) = self.fetch(&mut traces, (from_s, to_s), columns);
+        let room = self.height - theme::PLOT_CAPTION;
         let chosen = view.scales.chosen(self.title);
-        let scale = chosen.unwrap_or(self.scale);
+        let scale = chosen.unwrap_or_else(|| scales::rounded(self.least, extent, room));
         ui.spacing_mut().item_spacing.y = 0.0;
-        self.caption_ui(ui, chosen.is_some());
-        let bounds = PlotBounds::from_min_max([from, scale.0], [to, scale.1]);
+        self.caption_ui(ui, view, is_decimated);
+        let bounds = PlotBounds::from_min_max([from_s, scale.0], [to_s, scale.1]);
         let marks = view.marked.is_some() || ui.input(|input| input.modifiers.shift);
-        let plot = self.plot(chosen.is_some());
-        let shown = plot.allow_drag([!marks, false]).show(ui, |plot| {
+        let pieces = self.curves.iter().flat_map(|curve| curve.pieces(&traces));
+        let per_s = f64::from(columns) / (to_s - from_s);
+        let (dense, sparse): (Vec<_>, Vec<_>) = pieces.partition(|piece| is_dense(*piece, per_s));
+        let plot = self.plot(chosen.is_some()).allow_drag([!marks, false]);
+        let shown = plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds);
             self.items(plot);
+            for (curve, piece) in &sparse {
+                plot.line(curve.line(piece));
+            }
         });
+        let frame = *shown.transform.frame();
+        let mut mesh = Mesh::default();
+        for (curve, piece) in &dense {
+            let places = curve.places(piece, &shown.transform);
+            bars::add(&mut mesh, curve.stroke, 1.0 / ui.pixels_per_point(), places);
+        }
+        ui.painter()
+            .with_clip_rect(frame.intersect(ui.clip_rect()))
+            .add(mesh);
+        if dense.is_empty() && sparse.is_empty() {
+            let empty = Label::new(self.look.say(self.empty), self.look.palette.muted);
+            empty.small().center().put(ui, frame);
+        }
+        view.traces = traces;
         let name = self.look.say(self.title);
         let info = || WidgetInfo::labeled(Role::Image, true, name);
         shown.response.widget_info(info);
-        let frame = *shown.transform.frame();
         let axis = frame
             .with_max_x(frame.left())
             .with_min_x(frame.left() - theme::PLOT_AXIS);
@@ -258,56 +246,101 @@ impl<'a> Chart<'a> {
             transform: shown.transform,
         };
         view.scales.act(ui, &shown.axis, self.title, scale);
-        view.act(ui, &shown, self, (from, to));
-        if self.curves.is_empty() {
-            let empty = Label::new(self.look.say(self.empty), self.look.palette.muted);
-            empty.small().center().put(ui, frame);
-        }
+        view.act(ui, &shown, self, (from_s, to_s));
         shown
     }
 
+    /// Gets the points that are read from a history. What the values span, and whether points stand for several.
+    fn fetch(
+        &self,
+        traces: &mut Traces,
+        (from_s, to_s): Span,
+        columns: f32,
+    ) -> (Option<(f64, f64)>, bool) {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped before"
+        )]
+        let columns = columns as usize;
+        let levels = self.levels.iter().map(|(level, _)| (*level, *level));
+        let mut extent = levels.fold(None, scales::joined);
+        let mut is_decimated = false;
+        for curve in &self.curves {
+            let zero = curve.zero[1];
+            match curve.points {
+                Points::Own(points) => {
+                    let values = points.iter().map(|[_, value]| (value - zero, value - zero));
+                    extent = values.fold(extent, scales::joined);
+                }
+                Points::Measured(history, series) => {
+                    let trace = traces.entry(series).or_default();
+                    history.trace(series, from_s, to_s, columns, trace);
+                    is_decimated |= trace.decimated && !curve.steps;
+                    if let Some(all) = history.summary(series, from_s, to_s) {
+                        let ends = (f64::from(all.min) - zero, f64::from(all.max) - zero);
+                        extent = scales::joined(extent, ends);
+                    }
+                }
+            }
+        }
+        (extent, is_decimated)
+    }
+
     /// Title, what is to be known of it, and the values under the pointer; over the curves, never on them.
-    fn caption_ui(&self, ui: &mut Ui, is_fixed: bool) {
+    fn caption_ui(&self, ui: &mut Ui, view: &ChartView, is_decimated: bool) {
         let look = self.look;
         let place = vec2(ui.available_width(), theme::PLOT_CAPTION);
         let right = Layout::right_to_left(Align::Center);
         ui.allocate_ui_with_layout(place, right, |ui| {
             ui.set_min_height(theme::PLOT_CAPTION);
-            if !self.readings.is_empty() {
-                self.readings_ui(ui);
+            if let Some(at_s) = view.pointed_s() {
+                self.readings_ui(ui, at_s);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add_space(theme::PLOT_AXIS);
                 Label::new(look.say(self.title), look.palette.muted)
                     .small()
                     .ui(ui);
-                let words = [
+                let is_fixed = view.scales.chosen(self.title).is_some();
+                for (is_said, text, tip) in [
                     (is_fixed, plots::RANGE_FIXED, plots::RANGE_TIP),
-                    (self.is_decimated, plots::DECIMATED, plots::DECIMATED_TIP),
-                ];
-                for (_, text, tip) in words.into_iter().filter(|(said, ..)| *said) {
-                    let label = Label::new(look.say(text), look.palette.muted);
-                    label
-                        .font(theme::tiny())
-                        .ui(ui)
-                        .on_hover_text(look.say(tip));
+                    (is_decimated, plots::DECIMATED, plots::DECIMATED_TIP),
+                ] {
+                    if is_said {
+                        let label = Label::new(look.say(text), look.palette.muted);
+                        label
+                            .font(theme::tiny())
+                            .ui(ui)
+                            .on_hover_text(look.say(tip));
+                    }
                 }
             });
         });
     }
 
-    fn readings_ui(&self, ui: &mut Ui) {
+    /// The values at a time, each in the colour of its line.
+    fn readings_ui(&self, ui: &mut Ui, at_s: f64) {
         let mut job = LayoutJob::default();
-        for (color, text) in &self.readings {
-            let format = TextFormat::simple(theme::number_small(), *color);
+        let mut texts = Vec::new();
+        for curve in &self.curves {
+            let (Points::Measured(history, series), Some(digits)) = (curve.points, curve.told)
+            else {
+                continue;
+            };
+            let value = history
+                .reading(series, at_s)
+                .map(|reading| f64::from(reading.value));
+            let value = value.map(|value| format!("{:.digits$}", value - curve.zero[1]));
+            let text = value.unwrap_or_else(|| UNKNOWN.to_owned());
+            let format = TextFormat::simple(theme::number_small(), curve.stroke.color);
             job.append(&format!(" {text:>6}"), 0.0, format);
+            texts.push(text);
+        }
+        if texts.is_empty() {
+            return;
         }
         let response = ui.add(egui::Label::new(job).truncate());
-        let texts: Vec<&str> = self
-            .readings
-            .iter()
-            .map(|(_, text)| text.as_str())
-            .collect();
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, texts.join(" ")));
         let look = self.look;
         let name = format!(
@@ -332,24 +365,24 @@ impl<'a> Chart<'a> {
         let values = hints(AxisHints::new_y(), color).min_thickness(theme::PLOT_AXIS);
         let values = values.formatter(|mark, _| scales::number(mark.value, mark.step_size));
         let times = hints(AxisHints::new_x(), palette.muted).min_thickness(theme::PLOT_TIME_AXIS);
-        let own = self.times.unwrap_or(Times::Clock);
+        let own = self.times;
         let times = times.formatter(move |mark, seen| own.label(mark, seen));
         let pointed = move |at: &PlotPoint, bounds: &PlotBounds| {
             let text = own.text(at.x, bounds.width() / 100.0);
             format!("{text}  {}", scales::number(at.y, bounds.height() / 100.0))
         };
-        let spacing = |input: egui_plot::GridInput| {
+        let spacing = |input: GridInput| {
             let step = scales::step(input.bounds, input.base_step_size);
             marks(input.bounds, 0.0, step)
         };
-        let time_spacing = move |input: egui_plot::GridInput| {
+        let time_spacing = move |input: GridInput| {
             let step = scales::time_step(input.base_step_size);
             marks(input.bounds, own.zero_s(), step)
         };
         Plot::new(self.title.en)
             .height(self.height - theme::PLOT_CAPTION)
-            .min_size(egui::Vec2::ZERO)
-            .show_axes([self.times.is_some(), true])
+            .min_size(vec2(0.0, 0.0))
+            .show_axes([self.is_lowest, true])
             .custom_x_axes(vec![times])
             .custom_y_axes(vec![values])
             .x_grid_spacer(time_spacing)
@@ -366,7 +399,7 @@ impl<'a> Chart<'a> {
             .allow_double_click_reset(false)
     }
 
-    fn items<'b>(&'b self, plot: &mut PlotUi<'b>) {
+    fn items(&self, plot: &mut PlotUi<'_>) {
         if let Some([a, b]) = self.cursors {
             let accent = self.look.palette.accent;
             let between = egui_plot::Span::new("", a.min(b)..=a.max(b));
@@ -383,17 +416,16 @@ impl<'a> Chart<'a> {
             let dashed = LineStyle::dashed_dense();
             plot.hline(HLine::new("", *value).color(*color).style(dashed));
         }
-        plot.add(Curves {
-            base: PlotItemBase::new(String::new()),
-            curves: &self.curves,
-        });
     }
 
     /// The line that passes next to the pointer, by its place in the list; of several the foremost.
     pub(crate) fn nearest(&self, shown: &ChartResponse) -> Option<usize> {
         let at = shown.ground.hover_pos()?;
         let apart = |curve: &Curve<'_>| {
-            let places: Vec<Pos2> = curve.places(&shown.transform).collect();
+            let Points::Own(points) = curve.points else {
+                return None;
+            };
+            let places: Vec<Pos2> = curve.places(points, &shown.transform).collect();
             let pairs = places.iter().zip(places.iter().skip(1));
             pairs
                 .map(|(from, to)| distance(*from, *to, at))
@@ -407,6 +439,14 @@ impl<'a> Chart<'a> {
     }
 }
 
+/// True if a column of pixels holds more than one point.
+fn is_dense((curve, piece): (&Curve<'_>, &[[f64; 2]]), per_s: f64) -> bool {
+    let ends = piece.first().zip(piece.last());
+    let columns = ends.map_or(0.0, |(first, last)| (last[0] - first[0]) * per_s);
+    let count = f64::from(u32::try_from(piece.len()).unwrap_or(u32::MAX));
+    curve.style == LineStyle::Solid && count > columns + 2.0
+}
+
 /// From a place to a piece of a line.
 fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
     let way = to - from;
@@ -415,6 +455,11 @@ fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
 }
 
 impl ChartView {
+    /// The time that the pointer is at in one of the charts.
+    pub(crate) fn pointed_s(&self) -> Option<f64> {
+        self.pointed.map(|(_, at_s)| at_s)
+    }
+
     fn act(&mut self, ui: &Ui, shown: &ChartResponse, chart: &Chart<'_>, span: Span) {
         let bounds = shown.transform.bounds();
         let moved = (bounds.min()[0], bounds.max()[0]);
@@ -423,7 +468,7 @@ impl ChartView {
             ui.request_repaint();
         }
         let scroll = ui.input(|input| input.smooth_scroll_delta);
-        if let Some(at_s) = shown.pointed_s().filter(|_| scroll != egui::Vec2::ZERO) {
+        if let Some(at_s) = shown.pointed_s().filter(|_| scroll != vec2(0.0, 0.0)) {
             if scroll.x != 0.0 {
                 self.time
                     .pan(-f64::from(scroll.x) / shown.transform.dpos_dvalue_x());
@@ -432,6 +477,14 @@ impl ChartView {
                     .zoom(at_s, f64::from(-scroll.y / theme::PLOT_WHEEL).exp2());
             }
             ui.request_repaint();
+        }
+        let here = self
+            .pointed
+            .is_some_and(|(title, _)| title == chart.title.en);
+        match shown.pointed_s() {
+            Some(at_s) => self.pointed = Some((chart.title.en, at_s)),
+            None if here => self.pointed = None,
+            None => {}
         }
         self.mark(ui, shown, chart);
         if shown.ground.double_clicked() {
@@ -544,6 +597,7 @@ pub(crate) fn clock(at_s: f64, step_s: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use egui_plot::{PlotGeometry, PlotItem};
 
     #[test]
     fn a_clock_is_as_fine_as_it_needs_to_be() {
@@ -571,16 +625,24 @@ mod tests {
 
     #[test]
     fn a_value_that_was_asked_for_stands_until_the_next() {
-        let frame = Rect::from_min_size(Pos2::ZERO, vec2(100.0, 100.0));
-        let bounds = PlotBounds::from_min_max([0.0, 0.0], [10.0, 10.0]);
-        let transform = PlotTransform::new(frame, bounds, false);
-        let mut curve = Curve::new(&[[0.0, 1.0], [2.0, 5.0]], Stroke::new(1.0, Color32::RED));
+        let points = [[0.0, 1.0], [2.0, 5.0]];
+        let mut curve = Curve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
         curve.steps = true;
-        let shapes = curve.draw(&transform, 1.0, &mut Mesh::default());
-        let [Shape::Path(path)] = shapes.as_slice() else {
-            panic!("{shapes:?}");
+        let line = curve.line(&points);
+        let PlotGeometry::Points(drawn) = line.geometry() else {
+            panic!("a line has points");
         };
-        let places = [pos2(0.0, 90.0), pos2(20.0, 90.0), pos2(20.0, 50.0)];
-        assert_eq!(path.points, places);
+        let drawn: Vec<[f64; 2]> = drawn.iter().map(|point| [point.x, point.y]).collect();
+        assert_eq!(drawn, [[0.0, 1.0], [2.0, 1.0], [2.0, 5.0]]);
+    }
+
+    #[test]
+    fn only_more_points_than_columns_are_a_band() {
+        let points: Vec<[f64; 2]> = (0..100_u8).map(|n| [f64::from(n), 1.0]).collect();
+        let curve = Curve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
+        assert!(is_dense((&curve, &points), 0.5));
+        assert!(!is_dense((&curve, &points), 2.0));
+        let alone = points.get(..1).unwrap_or_default();
+        assert!(!is_dense((&curve, alone), 0.5));
     }
 }

@@ -39,7 +39,7 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
             view.note_asked |= note.clicked();
         }
         pause_ui(ui, pane, view, is_narrow);
-        window_ui(ui, pane, view, is_narrow);
+        window_ui(ui, pane, view);
     });
 }
 
@@ -153,30 +153,12 @@ fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bo
     }
 }
 
-/// How much time is shown: a row of buttons, or a list where a row has no room.
-fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bool) {
-    let look = pane.look;
-    let now = pane.state.settings.plot_window;
-    let mut chosen = now;
-    let mut is_pressed = false;
-    let name = look.say(panels::WINDOW_NAME);
-    if is_narrow {
-        let all = PlotWindow::ALL.map(|window| (window, window_text(window)));
-        is_pressed = controls::choose_ui(ui, name, &mut chosen, &all);
-    } else {
-        ui.spacing_mut().item_spacing.x = 0.0;
-        let width_s = view.view.time.width_s();
-        for window in PlotWindow::ALL.into_iter().rev() {
-            let as_wide = (width_s - window.seconds()).abs() < 1e-3;
-            let name = format!("{name}: {}", window_text(window));
-            let button = Button::new(window_text(window), look.say(panels::WINDOW_TIP));
-            let button = button.choice(window == now && as_wide).named(&name);
-            if button.ui(ui, look).clicked() {
-                (chosen, is_pressed) = (window, true);
-            }
-        }
-    }
-    if is_pressed {
+fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
+    let mut chosen = pane.state.settings.plot_window;
+    let all = PlotWindow::ALL.map(|window| (window, window_text(window)));
+    ui.spacing_mut().combo_width = theme::PLOT_WINDOW;
+    let name = pane.look.say(panels::WINDOW_NAME);
+    if controls::choose_ui(ui, name, &mut chosen, &all) {
         view.view.time.resize(chosen.seconds());
         pane.actions.push(Action::PlotWindow(chosen));
     }

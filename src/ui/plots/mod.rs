@@ -3,6 +3,7 @@ pub(crate) mod bars;
 pub(crate) mod chart;
 pub(crate) mod cursors;
 pub(crate) mod head;
+pub(crate) mod legend;
 pub(crate) mod marks;
 pub(crate) mod panels;
 pub(crate) mod scales;
@@ -10,18 +11,16 @@ pub(crate) mod time_window;
 
 use crate::app::settings::PlotKind;
 use crate::hand::{Dof, PerDof};
-use crate::history::{Series, Trace};
+use crate::history::Series;
 use crate::transport::Endpoint;
 use crate::ui::kit::controls;
-use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::{Look, Pane};
-use crate::ui::plots::chart::{Chart, ChartResponse, ChartView, Curve, Times};
+use crate::ui::plots::chart::{Chart, ChartResponse, ChartView, Curve, Points, Times};
 use crate::ui::plots::cursors::Cursors;
 use crate::ui::plots::panels::{PANELS, Panel, PlotLine};
 use crate::ui::text::panels as text;
 use crate::ui::theme;
-use egui::{Color32, Stroke, Ui};
-use std::collections::HashMap;
+use egui::{Stroke, Ui};
 
 /// What was asked for is paler than what was measured.
 const WISHED_PART: f32 = 0.45;
@@ -50,10 +49,6 @@ pub(crate) struct PlotView {
     size: (f32, f32),
     /// Rows that were copied last, while the menu is open.
     copied: Option<usize>,
-    /// Points of lines; of a line that goes on only the newest are fetched.
-    traces: HashMap<Series, Trace>,
-    /// The time that the pointer was at in the last frame.
-    pointed_s: Option<f64>,
     /// The hand that is shown.
     hand: Option<Endpoint>,
 }
@@ -120,7 +115,6 @@ impl PlotView {
     }
 
     fn stack_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, shown: &[&Panel], height: f32) {
-        let mut pointed_s = None;
         for (n, panel) in shown.iter().enumerate() {
             let is_lowest = n + 1 == shown.len();
             let height = height
@@ -130,7 +124,6 @@ impl PlotView {
                     0.0
                 };
             let chart = self.panel_ui(ui, pane, panel, (height, is_lowest));
-            pointed_s = pointed_s.or(chart.pointed_s());
             if n == 0 {
                 marks::words_ui(ui, pane, &chart);
             }
@@ -144,64 +137,45 @@ impl PlotView {
                 chart.ground.on_hover_text_at_pointer(marks);
             }
         }
-        self.pointed_s = pointed_s;
     }
 
-    /// One plot under its caption.
     fn panel_ui(
         &mut self,
         ui: &mut Ui,
         pane: &mut Pane<'_>,
         panel: &Panel,
-        (height, is_lowest): (f32, bool),
+        place: (f32, bool),
     ) -> ChartResponse {
         let look = pane.look;
         let hand = pane.state.hand();
-        let lines = panel.lines(&self.hidden);
-        let (from_s, to_s) = self.view.time.span();
-        let mut extent = None;
-        let mut is_decimated = false;
-        for line in &lines {
-            let trace = self.traces.entry(line.series).or_default();
-            hand.history
-                .trace(line.series, from_s, to_s, chart::columns(ui), trace);
-            is_decimated |= trace.decimated && !line.wished;
-            if let Some(all) = hand.history.summary(line.series, from_s, to_s) {
-                extent = scales::joined(extent, (all.min.into(), all.max.into()));
-            }
-        }
+        let curve = |line: &PlotLine| Curve {
+            steps: line.wished,
+            told: (!line.wished).then_some(panel.row.decimals),
+            ..Curve::new(
+                Points::Measured(&hand.history, line.series),
+                self.stroke(look, line),
+            )
+        };
         let mut levels = Vec::new();
         if self.thresholds && panel.kind == PlotKind::Force {
-            for (dof, joint) in hand.joints.iter().filter(|(dof, _)| !self.hidden[*dof]) {
-                let grams = f64::from(joint.force.get());
-                extent = scales::joined(extent, (grams, grams));
-                levels.push((grams, look.palette.dof[dof].gamma_multiply(0.7)));
-            }
+            let joints = hand.joints.iter().filter(|(dof, _)| !self.hidden[*dof]);
+            let force =
+                joints.map(|(dof, joint)| (joint.force.get().into(), look.palette.dof[dof]));
+            levels.extend(force);
         }
-        let readings = self
-            .pointed_s
-            .map(|at_s| readings(pane, panel, (&lines, at_s)));
-        let own = |line: &PlotLine| Some((*line, self.traces.get(&line.series)?));
-        let own = lines.iter().filter_map(own).flat_map(|(line, trace)| {
-            let stroke = stroke(look, line, self.pointed);
-            trace.segments.iter().map(move |points| Curve {
-                steps: line.wished,
-                ..Curve::new(points, stroke)
-            })
-        });
-        let now = (!self.view.time.is_held()).then_some(to_s);
-        let times = now.map_or(Times::Clock, |now| Times::From(now, look.say(text::NOW)));
+        let span = self.view.time.span();
         let chart = Chart {
-            title: panel.title,
-            curves: own.collect(),
+            curves: panel.lines(&self.hidden).iter().map(curve).collect(),
             levels,
-            moments: marks::moments(pane, (from_s, to_s)),
+            moments: marks::moments(pane, span),
             cursors: self.cursors.0,
-            scale: scales::rounded(panel.row.least_scale, extent, height - theme::PLOT_CAPTION),
-            times: is_lowest.then_some(times),
-            readings: readings.unwrap_or_default(),
-            is_decimated,
-            ..Chart::new(look, height)
+            least: panel.row.least_scale,
+            times: match self.view.time.is_held() {
+                true => Times::Clock,
+                false => Times::From(span.1, look.say(text::NOW)),
+            },
+            is_lowest: place.1,
+            ..Chart::new(look, panel.title, place.0)
         };
         let shown = chart.ui(ui, &mut self.view);
         let scale = shown.transform.bounds().range_y().into_inner();
@@ -209,6 +183,18 @@ impl PlotView {
             .scales
             .ends_ui(&shown.axis, pane, panel.title, scale);
         shown
+    }
+
+    fn stroke(&self, look: Look, line: &PlotLine) -> Stroke {
+        let color = look.palette.dof[line.dof];
+        let color = match self.pointed {
+            Some(dof) if dof != line.dof => color.gamma_multiply(BEHIND_PART),
+            _ => color,
+        };
+        match line.wished {
+            true => Stroke::new(1.0, color.gamma_multiply(WISHED_PART)),
+            false => Stroke::new(theme::LINE, color),
+        }
     }
 
     /// Size of the card, for a picture of it.
@@ -234,32 +220,4 @@ impl PlotView {
 fn room(ui: &Ui, count: usize) -> f32 {
     let count = f32::from(u8::try_from(count).unwrap_or(u8::MAX));
     ((ui.available_height() - theme::PLOT_TIME_AXIS) / count).floor()
-}
-
-fn stroke(look: Look, line: PlotLine, pointed: Option<Dof>) -> Stroke {
-    let color = look.palette.dof[line.dof];
-    let color = match pointed {
-        Some(dof) if dof != line.dof => color.gamma_multiply(BEHIND_PART),
-        _ => color,
-    };
-    match line.wished {
-        true => Stroke::new(1.0, color.gamma_multiply(WISHED_PART)),
-        false => Stroke::new(theme::LINE, color),
-    }
-}
-
-/// The values of lines at a time, in their colours.
-fn readings(
-    pane: &Pane<'_>,
-    panel: &Panel,
-    (lines, at_s): (&[PlotLine], f64),
-) -> Vec<(Color32, String)> {
-    let history = &pane.state.hand().history;
-    let read = |line: &PlotLine| {
-        let reading = history.reading(line.series, at_s);
-        let value = reading.map(|reading| panel.value(reading.value.into()));
-        let color = pane.look.palette.dof[line.dof];
-        (color, value.unwrap_or_else(|| UNKNOWN.to_owned()))
-    };
-    lines.iter().filter(|line| !line.wished).map(read).collect()
 }

@@ -88,9 +88,4 @@ impl Panel {
         let lines = self.lines(hidden).into_iter();
         lines.filter(|line| !line.wished).collect()
     }
-
-    /// A value as it is shown.
-    pub(crate) fn value(&self, value: f64) -> String {
-        format!("{value:.*}", self.row.decimals)
-    }
 }

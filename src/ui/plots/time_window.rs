@@ -43,12 +43,6 @@ impl TimeWindow {
         self.held.unwrap_or((newest - self.window_s, newest))
     }
 
-    /// Seconds shown.
-    pub(crate) fn width_s(&self) -> f64 {
-        let (from, to) = self.span();
-        to - from
-    }
-
     /// True while the newest is not followed.
     pub(crate) const fn is_held(&self) -> bool {
         self.held.is_some()
@@ -115,6 +109,10 @@ mod tests {
         time
     }
 
+    fn width_s(time: TimeWindow) -> f64 {
+        time.span().1 - time.span().0
+    }
+
     fn same(one: Span, two: Span) {
         let apart = (one.0 - two.0).abs().max((one.1 - two.1).abs());
         assert!(apart < 1e-6, "{one:?} {two:?}");
@@ -151,9 +149,9 @@ mod tests {
         time.pan(-1e9);
         same(time.span(), (91.0, 101.0));
         time.zoom(95.0, 1e9);
-        assert!((time.width_s() - LONGEST_S).abs() < 1e-6);
+        assert!((width_s(time) - LONGEST_S).abs() < 1e-6);
         time.zoom(95.0, 1e-12);
-        assert!((time.width_s() - SHORTEST_S).abs() < 1e-6);
+        assert!((width_s(time) - SHORTEST_S).abs() < 1e-6);
     }
 
     #[test]

@@ -11,7 +11,7 @@ pub(crate) const PLOT_MENU: f32 = 250.0;
 /// Points of the wheel that halve or double what is shown.
 pub(crate) const PLOT_WHEEL: f32 = 180.0;
 /// Room for the numbers of the vertical axis.
-pub(crate) const PLOT_AXIS: f32 = 44.0;
+pub(crate) const PLOT_AXIS: f32 = 46.0;
 /// Room for the numbers of the time axis.
 pub(crate) const PLOT_TIME_AXIS: f32 = 20.0;
 /// Room for a plot's title.
@@ -26,3 +26,5 @@ pub(crate) const RECORDING_LANE: f32 = 8.0;
 pub(crate) const RECORDING_LEAST: f32 = 46.0;
 /// Width of the names in the cursors' table.
 pub(crate) const CURSOR_NAMES: f32 = 84.0;
+/// Width of the choice of the time that is shown.
+pub(crate) const PLOT_WINDOW: f32 = 68.0;

@@ -1,12 +1,11 @@
 //! The eight channels of one fingertip over time, as sent or from their rest, each with its change and noise.
 
 use crate::hand::Finger;
-use crate::history::{Series, Trace};
+use crate::history::Series;
 use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::format;
 use crate::ui::kit::look::{Look, Pane};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Times, columns};
-use crate::ui::plots::scales;
+use crate::ui::plots::chart::{Chart, ChartView, Curve, Points, Times};
 use crate::ui::text::{Text, panels, touch as text};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Rect, Stroke, Ui, UiBuilder, vec2};
@@ -19,8 +18,8 @@ const WINDOWS: [(f64, Text); 3] = [
 ];
 /// Over this time mean and noise are taken, in seconds.
 const NOISE_S: f64 = 1.0;
-/// Smallest height of the plot, in counts: less is noise.
-const LEAST_SPAN: f64 = 2_000.0;
+/// Counts that are always shown: what stays between them is noise.
+const LEAST: (f64, f64) = (-1000.0, 1000.0);
 
 /// How the channels are shown.
 #[derive(Debug)]
@@ -29,7 +28,6 @@ pub(crate) struct TipChannels {
     tared: bool,
     /// Seconds.
     window_s: f64,
-    traces: [Trace; 8],
     chart: ChartView,
 }
 
@@ -38,7 +36,6 @@ impl Default for TipChannels {
         Self {
             tared: true,
             window_s: 10.0,
-            traces: Default::default(),
             chart: ChartView::default(),
         }
     }
@@ -118,35 +115,20 @@ impl TipChannels {
         self.chart
             .time
             .advance((first.min(now), now), self.window_s);
-        let (from_s, to_s) = self.chart.time.span();
-        let columns = columns(ui);
-        let mut extent = None;
-        let mut curves = Vec::new();
-        for ((channel, trace), number) in (0u8..).zip(&mut self.traces).zip(0..) {
-            let series = Series::Channel(channel, finger);
-            hand.history.trace(series, from_s, to_s, columns, trace);
+        let curve = |(channel, number): (u8, usize)| {
             let rest = rest.and_then(|rest| rest.raw.get(number).copied());
-            let zero = rest.map_or(0.0, f64::from);
-            if let Some(all) = hand.history.summary(series, from_s, to_s) {
-                let (low, high) = (f64::from(all.min) - zero, f64::from(all.max) - zero);
-                extent = scales::joined(extent, (low, high));
+            let points = Points::Measured(&hand.history, Series::Channel(channel, finger));
+            Curve {
+                zero: [0.0, rest.map_or(0.0, f64::from)],
+                told: Some(0),
+                ..Curve::new(points, Stroke::new(theme::LINE, color(look, number)))
             }
-            let stroke = Stroke::new(theme::LINE, color(look, number));
-            curves.extend(trace.segments.iter().map(|points| Curve {
-                zero: [0.0, zero],
-                ..Curve::new(points, stroke)
-            }));
-        }
-        let height = ui.available_height();
-        let (low, high) = extent.unwrap_or_default();
-        let middle = f64::midpoint(low, high);
-        let least = (middle - LEAST_SPAN / 2.0, middle + LEAST_SPAN / 2.0);
+        };
         let chart = Chart {
-            title: text::CHANNELS,
-            curves,
-            scale: scales::rounded(least, extent, height - theme::PLOT_CAPTION),
-            times: Some(Times::From(now, look.say(panels::NOW))),
-            ..Chart::new(look, height)
+            curves: (0..8).zip(0..).map(curve).collect(),
+            least: LEAST,
+            times: Times::From(now, look.say(panels::NOW)),
+            ..Chart::new(look, text::CHANNELS, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);
     }

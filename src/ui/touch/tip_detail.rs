@@ -4,14 +4,14 @@ use crate::app::hand::Freshness;
 use crate::app::readings::friction::{Grip, Hold, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
-use crate::history::{Series, Trace};
+use crate::history::Series;
 use crate::ui::joints::track::{Actual, Track};
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::Label;
 use crate::ui::kit::format;
 use crate::ui::kit::look::{Look, Pane};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, columns};
-use crate::ui::plots::scales;
+use crate::ui::plots::chart::{Chart, ChartView, Curve, Points, Times};
+use crate::ui::plots::legend::{Key, legend_ui};
 use crate::ui::text::{Text, panels, touch as text};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::Tip;
@@ -19,7 +19,8 @@ use crate::ui::touch::table as touch_table;
 use crate::ui::touch::tip_channels::TipChannels;
 use crate::ui::touch::tip_space;
 use crate::ui::touch::tip_space::Force;
-use egui::{Align2, Id, Painter, Pos2, Rect, Stroke, Ui, UiBuilder, Vec2, vec2};
+use egui::{Align2, Color32, Id, Painter, Pos2, Rect, Stroke, Ui, UiBuilder, Vec2, vec2};
+use egui_plot::LineStyle;
 
 /// Friction that is taken until a person chooses one, in percent: rubber on smooth plastic is about this.
 const FRICTION_PERCENT: i16 = 50;
@@ -38,7 +39,6 @@ pub(crate) struct TipDetail {
     /// The fingertip.
     pub(crate) finger: Finger,
     friction_percent: i16,
-    traces: [Trace; 2],
     holds: PerFinger<Hold>,
     channels: TipChannels,
     chart: ChartView,
@@ -49,7 +49,6 @@ impl Default for TipDetail {
         Self {
             finger: Finger::Index,
             friction_percent: FRICTION_PERCENT,
-            traces: Default::default(),
             holds: PerFinger::default(),
             channels: TipChannels::default(),
             chart: ChartView::default(),
@@ -280,39 +279,30 @@ impl TipDetail {
         let history = &pane.state.hand().history;
         let own = look.palette.dof[self.finger.bend()];
         let lines = [
-            (Touch::Normal, own),
-            (Touch::Tangential, look.palette.muted),
+            (Touch::Normal, panels::TIP_NORMAL, own),
+            (Touch::Tangential, panels::TIP_SHEAR, look.palette.muted),
         ];
+        let key = |(_, words, color): (Touch, Text, Color32)| Key {
+            words: look.say(words).to_owned(),
+            color,
+            style: LineStyle::Solid,
+        };
+        legend_ui(ui, look, &lines.map(key));
         let now = pane.state.now.secs();
         let first = history.first_secs().unwrap_or(now);
         self.chart.time.advance((first.min(now), now), SECONDS);
-        let (from_s, to_s) = self.chart.time.span();
-        let columns = columns(ui);
-        let mut extent = None;
-        let mut curves = Vec::new();
-        for ((touch, color), trace) in lines.iter().zip(&mut self.traces) {
-            let series = Series::Tip(*touch, self.finger);
-            history.trace(series, from_s, to_s, columns, trace);
-            if let Some(all) = history.summary(series, from_s, to_s) {
-                extent = scales::joined(extent, (all.min.into(), all.max.into()));
+        let curve = |(touch, _, color): (Touch, Text, Color32)| {
+            let points = Points::Measured(history, Series::Tip(touch, self.finger));
+            Curve {
+                told: Some(2),
+                ..Curve::new(points, Stroke::new(theme::LINE, color))
             }
-            let stroke = Stroke::new(theme::LINE, *color);
-            curves.extend(
-                trace
-                    .segments
-                    .iter()
-                    .map(|points| Curve::new(points, stroke)),
-            );
-        }
-        let words = [panels::TIP_NORMAL, panels::TIP_SHEAR].map(|text| look.say(text).to_owned());
-        let colors = lines.iter().map(|(_, color)| *color);
-        let height = ui.available_height();
+        };
         let chart = Chart {
-            title: text::FORCES,
-            curves,
-            readings: colors.zip(words).collect(),
-            scale: scales::rounded((0.0, FORCE_END), extent, height - theme::PLOT_CAPTION),
-            ..Chart::new(look, height)
+            curves: lines.map(curve).to_vec(),
+            least: (0.0, FORCE_END),
+            times: Times::From(now, look.say(panels::NOW)),
+            ..Chart::new(look, text::FORCES, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);
     }

@@ -6,19 +6,17 @@ use crate::app::trials::{
 };
 use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::dash;
-use crate::ui::kit::dash::Dash;
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::chart::{ChartView, Curve};
+use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
+use crate::ui::plots::legend::{Key, legend_ui};
 use crate::ui::text::{Text, compare, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
-use crate::ui::trials::plot::{Key, TrialPlot, keys_width, legend_ui};
+use crate::ui::trials::plot::trial_chart_ui;
 use egui::{Color32, Stroke, Ui};
-
-/// More keys of single lines never fit in one row.
-const LINES_NAMED: usize = 12;
+use egui_plot::LineStyle;
 
 /// Where the time of the curves begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -77,7 +75,7 @@ impl CurvesView {
             comparison,
             picture: &picture,
         };
-        legend_ui(ui, look, &drawn.keys(ui, self.pointed, *strong));
+        legend_ui(ui, look, &drawn.legend(self.pointed, *strong));
         let whole = drawn.whole(shown, *strong);
         let whole = ComparedLines {
             all: whole.len(),
@@ -112,19 +110,16 @@ impl CurvesView {
             keys.push(own.key);
             curves.push(curve);
         }
-        let levels = match shown {
-            TrialQuantity::Force => drawn.levels(),
-            _ => Vec::new(),
-        };
-        let plot = TrialPlot {
-            look,
-            title: title(shown),
-            empty: tune::CURVES_EMPTY,
+        let chart = Chart {
             curves,
-            levels,
-            least: (0.0, 1.0),
+            levels: match shown {
+                TrialQuantity::Force => drawn.levels(),
+                _ => Vec::new(),
+            },
+            empty: tune::CURVES_EMPTY,
+            ..Chart::new(look, title(shown), ui.available_height())
         };
-        let (response, near) = plot.ui(ui, &mut self.chart);
+        let (response, near) = trial_chart_ui(ui, chart, &mut self.chart);
         self.pointed = near.and_then(|at| keys.get(at)).copied();
         if response.ground.clicked() {
             let seen = self.pointed.and_then(|place| comparison.row(trials, place));
@@ -181,8 +176,8 @@ impl<'a> DrawnTrials<'a> {
         seen.is_some_and(|seen| trial == Some((seen.session.id, seen.trial.number)))
     }
 
-    fn dash(&self, seen: ComparedRow<'_>) -> Dash {
-        compare_list::dash(self.comparison.sessions(), seen.session.id)
+    fn style(&self, seen: ComparedRow<'_>) -> LineStyle {
+        compare_list::style(self.comparison.sessions(), seen.session.id)
     }
 
     /// The lines with the colours of their settings, joints or sessions.
@@ -190,8 +185,8 @@ impl<'a> DrawnTrials<'a> {
         self.picture.lines.iter().filter_map(move |own| {
             let seen = self.row(own.key)?;
             let color = color(self.pane, self.comparison, own.key, seen);
-            let mut curve = Curve::new(&own.points, Stroke::new(theme::LINE, color));
-            curve.dash = self.dash(seen);
+            let mut curve = Curve::new(Points::Own(&own.points), Stroke::new(theme::LINE, color));
+            curve.style = self.style(seen);
             Some((own, curve))
         })
     }
@@ -222,61 +217,34 @@ impl<'a> DrawnTrials<'a> {
             .collect()
     }
 
-    /// The trial that is meant, or every line, or what colours and strokes stand for.
-    fn keys(&self, ui: &Ui, pointed: Option<RowKey>, strong: Option<TrialKey>) -> Vec<Key> {
+    /// The trial that is meant, or what colours and strokes stand for.
+    fn legend(&self, pointed: Option<RowKey>, strong: Option<TrialKey>) -> Vec<Key> {
         let mut drawn = self.picture.lines.iter().map(|line| line.key);
         let meant = pointed.or_else(|| drawn.find(|key| self.is_of(*key, strong)));
-        if let Some((key, seen)) = meant.and_then(|key| Some((key, self.row(key)?))) {
-            let look = self.pane.look;
-            let name = compare_list::name(look, seen.session.id);
-            let joint = look.say(words::dof(seen.joint.dof));
-            let setting = setting_words(seen.trial.setting);
-            let trial = format!("{} {}", look.say(tune::COLUMN_TRIAL), seen.trial.number);
-            return vec![self.key((key, seen), format!("{name}  {trial}  {setting}  {joint}"))];
-        }
-        let every = self.every();
-        match !every.is_empty() && keys_width(ui, &every) <= ui.available_width() {
-            true => every,
-            false => self.groups(),
-        }
-    }
-
-    fn key(&self, (key, seen): (RowKey, ComparedRow<'_>), words: String) -> Key {
-        Key {
-            words,
-            color: color(self.pane, self.comparison, key, seen),
-            dash: self.dash(seen),
-        }
-    }
-
-    /// A key for each line: session and trial.
-    fn every(&self) -> Vec<Key> {
-        if self.picture.all > LINES_NAMED {
-            return Vec::new();
-        }
-        let several = self.comparison.sessions().len() > 1;
-        let key = |line: &ComparedLine| {
-            let seen = self.row(line.key)?;
-            let setting = setting_words(seen.trial.setting);
-            let (session, trial) = (seen.session.id.0, seen.trial.number);
-            let words = match several {
-                true => format!("{session}: {trial}  {setting}"),
-                false => format!("{trial}  {setting}"),
-            };
-            Some(self.key((line.key, seen), words))
+        let Some((key, seen)) = meant.and_then(|key| Some((key, self.row(key)?))) else {
+            return self.keys();
         };
-        self.picture.lines.iter().filter_map(key).collect()
+        let look = self.pane.look;
+        let name = compare_list::name(look, seen.session.id);
+        let joint = look.say(words::dof(seen.joint.dof));
+        let setting = setting_words(seen.trial.setting);
+        let trial = format!("{} {}", look.say(tune::COLUMN_TRIAL), seen.trial.number);
+        vec![Key {
+            words: format!("{name}  {trial}  {setting}  {joint}"),
+            color: color(self.pane, self.comparison, key, seen),
+            style: self.style(seen),
+        }]
     }
 
     /// A key for each stroke, then for each colour.
-    pub(crate) fn groups(&self) -> Vec<Key> {
+    pub(crate) fn keys(&self) -> Vec<Key> {
         let look = self.pane.look;
         let mut keys = Vec::new();
         if self.comparison.sessions().len() > 1 {
             keys.extend(self.comparison.sessions().rev().map(|id| Key {
                 words: compare_list::name(look, id),
                 color: look.palette.text,
-                dash: compare_list::dash(self.comparison.sessions(), id),
+                style: compare_list::style(self.comparison.sessions(), id),
             }));
         }
         let mut groups: Vec<LineGroup> = Vec::new();
@@ -298,7 +266,7 @@ impl<'a> DrawnTrials<'a> {
             keys.push(Key {
                 words,
                 color: group_color(self.pane, self.comparison, group),
-                dash: Dash::Solid,
+                style: LineStyle::Solid,
             });
         }
         keys

@@ -9,10 +9,10 @@ use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_top};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::chart::{ChartView, Curve};
+use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::text::{trials, tune, words};
 use crate::ui::theme;
-use crate::ui::trials::plot::TrialPlot;
+use crate::ui::trials::plot::trial_chart_ui;
 use egui::{Color32, CornerRadius, Id, Rect, Role, Sense, Stroke, Ui, UiBuilder, WidgetInfo};
 
 /// Readings of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
@@ -134,20 +134,18 @@ fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut ChartView
     };
     let all = lines.iter().flat_map(|(_, points)| points);
     let highest = all.map(|[_, grams]| *grams).fold(0.0, f64::max);
-    let plot = TrialPlot {
-        look,
-        title: tune::LIVE_FORCE,
-        empty: tune::LIVE_EMPTY,
-        curves: lines
-            .iter()
-            .map(|(dof, points)| {
-                Curve::new(points, Stroke::new(theme::LINE, look.palette.dof[*dof]))
-            })
-            .collect(),
+    let curves = lines.iter().map(|(dof, points)| {
+        let stroke = Stroke::new(theme::LINE, look.palette.dof[*dof]);
+        Curve::new(Points::Own(points), stroke)
+    });
+    let force = Chart {
+        curves: curves.collect(),
         levels: levels(pane, run, highest),
         least: (0.0, 100.0),
+        empty: tune::LIVE_EMPTY,
+        ..Chart::new(look, tune::LIVE_FORCE, ui.available_height())
     };
-    plot.ui(ui, chart);
+    trial_chart_ui(ui, force, chart);
 }
 
 /// What the levels are.

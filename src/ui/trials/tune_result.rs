@@ -9,13 +9,14 @@ use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Weight, take_left};
 use crate::ui::kit::list;
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::chart::ChartView;
+use crate::ui::plots::chart::{Chart, ChartView};
+use crate::ui::plots::legend::legend_ui;
 use crate::ui::text::{Text, trials, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::staging;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_curves::DrawnTrials;
-use crate::ui::trials::plot::{TrialPlot, legend_ui};
+use crate::ui::trials::plot::trial_chart_ui;
 use crate::ui::view::View;
 use egui::{Color32, Id, Rect, Ui, UiBuilder};
 
@@ -101,19 +102,15 @@ impl ResultView {
             comparison,
             picture,
         };
-        let mut levels = drawn.levels();
-        levels.dedup();
-        let plot = TrialPlot {
-            look,
-            title: tune::SHOW_FORCE,
-            empty: tune::CURVES_EMPTY,
-            curves: drawn.curves().map(|(_, curve)| curve).collect(),
-            levels,
-            least: (0.0, 1.0),
-        };
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-            legend_ui(ui, look, &drawn.groups());
-            plot.ui(ui, &mut chart);
+            legend_ui(ui, look, &drawn.keys());
+            let force = Chart {
+                curves: drawn.curves().map(|(_, curve)| curve).collect(),
+                levels: drawn.levels(),
+                empty: tune::CURVES_EMPTY,
+                ..Chart::new(look, tune::SHOW_FORCE, ui.available_height())
+            };
+            trial_chart_ui(ui, force, &mut chart);
         });
         self.chart = chart;
     }
