@@ -4,17 +4,16 @@ use crate::app::action::Action;
 use crate::app::files::export::Content;
 use crate::app::readings::fault_recorder::{Listed, Recording, RecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
-use crate::history::Trace;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::faults::recording_events;
 use crate::ui::faults::recording_events::EventLine;
-use crate::ui::faults::recording_plot::{RecordingPlot, panel_height};
+use crate::ui::faults::recording_plot::{RecordingCharts, RecordingPlot, panel_height};
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right, take_top};
 use crate::ui::kit::format;
 use crate::ui::kit::list::{INDENT, LAMP_AT, LINE, line_ui, piece, scroll_ui, wrapped_ui};
 use crate::ui::kit::look::{Look, Pane};
-use crate::ui::plots::plot_rows::{PANELS, Panel};
+use crate::ui::plots::panels::{PANELS, Panel};
 use crate::ui::text::faults;
 use crate::ui::theme;
 use egui::{Id, Rect, Ui, pos2};
@@ -29,7 +28,7 @@ pub(crate) struct RecordingsView {
     open: Option<RecordingId>,
     shown: ShownPlots,
     near: bool,
-    trace: Trace,
+    charts: RecordingCharts,
     /// The events of the open one, in the language they were worded in.
     lines: Option<((RecordingId, Language, Theme), Vec<EventLine>)>,
 }
@@ -148,7 +147,7 @@ impl RecordingsView {
             span,
             fault_s,
         };
-        plot.ui(ui, body, &shown, &mut self.trace);
+        plot.ui(ui, body, &shown, &mut self.charts);
         self.events_ui(ui, events, pane, recording, fault_s);
     }
 

@@ -1,17 +1,16 @@
 //! Lines with more points than pixels, as upright bars, one a pixel: what such a line covers anyway, and far cheaper
-//! than a path whose every corner is cut and smoothed. Knows no hand and no time.
+//! than a path whose every corner is cut and smoothed. Each spike is a whole pixel wide, which the bands of
+//! `egui_plot` make thin. Knows no hand and no time.
 
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Stroke, pos2};
 
-/// Points this far apart are joined by a slope, not by bars.
+/// Points more pixels apart are joined by a slope, not by bars.
 const JOINED_PX: f32 = 2.0;
 /// Upper and lower edges fade over this, in points.
 const FADE_PX: f32 = 1.0;
 /// Bars whose ends differ by less go on as one: nobody sees a sixteenth of a point.
 const SAME_PX: f32 = 1.0 / 16.0;
-/// A bar lower than this is drawn without a solid core.
-const FLAT_PX: f32 = 0.25;
 /// A slope is thicker upright than across, up to so many times.
 const STEEP_MOST_RATIO: f32 = 4.0;
 
@@ -34,13 +33,13 @@ impl Bar {
     }
 }
 
-/// Adds a line of many points to a mesh.
-pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, points: impl Iterator<Item = Pos2>) {
+/// Adds a line of many points to a mesh; a bar is one pixel wide, in points.
+pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, pixel: f32, points: impl Iterator<Item = Pos2>) {
     let mut wide: Option<Bar> = None;
     let mut bar: Option<Bar> = None;
     let mut before: Option<Pos2> = None;
     for point in points {
-        let x = point.x.floor();
+        let x = (point.x / pixel).floor() * pixel;
         if let Some(bar) = bar.as_mut().filter(|bar| bar.x == x) {
             bar.top = bar.top.min(point.y);
             bar.bottom = bar.bottom.max(point.y);
@@ -48,7 +47,7 @@ pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, points: impl Iterator<Item = 
             continue;
         }
         finish(mesh, stroke, &mut wide, bar);
-        let far = before.filter(|before| point.x - before.x > JOINED_PX);
+        let far = before.filter(|before| point.x - before.x > JOINED_PX * pixel);
         if let Some(before) = far {
             slope(mesh, stroke, before, point);
         }
@@ -60,7 +59,7 @@ pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, points: impl Iterator<Item = 
             x: bar
                 .filter(|_| near.is_some())
                 .map_or(x, |bar| bar.end.min(x)),
-            end: x + 1.0,
+            end: x + pixel,
             top: point.y.min(from_y),
             bottom: point.y.max(from_y),
         });
@@ -90,21 +89,14 @@ fn paint(mesh: &mut Mesh, stroke: Stroke, bar: Bar) {
     let core = (stroke.width - FADE_PX).max(0.0) / 2.0;
     let (top, bottom) = (bar.top - core, bar.bottom + core);
     let outer = (bar.top - out, bar.bottom + out);
-    let sides = [bar.x, bar.end];
     let clear = Color32::TRANSPARENT;
-    if bar.bottom - bar.top < FLAT_PX {
-        let middle = bar.top.midpoint(bar.bottom);
-        let levels = [(outer.0, clear), (middle, stroke.color), (outer.1, clear)];
-        strip(mesh, sides, [levels, levels]);
-    } else {
-        let levels = [
-            (outer.0, clear),
-            (top, stroke.color),
-            (bottom, stroke.color),
-            (outer.1, clear),
-        ];
-        strip(mesh, sides, [levels, levels]);
-    }
+    let levels = [
+        (outer.0, clear),
+        (top, stroke.color),
+        (bottom, stroke.color),
+        (outer.1, clear),
+    ];
+    strip(mesh, [bar.x, bar.end], [levels, levels]);
 }
 
 fn slope(mesh: &mut Mesh, stroke: Stroke, from: Pos2, to: Pos2) {
@@ -124,8 +116,8 @@ fn slope(mesh: &mut Mesh, stroke: Stroke, from: Pos2, to: Pos2) {
 }
 
 /// Two columns of as many heights, joined by a band between each two.
-fn strip<const N: usize>(mesh: &mut Mesh, x: [f32; 2], heights: [[(f32, Color32); N]; 2]) {
-    let (Ok(first), Ok(levels)) = (u32::try_from(mesh.vertices.len()), u32::try_from(N)) else {
+fn strip(mesh: &mut Mesh, x: [f32; 2], heights: [[(f32, Color32); 4]; 2]) {
+    let Ok(first) = u32::try_from(mesh.vertices.len()) else {
         return;
     };
     for (x, heights) in x.into_iter().zip(heights) {
@@ -135,8 +127,8 @@ fn strip<const N: usize>(mesh: &mut Mesh, x: [f32; 2], heights: [[(f32, Color32)
             color,
         }));
     }
-    for left in first..first + levels - 1 {
-        let right = left + levels;
+    for left in first..first + 3 {
+        let right = left + 4;
         mesh.indices
             .extend([left, left + 1, right, right, left + 1, right + 1]);
     }
@@ -155,7 +147,7 @@ mod tests {
     fn covered(points: &[(f32, f32)]) -> (Mesh, Rect) {
         let mut mesh = Mesh::default();
         let points = points.iter().map(|(x, y)| pos2(*x, *y));
-        add(&mut mesh, STROKE, points);
+        add(&mut mesh, STROKE, 1.0, points);
         let bounds = mesh.calc_bounds();
         assert!(mesh.is_valid());
         (mesh, bounds)
@@ -167,18 +159,7 @@ mod tests {
             let (left, right) = corners.split_at(corners.len() / 2);
             left.iter().all(|one| one.pos.x <= x) && right.iter().all(|one| one.pos.x >= x)
         };
-        let mut all = Vec::new();
-        let mut rest = mesh.vertices.as_slice();
-        while !rest.is_empty() {
-            // A bar without a core has three heights on each side.
-            let clear = |n: usize| {
-                rest.get(n)
-                    .is_some_and(|one| one.color == Color32::TRANSPARENT)
-            };
-            let (one, after) = rest.split_at(if clear(2) { 6 } else { 8 });
-            all.push(one);
-            rest = after;
-        }
+        let all: Vec<&[Vertex]> = mesh.vertices.chunks(8).collect();
         let solid = all.iter().filter(wide).flat_map(|corners| corners.iter());
         let heights = solid.filter(|one| one.color != Color32::TRANSPARENT);
         heights.map(|one| one.pos.y).fold(None, |all, y| {
@@ -200,7 +181,7 @@ mod tests {
         assert_eq!(solid(&mesh, 150.5), Some((90.0, 90.0)));
         assert!((bounds.top() - 4.0).abs() < 1e-3 && (bounds.bottom() - 91.0).abs() < 1e-3);
         // What is alike is one bar.
-        assert_eq!(mesh.vertices.len(), 6 + 8 + 6);
+        assert_eq!(mesh.vertices.len(), 3 * 8);
     }
 
     #[test]

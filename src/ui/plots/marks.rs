@@ -3,52 +3,52 @@
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::controls;
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::axes as plot_axes;
-use crate::ui::plots::sight::Span;
+use crate::ui::plots::chart::{ChartResponse, clock};
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
-use egui::{Align2, Color32, CornerRadius, Painter, Rect, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, Rect, Ui, pos2, vec2};
 
 /// Characters of a note beside its line; the rest is in the tooltip.
 const NOTE_SHOWN: usize = 24;
 
 /// The lines.
-pub(crate) fn lines_ui(painter: &Painter, rect: Rect, pane: &Pane<'_>, span: Span) {
-    for mark in pane.state.hand().history.marks(span.0, span.1) {
-        let (_, color) = mark_look(pane, &mark.kind);
-        let x = plot_axes::x_of(rect, span, mark.at.secs());
-        painter.vline(x, rect.y_range(), Stroke::new(1.0, color));
-    }
+pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): (f64, f64)) -> Vec<(f64, Color32)> {
+    let marks = pane.state.hand().history.marks(from_s, to_s);
+    let moment = |mark: &Mark| (mark.at.secs(), mark_look(pane, &mark.kind).1);
+    marks.map(moment).collect()
 }
 
 /// The words of the marks, once, in the topmost plot. Words that would overlap are left out.
-pub(crate) fn words_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, span: Span) {
+pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
+    let rect = *shown.transform.frame();
+    let (from_s, to_s) = shown.transform.bounds().range_x().into_inner();
     let mut free_from = rect.left();
-    for mark in pane.state.hand().history.marks(span.0, span.1) {
+    for mark in pane.state.hand().history.marks(from_s, to_s) {
+        let x = shown.transform.position_from_point_x(mark.at.secs());
+        if x < free_from {
+            continue;
+        }
         let (_, color) = mark_look(pane, &mark.kind);
         let text: String = mark_text(pane, mark).chars().take(NOTE_SHOWN).collect();
-        let x = plot_axes::x_of(rect, span, mark.at.secs());
-        let width = controls::text_width(ui, &text, theme::small()) + 1.0;
-        let flipped = x + width + theme::MARK_MARGIN > rect.right();
-        let left = if flipped {
-            x - width - theme::STEP
-        } else {
+        let size = vec2(
+            controls::text_width(ui, &text, theme::small()) + 1.0,
+            theme::TEXT_LINE,
+        );
+        let right = x + size.x + theme::GAP <= rect.right();
+        let left = if right {
             x + theme::STEP
+        } else {
+            x - size.x - theme::STEP
         };
         if left < free_from {
             continue;
         }
-        let place = Rect::from_min_size(
-            pos2(left, rect.top() + 2.0),
-            vec2(width, theme::MESSAGE_LINE),
-        );
+        let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), size);
         let ground = pane.look.palette.sunken.gamma_multiply(0.8);
-        let round = CornerRadius::same(2);
         ui.painter()
-            .rect_filled(place.expand2(vec2(2.0, 0.0)), round, ground);
-        let (font, align) = (theme::small(), Align2::LEFT_CENTER);
-        controls::paint_text(ui, place, align, &text, font, color);
-        free_from = left + width + theme::GAP;
+            .rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, ground);
+        controls::paint_text(ui, place, Align2::LEFT_CENTER, &text, theme::small(), color);
+        free_from = left + size.x + theme::GAP;
     }
 }
 
@@ -77,16 +77,16 @@ fn mark_text(pane: &Pane<'_>, mark: &Mark) -> String {
 }
 
 /// What happened where the pointer is, a line each.
-pub(crate) fn near(pane: &Pane<'_>, ground: Rect, span: Span, x: f32) -> String {
-    /// A line is easily missed by some pixels.
-    const NEAR: f32 = theme::STEP;
-    let (from, to) = (
-        plot_axes::time_of(ground, span, x - NEAR),
-        plot_axes::time_of(ground, span, x + NEAR),
-    );
-    let lines = pane.state.hand().history.marks(from, to).map(|mark| {
-        let at = plot_axes::clock(mark.at.secs(), span.1 - span.0);
+pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
+    let at_s = shown.pointed_s()?;
+    // A line is easily missed by some pixels.
+    let per_point = shown.transform.dvalue_dpos()[0];
+    let by_s = f64::from(theme::STEP) * per_point;
+    let marks = pane.state.hand().history.marks(at_s - by_s, at_s + by_s);
+    let lines = marks.map(|mark| {
+        let at = clock(mark.at.secs(), per_point);
         format!("{at}  {}", mark_text(pane, mark))
     });
-    lines.collect::<Vec<_>>().join("\n")
+    let lines: Vec<String> = lines.collect();
+    (!lines.is_empty()).then(|| lines.join("\n"))
 }

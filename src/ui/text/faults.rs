@@ -93,7 +93,6 @@ texts! {
     RECORDING_NEAR_TIP: "Shows the five seconds before and after the fault.", "显示故障前后各 5 秒。";
     RECORDING_WHOLE: "Whole", "全部";
     RECORDING_WHOLE_TIP: "Shows the whole recording.", "显示整段记录。";
-    RECORDING_AREA: "Plots of the recording", "记录曲线";
     RECORDING_PANEL_TIP: "Shows or hides this plot. Strong lines: the joints with the fault.", "显示或隐藏该曲线。粗线为发生故障的自由度。";
     RECORDING_EVENTS: "What happened", "事件";
     RECORDING_EVENTS_LOST: "Events that were not kept:", "未保留的事件：";

@@ -6,7 +6,6 @@ use crate::ui::text::phrase::{Text, texts};
 texts! {
     HISTORY: "History", "曲线";
     WINDOW_NAME: "Plot window", "时间窗口";
-    WINDOW_TIP: "How much time the plots show.", "曲线显示的时间长度。";
     PAUSE: "Pause", "暂停";
     PAUSED: "Paused", "已暂停";
     PAUSE_NAME: "Pause the plots", "暂停曲线";

@@ -3,7 +3,6 @@
 use crate::ui::text::phrase::texts;
 
 texts! {
-    AREA: "Plots over time", "时间曲线区";
     AREA_TIP: "Wheel: zoom in time. Drag: move. Shift and drag: zoom to what is marked. Double-click: follow the newest again.", "滚轮：时间缩放。拖动：平移。按住 Shift 拖动：放大所选范围。双击：重新跟随最新数据。";
     NORMAL: "Normal force at the tips, N", "指尖法向力 N";
     TANGENTIAL: "Tangential force at the tips, N", "指尖切向力 N";
@@ -17,13 +16,6 @@ texts! {
     RANGE_END_TIP: "Enter takes it. From and to:", "按 Enter 生效。可输入范围：";
     RANGE_AUTO: "Automatic", "自动";
     RANGE_AUTO_TIP: "The scale fits the values again.", "重新根据数据自动调整范围。";
-    SHORT_LITTLE: "L", "小";
-    SHORT_RING: "R", "无";
-    SHORT_MIDDLE: "M", "中";
-    SHORT_INDEX: "I", "食";
-    SHORT_THUMB: "T", "拇";
-    SHORT_BEND: "TB", "弯";
-    SHORT_ROTATE: "TR", "旋";
     UNDER_POINTER: "under the pointer", "指针处数值";
     MORE: "More", "更多";
     MORE_NAME: "More for the plots", "曲线更多选项";

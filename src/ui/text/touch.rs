@@ -16,6 +16,8 @@ texts! {
     NUMBERS_TIP: "Every value of all five fingertips as a number.", "五个指尖的全部数值。";
     SPACE: "Force in space", "空间受力图";
     SPACE_TIP: "The force on this fingertip: upwards the normal force, in the plane of the pads the tangential force (dashed: both shadows). Inside the cone the chosen friction holds.", "该指尖的受力：向上为法向力，分区平面内为切向力（虚线为投影）。在锥体内时，所选摩擦系数足以防滑。";
+    FORCES: "Force, N", "力 N";
+    CHANNELS: "Channels, counts", "通道，计数";
     RAW: "Raw", "原始";
     RAW_TIP: "Channels as the hand sends them.", "按原始值显示各通道。";
     TARED: "Tared", "去皮后";

@@ -124,5 +124,3 @@ pub(crate) const AXIS_WIDTH: f32 = 70.0;
 pub(crate) const AXIS_HEIGHT: f32 = 14.0;
 /// How far the end of the force axis is written beside it.
 pub(crate) const AXIS_ASIDE: f32 = 30.0;
-/// Columns of pixels that a screen has at most.
-pub(crate) const COLUMNS_MOST: f32 = 8192.0;

@@ -175,6 +175,18 @@ impl Palette {
         })
     }
 
+    /// The colour of one of `count` settings. They run from cool to warm, as no set of joints does.
+    pub(crate) fn setting(&self, number: u8, count: u8) -> Color32 {
+        let part = f64::from(number) / f64::from(count.saturating_sub(1).max(1));
+        // The ends that would vanish on the ground are left out.
+        let level = match self.theme {
+            Theme::Dark => 0.25 + 0.75 * part,
+            Theme::Light => 0.85 * part,
+        };
+        let color = colorous::PLASMA.eval_continuous(level.min(1.0));
+        Color32::from_rgb(color.r, color.g, color.b)
+    }
+
     /// A colour of the heat scale; `level` is 0..=1 and is cut to it.
     pub(crate) fn heat(&self, level: f32) -> Color32 {
         let level = f64::from(level.clamp(0.0, 1.0));

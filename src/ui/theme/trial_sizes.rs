@@ -20,10 +20,6 @@ pub(crate) const PLAN_CAPTION: f32 = 116.0;
 pub(crate) const PLAN_CAPTION_SHORT: f32 = 64.0;
 /// Least height of the force while a series runs.
 pub(crate) const TRIAL_PLOT_LEAST: f32 = 96.0;
-/// Height of a number beside a plot of trials.
-pub(crate) const TRIAL_NUMBER: f32 = 22.0;
-/// Room for a time below a plot of trials.
-pub(crate) const TRIAL_TIME: f32 = 56.0;
 /// Height of the bar that shows how far a series is.
 pub(crate) const TRIAL_BAR: f32 = 6.0;
 /// Height of a row of the table of trials.
@@ -68,14 +64,6 @@ pub(crate) const SESSION_STATE: f32 = 116.0;
 pub(crate) const SESSION_COLUMN: f32 = 56.0;
 /// Width of a column's arrow.
 pub(crate) const SORT_ARROW: f32 = 11.0;
-/// Drawn and left out by turns: long pieces.
-pub(crate) const DASH_LONG: [f32; 2] = [7.0, 4.0];
-/// Short pieces.
-pub(crate) const DASH_DOTS: [f32; 2] = [2.0, 3.0];
-/// Long and short pieces.
-pub(crate) const DASH_MIXED: [f32; 4] = [9.0, 3.0, 2.0, 3.0];
-/// Pieces that a line is cut into at most.
-pub(crate) const DASHES_MOST: f32 = 150.0;
 /// A line this near to the pointer is the one that is meant.
 pub(crate) const LINE_NEAR: f32 = 9.0;
 /// Width of the sign of a line in the legend.

@@ -128,8 +128,6 @@ pub(crate) const SEQUENCE_EMPTY: f32 = 64.0;
 pub(crate) const SEQUENCE_BUTTON: f32 = 72.0;
 /// Room of the word that says where the fingertip's end is.
 pub(crate) const COMPASS_WORD: egui::Vec2 = egui::vec2(40.0, 12.0);
-/// Room of a word in the plot of channels.
-pub(crate) const CHANNEL_WORD: egui::Vec2 = egui::vec2(60.0, 14.0);
 /// Width of the captions beside the fingertips' numbers.
 pub(crate) const TIP_NUMBERS_CAPTION: f32 = 44.0;
 /// The bar of the heat scale.

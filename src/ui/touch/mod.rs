@@ -54,7 +54,7 @@ const UPPER_PART: f32 = 0.48;
 const UPPER_BY_NUMBERS_PART: f32 = 0.46;
 
 /// What the person chose for the fingertips.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct TouchView {
     hand: HandPanel,
     scale: HeatScale,

@@ -1,14 +1,14 @@
 //! The eight channels of one fingertip over time, as sent or from their rest, each with its change and noise.
 
 use crate::hand::Finger;
-use crate::history::{Series, Trace};
-use crate::ui::kit::controls;
+use crate::history::Series;
 use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::format;
 use crate::ui::kit::look::{Look, Pane};
-use crate::ui::text::{Text, touch as text};
+use crate::ui::plots::chart::{Chart, ChartView, Curve, Points, Times};
+use crate::ui::text::{Text, panels, touch as text};
 use crate::ui::theme;
-use egui::{Color32, Id, Rect, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align, Color32, Layout, Rect, Stroke, Ui, UiBuilder, vec2};
 
 /// What can be shown, in seconds, with its name.
 const WINDOWS: [(f64, Text); 3] = [
@@ -18,23 +18,25 @@ const WINDOWS: [(f64, Text); 3] = [
 ];
 /// Over this time mean and noise are taken, in seconds.
 const NOISE_S: f64 = 1.0;
-/// Smallest height of the plot, in counts: less is noise.
-const LEAST_SPAN: f64 = 2_000.0;
+/// Counts that are always shown: what stays between them is noise.
+const LEAST: (f64, f64) = (-1000.0, 1000.0);
+
 /// How the channels are shown.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct TipChannels {
     /// From the rest, or as the hand sends them.
     tared: bool,
-    window: usize,
-    traces: [Trace; 8],
+    /// Seconds.
+    window_s: f64,
+    chart: ChartView,
 }
 
 impl Default for TipChannels {
     fn default() -> Self {
         Self {
             tared: true,
-            window: 0,
-            traces: Default::default(),
+            window_s: 10.0,
+            chart: ChartView::default(),
         }
     }
 }
@@ -54,200 +56,117 @@ fn color(look: Look, channel: usize) -> Color32 {
 impl TipChannels {
     /// Draws choice, plot and list.
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, finger: Finger) {
-        let mut body = rect;
-        let head = controls::take_top(&mut body, theme::CONTROL);
-        self.head_ui(ui, head, pane);
-        let list = (body.width() >= theme::CHANNELS_ROOMY)
-            .then(|| controls::take_right(&mut body, theme::CHANNEL_LIST));
-        let rest = pane.state.hand().tare.rest(finger).filter(|_| self.tared);
-        let offset = |channel: usize| {
-            let rest = rest.and_then(|rest| rest.raw.get(channel).copied());
-            rest.map_or(0.0, f64::from)
+        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+            self.head_ui(ui, pane);
+            ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
+                if ui.available_width() >= theme::CHANNELS_ROOMY {
+                    let place = vec2(theme::CHANNEL_LIST, ui.available_height());
+                    let down = Layout::top_down(Align::Max);
+                    ui.allocate_ui_with_layout(place, down, |ui| list_ui(ui, pane, finger));
+                }
+                ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                    self.plot_ui(ui, pane, finger)
+                });
+            });
+        });
+    }
+
+    fn head_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
+        let look = pane.look;
+        let choice = |ui: &mut Ui, (name, tip): (Text, Text), is_chosen: bool| {
+            let button = Button::new(look.say(name), look.say(tip)).choice(is_chosen);
+            button.ui(ui, look).clicked()
         };
-        self.plot_ui(ui, body, pane, finger, &offset);
-        if let Some(list) = list {
-            list_ui(ui, list, pane, finger);
-        }
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = theme::STEP;
+            for (name, tip, tared) in [
+                (text::RAW, text::RAW_TIP, false),
+                (text::TARED, text::TARED_TIP, true),
+            ] {
+                if choice(ui, (name, tip), self.tared == tared) {
+                    self.tared = tared;
+                }
+            }
+            for (window_s, name) in WINDOWS {
+                if choice(ui, (name, text::LAST_TIP), self.window_s == window_s) {
+                    self.window_s = window_s;
+                    self.chart.time.follow();
+                }
+            }
+            let tenths = pane.state.hand().history.channel_bytes().div_ceil(100_000);
+            let kept = format!(
+                "{}, {}.{} MB",
+                look.say(text::KEPT),
+                tenths / 10,
+                tenths % 10
+            );
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                Label::new(&kept, look.palette.muted).small().ui(ui);
+            });
+        });
     }
 
-    fn head_ui(&mut self, ui: &mut Ui, head: Rect, pane: &Pane<'_>) {
+    fn plot_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
         let look = pane.look;
-        let mut row = head;
-        for (name, tip, tared) in [
-            (text::RAW, text::RAW_TIP, false),
-            (text::TARED, text::TARED_TIP, true),
-        ] {
-            if choice(ui, look, &mut row, (name, tip), self.tared == tared) {
-                self.tared = tared;
-            }
-        }
-        for (at, (_, name)) in WINDOWS.into_iter().enumerate() {
-            if choice(
-                ui,
-                look,
-                &mut row,
-                (name, text::LAST_TIP),
-                self.window == at,
-            ) {
-                self.window = at;
-            }
-        }
-        let megabytes = pane.state.hand().history.channel_bytes().div_ceil(100_000);
-        let kept = format!(
-            "{}, {}.{} MB",
-            look.say(text::KEPT),
-            megabytes / 10,
-            megabytes % 10
-        );
-        if row.width() >= controls::text_width(ui, &kept, theme::small()) {
-            Label::new(&kept, look.palette.faint)
-                .small()
-                .right()
-                .put(ui, row);
-        }
-    }
-
-    fn plot_ui(
-        &mut self,
-        ui: &Ui,
-        rect: Rect,
-        pane: &Pane<'_>,
-        finger: Finger,
-        offset: &dyn Fn(usize) -> f64,
-    ) {
-        let look = pane.look;
-        let painter = ui.painter_at(rect);
-        painter.rect_filled(rect, 0.0, look.palette.sunken);
-        let seconds = WINDOWS.get(self.window).map_or(10.0, |window| window.0);
+        let hand = pane.state.hand();
+        let rest = hand.tare.rest(finger).filter(|_| self.tared);
         let now = pane.state.now.secs();
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (channel, trace) in (0u8..).zip(&mut self.traces) {
-            let series = Series::Channel(channel, finger);
-            let history = &pane.state.hand().history;
-            history.trace(series, now - seconds, now, columns(rect), trace);
-            let offset = offset(usize::from(channel));
-            for [_, value] in trace.points() {
-                low = low.min(value - offset);
-                high = high.max(value - offset);
+        let first = hand.history.first_secs().unwrap_or(now);
+        self.chart
+            .time
+            .advance((first.min(now), now), self.window_s);
+        let curve = |(channel, number): (u8, usize)| {
+            let rest = rest.and_then(|rest| rest.raw.get(number).copied());
+            let points = Points::Measured(&hand.history, Series::Channel(channel, finger));
+            Curve {
+                zero: [0.0, rest.map_or(0.0, f64::from)],
+                told: Some(0),
+                ..Curve::new(points, Stroke::new(theme::LINE, color(look, number)))
             }
-        }
-        if low > high {
-            let place = rect.shrink(theme::STEP);
-            controls::paint_text(
-                ui,
-                place,
-                egui::Align2::CENTER_CENTER,
-                look.say(crate::ui::text::panels::PLOT_EMPTY),
-                theme::small(),
-                look.palette.faint,
-            );
-            return;
-        }
-        let (low, high) = widened(low, high);
-        let place = |[at_s, value]: [f64; 2]| {
-            #[expect(clippy::cast_possible_truncation, reason = "shares of a screen")]
-            let (across, up) = (
-                ((at_s - now + seconds) / seconds) as f32,
-                ((value - low) / (high - low)) as f32,
-            );
-            pos2(
-                rect.left() + rect.width() * across,
-                rect.bottom() - rect.height() * up,
-            )
         };
-        if low < 0.0 && high > 0.0 {
-            let zero = [place([now - seconds, 0.0]), place([now, 0.0])];
-            painter.line_segment(zero, Stroke::new(1.0, look.palette.edge));
-        }
-        for (channel, trace) in self.traces.iter().enumerate() {
-            let offset = offset(channel);
-            let stroke = Stroke::new(theme::LINE, color(look, channel));
-            for segment in &trace.segments {
-                let points = segment
-                    .iter()
-                    .map(|[at_s, value]| place([*at_s, value - offset]));
-                painter.add(Shape::line(points.collect(), stroke));
-            }
-        }
-        let inner = rect.shrink(theme::STEP);
-        let bottom = inner.left_bottom() - vec2(0.0, theme::AXIS_HEIGHT);
-        for (corner, value) in [(inner.left_top(), high), (bottom, low)] {
-            controls::paint_text(
-                ui,
-                Rect::from_min_size(corner, vec2(theme::AXIS_WIDTH, theme::AXIS_HEIGHT)),
-                egui::Align2::LEFT_CENTER,
-                &format::counts(Some(whole(value))),
-                theme::number_small(),
-                look.palette.muted,
-            );
-        }
+        let chart = Chart {
+            curves: (0..8).zip(0..).map(curve).collect(),
+            least: LEAST,
+            times: Times::From(now, look.say(panels::NOW)),
+            ..Chart::new(look, text::CHANNELS, ui.available_height())
+        };
+        chart.ui(ui, &mut self.chart);
     }
 }
 
 /// Each channel with its change from rest and its noise, over the last second.
-fn list_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, finger: Finger) {
+fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
     let look = pane.look;
-    let row = (rect.height() / 9.0).min(theme::CHANNEL_ROW);
-    let mut top = rect.top();
-    let mut next = || {
-        let place = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), row));
-        top += row;
-        place
-    };
-    Label::new(look.say(text::NOISE_HEAD), look.palette.faint)
-        .small()
-        .right()
-        .put(ui, next())
-        .on_hover_text(look.say(text::NOISE_TIP));
+    let hand = pane.state.hand();
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let head = Label::new(look.say(text::NOISE_HEAD), look.palette.muted).small();
+    head.ui(ui).on_hover_text(look.say(text::NOISE_TIP));
     let now = pane.state.now.secs();
-    let rest = pane.state.hand().tare.rest(finger);
-    for channel in 0..8u8 {
-        let place = next();
-        let at = usize::from(channel);
-        let dash = pos2(place.left(), place.center().y);
-        let stroke = Stroke::new(theme::BAR, color(look, at));
-        ui.painter()
-            .line_segment([dash, dash + vec2(theme::PAD, 0.0)], stroke);
-        let number = place.with_min_x(place.left() + theme::PAD + theme::STEP);
-        Label::new(&format!("{}", channel + 1), look.palette.muted)
-            .small()
-            .put(ui, number);
-        let spread =
-            pane.state
-                .hand()
-                .history
-                .spread(Series::Channel(channel, finger), now - NOISE_S, now);
+    let rest = hand.tare.rest(finger);
+    let row = (ui.available_height() / 8.0).min(theme::CHANNEL_ROW);
+    for (channel, at) in (0..8u8).zip(0..) {
+        let series = Series::Channel(channel, finger);
+        let spread = hand.history.spread(series, now - NOISE_S, now);
         let rest = rest.and_then(|rest| rest.raw.get(at).copied());
-        let change = spread
-            .zip(rest)
-            .map(|(spread, rest)| whole(spread.mean - f64::from(rest)));
+        let change = spread.zip(rest);
+        let change = change.map(|(spread, rest)| whole(spread.mean - f64::from(rest)));
         let noise = spread.map(|spread| whole(spread.deviation.round()));
-        let name = format!("{} {}", look.say(text::NOISE), channel + 1);
-        let words = format!("{:>7} {:>6}", signed(change), format::counts(noise));
-        Label::new(&words, look.palette.text)
-            .font(theme::number_small())
-            .right()
-            .named(&name)
-            .put(ui, place);
+        let place = vec2(ui.available_width(), row);
+        ui.allocate_ui_with_layout(place, Layout::right_to_left(Align::Center), |ui| {
+            ui.set_min_height(row);
+            let words = format!("{:>7} {:>6}", signed(change), format::counts(noise));
+            let name = format!("{} {}", look.say(text::NOISE), channel + 1);
+            let label = Label::new(&words, look.palette.text).font(theme::number_small());
+            label.named(&name).ui(ui);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let (_, sign) = ui.allocate_space(vec2(theme::PAD, row));
+                let stroke = Stroke::new(theme::BAR, color(look, at));
+                ui.painter().hline(sign.x_range(), sign.center().y, stroke);
+                let number = (channel + 1).to_string();
+                Label::new(&number, look.palette.muted).small().ui(ui);
+            });
+        });
     }
-}
-
-/// One of a row of choices, as wide as its words; true if it was pressed.
-pub(crate) fn choice(
-    ui: &mut Ui,
-    look: Look,
-    row: &mut Rect,
-    (name, tip): (Text, Text),
-    chosen: bool,
-) -> bool {
-    let words = look.say(name);
-    let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
-    let place = controls::take_left(row, width);
-    row.min.x -= theme::STEP;
-    let button = Button::new(words, look.say(tip)).choice(chosen);
-    button
-        .put(ui, look, place, Id::unique(("tip choice", name.en)))
-        .clicked()
 }
 
 /// A change with its sign, shortened like counts.
@@ -256,26 +175,6 @@ pub(crate) fn signed(value: Option<i64>) -> String {
         Some(value) if value > 0 => format!("+{}", format::counts(Some(value))),
         other => format::counts(other),
     }
-}
-
-/// Points of a plot that are columns of pixels.
-pub(crate) fn columns(rect: Rect) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "clamped to what a screen has"
-    )]
-    let columns = rect.width().clamp(1.0, theme::COLUMNS_MOST) as usize;
-    columns
-}
-
-/// A span with room above and below, and never so narrow that noise fills it.
-fn widened(low: f64, high: f64) -> (f64, f64) {
-    let (middle, half) = (
-        f64::midpoint(low, high),
-        (high - low).max(LEAST_SPAN) * 0.54,
-    );
-    (middle - half, middle + half)
 }
 
 fn whole(value: f64) -> i64 {
@@ -287,14 +186,6 @@ fn whole(value: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn noise_alone_does_not_fill_the_plot() {
-        let (low, high) = widened(99.0, 101.0);
-        assert!(high - low >= LEAST_SPAN && low < 99.0 && high > 101.0);
-        let (low, high) = widened(0.0, 100_000.0);
-        assert!(low < 0.0 && high > 100_000.0 && high - low < 110_000.0);
-    }
 
     #[test]
     fn a_change_has_its_sign() {

@@ -4,20 +4,23 @@ use crate::app::hand::Freshness;
 use crate::app::readings::friction::{Grip, Hold, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
-use crate::history::{Series, Trace};
+use crate::history::Series;
 use crate::ui::joints::track::{Actual, Track};
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::Label;
 use crate::ui::kit::format;
 use crate::ui::kit::look::{Look, Pane};
+use crate::ui::plots::chart::{Chart, ChartView, Curve, Points, Times};
+use crate::ui::plots::legend::{Key, legend_ui};
 use crate::ui::text::{Text, panels, touch as text};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::Tip;
 use crate::ui::touch::table as touch_table;
-use crate::ui::touch::tip_channels::{TipChannels, columns};
+use crate::ui::touch::tip_channels::TipChannels;
 use crate::ui::touch::tip_space;
 use crate::ui::touch::tip_space::Force;
-use egui::{Align2, Id, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2};
+use egui::{Align2, Color32, Id, Painter, Pos2, Rect, Stroke, Ui, UiBuilder, Vec2, vec2};
+use egui_plot::LineStyle;
 
 /// Friction that is taken until a person chooses one, in percent: rubber on smooth plastic is about this.
 const FRICTION_PERCENT: i16 = 50;
@@ -31,14 +34,14 @@ const COMPASS_END_RATIO: f32 = 1.5;
 const FORCE_END: f64 = 1.0;
 
 /// Which fingertip, and what friction is reckoned with.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct TipDetail {
     /// The fingertip.
     pub(crate) finger: Finger,
     friction_percent: i16,
-    traces: [Trace; 2],
     holds: PerFinger<Hold>,
     channels: TipChannels,
+    chart: ChartView,
 }
 
 impl Default for TipDetail {
@@ -46,9 +49,9 @@ impl Default for TipDetail {
         Self {
             finger: Finger::Index,
             friction_percent: FRICTION_PERCENT,
-            traces: Default::default(),
             holds: PerFinger::default(),
             channels: TipChannels::default(),
+            chart: ChartView::default(),
         }
     }
 }
@@ -106,7 +109,8 @@ impl TipDetail {
         if body.height() >= theme::TIP_BOTH_PLOTS {
             let forces = body.height() * 0.36;
             let forces = controls::take_top(&mut body, forces);
-            self.forces_ui(ui, forces, pane);
+            let place = UiBuilder::new().max_rect(forces);
+            ui.scope_builder(place, |ui| self.forces_ui(ui, pane));
         }
         self.channels.ui(ui, body, pane, self.finger);
     }
@@ -270,58 +274,37 @@ impl TipDetail {
         }
     }
 
-    fn forces_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    fn forces_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        let palette = look.palette;
-        let mut body = rect;
-        let legend = controls::take_top(&mut body, theme::MESSAGE_LINE);
-        body.min.y -= theme::STEP;
+        let history = &pane.state.hand().history;
+        let own = look.palette.dof[self.finger.bend()];
         let lines = [
-            (
-                Touch::Normal,
-                panels::TIP_NORMAL,
-                palette.dof[self.finger.bend()],
-            ),
-            (Touch::Tangential, panels::TIP_SHEAR, palette.muted),
+            (Touch::Normal, panels::TIP_NORMAL, own),
+            (Touch::Tangential, panels::TIP_SHEAR, look.palette.muted),
         ];
-        let mut left = legend;
-        for (_, text, color) in lines {
-            let text = format!("{}, N", look.say(text));
-            let width = controls::text_width(ui, &text, theme::small());
-            let place = controls::take_left(&mut left, width + theme::PAD);
-            let dash = pos2(place.left(), place.center().y);
-            ui.painter().line_segment(
-                [dash, dash + vec2(theme::GAP, 0.0)],
-                Stroke::new(2.0, color),
-            );
-            Label::new(&text, palette.muted)
-                .small()
-                .put(ui, place.with_min_x(place.left() + theme::PAD));
-        }
-        ui.painter().rect_filled(body, 0.0, palette.sunken);
+        let key = |(_, words, color): (Touch, Text, Color32)| Key {
+            words: look.say(words).to_owned(),
+            color,
+            style: LineStyle::Solid,
+        };
+        legend_ui(ui, look, &lines.map(key));
         let now = pane.state.now.secs();
-        let span = (now - SECONDS, now);
-        let mut end = FORCE_END;
-        for ((touch, _, _), trace) in lines.iter().zip(&mut self.traces) {
-            let series = Series::Tip(*touch, self.finger);
-            let history = &pane.state.hand().history;
-            history.trace(series, span.0, span.1, columns(body), trace);
-            end = trace.points().map(|point| point[1]).fold(end, f64::max);
-        }
-        let top = Rect::from_min_size(body.min + vec2(theme::STEP, 0.0), theme::CHANNEL_WORD);
-        let painter = ui.painter_at(body);
-        for ((_, _, color), trace) in lines.iter().zip(&self.traces) {
-            for segment in &trace.segments {
-                let points = segment
-                    .iter()
-                    .map(|[at_s, value]| place_of(body, (at_s - span.0) / SECONDS, value / end))
-                    .collect();
-                painter.add(Shape::line(points, Stroke::new(theme::LINE, *color)));
+        let first = history.first_secs().unwrap_or(now);
+        self.chart.time.advance((first.min(now), now), SECONDS);
+        let curve = |(touch, _, color): (Touch, Text, Color32)| {
+            let points = Points::Measured(history, Series::Tip(touch, self.finger));
+            Curve {
+                told: Some(2),
+                ..Curve::new(points, Stroke::new(theme::LINE, color))
             }
-        }
-        Label::new(&format!("{end:.1}"), palette.faint)
-            .font(theme::number_small())
-            .put(ui, top);
+        };
+        let chart = Chart {
+            curves: lines.map(curve).to_vec(),
+            least: (0.0, FORCE_END),
+            times: Times::From(now, look.say(panels::NOW)),
+            ..Chart::new(look, text::FORCES, ui.available_height())
+        };
+        chart.ui(ui, &mut self.chart);
     }
 }
 
@@ -349,14 +332,4 @@ const fn color_of(hold: Hold, palette: &theme::Palette) -> egui::Color32 {
 fn needle(painter: &Painter, from: Pos2, by: Vec2, color: egui::Color32) {
     painter.line_segment([from, from + by], Stroke::new(theme::ARROW_LINE, color));
     painter.circle_filled(from + by, theme::LAMP + 1.0, color);
-}
-
-/// A point of a plot by its shares of width and height.
-fn place_of(rect: Rect, across: f64, up: f64) -> Pos2 {
-    #[expect(clippy::cast_possible_truncation, reason = "shares of a screen")]
-    let (across, up) = (across as f32, up as f32);
-    pos2(
-        rect.left() + rect.width() * across,
-        rect.bottom() - rect.height() * up * 0.94,
-    )
 }

@@ -17,7 +17,7 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::Sheet;
 use crate::ui::trials::compare_table::TableView;
-use egui::{Id, Rect, Ui};
+use egui::{Id, Rect, Ui, UiBuilder};
 
 /// Characters of a note.
 const NOTE_CHARS: usize = 300;
@@ -57,8 +57,10 @@ impl CompareView {
         let mut upper = take_top(&mut body, curves);
         let width = (upper.width() * theme::MAP_SHARE).clamp(theme::MAP_LEAST, theme::MAP_MOST);
         let side = take_right(&mut upper, width);
-        self.curves
-            .ui(ui, upper, pane, &comparison, &mut self.strong);
+        let place = UiBuilder::new().max_rect(upper);
+        ui.scope_builder(place, |ui| {
+            self.curves.ui(ui, pane, &comparison, &mut self.strong)
+        });
         self.best.ui(ui, side, pane, &comparison, focus);
         self.table.ui(ui, body, pane, &comparison, &mut self.strong);
         self.comparison = Some(comparison);

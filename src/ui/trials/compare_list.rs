@@ -4,13 +4,14 @@ use crate::app::trials::comparison::SHOWN_MAX;
 use crate::app::trials::{SessionId, SessionOrigin, TrialSession, TrialsState};
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Label, take_left, take_right, take_top};
-use crate::ui::kit::dash::Dash;
+use crate::ui::kit::dash;
 use crate::ui::kit::list;
 use crate::ui::kit::look::Look;
 use crate::ui::text::{compare, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::ShownSessions;
 use egui::{Color32, CornerRadius, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo};
+use egui_plot::LineStyle;
 
 /// What the list is drawn from.
 #[derive(Clone, Copy)]
@@ -27,10 +28,12 @@ pub(crate) fn name(look: Look, id: SessionId) -> String {
 }
 
 /// The stroke of a session that is shown: the newest has the plain one.
-pub(crate) fn dash(shown: impl ExactSizeIterator<Item = SessionId>, id: SessionId) -> Dash {
+pub(crate) fn style(shown: impl ExactSizeIterator<Item = SessionId>, id: SessionId) -> LineStyle {
     let count = shown.len();
     let at = shown.into_iter().position(|own| own == id);
-    at.map_or(Dash::Solid, |at| Dash::nth(count.saturating_sub(at + 1)))
+    at.map_or(LineStyle::Solid, |at| {
+        dash::nth(count.saturating_sub(at + 1))
+    })
 }
 
 /// Draws the list at the top of `body`, the newest first.
@@ -130,9 +133,9 @@ fn parts_ui(
     let palette = look.palette;
     let sign = take_left(&mut row, theme::SESSION_DASH);
     if chosen.shown.len() > 1 && chosen.shown.contains(&session.id) {
-        let dash = dash(chosen.shown.iter().copied(), session.id);
+        let style = style(chosen.shown.iter().copied(), session.id);
         let stroke = Stroke::new(theme::STRONG, palette.text);
-        dash.sample(ui.painter(), sign, stroke);
+        dash::sample(ui.painter(), sign, style, stroke);
     }
     let title = name(look, session.id);
     let place = take_left(&mut row, theme::SESSION_NAME);

@@ -6,7 +6,7 @@ use crate::trials::columns::{Better, COLUMNS, Metric};
 use crate::trials::{JointMetrics, TrialSetting};
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, take_left};
-use crate::ui::kit::dash::Dash;
+use crate::ui::kit::dash;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{Text, compare, trials, tune, words};
 use crate::ui::theme;
@@ -15,6 +15,7 @@ use crate::ui::trials::compare_columns::{end_words, order, setting_words, shown,
 use crate::ui::trials::compare_curves::color;
 use crate::ui::trials::compare_list;
 use egui::{Align2, Color32, CornerRadius, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui_plot::LineStyle;
 
 /// What rows can be sorted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -67,7 +68,7 @@ struct Row<'a> {
     short: String,
     end: String,
     color: Color32,
-    dash: Dash,
+    style: LineStyle,
 }
 
 /// What every part of the table is drawn with.
@@ -234,7 +235,7 @@ impl<'a> Sheet<'a, '_> {
             },
             end: self.end(seen),
             color: color(self.pane, self.comparison, place, seen),
-            dash: compare_list::dash(self.comparison.sessions(), session.id),
+            style: compare_list::style(self.comparison.sessions(), session.id),
         })
     }
 
@@ -347,7 +348,7 @@ impl<'a> Sheet<'a, '_> {
         }
         let swatch = take_left(&mut first, theme::KEY_SIGN);
         let stroke = Stroke::new(theme::BAR, row.color);
-        row.dash.sample(ui.painter(), swatch, stroke);
+        dash::sample(ui.painter(), swatch, row.style, stroke);
         Label::new(&row.name, look.palette.text)
             .small()
             .put(ui, first);

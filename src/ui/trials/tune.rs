@@ -47,7 +47,7 @@ fn series_ui(
 ) -> Option<View> {
     let trials = &pane.state.trials;
     if pane.state.hand().runs_series() {
-        tune_live::live_ui(ui, body, pane);
+        tune_live::live_ui(ui, body, pane, &mut result.chart);
         return None;
     }
     let last = trials.last.and_then(|id| trials.session(id));

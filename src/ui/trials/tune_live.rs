@@ -6,20 +6,20 @@ use crate::app::trials::SeriesRun;
 use crate::hand::Dof;
 use crate::trials::recording::{TrialRecording, seconds};
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right, take_top};
-use crate::ui::kit::dash::Dash;
+use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_top};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
+use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::text::{trials, tune, words};
 use crate::ui::theme;
-use crate::ui::trials::plot::{TrialLine, TrialPlot};
-use egui::{Color32, CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo};
+use crate::ui::trials::plot::trial_chart_ui;
+use egui::{Color32, CornerRadius, Id, Rect, Role, Sense, Stroke, Ui, UiBuilder, WidgetInfo};
 
 /// Readings of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
 const READINGS_DRAWN: usize = 2400;
 
 /// Draws it.
-pub(crate) fn live_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
+pub(crate) fn live_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>, chart: &mut ChartView) {
     let Some(run) = &pane.state.hand().series else {
         return;
     };
@@ -36,7 +36,8 @@ pub(crate) fn live_ui(ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
     head_ui(ui, &mut body, pane, run);
     heat_ui(ui, &mut body, pane);
     if body.height() >= theme::TRIAL_PLOT_LEAST {
-        force_ui(ui, body, pane, run);
+        let place = UiBuilder::new().max_rect(body);
+        ui.scope_builder(place, |ui| force_ui(ui, pane, run, chart));
     }
 }
 
@@ -120,9 +121,9 @@ fn heat_ui(ui: &mut Ui, body: &mut Rect, pane: &Pane<'_>) {
     }
 }
 
-fn force_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>, run: &SeriesRun) {
+fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut ChartView) {
     let look = pane.look;
-    caption_ui(ui, take_top(&mut rect, theme::LIST_LINE), pane, run);
+    levels_ui(ui, pane, run);
     let lines: Vec<(Dof, Vec<[f64; 2]>)> = match run.view.setting {
         Some(_) => run
             .plan
@@ -133,47 +134,32 @@ fn force_ui(ui: &mut Ui, mut rect: Rect, pane: &Pane<'_>, run: &SeriesRun) {
     };
     let all = lines.iter().flat_map(|(_, points)| points);
     let highest = all.map(|[_, grams]| *grams).fold(0.0, f64::max);
-    let plot = TrialPlot {
-        look,
-        name: look.say(tune::LIVE_FORCE),
-        empty: look.say(tune::LIVE_EMPTY),
-        lines: lines
-            .iter()
-            .map(|(dof, points)| TrialLine {
-                points,
-                zero_s: 0.0,
-                color: look.palette.dof[*dof],
-                width: theme::LINE,
-                dash: Dash::Solid,
-            })
-            .collect(),
+    let curves = lines.iter().map(|(dof, points)| {
+        let stroke = Stroke::new(theme::LINE, look.palette.dof[*dof]);
+        Curve::new(Points::Own(points), stroke)
+    });
+    let force = Chart {
+        curves: curves.collect(),
         levels: levels(pane, run, highest),
         least: (0.0, 100.0),
+        empty: tune::LIVE_EMPTY,
+        ..Chart::new(look, tune::LIVE_FORCE, ui.available_height())
     };
-    plot.ui(ui, rect);
+    trial_chart_ui(ui, force, chart);
 }
 
-/// What is drawn, and what the levels are.
-fn caption_ui(ui: &mut Ui, mut row: Rect, pane: &Pane<'_>, run: &SeriesRun) {
+/// What the levels are.
+fn levels_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     let look = pane.look;
-    let title = look.say(tune::LIVE_FORCE);
-    let width = controls::text_width(ui, title, theme::small()) + 1.0;
-    let place = take_left(&mut row, width);
-    Label::new(title, look.palette.muted).small().put(ui, place);
-    let ceiling = run.plan.limits.ceiling_g;
-    let ceiling = format!("{} {ceiling} g", look.say(tune::ENDS_AT));
-    let width = controls::text_width(ui, &ceiling, theme::small()) + 1.0;
-    let place = take_right(&mut row, width);
-    Label::new(&ceiling, look.palette.bad)
-        .small()
-        .put(ui, place);
-    if let Some(setting) = run.view.setting {
-        let threshold = format!("{} {} g", look.say(tune::THRESHOLD), setting.force.get());
-        Label::new(&threshold, look.palette.muted)
-            .small()
-            .right()
-            .put(ui, row);
-    }
+    ui.horizontal(|ui| {
+        if let Some(setting) = run.view.setting {
+            let threshold = format!("{} {} g", look.say(tune::THRESHOLD), setting.force.get());
+            Label::new(&threshold, look.palette.muted).small().ui(ui);
+        }
+        let ceiling = run.plan.limits.ceiling_g;
+        let ceiling = format!("{} {ceiling} g", look.say(tune::ENDS_AT));
+        Label::new(&ceiling, look.palette.bad).small().ui(ui);
+    });
 }
 
 /// The threshold; the ceiling where it is near enough not to flatten the curve.

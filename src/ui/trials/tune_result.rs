@@ -1,28 +1,31 @@
 //! What came out of the last series: how it ended, the gentlest setting, its curves, and what to do next. Writes nothing.
 
 use crate::app::action::Action;
-use crate::app::trials::{ComparedLine, ComparedLines, Comparison, TrialQuantity, TrialSession};
+use crate::app::trials::{ComparedLines, Comparison, TrialQuantity, TrialSession};
 use crate::params::rows::{ParamId, Value};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_top};
-use crate::ui::kit::dash::Dash;
+use crate::ui::kit::controls::{Button, Weight, take_left};
 use crate::ui::kit::list;
 use crate::ui::kit::look::Pane;
+use crate::ui::plots::chart::{Chart, ChartView};
+use crate::ui::plots::legend::legend_ui;
 use crate::ui::text::{Text, trials, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::staging;
 use crate::ui::trials::compare_columns::setting_words;
-use crate::ui::trials::compare_curves::color;
-use crate::ui::trials::plot::{TrialLine, TrialPlot};
+use crate::ui::trials::compare_curves::DrawnTrials;
+use crate::ui::trials::plot::trial_chart_ui;
 use crate::ui::view::View;
-use egui::{Color32, Id, Rect, Ui};
+use egui::{Color32, Id, Rect, Ui, UiBuilder};
 
 /// What is kept between frames: figures and curves are not reckoned for each of them.
 #[derive(Debug, Default)]
 pub(crate) struct ResultView {
     seen: Option<(Comparison, ComparedLines)>,
+    /// What is shown of the curves.
+    pub(crate) chart: ChartView,
 }
 
 impl ResultView {
@@ -83,48 +86,33 @@ impl ResultView {
         asked
     }
 
-    /// The force of all its trials over each other.
+    /// The force of all its trials over each other, and what their colours stand for.
     pub(crate) fn curves_ui(
         &mut self,
         ui: &mut Ui,
-        mut rect: Rect,
+        rect: Rect,
         pane: &Pane<'_>,
         session: &TrialSession,
     ) {
         let look = pane.look;
-        let caption = take_top(&mut rect, theme::LIST_LINE);
-        Label::new(look.say(tune::SHOW_FORCE), look.palette.muted)
-            .small()
-            .put(ui, caption);
+        let mut chart = std::mem::take(&mut self.chart);
         let (comparison, picture) = self.seen(pane, session);
-        let line = |own: &'_ ComparedLine| {
-            let seen = comparison.row(&pane.state.trials, own.key);
-            seen.map_or(look.palette.text, |seen| {
-                color(pane, comparison, own.key, seen)
-            })
+        let drawn = DrawnTrials {
+            pane,
+            comparison,
+            picture,
         };
-        let lines = picture.lines.iter().map(|own| TrialLine {
-            points: &own.points,
-            zero_s: 0.0,
-            color: line(own),
-            width: theme::LINE,
-            dash: Dash::Solid,
+        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+            legend_ui(ui, look, &drawn.keys());
+            let force = Chart {
+                curves: drawn.curves().map(|(_, curve)| curve).collect(),
+                levels: drawn.levels(),
+                empty: tune::CURVES_EMPTY,
+                ..Chart::new(look, tune::SHOW_FORCE, ui.available_height())
+            };
+            trial_chart_ui(ui, force, &mut chart);
         });
-        let forces = comparison.settings.iter();
-        let mut levels: Vec<f64> = forces.map(|own| own.force.get().into()).collect();
-        levels.dedup();
-        let plot = TrialPlot {
-            look,
-            name: look.say(tune::SHOW_FORCE),
-            empty: look.say(tune::CURVES_EMPTY),
-            lines: lines.collect(),
-            levels: levels
-                .into_iter()
-                .map(|level| (level, look.palette.muted))
-                .collect(),
-            least: (0.0, 1.0),
-        };
-        plot.ui(ui, rect);
+        self.chart = chart;
     }
 
     fn seen(&mut self, pane: &Pane<'_>, session: &TrialSession) -> &(Comparison, ComparedLines) {

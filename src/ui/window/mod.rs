@@ -161,7 +161,7 @@ impl Window {
             Wish::UndoTare => state.hand().tare.can_undo().then_some(Action::UndoTare),
             Wish::Language => Some(Action::Language(state.settings.language.other())),
             Wish::Theme => Some(Action::Theme(state.settings.theme.other())),
-            Wish::Pause => Some(Action::PausePlots(self.plots.sight.toggle())),
+            Wish::Pause => Some(Action::PausePlots(self.plots.view.time.toggle())),
             Wish::Joint(dof) => {
                 Row::new(dof, pane).focus(ui, armed && !state.hand().joints[dof].locked);
                 None
@@ -369,7 +369,11 @@ impl Window {
 
     /// Draws the plots and nothing else, over all of `ui`, into a context of their own: for a picture.
     pub fn plots_alone_ui(&mut self, ui: &mut Ui, state: &State) {
-        alone_ui(ui, state, |ui, rect, pane| self.plots.ui(ui, rect, pane));
+        alone_ui(ui, state, |ui, rect, pane| {
+            ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+                self.plots.ui(ui, pane)
+            });
+        });
     }
 
     /// Draws the hand and nothing else, over all of `ui`: for pictures and measurements.
@@ -380,7 +384,9 @@ impl Window {
     }
 
     fn plots_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        self.plots.ui(ui, rect, pane);
+        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+            self.plots.ui(ui, pane)
+        });
         if std::mem::take(&mut self.plots.note_asked) {
             self.status.open_note(pane.state.now);
         }

@@ -12,7 +12,7 @@ use crate::record::{Hold, LinkState};
 use crate::ui::kit::controls::{self, Button, Label, Weight};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::axes::clock;
+use crate::ui::plots::chart::clock;
 use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -319,7 +319,7 @@ impl StatusLine {
         let cancelled = cancel.ui(ui, look).clicked();
         let keep = Button::new(look.say(plots::NOTE_KEEP), look.say(plots::NOTE_KEEP_TIP));
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
-        let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 10.0));
+        let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
         let words = controls::text_width(ui, &title, theme::body()) + theme::GAP;
         let edit = TextEdit::singleline(&mut self.note)
             .char_limit(NOTE_MAX)

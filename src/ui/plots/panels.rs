@@ -18,36 +18,24 @@ pub(crate) struct Panel {
 
 /// All, from top to bottom.
 pub(crate) const PANELS: [Panel; 6] = [
-    Panel {
-        kind: PlotKind::Force,
-        title: panels::PLOT_FORCE,
-        row: Quantity::Force.row(),
-    },
-    Panel {
-        kind: PlotKind::Normal,
-        title: plots::NORMAL,
-        row: Touch::Normal.row(),
-    },
-    Panel {
-        kind: PlotKind::Tangential,
-        title: plots::TANGENTIAL,
-        row: Touch::Tangential.row(),
-    },
-    Panel {
-        kind: PlotKind::Current,
-        title: panels::PLOT_CURRENT,
-        row: Quantity::Current.row(),
-    },
-    Panel {
-        kind: PlotKind::Temperature,
-        title: panels::PLOT_TEMPERATURE,
-        row: Quantity::Temperature.row(),
-    },
-    Panel {
-        kind: PlotKind::Angle,
-        title: panels::PLOT_ANGLE,
-        row: Quantity::Angle.row(),
-    },
+    Panel::new(PlotKind::Force, panels::PLOT_FORCE, Quantity::Force.row()),
+    Panel::new(PlotKind::Normal, plots::NORMAL, Touch::Normal.row()),
+    Panel::new(
+        PlotKind::Tangential,
+        plots::TANGENTIAL,
+        Touch::Tangential.row(),
+    ),
+    Panel::new(
+        PlotKind::Current,
+        panels::PLOT_CURRENT,
+        Quantity::Current.row(),
+    ),
+    Panel::new(
+        PlotKind::Temperature,
+        panels::PLOT_TEMPERATURE,
+        Quantity::Temperature.row(),
+    ),
+    Panel::new(PlotKind::Angle, panels::PLOT_ANGLE, Quantity::Angle.row()),
 ];
 
 /// One line of a plot.
@@ -62,6 +50,10 @@ pub(crate) struct PlotLine {
 }
 
 impl Panel {
+    const fn new(kind: PlotKind, title: Text, row: &'static QuantityRow) -> Self {
+        Self { kind, title, row }
+    }
+
     /// The lines of all parts that are not hidden; those that were asked for come first, under the measured ones.
     pub(crate) fn lines(&self, hidden: &PerDof<bool>) -> Vec<PlotLine> {
         let joint = |quantity| {
@@ -95,10 +87,5 @@ impl Panel {
     pub(crate) fn measured(&self, hidden: &PerDof<bool>) -> Vec<PlotLine> {
         let lines = self.lines(hidden).into_iter();
         lines.filter(|line| !line.wished).collect()
-    }
-
-    /// A value as it is shown.
-    pub(crate) fn value(&self, value: f64) -> String {
-        format!("{value:.*}", self.row.decimals)
     }
 }

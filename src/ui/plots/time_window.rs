@@ -1,4 +1,4 @@
-//! Which stretch of time the plots show: the newest, or one that a person chose. Knows no curve and no pixel.
+//! Which stretch of time is shown: the newest, or one that a person chose. Knows no curve and no pixel.
 
 /// The shortest stretch: two measurements of a fast link.
 const SHORTEST_S: f64 = 0.02;
@@ -10,9 +10,9 @@ const STAYS: f64 = 0.1;
 /// From and to, in seconds.
 pub(crate) type Span = (f64, f64);
 
-/// Where the plots stand in time.
+/// What is shown of the time from the oldest to the newest measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sight {
+pub(crate) struct TimeWindow {
     held: Option<Span>,
     /// Time of the oldest measurement and of this frame.
     bounds: Span,
@@ -20,7 +20,7 @@ pub(crate) struct Sight {
     window_s: f64,
 }
 
-impl Default for Sight {
+impl Default for TimeWindow {
     fn default() -> Self {
         Self {
             held: None,
@@ -30,7 +30,7 @@ impl Default for Sight {
     }
 }
 
-impl Sight {
+impl TimeWindow {
     /// Time went on.
     pub(crate) const fn advance(&mut self, bounds: Span, window_s: f64) {
         self.bounds = bounds;
@@ -41,12 +41,6 @@ impl Sight {
     pub(crate) fn span(&self) -> Span {
         let newest = self.bounds.1;
         self.held.unwrap_or((newest - self.window_s, newest))
-    }
-
-    /// Seconds shown.
-    pub(crate) fn width_s(&self) -> f64 {
-        let (from, to) = self.span();
-        to - from
     }
 
     /// True while the newest is not followed.
@@ -109,10 +103,14 @@ impl Sight {
 mod tests {
     use super::*;
 
-    fn sight() -> Sight {
-        let mut sight = Sight::default();
-        sight.advance((100.0, 1000.0), 10.0);
-        sight
+    fn time() -> TimeWindow {
+        let mut time = TimeWindow::default();
+        time.advance((100.0, 1000.0), 10.0);
+        time
+    }
+
+    fn width_s(time: TimeWindow) -> f64 {
+        time.span().1 - time.span().0
     }
 
     fn same(one: Span, two: Span) {
@@ -122,48 +120,48 @@ mod tests {
 
     #[test]
     fn it_follows_until_it_is_held_and_then_stays() {
-        let mut sight = sight();
-        same(sight.span(), (990.0, 1000.0));
-        sight.advance((100.0, 1001.0), 10.0);
-        same(sight.span(), (991.0, 1001.0));
-        sight.hold();
-        sight.advance((100.0, 2000.0), 10.0);
-        same(sight.span(), (991.0, 1001.0));
-        sight.follow();
-        same(sight.span(), (1990.0, 2000.0));
+        let mut time = time();
+        same(time.span(), (990.0, 1000.0));
+        time.advance((100.0, 1001.0), 10.0);
+        same(time.span(), (991.0, 1001.0));
+        time.hold();
+        time.advance((100.0, 2000.0), 10.0);
+        same(time.span(), (991.0, 1001.0));
+        time.follow();
+        same(time.span(), (1990.0, 2000.0));
     }
 
     #[test]
     fn zooming_keeps_what_is_under_the_pointer() {
-        let mut sight = sight();
-        sight.show((400.0, 500.0));
-        sight.zoom(425.0, 0.5);
-        same(sight.span(), (412.5, 462.5));
-        sight.zoom(425.0, 2.0);
-        same(sight.span(), (400.0, 500.0));
+        let mut time = time();
+        time.show((400.0, 500.0));
+        time.zoom(425.0, 0.5);
+        same(time.span(), (412.5, 462.5));
+        time.zoom(425.0, 2.0);
+        same(time.span(), (400.0, 500.0));
     }
 
     #[test]
     fn nothing_leads_beyond_now_or_before_what_is_held() {
-        let mut sight = sight();
-        sight.pan(50.0);
-        same(sight.span(), (990.0, 1000.0));
-        sight.pan(-1e9);
-        same(sight.span(), (91.0, 101.0));
-        sight.zoom(95.0, 1e9);
-        assert!((sight.width_s() - LONGEST_S).abs() < 1e-6);
-        sight.zoom(95.0, 1e-12);
-        assert!((sight.width_s() - SHORTEST_S).abs() < 1e-6);
+        let mut time = time();
+        time.pan(50.0);
+        same(time.span(), (990.0, 1000.0));
+        time.pan(-1e9);
+        same(time.span(), (91.0, 101.0));
+        time.zoom(95.0, 1e9);
+        assert!((width_s(time) - LONGEST_S).abs() < 1e-6);
+        time.zoom(95.0, 1e-12);
+        assert!((width_s(time) - SHORTEST_S).abs() < 1e-6);
     }
 
     #[test]
     fn another_window_ends_where_the_held_one_ended() {
-        let mut sight = sight();
-        sight.show((400.0, 500.0));
-        sight.resize(30.0);
-        same(sight.span(), (470.0, 500.0));
-        sight.follow();
-        sight.resize(60.0);
-        assert!(!sight.is_held());
+        let mut time = time();
+        time.show((400.0, 500.0));
+        time.resize(30.0);
+        same(time.span(), (470.0, 500.0));
+        time.follow();
+        time.resize(60.0);
+        assert!(!time.is_held());
     }
 }

@@ -1,0 +1,648 @@
+//! The one plot of the program: curves over time in `egui_plot`, with what that lacks. Knows no hand.
+
+use crate::history::{History, Series, Trace};
+use crate::ui::kit::controls::Label;
+use crate::ui::kit::format::UNKNOWN;
+use crate::ui::kit::look::Look;
+use crate::ui::plots::bars;
+use crate::ui::plots::scales::{self, Scales};
+use crate::ui::plots::time_window::{Span, TimeWindow};
+use crate::ui::text::{Text, panels, plots};
+use crate::ui::theme;
+use egui::text::{LayoutJob, TextFormat};
+use egui::{
+    Align, Color32, Layout, Mesh, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, Ui,
+    WidgetInfo, vec2,
+};
+use egui_plot::{
+    AxisHints, CoordinatesFormatter, Corner, GridInput, GridMark, HLine, Line, LineStyle, Plot,
+    PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, VLine,
+};
+use std::collections::HashMap;
+use std::ops::RangeInclusive;
+
+/// Most columns that a chart is drawn in.
+const COLUMNS_MOST: f32 = 8192.0;
+/// A marked box that is lower or narrower is not meant in that direction, in points.
+const BOX_LEAST: f32 = 12.0;
+
+/// Where the points of a curve come from: seconds and values, oldest first.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Points<'a> {
+    /// As many of what was measured as there are columns of pixels.
+    Measured(&'a History, Series),
+    /// These.
+    Own(&'a [[f64; 2]]),
+}
+
+/// One line.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Curve<'a> {
+    /// Where it leads.
+    pub(crate) points: Points<'a>,
+    /// What is taken from each point.
+    pub(crate) zero: [f64; 2],
+    /// Width and colour.
+    pub(crate) stroke: Stroke,
+    /// Kind of stroke.
+    pub(crate) style: LineStyle,
+    /// True if a value stands until the next one: nothing was asked for what lies between.
+    pub(crate) steps: bool,
+    /// Digits of its value at the pointer, if that is told.
+    pub(crate) told: Option<usize>,
+}
+
+impl<'a> Curve<'a> {
+    /// A plain line.
+    pub(crate) const fn new(points: Points<'a>, stroke: Stroke) -> Self {
+        Self {
+            points,
+            zero: [0.0, 0.0],
+            stroke,
+            style: LineStyle::Solid,
+            steps: false,
+            told: None,
+        }
+    }
+
+    /// The unbroken pieces of it.
+    fn pieces<'b>(&'b self, traces: &'b Traces) -> Vec<(&'b Self, &'b [[f64; 2]])> {
+        match self.points {
+            Points::Own(points) => vec![(self, points)],
+            Points::Measured(_, series) => {
+                let pieces = traces.get(&series).into_iter();
+                let pieces = pieces.flat_map(|trace| &trace.segments);
+                pieces.map(|piece| (self, piece.as_slice())).collect()
+            }
+        }
+    }
+
+    fn line(&self, piece: &[[f64; 2]]) -> Line<'static> {
+        let mut before = None;
+        let points = piece.iter().flat_map(|[at_s, value]| {
+            let (at_s, value) = (at_s - self.zero[0], value - self.zero[1]);
+            let corner = before.replace(value).filter(|_| self.steps);
+            corner
+                .map(|before| [at_s, before])
+                .into_iter()
+                .chain([[at_s, value]])
+        });
+        let line = Line::new("", points.collect::<PlotPoints<'_>>()).stroke(self.stroke);
+        line.style(self.style).allow_hover(false).allow_band(false)
+    }
+
+    fn places(&self, piece: &[[f64; 2]], transform: &PlotTransform) -> impl Iterator<Item = Pos2> {
+        let [left, bottom] = transform.bounds().min();
+        let [across, up] = transform.dpos_dvalue();
+        let corner = transform.frame().left_bottom();
+        piece.iter().map(move |[at_s, value]| {
+            let x = (at_s - self.zero[0] - left) * across;
+            let y = (value - self.zero[1] - bottom) * up;
+            #[expect(clippy::cast_possible_truncation, reason = "a place on a screen")]
+            let way = vec2(x as f32, y as f32);
+            corner + way
+        })
+    }
+}
+
+type Traces = HashMap<Series, Trace>;
+
+/// How times are told.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Times {
+    /// As a clock shows them.
+    Clock,
+    /// As seconds from a moment, which has a word of its own.
+    From(f64, &'static str),
+}
+
+/// What charts over one time remember between frames.
+#[derive(Debug, Default)]
+pub(crate) struct ChartView {
+    /// What is shown of the time.
+    pub(crate) time: TimeWindow,
+    /// Scales that a person chose.
+    pub(crate) scales: Scales,
+    /// Points of lines; of a line that goes on only the newest are fetched.
+    traces: Traces,
+    /// The chart and the time that the pointer is at.
+    pointed: Option<(&'static str, f64)>,
+    /// Where a box began that is being marked.
+    marked: Option<Pos2>,
+}
+
+/// A chart of one quantity.
+pub(crate) struct Chart<'a> {
+    /// How it looks.
+    pub(crate) look: Look,
+    /// What it shows, with its unit. Different for each of the charts that share a view.
+    pub(crate) title: Text,
+    /// The lines, the foremost last.
+    pub(crate) curves: Vec<Curve<'a>>,
+    /// Values to compare with, dashed.
+    pub(crate) levels: Vec<(f64, Color32)>,
+    /// Moments in seconds, as lines across.
+    pub(crate) moments: Vec<(f64, Color32)>,
+    /// Seconds of two cursors.
+    pub(crate) cursors: Option<[f64; 2]>,
+    /// What is always shown of the values.
+    pub(crate) least: (f64, f64),
+    /// How times are told.
+    pub(crate) times: Times,
+    /// True if they are told below.
+    pub(crate) is_lowest: bool,
+    /// Said where there is no line.
+    pub(crate) empty: Text,
+    /// With caption and axis of time.
+    pub(crate) height: f32,
+}
+
+/// What was drawn, and what the pointer does there.
+pub(crate) struct ChartResponse {
+    /// Of the curves' ground.
+    pub(crate) ground: Response,
+    /// Of the numbers beside it.
+    pub(crate) axis: Response,
+    /// Between screen and values.
+    pub(crate) transform: PlotTransform,
+}
+
+impl ChartResponse {
+    /// The time that the pointer is at.
+    pub(crate) fn pointed_s(&self) -> Option<f64> {
+        let at = self.ground.hover_pos()?;
+        Some(self.transform.value_from_position(at).x)
+    }
+}
+
+impl<'a> Chart<'a> {
+    /// Without anything in it.
+    pub(crate) const fn new(look: Look, title: Text, height: f32) -> Self {
+        Self {
+            look,
+            title,
+            curves: Vec::new(),
+            levels: Vec::new(),
+            moments: Vec::new(),
+            cursors: None,
+            least: (0.0, 1.0),
+            times: Times::Clock,
+            is_lowest: true,
+            empty: panels::PLOT_EMPTY,
+            height,
+        }
+    }
+
+    /// Draws it as wide as `ui`. A drag moves in time, the wheel zooms, shift or the right button marks what to zoom
+    /// into, a double click takes all of it back.
+    pub(crate) fn ui(&self, ui: &mut Ui, view: &mut ChartView) -> ChartResponse {
+        let mut traces = std::mem::take(&mut view.traces);
+        let (from_s, to_s) = view.time.span();
+        let columns = (ui.available_width() - theme::PLOT_AXIS) * ui.pixels_per_point();
+        let columns = columns.clamp(1.0, COLUMNS_MOST);
+        let (extent, is_decimated) = self.fetch(&mut traces, (from_s, to_s), columns);
+        let room = self.height - theme::PLOT_CAPTION;
+        let chosen = view.scales.chosen(self.title);
+        let scale = chosen.unwrap_or_else(|| scales::rounded(self.least, extent, room));
+        ui.spacing_mut().item_spacing.y = 0.0;
+        self.caption_ui(ui, view, is_decimated);
+        let bounds = PlotBounds::from_min_max([from_s, scale.0], [to_s, scale.1]);
+        let marks = view.marked.is_some() || ui.input(|input| input.modifiers.shift);
+        let pieces = self.curves.iter().flat_map(|curve| curve.pieces(&traces));
+        let per_s = f64::from(columns) / (to_s - from_s);
+        let (dense, sparse): (Vec<_>, Vec<_>) = pieces.partition(|piece| is_dense(*piece, per_s));
+        let plot = self.plot(chosen.is_some()).allow_drag([!marks, false]);
+        let shown = plot.show(ui, |plot| {
+            plot.set_plot_bounds(bounds);
+            self.items(plot);
+            for (curve, piece) in &sparse {
+                plot.line(curve.line(piece));
+            }
+        });
+        let frame = *shown.transform.frame();
+        let mut mesh = Mesh::default();
+        for (curve, piece) in &dense {
+            let places = curve.places(piece, &shown.transform);
+            bars::add(&mut mesh, curve.stroke, 1.0 / ui.pixels_per_point(), places);
+        }
+        ui.painter()
+            .with_clip_rect(frame.intersect(ui.clip_rect()))
+            .add(mesh);
+        if dense.is_empty() && sparse.is_empty() {
+            let empty = Label::new(self.look.say(self.empty), self.look.palette.muted);
+            empty.small().center().put(ui, frame);
+        }
+        view.traces = traces;
+        let name = self.look.say(self.title);
+        let info = || WidgetInfo::labeled(Role::Image, true, name);
+        shown.response.widget_info(info);
+        let axis = frame
+            .with_max_x(frame.left())
+            .with_min_x(frame.left() - theme::PLOT_AXIS);
+        let id = shown.response.id.with("values");
+        let shown = ChartResponse {
+            axis: ui.interact(axis, id, Sense::DRAG),
+            ground: shown.response,
+            transform: shown.transform,
+        };
+        view.scales.act(ui, &shown.axis, self.title, scale);
+        view.act(ui, &shown, self, (from_s, to_s));
+        shown
+    }
+
+    /// Gets the points that are read from a history. What the values span, and whether points stand for several.
+    fn fetch(
+        &self,
+        traces: &mut Traces,
+        (from_s, to_s): Span,
+        columns: f32,
+    ) -> (Option<(f64, f64)>, bool) {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped before"
+        )]
+        let columns = columns as usize;
+        let levels = self.levels.iter().map(|(level, _)| (*level, *level));
+        let mut extent = levels.fold(None, scales::joined);
+        let mut is_decimated = false;
+        for curve in &self.curves {
+            let zero = curve.zero[1];
+            match curve.points {
+                Points::Own(points) => {
+                    let values = points.iter().map(|[_, value]| (value - zero, value - zero));
+                    extent = values.fold(extent, scales::joined);
+                }
+                Points::Measured(history, series) => {
+                    let trace = traces.entry(series).or_default();
+                    history.trace(series, from_s, to_s, columns, trace);
+                    is_decimated |= trace.decimated && !curve.steps;
+                    if let Some(all) = history.summary(series, from_s, to_s) {
+                        let ends = (f64::from(all.min) - zero, f64::from(all.max) - zero);
+                        extent = scales::joined(extent, ends);
+                    }
+                }
+            }
+        }
+        (extent, is_decimated)
+    }
+
+    /// Title, what is to be known of it, and the values under the pointer; over the curves, never on them.
+    fn caption_ui(&self, ui: &mut Ui, view: &ChartView, is_decimated: bool) {
+        let look = self.look;
+        let place = vec2(ui.available_width(), theme::PLOT_CAPTION);
+        let right = Layout::right_to_left(Align::Center);
+        ui.allocate_ui_with_layout(place, right, |ui| {
+            ui.set_min_height(theme::PLOT_CAPTION);
+            if let Some(at_s) = view.pointed_s() {
+                self.readings_ui(ui, at_s);
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add_space(theme::PLOT_AXIS);
+                Label::new(look.say(self.title), look.palette.muted)
+                    .small()
+                    .ui(ui);
+                let is_fixed = view.scales.chosen(self.title).is_some();
+                for (is_said, text, tip) in [
+                    (is_fixed, plots::RANGE_FIXED, plots::RANGE_TIP),
+                    (is_decimated, plots::DECIMATED, plots::DECIMATED_TIP),
+                ] {
+                    if is_said {
+                        let label = Label::new(look.say(text), look.palette.muted);
+                        label
+                            .font(theme::tiny())
+                            .ui(ui)
+                            .on_hover_text(look.say(tip));
+                    }
+                }
+            });
+        });
+    }
+
+    /// The values at a time, each in the colour of its line.
+    fn readings_ui(&self, ui: &mut Ui, at_s: f64) {
+        let mut job = LayoutJob::default();
+        let mut texts = Vec::new();
+        for curve in &self.curves {
+            let (Points::Measured(history, series), Some(digits)) = (curve.points, curve.told)
+            else {
+                continue;
+            };
+            let value = history
+                .reading(series, at_s)
+                .map(|reading| f64::from(reading.value));
+            let value = value.map(|value| format!("{:.digits$}", value - curve.zero[1]));
+            let text = value.unwrap_or_else(|| UNKNOWN.to_owned());
+            let format = TextFormat::simple(theme::number_small(), curve.stroke.color);
+            job.append(&format!(" {text:>6}"), 0.0, format);
+            texts.push(text);
+        }
+        if texts.is_empty() {
+            return;
+        }
+        let response = ui.add(egui::Label::new(job).truncate());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, texts.join(" ")));
+        let look = self.look;
+        let name = format!(
+            "{} {}",
+            look.say(self.title),
+            look.say(plots::UNDER_POINTER)
+        );
+        ui.ctx()
+            .accesskit_node_builder(response.id, |node| node.set_label(name));
+    }
+
+    fn plot(&self, is_fixed: bool) -> Plot<'_> {
+        let palette = self.look.palette;
+        let color = match is_fixed {
+            true => palette.accent,
+            false => palette.muted,
+        };
+        let hints = |hints: AxisHints<'static>, color: Color32| {
+            let hints = hints.tick_label_font(theme::number_small());
+            hints.tick_label_color(color).label_spacing(1.0..=2.0)
+        };
+        let values = hints(AxisHints::new_y(), color).min_thickness(theme::PLOT_AXIS);
+        let values = values.formatter(|mark, _| scales::number(mark.value, mark.step_size));
+        let times = hints(AxisHints::new_x(), palette.muted).min_thickness(theme::PLOT_TIME_AXIS);
+        let own = self.times;
+        let times = times.formatter(move |mark, seen| own.label(mark, seen));
+        let pointed = move |at: &PlotPoint, bounds: &PlotBounds| {
+            let text = own.text(at.x, bounds.width() / 100.0);
+            format!("{text}  {}", scales::number(at.y, bounds.height() / 100.0))
+        };
+        let spacing = |input: GridInput| {
+            let step = scales::step(input.bounds, input.base_step_size);
+            marks(input.bounds, 0.0, step)
+        };
+        let time_spacing = move |input: GridInput| {
+            let step = scales::time_step(input.base_step_size);
+            marks(input.bounds, own.zero_s(), step)
+        };
+        Plot::new(self.title.en)
+            .height(self.height - theme::PLOT_CAPTION)
+            .min_size(vec2(0.0, 0.0))
+            .show_axes([self.is_lowest, true])
+            .custom_x_axes(vec![times])
+            .custom_y_axes(vec![values])
+            .x_grid_spacer(time_spacing)
+            .y_grid_spacer(spacing)
+            .grid_color(palette.grid)
+            .grid_fade(0.0)
+            .cursor_color(palette.faint)
+            .link_cursor(egui::Id::unique("charts"), [true, false])
+            .coordinates_formatter(Corner::RightBottom, CoordinatesFormatter::new(pointed))
+            .allow_zoom([true, false])
+            .allow_axis_zoom_drag([true, false])
+            .allow_scroll(false)
+            .allow_boxed_zoom(false)
+            .allow_double_click_reset(false)
+    }
+
+    fn items(&self, plot: &mut PlotUi<'_>) {
+        if let Some([a, b]) = self.cursors {
+            let accent = self.look.palette.accent;
+            let between = egui_plot::Span::new("", a.min(b)..=a.max(b));
+            plot.span(
+                between
+                    .fill(accent.gamma_multiply(0.08))
+                    .border_color(accent),
+            );
+        }
+        for (at_s, color) in &self.moments {
+            plot.vline(VLine::new("", *at_s).color(*color));
+        }
+        for (value, color) in &self.levels {
+            let dashed = LineStyle::dashed_dense();
+            plot.hline(HLine::new("", *value).color(*color).style(dashed));
+        }
+    }
+
+    /// The line that passes next to the pointer, by its place in the list; of several the foremost.
+    pub(crate) fn nearest(&self, shown: &ChartResponse) -> Option<usize> {
+        let at = shown.ground.hover_pos()?;
+        let apart = |curve: &Curve<'_>| {
+            let Points::Own(points) = curve.points else {
+                return None;
+            };
+            let places: Vec<Pos2> = curve.places(points, &shown.transform).collect();
+            let pairs = places.iter().zip(places.iter().skip(1));
+            pairs
+                .map(|(from, to)| distance(*from, *to, at))
+                .reduce(f32::min)
+        };
+        let near = self.curves.iter().enumerate().rev();
+        let near = near.filter_map(|(index, curve)| Some((index, apart(curve)?)));
+        let near = near.filter(|(_, apart)| *apart <= theme::LINE_NEAR);
+        near.min_by(|(_, a), (_, b)| a.total_cmp(b))
+            .map(|(index, _)| index)
+    }
+}
+
+/// True if a column of pixels holds more than one point.
+fn is_dense((curve, piece): (&Curve<'_>, &[[f64; 2]]), per_s: f64) -> bool {
+    let ends = piece.first().zip(piece.last());
+    let columns = ends.map_or(0.0, |(first, last)| (last[0] - first[0]) * per_s);
+    let count = f64::from(u32::try_from(piece.len()).unwrap_or(u32::MAX));
+    curve.style == LineStyle::Solid && count > columns + 2.0
+}
+
+/// From a place to a piece of a line.
+fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
+    let way = to - from;
+    let part = (at - from).dot(way) / way.length_sq().max(f32::MIN_POSITIVE);
+    (from + way * part.clamp(0.0, 1.0)).distance(at)
+}
+
+impl ChartView {
+    /// The time that the pointer is at in one of the charts.
+    pub(crate) fn pointed_s(&self) -> Option<f64> {
+        self.pointed.map(|(_, at_s)| at_s)
+    }
+
+    fn act(&mut self, ui: &Ui, shown: &ChartResponse, chart: &Chart<'_>, span: Span) {
+        let bounds = shown.transform.bounds();
+        let moved = (bounds.min()[0], bounds.max()[0]);
+        if moved != span {
+            self.time.show(moved);
+            ui.request_repaint();
+        }
+        let scroll = ui.input(|input| input.smooth_scroll_delta);
+        if let Some(at_s) = shown.pointed_s().filter(|_| scroll != vec2(0.0, 0.0)) {
+            if scroll.x != 0.0 {
+                self.time
+                    .pan(-f64::from(scroll.x) / shown.transform.dpos_dvalue_x());
+            } else {
+                self.time
+                    .zoom(at_s, f64::from(-scroll.y / theme::PLOT_WHEEL).exp2());
+            }
+            ui.request_repaint();
+        }
+        let here = self
+            .pointed
+            .is_some_and(|(title, _)| title == chart.title.en);
+        match shown.pointed_s() {
+            Some(at_s) => self.pointed = Some((chart.title.en, at_s)),
+            None if here => self.pointed = None,
+            None => {}
+        }
+        self.mark(ui, shown, chart);
+        if shown.ground.double_clicked() {
+            self.time.follow();
+            self.scales.forget(chart.title);
+        }
+    }
+
+    /// The box that is being marked. One that is low spans all values, so that time alone can be marked.
+    fn mark(&mut self, ui: &Ui, shown: &ChartResponse, chart: &Chart<'_>) {
+        let ground = &shown.ground;
+        let (shift, pressed_at) =
+            ui.input(|input| (input.modifiers.shift, input.pointer.press_origin()));
+        if ground.drag_started() && (shift || ground.dragged_by(PointerButton::Secondary)) {
+            self.marked = pressed_at;
+        }
+        let ends = self.marked.zip(ground.interact_pointer_pos());
+        let Some((from, to)) = ends.filter(|_| ground.dragged() || ground.drag_stopped()) else {
+            return;
+        };
+        let frame = *shown.transform.frame();
+        let mut marked = Rect::from_two_pos(from, to).intersect(frame);
+        let is_high = marked.height() >= BOX_LEAST;
+        if !is_high {
+            marked = Rect::from_x_y_ranges(marked.x_range(), frame.y_range());
+        }
+        if ground.dragged() {
+            let accent = chart.look.palette.accent;
+            ui.painter()
+                .rect_filled(marked, 0.0, accent.gamma_multiply(0.25));
+            return;
+        }
+        self.marked = None;
+        let low = shown.transform.value_from_position(marked.left_bottom());
+        let high = shown.transform.value_from_position(marked.right_top());
+        if marked.width() >= BOX_LEAST {
+            self.time.show((low.x, high.x));
+            if is_high {
+                self.scales.choose(chart.title, low.y, high.y);
+            }
+        }
+    }
+}
+
+/// Lines of a grid, a step apart, one of them at `zero`.
+fn marks((from, to): (f64, f64), zero: f64, step: f64) -> Vec<GridMark> {
+    let first = ((from - zero) / step).ceil();
+    // No step gives more; the bound guards against a broken one.
+    let marks = (0..64_u8).map(|n| GridMark {
+        value: zero + (first + f64::from(n)) * step,
+        step_size: step,
+    });
+    marks
+        .take_while(|mark| mark.value <= to + step * 1e-6)
+        .collect()
+}
+
+impl Times {
+    const fn zero_s(self) -> f64 {
+        match self {
+            Self::Clock => 0.0,
+            Self::From(at_s, _) => at_s,
+        }
+    }
+
+    fn label(self, mark: GridMark, seen: &RangeInclusive<f64>) -> String {
+        // At the left edge it would run into the numbers of the values.
+        let is_left = mark.value - seen.start() < (seen.end() - seen.start()) * 0.04;
+        match self {
+            _ if is_left => String::new(),
+            Self::From(at_s, word) if (mark.value - at_s).abs() < mark.step_size * 1e-3 => {
+                word.into()
+            }
+            _ => self.text(mark.value, mark.step_size),
+        }
+    }
+
+    /// A time, fine enough for steps of `step_s`.
+    fn text(self, at_s: f64, step_s: f64) -> String {
+        let digits = scales::digits(step_s);
+        match self {
+            Self::Clock => clock(at_s, step_s),
+            Self::From(zero_s, _) if step_s >= 60.0 => {
+                format!("{:+.0} min", (at_s - zero_s) / 60.0)
+            }
+            Self::From(zero_s, _) => format!("{:+.digits$} s", at_s - zero_s),
+        }
+    }
+}
+
+/// A time of the program as a clock shows it, fine enough for steps of `step_s`.
+pub(crate) fn clock(at_s: f64, step_s: f64) -> String {
+    let digits = scales::digits(step_s);
+    let unit = [1.0, 10.0, 100.0, 1000.0]
+        .get(digits)
+        .copied()
+        .unwrap_or(1.0);
+    // Rounded as a whole, so that 59.999 does not become 0:60.
+    let at_s = (at_s.max(0.0) * unit).round() / unit;
+    let (hours, minutes) = ((at_s / 3600.0).floor(), (at_s / 60.0).floor() % 60.0);
+    let seconds = at_s % 60.0;
+    let width = if digits == 0 { 2 } else { digits + 3 };
+    if hours > 0.0 {
+        format!("{hours:.0}:{minutes:02.0}:{seconds:0width$.digits$}")
+    } else {
+        format!("{minutes:.0}:{seconds:0width$.digits$}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_plot::{PlotGeometry, PlotItem};
+
+    #[test]
+    fn a_clock_is_as_fine_as_it_needs_to_be() {
+        for (at_s, step_s, text) in [
+            (5.25, 0.05, "0:05.25"),
+            (59.999, 0.01, "1:00.00"),
+            (3_725.0, 60.0, "1:02:05"),
+            (65.1234, 0.005, "1:05.123"),
+            (-1.0, 1.0, "0:00"),
+        ] {
+            assert_eq!(clock(at_s, step_s), text);
+        }
+    }
+
+    #[test]
+    fn times_are_told_from_their_zero_and_not_at_the_left_edge() {
+        let times = Times::From(100.0, "now");
+        let label = |value, step_size| times.label(GridMark { value, step_size }, &(90.0..=100.0));
+        assert_eq!(label(100.0, 2.0), "now");
+        assert_eq!(label(98.0, 2.0), "-2 s");
+        assert_eq!(label(90.1, 2.0), "");
+        assert_eq!(times.text(-500.0, 60.0), "-10 min");
+        assert_eq!(times.text(100.25, 0.05), "+0.25 s");
+    }
+
+    #[test]
+    fn a_value_that_was_asked_for_stands_until_the_next() {
+        let points = [[0.0, 1.0], [2.0, 5.0]];
+        let mut curve = Curve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
+        curve.steps = true;
+        let line = curve.line(&points);
+        let PlotGeometry::Points(drawn) = line.geometry() else {
+            panic!("a line has points");
+        };
+        let drawn: Vec<[f64; 2]> = drawn.iter().map(|point| [point.x, point.y]).collect();
+        assert_eq!(drawn, [[0.0, 1.0], [2.0, 1.0], [2.0, 5.0]]);
+    }
+
+    #[test]
+    fn only_more_points_than_columns_are_a_band() {
+        let points: Vec<[f64; 2]> = (0..100_u8).map(|n| [f64::from(n), 1.0]).collect();
+        let curve = Curve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
+        assert!(is_dense((&curve, &points), 0.5));
+        assert!(!is_dense((&curve, &points), 2.0));
+        let alone = points.get(..1).unwrap_or_default();
+        assert!(!is_dense((&curve, alone), 0.5));
+    }
+}

@@ -1,0 +1,258 @@
+//! Value scales: round by themselves, or as a person set them by dragging, by the wheel or by typing the ends.
+
+use crate::ui::kit::look::Pane;
+use crate::ui::kit::number::NumberField;
+use crate::ui::text::{Text, plots};
+use crate::ui::theme;
+use egui::{CursorIcon, Popup, PopupCloseBehavior, Response, Role, Sense, Ui, WidgetInfo};
+use std::collections::BTreeMap;
+
+/// No end lies beyond: more than the counts of a fingertip.
+const MOST: f64 = 10_000_000.0;
+/// The narrowest scale: a hundredth of what the finest plot tells.
+const NARROWEST: f64 = 0.01;
+/// Points between two lines of a grid that `egui_plot` hands to its spacers as one step.
+const BASE_PX: f64 = 8.0;
+/// Points between two times.
+const TIME_PX: f64 = 72.0;
+/// Steps of time above a second, where tens do not fit.
+const LONG_STEPS: [f64; 8] = [10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0];
+
+/// The next 1, 2 or 5 times a power of ten.
+fn round_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.max(NARROWEST / 10.0).log10().floor());
+    let fits = |times: &f64| times * power >= least * (1.0 - 1e-9);
+    [1.0, 2.0, 5.0].into_iter().find(fits).unwrap_or(10.0) * power
+}
+
+/// Seconds between two lines, from those that eight points span.
+pub(crate) fn time_step(base_s: f64) -> f64 {
+    let least = base_s * TIME_PX / BASE_PX;
+    let long = LONG_STEPS.into_iter().find(|step| *step >= least);
+    match least <= 5.0 {
+        true => round_step(least),
+        false => long.unwrap_or(3600.0),
+    }
+}
+
+/// Between two lines of a scale, from what eight points span.
+pub(crate) fn step((low, high): (f64, f64), base: f64) -> f64 {
+    let room = (high - low) / base * BASE_PX / f64::from(theme::PLOT_NUMBER);
+    round_step((high - low) / (room - 1.0).clamp(1.0, 4.0))
+}
+
+/// What is always shown and what the values span, rounded outwards for a chart of this height.
+pub(crate) fn rounded(least: (f64, f64), extent: Option<(f64, f64)>, height: f32) -> (f64, f64) {
+    let (low, high) = extent.unwrap_or(least);
+    let (low, high) = (low.min(least.0), high.max(least.1));
+    let step = step(
+        (low, high),
+        (high - low) / f64::from(height.max(1.0)) * BASE_PX,
+    );
+    // Ends at half a step, so that little of the plot stays empty.
+    let half = step / 2.0;
+    // A value a hair below zero must not take a quarter of the plot.
+    let low = match low < 0.0 && low > -step * 0.2 {
+        true => -step * 0.2,
+        false => (low / half).floor() * half,
+    };
+    (low, (high / half).ceil() * half)
+}
+
+/// Both of two spans.
+pub(crate) fn joined(one: Option<(f64, f64)>, (low, high): (f64, f64)) -> Option<(f64, f64)> {
+    let (from, to) = one.unwrap_or((low, high));
+    Some((from.min(low), to.max(high)))
+}
+
+/// Digits after the point that tell numbers apart which are a step apart.
+pub(crate) fn digits(step: f64) -> usize {
+    let digits = [1.0, 0.1, 0.01].iter();
+    digits
+        .take_while(|least| step < **least * (1.0 - 1e-9))
+        .count()
+}
+
+/// A number of a scale, with so many digits as a step needs.
+pub(crate) fn number(value: f64, step: f64) -> String {
+    if step >= 1000.0 {
+        return format!("{}k", value / 1000.0);
+    }
+    let digits = digits(step);
+    // No "-0".
+    format!("{:.digits$}", value + 0.0)
+}
+
+/// The scales that a person chose; others follow their values.
+#[derive(Debug, Default)]
+pub(crate) struct Scales(BTreeMap<&'static str, (f64, f64)>);
+
+impl Scales {
+    /// The ends that a person chose.
+    pub(crate) fn chosen(&self, title: Text) -> Option<(f64, f64)> {
+        self.0.get(title.en).copied()
+    }
+
+    /// Takes these ends.
+    pub(crate) fn choose(&mut self, title: Text, low: f64, high: f64) {
+        let low = low.clamp(-MOST, MOST - NARROWEST);
+        self.0
+            .insert(title.en, (low, high.clamp(low + NARROWEST, MOST)));
+    }
+
+    /// Follows the values again.
+    pub(crate) fn forget(&mut self, title: Text) {
+        self.0.remove(title.en);
+    }
+
+    /// Drag moves, the wheel zooms around the pointer.
+    pub(crate) fn act(&mut self, ui: &Ui, axis: &Response, title: Text, (low, high): (f64, f64)) {
+        let per_point = (high - low) / f64::from(axis.rect.height().max(1.0));
+        let scroll = ui.input(|input| input.smooth_scroll_delta.y);
+        if axis.dragged() && axis.drag_delta().y != 0.0 {
+            let by = f64::from(axis.drag_delta().y) * per_point;
+            self.choose(title, low + by, high + by);
+        } else if let Some(at) = axis.hover_pos().filter(|_| scroll != 0.0) {
+            let factor = f64::from(-scroll / theme::PLOT_WHEEL).exp2();
+            let value = low + f64::from(axis.rect.bottom() - at.y) * per_point;
+            let end = |end: f64| value + (end - value) * factor;
+            self.choose(title, end(low), end(high));
+        }
+        if axis.hovered() {
+            ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
+        }
+    }
+
+    /// What the numbers beside a plot do beyond [`Self::act`]: pressed, they show the ends as fields; pressed twice,
+    /// they follow the values again.
+    pub(crate) fn ends_ui(
+        &mut self,
+        axis: &Response,
+        pane: &mut Pane<'_>,
+        title: Text,
+        (low, high): (f64, f64),
+    ) {
+        let look = pane.look;
+        let axis = axis.interact(Sense::click());
+        let name = format!("{}: {}", look.say(plots::RANGE), look.say(title));
+        axis.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+        let popup = Popup::from_toggle_button_response(&axis);
+        popup
+            .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+            .show(|ui| {
+                ui.label(look.say(title));
+                if let Some(typed) = end_ui(ui, pane, (title, plots::RANGE_HIGH), high) {
+                    // An end that passes the other one takes it along.
+                    let low = if typed > low {
+                        low
+                    } else {
+                        typed - (high - low)
+                    };
+                    self.choose(title, low, typed);
+                }
+                if let Some(typed) = end_ui(ui, pane, (title, plots::RANGE_LOW), low) {
+                    let high = if typed < high {
+                        high
+                    } else {
+                        typed + (high - low)
+                    };
+                    self.choose(title, typed, high);
+                }
+                let automatic = ui.button(look.say(plots::RANGE_AUTO));
+                if automatic
+                    .on_hover_text(look.say(plots::RANGE_AUTO_TIP))
+                    .clicked()
+                {
+                    self.forget(title);
+                    Popup::close_all(ui.ctx());
+                }
+            });
+        if axis.double_clicked() {
+            self.forget(title);
+            Popup::close_all(&axis.ctx);
+        }
+        axis.on_hover_text(look.say(plots::RANGE_TIP));
+    }
+}
+
+fn end_ui(ui: &mut Ui, pane: &mut Pane<'_>, (title, end): (Text, Text), value: f64) -> Option<f64> {
+    let look = pane.look;
+    let name = format!("{}: {}", look.say(end), look.say(title));
+    let row = ui.horizontal(|ui| {
+        let field = NumberField {
+            name: &name,
+            tip: look.say(plots::RANGE_END_TIP),
+            disabled: None,
+            value: Some(value),
+            range: -MOST..=MOST,
+            decimals: 2,
+        };
+        let typed = ui.scope(|ui| field.ui(ui, look, pane.typing)).inner;
+        ui.label(look.say(end));
+        typed
+    });
+    row.inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_round() {
+        for (least, step) in [(0.03, 0.05), (1.0, 1.0), (1.01, 2.0), (70.0, 100.0)] {
+            assert!((round_step(least) - step).abs() < 1e-9, "{least}");
+        }
+        for (base_s, step_s) in [
+            (0.0001, 0.001),
+            (0.1, 1.0),
+            (1.0, 10.0),
+            (5.0, 60.0),
+            (90.0, 1800.0),
+        ] {
+            assert!((time_step(base_s) - step_s).abs() < 1e-9, "{base_s}");
+        }
+    }
+
+    #[test]
+    fn a_scale_always_holds_its_numbers_and_has_few_lines() {
+        for (low, high) in [
+            (0.0, 3.0),
+            (-33.0, 812.0),
+            (-4000.0, 4000.0),
+            (0.0, 32_767.0),
+        ] {
+            let band = rounded((0.0, 200.0), Some((low, high)), 110.0);
+            assert!(band.0 <= low.min(0.0) && band.1 >= high, "{band:?}");
+            let lines = (band.1 - band.0) / step(band, (band.1 - band.0) / 110.0 * BASE_PX);
+            assert!((1.0..=5.0).contains(&lines), "{band:?} {lines}");
+        }
+        assert_eq!(rounded((0.0, 200.0), None, 110.0), (0.0, 200.0));
+    }
+
+    #[test]
+    fn a_chosen_scale_stays_as_it_is_and_within_bounds() {
+        let mut scales = Scales::default();
+        for (low, high) in [(17.0, 23.5), (-4000.0, 4000.0), (-0.02, 0.02), (5.0, 5.0)] {
+            scales.choose(plots::NORMAL, low, high);
+            let (chosen, above) = scales.chosen(plots::NORMAL).unwrap_or_default();
+            assert!((chosen - low).abs() < 1e-9 && above >= high && above > chosen);
+        }
+        scales.choose(plots::NORMAL, 1e12, -1e12);
+        let (low, high) = scales.chosen(plots::NORMAL).unwrap_or_default();
+        assert!(high <= MOST && low < high);
+        assert_eq!(scales.chosen(plots::TANGENTIAL), None);
+    }
+
+    #[test]
+    fn numbers_have_the_digits_that_their_steps_need() {
+        for (value, step, text) in [
+            (0.5, 0.5, "0.5"),
+            (-0.0, 1.0, "0"),
+            (1500.0, 500.0, "1500"),
+            (-20_000.0, 5000.0, "-20k"),
+        ] {
+            assert_eq!(number(value, step), text);
+        }
+    }
+}
