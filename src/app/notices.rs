@@ -1,7 +1,7 @@
 //! What a person should read, as typed causes. The words, in every language, are the views'.
 
 use crate::app::readings::faults::FaultKind;
-use crate::hand::{Dof, Gesture, Moment, UserGesture};
+use crate::hand::{Dof, Finger, Gesture, Moment, UserGesture};
 use crate::link::{LinkTrouble, RequestError};
 use crate::params::file::ParamsFileError;
 use crate::poses::file::PoseFileError;
@@ -66,6 +66,13 @@ pub enum NoticeKind {
     HoldAlarm,
     /// Stop was pressed, and there is no live link to send it over.
     StopNotSent,
+    /// A fingertip that is touched was to be tared: nothing was changed.
+    TareUnderLoad {
+        /// The fingertip.
+        finger: Finger,
+        /// What presses it, in newtons.
+        newtons: f32,
+    },
     /// The hand is not armed any more, and no person asked for it.
     Disarmed(Disarmed),
     /// The hand cannot be armed.
@@ -251,6 +258,7 @@ impl NoticeKind {
             | Self::HandDiffers { .. }
             | Self::SheetNotKept { .. }
             | Self::PlanIgnored { .. }
+            | Self::TareUnderLoad { .. }
             | Self::EndpointIgnored { .. } => Level::Warn,
         }
     }

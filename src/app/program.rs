@@ -270,7 +270,7 @@ impl App {
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
             Action::Procedure(action) => hand.procedure_action(action, env, now),
-            Action::Tare(finger) => hand.tare(finger),
+            Action::Tare(finger) => hand.tare(finger, notices, now),
             Action::UndoTare => hand.tare.undo(),
             Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
             Action::SeenFaults => hand.faults.see_all(),

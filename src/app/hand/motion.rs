@@ -182,14 +182,16 @@ impl HandState {
         }
     }
 
-    /// Counts tactile channels from now, where the reading is fresh: one fingertip, or all.
-    pub(crate) fn tare(&mut self, finger: Option<Finger>) {
+    /// Counts tactile channels from now, where the reading is fresh: one fingertip, or all. Refused where one is touched.
+    pub(crate) fn tare(&mut self, finger: Option<Finger>, notices: &mut Notices, now: Moment) {
         let fresh: Vec<Finger> = Finger::ALL
             .into_iter()
             .filter(|each| finger.is_none_or(|finger| finger == *each))
             .filter(|each| self.tip_freshness(*each) == Freshness::Live)
             .collect();
-        self.tare.tare(fresh, &self.sample);
+        if let Err((finger, newtons)) = self.tare.tare(fresh, &self.sample) {
+            notices.push(now, NoticeKind::TareUnderLoad { finger, newtons });
+        }
     }
 
     /// Sends for the arming in force; without one, nothing.

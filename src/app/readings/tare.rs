@@ -1,6 +1,10 @@
-//! What the tactile channels are counted from: the first reading, or the one that a person chose. Changes no reading.
+//! What the tactile channels are counted from: the first reading of an untouched fingertip, or the one that a person chose.
+//! Changes no reading.
 
 use crate::hand::{Finger, HandSample, Moment, PerFinger};
+
+/// From this normal force on a fingertip counts as touched, in newtons: its own noise stays below.
+pub const TOUCHED_N: f32 = 0.3;
 
 /// The reading of one fingertip that its channels are counted from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +25,7 @@ pub struct Tare {
 }
 
 impl Tare {
-    /// What this fingertip is counted from; `None` before its first reading.
+    /// What this fingertip is counted from; `None` before it was read untouched.
     #[must_use]
     pub fn rest(&self, finger: Finger) -> Option<Rest> {
         self.rests[finger]
@@ -40,22 +44,33 @@ impl Tare {
         self.before.is_some()
     }
 
-    /// Takes the first reading of each fingertip as its rest.
+    /// Takes the first reading of each untouched fingertip as its rest.
     pub(crate) fn begin(&mut self, sample: &HandSample) {
         for (finger, rest) in self.rests.iter_mut() {
-            *rest = rest.or_else(|| reading(sample, finger, false));
+            if rest.is_none() && load(sample, finger).is_none() {
+                *rest = reading(sample, finger, false);
+            }
         }
     }
 
-    /// Counts these fingertips from their newest reading. A fingertip without reading keeps what it had.
-    pub(crate) fn tare(&mut self, fingers: impl IntoIterator<Item = Finger>, sample: &HandSample) {
-        let before = self.rests;
+    /// Counts these fingertips from their newest reading. A fingertip without reading keeps what it had. Nothing is
+    /// changed where one is touched: that one, and what presses it in newtons.
+    pub(crate) fn tare(
+        &mut self,
+        fingers: impl IntoIterator<Item = Finger>,
+        sample: &HandSample,
+    ) -> Result<(), (Finger, f32)> {
+        let mut rests = self.rests;
         for finger in fingers {
-            self.rests[finger] = reading(sample, finger, true).or(self.rests[finger]);
+            if let Some(newtons) = load(sample, finger) {
+                return Err((finger, newtons));
+            }
+            rests[finger] = reading(sample, finger, true).or(rests[finger]);
         }
-        if self.rests != before {
-            self.before = Some(before);
+        if self.rests != rests {
+            self.before = Some(std::mem::replace(&mut self.rests, rests));
         }
+        Ok(())
     }
 
     /// Takes the last taring back, once.
@@ -64,6 +79,12 @@ impl Tare {
             self.rests = before;
         }
     }
+}
+
+/// What presses a fingertip that is touched, in newtons.
+fn load(sample: &HandSample, finger: Finger) -> Option<f32> {
+    let normal = sample.tactile[finger]?.value.normal()?;
+    (normal >= TOUCHED_N).then_some(normal)
 }
 
 fn reading(sample: &HandSample, finger: Finger, chosen: bool) -> Option<Rest> {
@@ -105,16 +126,35 @@ mod tests {
         tare.begin(&sample(100, 1));
         tare.begin(&sample(200, 2));
         assert_eq!((counted_from(&tare), tare.chosen_at()), (Some(100), None));
-        tare.tare(Finger::ALL, &sample(300, 3));
+        tare.tare(Finger::ALL, &sample(300, 3)).unwrap();
         assert_eq!(counted_from(&tare), Some(300));
         assert_eq!(tare.chosen_at(), Some(Moment::from_micros(3000)));
+    }
+
+    #[test]
+    fn a_touched_fingertip_gives_no_zero_and_is_not_tared() {
+        let pressed = |millis| {
+            let mut sample = sample(900, millis);
+            if let Some(block) = &mut sample.tactile[Finger::Index] {
+                block.value.normal_n = 4.5;
+            }
+            sample
+        };
+        let mut tare = Tare::default();
+        tare.begin(&pressed(1));
+        assert_eq!(counted_from(&tare), None);
+        tare.begin(&sample(100, 2));
+        assert_eq!(counted_from(&tare), Some(100));
+        let refused = tare.tare(Finger::ALL, &pressed(3));
+        assert_eq!(refused, Err((Finger::Index, 4.5)));
+        assert_eq!((counted_from(&tare), tare.can_undo()), (Some(100), false));
     }
 
     #[test]
     fn a_taring_can_be_taken_back_once() {
         let mut tare = Tare::default();
         tare.begin(&sample(100, 1));
-        tare.tare([Finger::Index], &sample(300, 3));
+        tare.tare([Finger::Index], &sample(300, 3)).unwrap();
         assert!(tare.can_undo());
         tare.undo();
         assert_eq!((counted_from(&tare), tare.can_undo()), (Some(100), false));
@@ -124,7 +164,7 @@ mod tests {
     #[test]
     fn a_fingertip_that_was_never_read_is_not_tared() {
         let mut tare = Tare::default();
-        tare.tare([Finger::Thumb], &sample(300, 3));
+        tare.tare([Finger::Thumb], &sample(300, 3)).unwrap();
         assert_eq!(tare.rest(Finger::Thumb), None);
         assert!(!tare.can_undo());
     }

@@ -17,38 +17,32 @@ use crate::ui::kit::look::{Look, Pane};
 use crate::ui::text::{panels, touch as text, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense as Meant, Tip};
-use egui::{Align2, Id, Rect, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
 
-/// The drawn hand with the names of its fingers.
+/// The drawn hand, turned as a person wants it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HandPanel(HandView);
 
 impl HandPanel {
-    /// Draws the hand and returns the finger that was chosen.
+    /// Draws the hand over what is left of `ui` and returns the finger that was chosen.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
-        rect: Rect,
         pane: &mut Pane<'_>,
         tips: &PerFinger<Option<Tip>>,
-        (id, chosen): (Id, Finger),
     ) -> Option<Finger> {
         let look = pane.look;
-        let mut place = rect;
-        let (width, height) = theme::HAND_NUMBERS_ROOM;
-        let named = (rect.width() >= width && rect.height() >= height)
-            .then(|| controls::take_top(&mut place, theme::HAND_HEAD))
-            .and_then(|heads| heads_ui(ui, heads, pane, (id, chosen)));
-        let response = ui.interact(place, id, Sense::click_and_drag());
+        let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
+        let place = response.rect;
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
         let picture = HandPicture {
             lit: pointed::pointed(ui, Place::Row),
             ..picture(pane, tips)
         };
-        let answer = self.0.ui(ui, place, response, look.palette, &picture);
+        let answer = self.0.ui(ui, response, look.palette, &picture);
         unknown_note(ui, look, place, &picture);
-        side_ui(ui, place, pane, id);
+        side_ui(ui, place, pane);
         if let Some(dof) = answer.joint {
             pointed::point(ui, Place::Hand, dof);
         }
@@ -58,7 +52,7 @@ impl HandPanel {
             || look.say(panels::HAND_PICTURE_TIP).to_owned(),
             |finger| said(pane, finger),
         ));
-        named.or(clicked)
+        clicked
     }
 }
 
@@ -126,7 +120,7 @@ fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
 }
 
 /// In a corner of the picture: which hand is drawn, and the way to the other one.
-fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>, id: Id) {
+fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let words = look.say(match look.side {
         Side::Right => text::RIGHT_HAND,
@@ -136,7 +130,8 @@ fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>, id: Id) {
     let corner = picture.right_bottom() - vec2(width, theme::CONTROL);
     let place = Rect::from_min_size(corner, vec2(width, theme::CONTROL));
     let button = Button::new(words, look.say(text::SIDE_TIP)).weight(Weight::Quiet);
-    if button.put(ui, look, place, id.with("side")).clicked() {
+    let id = ui.id().with("side");
+    if button.put(ui, look, place, id).clicked() {
         pane.actions.push(Action::Side(look.side.other()));
     }
 }
@@ -153,39 +148,6 @@ fn said(pane: &Pane<'_>, finger: Finger) -> String {
         look.say(panels::TIP_SHEAR),
         format::newtons(block.map(|block| block.tangential_n)),
     )
-}
-
-/// The fingers by name in one row over the picture, each with its normal force.
-fn heads_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>, (id, chosen): (Id, Finger)) -> Option<Finger> {
-    let look = pane.look;
-    let mut picked = None;
-    let width = row.width() / 5.0;
-    for (finger, at) in Finger::ALL.into_iter().zip(0u8..) {
-        let left = row.left() + width * f32::from(at);
-        let place = Rect::from_min_size(egui::pos2(left, row.top()), vec2(width, row.height()));
-        let place = place.shrink2(vec2(1.0, 0.0));
-        let name = format!("{}: {}", look.say(text::DRAWN), said(pane, finger));
-        let button = Button::new("", look.say(panels::TIP_TIP))
-            .named(&name)
-            .choice(finger == chosen);
-        if button.ground(ui, look, place, id.with(finger)).clicked() {
-            picked = Some(finger);
-        }
-        let (upper, lower) = place.split_top_bottom_at_fraction(0.5);
-        let block = pane.state.hand().sample.tactile[finger];
-        let freshness = pane.state.hand().tip_freshness(finger);
-        let color = look.value(freshness, look.palette.dof[finger.bend()]);
-        let normal = block.map(|block| block.value.normal_n);
-        let finger = look.say(words::finger(finger)).to_owned();
-        let newtons = format!("{} N", format::newtons(normal));
-        for (place, words, font, color) in [
-            (upper, finger, theme::small(), look.palette.muted),
-            (lower, newtons, theme::number(), color),
-        ] {
-            controls::paint_text(ui, place, Align2::CENTER_CENTER, &words, font, color);
-        }
-    }
-    picked
 }
 
 #[cfg(test)]

@@ -240,7 +240,7 @@ fn a_drag_turns_the_hand_and_a_double_click_turns_it_back() {
             let response = ui.interact(rect, Id::unique("hand"), Sense::click_and_drag());
             let picture = posed(Side::Right, [1.0; 3]);
             found = view
-                .ui(ui, rect, response, Palette::of(Theme::Dark), &picture)
+                .ui(ui, response, Palette::of(Theme::Dark), &picture)
                 .joint;
         });
         output.textures_delta.clear();

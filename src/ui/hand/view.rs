@@ -63,11 +63,11 @@ impl HandView {
     pub(crate) fn ui(
         &mut self,
         ui: &Ui,
-        rect: Rect,
         response: Response,
         palette: &Palette,
         picture: &HandPicture,
     ) -> HandResponse {
+        let rect = response.rect;
         if response.dragged() {
             let by = response.drag_delta() * TURN_RAD;
             let Turn { yaw, pitch } = self.turn(picture.side);

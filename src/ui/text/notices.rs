@@ -90,6 +90,17 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::HoldAlarm => said(main::ALARM_BODY),
         NoticeKind::StopNotSent => said(panels::NOTICE_STOP_NOT_SENT),
+        NoticeKind::TareUnderLoad { finger, newtons } => {
+            let finger = look.say(words::finger(*finger));
+            match look.language {
+                Language::En => format!(
+                    "Not tared: {finger} is touched ({newtons:.1} N). Let go of everything, then tare."
+                ),
+                Language::Zh => {
+                    format!("未去皮：{finger}正在受力（{newtons:.1} N）。请先松开物体再去皮。")
+                }
+            }
+        }
         NoticeKind::Disarmed(why) => disarmed(look, *why).into(),
         NoticeKind::ArmRefused(why) => {
             format!(

@@ -30,10 +30,11 @@ texts! {
     MARK_HELD: "At rest", "静止";
 
     TOUCH: "Fingertips", "指尖触觉";
-    TOUCH_SCALE: "Heat: counts above first reading", "热度：相对首次读数的增量";
+    TOUCH_SCALE: "Heat: counts above zero", "热度：相对零点的增量";
+    TOUCH_NO_ZERO: "No zero yet: let go of the fingertips", "尚无零点：请松开指尖";
     TOUCH_SCALE_SHORT: "Heat", "热度";
-    TOUCH_NORMAL: "Normal N", "法向 N";
-    TOUCH_SHEAR: "Shear N", "切向 N";
+    TOUCH_NORMAL: "Normal", "法向";
+    TOUCH_SHEAR: "Tangential", "切向";
     TOUCH_DIRECTION: "Direction", "方向";
     TOUCH_PROXIMITY: "Near", "接近";
     TOUCH_CHECK: "Check", "校验";
@@ -45,7 +46,7 @@ texts! {
     TOUCH_OK: "ok", "正常";
     TOUCH_DIFFERS: "diff", "不符";
     TOUCH_NO_CONTACT: "none", "无";
-    TOUCH_TIP: "Pads show capacitance above the first reading, all fingers on one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对首次读数的电容增量，所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
+    TOUCH_TIP: "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
     TOUCH_CHANNEL: "Channel", "通道";
     TOUCH_DELTA_N: "Normal delta", "法向变化";
     TOUCH_DELTA_T: "Shear delta", "切向变化";
@@ -54,7 +55,6 @@ texts! {
     HAND_PICTURE: "Picture of the hand", "手部姿态图";
     HAND_PICTURE_TIP: "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Arrows are the forces on the fingertips. A coloured shell is where a joint is told to go.\nLengths and couplings are those of a public model of this hand (Unitree Robotics, BSD-3-Clause); which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。箭头为指尖受力，彩色轮廓为目标姿态。\n尺寸与联动关系取自该手的公开模型（Unitree Robotics，BSD-3-Clause）；拇指旋转方向手册没有说明。";
 
-    TOUCH_SCALE_TARED: "Heat: counts since taring, age", "热度：去皮后的增量，距今";
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
     TARE_ALL: "Tare all", "全部去皮";
     TARE_ALL_TIP: "Counts all channels from now on. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
@@ -64,8 +64,6 @@ texts! {
     TARE_UNDO_TIP: "Takes the last taring back.", "撤销最近一次去皮。";
     TARE_NOTHING: "Nothing was tared.", "还没有去皮。";
     TARE_OFFLINE: "No live hand.", "没有在线的手。";
-    HEAT_LOCK: "Keep colours", "锁定色标";
-    HEAT_LOCK_TIP: "Keeps the end of the heat scale where it is now, so that pictures can be compared.", "把热度标尺上限固定在当前值，便于比较。";
     TIP: "Fingertip", "指尖";
     TIP_TIP: "Shows this fingertip in detail.", "查看该指尖的详情。";
     TIP_UP: "tip", "指尖";

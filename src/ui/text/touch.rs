@@ -1,9 +1,12 @@
 //! Sentences of the fingertips and the drawn hand.
 
+use crate::app::settings::Language;
+use crate::ui::kit::format;
+use crate::ui::kit::look::Look;
 use crate::ui::text::phrase::texts;
+use std::time::Duration;
 
 texts! {
-    DRAWN: "Drawn finger", "图中手指";
     UNKNOWN: "Grey: angle not known", "灰色：角度未知";
     RIGHT_HAND: "Right hand", "右手";
     LEFT_HAND: "Left hand", "左手";
@@ -11,11 +14,9 @@ texts! {
     ASSUMED: "Pads: assumed places", "分区位置为假定";
     ASSUMED_TIP: "Which channel belongs to which pad is not documented: channels 1 to 7 are drawn as pads 1 to 7 of the sensor maker's model. Channel 8 belongs to no pad and stands beside them.", "手册没有说明通道与分区的对应关系：这里假定通道 1 至 7 对应传感器厂家模型的分区 1 至 7。通道 8 不属于任何分区，画在旁边。";
     DETAIL: "Detail", "详情";
-    DETAIL_TIP: "The chosen fingertip: slip, force in space, channels over time.", "所选指尖：打滑、空间受力、各通道曲线。";
+    DETAIL_TIP: "The chosen fingertip: slip, forces, channels over time.", "所选指尖：打滑、受力、各通道曲线。";
     NUMBERS: "All numbers", "全部数值";
     NUMBERS_TIP: "Every value of all five fingertips as a number.", "五个指尖的全部数值。";
-    SPACE: "Force in space", "空间受力图";
-    SPACE_TIP: "The force on this fingertip: upwards the normal force, in the plane of the pads the tangential force (dashed: both shadows). Inside the cone the chosen friction holds.", "该指尖的受力：向上为法向力，分区平面内为切向力（虚线为投影）。在锥体内时，所选摩擦系数足以防滑。";
     FORCES: "Force, N", "力 N";
     CHANNELS: "Channels, counts", "通道，计数";
     RAW: "Raw", "原始";
@@ -39,7 +40,16 @@ texts! {
     BEYOND: "out of range", "超出范围";
     BEYOND_TIP: "The manual ends at 20 N. The number is shown as the hand sent it.", "手册上限为 20 N。数值按灵巧手发送的原样显示。";
     SLIP: "Slip", "打滑";
-    TARED_AGO: "Tared, ago", "已去皮，距今";
     TARED_NAME: "Taring of the chosen fingertip", "所选指尖的去皮状态";
-    NOT_TARED: "Not tared", "未去皮";
+    NOT_TARED: "Zero: first reading", "零点：首次读数";
+    NO_ZERO: "No zero yet: it is touched", "尚无零点：正在受力";
+}
+
+/// How long ago a fingertip was tared.
+pub(crate) fn tared(look: Look, ago: Duration) -> String {
+    let ago = format::age(ago);
+    match look.language {
+        Language::En => format!("Tared {ago} ago"),
+        Language::Zh => format!("{ago}前去皮"),
+    }
 }

@@ -57,6 +57,8 @@ pub(crate) const STRIP: f32 = 144.0;
 pub(crate) const STRIP_ROOMY: f32 = 640.0;
 /// The least height of the fingertips.
 pub(crate) const TIPS_LEAST: f32 = 200.0;
+/// Height of the list of faults beside the plots.
+pub(crate) const FAULTS: f32 = 104.0;
 /// The least height of the list of faults.
 pub(crate) const FAULTS_LEAST: f32 = 84.0;
 /// Width or height of a room that is shut.

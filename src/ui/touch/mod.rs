@@ -1,366 +1,282 @@
-//! The five fingertips: small over their numbers in the overview, large in their own view with one of them in detail.
+//! The five fingertips: small under the drawn hand in the overview, large in their own view with one of them in detail.
 pub(crate) mod fingertip;
 pub(crate) mod heat;
 pub(crate) mod table;
 pub(crate) mod tip_channels;
 pub(crate) mod tip_detail;
-pub(crate) mod tip_space;
 
 use crate::app::action::Action;
 use crate::app::readings::friction::Hold;
-use crate::hand::{Finger, PerFinger};
+use crate::hand::Finger;
 use crate::ui::hand::panel::HandPanel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
+use crate::ui::kit::controls::{self, Button, Label};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{panels, touch as text, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
-use crate::ui::touch::heat::HeatScale;
-use crate::ui::touch::table as touch_table;
-use crate::ui::touch::table::{LINES, Sheet, table_ui};
 use crate::ui::touch::tip_detail::TipDetail;
-use egui::{Align2, Id, Rect, Ui, pos2, vec2};
+use egui::{
+    Align, Frame, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui,
+    WidgetInfo, vec2,
+};
 
-/// Height of the overview's card in a column of this size: what the faults leave, as far as hand and fingertips fill it.
-pub(crate) fn overview_height(column: Rect) -> f32 {
-    let tips = FRAME + pictures_height(column.width()) + NUMBERS;
-    let roomy = column.height() >= tips + theme::HAND_LEAST + theme::TOUCH_FAULTS_LEAST;
-    let faults = if roomy {
-        theme::TOUCH_FAULTS_LEAST
-    } else {
-        theme::FAULTS_LEAST
-    };
-    let free = column.height() - faults - 2.0 * theme::GAP;
-    let filled = tips + theme::HAND_MOST + theme::GAP;
-    free.min(filled).max(theme::TIPS_LEAST).round()
-}
-
-/// What the card's edge and title take.
-const FRAME: f32 = 2.0 * theme::PAD + theme::CONTROL + theme::GAP;
-/// The numbers of the fingertips.
-const NUMBERS: f32 = 5.0 * theme::LIST_LINE;
-
-/// Height of the fingertips as pictures, with their names.
-fn pictures_height(width: f32) -> f32 {
-    let picture =
-        (width - 2.0 * theme::PAD - theme::TIP_NUMBERS_CAPTION) / 5.0 * fingertip::HEIGHT_TO_WIDTH;
-    theme::TITLE_LINE + picture + theme::STEP
-}
-
-/// Part of the view's height that the hand and the fingertips take, by what stands below.
+/// Lines of figures under a fingertip of the overview.
+const FIGURES: f32 = 3.0 * theme::LIST_LINE;
+/// The least height of the drawn hand.
+const HAND_LEAST: f32 = 150.0;
+/// Part of the view's height that the hand and the large fingertips take.
 const UPPER_PART: f32 = 0.48;
-const UPPER_BY_NUMBERS_PART: f32 = 0.46;
 
 /// What the person chose for the fingertips.
 #[derive(Debug, Default)]
 pub(crate) struct TouchView {
     hand: HandPanel,
-    scale: HeatScale,
     detail: TipDetail,
     /// All numbers instead of one fingertip.
     numbers: bool,
 }
 
 impl TouchView {
-    /// The card of the overview.
-    pub(crate) fn small_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+    /// The card of the overview: the hand, and below it as much of the fingertips as leaves the hand its room.
+    pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let (head, mut body) = controls::titled_card(ui, look, rect, look.say(panels::TOUCH));
-        self.scale.ui(ui, head, pane);
-        let tips = self.scale.tips(pane);
-        let (pictures, least) = (
-            pictures_height(rect.width()),
-            theme::HAND_LEAST + theme::GAP,
-        );
-        // Where room is short, the fingertips go before the hand does: it shows their heat and forces too.
-        let below = [pictures + NUMBERS, NUMBERS, 0.0]
-            .into_iter()
-            .find(|below| body.height() - below >= least)
-            .unwrap_or_default();
-        let height = body.height() - below - if below > 0.0 { theme::GAP } else { 0.0 };
-        let picture = controls::take_top(&mut body, height);
-        let place = (Id::unique("hand, small"), self.detail.finger);
-        let clicked = self.hand.ui(ui, picture, pane, &tips, place);
-        self.detail.finger = clicked.unwrap_or(self.detail.finger);
-        if below <= 0.0 {
-            return;
-        }
-        let captions = LINES.each_ref().map(|line| line.caption);
-        let sheet = Sheet::new(ui, look, &captions, 17.0, false);
-        let (pictures, table) = body.split_top_bottom_at_y(body.bottom() - 5.0 * sheet.row);
-        if below > NUMBERS {
-            let pictures = pictures.with_max_y(pictures.bottom() - theme::STEP);
-            self.pictures_ui(ui, pictures, pane, sheet, &tips);
-        }
-        table_ui(ui, table, pane, sheet);
+        let tips = heat::tips(pane);
+        controls::card_ui(ui, look, |ui| {
+            ui.set_min_height(ui.available_height());
+            controls::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
+                heat::scale_ui(ui, pane);
+            });
+            let width = ui.available_width();
+            let picture = (width / 5.0 - theme::GAP) * fingertip::HEIGHT_TO_WIDTH * 0.8;
+            let room = ui.available_height() - HAND_LEAST - theme::GAP;
+            let below = [picture + FIGURES, FIGURES, 0.0];
+            let below = below
+                .into_iter()
+                .find(|below| *below <= room)
+                .unwrap_or(0.0);
+            let height = ui.available_height() - below - theme::GAP;
+            ui.allocate_ui(vec2(width, height.max(1.0)), |ui| self.hand_ui(ui, pane));
+            if below > 0.0 {
+                ui.columns(Finger::ALL.len(), |columns| {
+                    for (ui, finger) in columns.iter_mut().zip(Finger::ALL) {
+                        let picture = (below > FIGURES).then_some(picture);
+                        self.column_ui(ui, pane, (finger, tips[finger].as_ref()), picture);
+                    }
+                });
+            }
+        });
+    }
+
+    /// One fingertip of the overview: its name, its picture if it has a height, and its forces.
+    fn column_ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &Pane<'_>,
+        (finger, tip): (Finger, Option<&Tip>),
+        picture: Option<f32>,
+    ) {
+        let look = pane.look;
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.vertical_centered(|ui| {
+            let color = look.palette.dof[finger.bend()];
+            let name = look.say(words::finger(finger));
+            Label::new(name, color).small().ui(ui);
+            if let Some(height) = picture {
+                let size = vec2(ui.available_width(), height);
+                let (place, response) = ui.allocate_exact_size(size, Senses::click());
+                fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
+                let name = format!("{}: {name}", look.say(panels::TIP));
+                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                if response
+                    .on_hover_text(look.say(panels::TOUCH_TIP))
+                    .clicked()
+                {
+                    self.detail.finger = finger;
+                }
+            }
+            for line in table::LINES.iter().take(2) {
+                table::value_ui(ui, pane, finger, line);
+            }
+        });
     }
 
     /// The drawn hand alone.
-    pub(crate) fn hand_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        let tips = self.scale.tips(pane);
-        let place = (Id::unique("hand, alone"), self.detail.finger);
-        let clicked = self.hand.ui(ui, rect, pane, &tips, place);
+    pub(crate) fn hand_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let clicked = self.hand.ui(ui, pane, &heat::tips(pane));
         self.detail.finger = clicked.unwrap_or(self.detail.finger);
     }
 
     /// The view of its own: the hand and five large fingertips over the chosen one in detail, or all numbers.
-    pub(crate) fn large_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+    pub(crate) fn large_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let tips = self.scale.tips(pane);
         self.detail.follow(pane);
-        let share = if self.numbers {
-            UPPER_BY_NUMBERS_PART
-        } else {
-            UPPER_PART
+        let height = (ui.available_height() * UPPER_PART).round();
+        let bare = |panel: Panel, size: f32| {
+            let panel = panel.exact_size(size).resizable(false);
+            panel.show_separator_line(false).frame(Frame::NONE)
         };
-        let (upper, lower) =
-            rect.split_top_bottom_at_y(rect.top() + (rect.height() * share).round());
-        let upper = upper.with_max_y(upper.bottom() - theme::GAP);
-        let width = (upper.height() * 0.96).min(upper.width() * 0.36).round();
-        let (hand, right) = upper.split_left_right_at_x(upper.left() + width);
-        let hand = hand.with_max_x(hand.right() - theme::GAP);
-        let (_, picture) = controls::titled_card(ui, look, hand, look.say(panels::HAND));
-        let place = (Id::unique("hand, large"), self.detail.finger);
-        let clicked = self.hand.ui(ui, picture, pane, &tips, place);
-        self.detail.finger = clicked.unwrap_or(self.detail.finger);
-        let (head, mut body) = controls::titled_card(ui, look, right, look.say(panels::TOUCH));
-        self.scale.ui(ui, head, pane);
-        let buttons = controls::take_top(&mut body, theme::CONTROL);
-        self.tare_ui(ui, buttons, pane);
-        self.tips_ui(ui, body, pane, &tips);
-        self.lower_ui(ui, lower, pane, &tips);
+        bare(Panel::top("touch, upper"), height).show(ui, |ui| {
+            let width = (height * 0.96).min(ui.available_width() * 0.36).round();
+            let left = bare(Panel::left("touch, hand"), width);
+            let gap = Margin {
+                right: 8,
+                ..Margin::ZERO
+            };
+            left.frame(Frame::new().inner_margin(gap)).show(ui, |ui| {
+                controls::card_ui(ui, look, |ui| {
+                    controls::head_ui(ui, look, look.say(panels::HAND), |_| {});
+                    self.hand_ui(ui, pane);
+                });
+            });
+            controls::card_ui(ui, look, |ui| {
+                controls::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
+                    heat::scale_ui(ui, pane);
+                });
+                self.tare_ui(ui, pane);
+                let tips = heat::tips(pane);
+                let height = ui.available_height();
+                ui.columns(Finger::ALL.len(), |columns| {
+                    for (ui, finger) in columns.iter_mut().zip(Finger::ALL) {
+                        let (_, place) = ui.allocate_space(vec2(ui.available_width(), height));
+                        self.tip_ui(ui, place, pane, (finger, tips[finger].as_ref()));
+                    }
+                });
+            });
+        });
+        ui.add_space(theme::GAP);
+        controls::card_ui(ui, look, |ui| {
+            ui.set_min_height(ui.available_height());
+            self.lower_ui(ui, pane);
+        });
     }
 
-    fn lower_ui(
-        &mut self,
-        ui: &mut Ui,
-        rect: Rect,
-        pane: &Pane<'_>,
-        tips: &PerFinger<Option<Tip>>,
-    ) {
+    fn lower_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
         let finger = self.detail.finger;
-        let title = format!(
-            "{}: {}",
-            look.say(panels::TIP),
-            look.say(words::finger(finger))
-        );
-        let (mut head, body) = controls::titled_card(ui, look, rect, &title);
-        for (name, tip, numbers) in [
-            (text::NUMBERS, text::NUMBERS_TIP, true),
-            (text::DETAIL, text::DETAIL_TIP, false),
-        ] {
-            let words = look.say(name);
-            let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
-            let place = controls::take_right(&mut head, width);
-            let button = Button::new(words, look.say(tip)).choice(self.numbers == numbers);
-            if button
-                .put(ui, look, place, Id::unique(("lower", numbers)))
-                .clicked()
-            {
-                self.numbers = numbers;
-            }
-        }
-        let rest = pane
-            .state
-            .hand()
-            .tare
-            .rest(finger)
-            .filter(|rest| rest.chosen);
-        let tared = rest.map_or_else(
-            || look.say(text::NOT_TARED).to_owned(),
-            |rest| {
-                let age = format::age(pane.state.now.since(rest.at));
-                format!("{} {age}", look.say(text::TARED_AGO))
-            },
-        );
-        let (left, right) = head.split_left_right_at_fraction(0.5);
-        Label::new(&tared, look.palette.muted)
-            .small()
-            .named(look.say(text::TARED_NAME))
-            .put(ui, left);
-        Label::new(look.say(text::ASSUMED), look.palette.faint)
-            .small()
-            .right()
-            .put(ui, right)
-            .on_hover_text(look.say(text::ASSUMED_TIP));
-        if self.numbers {
-            touch_table::all_ui(ui, body, pane);
-        } else {
-            self.detail.ui(ui, body, pane, tips[finger].as_ref());
-        }
-    }
-
-    /// Five large fingertips, each a button that chooses it, with its forces.
-    fn tips_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, tips: &PerFinger<Option<Tip>>) {
-        let look = pane.look;
-        let width = rect.width() / 5.0;
-        for (finger, at) in Finger::ALL.into_iter().zip(0u8..) {
-            let left = rect.left() + width * f32::from(at);
-            let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
-            let place = place.shrink2(vec2(1.0, 0.0));
-            let name = look.say(words::finger(finger));
-            let label = format!("{}: {name}", look.say(panels::TIP));
-            let button = Button::new(name, look.say(panels::TOUCH_TIP))
-                .named(&label)
-                .choice(self.detail.finger == finger);
-            let id = Id::unique(("tip", finger));
-            if button.ground(ui, look, place, id).clicked() {
-                self.detail.finger = finger;
-            }
-            self.tip_ui(
-                ui,
-                place.shrink(theme::STEP),
-                pane,
-                finger,
-                tips[finger].as_ref(),
-            );
-        }
-    }
-
-    fn tip_ui(&self, ui: &mut Ui, place: Rect, pane: &Pane<'_>, finger: Finger, tip: Option<&Tip>) {
-        let look = pane.look;
-        let color = look.palette.dof[finger.bend()];
-        let mut column = place;
-        let title = controls::take_top(&mut column, theme::TIP_TITLE);
         let name = look.say(words::finger(finger));
-        controls::paint_text(ui, title, Align2::CENTER_CENTER, name, theme::body(), color);
-        let (picture, values) = column.split_top_bottom_at_y(column.bottom() - theme::TIP_VALUES);
-        fingertip::paint(
-            ui.painter(),
-            look,
-            picture,
-            &tip.copied().unwrap_or_default(),
-        );
+        let title = format!("{}: {name}", look.say(panels::TIP));
+        controls::head_ui(ui, look, &title, |ui| {
+            for (name, tip, numbers) in [
+                (text::NUMBERS, text::NUMBERS_TIP, true),
+                (text::DETAIL, text::DETAIL_TIP, false),
+            ] {
+                let button = Button::new(look.say(name), look.say(tip));
+                let button = button.choice(self.numbers == numbers);
+                if button.ui(ui, look).clicked() {
+                    self.numbers = numbers;
+                }
+            }
+            let assumed = Label::new(look.say(text::ASSUMED), look.palette.muted).small();
+            assumed.ui(ui).on_hover_text(look.say(text::ASSUMED_TIP));
+            let rest = pane.state.hand().tare.rest(finger);
+            let tared = match rest {
+                None => look.say(text::NO_ZERO).to_owned(),
+                Some(rest) if !rest.chosen => look.say(text::NOT_TARED).to_owned(),
+                Some(rest) => text::tared(look, pane.state.now.since(rest.at)),
+            };
+            let tared = Label::new(&tared, look.palette.muted).small();
+            tared.named(look.say(text::TARED_NAME)).ui(ui);
+        });
+        if self.numbers {
+            ScrollArea::vertical()
+                .auto_shrink(false)
+                .show(ui, |ui| table::all_ui(ui, pane));
+        } else {
+            let (_, place) = ui.allocate_space(ui.available_size());
+            self.detail.ui(ui, place, pane);
+        }
+    }
+
+    /// A large fingertip: a button that chooses it, with its forces.
+    fn tip_ui(
+        &mut self,
+        ui: &mut Ui,
+        place: Rect,
+        pane: &Pane<'_>,
+        (finger, tip): (Finger, Option<&Tip>),
+    ) {
+        let look = pane.look;
+        let name = look.say(words::finger(finger));
+        let label = format!("{}: {name}", look.say(panels::TIP));
+        let button = Button::new(name, look.say(panels::TOUCH_TIP))
+            .named(&label)
+            .choice(self.detail.finger == finger);
+        let id = Id::unique(("tip", finger));
+        if button.ground(ui, look, place, id).clicked() {
+            self.detail.finger = finger;
+        }
         let block = pane.state.hand().sample.tactile[finger];
-        let freshness = pane.state.hand().tip_freshness(finger);
         let block = block.map(|block| block.value);
-        let (first, second) = values.split_top_bottom_at_fraction(0.5);
-        let normal = format!("{} N", format::newtons(block.map(|block| block.normal_n)));
         let sense = tip.map_or(Sense::Fine, |tip| tip.sense);
-        let hold = self.detail.hold(finger);
-        let (below, below_color) = match (sense, hold) {
+        let (below, color) = match (sense, self.detail.hold(finger)) {
             (Sense::NoNumber, _) => (look.say(text::NO_NUMBER).to_owned(), look.palette.warn),
             (Sense::Beyond, _) => (look.say(text::BEYOND).to_owned(), look.palette.warn),
             (Sense::Fine, Hold::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
             (Sense::Fine, _) => {
                 let shear = format::newtons(block.map(|block| block.tangential_n));
-                let way = block.map_or(String::new(), |block| touch_table::direction(&block, look));
+                let way = block.map_or(String::new(), |block| table::direction(&block, look));
                 (format!("{shear} N {way}"), look.palette.muted)
             }
         };
-        let strong = if sense == Sense::Fine {
-            look.palette.text
-        } else {
-            look.palette.warn
+        let normal = format!("{} N", format::newtons(block.map(|block| block.normal_n)));
+        let strong = match sense {
+            Sense::Fine => look.palette.text,
+            _ => look.palette.warn,
         };
-        let tip = match sense {
+        let meaning = look.say(match sense {
             Sense::Beyond => text::BEYOND_TIP,
             _ => panels::TOUCH_TIP,
-        };
-        let tip = look.say(tip);
-        for (place, words, font, color) in [
-            (first, normal, theme::title(), strong),
-            (second, below, theme::small(), below_color),
-        ] {
-            let name = format!(
-                "{name} {}",
-                look.say(if place == first {
-                    panels::TOUCH_NORMAL_NAME
-                } else {
-                    panels::TOUCH_SHEAR_NAME
-                })
-            );
-            Label::new(&words, look.value(freshness, color))
-                .font(font)
-                .center()
-                .named(&name)
-                .put(ui, place)
-                .on_hover_text(tip);
-        }
+        });
+        let freshness = pane.state.hand().tip_freshness(finger);
+        let builder = egui::UiBuilder::new()
+            .max_rect(place.shrink(theme::STEP))
+            .layout(Layout::bottom_up(Align::Center));
+        ui.scope_builder(builder, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let figures = [
+                (below, panels::TOUCH_SHEAR_NAME, theme::small(), color),
+                (normal, panels::TOUCH_NORMAL_NAME, theme::title(), strong),
+            ];
+            for (words, what, font, color) in figures {
+                let name = format!("{name} {}", look.say(what));
+                let label = Label::new(&words, look.value(freshness, color)).font(font);
+                label.named(&name).ui(ui).on_hover_text(meaning);
+            }
+            let top = ui.available_height() - theme::TITLE_LINE;
+            let (_, place) = ui.allocate_space(vec2(ui.available_width(), top));
+            fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
+            Label::new(name, look.palette.dof[finger.bend()]).ui(ui);
+        });
     }
 
-    /// Taring, and the lock of the colours.
-    fn tare_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
+    /// Taring of all fingertips, of one, and back.
+    fn tare_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let live = pane.state.hand().link.state.is_live();
-        let offline = (!live).then(|| look.say(panels::TARE_OFFLINE));
+        let hand = pane.state.hand();
+        let offline = (!hand.link.state.is_live()).then(|| look.say(panels::TARE_OFFLINE));
         let finger = self.detail.finger;
-        let one = format!(
-            "{} {}",
-            look.say(panels::TARE_ONE),
-            look.say(words::finger(finger))
-        );
-        let nothing = (!pane.state.hand().tare.can_undo()).then(|| look.say(panels::TARE_NOTHING));
+        let name = look.say(words::finger(finger));
+        let one = format!("{} {name}", look.say(panels::TARE_ONE));
         let all = look.say(panels::TARE_ALL);
-        let buttons = [
-            (all, panels::TARE_ALL_TIP, offline, Action::Tare(None)),
-            (
-                &one,
-                panels::TARE_ONE_TIP,
-                offline,
-                Action::Tare(Some(finger)),
-            ),
-            (
-                look.say(panels::TARE_UNDO),
-                panels::TARE_UNDO_TIP,
-                nothing,
-                Action::UndoTare,
-            ),
-        ];
-        for (at, (text, tip, disabled, action)) in buttons.into_iter().enumerate() {
-            let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-            let place = controls::take_left(&mut row, width);
-            let id = Id::unique(("tare", at));
-            let button = Button::new(text, look.say(tip)).disabled(disabled);
-            if button.put(ui, look, place, id).clicked() {
-                pane.actions.push(action);
+        let nothing = (!hand.tare.can_undo()).then(|| look.say(panels::TARE_NOTHING));
+        let undo = look.say(panels::TARE_UNDO);
+        ui.horizontal(|ui| {
+            for (words, tip, disabled, action) in [
+                (all, panels::TARE_ALL_TIP, offline, Action::Tare(None)),
+                (
+                    &one,
+                    panels::TARE_ONE_TIP,
+                    offline,
+                    Action::Tare(Some(finger)),
+                ),
+                (undo, panels::TARE_UNDO_TIP, nothing, Action::UndoTare),
+            ] {
+                let button = Button::new(words, look.say(tip)).disabled(disabled);
+                if button.ui(ui, look).clicked() {
+                    pane.actions.push(action);
+                }
             }
-        }
-        let text = look.say(panels::HEAT_LOCK);
-        let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-        let place = controls::take_right(&mut row, width);
-        let lock =
-            Button::new(text, look.say(panels::HEAT_LOCK_TIP)).choice(self.scale.locked.is_some());
-        if lock.put(ui, look, place, Id::unique("heat lock")).clicked() {
-            self.scale.locked = match self.scale.locked {
-                Some(_) => None,
-                None => Some(self.scale.full(pane)),
-            };
-        }
-    }
-
-    fn pictures_ui(
-        &mut self,
-        ui: &mut Ui,
-        rect: Rect,
-        pane: &Pane<'_>,
-        sheet: Sheet,
-        tips: &PerFinger<Option<Tip>>,
-    ) {
-        let look = pane.look;
-        for (finger, mut column) in sheet.columns(rect) {
-            let name = look.say(words::finger(finger));
-            let title = controls::take_top(&mut column, theme::TEXT_LINE);
-            let color = look.palette.dof[finger.bend()];
-            Label::new(name, color).small().center().put(ui, title);
-            let place = column.with_min_y(column.top() - theme::STEP);
-            let tip = tips[finger].unwrap_or_default();
-            fingertip::paint(ui.painter(), look, place, &tip);
-            let response = ui.allocate_rect(place, egui::Sense::click());
-            if response
-                .on_hover_text(look.say(panels::TOUCH_TIP))
-                .clicked()
-            {
-                self.detail.finger = finger;
-            }
-            if tips[finger].is_none() {
-                Label::new(format::UNKNOWN, look.palette.faint)
-                    .center()
-                    .put(ui, place);
-            }
-        }
+        });
     }
 }

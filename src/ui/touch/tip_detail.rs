@@ -1,4 +1,4 @@
-//! One fingertip in detail: how near its grip is to slipping, its force in space, its forces and channels over time.
+//! One fingertip in detail: how near its grip is to slipping, its forces and channels over time.
 
 use crate::app::hand::Freshness;
 use crate::app::readings::friction::{Grip, Hold, NEAR};
@@ -14,11 +14,8 @@ use crate::ui::plots::chart::{Chart, ChartView, Curve, Points, Times};
 use crate::ui::plots::legend::{Key, legend_ui};
 use crate::ui::text::{Text, panels, touch as text};
 use crate::ui::theme;
-use crate::ui::touch::fingertip::Tip;
 use crate::ui::touch::table as touch_table;
 use crate::ui::touch::tip_channels::TipChannels;
-use crate::ui::touch::tip_space;
-use crate::ui::touch::tip_space::Force;
 use egui::{Align2, Color32, Id, Painter, Pos2, Rect, Stroke, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::LineStyle;
 
@@ -76,32 +73,13 @@ impl TipDetail {
         self.holds[finger]
     }
 
-    /// Compass, force in space, readings, forces and channels over time: as many as find room.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, tip: Option<&Tip>) {
+    /// Compass, readings, forces and channels over time: as many as find room.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let mut body = rect;
-        let stacked = ((rect.height() - theme::GAP) / 2.0).floor();
-        let is_wide = rect.width() >= theme::TIP_DETAIL_WIDE;
-        let size = if stacked >= theme::TIP_SQUARE_LEAST {
-            stacked.min(rect.width() * 0.22)
-        } else {
-            rect.height().min(rect.width() * 0.22)
-        };
+        let size = rect.height().min(rect.width() * 0.22);
         let mut squares = controls::take_left(&mut body, size);
         let compass = controls::take_top(&mut squares, size);
         self.compass_ui(ui, compass, pane);
-        let space = if stacked >= theme::TIP_SQUARE_LEAST {
-            Some(squares.with_max_y(squares.top() + size))
-        } else {
-            is_wide.then(|| controls::take_left(&mut body, size).with_max_y(rect.top() + size))
-        };
-        if let Some(space) = space {
-            let force = Force {
-                tip,
-                friction: self.friction(),
-                color: color_of(self.hold(self.finger), pane.look.palette),
-            };
-            tip_space::ui(ui, pane.look, space, Id::unique("force in space"), force);
-        }
         let width = (body.width() * 0.28).clamp(theme::TIP_READINGS.0, theme::TIP_READINGS.1);
         let readings = controls::take_left(&mut body, width);
         self.readings_ui(ui, readings, pane);

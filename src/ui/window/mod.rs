@@ -52,7 +52,7 @@ use crate::ui::window::keys::Wish;
 use crate::ui::window::rooms::{RoomSize, Rooms};
 use crate::ui::window::status::StatusLine;
 
-use crate::ui::touch::{self, TouchView};
+use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
 use egui::{Frame, Margin, Panel, Rect, Stroke, Ui, UiBuilder};
@@ -298,7 +298,10 @@ impl Window {
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
-            View::Touch => self.touch.large_ui(ui, rect, pane),
+            View::Touch => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.touch.large_ui(ui, pane));
+            }
             View::Tune => {
                 if let Some(view) = self.tune.ui(ui, rect, pane) {
                     self.view = view;
@@ -347,9 +350,8 @@ impl Window {
             rest: theme::PLOTS_LEAST,
         };
         rooms.room_ui(ui, pane, (Room::Side, side), |ui, pane| {
-            let column = ui.available_rect_before_wrap();
             let faults = RoomSize {
-                designed: column.height() - touch::overview_height(column),
+                designed: theme::FAULTS + theme::GAP,
                 least: theme::FAULTS_LEAST + theme::GAP,
                 rest: theme::TIPS_LEAST,
             };
@@ -357,8 +359,7 @@ impl Window {
                 let rect = ui.available_rect_before_wrap();
                 faults::faults_card_ui(ui, rect, pane);
             });
-            let rect = ui.available_rect_before_wrap();
-            touch.small_ui(ui, rect, pane);
+            touch.small_ui(ui, pane);
         });
         let rect = ui.available_rect_before_wrap();
         self.plots_ui(ui, rect, pane);
@@ -378,9 +379,7 @@ impl Window {
 
     /// Draws the hand and nothing else, over all of `ui`: for pictures and measurements.
     pub fn hand_alone_ui(&mut self, ui: &mut Ui, state: &State) {
-        alone_ui(ui, state, |ui, rect, pane| {
-            self.touch.hand_ui(ui, rect, pane)
-        });
+        alone_ui(ui, state, |ui, _, pane| self.touch.hand_ui(ui, pane));
     }
 
     fn plots_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
