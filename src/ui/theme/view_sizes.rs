@@ -26,8 +26,6 @@ pub(crate) const POSE_CAPTION: f32 = 88.0;
 pub(crate) const POSE_TILE: egui::Vec2 = egui::vec2(112.0, 158.0);
 /// Width of the field that finds poses.
 pub(crate) const POSE_FIND: f32 = 200.0;
-/// Width of a time in the list of events.
-pub(crate) const RECORDINGS_TIME: f32 = 54.0;
 /// Height of a step.
 pub(crate) const STEP_ROW: f32 = 40.0;
 /// Width of the list of sequences.
@@ -78,14 +76,6 @@ pub(crate) const FRAME_SIGN: f32 = 16.0;
 pub(crate) const UNSEEN_MARK: f32 = 12.0;
 /// Width of a ring.
 pub(crate) const RING_LINE: f32 = 1.6;
-/// Width of the age of a message in the overview.
-pub(crate) const MESSAGE_AGE_SHORT: f32 = 48.0;
-/// What a message keeps from the next.
-pub(crate) const MESSAGE_MARGIN: f32 = 6.0;
-/// What the first line of a message has more than others.
-pub(crate) const MESSAGE_LEAD: f32 = 5.0;
-/// Where its words begin below its upper edge.
-pub(crate) const MESSAGE_TEXT_TOP: f32 = 3.0;
 /// Where the middle of the first line of a message is.
 pub(crate) const MESSAGE_FIRST: f32 = 7.0;
 /// Height of a line of small words.
@@ -150,8 +140,6 @@ pub(crate) const NAME_INSET: egui::Margin = egui::Margin::symmetric(4, 0);
 pub(crate) const GESTURES_FIVE: f32 = 640.0;
 /// Height from which a drive's tile says the cause.
 pub(crate) const CAUSE_LEAST: f32 = 26.0;
-/// Least width of a message.
-pub(crate) const MESSAGE_LEAST: f32 = 40.0;
 
 /// Width from which what is in flash stands beside the table of what the hand keeps.
 pub(crate) const DEVICE_WIDE: f32 = 860.0;

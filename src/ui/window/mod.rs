@@ -254,7 +254,10 @@ impl Window {
                 }
             }
             View::Compare => self.compare.ui(ui, rect, pane),
-            View::Faults => self.faults.ui(ui, rect, pane),
+            View::Faults => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.faults.ui(ui, pane));
+            }
             View::Poses => self.poses.ui(ui, rect, pane),
             View::Device => self.device.ui(ui, rect, pane),
             View::Connection => {
@@ -297,7 +300,8 @@ impl Window {
         if layout.faults.shut {
             shut_ui(ui, pane, rooms.faults, Room::Faults, Side::Bottom);
         } else {
-            faults::faults_card_ui(ui, rooms.faults, pane);
+            let place = UiBuilder::new().max_rect(rooms.faults);
+            ui.scope_builder(place, |ui| faults::faults_card_ui(ui, pane));
         }
     }
 
