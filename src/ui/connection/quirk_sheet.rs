@@ -7,10 +7,8 @@ use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::kit::controls::{self, Button, Label};
 use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::Pane;
-use crate::ui::params::place_buttons;
 use crate::ui::text::{Text, quirks as text};
-use crate::ui::theme;
-use egui::{Ui, vec2};
+use egui::Ui;
 
 /// The edition of the manual by which a code is read; others number differently.
 const EDITION: &str = "V1.0.0";
@@ -51,9 +49,6 @@ pub(crate) fn sheet_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 line(ui, text::GAP, quirks.gap.map(|gap| said(text::gap(gap))));
             }
         });
-        let size = vec2(ui.available_width(), theme::CONTROL);
-        let (_, mut row) = ui.allocate_space(size);
-        place_buttons::right_ui(ui, &mut row, pane);
     });
 }
 

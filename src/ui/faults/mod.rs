@@ -46,7 +46,7 @@ enum Section {
 pub(crate) fn faults_card_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let title = look.say(panels::FAULTS);
-    full_card_ui(ui, pane, |ui, pane| {
+    controls::full_card_ui(ui, look, |ui| {
         controls::head_ui(ui, look, title, |ui| clear_ui(ui, pane));
         scroll_ui(ui, |ui| {
             let open = entry::steady(ui, pane, |entry| entry.is_active() || !entry.seen);
@@ -67,14 +67,6 @@ pub(crate) fn faults_card_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// A card over all the room there is.
-fn full_card_ui(ui: &mut Ui, pane: &mut Pane<'_>, add: impl FnOnce(&mut Ui, &mut Pane<'_>)) {
-    controls::card_ui(ui, pane.look, |ui| {
-        ui.set_min_height(ui.available_height());
-        ui.vertical(|ui| add(ui, pane));
-    });
-}
-
 impl FaultsView {
     /// Shows what this joint says, and its faults first; of no joint, all of them alike.
     pub(crate) const fn choose(&mut self, dof: Option<Dof>) {
@@ -91,15 +83,16 @@ impl FaultsView {
             self.recordings.close();
         }
         if let Some(recording) = self.recordings.opened(pane) {
-            full_card_ui(ui, pane, |ui, pane| {
+            controls::full_card_ui(ui, pane.look, |ui| {
                 self.recordings.recording_ui(ui, pane, &recording);
             });
             return;
         }
+        let look = pane.look;
         ui.columns(2, |columns| {
             let [left, right] = columns else { return };
-            full_card_ui(left, pane, |ui, pane| self.faults_ui(ui, pane));
-            full_card_ui(right, pane, |ui, pane| self.beside_ui(ui, pane));
+            controls::full_card_ui(left, look, |ui| self.faults_ui(ui, pane));
+            controls::full_card_ui(right, look, |ui| self.beside_ui(ui, pane));
         });
     }
 

@@ -8,17 +8,8 @@ use crate::ui::text::cards;
 use crate::ui::theme;
 use egui::{Id, Rect, Ui};
 
-/// Draws them at the right end of a row, and takes their room from it.
-pub(crate) fn right_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>) {
-    entries_ui(ui, row, pane, controls::take_right);
-}
-
 /// Draws them at the left end of a row, and takes their room from it.
 pub(crate) fn left_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>) {
-    entries_ui(ui, row, pane, controls::take_left);
-}
-
-fn entries_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>, take: fn(&mut Rect, f32) -> Rect) {
     let look = pane.look;
     let live = pane.state.hand().link.state.is_live();
     let reason = (!live).then(|| look.say(cards::NO_HAND));
@@ -35,7 +26,7 @@ fn entries_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>, take: fn(&mut Re
         ),
     ] {
         let width = controls::text_width(ui, look.say(text), theme::body()) + 2.0 * theme::PAD;
-        let place = take(row, width);
+        let place = controls::take_left(row, width);
         let button = Button::new(look.say(text), look.say(tip)).disabled(reason);
         if button
             .put(ui, look, place, Id::unique(("guarded", text.en)))

@@ -264,7 +264,10 @@ impl Window {
                 let place = UiBuilder::new().max_rect(rect);
                 ui.scope_builder(place, |ui| self.connection.ui(ui, pane));
             }
-            View::Traffic => self.traffic.ui(ui, rect, pane),
+            View::Traffic => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.traffic.ui(ui, pane));
+            }
         }
     }
 
