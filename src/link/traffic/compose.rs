@@ -168,6 +168,25 @@ impl Recipe {
         }
     }
 
+    /// The recipe of one frame that passed over the wire of this endpoint; none on CAN, where the bytes hold more than
+    /// the frame.
+    #[must_use]
+    pub fn passed(bytes: &[u8], endpoint: &Endpoint) -> Option<Self> {
+        let wire = RecipeWire::of(endpoint);
+        if matches!(wire, RecipeWire::Can) {
+            return None;
+        }
+        let frame = RecipeFrame {
+            can_id: None,
+            bytes: bytes.into(),
+        };
+        Some(Self {
+            wire,
+            place: Place::of(wire, Some(endpoint)),
+            frames: vec![frame],
+        })
+    }
+
     /// The recipe written down.
     #[must_use]
     pub fn text(&self, form: RecipeForm) -> String {

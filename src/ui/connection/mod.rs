@@ -17,7 +17,7 @@ use crate::ui::kit::controls::{self, Button, Label, Weight};
 use crate::ui::kit::look::{Look, Pane};
 use crate::ui::text::{errors, panels, quirks, scan as scan_text};
 use crate::ui::theme;
-use egui::{ScrollArea, Ui, vec2};
+use egui::{ScrollArea, Ui};
 use std::collections::BTreeMap;
 
 /// Width from which the scan has a column of its own.
@@ -186,32 +186,23 @@ impl ConnectionForm {
         });
     }
 
-    /// The field for port, interface or address, and the button that scans there.
-    fn place_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, key: &'static str) {
+    /// Scans where the fields say, if they say where.
+    fn scan_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let name = look.say(panels::setting(key));
-        row_ui(ui, look, name, |ui| {
-            let scan = look.say(panels::SCAN_HERE);
-            let width = controls::text_width(ui, scan, theme::body()) + 2.0 * theme::PAD;
-            let width = ui.available_width() - width - theme::GAP;
-            let text = self.fields.entry(key).or_default();
-            ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
-                controls::edit_ui(ui, name, name, text)
-            });
-            let (place, ids) = (text.trim().to_owned(), self.scan.ids);
-            let button = Button::new(scan, look.say(panels::SCAN_HERE_TIP));
-            let missing = place.is_empty().then_some(scan_text::ADDRESS_EMPTY);
-            if !scan::start_ui(ui, pane, button, missing) {
-                return;
-            }
-            match key {
-                "host" => self.scan.scan_hosts(pane, place),
-                "interface" => pane
-                    .actions
-                    .push(Action::Scan(ScanWish::Interface(place, ids))),
-                _ => pane.actions.push(Action::Scan(ScanWish::Port(place, ids))),
-            }
-        });
+        let Some(key) = self.place() else { return };
+        let (place, ids) = (self.field(key).to_owned(), self.scan.ids);
+        let (text, tip) = (look.say(panels::SCAN_HERE), look.say(panels::SCAN_HERE_TIP));
+        let missing = place.is_empty().then_some(scan_text::ADDRESS_EMPTY);
+        if !scan::start_ui(ui, pane, Button::new(text, tip).large(), missing) {
+            return;
+        }
+        match key {
+            "host" => self.scan.scan_hosts(pane, place),
+            "interface" => pane
+                .actions
+                .push(Action::Scan(ScanWish::Interface(place, ids))),
+            _ => pane.actions.push(Action::Scan(ScanWish::Port(place, ids))),
+        }
     }
 
     fn ports_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -248,13 +239,6 @@ impl ConnectionForm {
     /// One field: typed, or chosen where there are few; what is in force is among the choices.
     fn key_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, key: &'static str) {
         let look = pane.look;
-        if PLACES.contains(&key) {
-            self.place_ui(ui, pane, key);
-            if key == "port" {
-                self.ports_ui(ui, pane);
-            }
-            return;
-        }
         let plain = |number: u32| (number.to_string(), number.to_string());
         let said = |key: &str, text| (key.to_owned(), look.say(text).to_owned());
         let mut all = match key {
@@ -289,6 +273,9 @@ impl ConnectionForm {
             ui.spacing_mut().combo_width = ui.available_width();
             controls::choose_ui(ui, caption, text, &all);
         });
+        if key == "port" {
+            self.ports_ui(ui, pane);
+        }
         if key == "packing" {
             let tip = Label::new(look.say(quirks::PACKING_TIP), look.palette.muted);
             tip.small().wrap().ui(ui);
@@ -304,7 +291,7 @@ impl ConnectionForm {
             let label = Label::new(text, look.palette.text).number().wrap();
             label.named(look.say(panels::ENDPOINT)).ui(ui);
         });
-        row_ui(ui, look, "", |ui| {
+        ui.horizontal_wrapped(|ui| {
             let connect = Button::new(look.say(panels::CONNECT), look.say(panels::CONNECT_TIP));
             if connect
                 .weight(Weight::Strong)
@@ -326,6 +313,7 @@ impl ConnectionForm {
             if disconnect.large().ui(ui, look).clicked() {
                 pane.actions.push(Action::Disconnect);
             }
+            self.scan_ui(ui, pane);
         });
         if let (Err(error), true) = (&parsed, self.refused.as_ref() == Some(&spelled)) {
             let text = errors::endpoint(look, error);

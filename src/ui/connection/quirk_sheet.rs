@@ -7,7 +7,6 @@ use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::kit::controls::{self, Button, Label};
 use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::Pane;
-use crate::ui::params::flash::guarded_ui;
 use crate::ui::text::{Text, quirks as text};
 use egui::Ui;
 
@@ -50,7 +49,6 @@ pub(crate) fn sheet_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 line(ui, text::GAP, quirks.gap.map(|gap| said(text::gap(gap))));
             }
         });
-        ui.horizontal(|ui| guarded_ui(ui, pane));
     });
 }
 

@@ -7,14 +7,12 @@ use crate::app::readings::cooling::{Course, Goal, Source};
 use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::{Dof, Fault};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_right};
+use crate::ui::kit::controls::{self, Button, Label};
 use crate::ui::kit::format;
-use crate::ui::kit::list::{INDENT, LAMP_AT, TITLE_LINE, piece, wrapped_ui};
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::theme;
-use egui::{CornerRadius, Id, Shape, Ui, epaint::RectShape, pos2, vec2};
+use egui::{Color32, CornerRadius, Frame, Margin, ScrollArea, Sense, Ui, vec2};
 use std::time::Duration;
 
 /// How much is said of a fault.
@@ -28,137 +26,155 @@ pub(crate) enum Depth {
     Chosen,
 }
 
+/// The entries of a list, which keep their places while the pointer is over it: what is new then comes last.
+pub(crate) fn steady(
+    ui: &Ui,
+    pane: &Pane<'_>,
+    wanted: impl Fn(&FaultEntry) -> bool,
+) -> Vec<FaultEntry> {
+    let faults = pane.state.hand().faults.iter();
+    let mut entries: Vec<FaultEntry> = faults.copied().filter(|entry| wanted(entry)).collect();
+    let place = ui.scope_id().with("order");
+    if ui.rect_contains_pointer(ui.clip_rect()) {
+        let before: Vec<(Dof, FaultKind)> =
+            ui.data(|data| data.get_temp(place)).unwrap_or_default();
+        let at = |entry: &FaultEntry| before.iter().position(|it| *it == (entry.dof, entry.what));
+        entries.sort_by_key(|entry| at(entry).unwrap_or(usize::MAX));
+    }
+    let order: Vec<(Dof, FaultKind)> = entries
+        .iter()
+        .map(|entry| (entry.dof, entry.what))
+        .collect();
+    ui.data_mut(|data| data.insert_temp(place, order));
+    entries
+}
+
 /// Draws one entry of the list; the recording of it that is to be opened.
 pub(crate) fn entry_ui(
     ui: &mut Ui,
-    width: f32,
     pane: &mut Pane<'_>,
     entry: &FaultEntry,
     depth: Depth,
 ) -> Option<RecordingId> {
     let look = pane.look;
     let palette = look.palette;
-    let ground = ui.painter().add(Shape::Noop);
-    let top = ui.cursor().top();
-    let left = ui.cursor().left();
-    title_ui(ui, width, pane, entry);
-    let quiet = !entry.is_active() && entry.seen;
-    let said = notices::fault_kind(entry.what, look.language);
-    if !quiet || depth == Depth::Chosen {
-        wrapped_ui(ui, width, INDENT, said.cause, palette.muted);
-        let advice = format!("{} {}", look.say(faults::TODO), said.advice);
-        wrapped_ui(ui, width, INDENT, &advice, palette.text);
-    }
-    if entry.is_active() {
-        clear_words_ui(ui, width, pane, entry);
-    }
-    let asked = if depth == Depth::Short {
-        None
-    } else {
-        foot_ui(ui, width, pane, entry)
-    };
+    let mut ground = Frame::new().corner_radius(CornerRadius::same(theme::ROUND_SMALL));
     if depth == Depth::Chosen {
-        let place = egui::Rect::from_min_max(
-            pos2(left - theme::STEP, top - theme::STEP / 2.0),
-            pos2(
-                left + width + theme::STEP,
-                ui.cursor().top() + theme::STEP / 2.0,
-            ),
-        );
-        let fill = palette.wash(palette.accent);
-        let shape = RectShape::filled(place, CornerRadius::same(theme::ROUND_SMALL), fill);
-        ui.painter().set(ground, shape);
+        ground = ground.fill(palette.wash(palette.accent));
     }
-    piece(ui, width, theme::GAP);
-    asked
+    let shown = ground.show(ui, |ui| {
+        title_ui(ui, pane, entry);
+        inset_ui(ui, |ui| {
+            if entry.is_active() || !entry.seen || depth == Depth::Chosen {
+                let said = notices::fault_kind(entry.what, look.language);
+                say_ui(ui, said.cause, palette.muted);
+                let advice = format!("{} {}", look.say(faults::TODO), said.advice);
+                say_ui(ui, &advice, palette.text);
+            }
+            if entry.is_active() {
+                clear_words_ui(ui, pane, entry);
+            }
+            match depth {
+                Depth::Short => None,
+                _ => foot_ui(ui, pane, entry),
+            }
+        })
+    });
+    ui.add_space(theme::STEP);
+    shown.inner
 }
 
-/// Times, and the way to the recording of it, if there is one.
-fn foot_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, entry: &FaultEntry) -> Option<RecordingId> {
-    let look = pane.look;
-    let text = times(pane, entry);
-    let recorder = &pane.state.hand().recorder;
-    let Some(recording) = recorder.of(entry.dof, entry.what, entry.since) else {
-        if !text.is_empty() {
-            wrapped_ui(ui, width, INDENT, &text, look.palette.faint);
-        }
-        return None;
+/// What stands below a title with a lamp.
+pub(crate) fn inset_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let margin = Margin {
+        left: 20,
+        ..Margin::ZERO
     };
-    let mut row = piece(ui, width, theme::CONTROL);
-    row.min.x += INDENT;
-    let words = look.say(faults::RECORDING);
-    let wide = controls::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
-    let name = format!("{words}: {}", title(pane, entry.dof, entry.what));
-    let button = Button::new(words, look.say(faults::RECORDING_OPEN_TIP)).named(&name);
-    let place = controls::middle(take_right(&mut row, wide), theme::CONTROL - 2.0);
-    let id = Id::unique(("recording of", entry.dof, entry.what));
-    let pressed = button.put(ui, look, place, id).clicked();
-    Label::new(&text, look.palette.faint).small().put(ui, row);
-    pressed.then_some(recording.id)
+    let frame = Frame::new().inner_margin(margin);
+    frame.show(ui, |ui| ui.vertical(add).inner).inner
+}
+
+/// A list over all the room that is left.
+pub(crate) fn scroll_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    let scroll = ScrollArea::vertical().auto_shrink(false);
+    scroll.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = theme::STEP / 2.0;
+        // The bar lies over the end of the rows.
+        ui.set_max_width(ui.available_width() - theme::GAP);
+        add(ui);
+    });
+}
+
+/// Small words over as many lines as they need.
+pub(crate) fn say_ui(ui: &mut Ui, text: &str, color: Color32) -> egui::Response {
+    Label::new(text, color).small().wrap().ui(ui)
+}
+
+/// A lamp, or the room of one.
+pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> egui::Pos2 {
+    let size = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
+    let center = ui.allocate_exact_size(size, Sense::hover()).0.center();
+    if let Some(color) = color {
+        controls::lamp(ui, center, color);
+    }
+    center
 }
 
 /// Lamp, joint and fault; whether it lasts; the button of one who has seen it.
-fn title_ui(ui: &mut Ui, width: f32, pane: &mut Pane<'_>, entry: &FaultEntry) {
+fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
     let look = pane.look;
     let palette = look.palette;
-    let height = if entry.seen {
-        TITLE_LINE
-    } else {
-        theme::CONTROL
-    };
-    let mut row = piece(ui, width, height);
     let (word, color) = stand(pane, entry);
-    let lamp_at = pos2(row.left() + LAMP_AT, row.center().y);
-    if entry.is_active() {
-        controls::lamp(ui, lamp_at, color);
-    } else {
-        mark(ui, lamp_at, color);
-    }
-    row.min.x += INDENT;
-    let title = title(pane, entry.dof, entry.what);
-    if !entry.seen {
-        seen_ui(ui, &mut row, pane, entry, &title);
-    }
-    let when = format::age(entry.lasted(pane.state.now));
-    let word = match entry.until {
-        None => format!("{}, {when}", look.say(word)),
-        Some(_) => look.say(word).to_owned(),
-    };
-    let word_width = controls::text_width(ui, &word, theme::small()) + 1.0;
-    let title_width = controls::text_width(ui, &title, theme::body()) + theme::GAP;
-    let beside = title_width + word_width <= row.width();
-    if beside {
-        let place = take_right(&mut row, word_width);
-        Label::new(&word, color).small().right().put(ui, place);
-    }
-    let title_color = if entry.is_active() || !entry.seen {
-        palette.text
-    } else {
-        palette.muted
-    };
-    Label::new(&title, title_color).put(ui, row);
-    if !beside {
-        wrapped_ui(ui, width, INDENT, &word, color);
-    }
+    ui.horizontal_wrapped(|ui| {
+        let at = lamp_ui(ui, entry.is_active().then_some(color));
+        if !entry.is_active() {
+            mark(ui, at, color);
+        }
+        let title = title(pane, entry.dof, entry.what);
+        let ink = match entry.is_active() || !entry.seen {
+            true => palette.text,
+            false => palette.muted,
+        };
+        Label::new(&title, ink).ui(ui);
+        let when = format::age(entry.lasted(pane.state.now));
+        let word = match entry.until {
+            None => format!("{}, {when}", look.say(word)),
+            Some(_) => look.say(word).to_owned(),
+        };
+        Label::new(&word, color).small().ui(ui);
+        if entry.seen {
+            return;
+        }
+        let text = look.say(faults::SEEN);
+        let name = format!("{text}: {title}");
+        let button = Button::new(text, look.say(faults::SEEN_TIP)).named(&name);
+        if button.ui(ui, look).clicked() {
+            pane.actions.push(Action::SeenFault(entry.dof, entry.what));
+        }
+    });
 }
 
-fn seen_ui(
-    ui: &mut Ui,
-    row: &mut egui::Rect,
-    pane: &mut Pane<'_>,
-    entry: &FaultEntry,
-    title: &str,
-) {
+/// Times, and the way to the recording of it, if there is one.
+fn foot_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) -> Option<RecordingId> {
     let look = pane.look;
-    let text = look.say(faults::SEEN);
-    let button_width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP;
-    let name = format!("{text}: {title}");
-    let button = Button::new(text, look.say(faults::SEEN_TIP)).named(&name);
-    let place = controls::middle(take_right(row, button_width), theme::CONTROL - 2.0);
-    let id = Id::unique(("seen", entry.dof, entry.what));
-    if button.put(ui, look, place, id).clicked() {
-        pane.actions.push(Action::SeenFault(entry.dof, entry.what));
+    let text = times(pane, entry);
+    let recorder = &pane.state.hand().recorder;
+    let recording = recorder.of(entry.dof, entry.what, entry.since);
+    if text.is_empty() && recording.is_none() {
+        return None;
     }
+    let pressed = ui.horizontal_wrapped(|ui| {
+        if !text.is_empty() {
+            say_ui(ui, &text, look.palette.muted);
+        }
+        recording.filter(|_| {
+            let words = look.say(faults::RECORDING);
+            let name = format!("{words}: {}", title(pane, entry.dof, entry.what));
+            let button = Button::new(words, look.say(faults::RECORDING_OPEN_TIP));
+            button.named(&name).ui(ui, look).clicked()
+        })
+    });
+    pressed.inner.map(|recording| recording.id)
 }
 
 /// Joint and fault.
@@ -210,7 +226,7 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
 }
 
 /// Whether CLEAR_ERROR ends it; for heat, how long cooling takes.
-fn clear_words_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, entry: &FaultEntry) {
+fn clear_words_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) {
     let look = pane.look;
     let (text, color) = match (entry.what.clearable(), entry.what) {
         (Some(true), _) => (faults::CLEAR_HELPS, look.palette.muted),
@@ -218,11 +234,11 @@ fn clear_words_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>, entry: &FaultEntry) 
         (None, FaultKind::Status(_)) => (faults::CLEAR_FOLLOWS, look.palette.muted),
         (None, FaultKind::Fault(_)) => (faults::CLEAR_UNSAID, look.palette.warn),
     };
-    wrapped_ui(ui, width, INDENT, look.say(text), color);
+    say_ui(ui, look.say(text), color);
     if entry.what == FaultKind::Fault(Fault::OverTemperature) {
-        let (text, tip) = cooling_words(pane, entry.dof);
-        wrapped_ui(ui, width, INDENT, &text, look.palette.text).on_hover_text(tip);
-        wrapped_ui(ui, width, INDENT, tip, look.palette.faint);
+        let (text, rests_on) = cooling_words(pane, entry.dof);
+        say_ui(ui, &text, look.palette.text);
+        say_ui(ui, rests_on, look.palette.muted);
     }
 }
 
@@ -250,7 +266,12 @@ fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
         ),
         Course::NotFalling => look.say(faults::COOL_NOT).into(),
         Course::Unknown => look.say(faults::COOL_UNKNOWN).into(),
-        Course::Reached => look.say(faults::COOL_THERE).into(),
+        // The temperature is read less often than the faults: whether it is cool enough, the hand has to say.
+        Course::Reached => format!(
+            "{} {until}{}",
+            look.say(faults::COOL_BELOW),
+            look.say(faults::COOL_STILL)
+        ),
     };
     let tip = match goal.source {
         Source::Assumed => faults::COOL_ASSUMED,
@@ -300,17 +321,12 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
 }
 
 /// Marks all as seen.
-pub(crate) fn seen_all_ui(ui: &mut Ui, head: &mut egui::Rect, pane: &mut Pane<'_>) {
+pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let text = look.say(faults::SEEN_ALL);
-    let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-    let place = take_right(head, width);
     let none = pane.state.hand().faults.unseen().next().is_none();
-    let button = Button::new(text, look.say(faults::SEEN_ALL_TIP))
-        .weight(Weight::Normal)
-        .disabled(none.then(|| look.say(faults::SEEN_NONE)));
-    let id = Id::unique("seen all");
-    if button.put(ui, look, place, id).clicked() {
+    let button = Button::new(look.say(faults::SEEN_ALL), look.say(faults::SEEN_ALL_TIP));
+    let none = none.then(|| look.say(faults::SEEN_NONE));
+    if button.disabled(none).ui(ui, look).clicked() {
         pane.actions.push(Action::SeenFaults);
     }
 }

@@ -392,6 +392,14 @@ pub(crate) fn card_ui<R>(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui) -> R
     shown.inner
 }
 
+/// A card over all the room there is.
+pub(crate) fn full_card_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
+    card_ui(ui, look, |ui| {
+        ui.set_min_height(ui.available_height());
+        ui.vertical(add);
+    });
+}
+
 /// The title of a card, and what stands at the right end of its row, from right to left.
 pub(crate) fn head_ui<R>(
     ui: &mut Ui,

@@ -2,7 +2,7 @@
 
 use crate::ui::kit::controls::Label;
 use crate::ui::theme;
-use egui::text::{LayoutJob, TextFormat};
+use egui::text::LayoutJob;
 use egui::{Color32, Id, Rect, Response, Ui, UiBuilder, pos2, vec2};
 
 /// Height of a line of small text.
@@ -46,21 +46,6 @@ pub(crate) fn wrapped_ui(
 ) -> Response {
     let job = LayoutJob::simple(text.to_owned(), theme::small(), color, width - indent);
     job_ui(ui, width, indent, job)
-}
-
-/// A word in its own colour and what it means, over as many lines as they need.
-pub(crate) fn titled_text_ui(
-    ui: &mut Ui,
-    width: f32,
-    title: (&str, Color32),
-    text: (&str, Color32),
-) -> Response {
-    let mut job = LayoutJob::default();
-    for (words, color) in [title, text] {
-        job.append(words, 0.0, TextFormat::simple(theme::small(), color));
-    }
-    job.wrap.max_width = width;
-    job_ui(ui, width, 0.0, job)
 }
 
 fn job_ui(ui: &mut Ui, width: f32, indent: f32, job: LayoutJob) -> Response {

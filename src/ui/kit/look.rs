@@ -36,6 +36,15 @@ impl Look {
         text.of(self.language)
     }
 
+    /// A name and what is said of it, with the colon of the language.
+    pub(crate) fn pair(self, name: &str, said: &str) -> String {
+        let colon = match self.language {
+            Language::En => ": ",
+            Language::Zh => "：",
+        };
+        format!("{name}{colon}{said}")
+    }
+
     /// The colour of a value of this freshness that would be `live`.
     pub(crate) fn value(self, freshness: Freshness, live: Color32) -> Color32 {
         match freshness {

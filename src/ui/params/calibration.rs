@@ -9,7 +9,7 @@ use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Check, Checks, Off
 use crate::ui::kit::card::{Card, Choice, Line, Manner};
 use crate::ui::kit::look::Look;
 use crate::ui::params::choices::{cancel, close, reason, under_way};
-use crate::ui::text::{Text, cards, words};
+use crate::ui::text::{Text, cards, errors, words};
 
 /// The card.
 pub(crate) fn card(state: &State, look: Look, run: &CalibrateProcedure) -> Card {
@@ -55,6 +55,7 @@ fn over(look: Look, before: Option<Offsets>, report: &CalibrateReport) -> Card {
         Ok(Calibrated::Finished) => Line::Words(look.say(cards::CALIBRATED).into()),
         Ok(Calibrated::Quiet) => Line::Words(look.say(cards::CALIBRATED_QUIET).into()),
         Ok(Calibrated::Refused { reason }) => {
+            let reason = errors::reason(look, reason);
             Line::Warning(format!("{} {reason}", look.say(cards::CALIBRATED_REFUSED)))
         }
         Ok(Calibrated::Unknown { .. }) => Line::Warning(look.say(cards::CALIBRATED_UNKNOWN).into()),

@@ -8,7 +8,7 @@ use crate::params::backups::Backup;
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
-use crate::ui::text::{cards, device, verdicts};
+use crate::ui::text::{cards, device, errors, verdicts};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui};
 
@@ -104,6 +104,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
         }
     });
     if let Some(error) = &book.unreadable {
+        let error = errors::params(look, error);
         let words = format!("{} {error}", look.say(device::UNREADABLE));
         lines.push((words, palette.warn));
     }
@@ -154,7 +155,10 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
         Ok((at, why)) => (format!("{} {}", moment(at), verdicts::why(look, why)), None),
         Err(error) => {
             let name = backup.path.file_name().unwrap_or_default();
-            (name.to_string_lossy().into_owned(), Some(error.to_string()))
+            (
+                name.to_string_lossy().into_owned(),
+                Some(errors::params(look, error)),
+            )
         }
     };
     let button = Button::new(&words, look.say(device::BACKUP_TIP)).disabled(unreadable.as_deref());

@@ -21,7 +21,7 @@ use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
 use crate::ui::params::choices::{cancel, close, reason, under_way};
 use crate::ui::params::table::value_text;
-use crate::ui::text::{Text, cards, device};
+use crate::ui::text::{Text, cards, device, errors};
 use std::path::Path;
 
 /// The word that a return to the factory's parameters wants typed, in every language.
@@ -49,7 +49,7 @@ const fn titles(change: &PlaceChange) -> [Text; 2] {
 fn not_begun(look: Look, title: Text, error: &TaskError) -> Card {
     let (text, note) = match error {
         TaskError::NoBackup { message } => (cards::NO_BACKUP, Some(message.clone())),
-        TaskError::NotRead { .. } => (cards::NO_BACKUP, Some(error.to_string())),
+        TaskError::NotRead { .. } => (cards::NO_BACKUP, Some(errors::task(look, error))),
         _ => (cards::OVER_NOT_WRITTEN, None),
     };
     let mut lines = vec![Line::Warning(look.say(text).into())];

@@ -7,6 +7,7 @@ use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
 use crate::link::{LinkTrouble, RequestError};
 use crate::params::file::ParamsFileError;
 use crate::poses::file::{PoseFileCause, PoseFileError};
+use crate::tasks::TaskError;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::{Remedy, TransportError};
 use crate::ui::kit::format::sentence;
@@ -281,6 +282,19 @@ pub(crate) fn hint(look: Look, hint: &ScanHint) -> String {
     })
 }
 
+/// Why something guarded was not begun.
+pub(crate) fn task(look: Look, error: &TaskError) -> String {
+    told(look, error, |error| match error {
+        TaskError::NotRead { id, why } => format!("无法读取 {}：{}", id.name(), request_zh(why)),
+        TaskError::NotReached => "灵巧手没有应答。".into(),
+        TaskError::NotMeant(_) => "没有确认要这样做。".into(),
+        TaskError::NoBackup { message } => {
+            format!("无法备份，未向灵巧手写入任何内容：{}。", system_zh(message))
+        }
+        TaskError::NotAsked(error) => request_zh(error),
+    })
+}
+
 /// Why a file of poses was not taken.
 pub(crate) fn poses(look: Look, error: &PoseFileError) -> String {
     told(look, error, |error| {
@@ -325,7 +339,7 @@ pub(crate) fn system(look: Look, message: &str) -> String {
 }
 
 /// Words of systems and of the readers of files, as they stand somewhere in a message.
-const SYSTEM: [(&str, &str); 25] = [
+const SYSTEM: [(&str, &str); 27] = [
     ("Permission denied", "权限不足"),
     ("Access is denied", "权限不足"),
     ("Operation not permitted", "不允许此操作"),
@@ -351,6 +365,8 @@ const SYSTEM: [(&str, &str); 25] = [
     ("no folder for backups", "没有备份文件夹"),
     ("is not a table of samples", "不是采样表"),
     ("too large", "文件过大"),
+    ("has more than", "文件过大"),
+    ("is not a file", "不是文件"),
 ];
 
 fn system_zh(message: &str) -> String {
@@ -401,4 +417,326 @@ fn reason_zh(reason: &str) -> String {
     ];
     let zh = known.iter().find(|(en, _)| reason.starts_with(en));
     zh.map_or_else(|| system_zh(reason), |(_, zh)| (*zh).to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::settings::Theme;
+    use crate::hand::kinematics::Side;
+    use crate::params::rows::ParamId;
+    use crate::tasks::Risks;
+    use crate::ui::theme::Palette;
+    use std::collections::HashSet;
+    use std::mem::discriminant;
+
+    const PLACE: &str = "/dev/ttyUSB0";
+
+    fn chinese() -> Look {
+        Look {
+            palette: Palette::of(Theme::Dark),
+            language: Language::Zh,
+            side: Side::Right,
+        }
+    }
+
+    /// Words of another language in a row, outside of commands, paths and names of registers.
+    fn is_english(text: &str) -> bool {
+        let told: String = text.split('\'').step_by(2).collect();
+        told.split(|sign: char| !sign.is_ascii()).any(|part| {
+            let words: Vec<&str> = part.split_whitespace().collect();
+            let is_word =
+                |word: &str| word.len() > 1 && word.chars().all(|sign| sign.is_ascii_lowercase());
+            words
+                .windows(2)
+                .any(|two| two.iter().all(|word| is_word(word)))
+        })
+    }
+
+    /// Checks sentences, and that there is one for each of the variants that `source` has of an enum.
+    fn check<E>(all: &[E], (source, name): (&str, &str), zh: impl Fn(&E) -> String) {
+        let (_, body) = source.split_once(&format!("pub enum {name} {{")).unwrap();
+        let (body, _) = body.split_once("\n}\n").unwrap();
+        let is_variant = |line: &&str| {
+            line.strip_prefix("    ")
+                .is_some_and(|rest| rest.starts_with(|sign: char| sign.is_ascii_uppercase()))
+        };
+        let variants = body.lines().filter(is_variant).count();
+        let covered: HashSet<_> = all.iter().map(discriminant).collect();
+        assert_eq!(covered.len(), variants, "{name}");
+        let known = include_str!("../../../assets/fonts/characters.txt");
+        for error in all {
+            let text = zh(error);
+            assert!(text.ends_with('。') && !text.contains("系统信息"), "{text}");
+            assert!(!is_english(&text), "{text}");
+            let strange = text
+                .chars()
+                .find(|sign| !sign.is_ascii() && !known.contains(*sign));
+            assert_eq!(strange, None, "{text}");
+        }
+    }
+
+    fn transports() -> Vec<TransportError> {
+        let place = || PLACE.to_owned();
+        let io = |message: String| TransportError::Io {
+            place: place(),
+            message,
+        };
+        let mut all = vec![
+            TransportError::Missing { place: place() },
+            TransportError::NotAPort { place: place() },
+            TransportError::Away {
+                place: place(),
+                alike: Vec::new(),
+            },
+            TransportError::Away {
+                place: place(),
+                alike: vec!["COM3".into(), "COM4".into()],
+            },
+            TransportError::Busy {
+                place: place(),
+                holder: None,
+            },
+            TransportError::Busy {
+                place: place(),
+                holder: Some("minicom (42)".into()),
+            },
+            TransportError::Refused { place: place() },
+            TransportError::Silent {
+                place: place(),
+                after_ms: 3000,
+            },
+            TransportError::Name { place: place() },
+            TransportError::HungUp { place: place() },
+            TransportError::Unsupported { kind: "sim".into() },
+            TransportError::NoInterface { place: place() },
+            TransportError::NotCan { place: place() },
+            TransportError::InterfaceDown { place: place() },
+            TransportError::NoCan { place: place() },
+            TransportError::LinuxOnly,
+            TransportError::QueueFull { place: place() },
+            TransportError::BusOff { place: place() },
+            TransportError::ErrorPassive { place: place() },
+            TransportError::BitrateRefused {
+                place: place(),
+                bitrate: 500_000,
+            },
+            io("the CAN adapter could not go on the bus".into()),
+            io("'party' is not a scenario: choose idle".into()),
+        ];
+        all.extend(
+            [2, 5, 13, 17, 20, 21, 24, 28, 30, 101, 113, 150]
+                .map(|code| io(std::io::Error::from_raw_os_error(code).to_string())),
+        );
+        all.extend(
+            [
+                Remedy::JoinGroup("dialout".into()),
+                Remedy::LogInAgain("dialout".into()),
+                Remedy::GiveRight(PLACE.into()),
+                Remedy::Unknown,
+            ]
+            .map(|remedy| TransportError::Permission {
+                place: place(),
+                remedy,
+            }),
+        );
+        all
+    }
+
+    fn requests() -> Vec<RequestError> {
+        let refused = |reason: &str| RequestError::Refused {
+            address: 1000,
+            reason: reason.into(),
+        };
+        let range = crate::hand::Angle::new(2000).unwrap_err();
+        vec![
+            RequestError::NotConnected,
+            RequestError::NotArmed,
+            RequestError::Full { limit: 8 },
+            RequestError::TooLong {
+                address: 1000,
+                len: 300,
+            },
+            RequestError::Timeout {
+                address: 1000,
+                after_ms: 60,
+            },
+            refused("Illegal data address"),
+            refused("Illegal data value"),
+            refused("this hand does not put single bytes into words low byte first"),
+            RequestError::WrongLength {
+                address: 1000,
+                got: 1,
+                want: 2,
+            },
+            RequestError::Ambiguous {
+                address: 1000,
+                wait_s: 2,
+            },
+            RequestError::LinkLost,
+            RequestError::OutOfRange(range),
+        ]
+    }
+
+    #[test]
+    fn every_error_of_a_wire_and_of_the_link_is_whole_in_chinese() {
+        let wire = include_str!("../../transport/wire.rs");
+        check(&transports(), (wire, "TransportError"), transport_zh);
+        let place = || PLACE.to_owned();
+        let troubles = [
+            LinkTrouble::Transport(TransportError::LinuxOnly),
+            LinkTrouble::NoAnswer { id: 7 },
+            LinkTrouble::Garbled {
+                place: place(),
+                id: 7,
+            },
+            LinkTrouble::Garbled {
+                place: "the simulated hand".into(),
+                id: 7,
+            },
+            LinkTrouble::Mute {
+                place: place(),
+                unit: 255,
+            },
+            LinkTrouble::Silent { silent: 5 },
+            LinkTrouble::Ambiguous,
+            LinkTrouble::Suspended { slept_s: 9 },
+        ];
+        let status = include_str!("../../link/status.rs");
+        check(&troubles, (status, "LinkTrouble"), |error| {
+            trouble(chinese(), error)
+        });
+        let request_source = include_str!("../../link/request.rs");
+        check(&requests(), (request_source, "RequestError"), |error| {
+            request(chinese(), error)
+        });
+        let task_errors = [
+            TaskError::NotRead {
+                id: ParamId::HandId,
+                why: RequestError::LinkLost,
+            },
+            TaskError::NotReached,
+            TaskError::NotMeant(Risks::default()),
+            TaskError::NoBackup {
+                message: "there is no folder for backups".into(),
+            },
+            TaskError::NotAsked(RequestError::NotArmed),
+        ];
+        let tasks = include_str!("../../tasks/mod.rs");
+        check(&task_errors, (tasks, "TaskError"), |error| {
+            task(chinese(), error)
+        });
+    }
+
+    #[test]
+    fn every_error_of_what_is_typed_or_read_is_whole_in_chinese() {
+        let spelled = [
+            "x",
+            "rs485:",
+            "rs485:COM3?speed=1",
+            "tcp:h:0",
+            "sim:?seed=x",
+            "rtu:COM3?baud=1",
+            "rtu:COM3?packing=x",
+            "slcan:COM3?bitrate=1",
+        ];
+        let endpoints = spelled.map(|text| text.parse::<crate::transport::Endpoint>().unwrap_err());
+        let source = include_str!("../../transport/endpoint/error.rs");
+        check(&endpoints, (source, "EndpointError"), |error| {
+            endpoint(chinese(), error)
+        });
+        let wrong = ["a b", "10.0.0.1:0", "10.0.0.0/x", "10.0.0.0/8", "0.0.0.0"];
+        let wrong = wrong.map(|text| text.parse::<crate::link::scan::Hosts>().unwrap_err());
+        let source = include_str!("../../link/scan/hosts.rs");
+        check(&wrong, (source, "HostsError"), |error| {
+            hosts(chinese(), error)
+        });
+        let at = |cause| PoseFileError {
+            line: Some(3),
+            field: Some("name".into()),
+            cause,
+        };
+        let name = || "fist".to_owned();
+        let denied = || std::io::Error::from_raw_os_error(13).to_string();
+        let causes = [
+            PoseFileCause::Toml("invalid type".into()),
+            PoseFileCause::Format { got: name() },
+            PoseFileCause::Version { got: 9 },
+            PoseFileCause::TooMany { got: 9, limit: 1 },
+            PoseFileCause::Unreadable(denied()),
+        ];
+        let source = include_str!("../../poses/file.rs");
+        let named = [
+            PoseFileCause::Name { name: name() },
+            PoseFileCause::Twice { name: name() },
+            PoseFileCause::NoSuchPose { name: name() },
+        ];
+        let all: Vec<PoseFileCause> = causes.into_iter().chain(named).collect();
+        check(&all, (source, "PoseFileCause"), |cause| {
+            poses(chinese(), &at(cause.clone()))
+        });
+        let all = [
+            ParamsFileError::Toml("line 3: expected `=`".into()),
+            ParamsFileError::Missing { field: "format" },
+            ParamsFileError::Format { got: name() },
+            ParamsFileError::Version { got: "9".into() },
+            ParamsFileError::Value {
+                field: "hand_id".into(),
+                got: "0".into(),
+                allowed: "1 to 254".into(),
+            },
+            ParamsFileError::Empty,
+            ParamsFileError::Unreadable(denied()),
+        ];
+        let source = include_str!("../../params/file.rs");
+        check(&all, (source, "ParamsFileError"), |error| {
+            params(chinese(), error)
+        });
+    }
+
+    #[test]
+    fn every_hint_of_a_scan_is_whole_in_chinese() {
+        let endpoint = || "rs485:/dev/x".parse().unwrap();
+        let all = [
+            ScanHint::OtherId {
+                endpoint: endpoint(),
+                hand_id: 7,
+            },
+            ScanHint::Refuses {
+                endpoint: endpoint(),
+                reason: "Illegal data address".into(),
+            },
+            ScanHint::OtherTalk {
+                endpoint: endpoint(),
+            },
+            ScanHint::Garbled {
+                place: "x".into(),
+                bauds: vec![1, 2],
+                bytes: 3,
+            },
+        ];
+        let source = include_str!("../../link/scan/event.rs");
+        check(&all, (source, "ScanHint"), |error| hint(chinese(), error));
+    }
+
+    #[test]
+    fn the_window_sends_nobody_to_the_command_line() {
+        let look = Look {
+            language: Language::En,
+            ..chinese()
+        };
+        for error in [
+            LinkTrouble::NoAnswer { id: 1 },
+            LinkTrouble::Garbled {
+                place: PLACE.into(),
+                id: 1,
+            },
+        ] {
+            let text = trouble(look, &error);
+            assert!(
+                !text.contains("handscope") && text.contains("'Scan' in Connection"),
+                "{text}"
+            );
+        }
+    }
 }

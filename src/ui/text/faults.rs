@@ -30,9 +30,9 @@ texts! {
     UNSEEN: "unseen", "项未查看";
     UNSEEN_TIP: "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
     UNSEEN_MARK: "unseen fault", "未查看的故障";
+    TIDY: "Tidy up", "整理列表";
     FORGET: "Forget", "清空历史";
     FORGET_TIP: "Takes faults that are over and seen from the list.", "从列表中移除已结束且已看的故障。";
-    FORGET_NONE: "No fault is over and seen.", "没有已结束且已看的故障。";
 
     CLEAR_HELPS: "Clear errors can end it.", "可用“清除错误”结束。";
     CLEAR_CANNOT: "Clear errors cannot end it: it ends by itself when the drive is cool.", "不可清除：温度回落后自动结束。";
@@ -47,7 +47,8 @@ texts! {
     COOL_LONG: "more than an hour until", "一小时以上降至";
     COOL_NOT: "no estimate yet: the temperature does not fall.", "尚无法估计：温度没有下降。";
     COOL_UNKNOWN: "no estimate yet: too few readings.", "尚无法估计：读数太少。";
-    COOL_THERE: "cool enough: the fault should end by itself.", "温度已够低，故障应会自动结束。";
+    COOL_BELOW: "already below", "已低于";
+    COOL_STILL: "; the hand last said that the fault lasts.", "；灵巧手最近一次仍报告此故障。";
     COOL_ASSUMED: "The manual gives no temperature at which a drive works again: 70 °C is assumed, and cooling towards 25 °C.", "手册没有给出恢复工作的温度：此处假定 70 °C，并向 25 °C 冷却。";
     COOL_OBSERVED: "This drive worked again at this temperature before; cooling towards 25 °C is assumed.", "该驱动器曾在此温度恢复工作；假定向 25 °C 冷却。";
 

@@ -10,6 +10,7 @@ use crate::ui::kit::format;
 use crate::ui::kit::look::Look;
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, errors, main, panels, poses, quirks, traffic, trials, tune, words};
+use std::path::Path;
 
 /// Title, cause and advice of what is wrong with a drive.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
@@ -60,7 +61,7 @@ fn latency_timer(look: Look, port: &str, ms: Option<u16>) -> String {
     format!("{said} {cure}")
 }
 
-fn place(path: Option<&std::path::Path>) -> String {
+fn place(path: Option<&Path>) -> String {
     path.map(|path| path.display().to_string())
         .unwrap_or_default()
 }
@@ -68,26 +69,13 @@ fn place(path: Option<&std::path::Path>) -> String {
 /// A message as one or two sentences.
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
+    let told = |text: Text, more: &str| format!("{} {more}", look.say(text));
     match what {
-        NoticeKind::LinkLost(why) => {
-            format!(
-                "{} {}",
-                said(panels::NOTICE_LOST),
-                errors::trouble(look, why)
-            )
-        }
-        NoticeKind::NoLink(why) => {
-            format!(
-                "{} {}",
-                said(panels::NOTICE_NO_LINK),
-                errors::trouble(look, why)
-            )
-        }
+        NoticeKind::LinkLost(why) => told(panels::NOTICE_LOST, &errors::trouble(look, why)),
+        NoticeKind::NoLink(why) => told(panels::NOTICE_NO_LINK, &errors::trouble(look, why)),
         NoticeKind::LatencyTimer { port, ms } => latency_timer(look, port, *ms),
         NoticeKind::Reconnected => said(panels::NOTICE_RECONNECTED),
-        NoticeKind::HoldConfirmed { after } => {
-            format!("{} {}", said(panels::NOTICE_HELD), format::age(*after))
-        }
+        NoticeKind::HoldConfirmed { after } => told(panels::NOTICE_HELD, &format::age(*after)),
         NoticeKind::HoldAlarm => said(main::ALARM_BODY),
         NoticeKind::StopNotSent => said(panels::NOTICE_STOP_NOT_SENT),
         NoticeKind::TareUnderLoad { finger, newtons } => {
@@ -102,105 +90,84 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             }
         }
         NoticeKind::Disarmed(why) => disarmed(look, *why).into(),
-        NoticeKind::ArmRefused(why) => {
-            format!(
-                "{} {}",
-                said(panels::NOTICE_ARM),
-                words::refusal(look, *why)
-            )
-        }
+        NoticeKind::ArmRefused(why) => told(panels::NOTICE_ARM, &words::refusal(look, *why)),
         NoticeKind::Fault { dof, what } => {
             let title = fault_kind(*what, look.language).title;
-            format!("{}: {title}", look.say(words::dof(*dof)))
+            look.pair(look.say(words::dof(*dof)), title)
         }
         NoticeKind::RequestFailed { what, error } => {
-            format!("{}: {}", asked(look, *what), errors::request(look, error))
+            look.pair(&asked(look, *what), &errors::request(look, error))
         }
         NoticeKind::Acknowledged { what } => {
-            format!(
-                "{}: {}",
-                asked(look, *what),
-                said(panels::NOTICE_ACKNOWLEDGED)
-            )
+            look.pair(&asked(look, *what), look.say(panels::NOTICE_ACKNOWLEDGED))
         }
         NoticeKind::GestureWouldMoveLocked { dof } => {
-            format!(
-                "{} {}",
-                said(panels::NOTICE_LOCKED),
-                look.say(words::dof(*dof))
-            )
+            told(panels::NOTICE_LOCKED, look.say(words::dof(*dof)))
         }
         NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
-        NoticeKind::PosesImported { .. }
-        | NoticeKind::PosesRefused { .. }
-        | NoticeKind::ParamsRefused { .. }
-        | NoticeKind::PosesIgnored { .. }
-        | NoticeKind::PosesNotSaved { .. } => of_files(look, what),
         NoticeKind::SeriesEnded { .. }
         | NoticeKind::SeriesRuns
         | NoticeKind::SessionOpened { .. }
         | NoticeKind::SessionRefused { .. } => trials::notice(look, what),
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         NoticeKind::GestureStoreOff => said(poses::STORE_OFF_TIP),
-        NoticeKind::DrawnWithoutOpenGl { reason } => {
-            format!("{} ({reason})", said(panels::NOTICE_WITHOUT_OPENGL))
-        }
-        NoticeKind::SettingsNotSaved { message } => {
-            format!("{} {message}", said(panels::NOTICE_NOT_SAVED))
-        }
-        NoticeKind::SettingsIgnored { message, kept_as } => {
-            let kept = place(kept_as.as_deref());
-            format!("{} {message} {kept}", said(panels::NOTICE_SETTINGS))
-        }
-        NoticeKind::Saved { path, entries } => {
-            format!("{} {} ({entries})", said(traffic::SAVED), path.display())
-        }
-        NoticeKind::NotSaved { path, message } => {
-            format!("{} {}: {message}", said(traffic::NOT_SAVED), path.display())
-        }
+        // The words of the graphics driver help whoever mends it.
+        NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
+            Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),
+            Language::Zh => said(panels::NOTICE_WITHOUT_OPENGL),
+        },
         NoticeKind::NoFileChosen => said(traffic::NO_FILE),
         NoticeKind::HandDiffers {
             differences,
             last_seen,
         } => differing(look, differences, last_seen),
-        NoticeKind::SheetNotKept { message } => {
-            format!("{} {message}", said(quirks::NOT_KEPT))
-        }
-        NoticeKind::PlanIgnored { message } => {
-            format!("{} {message}", said(tune::PLAN_IGNORED))
-        }
-        NoticeKind::EndpointIgnored { text } => {
-            format!("{} {text}", said(panels::NOTICE_ENDPOINT))
-        }
+        NoticeKind::EndpointIgnored { text } => told(panels::NOTICE_ENDPOINT, text),
+        what => of_files(look, what),
     }
 }
 
-/// What became of files of poses and parameters; empty for everything else.
+/// What became of files; empty for everything else.
 fn of_files(look: Look, what: &NoticeKind) -> String {
-    let said = |text: Text| look.say(text).to_owned();
+    let told = |text: Text, more: &str| format!("{} {more}", look.say(text));
+    let system = |text: Text, message: &str| told(text, &errors::system(look, message));
+    let of = |text: Text, path: &Path, why: &str| {
+        look.pair(&told(text, &path.display().to_string()), why)
+    };
     match what {
         NoticeKind::PosesImported {
             poses: count,
             sequences,
         } => format!(
             "{} {count} {}, {sequences} {}",
-            said(poses::IMPORTED),
-            said(poses::COUNT_POSES),
-            said(poses::COUNT_SEQUENCES)
+            look.say(poses::IMPORTED),
+            look.say(poses::COUNT_POSES),
+            look.say(poses::COUNT_SEQUENCES)
         ),
         NoticeKind::PosesRefused { path, error } => {
-            format!("{} {}: {error}", said(poses::REFUSED), path.display())
+            of(poses::REFUSED, path, &errors::poses(look, error))
         }
         NoticeKind::ParamsRefused { path, error } => {
-            format!("{} {}: {error}", said(device::REFUSED), path.display())
+            of(device::REFUSED, path, &errors::params(look, error))
         }
         NoticeKind::PosesIgnored { error, kept_as } => {
-            let kept = place(kept_as.as_deref());
-            format!("{} {error} {kept}", said(poses::IGNORED))
+            let why = told(poses::IGNORED, &errors::poses(look, error));
+            format!("{why} {}", place(kept_as.as_deref()))
         }
-        NoticeKind::PosesNotSaved { message } => {
-            format!("{} {message}", said(poses::NOT_SAVED))
+        NoticeKind::PosesNotSaved { message } => system(poses::NOT_SAVED, message),
+        NoticeKind::SettingsNotSaved { message } => system(panels::NOTICE_NOT_SAVED, message),
+        NoticeKind::SettingsIgnored { message, kept_as } => {
+            let why = system(panels::NOTICE_SETTINGS, message);
+            format!("{why} {}", place(kept_as.as_deref()))
         }
+        NoticeKind::Saved { path, entries } => {
+            let path = path.display().to_string();
+            format!("{} ({entries})", told(traffic::SAVED, &path))
+        }
+        NoticeKind::NotSaved { path, message } => {
+            of(traffic::NOT_SAVED, path, &errors::system(look, message))
+        }
+        NoticeKind::SheetNotKept { message } => system(quirks::NOT_KEPT, message),
+        NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),
     }
 }

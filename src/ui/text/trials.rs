@@ -9,7 +9,7 @@ use crate::trials::{Abort, EarlyEnd, PlanError, Stage};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Look;
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{tune, words};
+use crate::ui::text::{errors, tune, words};
 
 /// Why something ended early. A file tells it in its own words.
 pub(crate) fn ended(look: Look, why: &EarlyEnd) -> String {
@@ -152,7 +152,8 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             )
         }
         NoticeKind::SessionRefused { path, message } => {
-            format!("{} {}: {message}", said(tune::REFUSED), path.display())
+            let name = format!("{} {}", said(tune::REFUSED), path.display());
+            look.pair(&name, &errors::system(look, message))
         }
         _ => String::new(),
     }

@@ -73,8 +73,9 @@ pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
     match &end.verdict {
         RowVerdict::Applied => say(device::APPLIED).into(),
         RowVerdict::Refused { reason } => format!(
-            "{}: {reason} ({} {})",
+            "{}: {} ({} {})",
             say(device::NOT_TAKEN),
+            errors::reason(look, reason),
             say(device::WANTED),
             end.wanted
         ),
@@ -118,6 +119,7 @@ pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
     match end {
         SaveEnd::Told(told) => saved(look, told),
         SaveEnd::NoBackup { message } => {
+            let message = errors::system(look, message);
             format!("{} {message}", look.say(device::SAVE_NO_BACKUP))
         }
         SaveEnd::NotAsked(error) => format!(
@@ -127,9 +129,10 @@ pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
         ),
         SaveEnd::NotApplied => look.say(device::SAVE_NOT_APPLIED).into(),
         SaveEnd::NotNoted(told, message) => format!(
-            "{} {} {message}",
+            "{} {} {}",
             saved(look, told),
-            look.say(device::SAVE_NOT_NOTED)
+            look.say(device::SAVE_NOT_NOTED),
+            errors::system(look, message)
         ),
     }
 }
@@ -159,7 +162,13 @@ fn saved(look: Look, saved: &Saved) -> String {
                 say(device::SAVE_UNKNOWN_ADVICE)
             )
         }
-        Saved::Refused { reason } => format!("{} {reason}", say(device::SAVE_REFUSED)),
+        Saved::Refused { reason } => {
+            format!(
+                "{} {}",
+                say(device::SAVE_REFUSED),
+                errors::reason(look, reason)
+            )
+        }
         Saved::NotSent(why) => {
             format!("{} {}", say(device::SAVE_NOT_SENT), not_sent(look, *why))
         }

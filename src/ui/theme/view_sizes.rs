@@ -26,8 +26,6 @@ pub(crate) const POSE_CAPTION: f32 = 88.0;
 pub(crate) const POSE_TILE: egui::Vec2 = egui::vec2(112.0, 158.0);
 /// Width of the field that finds poses.
 pub(crate) const POSE_FIND: f32 = 200.0;
-/// Width of a time in the list of events.
-pub(crate) const RECORDINGS_TIME: f32 = 54.0;
 /// Height of a step.
 pub(crate) const STEP_ROW: f32 = 40.0;
 /// Width of the list of sequences.
@@ -56,36 +54,14 @@ pub(crate) const FRAME_DETAIL_LEAST: f32 = 150.0;
 pub(crate) const TRAFFIC_FILTER: f32 = 220.0;
 /// Height of a field's row.
 pub(crate) const FIELD_ROW: f32 = 17.0;
-/// Width of the place of a field's bytes in the frame.
-pub(crate) const FIELD_PLACE: f32 = 58.0;
-/// Width of a field's name.
-pub(crate) const FIELD_NAME: f32 = 150.0;
 /// Height of a row.
 pub(crate) const FRAME_ROW: f32 = 19.0;
-/// Height of the head.
-pub(crate) const FRAME_HEAD: f32 = 20.0;
-/// Width of the time: hours in seconds with three digits.
-pub(crate) const FRAME_TIME: f32 = 78.0;
-/// Width of the arrow.
-pub(crate) const FRAME_ARROW: f32 = 16.0;
-/// Width of the kind.
-pub(crate) const FRAME_KIND: f32 = 92.0;
 /// Width of the scroll bar.
 pub(crate) const FRAME_BAR: f32 = 12.0;
-/// Room for the sign that something is wrong.
-pub(crate) const FRAME_SIGN: f32 = 16.0;
 /// Room of a mark for what nobody has seen yet.
 pub(crate) const UNSEEN_MARK: f32 = 12.0;
 /// Width of a ring.
 pub(crate) const RING_LINE: f32 = 1.6;
-/// Width of the age of a message in the overview.
-pub(crate) const MESSAGE_AGE_SHORT: f32 = 48.0;
-/// What a message keeps from the next.
-pub(crate) const MESSAGE_MARGIN: f32 = 6.0;
-/// What the first line of a message has more than others.
-pub(crate) const MESSAGE_LEAD: f32 = 5.0;
-/// Where its words begin below its upper edge.
-pub(crate) const MESSAGE_TEXT_TOP: f32 = 3.0;
 /// Where the middle of the first line of a message is.
 pub(crate) const MESSAGE_FIRST: f32 = 7.0;
 /// Height of a line of small words.
@@ -132,8 +108,6 @@ pub(crate) const COMPASS_WORD: egui::Vec2 = egui::vec2(40.0, 12.0);
 pub(crate) const TIP_NUMBERS_CAPTION: f32 = 44.0;
 /// The bar of the heat scale.
 pub(crate) const HEAT_BAR: egui::Vec2 = egui::vec2(64.0, 8.0);
-/// Room of a sign before a wrong field of a frame.
-pub(crate) const WRONG_SIGN: f32 = 13.0;
 /// The sign of a frame with something wrong.
 pub(crate) const FRAME_WRONG: egui::Vec2 = egui::vec2(12.0, 11.0);
 /// Room inside a number field.

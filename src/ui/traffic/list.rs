@@ -1,17 +1,18 @@
 //! The table of frames: only the rows in sight are drawn. Which frames they are is decided elsewhere.
 
-use crate::link::tap::Direction;
+use crate::link::traffic::compose::{Recipe, RecipeForm};
 use crate::link::traffic::frame::{Frame, Kind};
 use crate::ui::kit::controls;
 use crate::ui::kit::look::{Look, Pane};
-use crate::ui::text::traffic;
+use crate::ui::text::{main, traffic};
 use crate::ui::theme;
-use egui::{
-    Align, Align2, Color32, CornerRadius, Id, Key, Modifiers, Rect, Role, ScrollArea, Sense, Ui,
-    UiBuilder, WidgetInfo, pos2, vec2,
-};
+use egui::{Align, Align2, Color32, FontId, Key, Modifiers, Rect, Role, Sense, Ui, WidgetInfo};
+use egui_extras::{Column, TableBuilder, TableRow};
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
+
+/// Widths of time, way, kind, and the sign that something is wrong.
+const WIDTHS: [f32; 4] = [78.0, 20.0, 92.0, 16.0];
 
 /// The chosen frames, by number, and where the choice began.
 #[derive(Debug, Default)]
@@ -49,90 +50,59 @@ impl Choice {
     }
 }
 
-/// The columns of a row.
-struct Columns {
-    time: Rect,
-    arrow: Rect,
-    kind: Rect,
-    sign: Rect,
-    meaning: Rect,
-    bytes: Rect,
-}
-
-impl Columns {
-    fn of(row: Rect) -> Self {
-        let mut rest = row.shrink2(vec2(theme::STEP, 0.0));
-        let time = controls::take_left(&mut rest, theme::FRAME_TIME);
-        let arrow = controls::take_left(&mut rest, theme::FRAME_ARROW);
-        let kind = controls::take_left(&mut rest, theme::FRAME_KIND);
-        let sign = controls::take_left(&mut rest, theme::FRAME_SIGN);
-        let (meaning, bytes) = rest.split_left_right_at_x(rest.left() + rest.width() * 0.56);
-        Self {
-            time,
-            arrow,
-            kind,
-            sign,
-            meaning: meaning.with_max_x(meaning.right() - theme::GAP),
-            bytes,
-        }
-    }
-}
-
-/// Whether the newest frame is kept in sight.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Sight {
-    /// The newest.
-    Newest,
-    /// Wherever a person scrolled to.
-    Scrolled,
-}
-
-/// Draws the head and the rows. What a person scrolls away from is no longer kept in sight.
+/// Draws the head and the rows, with the newest in sight if it `follows`. True if a person scrolls away from it.
 pub(crate) fn list_ui(
     ui: &mut Ui,
-    rect: Rect,
     pane: &Pane<'_>,
     frames: &VecDeque<Arc<Frame>>,
-    choice: &mut Choice,
-    sight: Sight,
-) -> Sight {
+    (choice, follows): (&mut Choice, bool),
+) -> bool {
     let look = pane.look;
-    let (head, body) = rect.split_top_bottom_at_y(rect.top() + theme::FRAME_HEAD);
-    head_ui(ui, head, look);
-    // The scroll area draws a little past its edge.
-    let body = body.with_min_y(body.top() + theme::STEP);
     keys(ui, frames, choice);
-    let keys = ui.input(|input| input.modifiers);
-    let sight = if scrolls(ui, body) {
-        Sight::Scrolled
-    } else {
-        sight
-    };
-    let inside = UiBuilder::new().max_rect(body).id_salt("traffic rows");
-    ui.scope_builder(inside, |ui| {
-        ui.shrink_clip_rect(body);
-        ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
-        let area = ScrollArea::vertical()
-            .auto_shrink(false)
-            .animated(false)
-            .stick_to_bottom(sight == Sight::Newest);
-        area.show_rows(ui, theme::FRAME_ROW, frames.len(), |ui, range| {
-            for frame in frames.range(range.start..range.end.min(frames.len())) {
-                let size = vec2(body.width(), theme::FRAME_ROW);
-                let (_, place) = ui.allocate_space(size);
-                let chosen = choice.numbers.contains(&frame.number);
-                if row_ui(ui, place, look, frame, chosen) {
-                    choice.press(frame.number, keys, frames);
-                }
-            }
-            if sight == Sight::Newest {
-                let below = rows_height(frames.len().saturating_sub(range.end));
-                let end = pos2(body.left(), ui.cursor().top() + below);
-                ui.scroll_to_rect(Rect::from_min_max(end, end), Some(Align::BOTTOM));
+    let modifiers = ui.input(|input| input.modifiers);
+    let scrolls = scrolls(ui, ui.available_rect_before_wrap());
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let mut table = TableBuilder::new(ui)
+        .id_salt("traffic rows")
+        .sense(Sense::click())
+        .auto_shrink(false)
+        .animate_scrolling(false);
+    for width in WIDTHS {
+        table = table.column(Column::exact(width));
+    }
+    if follows && !scrolls {
+        table = table.scroll_to_row(frames.len().saturating_sub(1), Some(Align::BOTTOM));
+    }
+    let rest = Column::remainder().clip(true);
+    let heads = [
+        Some(traffic::HEAD_TIME),
+        None,
+        Some(traffic::HEAD_KIND),
+        None,
+        Some(traffic::HEAD_MEANING),
+        Some(traffic::HEAD_BYTES),
+    ];
+    let table = table.columns(rest, 2).header(theme::CONTROL, |mut row| {
+        for head in heads {
+            row.col(|ui| {
+                let text = head.map_or("", |head| look.say(head));
+                paint(ui, text, theme::small(), look.palette.muted);
+            });
+        }
+    });
+    table.body(|body| {
+        body.rows(theme::FRAME_ROW, frames.len(), |mut row| {
+            let Some(frame) = frames.get(row.index()) else {
+                return;
+            };
+            let chosen = choice.numbers.contains(&frame.number);
+            row.set_selected(chosen);
+            if row_ui(&mut row, pane, frame, chosen) {
+                choice.press(frame.number, modifiers, frames);
             }
         });
     });
-    sight
+    scrolls
 }
 
 /// A person turns the wheel back, or takes the scroll bar.
@@ -143,10 +113,6 @@ fn scrolls(ui: &Ui, body: Rect) -> bool {
             let on_bar = at.is_some_and(|at| at.x > body.right() - theme::FRAME_BAR);
             input.smooth_scroll_delta().y > 0.0 || on_bar && input.pointer.primary_down()
         })
-}
-
-fn rows_height(rows: usize) -> f32 {
-    f32::from(u16::try_from(rows).unwrap_or(u16::MAX)) * theme::FRAME_ROW
 }
 
 /// Up and down move a choice while no field and no track has the keyboard.
@@ -165,91 +131,66 @@ fn keys(ui: &Ui, frames: &VecDeque<Arc<Frame>>, choice: &mut Choice) {
     }
 }
 
-fn head_ui(ui: &Ui, rect: Rect, look: Look) {
-    let columns = Columns::of(rect);
-    for (place, text) in [
-        (columns.time, traffic::HEAD_TIME),
-        (columns.kind, traffic::HEAD_KIND),
-        (columns.meaning, traffic::HEAD_MEANING),
-        (columns.bytes, traffic::HEAD_BYTES),
-    ] {
-        let (text, color) = (look.say(text), look.palette.muted);
-        let align = if place == columns.time {
-            Align2::RIGHT_CENTER
-        } else {
-            Align2::LEFT_CENTER
-        };
-        controls::paint_text(ui, place, align, text, theme::small(), color);
-    }
-    let stroke = egui::Stroke::new(1.0, look.palette.edge);
-    ui.painter().hline(rect.x_range(), rect.bottom(), stroke);
-}
-
 /// One row; true if it was pressed.
-fn row_ui(ui: &mut Ui, rect: Rect, look: Look, frame: &Frame, chosen: bool) -> bool {
+fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bool) -> bool {
+    let look = pane.look;
     let palette = look.palette;
-    let id = Id::unique(("traffic row", frame.number));
-    let response = ui.interact(rect, id, Sense::click());
     let said = said(look, frame);
+    let strong = color_of(look, frame);
+    let kind = look.say(traffic::kind(frame.kind));
+    let way = if frame.bytes.is_empty() {
+        "--"
+    } else {
+        frame.direction.arrow()
+    };
+    let time = format!("{:>9.3}", frame.at.secs());
+    let (font, color) = match frame.wrong {
+        Some(_) => (theme::body(), strong),
+        None => (theme::number(), palette.text),
+    };
+    row.col(|ui| paint(ui, &time, theme::number(), palette.muted));
+    row.col(|ui| paint(ui, way, theme::number(), palette.muted));
+    row.col(|ui| paint(ui, kind, theme::body(), strong));
+    row.col(|ui| {
+        if frame.wrong.is_some() {
+            let sign = Rect::from_center_size(ui.max_rect().center(), theme::FRAME_WRONG);
+            controls::warning_sign(ui, sign, strong);
+        }
+    });
+    row.col(|ui| paint(ui, &said, font, color));
+    row.col(|ui| paint(ui, &frame.hex(), theme::number_small(), palette.muted));
+    let response = row.response();
     response.widget_info(|| {
-        let name = format!(
-            "{} {} {said}",
-            frame.direction.arrow(),
-            look.say(traffic::kind(frame.kind))
-        );
+        let name = format!("{} {kind} {said}", frame.direction.arrow());
         WidgetInfo::selected(Role::Row, true, chosen, name)
     });
-    let ground = if chosen {
-        palette.wash(palette.accent)
-    } else if response.hovered() {
-        palette.control
-    } else if frame.wrong.is_some() {
-        palette.wash(color_of(look, frame)).gamma_multiply(0.6)
-    } else {
-        Color32::TRANSPARENT
-    };
-    ui.painter()
-        .rect_filled(rect, CornerRadius::same(theme::ROUND_TRACK), ground);
-    let columns = Columns::of(rect);
-    paint_row(ui, &columns, look, frame, &said);
+    if !frame.bytes.is_empty() {
+        response.context_menu(|ui| menu_ui(ui, pane, frame));
+    }
     response.clicked()
 }
 
-fn paint_row(ui: &Ui, columns: &Columns, look: Look, frame: &Frame, said: &str) {
-    let palette = look.palette;
-    let (left, right) = (Align2::LEFT_CENTER, Align2::RIGHT_CENTER);
-    let time = format!("{:.3}", frame.at.secs());
-    let number = theme::number();
-    controls::paint_text(
-        ui,
-        columns.time,
-        right,
-        &time,
-        number.clone(),
-        palette.muted,
-    );
-    arrow(ui, columns.arrow, look, frame);
-    let strong = color_of(look, frame);
-    let kind = look.say(traffic::kind(frame.kind));
-    controls::paint_text(ui, columns.kind, left, kind, theme::body(), strong);
-    if frame.wrong.is_some() {
-        let sign = Rect::from_center_size(columns.sign.center(), theme::FRAME_WRONG);
-        controls::warning_sign(ui, sign, strong);
+/// Copies one frame, also as lines of a program.
+fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
+    ui.label(pane.look.say(main::FRAME_COPY));
+    let endpoint = pane.state.hand().endpoint.as_ref();
+    for form in RecipeForm::ALL {
+        let text = match form {
+            RecipeForm::Hex => Some(frame.hex()),
+            form => endpoint
+                .and_then(|endpoint| Recipe::passed(&frame.bytes, endpoint))
+                .map(|recipe| recipe.text(form)),
+        };
+        if let Some(text) = text
+            && ui.button(form.name()).clicked()
+        {
+            ui.ctx().copy_text(text);
+        }
     }
-    let color = if frame.wrong.is_some() {
-        strong
-    } else {
-        palette.text
-    };
-    let font = if frame.wrong.is_some() {
-        theme::body()
-    } else {
-        number
-    };
-    controls::paint_text(ui, columns.meaning, left, said, font, color);
-    let hex = frame.hex();
-    let small = theme::number_small();
-    controls::paint_text(ui, columns.bytes, left, &hex, small, palette.muted);
+}
+
+fn paint(ui: &Ui, text: &str, font: FontId, color: Color32) {
+    controls::paint_text(ui, ui.max_rect(), Align2::LEFT_CENTER, text, font, color);
 }
 
 /// What is wrong, else what it means.
@@ -275,30 +216,5 @@ fn color_of(look: Look, frame: &Frame) -> Color32 {
         (None, Kind::Write | Kind::WriteReply | Kind::SaveResult) => palette.accent,
         (None, Kind::Read | Kind::ReadReply) => palette.text,
         (None, _) => palette.muted,
-    }
-}
-
-/// To the hand points right, from it left; changes of the wire itself have a bar.
-fn arrow(ui: &Ui, rect: Rect, look: Look, frame: &Frame) {
-    let color = look.palette.muted;
-    let stroke = egui::Stroke::new(theme::LINE, color);
-    let (center, half) = (rect.center(), 6.0);
-    let line = [
-        pos2(center.x - half, center.y),
-        pos2(center.x + half, center.y),
-    ];
-    if frame.bytes.is_empty() {
-        let bar = egui::Stroke::new(theme::LINE, look.palette.faint);
-        ui.painter().line_segment(line, bar);
-        return;
-    }
-    ui.painter().line_segment(line, stroke);
-    let (tip, back) = match frame.direction {
-        Direction::ToHand => (center.x + half, center.x + half - theme::STEP),
-        Direction::FromHand => (center.x - half, center.x - half + theme::STEP),
-    };
-    for y in [center.y - theme::BAR, center.y + theme::BAR] {
-        let wing = [pos2(back, y), pos2(tip, center.y)];
-        ui.painter().line_segment(wing, stroke);
     }
 }

@@ -308,7 +308,10 @@ impl Window {
                 }
             }
             View::Compare => self.compare.ui(ui, rect, pane),
-            View::Faults => self.faults.ui(ui, rect, pane),
+            View::Faults => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.faults.ui(ui, pane));
+            }
             View::Poses => self.poses.ui(ui, rect, pane),
             View::Device => {
                 let place = UiBuilder::new().max_rect(rect);
@@ -318,7 +321,10 @@ impl Window {
                 let place = UiBuilder::new().max_rect(rect);
                 ui.scope_builder(place, |ui| self.connection.ui(ui, pane));
             }
-            View::Traffic => self.traffic.ui(ui, rect, pane),
+            View::Traffic => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.traffic.ui(ui, pane));
+            }
         }
     }
 
@@ -355,10 +361,7 @@ impl Window {
                 least: theme::FAULTS_LEAST + theme::GAP,
                 rest: theme::TIPS_LEAST,
             };
-            rooms.room_ui(ui, pane, (Room::Faults, faults), |ui, pane| {
-                let rect = ui.available_rect_before_wrap();
-                faults::faults_card_ui(ui, rect, pane);
-            });
+            rooms.room_ui(ui, pane, (Room::Faults, faults), faults::faults_card_ui);
             touch.small_ui(ui, pane);
         });
         let rect = ui.available_rect_before_wrap();

@@ -341,6 +341,46 @@ impl Bench {
         self.harness.step();
     }
 
+    /// Opens the first drawer of this name, and waits until it is open.
+    pub(crate) fn open_drawer(&mut self, name: &str) {
+        let mut all = self.harness.query_all_by_role(Role::DisclosureTriangle);
+        let named = all.find(|node| node.accesskit_node().label().as_deref() == Some(name));
+        named
+            .unwrap_or_else(|| panic!("no drawer '{name}'"))
+            .click();
+        drop(all);
+        self.harness.remove_cursor();
+        self.run(400);
+    }
+
+    /// Puts the pointer over a text and leaves it there.
+    pub(crate) fn point_at(&mut self, name: &str) {
+        let at = self.rect(Role::Label, name).center();
+        self.harness.hover_at(at);
+        self.harness.step();
+    }
+
+    /// Takes the pointer out of the window.
+    pub(crate) fn point_away(&mut self) {
+        self.harness.remove_cursor();
+        self.harness.step();
+    }
+
+    /// The secondary button on a row of a list, by a part of its name, newest first.
+    pub(crate) fn click_row_secondary(&mut self, part: &str) {
+        let mut rows = self.harness.query_all_by_role(Role::Row);
+        let has = |node: &egui_kittest::Node<'_>| {
+            let name = node.accesskit_node().label();
+            name.is_some_and(|name| name.contains(part))
+        };
+        let found = rows.rfind(has);
+        found
+            .unwrap_or_else(|| panic!("no row with '{part}'"))
+            .click_secondary();
+        drop(rows);
+        self.run(2 * FRAME_MS);
+    }
+
     /// Where a view has a button of the same name: the one that is drawn first.
     pub(crate) fn click_first_button(&mut self, name: &str) {
         let mut all = self.harness.query_all_by_role(Role::Button);

@@ -467,7 +467,7 @@ fn speeds_and_scenarios_are_chosen_from_lists() {
         .get_by_role_and_label(Role::ComboBox, "Scenario")
         .click();
     harness.run_steps(2);
-    harness.get_by_label("Grasps by itself (grasp)").click();
+    harness.get_by_label("Grasps by itself").click();
     harness.run_steps(2);
     harness.get_by_label("Connect").click();
     let endpoint = "sim:?seed=1&scenario=grasp".parse().unwrap();

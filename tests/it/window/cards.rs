@@ -347,7 +347,8 @@ fn without_a_backup_nothing_is_written() {
 #[test]
 fn a_factory_reset_wants_its_word_and_a_hand_at_rest_and_tells_where_the_hand_is() {
     let mut bench = on_a_line(Personality::default());
-    bench.show(View::Connection);
+    bench.show(View::Device);
+    bench.run(400);
     bench.click_button("Factory reset");
     bench.run(200);
     assert!(
@@ -418,7 +419,8 @@ fn a_factory_reset_takes_the_record_of_the_hand_along() {
 #[test]
 fn a_calibration_measures_first_locks_motion_and_shows_the_offsets() {
     let mut bench = on_a_line(Personality::default());
-    bench.show(View::Connection);
+    bench.show(View::Device);
+    bench.run(400);
     bench.click_button("Calibrate force");
     bench.run(100);
     assert!(

@@ -38,15 +38,13 @@ fn a_fault_that_went_unseen_is_told_of_everywhere_until_a_person_says_that_they_
         "{:?}",
         bench.texts_with("lasted")
     );
-    assert!(
-        bench.is_disabled(Role::Button, "Forget"),
-        "not before it was seen"
-    );
+    assert!(!bench.shows("Tidy up"), "not before it was seen");
     bench.click("Seen: Index: Stall");
     bench.run(60);
     assert!(!bench.shows("Faults: 1 unseen") && !bench.shows("Index unseen fault"));
     assert!(bench.shows("over"), "it stays in the list");
     assert!(bench.is_disabled(Role::Button, "All seen"));
+    bench.open_drawer("Tidy up");
     bench.click("Forget");
     bench.run(60);
     assert!(!bench.shows("over"));
@@ -71,6 +69,53 @@ fn all_faults_are_seen_at_once_and_unseen_when_they_come_again() {
     bench.wait(200);
     assert!(bench.shows("Faults: 1 unseen"));
     assert!(!bench.texts_with("came 2 times").is_empty());
+}
+
+#[test]
+fn the_list_stands_still_while_the_pointer_is_on_it() {
+    let mut bench = missed();
+    bench.click_first_button("Faults");
+    bench.run(60);
+    bench.point_at("Index: Stall");
+    let top = |bench: &Bench, name: &str| {
+        let all = bench.all(Role::Label);
+        let found = all.into_iter().find(|(other, _)| other == name);
+        found.unwrap_or_else(|| panic!("no {name}")).1.top()
+    };
+    let before = top(&bench, "Index: Stall");
+    bench.hand(|hand, _| hand.inject_fault(Dof::Ring, Fault::Motor));
+    bench.run(400);
+    let (index, ring) = (
+        top(&bench, "Index: Stall"),
+        top(&bench, "Ring: Motor abnormal"),
+    );
+    assert!(ring > index, "the new one comes last: {index} {ring}");
+    // The banner about it moves the whole view, not the list in it.
+    let list = top(&bench, "Faults") - top(&bench, "Index: Stall");
+    assert!(list < 0.0 && before > 0.0);
+    bench.point_away();
+    bench.run(100);
+    assert!(top(&bench, "Ring: Motor abnormal") < top(&bench, "Index: Stall"));
+}
+
+#[test]
+fn a_drive_that_is_cool_enough_is_not_promised_to_work_while_the_hand_reports_its_fault() {
+    let mut bench = Bench::live();
+    bench.hand(|hand, _| {
+        hand.inject_fault(Dof::Middle, Fault::OverTemperature);
+        hand.warm(Dof::Middle, 71.0);
+    });
+    bench.click_first_button("Faults");
+    let mut told = Vec::new();
+    for _ in 0..200 {
+        bench.run(40);
+        told.extend(bench.texts_with("It has "));
+    }
+    assert!(!told.is_empty());
+    assert!(
+        told.iter().all(|text| !text.contains("should end")),
+        "{told:?}"
+    );
 }
 
 #[test]

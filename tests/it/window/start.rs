@@ -88,8 +88,7 @@ fn how_bytes_stand_in_words_can_be_said_for_modbus_and_is_part_of_the_address() 
         bench.click_button(&format!("Kind of link: {kind}"));
         bench.run(60);
         if has_words && !bench.shows("Modbus bytes") {
-            bench.click_first_button("For experts");
-            bench.run(400);
+            bench.open_drawer("For experts");
         }
         let offers = bench.all(Role::ComboBox);
         let offers = offers.iter().any(|(name, _)| name == "Modbus bytes");

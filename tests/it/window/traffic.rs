@@ -196,3 +196,19 @@ fn without_a_link_the_view_says_why_it_is_empty() {
     assert!(bench.shows("Nothing is connected. Frames appear here as soon as a wire is open."));
     assert!(!bench.is_disabled(Role::Button, "STOP"));
 }
+
+#[test]
+fn one_frame_is_copied_from_its_menu_also_as_lines_of_a_program() {
+    let mut bench = looking();
+    bench.click("Pause the list");
+    bench.run(60);
+    bench.click_row_secondary("Read ");
+    let hex = bench.click_to_copy("Hex").unwrap();
+    assert!(hex.starts_with("EB 90 01 "), "{hex}");
+    bench.click_row_secondary("Read ");
+    let python = bench.click_to_copy("Python").unwrap();
+    assert!(
+        python.contains("import serial") && python.contains("EB 90 01"),
+        "{python}"
+    );
+}
