@@ -42,14 +42,7 @@ pub struct QuantityRow {
     pub decimals: usize,
     /// The scale of a plot never shows less than this.
     pub least_scale: (f64, f64),
-    /// Steps of such a scale.
-    pub scale_steps: [f64; 8],
 }
-
-/// Steps of grams and milliamperes.
-const WIDE: [f64; 8] = [50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0];
-/// Steps of newtons.
-const NEWTONS: [f64; 8] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 
 const ANGLE: QuantityRow = QuantityRow {
     name: "angle",
@@ -57,9 +50,6 @@ const ANGLE: QuantityRow = QuantityRow {
     unit: "",
     decimals: 0,
     least_scale: (0.0, 1000.0),
-    scale_steps: [
-        250.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0, 50_000.0,
-    ],
 };
 const FORCE: QuantityRow = QuantityRow {
     name: "force",
@@ -67,7 +57,6 @@ const FORCE: QuantityRow = QuantityRow {
     unit: "g",
     decimals: 0,
     least_scale: (0.0, 200.0),
-    scale_steps: WIDE,
 };
 const CURRENT: QuantityRow = QuantityRow {
     name: "current",
@@ -81,7 +70,6 @@ const TEMPERATURE: QuantityRow = QuantityRow {
     unit: "C",
     decimals: 0,
     least_scale: (20.0, 40.0),
-    scale_steps: [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0],
 };
 const TARGET_ANGLE: QuantityRow = QuantityRow {
     name: "target_angle",
@@ -94,7 +82,6 @@ const NORMAL: QuantityRow = QuantityRow {
     unit: "N",
     decimals: 2,
     least_scale: (0.0, 2.0),
-    scale_steps: NEWTONS,
 };
 const TANGENTIAL: QuantityRow = QuantityRow {
     name: "tangential",

@@ -11,20 +11,20 @@ use crate::ui::text::{Text, panels, plots};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{
-    Align, Color32, Layout, Mesh, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, Ui,
+    Align, Color32, Layout, Mesh, PointerButton, Pos2, Response, Role, Sense, Stroke, Ui,
     WidgetInfo, vec2,
 };
 use egui_plot::{
     AxisHints, CoordinatesFormatter, Corner, GridInput, GridMark, HLine, Line, LineStyle, Plot,
-    PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, VLine,
+    PlotBounds, PlotPoint, PlotPoints, PlotResponse, PlotTransform, PlotUi, VLine,
 };
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
 
 /// Most columns that a chart is drawn in.
 const COLUMNS_MOST: f32 = 8192.0;
-/// A marked box that is lower or narrower is not meant in that direction, in points.
-const BOX_LEAST: f32 = 12.0;
+/// A box of a smaller part of a chart's height marks time alone.
+const BOX_LEAST: f64 = 0.15;
 
 /// Where the points of a curve come from: seconds and values, oldest first.
 #[derive(Debug, Clone, Copy)]
@@ -127,8 +127,6 @@ pub(crate) struct ChartView {
     traces: Traces,
     /// The chart and the time that the pointer is at.
     pointed: Option<(&'static str, f64)>,
-    /// Where a box began that is being marked.
-    marked: Option<Pos2>,
 }
 
 /// A chart of one quantity.
@@ -157,22 +155,13 @@ pub(crate) struct Chart<'a> {
     pub(crate) height: f32,
 }
 
-/// What was drawn, and what the pointer does there.
-pub(crate) struct ChartResponse {
-    /// Of the curves' ground.
-    pub(crate) ground: Response,
-    /// Of the numbers beside it.
-    pub(crate) axis: Response,
-    /// Between screen and values.
-    pub(crate) transform: PlotTransform,
-}
+/// What was drawn, with the response of the numbers beside it.
+pub(crate) type ChartResponse = PlotResponse<Response>;
 
-impl ChartResponse {
-    /// The time that the pointer is at.
-    pub(crate) fn pointed_s(&self) -> Option<f64> {
-        let at = self.ground.hover_pos()?;
-        Some(self.transform.value_from_position(at).x)
-    }
+/// The time that the pointer is at.
+pub(crate) fn pointed_s(shown: &ChartResponse) -> Option<f64> {
+    let at = shown.response.hover_pos()?;
+    Some(shown.transform.value_from_position(at).x)
 }
 
 impl<'a> Chart<'a> {
@@ -207,11 +196,15 @@ impl<'a> Chart<'a> {
         ui.spacing_mut().item_spacing.y = 0.0;
         self.caption_ui(ui, view, is_decimated);
         let bounds = PlotBounds::from_min_max([from_s, scale.0], [to_s, scale.1]);
-        let marks = view.marked.is_some() || ui.input(|input| input.modifiers.shift);
         let pieces = self.curves.iter().flat_map(|curve| curve.pieces(&traces));
         let per_s = f64::from(columns) / (to_s - from_s);
         let (dense, sparse): (Vec<_>, Vec<_>) = pieces.partition(|piece| is_dense(*piece, per_s));
+        let marks = ui.input(|input| input.modifiers.shift);
         let plot = self.plot(chosen.is_some()).allow_drag([!marks, false]);
+        let plot = plot.boxed_zoom_pointer_button(match marks {
+            true => PointerButton::Primary,
+            false => PointerButton::Secondary,
+        });
         let shown = plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds);
             self.items(plot);
@@ -241,12 +234,13 @@ impl<'a> Chart<'a> {
             .with_min_x(frame.left() - theme::PLOT_AXIS);
         let id = shown.response.id.with("values");
         let shown = ChartResponse {
-            axis: ui.interact(axis, id, Sense::DRAG),
-            ground: shown.response,
+            inner: ui.interact(axis, id, Sense::DRAG),
+            response: shown.response,
             transform: shown.transform,
+            hovered_plot_item: None,
         };
-        view.scales.act(ui, &shown.axis, self.title, scale);
-        view.act(ui, &shown, self, (from_s, to_s));
+        view.scales.act(ui, &shown.inner, self.title, scale);
+        view.act(ui, &shown, self.title, bounds);
         shown
     }
 
@@ -395,7 +389,6 @@ impl<'a> Chart<'a> {
             .allow_zoom([true, false])
             .allow_axis_zoom_drag([true, false])
             .allow_scroll(false)
-            .allow_boxed_zoom(false)
             .allow_double_click_reset(false)
     }
 
@@ -420,7 +413,7 @@ impl<'a> Chart<'a> {
 
     /// The line that passes next to the pointer, by its place in the list; of several the foremost.
     pub(crate) fn nearest(&self, shown: &ChartResponse) -> Option<usize> {
-        let at = shown.ground.hover_pos()?;
+        let at = shown.response.hover_pos()?;
         let apart = |curve: &Curve<'_>| {
             let Points::Own(points) = curve.points else {
                 return None;
@@ -460,71 +453,36 @@ impl ChartView {
         self.pointed.map(|(_, at_s)| at_s)
     }
 
-    fn act(&mut self, ui: &Ui, shown: &ChartResponse, chart: &Chart<'_>, span: Span) {
+    /// Takes over what `egui_plot` made of drags, and follows wheel and double click.
+    fn act(&mut self, ui: &Ui, shown: &ChartResponse, title: Text, asked: PlotBounds) {
         let bounds = shown.transform.bounds();
-        let moved = (bounds.min()[0], bounds.max()[0]);
-        if moved != span {
-            self.time.show(moved);
+        if *bounds != asked {
+            self.time.show(bounds.range_x().into_inner());
+            // A low box marks time alone.
+            let part = bounds.height() / asked.height();
+            if (BOX_LEAST..1.0).contains(&part) {
+                let (low, high) = bounds.range_y().into_inner();
+                self.scales.choose(title, low, high);
+            }
             ui.request_repaint();
         }
         let scroll = ui.input(|input| input.smooth_scroll_delta);
-        if let Some(at_s) = shown.pointed_s().filter(|_| scroll != vec2(0.0, 0.0)) {
-            if scroll.x != 0.0 {
-                self.time
-                    .pan(-f64::from(scroll.x) / shown.transform.dpos_dvalue_x());
-            } else {
-                self.time
-                    .zoom(at_s, f64::from(-scroll.y / theme::PLOT_WHEEL).exp2());
+        let pointed = pointed_s(shown);
+        if let Some(at_s) = pointed.filter(|_| scroll != vec2(0.0, 0.0)) {
+            let by_s = -f64::from(scroll.x) * shown.transform.dvalue_dpos()[0];
+            let factor = f64::from(-scroll.y / theme::PLOT_WHEEL).exp2();
+            match scroll.x == 0.0 {
+                true => self.time.zoom(at_s, factor),
+                false => self.time.pan(by_s),
             }
             ui.request_repaint();
         }
-        let here = self
-            .pointed
-            .is_some_and(|(title, _)| title == chart.title.en);
-        match shown.pointed_s() {
-            Some(at_s) => self.pointed = Some((chart.title.en, at_s)),
-            None if here => self.pointed = None,
-            None => {}
+        if pointed.is_some() || self.pointed.is_some_and(|(of, _)| of == title.en) {
+            self.pointed = pointed.map(|at_s| (title.en, at_s));
         }
-        self.mark(ui, shown, chart);
-        if shown.ground.double_clicked() {
+        if shown.response.double_clicked() {
             self.time.follow();
-            self.scales.forget(chart.title);
-        }
-    }
-
-    /// The box that is being marked. One that is low spans all values, so that time alone can be marked.
-    fn mark(&mut self, ui: &Ui, shown: &ChartResponse, chart: &Chart<'_>) {
-        let ground = &shown.ground;
-        let (shift, pressed_at) =
-            ui.input(|input| (input.modifiers.shift, input.pointer.press_origin()));
-        if ground.drag_started() && (shift || ground.dragged_by(PointerButton::Secondary)) {
-            self.marked = pressed_at;
-        }
-        let ends = self.marked.zip(ground.interact_pointer_pos());
-        let Some((from, to)) = ends.filter(|_| ground.dragged() || ground.drag_stopped()) else {
-            return;
-        };
-        let frame = *shown.transform.frame();
-        let mut marked = Rect::from_two_pos(from, to).intersect(frame);
-        let is_high = marked.height() >= BOX_LEAST;
-        if !is_high {
-            marked = Rect::from_x_y_ranges(marked.x_range(), frame.y_range());
-        }
-        if ground.dragged() {
-            let accent = chart.look.palette.accent;
-            ui.painter()
-                .rect_filled(marked, 0.0, accent.gamma_multiply(0.25));
-            return;
-        }
-        self.marked = None;
-        let low = shown.transform.value_from_position(marked.left_bottom());
-        let high = shown.transform.value_from_position(marked.right_top());
-        if marked.width() >= BOX_LEAST {
-            self.time.show((low.x, high.x));
-            if is_high {
-                self.scales.choose(chart.title, low.y, high.y);
-            }
+            self.scales.forget(title);
         }
     }
 }

@@ -129,7 +129,7 @@ impl Cursors {
             });
         };
         let grid = Grid::new("figures").spacing(vec2(theme::STEP, 0.0));
-        grid.min_col_width(0.0).show(ui, |ui| {
+        grid.min_col_width(0.0).min_row_height(0.0).show(ui, |ui| {
             ui.allocate_space(vec2(theme::CURSOR_NAMES, theme::TEXT_LINE));
             for text in COLUMNS {
                 cell(ui, look.say(text), None);

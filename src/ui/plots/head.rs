@@ -157,6 +157,8 @@ fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let mut chosen = pane.state.settings.plot_window;
     let all = PlotWindow::ALL.map(|window| (window, window_text(window)));
     ui.spacing_mut().combo_width = theme::PLOT_WINDOW;
+    // All of them without scrolling.
+    ui.spacing_mut().combo_height = f32::INFINITY;
     let name = pane.look.say(panels::WINDOW_NAME);
     if controls::choose_ui(ui, name, &mut chosen, &all) {
         view.view.time.resize(chosen.seconds());

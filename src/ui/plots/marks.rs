@@ -3,7 +3,7 @@
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::controls;
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::chart::{ChartResponse, clock};
+use crate::ui::plots::chart::{ChartResponse, clock, pointed_s};
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use egui::{Align2, Color32, Rect, Ui, pos2, vec2};
@@ -78,7 +78,7 @@ fn mark_text(pane: &Pane<'_>, mark: &Mark) -> String {
 
 /// What happened where the pointer is, a line each.
 pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
-    let at_s = shown.pointed_s()?;
+    let at_s = pointed_s(shown)?;
     // A line is easily missed by some pixels.
     let per_point = shown.transform.dvalue_dpos()[0];
     let by_s = f64::from(theme::STEP) * per_point;

@@ -130,11 +130,11 @@ impl PlotView {
             if is_lowest {
                 self.cursors.flags_ui(ui, pane.look, &chart);
             }
-            if chart.ground.clicked() {
+            if chart.response.clicked() {
                 self.chosen = Some(panel.kind);
             }
             if let Some(marks) = marks::near(pane, &chart) {
-                chart.ground.on_hover_text_at_pointer(marks);
+                chart.response.on_hover_text_at_pointer(marks);
             }
         }
     }
@@ -181,7 +181,7 @@ impl PlotView {
         let scale = shown.transform.bounds().range_y().into_inner();
         self.view
             .scales
-            .ends_ui(&shown.axis, pane, panel.title, scale);
+            .ends_ui(&shown.inner, pane, panel.title, scale);
         shown
     }
 

@@ -14,7 +14,7 @@ const NARROWEST: f64 = 0.01;
 /// Points between two lines of a grid that `egui_plot` hands to its spacers as one step.
 const BASE_PX: f64 = 8.0;
 /// Points between two times.
-const TIME_PX: f64 = 72.0;
+const TIME_PX: f64 = 60.0;
 /// Steps of time above a second, where tens do not fit.
 const LONG_STEPS: [f64; 8] = [10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0];
 
@@ -75,7 +75,7 @@ pub(crate) fn digits(step: f64) -> usize {
 
 /// A number of a scale, with so many digits as a step needs.
 pub(crate) fn number(value: f64, step: f64) -> String {
-    if step >= 1000.0 {
+    if step >= 10_000.0 && value != 0.0 {
         return format!("{}k", value / 1000.0);
     }
     let digits = digits(step);
@@ -250,7 +250,8 @@ mod tests {
             (0.5, 0.5, "0.5"),
             (-0.0, 1.0, "0"),
             (1500.0, 500.0, "1500"),
-            (-20_000.0, 5000.0, "-20k"),
+            (-20_000.0, 10_000.0, "-20k"),
+            (0.0, 10_000.0, "0"),
         ] {
             assert_eq!(number(value, step), text);
         }

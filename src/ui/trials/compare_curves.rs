@@ -121,7 +121,7 @@ impl CurvesView {
         };
         let (response, near) = trial_chart_ui(ui, chart, &mut self.chart);
         self.pointed = near.and_then(|at| keys.get(at)).copied();
-        if response.ground.clicked() {
+        if response.response.clicked() {
             let seen = self.pointed.and_then(|place| comparison.row(trials, place));
             let chosen = seen.map(|seen| (seen.session.id, seen.trial.number));
             *strong = chosen.filter(|_| chosen != *strong);
