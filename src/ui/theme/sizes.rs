@@ -167,12 +167,6 @@ pub(crate) const FIELD_MARGIN: f32 = 16.0;
 pub(crate) const FIELD_MARGIN_SMALL: f32 = 14.0;
 /// Height of a drive's tile with the cause of what it says.
 pub(crate) const DRIVE_TILE: f32 = 112.0;
-/// Width and least height of a pose in the overview.
-pub(crate) const STRIP_TILE: egui::Vec2 = egui::vec2(132.0, 38.0);
-/// Width of a gesture that has no name.
-pub(crate) const GESTURE_TILE: f32 = 40.0;
-/// Room for a gesture's number beside its name.
-pub(crate) const GESTURE_NUMBER: f32 = 18.0;
 /// Width of the readings of a joint.
 pub(crate) const READING: f32 = 112.0;
 /// Width of a joint's name.

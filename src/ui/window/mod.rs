@@ -257,7 +257,10 @@ impl Window {
             }
             View::Compare => self.compare.ui(ui, rect, pane),
             View::Faults => self.faults.ui(ui, rect, pane),
-            View::Poses => self.poses.ui(ui, rect, pane),
+            View::Poses => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.poses.ui(ui, pane));
+            }
             View::Device => {
                 let place = UiBuilder::new().max_rect(rect);
                 ui.scope_builder(place, |ui| self.device.ui(ui, pane));
@@ -283,8 +286,12 @@ impl Window {
         }
         if layout.strip.shut {
             shut_ui(ui, pane, rooms.strip, Room::Strip, Side::Bottom);
-        } else if pose_tiles::strip_ui(ui, rooms.strip, pane) {
-            self.view = View::Poses;
+        } else {
+            let place = UiBuilder::new().max_rect(rooms.strip);
+            let opened = ui.scope_builder(place, |ui| pose_tiles::strip_ui(ui, pane));
+            if opened.inner {
+                self.view = View::Poses;
+            }
         }
         self.plots_ui(ui, rooms.plots, pane);
         if layout.side.shut {
