@@ -130,7 +130,7 @@ fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>) {
     let corner = picture.right_bottom() - vec2(width, theme::CONTROL);
     let place = Rect::from_min_size(corner, vec2(width, theme::CONTROL));
     let button = Button::new(words, look.say(text::SIDE_TIP)).weight(Weight::Quiet);
-    let id = ui.id().with("side");
+    let id = ui.next_auto_id().with("side");
     if button.put(ui, look, place, id).clicked() {
         pane.actions.push(Action::Side(look.side.other()));
     }

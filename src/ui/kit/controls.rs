@@ -7,6 +7,8 @@ use egui::{
     Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
 };
 
+/// Seconds for which a press on what cannot be pressed is answered.
+const TOLD_S: f32 = 3.0;
 /// Characters that fit in a line that is typed.
 const EDIT_MAX: usize = 128;
 
@@ -319,7 +321,10 @@ impl<'a> Button<'a> {
             Some(reason) => format!("{}\n{reason}", self.tip).trim().to_owned(),
             None => self.tip.to_owned(),
         };
-        let response = if tip.is_empty() {
+        let told = self
+            .disabled
+            .is_some_and(|reason| told_ui(ui, &response, reason));
+        let response = if tip.is_empty() || told {
             response
         } else {
             response.on_hover_text(tip)
@@ -366,6 +371,24 @@ impl<'a> Button<'a> {
             Weight::Stop => (palette.stop, palette.stop_edge),
         }
     }
+}
+
+/// What is pressed and cannot be pressed says at once why; true while it does.
+fn told_ui(ui: &Ui, response: &Response, reason: &str) -> bool {
+    let told = Id::unique("told why not");
+    let (pressed, now) = ui.input(|input| (input.pointer.primary_pressed(), input.time));
+    if pressed && response.contains_pointer() {
+        ui.data_mut(|data| data.insert_temp(told, (response.id, now + f64::from(TOLD_S))));
+        ui.ctx().request_repaint_after_secs(TOLD_S);
+    }
+    let last: Option<(Id, f64)> = ui.data(|data| data.get_temp(told));
+    if last.is_none_or(|(id, until)| id != response.id || now > until) {
+        return false;
+    }
+    let layer = response.layer_id;
+    let tip = egui::Tooltip::always_open(ui.ctx().clone(), layer, response.id.with(told), response);
+    tip.show(|ui| ui.label(reason));
+    true
 }
 
 /// A thin ring around what has the keyboard.

@@ -157,6 +157,15 @@ impl NumberField<'_> {
     }
 }
 
+/// A typed whole number.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a field lets only whole numbers of its range pass"
+)]
+pub(crate) const fn whole(number: f64) -> i64 {
+    number as i64
+}
+
 /// Marks all of the field's text, so that what is typed next takes its place.
 fn select_all(ui: &Ui, id: Id, text: &str) {
     let mut state = TextEditState::load(ui.ctx(), id).unwrap_or_default();

@@ -25,8 +25,8 @@ pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         ui.columns(2, |columns| {
             if let [left, right] = columns {
-                save_ui(left, pane, height - theme::CONTROL_LARGE);
-                files_ui(right, pane);
+                left.vertical(|ui| save_ui(ui, pane, height - theme::CONTROL_LARGE));
+                right.vertical(|ui| files_ui(ui, pane));
             }
         });
     });
@@ -136,7 +136,8 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let backups = &pane.state.hand().params.backups;
     let most = ui.available_height() - theme::CONTROL - theme::GAP;
     let area = ScrollArea::vertical().auto_shrink(false).max_height(most);
-    area.id_salt("backups").show(ui, |ui| {
+    let area = area.id_salt("backups").min_scrolled_height(0.0);
+    area.show(ui, |ui| {
         if backups.is_empty() {
             let none = Label::new(look.say(device::BACKUPS_NONE), look.palette.muted);
             none.small().wrap().ui(ui);

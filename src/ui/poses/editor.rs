@@ -5,51 +5,39 @@ use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::edit::{LibraryEdit, PoseEdit, Way};
 use crate::poses::library::{NAME_CHARS_MAX, Pose};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, take_left, take_right, take_top};
+use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
+use crate::ui::kit::number::{NumberField, whole};
 use crate::ui::kit::text_field::TextField;
 use crate::ui::poses::tiles::{go_ui, shares};
 use crate::ui::text::{Text, poses, words};
 use crate::ui::theme;
-use egui::{Id, Rect, Ui, vec2};
+use egui::{Color32, Id, Layout, ScrollArea, Ui, vec2};
 
 /// Characters of all tags.
 const TAGS_MAX: usize = 120;
+/// Height of all fields below the picture.
+const FIELDS: f32 = 11.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
 
 /// Draws the editor of one pose.
 pub(crate) fn editor_ui(
     ui: &mut Ui,
-    rect: Rect,
     pane: &mut Pane<'_>,
     typed: &mut Option<(Id, String)>,
     pose: &Pose,
 ) {
-    let mut left = rect;
-    let rows = 11.0;
-    let fields = rows * (theme::CONTROL + theme::STEP) + theme::CONTROL_LARGE;
-    let picture = take_top(
-        &mut left,
-        (rect.height() - fields - theme::GAP).clamp(theme::POSE_PICTURE.0, theme::POSE_PICTURE.1),
-    );
+    let height = (ui.available_height() - FIELDS).clamp(48.0, 320.0);
+    let (_, picture) = ui.allocate_space(vec2(ui.available_width(), height));
     panel::pose_ui(ui, pane.look, picture, &shares(&pose.angles));
-    let mut row = || {
-        let row = take_top(&mut left, theme::CONTROL);
-        left.min.y -= theme::STEP;
-        row
-    };
-    for (caption, edit) in [(poses::NAME, true), (poses::TAGS, false)] {
-        words_ui(ui, row(), pane, typed, (caption, edit, pose));
-    }
-    for dof in Dof::ALL {
-        joint_ui(ui, row(), pane, pose, dof);
-    }
-    limits_ui(ui, row(), pane, pose);
-    let (first, second) = (row(), row());
-    order_ui(ui, first, second, pane, pose);
-    let foot = left.with_max_y((left.top() + theme::CONTROL_LARGE).min(rect.bottom()));
-    go_ui(ui, foot, pane, pose, "editor");
+    ScrollArea::vertical().id_salt(pose.id).show(ui, |ui| {
+        words_ui(ui, pane, typed, pose);
+        for dof in Dof::ALL {
+            ui.horizontal(|ui| joint_ui(ui, pane, pose, dof));
+        }
+        ui.horizontal(|ui| limits_ui(ui, pane, pose));
+        order_ui(ui, pane, pose);
+        ui.vertical_centered_justified(|ui| go_ui(ui, pane, pose));
+    });
 }
 
 fn change(pane: &mut Pane<'_>, pose: &Pose, edit: PoseEdit) {
@@ -57,68 +45,66 @@ fn change(pane: &mut Pane<'_>, pose: &Pose, edit: PoseEdit) {
     pane.actions.push(Action::Library(edit));
 }
 
-fn words_ui(
-    ui: &mut Ui,
-    mut row: Rect,
-    pane: &mut Pane<'_>,
-    typed: &mut Option<(Id, String)>,
-    (caption, is_name, pose): (Text, bool, &Pose),
-) {
+/// A word before its field, as wide as all such words.
+pub(crate) fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
+    let size = vec2(88.0, theme::CONTROL);
+    let left = Layout::left_to_right(egui::Align::Center);
+    ui.allocate_ui_with_layout(size, left, |ui| {
+        ui.set_min_width(size.x);
+        Label::new(text, color).ui(ui);
+    });
+}
+
+fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, typed: &mut Option<(Id, String)>, pose: &Pose) {
     let look = pane.look;
-    let text = look.say(caption);
-    Label::new(text, look.palette.muted).put(ui, take_left(&mut row, theme::POSE_CAPTION));
     let tags = pose.tags.join(", ");
-    let field = TextField {
-        name: text,
-        hint: if is_name {
-            ""
-        } else {
-            look.say(poses::TAGS_HINT)
-        },
-        value: if is_name { &pose.name } else { &tags },
-        max: if is_name { NAME_CHARS_MAX } else { TAGS_MAX },
+    let name = TextField {
+        name: look.say(poses::NAME),
+        hint: "",
+        value: &pose.name,
+        max: NAME_CHARS_MAX,
     };
-    if let Some(text) = field.put(ui, typed, row, Id::unique((pose.id, is_name))) {
-        let edit = if is_name {
-            PoseEdit::Rename(text)
-        } else {
-            PoseEdit::Tags(text)
-        };
-        change(pane, pose, edit);
+    let tags = TextField {
+        name: look.say(poses::TAGS),
+        hint: look.say(poses::TAGS_HINT),
+        value: &tags,
+        max: TAGS_MAX,
+    };
+    let edits: [fn(String) -> PoseEdit; 2] = [PoseEdit::Rename, PoseEdit::Tags];
+    for (field, edit) in [name, tags].into_iter().zip(edits) {
+        ui.horizontal(|ui| {
+            caption_ui(ui, field.name, look.palette.muted);
+            if let Some(text) = field.ui(ui, typed) {
+                change(pane, pose, edit(text));
+            }
+        });
     }
 }
 
-fn joint_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, pose: &Pose, dof: Dof) {
+fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose, dof: Dof) {
     let look = pane.look;
-    let leave = pose.leave[dof];
-    let name = look.say(words::dof(dof));
-    let text = look.say(poses::LEAVE);
-    let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-    let label = format!("{name} {text}");
-    let button = Button::new(text, look.say(poses::LEAVE_TIP)).named(&label);
-    let room = theme::POSE_CAPTION + theme::POSE_NUMBER + 3.0 * theme::GAP + width;
-    row.max.x = row.right().min(row.left() + room);
-    let place = take_right(&mut row, width);
-    let id = Id::unique((pose.id, dof, "leave"));
-    if button.choice(leave).put(ui, look, place, id).clicked() {
-        change(pane, pose, PoseEdit::Leave(dof, !leave));
-    }
-    if let Some(angle) = angle_ui(ui, row, pane, ("pose", dof), Some(pose.angles[dof])) {
+    if let Some(angle) = angle_ui(ui, pane, ("pose", dof), Some(pose.angles[dof])) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
+    }
+    let text = look.say(poses::LEAVE);
+    let label = format!("{} {text}", look.say(words::dof(dof)));
+    let leave = pose.leave[dof];
+    let button = Button::new(text, look.say(poses::LEAVE_TIP)).named(&label);
+    if button.choice(leave).ui(ui, look).clicked() {
+        change(pane, pose, PoseEdit::Leave(dof, !leave));
     }
 }
 
 /// One joint's angle as a number behind its name; the number that was confirmed.
 pub(crate) fn angle_ui(
     ui: &mut Ui,
-    mut row: Rect,
     pane: &mut Pane<'_>,
     (of, dof): (&'static str, Dof),
     angle: Option<Angle>,
 ) -> Option<Angle> {
     let look = pane.look;
     let name = look.say(words::dof(dof));
-    Label::new(name, look.palette.dof[dof]).put(ui, take_left(&mut row, theme::POSE_CAPTION));
+    caption_ui(ui, name, look.palette.dof[dof]);
     let label = format!("{name} {of} {}", look.say(poses::ANGLE));
     let field = NumberField {
         name: &label,
@@ -128,27 +114,15 @@ pub(crate) fn angle_ui(
         range: 0.0..=1000.0,
         decimals: 0,
     };
-    let place = take_left(&mut row, theme::POSE_NUMBER);
-    let id = Id::unique((of, dof, "angle"));
-    let typed = field.put(ui, look, pane.typing, place, id)?;
+    let typed = field.ui(ui, look, pane.typing)?;
     Angle::new(whole(typed)).ok()
 }
 
-/// A typed whole number.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "a field lets only whole numbers of its range pass"
-)]
-pub(crate) const fn whole(number: f64) -> i64 {
-    number as i64
-}
-
-fn limits_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, pose: &Pose) {
+fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let look = pane.look;
-    let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, value: i16, max: f64| {
+    let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, (value, max): (i16, f64)| {
         let text = look.say(caption);
-        let width = controls::text_width(ui, text, theme::body());
-        Label::new(text, look.palette.muted).put(ui, take_left(&mut row, width));
+        Label::new(text, look.palette.muted).ui(ui);
         let label = format!("{} {text}", look.say(poses::POSE));
         let field = NumberField {
             name: &label,
@@ -158,90 +132,61 @@ fn limits_ui(ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, pose: &Pose) {
             range: 0.0..=max,
             decimals: 0,
         };
-        let place = take_left(&mut row, theme::POSE_FIELD);
-        field.put(
-            ui,
-            look,
-            pane.typing,
-            place,
-            Id::unique((pose.id, caption.en)),
-        )
+        field.ui(ui, look, pane.typing).map(whole)
     };
-    let speed = number(
-        pane,
-        poses::SPEED,
-        poses::SPEED_TIP,
-        pose.speed.get(),
-        1000.0,
-    );
-    let force = number(
-        pane,
-        poses::FORCE,
-        poses::FORCE_TIP,
-        pose.force.get(),
-        3000.0,
-    );
-    if let Some(speed) = speed.and_then(|speed| Speed::new(whole(speed)).ok()) {
+    let (speed, force) = (pose.speed.get(), pose.force.get());
+    let speed = number(pane, poses::SPEED, poses::SPEED_TIP, (speed, 1000.0));
+    let force = number(pane, poses::FORCE, poses::FORCE_TIP, (force, 3000.0));
+    if let Some(speed) = speed.and_then(|speed| Speed::new(speed).ok()) {
         change(pane, pose, PoseEdit::Speed(speed));
     }
-    if let Some(force) = force.and_then(|force| Force::new(whole(force)).ok()) {
+    if let Some(force) = force.and_then(|force| Force::new(force).ok()) {
         change(pane, pose, PoseEdit::Force(force));
     }
 }
 
-fn order_ui(ui: &mut Ui, mut first: Rect, mut second: Rect, pane: &mut Pane<'_>, pose: &Pose) {
+fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let look = pane.look;
-    let third = (first.width() - 2.0 * theme::GAP) / 3.0;
-    let half = (first.width() - theme::GAP) / 2.0;
     let unknown = pane.state.hand().pose_now().is_none();
     let unknown = unknown.then(|| look.say(poses::CAPTURE_UNKNOWN));
-    let recapture = Button::new(look.say(poses::RECAPTURE), look.say(poses::RECAPTURE_TIP));
-    let id = |part: &'static str| Id::unique((pose.id, part));
-    let place = take_left(&mut first, half);
-    if recapture
-        .disabled(unknown)
-        .put(ui, look, place, id("recapture"))
-        .clicked()
-    {
-        pane.actions.push(Action::Recapture(pose.id));
-    }
-    let duplicate = Button::new(look.say(poses::DUPLICATE), look.say(poses::DUPLICATE_TIP));
-    if duplicate.put(ui, look, first, id("duplicate")).clicked() {
-        change(pane, pose, PoseEdit::Duplicate);
-    }
-    for (text, tip, edit) in [
-        (
-            poses::EARLIER,
-            poses::SHIFT_TIP,
-            PoseEdit::Shift(Way::Earlier),
-        ),
-        (poses::LATER, poses::SHIFT_TIP, PoseEdit::Shift(Way::Later)),
-        (poses::DELETE, poses::DELETE_TIP, PoseEdit::Delete),
+    let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
+    let [earlier, later] = [Way::Earlier, Way::Later].map(|way| edit(PoseEdit::Shift(way)));
+    let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
+    let again = Action::Recapture(pose.id);
+    let button = |text, tip| Button::new(look.say(text), look.say(tip));
+    let [left, right] = [
+        (poses::EARLIER, theme::TO_LEFT),
+        (poses::LATER, theme::TO_RIGHT),
+    ]
+    .map(|(text, icon)| button(text, poses::SHIFT_TIP).icon(icon));
+    let retake = button(poses::RECAPTURE, poses::RECAPTURE_TIP).disabled(unknown);
+    let double = button(poses::DUPLICATE, poses::DUPLICATE_TIP);
+    let away = button(poses::DELETE, poses::DELETE_TIP);
+    for row in [
+        &[(retake, again), (double, copy)][..],
+        &[(left, earlier), (right, later), (away, delete)],
     ] {
-        let button = Button::new(look.say(text), look.say(tip));
-        let place = take_left(&mut second, third);
-        if button.put(ui, look, place, id(text.en)).clicked() {
-            change(pane, pose, edit);
-        }
+        ui.horizontal(|ui| {
+            for (button, action) in row {
+                if button.ui(ui, look).clicked() {
+                    pane.actions.push(action.clone());
+                }
+            }
+        });
     }
 }
 
 /// Six angles under each other, each to be typed; the new six if one was.
 pub(crate) fn six_ui(
     ui: &mut Ui,
-    rect: Rect,
     pane: &mut Pane<'_>,
     of: &'static str,
-    angles: &PerDof<Option<Angle>>,
-) -> Option<PerDof<Option<Angle>>> {
-    let step = vec2(0.0, theme::CONTROL + theme::STEP);
-    let mut row = rect.with_max_y(rect.top() + theme::CONTROL);
-    let mut new = *angles;
+    angles: &mut PerDof<Option<Angle>>,
+) {
     for dof in Dof::ALL {
-        if let Some(angle) = angle_ui(ui, row, pane, (of, dof), angles[dof]) {
-            new[dof] = Some(angle);
+        let typed = ui.horizontal(|ui| angle_ui(ui, pane, (of, dof), angles[dof]));
+        if let Some(angle) = typed.inner {
+            angles[dof] = Some(angle);
         }
-        row = row.translate(step);
     }
-    (new != *angles).then_some(new)
 }

@@ -7,20 +7,20 @@ pub(crate) mod sequence_view;
 pub(crate) mod tiles;
 
 use crate::app::action::Action;
+use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
-use crate::poses::library::{NAME_CHARS_MAX, Pose, PoseId};
+use crate::poses::library::{Pose, PoseId};
+use crate::ui::hand::panel;
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right, take_top};
+use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
-use crate::ui::kit::reorder::{Along, Reorder};
-use crate::ui::poses::editor as pose_editor;
-use crate::ui::poses::gesture_editor::GestureEditor;
+use crate::ui::kit::reorder::Reorder;
 use crate::ui::poses::gestures::GestureView;
-use crate::ui::poses::sequence_view::{SequenceView, scrolled};
-use crate::ui::poses::tiles::{capture_button, tile_ui};
+use crate::ui::poses::sequence_view::SequenceView;
+use crate::ui::poses::tiles::{capture_ui, tile_ui};
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Id, Rect, TextEdit, Ui, vec2};
+use egui::{Align, Frame, Id, Layout, Margin, Panel, ScrollArea, Ui, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -32,15 +32,11 @@ enum Section {
 }
 
 impl Section {
-    const ALL: [Self; 3] = [Self::Mine, Self::Sequences, Self::InHand];
-
-    const fn title(self) -> Text {
-        match self {
-            Self::Mine => poses::MY_POSES,
-            Self::Sequences => poses::SEQUENCES,
-            Self::InHand => poses::IN_HAND,
-        }
-    }
+    const ALL: [(Self, Text); 3] = [
+        (Self::Mine, poses::MY_POSES),
+        (Self::Sequences, poses::SEQUENCES),
+        (Self::InHand, poses::IN_HAND),
+    ];
 }
 
 /// What the view needs between frames.
@@ -51,153 +47,128 @@ pub(crate) struct PoseView {
     shown: Option<PoseId>,
     sequences: SequenceView,
     gestures: GestureView,
-    editor: GestureEditor,
     order: Reorder,
     /// Only poses with these words are shown.
     find: String,
     typed: Option<(Id, String)>,
 }
 
+/// A part of the view with a card's distance to what is at its left.
+pub(crate) fn beside(width: f32, id: &'static str) -> Panel {
+    let gap = Margin {
+        left: 12,
+        ..Margin::ZERO
+    };
+    Panel::right(id)
+        .exact_size(width)
+        .resizable(false)
+        .show_separator_line(false)
+        .frame(Frame::new().inner_margin(gap))
+}
+
 impl PoseView {
     /// Draws the view.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let newest = pane.state.poses.newest;
         if newest != self.shown {
             (self.shown, self.chosen) = (newest, newest);
         }
-        let mut body = controls::card(ui, pane.look, rect);
-        self.sections_ui(ui, take_top(&mut body, theme::CONTROL_LARGE), pane);
-        match self.section {
-            Section::InHand => self.in_hand_ui(ui, body, pane),
-            Section::Mine | Section::Sequences => {
-                let mut row = take_top(&mut body, theme::CONTROL);
-                tools_ui(ui, &mut row, pane);
-                let searched = !pane.state.poses.library.poses.is_empty();
-                if searched && self.section == Section::Mine {
-                    self.find_ui(ui, row, pane);
-                }
-                if self.section == Section::Sequences {
-                    self.sequences.ui(ui, body, pane, &mut self.typed);
-                } else {
-                    self.mine_ui(ui, body, pane);
-                }
+        controls::card_ui(ui, pane.look, |ui| {
+            ui.set_min_height(ui.available_height());
+            ui.horizontal(|ui| self.head_ui(ui, pane));
+            match self.section {
+                Section::Mine => self.mine_ui(ui, pane),
+                Section::Sequences => self.sequences.ui(ui, pane, &mut self.typed),
+                Section::InHand => self.gestures.ui(ui, pane),
             }
-        }
+        });
     }
 
-    fn sections_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &Pane<'_>) {
+    /// The sections, and what is done with all poses.
+    fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        for section in Section::ALL {
-            let text = look.say(section.title());
-            let width = controls::text_width(ui, text, theme::body()) + 3.0 * theme::PAD;
-            let button = Button::new(text, look.say(poses::SECTION_TIP));
-            let place = take_left(&mut row, width);
+        for (section, title) in Section::ALL {
+            let button = Button::new(look.say(title), look.say(poses::SECTION_TIP));
             let button = button.choice(self.section == section);
-            if button
-                .put(ui, look, place, Id::unique(("section", text)))
-                .clicked()
-            {
+            if button.ui(ui, look).clicked() {
                 self.section = section;
             }
         }
+        if self.section != Section::InHand {
+            let right = Layout::right_to_left(Align::Center);
+            ui.with_layout(right, |ui| tools_ui(ui, pane));
+        }
     }
 
-    fn in_hand_ui(&mut self, ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
-        let width = (body.width() * 0.42).clamp(theme::POSE_SIDE.0, theme::POSE_SIDE.1);
-        let editor = take_right(&mut body, width);
-        self.gestures.large_ui(ui, body, pane);
-        self.editor.ui(ui, editor, pane);
-    }
-
-    /// The field that finds poses by name and tag, as far as there is room for it.
-    fn find_ui(&mut self, ui: &mut Ui, row: Rect, pane: &Pane<'_>) {
+    fn mine_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let place = row.with_max_x(row.right().min(row.left() + theme::POSE_FIND));
-        let edit = TextEdit::singleline(&mut self.find)
-            .id(Id::unique("find poses"))
-            .font(theme::body())
-            .hint_text(look.say(poses::FIND_HINT))
-            .char_limit(NAME_CHARS_MAX)
-            .clip_text(true)
-            .align(egui::Align2::LEFT_CENTER)
-            .margin(theme::FIELD_INSET_LOW)
-            .min_size(place.size())
-            .desired_width(place.width() - theme::FIELD_MARGIN);
-        let response = ui.put(place, edit);
-        let value = self.find.clone();
-        response.widget_info(|| {
-            let name = look.say(poses::FIND);
-            let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, name);
-            info.current_text_value = Some(value.clone());
-            info
-        });
-    }
-
-    fn mine_ui(&mut self, ui: &mut Ui, mut body: Rect, pane: &mut Pane<'_>) {
-        let state = pane.state;
-        let library = &state.poses.library;
+        let library = &pane.state.poses.library;
         if library.poses.is_empty() {
-            return empty_ui(ui, body, pane);
+            return empty_ui(ui, pane);
         }
-        let width = (body.width() * 0.42).clamp(theme::GESTURE_SIDE.0, theme::GESTURE_SIDE.1);
-        let editor = take_right(&mut body, width);
-        let columns = ((body.width() + theme::GAP) / (theme::POSE_TILE.x + theme::GAP))
-            .floor()
-            .max(1.0);
-        let words = self.find.trim().to_lowercase();
-        let poses = library.poses.iter().enumerate();
-        let shown: Vec<(usize, &Pose)> = poses.filter(|(_, pose)| pose.has(&words)).collect();
-        if shown.is_empty() {
-            let text = pane.look.say(poses::FIND_NONE);
-            let place = body.with_max_y(body.top() + theme::CONTROL_LARGE);
-            Label::new(text, pane.look.palette.muted).put(ui, place);
-        }
-        scrolled(ui, body, "poses", |ui, room| {
-            let width = (room - theme::STEP * (columns - 1.0)) / columns;
-            ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::GAP);
-                self.order.begin();
-                for (_, pose) in &shown {
-                    let size = vec2(width.floor(), theme::POSE_TILE.y);
-                    let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-                    self.order.place(ui, place, Id::unique(("pose", pose.id)));
-                    if tile_ui(ui, place, pane, pose, self.chosen == Some(pose.id)) {
-                        self.chosen = Some(pose.id);
-                    }
-                }
-                let moved = self.order.end(ui, pane.look, Along::Row);
-                if let Some((from, to)) = moved
-                    && let (Some((_, pose)), Some((to, _))) = (shown.get(from), shown.get(to))
-                {
-                    self.chosen = Some(pose.id);
-                    let edit = LibraryEdit::Pose(pose.id, PoseEdit::Move(*to));
-                    pane.actions.push(Action::Library(edit));
-                }
+        ui.horizontal(|ui| {
+            let capture = Button::new(look.say(poses::CAPTURE), look.say(poses::CAPTURE_TIP));
+            capture_ui(ui, pane, capture.weight(Weight::Strong));
+            ui.scope(|ui| {
+                ui.set_max_width(200.0);
+                let (name, hint) = (look.say(poses::FIND), look.say(poses::FIND_HINT));
+                controls::edit_ui(ui, name, hint, &mut self.find);
             });
         });
         let chosen = self.chosen.and_then(|chosen| library.pose(chosen));
-        self.chosen = chosen.or(library.poses.first()).map(|pose| pose.id);
-        match chosen {
-            Some(pose) => pose_editor::editor_ui(ui, editor, pane, &mut self.typed, pose),
-            None => {
-                let text = pane.look.say(poses::CHOOSE);
-                Label::new(text, pane.look.palette.muted)
-                    .center()
-                    .put(ui, editor);
+        let chosen = chosen.or(library.poses.first());
+        self.chosen = chosen.map(|pose| pose.id);
+        let width = (ui.available_width() * 0.42).clamp(268.0, 380.0);
+        beside(width, "pose").show(ui, |ui| {
+            if let Some(pose) = chosen {
+                editor::editor_ui(ui, pane, &mut self.typed, pose);
             }
+        });
+        self.tiles_ui(ui, pane);
+    }
+
+    fn tiles_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let words = self.find.trim().to_lowercase();
+        let all = pane.state.poses.library.poses.iter().enumerate();
+        let shown: Vec<(usize, &Pose)> = all.filter(|(_, pose)| pose.has(&words)).collect();
+        if shown.is_empty() {
+            Label::new(pane.look.say(poses::FIND_NONE), pane.look.palette.muted)
+                .wrap()
+                .ui(ui);
         }
+        let gap = theme::STEP;
+        let room = ui.available_width() - theme::GAP;
+        let columns = ((room + gap) / (112.0 + gap)).floor().max(1.0);
+        let width = ((room - gap * (columns - 1.0)) / columns).floor();
+        let area = ScrollArea::vertical().auto_shrink(false);
+        area.id_salt("poses").show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = vec2(gap, theme::GAP);
+                for (index, (_, pose)) in shown.iter().enumerate() {
+                    let (id, place) = ui.allocate_space(vec2(width, 158.0));
+                    let moved = self.order.place(ui, pane.look, place, (index, id));
+                    if tile_ui(ui, place, pane, (pose, self.chosen == Some(pose.id))) {
+                        self.chosen = Some(pose.id);
+                    }
+                    let Some((from, to)) = moved else { continue };
+                    if let (Some((_, pose)), Some((to, _))) = (shown.get(from), shown.get(to)) {
+                        self.chosen = Some(pose.id);
+                        let edit = LibraryEdit::Pose(pose.id, PoseEdit::Move(*to));
+                        pane.actions.push(Action::Library(edit));
+                    }
+                }
+            });
+        });
     }
 }
 
-fn tools_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>) {
+/// From right to left.
+fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let book = &pane.state.poses;
     let nothing = book.library.is_empty().then(|| look.say(poses::NOTHING));
     let no_undo = (!book.can_undo()).then(|| look.say(poses::UNDO_NONE));
-    if !book.library.poses.is_empty() {
-        let capture = Button::new(look.say(poses::CAPTURE), look.say(poses::CAPTURE_TIP));
-        capture_button(ui, row, pane, capture.weight(Weight::Strong));
-    }
+    let undo = Action::Library(LibraryEdit::Undo);
     for (text, tip, disabled, action) in [
         (
             poses::EXPORT,
@@ -206,45 +177,29 @@ fn tools_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>) {
             Action::ExportPoses,
         ),
         (poses::IMPORT, poses::IMPORT_TIP, None, Action::ImportPoses),
-        (
-            poses::UNDO,
-            poses::UNDO_TIP,
-            no_undo,
-            Action::Library(LibraryEdit::Undo),
-        ),
+        (poses::UNDO, poses::UNDO_TIP, no_undo, undo),
     ] {
-        let words = look.say(text);
-        let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
-        let button = Button::new(words, look.say(tip)).disabled(disabled);
-        let place = take_right(row, width);
-        if button
-            .put(ui, look, place, Id::unique(("poses", text.en)))
-            .clicked()
-        {
+        let button = Button::new(look.say(text), look.say(tip)).disabled(disabled);
+        if button.ui(ui, look).clicked() {
             pane.actions.push(action);
         }
     }
 }
 
-fn empty_ui(ui: &mut Ui, body: Rect, pane: &mut Pane<'_>) {
+fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let mut rows = Rect::from_center_size(
-        body.center(),
-        vec2(body.width().min(theme::POSE_EMPTY.x), theme::POSE_EMPTY.y),
-    );
-    let picture = take_top(&mut rows, theme::POSE_EMPTY_PICTURE);
-    let open = crate::hand::PerDof::splat(Some(1.0));
-    crate::ui::hand::panel::pose_ui(ui, look, picture, &open);
-    Label::new(look.say(poses::EMPTY_TITLE), look.palette.text)
-        .font(theme::title())
-        .center()
-        .put(ui, take_top(&mut rows, theme::CONTROL));
-    let place = take_top(&mut rows, theme::CONTROL_LARGE);
-    crate::ui::poses::gesture_editor::wrapped(ui, place, pane, look.say(poses::EMPTY_BODY));
-    let text = look.say(poses::EMPTY_BUTTON);
-    let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-    let row = take_top(&mut rows, theme::CONTROL_LARGE);
-    let mut place = row.with_max_x(row.center().x + width / 2.0);
-    let button = Button::new(text, look.say(poses::CAPTURE_TIP)).weight(Weight::Strong);
-    capture_button(ui, &mut place, pane, button);
+    ui.vertical_centered(|ui| {
+        ui.add_space(ui.available_height() * 0.2);
+        let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
+        let open = PerDof::splat(Some(1.0));
+        panel::pose_ui(ui, look, picture, &open);
+        let title = Label::new(look.say(poses::EMPTY_TITLE), look.palette.text);
+        title.font(theme::title()).ui(ui);
+        let body = Label::new(look.say(poses::EMPTY_BODY), look.palette.muted);
+        body.wrap().ui(ui);
+        ui.add_space(theme::GAP);
+        let tip = look.say(poses::CAPTURE_TIP);
+        let button = Button::new(look.say(poses::EMPTY_BUTTON), tip).weight(Weight::Strong);
+        capture_ui(ui, pane, button.large());
+    });
 }

@@ -8,14 +8,15 @@ use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId, Step};
 use crate::poses::player::{End, Phase};
 use crate::ui::hand::panel;
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right, take_top};
+use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
-use crate::ui::kit::reorder::{Along, Reorder};
+use crate::ui::kit::reorder::Reorder;
 use crate::ui::kit::text_field::TextField;
-use crate::ui::poses::sequence_step::{change, step_now, step_ui};
+use crate::ui::poses::beside;
+use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
-use egui::{Align2, Id, Rect, Ui, UiBuilder, pos2, vec2};
+use egui::{Align, Align2, Id, Layout, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use std::time::Duration;
 
 /// Time between two pictures of a dry run while nothing else is new.
@@ -35,7 +36,6 @@ impl SequenceView {
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
-        mut rect: Rect,
         pane: &mut Pane<'_>,
         typed: &mut Option<(Id, String)>,
     ) {
@@ -45,183 +45,130 @@ impl SequenceView {
             (self.shown, self.chosen) = (newest, newest);
         }
         let library = &state.poses.library;
-        let first = library.sequences.first().map(|first| first.id);
-        let known = self
-            .chosen
-            .filter(|chosen| library.sequence(*chosen).is_some());
-        self.chosen = known.or(first);
-        self.list_ui(ui, take_left(&mut rect, theme::SEQUENCE_LIST), pane);
-        match self.chosen.and_then(|chosen| library.sequence(chosen)) {
-            Some(sequence) => self.sequence_ui(ui, rect, pane, typed, sequence),
-            None => empty_ui(ui, rect, pane),
-        }
+        let known = self.chosen.and_then(|chosen| library.sequence(chosen));
+        let chosen = known.or(library.sequences.first());
+        self.chosen = chosen.map(|sequence| sequence.id);
+        let width = ui.available_width() - 148.0;
+        beside(width, "sequence").show(ui, |ui| match chosen {
+            Some(sequence) => self.sequence_ui(ui, pane, typed, sequence),
+            None => empty_ui(ui, pane),
+        });
+        self.list_ui(ui, pane);
     }
 
-    fn list_ui(&mut self, ui: &mut Ui, mut rect: Rect, pane: &mut Pane<'_>) {
+    fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let new = Button::new(
-            look.say(poses::NEW_SEQUENCE),
-            look.say(poses::NEW_SEQUENCE_TIP),
-        );
-        let none = pane.state.poses.library.poses.is_empty();
+        let library = &pane.state.poses.library;
+        let tip = look.say(poses::NEW_SEQUENCE_TIP);
+        let new = Button::new(look.say(poses::NEW_SEQUENCE), tip);
+        let none = library.poses.is_empty();
         let new = new.disabled(none.then(|| look.say(poses::NEEDS_POSES)));
-        let place = take_top(&mut rect, theme::CONTROL_LARGE);
-        if new
-            .put(ui, look, place, Id::unique("new sequence"))
-            .clicked()
-        {
-            let name = look.say(poses::SEQUENCE).to_owned();
-            pane.actions
-                .push(Action::Library(LibraryEdit::NewSequence(name)));
-        }
-        let state = pane.state;
-        scrolled(ui, rect, "sequences", |ui, width| {
-            for sequence in &state.poses.library.sequences {
-                let size = vec2(width, theme::CONTROL_LARGE);
-                let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-                let label = format!("{} {}", look.say(poses::SEQUENCE), sequence.name);
-                let button = Button::new(&sequence.name, look.say(poses::SECTION_TIP));
-                let button = button
-                    .named(&label)
-                    .choice(self.chosen == Some(sequence.id));
-                if button
-                    .put(ui, look, place, Id::unique(("sequence", sequence.id)))
-                    .clicked()
-                {
-                    self.chosen = Some(sequence.id);
-                }
+        ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
+            if new.large().ui(ui, look).clicked() {
+                let name = look.say(poses::SEQUENCE).to_owned();
+                let new = Action::Library(LibraryEdit::NewSequence(name));
+                pane.actions.push(new);
             }
+            ScrollArea::vertical().id_salt("sequences").show(ui, |ui| {
+                for sequence in &library.sequences {
+                    let label = format!("{} {}", look.say(poses::SEQUENCE), sequence.name);
+                    let button = Button::new(&sequence.name, look.say(poses::SECTION_TIP));
+                    let button = button.named(&label).large();
+                    let button = button.choice(self.chosen == Some(sequence.id));
+                    if button.ui(ui, look).clicked() {
+                        self.chosen = Some(sequence.id);
+                    }
+                }
+            });
         });
     }
 
     fn sequence_ui(
         &mut self,
         ui: &mut Ui,
-        mut rect: Rect,
         pane: &mut Pane<'_>,
         typed: &mut Option<(Id, String)>,
         sequence: &Sequence,
     ) {
-        head_ui(
-            ui,
-            take_top(&mut rect, theme::CONTROL),
-            pane,
-            typed,
-            sequence,
-        );
-        timeline_ui(ui, take_top(&mut rect, theme::CONTROL), pane, sequence);
-        let height =
-            (rect.height() * 0.4).clamp(theme::SEQUENCE_PICTURE.0, theme::SEQUENCE_PICTURE.1);
-        picture_ui(ui, take_top(&mut rect, height), pane, sequence);
-        let mut foot = rect.with_min_y(rect.bottom() - theme::CONTROL_LARGE);
-        controls_ui(ui, &mut foot, pane, sequence);
-        let rect = rect.with_max_y(rect.bottom() - theme::CONTROL_LARGE - theme::GAP);
-        let add = rect.with_min_y(rect.bottom() - theme::CONTROL);
-        self.add_ui(ui, add, pane, sequence);
-        let steps = rect.with_max_y(add.top() - theme::GAP);
+        let right = Layout::right_to_left(Align::Center);
+        ui.horizontal(|ui| ui.with_layout(right, |ui| head_ui(ui, pane, typed, sequence)));
+        timeline_ui(ui, pane, sequence);
+        picture_ui(ui, pane, sequence);
+        let foot = theme::CONTROL + theme::CONTROL_LARGE + 4.0 * theme::STEP;
+        let most = ui.available_height() - foot;
         if sequence.steps.is_empty() {
-            Label::new(pane.look.say(poses::STEPS_EMPTY), pane.look.palette.muted)
-                .center()
-                .put(ui, steps);
-            return;
+            Label::new(pane.look.say(poses::STEPS_EMPTY), pane.look.palette.muted).ui(ui);
         }
-        scrolled(ui, steps, "steps", |ui, width| {
-            self.order.begin();
+        let area = ScrollArea::vertical().auto_shrink([false, true]);
+        let area = area
+            .id_salt("steps")
+            .max_height(most)
+            .min_scrolled_height(0.0);
+        area.show(ui, |ui| {
             for (at, step) in sequence.steps.iter().enumerate() {
-                let size = vec2(width, theme::STEP_ROW);
-                let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-                self.order
-                    .place(ui, place, Id::unique((sequence.id, at, "step")));
-                step_ui(ui, place, pane, sequence, (at, step));
-            }
-            if let Some((from, to)) = self.order.end(ui, pane.look, Along::Column) {
-                change(pane, sequence, SequenceEdit::Move(from, to));
+                let width = ui.available_width() - theme::GAP;
+                let (id, place) = ui.allocate_space(vec2(width, ROW));
+                let moved = self.order.place(ui, pane.look, place, (at, id));
+                let builder = UiBuilder::new().max_rect(place).id_salt((sequence.id, at));
+                step_ui(&mut ui.new_child(builder), pane, sequence, (at, step));
+                if let Some((from, to)) = moved {
+                    change(pane, sequence, SequenceEdit::Move(from, to));
+                }
             }
         });
+        ui.horizontal(|ui| self.add_ui(ui, pane, sequence));
+        ui.columns(5, |columns| controls_ui(columns, pane, sequence));
     }
 
-    fn add_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>, sequence: &Sequence) {
+    fn add_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
         let look = pane.look;
-        let library = &pane.state.poses.library;
-        let known = self.adding.filter(|pose| library.pose(*pose).is_some());
-        let first = library.poses.first().map(|pose| pose.id);
-        let mut chosen = known.or(first);
-        let shown = chosen
-            .and_then(|pose| library.pose(pose))
-            .map(|pose| pose.name.as_str());
+        let all: Vec<_> = pane.state.poses.library.poses.iter().collect();
+        let all: Vec<_> = all
+            .iter()
+            .map(|pose| (Some(pose.id), pose.name.as_str()))
+            .collect();
+        if !all.iter().any(|(pose, _)| *pose == self.adding) {
+            self.adding = all.first().and_then(|(pose, _)| *pose);
+        }
+        controls::choose_ui(ui, look.say(poses::POSE), &mut self.adding, &all);
         let button = Button::new(look.say(poses::ADD), look.say(poses::ADD_TIP));
-        let place = take_right(&mut row, theme::SEQUENCE_ADD);
-        if button
-            .put(ui, look, place, Id::unique("add step"))
-            .clicked()
-            && let Some(pose) = chosen
+        if button.ui(ui, look).clicked()
+            && let Some(pose) = self.adding
         {
             change(pane, sequence, SequenceEdit::Add(pose));
         }
-        ui.scope_builder(UiBuilder::new().max_rect(row), |ui| {
-            let combo = egui::ComboBox::from_id_salt("pose to add")
-                .width(row.width())
-                .selected_text(shown.unwrap_or_default())
-                .truncate()
-                .show_ui(ui, |ui| {
-                    for pose in &pane.state.poses.library.poses {
-                        ui.selectable_value(&mut chosen, Some(pose.id), &pose.name);
-                    }
-                });
-            combo.response.accessible_name(look.say(poses::POSE));
-        });
-        self.adding = chosen;
     }
 }
 
-fn empty_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-    let look = pane.look;
-    let rows = Rect::from_center_size(rect.center(), vec2(rect.width(), theme::SEQUENCE_EMPTY));
-    let (title, body) = rows.split_top_bottom_at_fraction(0.5);
-    Label::new(look.say(poses::SEQUENCE_EMPTY), look.palette.text)
-        .font(theme::title())
-        .center()
-        .put(ui, title);
-    Label::new(look.say(poses::SEQUENCE_EMPTY_BODY), look.palette.muted)
-        .center()
-        .put(ui, body);
-}
-
-/// A list that scrolls when it is longer than its place.
-pub(crate) fn scrolled(ui: &mut Ui, rect: Rect, id: &str, add: impl FnOnce(&mut Ui, f32)) {
-    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-        ui.set_clip_rect(rect.intersect(ui.clip_rect()));
-        egui::ScrollArea::vertical()
-            .id_salt(id)
-            .auto_shrink([false, false])
-            .max_height(rect.height())
-            .show(ui, |ui| {
-                ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
-                add(ui, rect.width() - theme::GAP);
-            });
+fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    ui.vertical_centered(|ui| {
+        ui.add_space(ui.available_height() * 0.3);
+        let title = Label::new(look.say(poses::SEQUENCE_EMPTY), palette.text);
+        title.font(theme::title()).ui(ui);
+        Label::new(look.say(poses::SEQUENCE_EMPTY_BODY), palette.muted)
+            .wrap()
+            .ui(ui);
+        if pane.state.poses.library.poses.is_empty() {
+            Label::new(look.say(poses::NEEDS_POSES), palette.warn).ui(ui);
+        }
     });
 }
 
+/// From right to left.
 fn head_ui(
     ui: &mut Ui,
-    mut row: Rect,
     pane: &mut Pane<'_>,
     typed: &mut Option<(Id, String)>,
     sequence: &Sequence,
 ) {
     let look = pane.look;
     let delete = Button::new(look.say(poses::DELETE), look.say(poses::DELETE_TIP));
-    let place = take_right(&mut row, theme::SEQUENCE_BUTTON);
-    if delete
-        .put(ui, look, place, Id::unique("delete sequence"))
-        .clicked()
-    {
+    if delete.ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Delete);
     }
     let looped = Button::new(look.say(poses::LOOP), look.say(poses::LOOP_TIP));
-    let place = take_right(&mut row, theme::SEQUENCE_BUTTON);
-    let looped = looped.choice(sequence.looped);
-    if looped.put(ui, look, place, Id::unique("loop")).clicked() {
+    if looped.choice(sequence.looped).ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Loop(!sequence.looped));
     }
     let name = format!("{} {}", look.say(poses::SEQUENCE), look.say(poses::NAME));
@@ -231,69 +178,42 @@ fn head_ui(
         value: &sequence.name,
         max: NAME_CHARS_MAX,
     };
-    if let Some(name) = field.put(ui, typed, row, Id::unique(("sequence name", sequence.id))) {
+    if let Some(name) = field.ui(ui, typed) {
         change(pane, sequence, SequenceEdit::Rename(name));
     }
 }
 
 /// One piece for each step, as long as it stays there, the one of now lit.
-fn timeline_ui(ui: &Ui, rect: Rect, pane: &Pane<'_>, sequence: &Sequence) {
-    let look = pane.look;
+fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
+    let palette = pane.look.palette;
+    let (_, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
     let now = step_now(pane, sequence);
     // A step without dwell is still seen; its way takes time as well.
-    let length = |step: &Step| 600.0 + f64::from(step.dwell.get());
-    let whole: f64 = sequence.steps.iter().map(length).sum();
+    let length = |step: &Step| Duration::from_millis(600 + u64::from(step.dwell.get()));
+    let whole: Duration = sequence.steps.iter().map(length).sum();
     let mut x = rect.left();
     for (at, step) in sequence.steps.iter().enumerate() {
-        let width = rect.width() * share(length(step) / whole);
-        let piece = Rect::from_min_max(pos2(x, rect.top()), pos2(x + width, rect.bottom()));
-        let lit = now == Some(at);
-        let fill = if lit {
-            look.palette.accent
-        } else {
-            look.palette.control
-        };
-        let color = if lit {
-            look.palette.on_strong
-        } else {
-            look.palette.muted
-        };
+        let width = rect.width() * length(step).div_duration_f32(whole);
+        let piece = Rect::from_min_size(pos2(x, rect.top()), vec2(width, rect.height()));
         let inner = piece.shrink2(vec2(1.0, 0.0));
-        ui.painter()
-            .rect_filled(inner, f32::from(theme::ROUND_SMALL), fill);
-        let name = pane
-            .state
-            .poses
-            .library
-            .pose(step.pose)
-            .map(|pose| pose.name.as_str());
-        let text = format!("{} {}", at + 1, name.unwrap_or_default());
-        let inner = inner.shrink2(vec2(theme::STEP, 0.0));
-        controls::paint_text(
-            ui,
-            inner,
-            Align2::CENTER_CENTER,
-            &text,
-            theme::small(),
-            color,
-        );
+        let (fill, color) = match now == Some(at) {
+            true => (palette.accent, palette.on_strong),
+            false => (palette.control, palette.muted),
+        };
+        ui.painter().rect_filled(inner, theme::ROUND_SMALL, fill);
+        let pose = pane.state.poses.library.pose(step.pose);
+        let name = pose.map_or("", |pose| pose.name.as_str());
+        let text = format!("{} {name}", at + 1);
+        let (inner, center) = (inner.shrink2(vec2(theme::STEP, 0.0)), Align2::CENTER_CENTER);
+        controls::paint_text(ui, inner, center, &text, theme::small(), color);
         x += width;
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a share between 0 and 1")]
-const fn share(part: f64) -> f32 {
-    part as f32
-}
-
-fn picture_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sequence: &Sequence) {
-    let look = pane.look;
-    let state = pane.state;
-    let preview = state
-        .poses
-        .preview
-        .as_ref()
-        .filter(|own| own.sequence == sequence.id);
+fn picture_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
+    let (look, state) = (pane.look, pane.state);
+    let preview = state.poses.preview.as_ref();
+    let preview = preview.filter(|own| own.sequence == sequence.id);
     let shown = preview.map(|preview| preview.at(state.now));
     if shown.is_some_and(|shown| !shown.over) {
         ui.ctx().request_repaint_after(FRAME);
@@ -303,15 +223,14 @@ fn picture_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, sequence: &Sequence) {
         PerDof::from_fn(|dof| Some(f32::from(angle?.value[dof].documented()?) / 1000.0))
     };
     let pose = shown.map_or_else(actual, |shown| shown.shares);
-    ui.painter()
-        .rect_filled(rect, f32::from(theme::ROUND), look.palette.sunken);
     let (text, color) = said(pane, sequence, shown.map(|shown| shown.step + 1));
-    let mut left = rect.shrink(theme::GAP);
-    let words = take_top(&mut left, theme::CONTROL);
-    panel::pose_ui(ui, look, left, &pose);
-    Label::new(&text, color)
-        .named(look.say(poses::PICTURE))
-        .put(ui, words);
+    let label = Label::new(&text, color);
+    label.named(look.say(poses::PICTURE)).ui(ui);
+    let height = (ui.available_height() * 0.36).clamp(72.0, 360.0);
+    let (_, rect) = ui.allocate_space(vec2(ui.available_width(), height));
+    ui.painter()
+        .rect_filled(rect, theme::ROUND, look.palette.sunken);
+    panel::pose_ui(ui, look, rect.shrink(theme::STEP), &pose);
 }
 
 fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, egui::Color32) {
@@ -348,35 +267,25 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
     (words, color)
 }
 
-fn controls_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>, sequence: &Sequence) {
+fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
-    let book = &pane.state.poses;
     let id = sequence.id;
-    let own = pane
-        .state
-        .hand()
-        .sequence
-        .as_ref()
-        .filter(|run| run.sequence == id);
+    let own = pane.state.hand().sequence.as_ref();
+    let own = own.filter(|run| run.sequence == id);
     let running = own.is_some_and(|run| run.is_running());
     let paused = own.is_some_and(|run| run.is_paused());
-    let dry = book
-        .preview
-        .as_ref()
-        .is_some_and(|preview| preview.sequence == id);
+    let preview = pane.state.poses.preview.as_ref();
+    let dry = preview.is_some_and(|preview| preview.sequence == id);
     let empty = sequence.steps.is_empty().then(|| look.say(poses::NO_STEPS));
-    let unarmed = pane.unready();
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
-    let cannot = empty.or(unarmed);
-    let go_on = if paused {
-        (poses::RESUME, poses::RESUME_TIP, idle, Play::Resume)
-    } else {
-        (poses::PAUSE, poses::PAUSE_TIP, idle, Play::Pause)
+    let cannot = empty.or(pane.unready());
+    let go_on = match paused {
+        true => (poses::RESUME, poses::RESUME_TIP, idle, Play::Resume),
+        false => (poses::PAUSE, poses::PAUSE_TIP, idle, Play::Pause),
     };
-    let dry_run = if dry {
-        (poses::DRY_END, poses::DRY_TIP, None, Play::EndDry)
-    } else {
-        (poses::DRY, poses::DRY_TIP, empty, Play::Dry(id))
+    let dry_run = match dry {
+        true => (poses::DRY_END, poses::DRY_TIP, None, Play::EndDry),
+        false => (poses::DRY, poses::DRY_TIP, empty, Play::Dry(id)),
     };
     let all = [
         dry_run,
@@ -385,17 +294,13 @@ fn controls_ui(ui: &mut Ui, row: &mut Rect, pane: &mut Pane<'_>, sequence: &Sequ
         go_on,
         (poses::END, poses::END_TIP, idle, Play::End),
     ];
-    let width = (row.width() - 4.0 * theme::GAP) / 5.0;
-    for (text, tip, disabled, play) in all {
-        let mut button = Button::new(look.say(text), look.say(tip)).disabled(disabled);
-        if text == poses::START {
-            button = button.weight(Weight::Strong);
-        }
-        let place = take_left(row, width);
-        if button
-            .put(ui, look, place, Id::unique(("play", text.en)))
-            .clicked()
-        {
+    for (ui, (text, tip, disabled, play)) in columns.iter_mut().zip(all) {
+        let weight = match text == poses::START {
+            true => Weight::Strong,
+            false => Weight::Normal,
+        };
+        let button = Button::new(look.say(text), look.say(tip)).weight(weight);
+        if button.disabled(disabled).large().ui(ui, look).clicked() {
             pane.actions.push(Action::Play(play));
         }
     }

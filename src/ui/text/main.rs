@@ -23,10 +23,8 @@ texts! {
 
     RATE_STATE: "State", "状态";
     RATE_TACTILE: "Touch", "触觉";
-    ROUND_TRIP: "Round trip", "往返";
     ERRORS: "Errors", "错误";
     RATES_TIP: "Reads of the motion state and of all fingertips a second, over the last second.", "最近一秒内每秒读取运动状态和全部指尖的次数。";
-    ROUND_TRIP_TIP: "Median and 99th percentile of the time from request to reply, in milliseconds.", "请求到应答所用时间的中位数与第 99 百分位，单位毫秒。";
     ERRORS_TIP: "Timeouts, wrong checksums, skipped noise, foreign replies and refusals since connecting.", "连接以来的超时、校验错误、跳过的噪声、无关应答与拒绝次数。";
 
     ARM: "Arm", "使能";

@@ -65,7 +65,6 @@ texts! {
     TARE_NOTHING: "Nothing was tared.", "还没有去皮。";
     TARE_OFFLINE: "No live hand.", "没有在线的手。";
     TIP: "Fingertip", "指尖";
-    TIP_TIP: "Shows this fingertip in detail.", "查看该指尖的详情。";
     TIP_UP: "tip", "指尖";
     TIP_NORMAL: "Normal", "法向力";
     TIP_SHEAR: "Tangential", "切向力";
@@ -119,7 +118,6 @@ texts! {
     GESTURES_TIP: "The manual describes gestures but lists no address for them. The route says which address is written.", "手册说明了手势功能，但寄存器表中没有其地址。“方式”决定写入哪个地址。";
     GESTURE_RUN_TIP: "Takes this stored pose at once.", "立即执行该手势。";
     GESTURE_ROUTE: "Gesture route", "手势方式";
-    GESTURE_ROUTE_TIP: "Which undocumented address starts a gesture.", "通过哪个未公开地址启动手势。";
     ROUTE_1008: "Write 1008", "写 1008";
     ROUTE_LIBRARY: "Action library 2320", "动作库 2320";
     ROUTE_OFF: "Off", "关闭";

@@ -13,13 +13,13 @@ texts! {
     EVERY: "All poses", "全部姿态";
     EVERY_TIP: "Opens all poses, sequences and gestures.", "打开全部姿态、序列与手势。";
 
-    STRIP_EMPTY: "No poses of your own yet. Bring the hand into one and press Save pose.", "还没有自己的姿态。将灵巧手摆好后按“记录姿态”。";
+    STRIP_EMPTY: "No poses of your own yet. Bring the hand into one with the sliders and press Save pose.", "还没有自己的姿态。用滑块调好姿态后按“记录姿态”。";
     STRIP_GESTURES: "Stored in the hand:", "手内手势：";
     CAPTURE: "Save pose", "记录姿态";
     CAPTURE_TIP: "Keeps the pose that the hand has now. Nothing is sent.", "保存灵巧手当前的姿态，不发送任何内容。";
     CAPTURE_UNKNOWN: "The pose is not known: an angle is missing or old.", "姿态未知：有角度缺失或已过时。";
     EMPTY_TITLE: "No poses yet", "还没有姿态";
-    EMPTY_BODY: "Bring the hand into a pose, by hand or with the sliders, then save it. It stays on this computer.", "用手或滑块把灵巧手摆成一个姿态，然后记录。姿态保存在本机。";
+    EMPTY_BODY: "Arm the hand, bring it into a pose with the sliders, then save the pose. It stays on this computer.", "先使能，用滑块把灵巧手调到一个姿态，然后记录。姿态保存在本机。";
     EMPTY_BUTTON: "Save the pose the hand has now", "记录灵巧手当前的姿态";
     IMPORT: "Import", "导入";
     IMPORT_TIP: "Adds the poses and sequences of a file. A file with a mistake changes nothing.", "添加文件中的姿态与序列。文件有误时不做任何更改。";
@@ -53,8 +53,8 @@ texts! {
     LEAVE_TIP: "This joint stays where it is when the pose is taken.", "执行该姿态时，此自由度保持不动。";
     SPEED: "Speed", "速度";
     SPEED_TIP: "Speed of the joints on the way, 0 to 1000.", "运动速度，0 到 1000。";
-    FORCE: "Force, g", "力控 g";
-    FORCE_TIP: "Force threshold on the way, 0 to 3000 g.", "力控阈值，0 到 3000 g。";
+    FORCE: "Force, g", "力阈值 g";
+    FORCE_TIP: "Force threshold on the way, 0 to 3000 g.", "力阈值，0 到 3000 g。";
     RECAPTURE: "From the hand", "取当前姿态";
     RECAPTURE_TIP: "Puts the pose that the hand has now in place of this one.", "用灵巧手当前的姿态替换。";
     DUPLICATE: "Duplicate", "复制";
@@ -64,7 +64,6 @@ texts! {
     SHIFT_TIP: "Changes the order.", "调整顺序。";
     DELETE: "Delete", "删除";
     DELETE_TIP: "Takes it away. It can be undone.", "删除，可以撤销。";
-    CHOOSE: "Choose a pose to edit it.", "选择一个姿态进行编辑。";
 
     NEW_SEQUENCE: "New sequence", "新建序列";
     NEW_SEQUENCE_TIP: "Adds a sequence without steps.", "添加一个空序列。";
@@ -114,8 +113,9 @@ texts! {
 
     USER_GESTURE: "User gesture", "用户手势";
     USER_GESTURE_TIP: "The number whose pose is edited, 14 to 40.", "要编辑的手势编号，14 到 40。";
+    EXPERT: "For experts: gesture numbers 14 to 40, and the register that starts a gesture", "高级：手势 14 至 40 的编辑与启动方式";
     STORE_NAME: "Where gestures are stored", "手势存储位置";
-    STORE_CAPTION: "Address", "地址";
+    STORE_CAPTION: "Register", "寄存器";
     FIND: "Find poses", "查找姿态";
     FIND_HINT: "name or tag", "名称或标签";
     FIND_NONE: "No pose has these words in its name or tags.", "没有名称或标签含这些字的姿态。";

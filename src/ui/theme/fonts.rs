@@ -42,11 +42,6 @@ pub(crate) fn icon() -> FontId {
     icon_of(16.0)
 }
 
-/// Icons beside small text.
-pub(crate) fn icon_small() -> FontId {
-    icon_of(12.0)
-}
-
 /// A sign that is about as high as this, points.
 pub(crate) fn icon_high(height: f32) -> FontId {
     // The signs leave an edge free within their square.

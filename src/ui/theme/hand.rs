@@ -105,22 +105,9 @@ pub(crate) fn lit(light: Vec3, alpha: f32) -> Color32 {
     Color32::from_rgba_premultiplied(red, green, blue, alpha)
 }
 
-/// A line that only leads the eye.
-pub(crate) const THIN: f32 = 1.2;
-/// A force as a line.
-pub(crate) const NEEDLE: f32 = 2.5;
-
 /// Width from which the list of channels finds room beside their plot.
 pub(crate) const CHANNELS_ROOMY: f32 = 330.0;
 /// Width of that list.
 pub(crate) const CHANNEL_LIST: f32 = 176.0;
 /// Height of its rows, at most.
 pub(crate) const CHANNEL_ROW: f32 = 20.0;
-/// Height of a row in the table of all numbers, at least.
-pub(crate) const TABLE_ROW_LEAST: f32 = 11.0;
-/// Room of a number at an axis.
-pub(crate) const AXIS_WIDTH: f32 = 70.0;
-/// Its height.
-pub(crate) const AXIS_HEIGHT: f32 = 14.0;
-/// How far the end of the force axis is written beside it.
-pub(crate) const AXIS_ASIDE: f32 = 30.0;

@@ -61,18 +61,8 @@ pub(crate) const TIPS_LEAST: f32 = 200.0;
 pub(crate) const FAULTS: f32 = 104.0;
 /// The least height of the list of faults.
 pub(crate) const FAULTS_LEAST: f32 = 84.0;
-/// Width or height of a room that is shut.
-pub(crate) const SHUT: f32 = 40.0;
-/// How far a border can be grasped beside itself; less than [`PAD`], so that it never covers a control.
-pub(crate) const GRASP: f32 = 10.0;
-/// Length of the button in a border.
-pub(crate) const GRIP: f32 = 48.0;
-/// How far one arrow key moves a border.
-pub(crate) const NUDGE: f32 = 16.0;
 /// Widest menu.
 pub(crate) const MENU_WIDTH: f32 = 220.0;
-/// Width of a square icon button.
-pub(crate) const ICON_BUTTON: f32 = 32.0;
 /// Width of the list of keys.
 pub(crate) const KEY_LIST_WIDTH: f32 = 640.0;
 /// Height of one of its rows.
@@ -98,8 +88,6 @@ pub(crate) const SIGN: f32 = 16.0;
 pub(crate) const SIGN_HEIGHT: f32 = 14.0;
 /// Height of a sign in a row.
 pub(crate) const SIGN_SMALL: f32 = 12.0;
-/// Width of a sign with the space after it.
-pub(crate) const SIGN_ROOM: f32 = 26.0;
 /// Where a lamp's middle is in its row.
 pub(crate) const LAMP_AT: f32 = 6.0;
 /// Where the words beside a lamp begin.
@@ -114,10 +102,6 @@ pub(crate) const WORDS_IN_BUTTON: f32 = 29.0;
 pub(crate) const STOP_WIDTH: f32 = 148.0;
 /// Width of Arm.
 pub(crate) const ARM_WIDTH: f32 = 96.0;
-/// The least width of the link's state.
-pub(crate) const LINK_LEAST: f32 = 116.0;
-/// Width of the switch of languages.
-pub(crate) const LANGUAGE: f32 = 56.0;
 /// Height of a caption over its figure.
 pub(crate) const FIGURE: f32 = 34.0;
 /// A small square button.
@@ -157,12 +141,6 @@ pub(crate) const FIELD_MARGIN: f32 = 16.0;
 pub(crate) const FIELD_MARGIN_SMALL: f32 = 14.0;
 /// Height of a drive's tile with the cause of what it says.
 pub(crate) const DRIVE_TILE: f32 = 112.0;
-/// Width and least height of a pose in the overview.
-pub(crate) const STRIP_TILE: egui::Vec2 = egui::vec2(132.0, 38.0);
-/// Width of a gesture that has no name.
-pub(crate) const GESTURE_TILE: f32 = 40.0;
-/// Room for a gesture's number beside its name.
-pub(crate) const GESTURE_NUMBER: f32 = 18.0;
 /// Width of the readings of a joint.
 pub(crate) const READING: f32 = 112.0;
 /// Width of a joint's name.

@@ -298,33 +298,18 @@ impl Window {
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
-            View::Touch => {
-                let place = UiBuilder::new().max_rect(rect);
-                ui.scope_builder(place, |ui| self.touch.large_ui(ui, pane));
-            }
+            View::Touch => self.touch.large_ui(ui, pane),
             View::Tune => {
                 if let Some(view) = self.tune.ui(ui, rect, pane) {
                     self.view = view;
                 }
             }
             View::Compare => self.compare.ui(ui, rect, pane),
-            View::Faults => {
-                let place = UiBuilder::new().max_rect(rect);
-                ui.scope_builder(place, |ui| self.faults.ui(ui, pane));
-            }
-            View::Poses => self.poses.ui(ui, rect, pane),
-            View::Device => {
-                let place = UiBuilder::new().max_rect(rect);
-                ui.scope_builder(place, |ui| self.device.ui(ui, pane));
-            }
-            View::Connection => {
-                let place = UiBuilder::new().max_rect(rect);
-                ui.scope_builder(place, |ui| self.connection.ui(ui, pane));
-            }
-            View::Traffic => {
-                let place = UiBuilder::new().max_rect(rect);
-                ui.scope_builder(place, |ui| self.traffic.ui(ui, pane));
-            }
+            View::Faults => self.faults.ui(ui, pane),
+            View::Poses => self.poses.ui(ui, pane),
+            View::Device => self.device.ui(ui, pane),
+            View::Connection => self.connection.ui(ui, pane),
+            View::Traffic => self.traffic.ui(ui, pane),
         }
     }
 
@@ -346,8 +331,7 @@ impl Window {
         };
         let mut poses_asked = false;
         rooms.room_ui(ui, pane, (Room::Strip, strip), |ui, pane| {
-            let rect = ui.available_rect_before_wrap();
-            poses_asked = pose_tiles::strip_ui(ui, rect, pane);
+            poses_asked = pose_tiles::strip_ui(ui, pane);
         });
         let side = (rect.width() * theme::SIDE_SHARE).clamp(theme::SIDE_LEAST, theme::SIDE_MOST);
         let side = RoomSize {

@@ -335,7 +335,10 @@ impl Bench {
 
     /// Pressed and held down.
     pub(crate) fn press(&mut self, name: &str) {
-        let at = self.rect(Role::Button, name).center();
+        self.press_at(self.rect(Role::Button, name).center());
+    }
+
+    pub(crate) fn press_at(&mut self, at: egui::Pos2) {
         let events = [egui::Event::PointerMoved(at), primary(at, true)];
         self.harness.input_mut().events.extend(events);
         self.harness.step();
@@ -627,6 +630,12 @@ impl Bench {
 
     pub(crate) fn rect(&self, role: Role, name: &str) -> Rect {
         self.harness.get_by_role_and_label(role, name).rect()
+    }
+
+    /// Where each button of this name is.
+    pub(crate) fn rects(&self, name: &str) -> Vec<Rect> {
+        let all = self.harness.query_all_by_role_and_label(Role::Button, name);
+        all.map(|node| node.rect()).collect()
     }
 
     /// Names and places of everything with this role, as far as it is not scrolled away: what can be pressed.

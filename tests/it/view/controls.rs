@@ -369,8 +369,8 @@ fn gestures_start_by_number_and_take_names() {
     let mut harness = open_at(states::armed(), View::Poses, LARGE);
     harness.get_by_label("Stored in the hand").click();
     harness.run_steps(2);
-    harness.get_by_label("Gesture route");
     harness.get_by_label("Gesture 40");
+    assert!(harness.query_by_label("Gesture route").is_none());
     harness.get_by_label("Name gestures").click();
     harness.run_steps(2);
     harness.get_by_label("Name of gesture 7").focus();

@@ -22,6 +22,16 @@ fn open(bench: &mut Bench) {
     bench.run(60);
 }
 
+/// The drawer of what only an expert wants.
+fn open_expert(bench: &mut Bench) {
+    bench.click("Stored in the hand");
+    bench.run(60);
+    let drawer = "For experts: gesture numbers 14 to 40, and the register that starts a gesture";
+    assert!(!bench.shows("Upload") && !bench.shows("Gesture route"));
+    bench.click(drawer);
+    bench.run(400);
+}
+
 fn enter(bench: &mut Bench, field: &str, text: &str) {
     bench.type_into(field, text);
     bench.key(Key::Enter);
@@ -114,8 +124,7 @@ fn a_captured_pose_is_renamed_and_taken_with_speed_and_force_first() {
 fn a_gesture_is_stored_read_back_judged_and_then_plays() {
     let mut bench = Bench::live();
     open(&mut bench);
-    bench.click("Stored in the hand");
-    bench.run(60);
+    open_expert(&mut bench);
     assert!(bench.is_disabled(Role::Button, "Upload"), "no angles yet");
     enter(&mut bench, "User gesture", "20");
     pose(&mut bench, 600);
@@ -350,8 +359,7 @@ fn a_drag_that_is_stopped_by_esc_leaves_the_order() {
 fn storing_gestures_can_be_switched_off_and_what_is_known_is_said_beside_it() {
     let mut bench = Bench::live();
     open(&mut bench);
-    bench.click("Stored in the hand");
-    bench.run(60);
+    open_expert(&mut bench);
     enter(&mut bench, "User gesture", "20");
     assert!(bench.shows("bytes 1138..1149"));
     assert!(
@@ -395,4 +403,40 @@ fn poses_are_found_by_name_and_tag_and_put_in_order_among_those_that_are_found()
     assert!(bench.shows("No pose has these words in its name or tags."));
     bench.type_into("Find poses", "e 2");
     assert!(bench.shows("Pose Pose 2") && !bench.shows("Pose Pose 3"));
+}
+
+#[test]
+fn a_press_before_arming_says_at_the_tile_what_to_do() {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    bench.click("Save the pose the hand has now");
+    bench.run(100);
+    let words = "Not armed: press Arm first.";
+    assert!(!bench.shows(words));
+    let tile = bench.rects("Go to Pose").remove(0);
+    bench.press_at(tile.center());
+    bench.run(200);
+    let told = bench.rect(Role::Label, words);
+    assert!(told.distance_to_pos(tile.center()) < 60.0, "{told} {tile}");
+    bench.run(3500);
+    assert!(!bench.shows(words));
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
+fn names_that_nobody_typed_are_chinese_in_a_chinese_window() {
+    let mut bench = Bench::live();
+    bench.act(handscope::app::action::Action::Language(
+        handscope::app::settings::Language::Zh,
+    ));
+    bench.show(handscope::ui::View::Poses);
+    bench.click("记录灵巧手当前的姿态");
+    bench.run(100);
+    bench.click("动作序列");
+    bench.run(100);
+    bench.click("新建序列");
+    bench.run(100);
+    let library = &bench.state().poses.library;
+    assert_eq!(library.poses[0].name, "姿态");
+    assert_eq!(library.sequences[0].name, "序列");
 }
