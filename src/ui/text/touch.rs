@@ -27,7 +27,6 @@ texts! {
     LAST_MINUTE: "1 min", "1 分钟";
     LAST_10_MIN: "10 min", "10 分钟";
     LAST_TIP: "How much time the channels show.", "通道曲线显示的时间长度。";
-    KEPT: "Kept: 10 min at 30 Hz", "保留 10 分钟（30 Hz）";
     NOISE_HEAD: "change  noise, 1 s", "变化  噪声（1 秒）";
     NOISE_TIP: "Over the last second: the mean, counted from the rest, and the standard deviation, in counts.", "最近 1 秒内：相对静止值的平均变化，以及标准差，单位为计数。";
     NOISE: "Change and noise of channel", "通道变化与噪声";

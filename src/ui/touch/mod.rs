@@ -215,8 +215,8 @@ impl TouchView {
             (Sense::Fine, Hold::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
             (Sense::Fine, _) => {
                 let shear = format::newtons(block.map(|block| block.tangential_n));
-                let way = block.map_or(String::new(), |block| table::direction(&block, look));
-                (format!("{shear} N {way}"), look.palette.muted)
+                // The arrow says the direction, too.
+                (format!("{shear} N"), look.palette.muted)
             }
         };
         let normal = format!("{} N", format::newtons(block.map(|block| block.normal_n)));

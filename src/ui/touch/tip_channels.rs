@@ -57,7 +57,7 @@ impl TipChannels {
     /// Draws choice, plot and list.
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, finger: Finger) {
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-            self.head_ui(ui, pane);
+            self.head_ui(ui, pane.look);
             ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
                 if ui.available_width() >= theme::CHANNELS_ROOMY {
                     let place = vec2(theme::CHANNEL_LIST, ui.available_height());
@@ -71,8 +71,7 @@ impl TipChannels {
         });
     }
 
-    fn head_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
-        let look = pane.look;
+    fn head_ui(&mut self, ui: &mut Ui, look: Look) {
         let choice = |ui: &mut Ui, (name, tip): (Text, Text), is_chosen: bool| {
             let button = Button::new(look.say(name), look.say(tip)).choice(is_chosen);
             button.ui(ui, look).clicked()
@@ -93,16 +92,6 @@ impl TipChannels {
                     self.chart.time.follow();
                 }
             }
-            let tenths = pane.state.hand().history.channel_bytes().div_ceil(100_000);
-            let kept = format!(
-                "{}, {}.{} MB",
-                look.say(text::KEPT),
-                tenths / 10,
-                tenths % 10
-            );
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                Label::new(&kept, look.palette.muted).small().ui(ui);
-            });
         });
     }
 

@@ -76,10 +76,12 @@ impl TipDetail {
     /// Compass, readings, forces and channels over time: as many as find room.
     pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let mut body = rect;
-        let size = rect.height().min(rect.width() * 0.22);
-        let mut squares = controls::take_left(&mut body, size);
-        let compass = controls::take_top(&mut squares, size);
-        self.compass_ui(ui, compass, pane);
+        if rect.width() >= 700.0 {
+            let size = rect.height().min(rect.width() * 0.22);
+            let mut left = controls::take_left(&mut body, size);
+            let compass = controls::take_top(&mut left, size);
+            self.compass_ui(ui, compass, pane);
+        }
         let width = (body.width() * 0.28).clamp(theme::TIP_READINGS.0, theme::TIP_READINGS.1);
         let readings = controls::take_left(&mut body, width);
         self.readings_ui(ui, readings, pane);

@@ -377,7 +377,9 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Label::new(&words, palette.text).ui(ui);
         return;
     }
-    let newest = pane.state.notices.log().next();
+    // A fault has a warning and a list of its own.
+    let mut news = pane.state.notices.log();
+    let newest = news.find(|one| !matches!(one.what, NoticeKind::Fault { .. }));
     if let Some(newest) = newest.filter(|one| pane.state.now.since(one.at) < NEWS_FOR) {
         let color = match newest.level {
             Level::Info => palette.accent,

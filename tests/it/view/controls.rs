@@ -276,7 +276,7 @@ fn what_is_not_known_is_a_dash() {
         ("Index current and temperature", "- mA   - °C"),
         ("Index status", "-"),
         ("Index normal force", "-"),
-        ("Thumb direction", "-"),
+        ("Thumb tangential force", "-"),
     ] {
         let node = harness
             .query_all_by_role(Role::Label)

@@ -1,6 +1,7 @@
-//! The fingertips and the drawn hand: choosing one, taring, keeping the colours.
+//! The fingertips and the drawn hand: choosing one, taring, the scale of the heat.
 
 use crate::setup::window::{Bench, LARGE, Role};
+use handscope::app::action::Action;
 use handscope::hand::Finger;
 use handscope::sim::{Scenario, SimConfig};
 
@@ -11,6 +12,15 @@ fn gripping() -> Bench {
     };
     let mut bench = Bench::open(config, LARGE);
     bench.wait(3000);
+    bench.click_first_button("Touch");
+    bench.run(60);
+    bench
+}
+
+/// A hand that touches nothing.
+fn free() -> Bench {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.wait(1000);
     bench.click_first_button("Touch");
     bench.run(60);
     bench
@@ -33,12 +43,12 @@ fn the_hand_is_drawn_and_named_in_both_views() {
     bench.click_first_button("Live");
     bench.run(60);
     let small = bench.rect(Role::Image, "Picture of the hand");
-    assert!(large.area() > small.area() && small.height() > 100.0);
+    assert!(large.height() > 200.0 && small.height() > 200.0);
 }
 
 #[test]
 fn a_fingertip_is_chosen_by_its_button_and_tared_alone() {
-    let mut bench = gripping();
+    let mut bench = free();
     let (before, thumb) = (rest(&bench, Finger::Middle), rest(&bench, Finger::Thumb));
     bench.click("Fingertip: Middle");
     bench.run(60);
@@ -54,7 +64,7 @@ fn a_fingertip_is_chosen_by_its_button_and_tared_alone() {
 
 #[test]
 fn taring_counts_all_tips_from_now_and_writes_nothing() {
-    let mut bench = gripping();
+    let mut bench = free();
     bench.click("Tare all");
     bench.run(60);
     assert!(bench.state().hand().tare.chosen_at().is_some());
@@ -67,35 +77,71 @@ fn taring_counts_all_tips_from_now_and_writes_nothing() {
 }
 
 #[test]
-fn kept_colours_stay_when_the_grip_lets_go() {
+fn nothing_is_tared_under_load_and_it_is_said_why() {
     let mut bench = gripping();
-    let end = |bench: &Bench| bench.reading("end of the heat scale");
-    let tight = end(&bench);
+    let before = rest(&bench, Finger::Index);
     bench.click("Tare all");
     bench.run(60);
-    assert_ne!(end(&bench), tight, "after taring nothing is hot");
-    bench.click("Undo");
-    bench.run(60);
-    bench.click("Keep colours");
-    bench.run(60);
-    let kept = end(&bench);
-    bench.click("Tare all");
-    bench.run(60);
-    assert_eq!(end(&bench), kept);
+    assert_eq!(rest(&bench, Finger::Index), before);
+    assert!(!bench.state().hand().tare.can_undo());
+    assert_eq!(bench.texts_with("Not tared: ").len(), 1);
 }
 
 #[test]
-fn a_drawn_finger_says_its_name_and_force_and_is_chosen_by_it() {
+fn a_hand_that_grips_when_it_is_connected_has_no_zero_until_it_lets_go() {
+    let config = SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::open(config, LARGE);
+    bench.wait(500);
+    bench.click("Arm the hand");
+    bench.run(100);
+    bench.click("Close");
+    bench.wait(6000);
+    bench.unplug();
+    bench.wait(1000);
+    let endpoint = bench.state().hand().endpoint.clone().expect("it is wanted");
+    bench.act(Action::Disconnect);
+    bench.run(100);
+    bench.plug();
+    bench.act(Action::Connect(endpoint));
+    bench.wait(2000);
+    let pressed = |bench: &Bench| {
+        let block = bench.state().hand().sample.tactile[Finger::Index];
+        block.expect("it was read").value.normal_n
+    };
+    assert!(pressed(&bench) > 0.3, "{}", pressed(&bench));
+    assert_eq!(bench.state().hand().tare.rest(Finger::Index), None);
+    assert_eq!(bench.texts_with("No zero yet").len(), 1);
+    bench.click("Arm the hand");
+    bench.run(100);
+    bench.click("Open all");
+    bench.wait(8000);
+    assert!(bench.state().hand().tare.rest(Finger::Index).is_some());
+    assert!(bench.texts_with("No zero yet").is_empty());
+}
+
+#[test]
+fn the_heat_scale_stays_whatever_is_gripped() {
+    let end = |bench: &Bench| bench.reading("end of the heat scale");
+    let (free, mut gripping) = (free(), gripping());
+    assert_eq!(end(&free), end(&gripping));
+    gripping.wait(2000);
+    assert_eq!(end(&free), end(&gripping));
+}
+
+#[test]
+fn a_fingertip_of_the_overview_is_chosen_for_the_detail() {
     let mut bench = gripping();
     for finger in ["Little", "Ring", "Middle", "Index", "Thumb"] {
-        let head = format!("Drawn finger: {finger}: Normal ");
-        let mut names = bench.all(Role::Button).into_iter().map(|(name, _)| name);
-        let name = names.find(|name| name.starts_with(&head)).expect(finger);
-        assert!(
-            !name.contains('-'),
-            "in a grip all forces are known: {name}"
-        );
-        bench.click(&name);
+        bench.click_first_button("Live");
+        bench.run(60);
+        let force = bench.reading(&format!("{finger} normal force"));
+        assert!(!force.contains('-'), "in a grip all are known: {force}");
+        bench.click(&format!("Fingertip: {finger}"));
+        bench.run(60);
+        bench.click_first_button("Touch");
         bench.run(60);
         assert!(bench.shows(&format!("Tare {finger}")));
     }
@@ -117,24 +163,17 @@ fn all_numbers_stand_there_on_demand() {
 
 #[test]
 fn a_channel_tells_its_change_and_noise_and_a_taring_its_age() {
-    let mut bench = gripping();
+    let change = gripping().reading("Change and noise of channel 4");
+    assert!(change.starts_with('+'), "{change}");
+    let mut bench = free();
     let tared = |bench: &Bench| bench.reading("Taring of the chosen fingertip");
-    assert_eq!(tared(&bench), "Not tared");
-    assert!(
-        bench
-            .reading("Change and noise of channel 4")
-            .starts_with('+')
-    );
+    assert_eq!(tared(&bench), "Zero: first reading");
     bench.click("Tare Index");
     bench.wait(1500);
-    assert!(
-        tared(&bench).starts_with("Tared, ago 1."),
-        "{}",
-        tared(&bench)
-    );
+    assert!(tared(&bench).starts_with("Tared 1."), "{}", tared(&bench));
     bench.click("Fingertip: Ring");
     bench.run(60);
-    assert_eq!(tared(&bench), "Not tared");
+    assert_eq!(tared(&bench), "Zero: first reading");
     bench.click("Raw");
     bench.click("10 min");
     bench.run(60);
