@@ -34,7 +34,7 @@ const FIRST: [&str; 5] = [
 /// Kinds of links and their fields, both as endpoints spell them, the place first where there is one.
 type Kind = (&'static str, &'static [&'static str]);
 static KINDS: [Kind; 7] = [
-    ("sim", &["seed", "scenario"]),
+    ("sim", &["scenario", "seed"]),
     ("rs485", &["port", "baud", "id"]),
     ("tcp", &["host", "unit", "packing"]),
     ("rtu", &["port", "baud", "id", "packing"]),
@@ -145,19 +145,11 @@ impl ConnectionForm {
             controls::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
             self.kinds_ui(ui, look);
             ui.add_space(theme::STEP);
-            for key in self.kind.1.iter().filter(|key| !RARE.contains(key)) {
-                self.key_ui(ui, pane, key);
-            }
-            let mut rare = self
-                .kind
-                .1
-                .iter()
-                .filter(|key| RARE.contains(key))
-                .peekable();
-            if rare.peek().is_some() {
-                expert_ui(ui, look, |ui| {
-                    rare.for_each(|key| self.key_ui(ui, pane, key))
-                });
+            for key in self.kind.1 {
+                match RARE.contains(key) {
+                    true => expert_ui(ui, look, |ui| self.key_ui(ui, pane, key)),
+                    false => self.key_ui(ui, pane, key),
+                }
             }
             ui.add_space(theme::STEP);
             self.connect_ui(ui, pane);
@@ -191,27 +183,21 @@ impl ConnectionForm {
         let look = pane.look;
         let Some(key) = self.place() else { return };
         let (place, ids) = (self.field(key).to_owned(), self.scan.ids);
-        let (text, tip) = (look.say(panels::SCAN_HERE), look.say(panels::SCAN_HERE_TIP));
         let missing = place.is_empty().then_some(scan_text::ADDRESS_EMPTY);
-        if !scan::start_ui(ui, pane, Button::new(text, tip).large(), missing) {
-            return;
-        }
-        match key {
-            "host" => self.scan.scan_hosts(pane, place),
-            "interface" => pane
-                .actions
-                .push(Action::Scan(ScanWish::Interface(place, ids))),
-            _ => pane.actions.push(Action::Scan(ScanWish::Port(place, ids))),
-        }
+        let button = Button::said(look, panels::SCAN_HERE, panels::SCAN_HERE_TIP).large();
+        let wish = match key {
+            _ if !scan::start_ui(ui, pane, button, missing) => return,
+            "host" => return self.scan.scan_hosts(pane, place),
+            "interface" => ScanWish::Interface(place, ids),
+            _ => ScanWish::Port(place, ids),
+        };
+        pane.actions.push(Action::Scan(wish));
     }
 
     fn ports_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         row_ui(ui, look, "", |ui| {
-            let find = Button::new(
-                look.say(panels::PORTS_REFRESH),
-                look.say(panels::PORTS_REFRESH_TIP),
-            );
+            let find = Button::said(look, panels::PORTS_REFRESH, panels::PORTS_REFRESH_TIP);
             if find.ui(ui, look).clicked() {
                 pane.actions.push(Action::FindPorts);
             }
@@ -287,12 +273,12 @@ impl ConnectionForm {
         let spelled = self.spelled();
         let parsed = spelled.parse::<Endpoint>();
         row_ui(ui, look, look.say(panels::ENDPOINT), |ui| {
-            let text = parsed.as_ref().map_or("-", |_| spelled.as_str());
-            let label = Label::new(text, look.palette.text).number().wrap();
+            let text = parsed.as_ref().map_or("-".to_owned(), Endpoint::to_string);
+            let label = Label::new(&text, look.palette.text).number().wrap();
             label.named(look.say(panels::ENDPOINT)).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {
-            let connect = Button::new(look.say(panels::CONNECT), look.say(panels::CONNECT_TIP));
+            let connect = Button::said(look, panels::CONNECT, panels::CONNECT_TIP);
             if connect
                 .weight(Weight::Strong)
                 .large()
@@ -305,11 +291,8 @@ impl ConnectionForm {
                 }
             }
             let none = pane.state.hand().endpoint.is_none();
-            let disconnect = Button::new(
-                look.say(panels::DISCONNECT),
-                look.say(panels::DISCONNECT_TIP),
-            )
-            .disabled(none.then(|| look.say(panels::DISCONNECT_NONE)));
+            let disconnect = Button::said(look, panels::DISCONNECT, panels::DISCONNECT_TIP)
+                .disabled(none.then(|| look.say(panels::DISCONNECT_NONE)));
             if disconnect.large().ui(ui, look).clicked() {
                 pane.actions.push(Action::Disconnect);
             }
@@ -354,7 +337,7 @@ fn recent_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 Endpoint::Tcp { .. } => (endpoint.place(), None),
                 _ => (endpoint.place(), Some(endpoint.place_and_id().1)),
             };
-            let title = scan::title(look, &endpoint, id);
+            let title = scan_text::title(look, &endpoint, id);
             scan::hand_ui(ui, pane, &endpoint, (&title, &place));
         }
     });

@@ -91,7 +91,7 @@ fn copy_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let hand = pane.state.hand();
     let endpoint = hand.endpoint.as_ref().filter(|_| hand.link.state.is_live());
     let off = endpoint.is_none().then(|| look.say(text::COPY_OFF));
-    let button = Button::new(look.say(text::COPY), look.say(text::COPY_TIP)).disabled(off);
+    let button = Button::said(look, text::COPY, text::COPY_TIP).disabled(off);
     if button.ui(ui, look).clicked()
         && let Some(endpoint) = endpoint
     {

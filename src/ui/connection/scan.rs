@@ -1,13 +1,12 @@
 //! Looking for hands: what to scan, how far it is, what was found. Asks for scans and connections; opens nothing.
 
 use crate::app::action::Action;
-use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanWish};
+use crate::app::scan::{IdRange, ScanRemark, ScanWish};
 use crate::link::scan::Hosts;
-use crate::transport::{Endpoint, UsbFound};
+use crate::transport::Endpoint;
 use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
-use crate::ui::text::{Text, errors, panels, scan};
+use crate::ui::kit::look::Pane;
+use crate::ui::text::{Text, errors, scan};
 use crate::ui::theme;
 use egui::{Align, Layout, ProgressBar, Ui, vec2};
 
@@ -46,7 +45,7 @@ impl ScanPanel {
         let look = pane.look;
         ui.horizontal_wrapped(|ui| {
             if pane.state.scan.is_running() {
-                let cancel = Button::new(look.say(scan::CANCEL), look.say(scan::CANCEL_TIP));
+                let cancel = Button::said(look, scan::CANCEL, scan::CANCEL_TIP);
                 if cancel.large().ui(ui, look).clicked() {
                     pane.actions.push(Action::CancelScan);
                 }
@@ -60,7 +59,7 @@ impl ScanPanel {
             Label::new(look.say(scan::IDS), look.palette.muted).ui(ui);
             for (range, text) in [(IdRange::Few, scan::IDS_FEW), (IdRange::All, scan::IDS_ALL)] {
                 let name = format!("{}: {}", look.say(scan::IDS), look.say(text));
-                let button = Button::new(look.say(text), look.say(scan::IDS_TIP)).named(&name);
+                let button = Button::said(look, text, scan::IDS_TIP).named(&name);
                 if button.choice(self.ids == range).ui(ui, look).clicked() {
                     self.ids = range;
                 }
@@ -127,83 +126,30 @@ pub(crate) fn start_ui(
 
 /// How far the scan is, or how it ended.
 fn stage_ui(ui: &mut Ui, pane: &Pane<'_>) {
-    let (look, scan) = (pane.look, &pane.state.scan);
-    if !scan.is_running() {
-        let (text, color) = match ended(look, scan) {
+    let (look, state) = (pane.look, &pane.state.scan);
+    if !state.is_running() {
+        let (text, color) = match scan::ended(look, state) {
             Ok(text) => (text, look.palette.text),
             Err(text) => (look.say(text).to_owned(), look.palette.muted),
         };
         Label::new(&text, color).wrap().ui(ui);
         return;
     }
-    Label::new(&progress_words(look, scan), look.palette.text)
+    Label::new(&scan::progress(look, state), look.palette.text)
         .named(look.say(scan::PROGRESS))
         .ui(ui);
     let count = |count: usize| f32::from(u16::try_from(count).unwrap_or(u16::MAX));
-    let part = count(scan.progress.tried) / count(scan.progress.total).max(1.0);
+    let part = count(state.progress.tried) / count(state.progress.total).max(1.0);
     ui.add(ProgressBar::new(part).desired_height(theme::STEP));
-}
-
-fn progress_words(look: Look, book: &ScanState) -> String {
-    let progress = book.progress;
-    if progress.total == 0 {
-        return look.say(scan::LISTING).into();
-    }
-    // Never less than a second: what is nearly over is not worth a flicker.
-    let left = progress.left.as_secs() + 1;
-    format!(
-        "{} / {} {}, {} {left} s",
-        progress.tried,
-        progress.total,
-        look.say(scan::ASKED),
-        look.say(scan::TIME_LEFT)
-    )
-}
-
-/// What was found, or why there is nothing.
-fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
-    let summary = match book.stage {
-        ScanStage::Never | ScanStage::Running => return Err(scan::NEVER),
-        ScanStage::Cancelled if book.found.is_empty() => return Err(scan::CANCELLED),
-        ScanStage::Cancelled => {
-            let found = found_words(look, book.found.len());
-            return Ok(format!("{} {found}", look.say(scan::CANCELLED)));
-        }
-        ScanStage::Done(summary) => summary,
-    };
-    if !book.found.is_empty() {
-        let found = found_words(look, book.found.len());
-        return Ok(format!("{found}, {}", format::age(summary.took)));
-    }
-    Err(match &book.wish {
-        _ if summary.places == 0 && !book.remarks.is_empty() => scan::NOWHERE,
-        _ if summary.places == 0 => scan::NO_PLACES,
-        Some(ScanWish::Hosts(_)) => scan::NOTHING_THERE,
-        Some(ScanWish::Ports(ids) | ScanWish::Port(_, ids) | ScanWish::Interface(_, ids))
-            if *ids == IdRange::All =>
-        {
-            scan::NOTHING_AT_ALL
-        }
-        Some(_) | None => scan::NOTHING,
-    })
-}
-
-fn found_words(look: Look, found: usize) -> String {
-    let words = if found == 1 {
-        scan::FOUND_ONE
-    } else {
-        scan::FOUND_MANY
-    };
-    format!("{found} {}", look.say(words))
 }
 
 /// The hands, then what else there is to say.
 fn results_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     for found in &state.scan.found {
-        let usb = found.usb.as_ref().map(usb_words).unwrap_or_default();
+        let usb = found.usb.as_ref().map(scan::usb).unwrap_or_default();
         let place = format!("{}  {usb}", found.endpoint.place());
-        let title = title(look, &found.endpoint, Some(found.hand_id.into()));
+        let title = scan::title(look, &found.endpoint, Some(found.hand_id.into()));
         hand_ui(ui, pane, &found.endpoint, (&title, place.trim_end()));
     }
     for remark in &state.scan.remarks {
@@ -236,7 +182,7 @@ pub(crate) fn hand_ui(
     };
     ui.horizontal(|ui| {
         let name = format!("{}: {endpoint}", look.say(text));
-        let button = Button::new(look.say(text), look.say(tip)).named(&name);
+        let button = Button::said(look, text, tip).named(&name);
         let size = vec2(theme::COUNT_COLUMN, theme::CONTROL_LARGE);
         let justified = Layout::top_down_justified(Align::Center);
         let button = ui.allocate_ui_with_layout(size, justified, |ui| {
@@ -253,37 +199,4 @@ pub(crate) fn hand_ui(
             }
         });
     });
-}
-
-/// The id where it is known, the way of speaking, and its speed.
-pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String {
-    let (kind, speed) = match endpoint {
-        Endpoint::Rs485(line) => (panels::KIND_RS485, Some(line.baud)),
-        Endpoint::Rtu(line) => (panels::KIND_RTU, Some(line.baud)),
-        Endpoint::Slcan { bitrate, .. } => (panels::KIND_SLCAN, Some(*bitrate)),
-        Endpoint::UsbCan { baud, .. } => (panels::KIND_USBCAN, Some(*baud)),
-        Endpoint::Can { .. } => (panels::KIND_CAN, None),
-        Endpoint::Tcp { .. } => (panels::KIND_TCP, None),
-        Endpoint::Sim { scenario, .. } => {
-            return format!("{}, {scenario}", look.say(panels::KIND_SIM));
-        }
-    };
-    let speed = speed.map(|speed| format!(", {speed}")).unwrap_or_default();
-    let id = id.map(|id| format!("ID {id}, ")).unwrap_or_default();
-    format!("{id}{}{speed}", look.say(kind))
-}
-
-fn usb_words(usb: &UsbFound) -> String {
-    let named = [&usb.maker, &usb.product, &usb.serial]
-        .into_iter()
-        .flatten();
-    let words: Vec<&str> = named.map(String::as_str).collect();
-    format!(
-        "{} USB {:04x}:{:04x}",
-        words.join(" "),
-        usb.vendor_id,
-        usb.product_id
-    )
-    .trim_start()
-    .to_owned()
 }

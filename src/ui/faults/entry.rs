@@ -96,7 +96,9 @@ pub(crate) fn inset_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
 
 /// A list over all the room that is left.
 pub(crate) fn scroll_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
-    let scroll = ScrollArea::vertical().auto_shrink(false);
+    let scroll = ScrollArea::vertical()
+        .auto_shrink(false)
+        .min_scrolled_height(0.0);
     scroll.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = theme::STEP / 2.0;
         // The bar lies over the end of the rows.
@@ -324,7 +326,7 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
 pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let none = pane.state.hand().faults.unseen().next().is_none();
-    let button = Button::new(look.say(faults::SEEN_ALL), look.say(faults::SEEN_ALL_TIP));
+    let button = Button::said(look, faults::SEEN_ALL, faults::SEEN_ALL_TIP);
     let none = none.then(|| look.say(faults::SEEN_NONE));
     if button.disabled(none).ui(ui, look).clicked() {
         pane.actions.push(Action::SeenFaults);

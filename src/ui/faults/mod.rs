@@ -91,8 +91,12 @@ impl FaultsView {
         let look = pane.look;
         ui.columns(2, |columns| {
             let [left, right] = columns else { return };
-            controls::full_card_ui(left, look, |ui| self.faults_ui(ui, pane));
-            controls::full_card_ui(right, look, |ui| self.beside_ui(ui, pane));
+            left.push_id("faults", |ui| {
+                controls::full_card_ui(ui, look, |ui| self.faults_ui(ui, pane));
+            });
+            right.push_id("beside", |ui| {
+                controls::full_card_ui(ui, look, |ui| self.beside_ui(ui, pane));
+            });
         });
     }
 
@@ -165,7 +169,7 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         Some(NothingToClear::OnlyHeat) => Some(faults::CLEAR_ONLY_HEAT),
         None => None,
     };
-    let button = Button::new(look.say(panels::CLEAR), look.say(panels::CLEAR_TIP));
+    let button = Button::said(look, panels::CLEAR, panels::CLEAR_TIP);
     let reason = reason.map(|reason| look.say(reason));
     if button.disabled(reason).ui(ui, look).clicked() {
         pane.actions.push(Action::ClearErrors);
@@ -176,7 +180,7 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn forget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     CollapsingHeader::new(look.say(faults::TIDY)).show_unindented(ui, |ui| {
-        let button = Button::new(look.say(faults::FORGET), look.say(faults::FORGET_TIP));
+        let button = Button::said(look, faults::FORGET, faults::FORGET_TIP);
         if button.ui(ui, look).clicked() {
             pane.actions.push(Action::ForgetFaults);
         }
@@ -288,7 +292,7 @@ fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
             let name = format!("{}: {text}", look.say(main::DISMISS));
-            let button = Button::new(look.say(main::DISMISS), look.say(main::DISMISS_TIP));
+            let button = Button::said(look, main::DISMISS, main::DISMISS_TIP);
             let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
             if button.ui(ui, look).clicked() {
                 pane.actions.push(Action::Dismiss(notice.id));

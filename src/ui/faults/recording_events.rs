@@ -67,26 +67,22 @@ fn mark_line(look: Look, mark: &Mark) -> Option<EventLine> {
 
 fn event_words(look: Look, what: &EventKind) -> (String, Color32) {
     let palette = look.palette;
+    let of = |dof, said: &str| look.pair(look.say(words::dof(dof)), said);
     match what {
         EventKind::PersonAct(deed) => (deed_words(look, deed), palette.accent),
         EventKind::Status(dof, status) => {
-            let joint = look.say(words::dof(*dof));
-            let color = if status.is_protective() {
-                palette.bad
-            } else {
-                palette.muted
+            let color = match status.is_protective() {
+                true => palette.bad,
+                false => palette.muted,
             };
-            let title = words::status(*status, look.language).title;
-            (format!("{joint}: {title}"), color)
+            (of(*dof, words::status(*status, look.language).title), color)
         }
         EventKind::Faults(dof, bits) => {
-            let joint = look.say(words::dof(*dof));
-            let color = if bits.is_empty() {
-                palette.ok
-            } else {
-                palette.bad
+            let color = match bits.is_empty() {
+                true => palette.ok,
+                false => palette.bad,
             };
-            (format!("{joint}: {}", fault_words(look, *bits)), color)
+            (of(*dof, &fault_words(look, *bits)), color)
         }
     }
 }
@@ -103,47 +99,24 @@ fn fault_words(look: Look, bits: Faults) -> String {
 }
 
 fn deed_words(look: Look, deed: &PersonAct) -> String {
+    let say = |text| look.say(text).to_owned();
+    let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.say(what));
     let joint = |dof| look.say(words::dof(dof));
     let all = look.say(faults::DEED_ALL);
     match deed {
-        PersonAct::Disarm => look.say(faults::DEED_DISARM).into(),
-        PersonAct::Target(dof, angle) => {
-            format!(
-                "{} {} {}",
-                joint(*dof),
-                look.say(faults::DEED_TARGET),
-                angle.get()
-            )
-        }
-        PersonAct::Force(dof, force) => {
-            format!(
-                "{} {} {}",
-                joint(*dof),
-                look.say(faults::DEED_FORCE),
-                force.get()
-            )
-        }
-        PersonAct::Speed(dof, speed) => {
-            format!(
-                "{} {} {}",
-                joint(*dof),
-                look.say(faults::DEED_SPEED),
-                speed.get()
-            )
-        }
-        PersonAct::ForceOfAll(force) => {
-            format!("{all} {} {}", look.say(faults::DEED_FORCE), force.get())
-        }
-        PersonAct::SpeedOfAll(speed) => {
-            format!("{all} {} {}", look.say(faults::DEED_SPEED), speed.get())
-        }
-        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), look.say(faults::DEED_LOCK)),
-        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), look.say(faults::DEED_UNLOCK)),
-        PersonAct::Preset(Preset::Open) => look.say(main::OPEN).into(),
-        PersonAct::Preset(Preset::Half) => look.say(main::HALF).into(),
-        PersonAct::Preset(Preset::Close) => look.say(main::CLOSE).into(),
-        PersonAct::Pose(name) => format!("{} {name}", look.say(poses::RECALL_NAME)),
-        PersonAct::Angles => look.say(faults::DEED_ANGLES).into(),
+        PersonAct::Disarm => say(faults::DEED_DISARM),
+        PersonAct::Target(dof, angle) => set(joint(*dof), faults::DEED_TARGET, angle.get()),
+        PersonAct::Force(dof, force) => set(joint(*dof), faults::DEED_FORCE, force.get()),
+        PersonAct::Speed(dof, speed) => set(joint(*dof), faults::DEED_SPEED, speed.get()),
+        PersonAct::ForceOfAll(force) => set(all, faults::DEED_FORCE, force.get()),
+        PersonAct::SpeedOfAll(speed) => set(all, faults::DEED_SPEED, speed.get()),
+        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(faults::DEED_LOCK)),
+        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(faults::DEED_UNLOCK)),
+        PersonAct::Preset(Preset::Open) => say(main::OPEN),
+        PersonAct::Preset(Preset::Half) => say(main::HALF),
+        PersonAct::Preset(Preset::Close) => say(main::CLOSE),
+        PersonAct::Pose(name) => format!("{} {name}", say(poses::RECALL_NAME)),
+        PersonAct::Angles => say(faults::DEED_ANGLES),
         PersonAct::Play(play) => {
             let verb = match play {
                 Play::Start(_) => poses::START,
@@ -152,8 +125,8 @@ fn deed_words(look: Look, deed: &PersonAct) -> String {
                 Play::Resume => poses::RESUME,
                 Play::End | Play::Dry(_) | Play::EndDry => poses::END,
             };
-            format!("{}: {}", look.say(faults::DEED_SEQUENCE), look.say(verb))
+            look.pair(look.say(faults::DEED_SEQUENCE), look.say(verb))
         }
-        PersonAct::ClearErrors => look.say(panels::CLEAR).into(),
+        PersonAct::ClearErrors => say(panels::CLEAR),
     }
 }

@@ -136,13 +136,13 @@ impl RecordingsView {
         let look = pane.look;
         ui.horizontal(|ui| {
             let (back, tip) = (faults::RECORDING_BACK, faults::RECORDING_BACK_TIP);
-            let back = Button::new(look.say(back), look.say(tip));
+            let back = Button::said(look, back, tip);
             if back.ui(ui, look).clicked() {
                 self.close();
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let (save, tip) = (faults::RECORDING_SAVE, faults::RECORDING_SAVE_TIP);
-                let save = Button::new(look.say(save), look.say(tip)).weight(Weight::Strong);
+                let save = Button::said(look, save, tip).weight(Weight::Strong);
                 if save.ui(ui, look).clicked() {
                     let content = Content::Recording(recording.table());
                     pane.actions.push(Action::Save(content));
@@ -178,7 +178,7 @@ impl RecordingsView {
                 (faults::RECORDING_NEAR, faults::RECORDING_NEAR_TIP, true),
                 (faults::RECORDING_WHOLE, faults::RECORDING_WHOLE_TIP, false),
             ] {
-                let button = Button::new(look.say(text), look.say(tip));
+                let button = Button::said(look, text, tip);
                 if button.choice(self.near == near).ui(ui, look).clicked() {
                     self.near = near;
                 }

@@ -1,6 +1,7 @@
 //! The few widgets that everything is made of: placed by rectangle, painted from the theme, named for accessibility.
 
 use crate::ui::kit::look::Look;
+use crate::ui::text::Text;
 use crate::ui::theme::{self, Icon};
 use egui::{
     Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, PointerButton, Pos2,
@@ -214,6 +215,11 @@ impl<'a> Button<'a> {
             icon: None,
             height: theme::CONTROL,
         }
+    }
+
+    /// The same in the window's language.
+    pub(crate) const fn said(look: Look, text: Text, tip: Text) -> Self {
+        Self::new(look.say(text), look.say(tip))
     }
 
     /// As high as what matters most.

@@ -1,9 +1,11 @@
 //! Sentences of looking for hands. Decides nothing.
 
-use crate::app::scan::ScanRemark;
+use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanWish};
+use crate::transport::{Endpoint, UsbFound};
+use crate::ui::kit::format;
 use crate::ui::kit::look::Look;
-use crate::ui::text::errors;
-use crate::ui::text::phrase::texts;
+use crate::ui::text::phrase::{Text, texts};
+use crate::ui::text::{errors, panels};
 
 texts! {
     FIND: "Find hands", "查找灵巧手";
@@ -51,4 +53,86 @@ pub(crate) fn remark(look: Look, remark: &ScanRemark) -> String {
         ScanRemark::Trouble(error) => errors::transport(look, error),
         ScanRemark::Hint(hint) => errors::hint(look, hint),
     }
+}
+
+pub(crate) fn progress(look: Look, book: &ScanState) -> String {
+    let progress = book.progress;
+    if progress.total == 0 {
+        return look.say(LISTING).into();
+    }
+    // Never less than a second: what is nearly over is not worth a flicker.
+    let left = progress.left.as_secs() + 1;
+    format!(
+        "{} / {} {}, {} {left} s",
+        progress.tried,
+        progress.total,
+        look.say(ASKED),
+        look.say(TIME_LEFT)
+    )
+}
+
+/// What was found, or why there is nothing.
+pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
+    let summary = match book.stage {
+        ScanStage::Never | ScanStage::Running => return Err(NEVER),
+        ScanStage::Cancelled if book.found.is_empty() => return Err(CANCELLED),
+        ScanStage::Cancelled => {
+            let found = found_words(look, book.found.len());
+            return Ok(format!("{} {found}", look.say(CANCELLED)));
+        }
+        ScanStage::Done(summary) => summary,
+    };
+    if !book.found.is_empty() {
+        let found = found_words(look, book.found.len());
+        return Ok(format!("{found}, {}", format::age(summary.took)));
+    }
+    Err(match &book.wish {
+        _ if summary.places == 0 && !book.remarks.is_empty() => NOWHERE,
+        _ if summary.places == 0 => NO_PLACES,
+        Some(ScanWish::Hosts(_)) => NOTHING_THERE,
+        Some(ScanWish::Ports(ids) | ScanWish::Port(_, ids) | ScanWish::Interface(_, ids))
+            if *ids == IdRange::All =>
+        {
+            NOTHING_AT_ALL
+        }
+        Some(_) | None => NOTHING,
+    })
+}
+
+fn found_words(look: Look, found: usize) -> String {
+    let words = if found == 1 { FOUND_ONE } else { FOUND_MANY };
+    format!("{found} {}", look.say(words))
+}
+
+/// The id where it is known, the way of speaking, and its speed.
+pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String {
+    let (kind, speed) = match endpoint {
+        Endpoint::Rs485(line) => (panels::KIND_RS485, Some(line.baud)),
+        Endpoint::Rtu(line) => (panels::KIND_RTU, Some(line.baud)),
+        Endpoint::Slcan { bitrate, .. } => (panels::KIND_SLCAN, Some(*bitrate)),
+        Endpoint::UsbCan { baud, .. } => (panels::KIND_USBCAN, Some(*baud)),
+        Endpoint::Can { .. } => (panels::KIND_CAN, None),
+        Endpoint::Tcp { .. } => (panels::KIND_TCP, None),
+        Endpoint::Sim { scenario, .. } => {
+            return format!("{}, {scenario}", look.say(panels::KIND_SIM));
+        }
+    };
+    let speed = speed.map(|speed| format!(", {speed}")).unwrap_or_default();
+    let id = id.map(|id| format!("ID {id}, ")).unwrap_or_default();
+    format!("{id}{}{speed}", look.say(kind))
+}
+
+pub(crate) fn usb(usb: &UsbFound) -> String {
+    let named = [&usb.maker, &usb.product, &usb.serial]
+        .into_iter()
+        .flatten();
+    let words: Vec<&str> = named.map(String::as_str).collect();
+    format!(
+        "{} USB {:04x}:{:04x}",
+        words.join(" "),
+        usb.vendor_id,
+        usb.product_id
+    )
+    .trim_start()
+    .to_owned()
 }

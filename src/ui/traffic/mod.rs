@@ -133,7 +133,7 @@ impl TrafficView {
         } else {
             traffic::PAUSE
         };
-        let pause = Button::new(look.say(text), look.say(traffic::PAUSE_TIP));
+        let pause = Button::said(look, text, traffic::PAUSE_TIP);
         let pause = switch(pause.named(look.say(traffic::PAUSE_NAME)), is_paused);
         if pause.ui(ui, look).clicked() {
             let live = &pane.state.hand().traffic;
@@ -146,14 +146,14 @@ impl TrafficView {
             self.passed = Passed::default();
             self.update(pane);
         }
-        let follow = Button::new(look.say(traffic::FOLLOW), look.say(traffic::FOLLOW_TIP));
+        let follow = Button::said(look, traffic::FOLLOW, traffic::FOLLOW_TIP);
         let follow = switch(follow.named(look.say(traffic::FOLLOW_NAME)), !self.scrolls);
         if follow.ui(ui, look).clicked() {
             self.scrolls = !self.scrolls;
         }
         let nothing = self.passed.frames().is_empty();
         let nothing = nothing.then(|| look.say(traffic::EXPORT_NONE));
-        let clear = Button::new(look.say(traffic::CLEAR), look.say(traffic::CLEAR_TIP));
+        let clear = Button::said(look, traffic::CLEAR, traffic::CLEAR_TIP);
         let clear = clear.named(look.say(traffic::CLEAR_NAME)).disabled(nothing);
         if clear.ui(ui, look).clicked() {
             let newest = pane.state.hand().traffic.newest();
@@ -161,7 +161,7 @@ impl TrafficView {
             self.choice = Choice::default();
         }
         let none = self.choice.numbers.is_empty();
-        let copy = Button::new(look.say(traffic::COPY), look.say(traffic::COPY_TIP));
+        let copy = Button::said(look, traffic::COPY, traffic::COPY_TIP);
         let copy = copy.disabled(none.then(|| look.say(traffic::COPY_NONE)));
         if copy.ui(ui, look).clicked() {
             self.copy(ui);
@@ -170,7 +170,7 @@ impl TrafficView {
             (traffic::EXPORT_CSV, TrafficForm::Csv),
             (traffic::EXPORT_JSON, TrafficForm::JsonLines),
         ] {
-            let button = Button::new(look.say(text), look.say(traffic::EXPORT_TIP));
+            let button = Button::said(look, text, traffic::EXPORT_TIP);
             if button.disabled(nothing).ui(ui, look).clicked() {
                 let frames = self.passed.frames().iter().cloned().collect();
                 let content = Content::Traffic(form, frames);
@@ -191,7 +191,7 @@ impl TrafficView {
             (traffic::WAY_OUT, Some(Direction::ToHand)),
             (traffic::WAY_IN, Some(Direction::FromHand)),
         ] {
-            let button = Button::new(look.say(text), look.say(traffic::WAY_TIP));
+            let button = Button::said(look, text, traffic::WAY_TIP);
             if button
                 .choice(filter.direction == way)
                 .ui(ui, look)
@@ -212,7 +212,7 @@ impl TrafficView {
                 &mut filter.hide_polling,
             ),
         ] {
-            let button = switch(Button::new(look.say(text), look.say(tip)), *on);
+            let button = switch(Button::said(look, text, tip), *on);
             if button.ui(ui, look).clicked() {
                 *on = !*on;
             }

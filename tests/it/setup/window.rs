@@ -356,6 +356,16 @@ impl Bench {
         self.run(400);
     }
 
+    /// Opens the list of a choice and takes one of it.
+    pub(crate) fn choose(&mut self, name: &str, value: &str) {
+        self.harness
+            .get_by_role_and_label(Role::ComboBox, name)
+            .click();
+        self.run(200);
+        self.click(value);
+        self.run(200);
+    }
+
     /// Puts the pointer over a text and leaves it there.
     pub(crate) fn point_at(&mut self, name: &str) {
         let at = self.rect(Role::Label, name).center();

@@ -94,20 +94,14 @@ fn how_bytes_stand_in_words_can_be_said_for_modbus_and_is_part_of_the_address() 
         let offers = offers.iter().any(|(name, _)| name == "Modbus bytes");
         assert_eq!(offers, has_words, "{kind}");
     }
-    bench.click("Modbus bytes");
-    bench.run(200);
-    bench.click("low first");
-    bench.run(200);
+    bench.choose("Modbus bytes", "low first");
     assert_eq!(
         bench
             .texts_with("tcp:192.168.11.210:6000?unit=255&packing=low")
             .len(),
         1
     );
-    bench.click("Modbus bytes");
-    bench.run(200);
-    bench.click("as the hand shows");
-    bench.run(200);
+    bench.choose("Modbus bytes", "as the hand shows");
     assert!(bench.texts_with("packing=").is_empty());
     assert_eq!(bench.writes(), [], "nothing is connected by choosing");
 }
