@@ -2,6 +2,7 @@
 
 use crate::hand::Finger;
 use crate::history::Series;
+use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::format;
 use crate::ui::kit::look::{Look, Pane};
@@ -77,8 +78,8 @@ impl TipChannels {
             let button = Button::new(look.say(name), look.say(tip)).choice(is_chosen);
             button.ui(ui, look).clicked()
         };
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = theme::STEP;
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
             for (name, tip, tared) in [
                 (text::RAW, text::RAW_TIP, false),
                 (text::TARED, text::TARED_TIP, true),
@@ -100,9 +101,11 @@ impl TipChannels {
                 tenths / 10,
                 tenths % 10
             );
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                Label::new(&kept, look.palette.muted).small().ui(ui);
-            });
+            if controls::text_width(ui, &kept, theme::small()) <= ui.available_width() {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    Label::new(&kept, look.palette.muted).small().ui(ui);
+                });
+            }
         });
     }
 
