@@ -1,4 +1,4 @@
-//! The lines of the plots as egui_plot draws them by itself: from all measurements, borrowed, in bands.
+//! The lines of the plots as egui_plot draws them by itself: from the same columns as the window's, borrowed, in bands.
 
 use crate::clock::{Sorted, cpu_ms};
 use egui::{Context, RawInput, Rect, pos2, vec2};
@@ -14,6 +14,8 @@ const WARM: usize = 3;
 /// The plots as the window has them.
 const WIDTH: f32 = 510.0;
 const HEIGHT: f32 = 110.0;
+/// Columns of pixels of one of them.
+const COLUMNS: usize = 464;
 const SHOWN: [&[Quantity]; 4] = [
     &[Quantity::Force],
     &[Quantity::Current],
@@ -55,9 +57,7 @@ fn lines(
     let mut all = Vec::new();
     for quantity in quantities {
         for dof in Dof::ALL {
-            // So many columns that every measurement is a point.
-            let columns = u32::MAX as usize;
-            history.trace(Series::Joint(*quantity, dof), from, to, columns, &mut trace);
+            history.trace(Series::Joint(*quantity, dof), from, to, COLUMNS, &mut trace);
             all.push(trace.points().map(|[x, y]| PlotPoint::new(x, y)).collect());
         }
     }

@@ -10,6 +10,7 @@ use crate::app::readings::pace::Pace;
 use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
 use crate::hand::{HandSample, Moment, PerDof, PerFinger};
+use crate::history::History;
 use crate::link::{self, LinkConfig, LinkStats, LinkStatus, PollRates, Traffic};
 use crate::record::{Hold, LinkState};
 use crate::transport::Endpoint;
@@ -87,6 +88,14 @@ impl HandState {
         };
         let former = self.name();
         self.recorder.another_hand(&self.history, &former, now);
+        let is_other = endpoint.is_some() && endpoint != self.measured;
+        // An id that was changed under a card makes no other hand.
+        if is_other && self.procedure.is_none() {
+            self.history = History::new();
+        }
+        if is_other {
+            self.measured.clone_from(&endpoint);
+        }
         self.open = open;
         self.endpoint = endpoint;
         self.link = LinkStatus {

@@ -96,6 +96,8 @@ pub struct HandState {
     pub(crate) was_live: bool,
     /// The hand whose files were looked at last.
     pub(crate) listed: Option<Endpoint>,
+    /// The hand that the history is of.
+    pub(crate) measured: Option<Endpoint>,
 }
 
 impl Default for HandState {
@@ -137,6 +139,7 @@ impl Default for HandState {
             seen_from: None,
             was_live: false,
             listed: None,
+            measured: None,
         }
     }
 }

@@ -76,8 +76,8 @@ impl TipChannels {
             let button = Button::new(look.say(name), look.say(tip)).choice(is_chosen);
             button.ui(ui, look).clicked()
         };
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = theme::STEP;
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
             for (name, tip, tared) in [
                 (text::RAW, text::RAW_TIP, false),
                 (text::TARED, text::TARED_TIP, true),

@@ -85,31 +85,7 @@ impl CurvesView {
             picture: &whole,
             ..drawn
         };
-        let is_strong = |key: RowKey| whole.lines.iter().any(|own| own.key == key);
-        let back = drawn.curves().filter(|(own, _)| !is_strong(own.key));
-        let back = back.map(|(own, curve)| (own, curve, !whole.lines.is_empty(), theme::LINE));
-        let front = strongs
-            .curves()
-            .map(|(own, curve)| (own, curve, false, theme::STRONG));
-        let (mut keys, mut curves) = (Vec::new(), Vec::new());
-        for (own, mut curve, is_back, width) in back.chain(front) {
-            let zero_s = match self.align {
-                Align::Command => Some(0.0),
-                Align::Contact => own.contact_s,
-            };
-            let Some(zero_s) = zero_s else { continue };
-            let width = if self.pointed == Some(own.key) {
-                theme::STRONG
-            } else {
-                width
-            };
-            let color = curve.stroke.color;
-            let color = if is_back { dash::behind(color) } else { color };
-            curve.zero = [zero_s, 0.0];
-            curve.stroke = Stroke::new(width, color);
-            keys.push(own.key);
-            curves.push(curve);
-        }
+        let (keys, curves): (Vec<_>, Vec<_>) = self.curves(drawn, strongs).into_iter().unzip();
         let chart = Chart {
             curves,
             levels: match shown {
@@ -127,6 +103,31 @@ impl CurvesView {
             *strong = chosen.filter(|_| chosen != *strong);
         }
         self.picture = Some((shown, picture));
+    }
+
+    /// The lines of all, with those of the trial that stands out over them.
+    fn curves<'a>(
+        &self,
+        all: DrawnTrials<'a>,
+        strong: DrawnTrials<'a>,
+    ) -> Vec<(RowKey, Curve<'a>)> {
+        let is_strong = |key: RowKey| strong.picture.lines.iter().any(|own| own.key == key);
+        let back = all.curves().filter(|(own, _)| !is_strong(own.key));
+        let styled = back.chain(strong.curves()).filter_map(|(own, mut curve)| {
+            let is_strong = is_strong(own.key);
+            if is_strong || self.pointed == Some(own.key) {
+                curve.stroke.width = theme::STRONG;
+            }
+            if strong.picture.all > 0 && !is_strong {
+                curve.stroke.color = dash::behind(curve.stroke.color);
+            }
+            curve.zero[0] = match self.align {
+                Align::Command => 0.0,
+                Align::Contact => own.contact_s?,
+            };
+            Some((own.key, curve))
+        });
+        styled.collect()
     }
 
     fn choices_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {

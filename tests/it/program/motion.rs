@@ -192,6 +192,8 @@ async fn another_hand_inherits_nothing() {
     assert_eq!(bench.hand().sample, HandSample::default());
     assert_eq!(bench.target(Dof::Index), None);
     assert!(!bench.hand().is_armed());
+    let first = bench.hand().history.first_secs();
+    assert_eq!(first, None, "its curves are not shown under the new name");
     bench.run(1000).await;
     bench.forget();
     bench.run(1000).await;
@@ -211,6 +213,10 @@ async fn leaving_an_armed_hand_holds_it_first() {
     bench.act(Action::Connect("rs485:x".parse().unwrap()));
     bench.run(500).await;
     assert_eq!(bench.hand().link.state, LinkState::Monitoring);
+    let history = &bench.hand().history;
+    let ends = history.first_secs().zip(history.last_secs());
+    let (first, last) = ends.expect("measurements");
+    assert!(last - first > 1.2, "and its curves: {first} to {last}");
     let rest = bench.angle(Dof::Index);
     assert!(rest > 300, "the same hand, where it was held: {rest}");
     bench.run(500).await;

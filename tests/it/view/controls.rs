@@ -124,7 +124,7 @@ fn every_control_has_its_name() {
         "Clear errors",
         "Pause the plots",
         "Thresholds",
-        "Plot window: 5 min",
+        "Plot window",
         "Gesture 1 open",
         "Gesture 14 cup",
         "Save pose",

@@ -253,6 +253,39 @@ fn a_pause_stands_still_and_loses_nothing() {
 }
 
 #[test]
+fn what_was_chosen_for_one_hand_is_not_kept_for_another() {
+    let mut state = known();
+    state.hand_mut().endpoint = Some("rs485:x".parse().unwrap());
+    let mut harness = open_at(state, LARGE);
+    press(&mut harness, "Pause the plots");
+    press(&mut harness, "Cursors");
+    assert!(is_held(&harness) && harness.query_by_label("Cursor A").is_some());
+    harness.state_mut().state.hand_mut().endpoint = None;
+    harness.run_steps(3);
+    assert!(is_held(&harness), "what was seen last can be looked at");
+    harness.state_mut().state.hand_mut().endpoint = Some("rs485:y".parse().unwrap());
+    harness.run_steps(3);
+    assert!(!is_held(&harness) && harness.query_by_label("Cursor A").is_none());
+}
+
+#[test]
+fn nothing_points_at_values_that_are_old() {
+    let mut harness = open();
+    harness
+        .state_mut()
+        .state
+        .hand_mut()
+        .history
+        .gap(Moment::from_micros(100_000_000));
+    pass(&mut harness, Duration::from_secs(5));
+    hover(&mut harness, 0.9);
+    let told = reading(&harness, "Force, g under the pointer").expect("a reading");
+    assert_eq!(told, "- - - - - -", "at the right end there is no value");
+    hover(&mut harness, 0.3);
+    assert!(force_at_pointer(&harness)[0] > 900.0);
+}
+
+#[test]
 fn an_hour_can_be_chosen_and_a_hit_of_one_measurement_is_told_in_it() {
     let mut harness = open();
     choose_window(&mut harness, "1 h");

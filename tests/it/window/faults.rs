@@ -319,7 +319,7 @@ fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
     bench.wait(1000);
     bench.click("Recording: Index: Stall");
     bench.run(60);
-    assert!(bench.shows("Plots of the recording"));
+    assert!(bench.shows("Status of the drives"));
     let listed: Vec<bool> = bench
         .state()
         .hand()
@@ -331,7 +331,7 @@ fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
     assert!(bench.state().hand().recorder.bytes() < 4_000_000);
     bench.click("Drive Ring");
     bench.run(60);
-    assert!(!bench.shows("Plots of the recording"), "tiles lead back");
+    assert!(!bench.shows("Status of the drives"), "tiles lead back");
 }
 
 #[test]
