@@ -15,13 +15,13 @@ use crate::ui::kit::number::{NumberField, whole};
 use crate::ui::kit::text_field::TextField;
 use crate::ui::text::{Text, device, verdicts};
 use crate::ui::theme;
-use egui::{Align, Color32, Id, Layout, Ui, UiBuilder};
+use egui::{Align, Color32, Id, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
 
 /// Characters of an address.
 const ADDRESS_MAX: usize = 15;
 /// Height of a row, and of one that has a button below its field.
-const ROW: f32 = 34.0;
+const ROW: f32 = 28.0;
 const ROW_HIGH: f32 = 62.0;
 /// Parts of the width for live, staged, saved and range; the name has the rest.
 const COLUMNS: [f32; 4] = [0.16, 0.23, 0.16, 0.16];
@@ -239,7 +239,7 @@ pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
     }
 }
 
-/// A value over what is to be known of it.
+/// A value, and beside or below it what is to be known of it.
 pub(crate) fn cell_ui(ui: &mut Ui, (name, value, color): (&str, &str, Color32), below: &str) {
     let muted = ui.visuals().weak_text_color();
     let fits = controls::text_width(ui, value, theme::number()) <= ui.available_width();
@@ -249,11 +249,17 @@ pub(crate) fn cell_ui(ui: &mut Ui, (name, value, color): (&str, &str, Color32), 
         label.ui(ui);
         return;
     }
-    ui.vertical(|ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
+    let both = controls::text_width(ui, value, theme::number())
+        + controls::text_width(ui, below, theme::small());
+    let add = |ui: &mut Ui| {
+        ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
         label.ui(ui);
         Label::new(below, muted).small().ui(ui);
-    });
+    };
+    match both + theme::PAD <= ui.available_width() {
+        true => ui.horizontal_centered(add),
+        false => ui.vertical(add),
+    };
 }
 
 fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {

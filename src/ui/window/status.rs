@@ -4,7 +4,7 @@
 use crate::app::action::Action;
 use crate::app::hand::mover::Mover;
 use crate::app::hand::{Freshness, Play};
-use crate::app::notices::{Level, NoticeKind};
+use crate::app::notices::{Level, Notice, NoticeKind};
 use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
@@ -294,12 +294,13 @@ impl StatusLine {
             ui.with_layout(row, |ui| {
                 ui.set_min_size(ui.available_size());
                 self.note_ui(ui, pane);
-                mover_ui(ui, pane, worst.is_some());
+                let news = news(pane).filter(|_| worst.is_none());
+                mover_ui(ui, pane, worst.is_some() || news.is_some());
                 let left = Layout::left_to_right(Align::Center);
                 let shown = ui.with_layout(left, |ui| match worst {
                     Some(worst) => warning_ui(ui, pane, worst, &warnings),
                     None => {
-                        news_ui(ui, pane);
+                        news_ui(ui, pane, news);
                         None
                     }
                 });
@@ -367,36 +368,41 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     }
 }
 
-/// Without a warning: what moves the hand, else the newest message, else that nothing does.
-fn news_ui(ui: &mut Ui, pane: &Pane<'_>) {
+/// The newest message, while it is new. A fault has a warning and a list of its own.
+fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
+    let mut all = pane.state.notices.log();
+    let newest = all.find(|one| !matches!(one.what, NoticeKind::Fault { .. }))?;
+    let moves = pane.state.hand().mover().is_some();
+    let is_new = pane.state.now.since(newest.at) < NEWS_FOR;
+    (is_new && (newest.level > Level::Info || !moves)).then_some(newest)
+}
+
+/// Without a warning: the newest message, else what moves the hand, else that nothing does.
+fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     let look = pane.look;
     let palette = look.palette;
-    if let Some((words, _)) = mover(pane) {
-        let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-        controls::lamp(ui, lamp.center(), palette.armed);
-        Label::new(&words, palette.text).ui(ui);
-        return;
-    }
-    // A fault has a warning and a list of its own.
-    let mut news = pane.state.notices.log();
-    let newest = news.find(|one| !matches!(one.what, NoticeKind::Fault { .. }));
-    if let Some(newest) = newest.filter(|one| pane.state.now.since(one.at) < NEWS_FOR) {
-        let color = match newest.level {
-            Level::Info => palette.accent,
-            Level::Warn => palette.warn,
-            Level::Alarm => palette.bad,
-        };
-        let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-        controls::lamp(ui, lamp.center(), color);
-        let words = notices::notice(look, &newest.what);
-        Label::new(&words, palette.text).ui(ui);
-        return;
-    }
-    let words = match pane.state.hand().link.state.is_live() {
-        true => layout::AT_REST,
-        false => layout::NO_HAND,
+    let (words, color) = match (news, mover(pane)) {
+        (Some(newest), _) => {
+            let color = match newest.level {
+                Level::Info => palette.accent,
+                Level::Warn => palette.warn,
+                Level::Alarm => palette.bad,
+            };
+            (notices::notice(look, &newest.what), color)
+        }
+        (None, Some((words, _))) => (words, palette.armed),
+        (None, None) => {
+            let words = match pane.state.hand().link.state.is_live() {
+                true => layout::AT_REST,
+                false => layout::NO_HAND,
+            };
+            Label::new(look.say(words), palette.muted).ui(ui);
+            return;
+        }
     };
-    Label::new(look.say(words), palette.muted).ui(ui);
+    let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
+    controls::lamp(ui, lamp.center(), color);
+    Label::new(&words, palette.text).ui(ui);
 }
 
 /// The worst of the warnings, and how many more there are. The view that was asked for.

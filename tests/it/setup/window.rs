@@ -362,7 +362,7 @@ impl Bench {
             .get_by_role_and_label(Role::ComboBox, name)
             .click();
         self.run(200);
-        self.click(value);
+        self.click_button(value);
         self.run(200);
     }
 
@@ -443,16 +443,6 @@ impl Bench {
         self.harness.remove_cursor();
         self.harness.step();
         copied
-    }
-
-    /// Takes one of the texts of a list that opens.
-    pub(crate) fn choose(&mut self, name: &str, text: &str) {
-        self.harness
-            .get_by_role_and_label(Role::ComboBox, name)
-            .click();
-        self.run(100);
-        self.click_button(text);
-        self.run(100);
     }
 
     pub(crate) fn key(&mut self, key: Key) {

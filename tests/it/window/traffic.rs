@@ -203,7 +203,6 @@ fn one_frame_is_copied_from_its_menu_also_as_lines_of_a_program() {
     bench.click("Pause the list");
     bench.run(60);
     bench.click_row_secondary("Read ");
-    eprintln!("{:?} {:?}", bench.texts(), bench.all(Role::Button));
     let hex = bench.click_to_copy("Hex").unwrap();
     assert!(hex.starts_with("EB 90 01 "), "{hex}");
     bench.click_row_secondary("Read ");
