@@ -81,7 +81,6 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
             measured(panels::TACTILE_RATE, format::hertz(stats.tactile_hz)),
             measured(panels::RTT_P50, trip(stats.rtt_p50)),
             measured(panels::RTT_P99, trip(stats.rtt_p99)),
-            measured(panels::LINE_USED, percent(stats.line.utilisation)),
         ],
         vec![
             count(panels::READS, stats.state_reads + stats.tactile_reads),

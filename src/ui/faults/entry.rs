@@ -12,7 +12,7 @@ use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::theme;
-use egui::{Color32, CornerRadius, Frame, Margin, ScrollArea, Sense, Ui, vec2};
+use egui::{Color32, CornerRadius, Frame, Margin, Rect, ScrollArea, Sense, Ui, vec2};
 use std::time::Duration;
 
 /// How much is said of a fault.
@@ -35,7 +35,8 @@ pub(crate) fn steady(
     let faults = pane.state.hand().faults.iter();
     let mut entries: Vec<FaultEntry> = faults.copied().filter(|entry| wanted(entry)).collect();
     let place = ui.scope_id().with("order");
-    if ui.rect_contains_pointer(ui.clip_rect()) {
+    let seen = Rect::from_x_y_ranges(ui.max_rect().x_range(), ui.clip_rect().y_range());
+    if ui.rect_contains_pointer(seen) {
         let before: Vec<(Dof, FaultKind)> =
             ui.data(|data| data.get_temp(place)).unwrap_or_default();
         let at = |entry: &FaultEntry| before.iter().position(|it| *it == (entry.dof, entry.what));

@@ -102,7 +102,7 @@ texts! {
 
     DEED_DISARM: "Disarmed", "取消使能";
     DEED_TARGET: "target", "目标";
-    DEED_FORCE: "threshold, g", "力控阈值 g";
+    DEED_FORCE: "threshold, g", "力阈值 g";
     DEED_SPEED: "speed", "速度";
     DEED_ALL: "All", "全部";
     DEED_LOCK: "locked", "已锁定";

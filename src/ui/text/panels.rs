@@ -12,7 +12,7 @@ texts! {
     PAUSE_TIP: "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
     SHOW_CURVE: "Show or hide this joint's curves.", "显示或隐藏该自由度的曲线。";
     THRESHOLDS: "Thresholds", "阈值";
-    THRESHOLDS_TIP: "Shows the force thresholds as dashed lines.", "以虚线显示力控阈值。";
+    THRESHOLDS_TIP: "Shows the force thresholds as dashed lines.", "以虚线显示力阈值。";
     PLOT_FORCE: "Force, g", "受力 g";
     PLOT_CURRENT: "Current, mA", "电流 mA";
     PLOT_TEMPERATURE: "Temperature, °C", "温度 °C";

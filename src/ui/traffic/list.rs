@@ -6,7 +6,9 @@ use crate::ui::kit::controls;
 use crate::ui::kit::look::{Look, Pane};
 use crate::ui::text::{main, traffic};
 use crate::ui::theme;
-use egui::{Align, Align2, Color32, FontId, Key, Modifiers, Rect, Role, Sense, Ui, WidgetInfo};
+use egui::{
+    Align, Align2, Color32, FontId, Id, Key, Modifiers, Rect, Response, Role, Sense, Ui, WidgetInfo,
+};
 use egui_extras::{Column, TableBuilder, TableRow};
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -64,7 +66,6 @@ pub(crate) fn list_ui(
     ui.spacing_mut().item_spacing.y = 0.0;
     let mut table = TableBuilder::new(ui)
         .id_salt("traffic rows")
-        .sense(Sense::click())
         .auto_shrink(false)
         .animate_scrolling(false);
     for width in WIDTHS {
@@ -96,7 +97,6 @@ pub(crate) fn list_ui(
                 return;
             };
             let chosen = choice.numbers.contains(&frame.number);
-            row.set_selected(chosen);
             if row_ui(&mut row, pane, frame, chosen) {
                 choice.press(frame.number, modifiers, frames);
             }
@@ -138,17 +138,24 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
     let said = said(look, frame);
     let strong = color_of(look, frame);
     let kind = look.say(traffic::kind(frame.kind));
-    let way = if frame.bytes.is_empty() {
-        "--"
-    } else {
-        frame.direction.arrow()
-    };
+    let arrow = frame.direction.arrow();
+    let way = if frame.bytes.is_empty() { "--" } else { arrow };
     let time = format!("{:>9.3}", frame.at.secs());
     let (font, color) = match frame.wrong {
         Some(_) => (theme::body(), strong),
         None => (theme::number(), palette.text),
     };
-    row.col(|ui| paint(ui, &time, theme::number(), palette.muted));
+    let mut clicked = false;
+    row.col(|ui| {
+        let response = ground_ui(ui, look, frame, chosen);
+        let name = format!("{arrow} {kind} {said}");
+        response.widget_info(|| WidgetInfo::selected(Role::Row, true, chosen, &name));
+        clicked = response.clicked();
+        if !frame.bytes.is_empty() {
+            response.context_menu(|ui| menu_ui(ui, pane, frame));
+        }
+        paint(ui, &time, theme::number(), palette.muted);
+    });
     row.col(|ui| paint(ui, way, theme::number(), palette.muted));
     row.col(|ui| paint(ui, kind, theme::body(), strong));
     row.col(|ui| {
@@ -159,15 +166,23 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
     });
     row.col(|ui| paint(ui, &said, font, color));
     row.col(|ui| paint(ui, &frame.hex(), theme::number_small(), palette.muted));
-    let response = row.response();
-    response.widget_info(|| {
-        let name = format!("{} {kind} {said}", frame.direction.arrow());
-        WidgetInfo::selected(Role::Row, true, chosen, name)
-    });
-    if !frame.bytes.is_empty() {
-        response.context_menu(|ui| menu_ui(ui, pane, frame));
-    }
-    response.clicked()
+    clicked
+}
+
+/// What lies under all cells of a row and is pressed. By the number of the frame: rows move up as others come.
+fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
+    let palette = look.palette;
+    let rect = ui.max_rect().with_max_x(ui.clip_rect().right());
+    let id = Id::unique(("traffic row", frame.number));
+    let response = ui.interact(rect, id, Sense::click());
+    let color = match frame.wrong {
+        _ if chosen => palette.wash(palette.accent),
+        _ if response.hovered() => palette.control,
+        Some(_) => palette.wash(color_of(look, frame)).gamma_multiply(0.6),
+        None => return response,
+    };
+    ui.painter().rect_filled(rect, theme::ROUND_TRACK, color);
+    response
 }
 
 /// Copies one frame, also as lines of a program.

@@ -76,7 +76,7 @@ fn the_list_stands_still_while_the_pointer_is_on_it() {
     let mut bench = missed();
     bench.click_first_button("Faults");
     bench.run(60);
-    bench.point_at("over, not seen yet");
+    bench.point_at("What the words mean");
     // The messages at the right have the same words.
     let top = |bench: &Bench, name: &str| {
         let all = bench.all(Role::Label).into_iter();

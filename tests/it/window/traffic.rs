@@ -202,13 +202,13 @@ fn one_frame_is_copied_from_its_menu_also_as_lines_of_a_program() {
     let mut bench = looking();
     bench.click("Pause the list");
     bench.run(60);
-    bench.click_row_secondary("Read ");
+    bench.click_row_secondary("Values ANGLE_ACT ");
     let hex = bench.click_to_copy("Hex").unwrap();
-    assert!(hex.starts_with("EB 90 01 "), "{hex}");
-    bench.click_row_secondary("Read ");
+    assert!(hex.starts_with("90 EB 01 "), "{hex}");
+    bench.click_row_secondary("Values ANGLE_ACT ");
     let python = bench.click_to_copy("Python").unwrap();
     assert!(
-        python.contains("import serial") && python.contains("EB 90 01"),
+        python.contains("import serial") && python.contains("90 EB 01"),
         "{python}"
     );
 }
