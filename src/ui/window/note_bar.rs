@@ -6,7 +6,7 @@ use crate::history::NOTE_MAX;
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right};
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::chart::clock;
+use crate::ui::plots::times::clock;
 use crate::ui::text::plots;
 use crate::ui::theme;
 use egui::{
