@@ -3,7 +3,8 @@
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::controls;
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::chart::{ChartResponse, clock, pointed_s};
+use crate::ui::plots::chart::{ChartResponse, pointed_s};
+use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use egui::{Align2, Color32, Rect, Ui, pos2, vec2};

@@ -8,7 +8,7 @@ use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::dash;
 use crate::ui::kit::look::Pane;
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
-use crate::ui::plots::legend::{Key, legend_ui};
+use crate::ui::plots::legend::{Key, fits, legend_ui};
 use crate::ui::text::{Text, compare, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
@@ -17,6 +17,9 @@ use crate::ui::trials::compare_list;
 use crate::ui::trials::plot::trial_chart_ui;
 use egui::{Color32, Stroke, Ui};
 use egui_plot::LineStyle;
+
+/// More lines are never named one by one.
+const LINES_NAMED: usize = 12;
 
 /// Where the time of the curves begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -75,7 +78,7 @@ impl CurvesView {
             comparison,
             picture: &picture,
         };
-        legend_ui(ui, look, &drawn.legend(self.pointed, *strong));
+        legend_ui(ui, look, &drawn.legend(ui, self.pointed, *strong));
         let whole = drawn.whole(shown, *strong);
         let whole = ComparedLines {
             all: whole.len(),
@@ -218,23 +221,42 @@ impl<'a> DrawnTrials<'a> {
             .collect()
     }
 
-    /// The trial that is meant, or what colours and strokes stand for.
-    fn legend(&self, pointed: Option<RowKey>, strong: Option<TrialKey>) -> Vec<Key> {
+    /// The trial that is meant, or every line if few are drawn, or what colours and strokes stand for.
+    fn legend(&self, ui: &Ui, pointed: Option<RowKey>, strong: Option<TrialKey>) -> Vec<Key> {
         let mut drawn = self.picture.lines.iter().map(|line| line.key);
         let meant = pointed.or_else(|| drawn.find(|key| self.is_of(*key, strong)));
-        let Some((key, seen)) = meant.and_then(|key| Some((key, self.row(key)?))) else {
-            return self.keys();
-        };
         let look = self.pane.look;
-        let name = compare_list::name(look, seen.session.id);
-        let joint = look.say(words::dof(seen.joint.dof));
-        let setting = setting_words(seen.trial.setting);
-        let trial = format!("{} {}", look.say(tune::COLUMN_TRIAL), seen.trial.number);
-        vec![Key {
-            words: format!("{name}  {trial}  {setting}  {joint}"),
-            color: color(self.pane, self.comparison, key, seen),
-            style: self.style(seen),
-        }]
+        let key = |key: RowKey, is_meant: bool| {
+            let seen = self.row(key)?;
+            let setting = setting_words(seen.trial.setting);
+            let (session, number) = (seen.session.id, seen.trial.number);
+            let words = if is_meant {
+                let (name, trial) = (
+                    compare_list::name(look, session),
+                    look.say(tune::COLUMN_TRIAL),
+                );
+                let joint = look.say(words::dof(seen.joint.dof));
+                format!("{name}  {trial} {number}  {setting}  {joint}")
+            } else if self.comparison.sessions().len() > 1 {
+                format!("{}: {number}  {setting}", session.0)
+            } else {
+                format!("{number}  {setting}")
+            };
+            Some(Key {
+                words,
+                color: color(self.pane, self.comparison, key, seen),
+                style: self.style(seen),
+            })
+        };
+        if let Some(meant) = meant.and_then(|meant| key(meant, true)) {
+            return vec![meant];
+        }
+        let few = self.picture.lines.iter().take(LINES_NAMED + 1);
+        let every: Vec<Key> = few.filter_map(|line| key(line.key, false)).collect();
+        match every.len() <= LINES_NAMED && !every.is_empty() && fits(ui, &every) {
+            true => every,
+            false => self.keys(),
+        }
     }
 
     /// A key for each stroke, then for each colour.

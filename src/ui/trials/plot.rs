@@ -1,7 +1,8 @@
 //! Curves of trials over the time from a common moment, over each other. Knows no trial.
 
-use crate::ui::plots::chart::{Chart, ChartResponse, ChartView, Points, Times};
+use crate::ui::plots::chart::{Chart, ChartResponse, ChartView, Points};
 use crate::ui::plots::scales;
+use crate::ui::plots::times::Times;
 use egui::Ui;
 
 /// The shortest time that is shown, s.

@@ -12,7 +12,7 @@ use crate::record::{Hold, LinkState};
 use crate::ui::kit::controls::{self, Button, Label, Weight};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
-use crate::ui::plots::chart::clock;
+use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
 use crate::ui::theme;
 use crate::ui::view::View;
