@@ -1,6 +1,8 @@
 //! Claims about the view that explains the hand: what was missed is shown until seen, words are a click away, the log.
 
 use crate::setup::window::{Bench, LARGE, Role};
+use handscope::app::action::Action;
+use handscope::app::notices::NoticeKind;
 use handscope::hand::{Dof, Fault};
 use handscope::sim::SimConfig;
 
@@ -194,11 +196,13 @@ fn the_log_keeps_what_was_dismissed_and_is_filtered_and_copied() {
     bench.run(200);
     bench.click_button("STOP");
     bench.wait(1000);
-    let rest = bench.all(Role::Button).into_iter().map(|(name, _)| name);
-    let rest = rest
-        .into_iter()
-        .find(|name| name.starts_with("Close: Feedback shows rest"));
-    bench.click(&rest.unwrap());
+    let told = bench.state().notices.iter();
+    let rest = told
+        .filter(|notice| matches!(notice.what, NoticeKind::HoldConfirmed { .. }))
+        .map(|notice| notice.id);
+    for id in rest.collect::<Vec<_>>() {
+        bench.act(Action::Dismiss(id));
+    }
     bench.run(60);
     assert!(
         bench.shows("No messages"),
