@@ -348,7 +348,8 @@ impl<'a> Button<'a> {
             (Some(_), _) => palette.faint,
             (None, Weight::Normal | Weight::Chosen) => palette.text,
             (None, Weight::Quiet) => palette.muted,
-            (None, Weight::Strong | Weight::Stop) => palette.on_strong,
+            (None, Weight::Strong) => palette.on_accent,
+            (None, Weight::Stop) => palette.on_strong,
             (None, Weight::Armed) => palette.on_armed,
             (None, Weight::Danger) => palette.bad,
         }

@@ -197,7 +197,7 @@ fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
         let piece = Rect::from_min_size(pos2(x, rect.top()), vec2(width, rect.height()));
         let inner = piece.shrink2(vec2(1.0, 0.0));
         let (fill, color) = match now == Some(at) {
-            true => (palette.accent, palette.on_strong),
+            true => (palette.accent, palette.on_accent),
             false => (palette.control, palette.muted),
         };
         ui.painter().rect_filled(inner, theme::ROUND_SMALL, fill);

@@ -30,7 +30,9 @@ pub(crate) struct Palette {
     pub(crate) faint: Color32,
     /// The one colour for "chosen" and "focused".
     pub(crate) accent: Color32,
-    /// Text on [`Self::accent`], [`Self::stop`], [`Self::armed`].
+    /// Text on [`Self::accent`].
+    pub(crate) on_accent: Color32,
+    /// Text on [`Self::stop`].
     pub(crate) on_strong: Color32,
     /// All is well.
     pub(crate) ok: Color32,
@@ -79,8 +81,9 @@ static DARK: Palette = Palette {
     grid: Color32::from_rgb(0x21, 0x27, 0x30),
     text: Color32::from_rgb(0xE8, 0xEC, 0xF2),
     muted: Color32::from_rgb(0xA2, 0xAC, 0xBA),
-    faint: Color32::from_rgb(0x6B, 0x76, 0x85),
+    faint: Color32::from_rgb(0x8F, 0x9A, 0xAA),
     accent: Color32::from_rgb(0x4C, 0x9B, 0xFF),
+    on_accent: Color32::from_rgb(0x07, 0x17, 0x2B),
     on_strong: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     ok: Color32::from_rgb(0x43, 0xC4, 0x82),
     warn: Color32::from_rgb(0xF2, 0xB5, 0x3A),
@@ -90,7 +93,7 @@ static DARK: Palette = Palette {
     armed: Color32::from_rgb(0xF2, 0xB5, 0x3A),
     on_armed: Color32::from_rgb(0x24, 0x1A, 0x04),
     stop: Color32::from_rgb(0xD6, 0x2D, 0x3A),
-    stop_hover: Color32::from_rgb(0xEA, 0x3F, 0x4B),
+    stop_hover: Color32::from_rgb(0xBE, 0x22, 0x30),
     stop_edge: Color32::from_rgb(0xFF, 0x7A, 0x80),
     handle: Color32::from_rgb(0xE8, 0xEC, 0xF2),
     handle_dot: Color32::from_rgb(0x16, 0x1A, 0x20),
@@ -118,12 +121,13 @@ static LIGHT: Palette = Palette {
     edge: Color32::from_rgb(0xD3, 0xDA, 0xE2),
     grid: Color32::from_rgb(0xE2, 0xE7, 0xED),
     text: Color32::from_rgb(0x16, 0x1C, 0x24),
-    muted: Color32::from_rgb(0x4E, 0x5A, 0x69),
-    faint: Color32::from_rgb(0x86, 0x91, 0x9F),
-    accent: Color32::from_rgb(0x1C, 0x6F, 0xD8),
+    muted: Color32::from_rgb(0x3F, 0x4A, 0x58),
+    faint: Color32::from_rgb(0x5E, 0x6A, 0x79),
+    accent: Color32::from_rgb(0x15, 0x60, 0xBE),
+    on_accent: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     on_strong: Color32::from_rgb(0xFF, 0xFF, 0xFF),
-    ok: Color32::from_rgb(0x16, 0x8A, 0x52),
-    warn: Color32::from_rgb(0xA8, 0x6C, 0x00),
+    ok: Color32::from_rgb(0x0E, 0x6B, 0x3E),
+    warn: Color32::from_rgb(0x85, 0x54, 0x00),
     bad: Color32::from_rgb(0xC8, 0x22, 0x2E),
     simulated: Color32::from_rgb(0x76, 0x42, 0xD0),
     on_simulated: Color32::from_rgb(0xFF, 0xFF, 0xFF),
@@ -138,12 +142,12 @@ static LIGHT: Palette = Palette {
     studio: &LIGHT_STUDIO,
     arrow: Color32::from_rgb(0x10, 0x14, 0x1A),
     dof: PerDof::new([
-        Color32::from_rgb(0x00, 0x72, 0xB2),
-        Color32::from_rgb(0xC2, 0x7A, 0x00),
-        Color32::from_rgb(0x00, 0x8A, 0x66),
-        Color32::from_rgb(0x8C, 0x80, 0x00),
-        Color32::from_rgb(0xC8, 0x4A, 0x10),
-        Color32::from_rgb(0xA8, 0x4A, 0x86),
+        Color32::from_rgb(0x00, 0x67, 0xA1),
+        Color32::from_rgb(0x8A, 0x56, 0x00),
+        Color32::from_rgb(0x00, 0x6B, 0x4F),
+        Color32::from_rgb(0x69, 0x60, 0x00),
+        Color32::from_rgb(0xAD, 0x3E, 0x0A),
+        Color32::from_rgb(0x98, 0x3E, 0x77),
     ]),
     theme: Theme::Light,
 };
@@ -197,5 +201,62 @@ impl Palette {
             colorous::YELLOW_ORANGE_RED.eval_continuous(level)
         };
         Color32::from_rgb(color.r, color.g, color.b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance as WCAG 2 defines it.
+    fn luminance(color: Color32) -> f64 {
+        let linear = |part: u8| {
+            let part = f64::from(part) / 255.0;
+            if part <= 0.039_28 {
+                part / 12.92
+            } else {
+                ((part + 0.055) / 1.055).powf(2.4)
+            }
+        };
+        0.2126 * linear(color.r()) + 0.7152 * linear(color.g()) + 0.0722 * linear(color.b())
+    }
+
+    fn contrast(one: Color32, other: Color32) -> f64 {
+        let (one, other) = (luminance(one) + 0.05, luminance(other) + 0.05);
+        (one / other).max(other / one)
+    }
+
+    #[test]
+    fn every_text_has_a_contrast_of_four_and_a_half_on_what_it_stands_on() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let palette = Palette::of(theme);
+            let grounds = [palette.window, palette.card, palette.sunken, palette.control];
+            let words = [
+                ("text", palette.text),
+                ("muted", palette.muted),
+                ("faint", palette.faint),
+                ("accent", palette.accent),
+                ("ok", palette.ok),
+                ("warn", palette.warn),
+                ("bad", palette.bad),
+            ];
+            let joints = palette.dof.iter().map(|(_, color)| ("joint", *color));
+            for (name, color) in words.into_iter().chain(joints) {
+                for ground in grounds {
+                    let found = contrast(color, ground);
+                    assert!(found >= 4.5, "{theme:?} {name} {color:?} on {ground:?}: {found:.2}");
+                }
+            }
+            for (text, ground) in [
+                (palette.on_accent, palette.accent),
+                (palette.on_strong, palette.stop),
+                (palette.on_strong, palette.stop_hover),
+                (palette.on_simulated, palette.simulated),
+                (palette.on_armed, palette.armed),
+            ] {
+                let found = contrast(text, ground);
+                assert!(found >= 4.5, "{theme:?} {text:?} on {ground:?}: {found:.2}");
+            }
+        }
     }
 }
