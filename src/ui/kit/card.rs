@@ -182,7 +182,7 @@ impl CardView {
             })
         });
         let (pressed, lines) = shown.inner.inner;
-        let response = shown.inner.response;
+        let response = shown.response;
         response.widget_info(|| WidgetInfo::labeled(Role::AlertDialog, true, &card.0.title));
         ui.ctx()
             .accesskit_node_builder(response.id, |node| node.set_modal());

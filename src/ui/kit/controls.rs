@@ -451,6 +451,7 @@ pub(crate) fn head_ui<R>(
 pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> Response {
     let edit = egui::TextEdit::singleline(text)
         .hint_text(hint.to_owned())
+        .align(Align2::LEFT_CENTER)
         .char_limit(EDIT_MAX)
         .margin(theme::FIELD_INSET)
         .align(Align2::LEFT_CENTER)

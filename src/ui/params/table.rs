@@ -25,8 +25,10 @@ const ROW: f32 = 28.0;
 const ROW_HIGH: f32 = 62.0;
 /// Parts of the width for live, staged, saved and range; the name has the rest.
 const COLUMNS: [f32; 4] = [0.16, 0.23, 0.16, 0.16];
-/// The rows in groups: those in whose names the first word is, with a title and what they are.
-const GROUPS: [(fn(ParamId) -> bool, Text, Text); 3] = [
+/// Which rows are in a group, its title, and what they are.
+type Group = (fn(ParamId) -> bool, Text, Text);
+/// The groups in their order.
+const GROUPS: [Group; 3] = [
     (
         |id| matches!(id, ParamId::DefaultSpeed(_)),
         device::GROUP_SPEED,

@@ -176,7 +176,7 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     }
 }
 
-/// Six angles under each other, each to be typed; the new six if one was.
+/// Six angles under each other, each to be typed.
 pub(crate) fn six_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,

@@ -43,12 +43,9 @@ impl GestureView {
                 true => self.names_ui(ui, pane),
                 false => {
                     ui.horizontal_wrapped(|ui| {
-                        let all = || Gesture::all();
-                        let is_named = |gesture: &Gesture| {
-                            pane.state.settings.gesture_name(*gesture).is_some()
-                        };
-                        let named: Vec<Gesture> = all().filter(is_named).collect();
-                        let others: Vec<Gesture> = all().filter(|one| !is_named(one)).collect();
+                        let is_named =
+                            |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
+                        let (named, others): (Vec<_>, Vec<_>) = Gesture::all().partition(is_named);
                         for gesture in named.into_iter().chain(others) {
                             gesture_ui(ui, pane, gesture);
                         }

@@ -5,6 +5,7 @@ use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit, Way};
 use crate::poses::library::{Millis, Sequence, Step};
 use crate::ui::hand::panel;
+use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
 use crate::ui::kit::number::{NumberField, whole};
@@ -12,7 +13,7 @@ use crate::ui::kit::reorder;
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Align, CursorIcon, Id, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, Align2, CursorIcon, Id, Layout, Ui, UiBuilder, vec2};
 
 /// Height of a row.
 pub(crate) const ROW: f32 = 44.0;
@@ -57,6 +58,7 @@ pub(crate) fn step_ui(
     );
     let ui = &mut ui;
     ui.spacing_mut().item_spacing.x = theme::STEP;
+    ui.set_min_height(ui.available_height());
     let (earlier, later) = (
         SequenceEdit::Shift(at, Way::Earlier),
         SequenceEdit::Shift(at, Way::Later),
@@ -95,7 +97,9 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
     let text = format!("{}  {name}", at + 1);
     let (_, rect) = ui.allocate_space(ui.available_size());
     let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
-    let response = handle.weight(Weight::Quiet).put(ui, look, rect, id(at));
+    let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id(at));
+    let (words, left) = (rect.shrink2(vec2(theme::STEP, 0.0)), Align2::LEFT_CENTER);
+    controls::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
     if response.clicked() {
         response.request_focus();
     }

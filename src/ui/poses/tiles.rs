@@ -68,6 +68,7 @@ pub(crate) fn tile_ui(
     }
     let builder = UiBuilder::new().id_salt(pose.id).max_rect(rect);
     let mut ui = ui.new_child(builder.layout(egui::Layout::top_down_justified(egui::Align::Min)));
+    ui.spacing_mut().item_spacing.y = theme::STEP;
     let high = rect.height() - theme::CONTROL - theme::STEP;
     let (_, top) = ui.allocate_space(vec2(rect.width(), high));
     let id = Id::unique(("pose", pose.id));
@@ -115,6 +116,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
         let area = ScrollArea::vertical().auto_shrink(false);
         area.id_salt("strip").show(ui, |ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
+            ui.spacing_mut().interact_size.y = theme::CONTROL_LARGE;
             ui.horizontal_wrapped(|ui| strip_tiles_ui(ui, pane));
         });
         opened
