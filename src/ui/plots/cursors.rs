@@ -79,7 +79,7 @@ impl Cursors {
             response.widget_info(|| WidgetInfo::slider(true, *at_s, look.say(name)));
             ui.painter()
                 .rect_filled(flag, theme::ROUND_SMALL, look.palette.accent);
-            let (font, color) = (theme::number_small(), look.palette.on_strong);
+            let (font, color) = (theme::number_small(), look.palette.on_accent);
             controls::paint_text(ui, flag, Align2::CENTER_CENTER, short, font, color);
             let pointer = response.interact_pointer_pos();
             if let Some(pointer) = pointer.filter(|_| response.dragged()) {

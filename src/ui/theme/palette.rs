@@ -230,7 +230,12 @@ mod tests {
     fn every_text_has_a_contrast_of_four_and_a_half_on_what_it_stands_on() {
         for theme in [Theme::Dark, Theme::Light] {
             let palette = Palette::of(theme);
-            let grounds = [palette.window, palette.card, palette.sunken, palette.control];
+            let grounds = [
+                palette.window,
+                palette.card,
+                palette.sunken,
+                palette.control,
+            ];
             let words = [
                 ("text", palette.text),
                 ("muted", palette.muted),
@@ -244,7 +249,10 @@ mod tests {
             for (name, color) in words.into_iter().chain(joints) {
                 for ground in grounds {
                     let found = contrast(color, ground);
-                    assert!(found >= 4.5, "{theme:?} {name} {color:?} on {ground:?}: {found:.2}");
+                    assert!(
+                        found >= 4.5,
+                        "{theme:?} {name} {color:?} on {ground:?}: {found:.2}"
+                    );
                 }
             }
             for (text, ground) in [
