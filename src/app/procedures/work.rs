@@ -255,7 +255,7 @@ impl HandState {
                             if let PlaceStep::Offering(place) = step {
                                 // What was kept is remembered.
                                 let there = card.change.places.endpoint(place);
-                                settings.remember(&there);
+                                settings.remember(there);
                             }
                             card.stage = ProcedureStage::Doing(step, at);
                         }
@@ -267,7 +267,7 @@ impl HandState {
                     && matches!(report.end, PlaceEnd::Kept { .. })
                 {
                     let there = card.change.places.endpoint(place);
-                    settings.remember(&there);
+                    settings.remember(there);
                     self.params.stage(card.change.id, None);
                 }
                 card.stage = ProcedureStage::Over(end);
