@@ -257,7 +257,7 @@ impl HandState {
                             if let PlaceStep::Offering(place) = step {
                                 // What was kept is remembered.
                                 let there = card.change.places.endpoint(place);
-                                settings.remember(&there);
+                                settings.remember(there);
                             }
                             card.stage = ProcedureStage::Doing(step, at);
                         }
@@ -269,7 +269,7 @@ impl HandState {
                     && matches!(report.end, PlaceEnd::Kept { .. })
                 {
                     let there = card.change.places.endpoint(place);
-                    settings.remember(&there);
+                    settings.remember(there);
                 }
                 card.stage = ProcedureStage::Over(end);
                 true
