@@ -255,6 +255,8 @@ fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
         .sample
         .temperature
         .map(|all| all.value[dof].raw());
+    // Its course is of means over seconds, and may be older than what it has now.
+    let is_hot = celsius.is_some_and(|celsius| f32::from(celsius) > goal.celsius);
     let celsius = format::whole(celsius.map(i64::from), 0);
     let until = format!("{:.0} °C", goal.celsius);
     let more = match cooling::course(&state.hand().history, dof, state.now.secs(), goal) {
@@ -268,6 +270,7 @@ fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
             look.say(faults::COOL_TO)
         ),
         Course::NotFalling => look.say(faults::COOL_NOT).into(),
+        Course::Reached if is_hot => look.say(faults::COOL_UNKNOWN).into(),
         Course::Unknown => look.say(faults::COOL_UNKNOWN).into(),
         // The temperature is read less often than the faults: whether it is cool enough, the hand has to say.
         Course::Reached => format!(
