@@ -4,22 +4,22 @@ use egui::{FontFamily, FontId};
 
 /// Labels, hints.
 pub(crate) const fn small() -> FontId {
-    FontId::proportional(11.5)
+    FontId::proportional(13.0)
 }
 
 /// Hints inside a button.
 pub(crate) const fn tiny() -> FontId {
-    FontId::proportional(10.5)
+    FontId::proportional(13.0)
 }
 
 /// Running text and buttons.
 pub(crate) const fn body() -> FontId {
-    FontId::proportional(13.0)
+    FontId::proportional(14.0)
 }
 
 /// Titles of cards.
 pub(crate) const fn title() -> FontId {
-    FontId::proportional(14.5)
+    FontId::proportional(15.0)
 }
 
 /// The stop button, the badge of a state.
@@ -29,12 +29,12 @@ pub(crate) const fn large() -> FontId {
 
 /// Numbers, all digits of one width.
 pub(crate) const fn number() -> FontId {
-    FontId::monospace(12.0)
+    FontId::monospace(13.0)
 }
 
 /// Numbers where room is short.
 pub(crate) const fn number_small() -> FontId {
-    FontId::monospace(10.5)
+    FontId::monospace(13.0)
 }
 
 /// Icons inside buttons.

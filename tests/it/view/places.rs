@@ -113,6 +113,7 @@ fn open_at(state: State, scale: f32, size: Vec2) -> Harness<'static, Shown> {
 }
 
 fn walk_at(harness: &mut Harness<'static, Shown>, size: Vec2, what: &str) {
+    let mut all_cut = Vec::new();
     for language in [Language::En, Language::Zh] {
         harness.state_mut().state.settings.language = language;
         for theme in [Theme::Dark, Theme::Light] {
@@ -123,10 +124,11 @@ fn walk_at(harness: &mut Harness<'static, Shown>, size: Vec2, what: &str) {
                 let when = format!("{what} {size} {language:?} {theme:?} {view:?}");
                 check(harness, size, &when);
                 let cut = unreadable(harness);
-                assert!(cut.is_empty(), "{when}: {}", cut.join("\n"));
+                all_cut.extend(cut.iter().map(|cut| format!("{when}: {cut}")));
             }
         }
     }
+    assert!(all_cut.is_empty(), "{}", all_cut.join("\n"));
 }
 
 /// The state as it looks, where somebody wants to see it.
