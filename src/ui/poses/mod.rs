@@ -16,11 +16,11 @@ use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
 use crate::ui::kit::reorder::Reorder;
 use crate::ui::poses::gestures::GestureView;
-use crate::ui::poses::sequence_view::SequenceView;
+use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, tile_ui};
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Align, Frame, Id, Layout, Margin, Panel, ScrollArea, Ui, vec2};
+use egui::{Align, Id, Layout, ScrollArea, Ui, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -51,19 +51,6 @@ pub(crate) struct PoseView {
     /// Only poses with these words are shown.
     find: String,
     typed: Option<(Id, String)>,
-}
-
-/// A part of the view with a card's distance to what is at its left.
-pub(crate) fn beside(width: f32, id: &'static str) -> Panel {
-    let gap = Margin {
-        left: 12,
-        ..Margin::ZERO
-    };
-    Panel::right(id)
-        .exact_size(width)
-        .resizable(false)
-        .show_separator_line(false)
-        .frame(Frame::new().inner_margin(gap))
 }
 
 impl PoseView {

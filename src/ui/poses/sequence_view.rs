@@ -12,11 +12,12 @@ use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
 use crate::ui::kit::reorder::Reorder;
 use crate::ui::kit::text_field::TextField;
-use crate::ui::poses::beside;
 use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
-use egui::{Align, Align2, Id, Layout, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
+use egui::{
+    Align, Align2, Frame, Id, Layout, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2,
+};
 use std::time::Duration;
 
 /// Time between two pictures of a dry run while nothing else is new.
@@ -29,6 +30,19 @@ pub(crate) struct SequenceView {
     shown: Option<SequenceId>,
     adding: Option<PoseId>,
     order: Reorder,
+}
+
+/// A part of the view with a card's distance to what is at its left.
+pub(crate) fn beside(width: f32, id: &'static str) -> Panel {
+    let gap = Margin {
+        left: 12,
+        ..Margin::ZERO
+    };
+    Panel::right(id)
+        .exact_size(width)
+        .resizable(false)
+        .show_separator_line(false)
+        .frame(Frame::new().inner_margin(gap))
 }
 
 impl SequenceView {
