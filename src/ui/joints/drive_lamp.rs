@@ -4,7 +4,7 @@ use crate::app::hand::Freshness;
 use crate::hand::{Dof, Status, Words};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
-use crate::ui::text::words;
+use crate::ui::text::{main, words};
 use egui::Color32;
 
 /// What stands beside a drive's lamp.
@@ -55,10 +55,11 @@ impl DriveWords {
             (None, Some(Status::Unknown(code))) => format!("{title} ({code})"),
             _ => title.to_owned(),
         };
-        let short = fault.map_or_else(
-            || title.clone(),
-            |fault| words::fault_short(fault, look.language).into(),
-        );
+        let short = match (fault, status) {
+            (Some(fault), _) => words::fault_short(fault, look.language).into(),
+            (None, Some(Status::ForceReached)) => look.say(main::AT_FORCE).into(),
+            _ => title.clone(),
+        };
         let lamp = look.value(freshness, live);
         let text = if live == palette.bad {
             lamp

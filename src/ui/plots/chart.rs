@@ -1,7 +1,7 @@
 //! The one plot of the program: curves over time in `egui_plot`, with what that lacks. Knows no hand.
 
 use crate::history::{History, Series, Trace};
-use crate::ui::kit::controls::Label;
+use crate::ui::kit::controls::{self, Label};
 use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::Look;
 use crate::ui::plots::bars;
@@ -214,7 +214,7 @@ impl<'a> Chart<'a> {
             .add(mesh);
         if dense.is_empty() && sparse.is_empty() {
             let empty = Label::new(self.look.say(self.empty), self.look.palette.muted);
-            empty.small().center().put(ui, frame);
+            empty.small().shorter(UNKNOWN).center().put(ui, frame);
         }
         view.traces = traces;
         let name = self.look.say(self.title);
@@ -292,7 +292,8 @@ impl<'a> Chart<'a> {
                     (is_fixed, plots::RANGE_FIXED, plots::RANGE_TIP),
                     (is_decimated, plots::DECIMATED, plots::DECIMATED_TIP),
                 ] {
-                    if is_said {
+                    let width = controls::text_width(ui, look.say(text), theme::tiny());
+                    if is_said && width <= ui.available_width() {
                         let label = Label::new(look.say(text), look.palette.muted);
                         label
                             .font(theme::tiny())

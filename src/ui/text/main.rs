@@ -116,6 +116,7 @@ texts! {
     FRAME_TITLE: "What this control sends", "此控件发送的报文";
     FRAME_COPY: "Copy as", "复制为";
     FRAME_HINT: "The value as it stands now. Nothing is sent from here.", "按当前值生成，此处不会发送。";
+    AT_FORCE: "At force", "力到位";
     ALL_JOINTS: "All", "全部";
     EACH: "Force and speed of each joint", "各自由度的力阈值与速度";
     EACH_TIP: "Shows or hides the force threshold and the speed of each joint.", "显示或隐藏各自由度的力阈值与速度。";

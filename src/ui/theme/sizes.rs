@@ -38,7 +38,7 @@ pub(crate) const JOINTS_LEAST: f32 = 384.0;
 /// The width of the joints from which more does not help.
 pub(crate) const JOINTS_MOST: f32 = 560.0;
 /// Width of the joints' rail.
-pub(crate) const JOINTS_RAIL: f32 = 128.0;
+pub(crate) const JOINTS_RAIL: f32 = 144.0;
 /// The side column's width as a share of the view.
 pub(crate) const SIDE_SHARE: f32 = 0.4;
 /// Its least width.
@@ -144,9 +144,9 @@ pub(crate) const DRIVE_TILE: f32 = 112.0;
 /// Width of the readings of a joint.
 pub(crate) const READING: f32 = 112.0;
 /// Width of a joint's name.
-pub(crate) const NAME_COLUMN: f32 = 84.0;
+pub(crate) const NAME_COLUMN: f32 = 96.0;
 /// Width of current and temperature where room is short.
-pub(crate) const DRIVE_COLUMN: f32 = 78.0;
+pub(crate) const DRIVE_COLUMN: f32 = 104.0;
 /// Width of counts.
 pub(crate) const COUNT_COLUMN: f32 = 96.0;
 /// Where the bar below a number begins, from its middle.

@@ -58,6 +58,7 @@ impl TouchView {
             let height = ui.available_height() - below - theme::GAP;
             ui.allocate_ui(vec2(width, height.max(1.0)), |ui| self.hand_ui(ui, pane));
             if below > 0.0 {
+                ui.spacing_mut().item_spacing.x = 0.0;
                 ui.columns(Finger::ALL.len(), |columns| {
                     for (ui, finger) in columns.iter_mut().zip(Finger::ALL) {
                         let picture = (below > FIGURES).then_some(picture);

@@ -123,11 +123,13 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
     if let (Some(endpoint), false) = (&pane.state.hand().endpoint, simulated) {
         let text = endpoint.to_string();
-        let most = ui.available_width() * 0.4;
+        let most = ui.available_width() * 0.5;
         let width = controls::text_width(ui, &text, theme::number()) + 1.0;
         ui.scope(|ui| {
             ui.set_max_width(width.min(most));
-            Label::new(&text, palette.muted).number().ui(ui)
+            let scheme = text.split(':').next().unwrap_or_default();
+            let label = Label::new(&text, palette.muted).number();
+            label.shorter(scheme).ui(ui)
         })
         .inner
         .on_hover_text(format!("{text}\n{}", look.say(main::ENDPOINT_TIP)));
