@@ -125,22 +125,17 @@ mod tests {
             }
         }
     }
-}
-
-#[cfg(test)]
-mod size_tests {
-    use super::*;
 
     #[test]
     fn no_text_is_smaller_than_thirteen_points() {
         for font in [
-            small(),
-            tiny(),
-            body(),
-            title(),
-            large(),
-            number(),
-            number_small(),
+            fonts::small(),
+            fonts::tiny(),
+            fonts::body(),
+            fonts::title(),
+            fonts::large(),
+            fonts::number(),
+            fonts::number_small(),
         ] {
             assert!(font.size >= 13.0, "{font:?}");
         }
