@@ -138,8 +138,12 @@ fn samples(folder: &Path, name: Option<&str>) -> io::Result<Option<TrialRecordin
 impl TrialsState {
     /// Takes in what came of files, and what to tell of it.
     pub(crate) fn take(&mut self, end: FilesEnd) -> NoticeKind {
+        self.refused = None;
         match end {
-            FilesEnd::Not(notice) => notice,
+            FilesEnd::Not(notice) => {
+                self.refused = Some(notice.clone());
+                notice
+            }
             FilesEnd::Saved(id, path, entries) => {
                 if let Some(session) = self.session_mut(id) {
                     session.origin = SessionOrigin::Saved(path.clone());

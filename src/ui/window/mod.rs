@@ -300,11 +300,14 @@ impl Window {
             View::Live => self.live_ui(ui, rect, pane),
             View::Touch => self.touch.large_ui(ui, rect, pane),
             View::Tune => {
-                if let Some(view) = self.tune.ui(ui, rect, pane) {
-                    self.view = view;
-                }
+                let place = UiBuilder::new().max_rect(rect);
+                let asked = ui.scope_builder(place, |ui| self.tune.ui(ui, pane));
+                self.view = asked.inner.unwrap_or(self.view);
             }
-            View::Compare => self.compare.ui(ui, rect, pane),
+            View::Compare => {
+                let place = UiBuilder::new().max_rect(rect);
+                ui.scope_builder(place, |ui| self.compare.ui(ui, pane));
+            }
             View::Faults => self.faults.ui(ui, rect, pane),
             View::Poses => self.poses.ui(ui, rect, pane),
             View::Device => {
