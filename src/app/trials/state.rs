@@ -5,6 +5,7 @@ use crate::app::trials::lines::JointLines;
 use crate::trials::recording::TrialRecording;
 use crate::trials::session::SessionHead;
 use crate::trials::{Trial, TrialPlan, TrialSummary};
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -126,6 +127,8 @@ pub struct TrialsState {
     pub to_confirm: Option<SessionId>,
     /// Why the last wish about files came to nothing; `None` if it did what it should.
     pub refused: Option<NoticeKind>,
+    /// Sessions that are to be written without asking, the oldest wish first.
+    pub(crate) to_keep: VecDeque<SessionId>,
     newest: u64,
 }
 

@@ -14,11 +14,9 @@ use crate::ui::theme;
 use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::trials::tune_live;
 use crate::ui::trials::tune_result::ResultView;
+use crate::ui::trials::{PLOT_LEAST, line_ui};
 use crate::ui::view::View;
-use egui::{Align, Color32, Frame, Layout, Margin, Panel, ScrollArea, Ui};
-
-/// Least height of curves.
-pub(crate) const PLOT_LEAST: f32 = 96.0;
+use egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui};
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
@@ -83,11 +81,6 @@ impl TuneView {
         });
         shown.inner
     }
-}
-
-/// Small text over as many lines as it needs.
-pub(crate) fn line_ui(ui: &mut Ui, text: &str, color: Color32) {
-    Label::new(text, color).small().wrap().ui(ui);
 }
 
 /// Why the series cannot begin, in words.

@@ -13,7 +13,7 @@ use crate::ui::kit::text_field::TextField;
 use crate::ui::poses::editor::whole;
 use crate::ui::text::{Text, trials, tune, words};
 use crate::ui::theme;
-use crate::ui::trials::tune::line_ui;
+use crate::ui::trials::line_ui;
 use egui::{Align, Id, Layout, ScrollArea, Ui, vec2};
 use std::time::Duration;
 
@@ -33,24 +33,17 @@ pub(crate) struct TuneForm {
     refused: Option<(PlanField, ListError)>,
     /// Where each joint closed to when it took part last.
     targets: PerDof<Angle>,
-    /// The approaches as they were when each kind was chosen last, in the order of [`ApproachKind::ALL`].
-    approaches: [Approach; 5],
+    /// Speed of the fast part when there was one last.
+    fast: Speed,
 }
 
 impl Default for TuneForm {
     fn default() -> Self {
-        let usual = |kind: ApproachKind| match kind.usual() {
-            None => Approach::OneStage,
-            Some(until) => Approach::TwoStage {
-                fast: Speed::nearest(FAST),
-                until,
-            },
-        };
         Self {
             typed: None,
             refused: None,
             targets: PerDof::splat(Angle::MIN),
-            approaches: ApproachKind::ALL.map(usual),
+            fast: Speed::nearest(FAST),
         }
     }
 }
@@ -96,17 +89,8 @@ impl TuneForm {
         for (dof, target) in self.targets.iter_mut() {
             *target = plan.close[dof].unwrap_or(*target);
         }
-        let kind = ApproachKind::of(plan.approach);
-        if let Some(own) = self.approaches.get_mut(kind as usize) {
-            *own = plan.approach;
-        }
-        let Approach::TwoStage { fast: speed, .. } = plan.approach else {
-            return;
-        };
-        for own in &mut self.approaches {
-            if let Approach::TwoStage { fast, .. } = own {
-                *fast = speed;
-            }
+        if let Approach::TwoStage { fast, .. } = plan.approach {
+            self.fast = fast;
         }
     }
 
@@ -359,8 +343,11 @@ impl Pass<'_, '_> {
             self.caption_ui(ui, tune::APPROACH, 64.0);
             ui.spacing_mut().combo_width = ui.available_width();
             if controls::choose_ui(ui, look.say(tune::APPROACH), &mut kind, &all) {
-                let chosen = self.form.approaches.get(kind as usize);
-                self.plan.approach = chosen.copied().unwrap_or(self.plan.approach);
+                let fast = self.form.fast;
+                self.plan.approach = match kind.usual() {
+                    None => Approach::OneStage,
+                    Some(until) => Approach::TwoStage { fast, until },
+                };
             }
         });
         let Approach::TwoStage { fast, until } = self.plan.approach else {

@@ -13,7 +13,7 @@ use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::text::{trials, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::plot::trial_chart_ui;
-use crate::ui::trials::tune::{PLOT_LEAST, line_ui};
+use crate::ui::trials::{PLOT_LEAST, line_ui};
 use egui::{Align, Color32, Layout, ProgressBar, Role, Stroke, Ui, WidgetInfo};
 
 /// Readings of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.

@@ -13,8 +13,8 @@ use crate::ui::trials::compare;
 use crate::ui::trials::compare_best::staging;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_curves::DrawnTrials;
+use crate::ui::trials::line_ui;
 use crate::ui::trials::plot::trial_chart_ui;
-use crate::ui::trials::tune::line_ui;
 use crate::ui::view::View;
 use egui::Ui;
 

@@ -16,7 +16,7 @@ pub(crate) fn short(bench: &mut Bench) {
         ("Index to", "300"),
         ("Hold, s", "0.5"),
         ("Rest, s", "0"),
-        ("Force, g", "4000"),
+        ("Force limit, g", "4000"),
     ] {
         enter(bench, field, text);
     }
@@ -115,8 +115,7 @@ fn a_plan_says_what_it_will_do_and_how_hard_it_may_hit() {
         bench.texts_with("637 g (speed 250, threshold 500 g)").len(),
         1
     );
-    bench.click("To measured contact");
-    bench.run(60);
+    bench.choose("Approach", "Fast to the measured contact");
     assert!(bench.shows("The first, slow one measures the contact."));
     assert!(bench.writes().is_empty(), "planning sends nothing");
 }
@@ -134,9 +133,9 @@ fn what_makes_no_sense_is_said_at_its_field() {
         ),
         ("Speeds to try", "0", "Speed 0 does not move.", "25"),
         (
-            "Force, g",
+            "Force limit, g",
             "100",
-            "Between the largest threshold and 4000 g; at least 500",
+            "The force limit must be 500 to 4000 g.",
             "2000",
         ),
         ("Hold, s", "0.1", "Hold between 0.3 and 600 s.", "1"),
@@ -151,22 +150,22 @@ fn what_makes_no_sense_is_said_at_its_field() {
         assert!(!bench.shows(why));
     }
     enter(&mut bench, "Speeds to try", "25, fast");
-    assert!(bench.shows("Write whole numbers with commas, none above 1000"));
+    assert!(bench.shows("Write whole numbers with commas, none above 1000."));
     assert_eq!(plan(&bench).grid.speeds.len(), 1, "nothing of it is taken");
 }
 
 #[test]
 fn joints_and_poses_make_the_way() {
     let mut bench = on_block();
-    bench.click("Middle: Joints and their way");
+    bench.click("Middle takes part");
     bench.run(60);
     assert!(plan(&bench).close[Dof::Middle].is_some());
     assert_eq!(bench.typed("Middle from"), "1000");
-    bench.click("Index: Joints and their way");
-    bench.click("Middle: Joints and their way");
+    bench.click("Index takes part");
+    bench.click("Middle takes part");
     bench.run(60);
     assert!(bench.shows("Choose at least one joint."));
-    bench.click("Start from...");
+    bench.click("Start from a pose");
     bench.run(60);
     bench.click("The pose the hand has now");
     bench.run(60);
@@ -298,7 +297,7 @@ fn the_force_ceiling_ends_it_while_it_closes() {
     let mut bench = on_block();
     short(&mut bench);
     enter(&mut bench, "Speeds to try", "250");
-    enter(&mut bench, "Force, g", "700");
+    enter(&mut bench, "Force limit, g", "700");
     arm(&mut bench);
     bench.click("Start trials");
     finish(&mut bench, 20_000);
@@ -317,8 +316,7 @@ fn the_force_ceiling_ends_it_while_it_closes() {
 fn a_fast_approach_to_the_measured_contact_is_gentle() {
     let mut bench = on_block();
     short(&mut bench);
-    bench.click("To measured contact");
-    bench.run(60);
+    bench.choose("Approach", "Fast to the measured contact");
     arm(&mut bench);
     bench.click("Start trials");
     bench.run(200);
