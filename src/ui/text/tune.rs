@@ -55,7 +55,6 @@ texts! {
     TWO_ANGLE: "Fast to an angle", "快速到指定角度";
     TWO_PROXIMITY: "Fast until the fingertip is near", "快速到指尖接近物体";
     TWO_TOUCH: "Fast until first touch", "快速到首次触碰";
-    APPROACH_TIP: "One speed all the way; or fast at first, then at the speeds to try.", "全程一个速度；或先快速接近，再按试验速度闭合。";
     FAST: "Fast speed", "快速段速度";
     FAST_TIP: "Speed until the fast part ends.", "快速段的速度。";
     UNTIL_MARGIN: "Slow down before contact by", "接触前减速的提前量";
@@ -66,7 +65,6 @@ texts! {
     UNTIL_PROXIMITY_TIP: "Counts that the fingertip's proximity rises by.", "指尖接近值的增量，计数。";
     UNTIL_TOUCH: "Slow down at touch, g", "减速的触碰力 g";
     UNTIL_TOUCH_TIP: "Grams that the fingertip or the force sensor feels.", "指尖或力传感器感到的克数。";
-    TIMES: "Times", "时间";
     DWELL: "Hold, s", "保持时间 s";
     DWELL_TIP: "Time held after the stop; the steady force is measured at its end.", "停下后的保持时间，稳态力在其末尾测量。";
     REST: "Rest, s", "间隔时间 s";

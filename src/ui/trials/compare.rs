@@ -17,7 +17,7 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::Sheet;
 use crate::ui::trials::compare_table::TableView;
-use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, Ui};
+use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, ScrollArea, Ui};
 
 /// Characters of a note.
 const NOTE_CHARS: usize = 300;
@@ -82,7 +82,9 @@ impl CompareView {
         let best = Panel::right("best").exact_size((room.x * 0.36).clamp(256.0, 440.0));
         let best = best.frame(gap(12, 0)).show_separator_line(false);
         best.resizable(false).show(ui, |ui| {
-            self.best.ui(ui, pane, &comparison, focus);
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                self.best.ui(ui, pane, &comparison, focus);
+            });
         });
         self.curves.ui(ui, pane, &comparison, &mut self.strong);
         self.comparison = Some(comparison);

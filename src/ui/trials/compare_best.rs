@@ -14,8 +14,8 @@ use crate::ui::theme;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
 use egui::{
-    Align, Align2, CornerRadius, Grid, Layout, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
-    Vec2, WidgetInfo, vec2,
+    Align2, CornerRadius, Grid, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
+    vec2,
 };
 
 /// Overshoot that the fastest may have, g.
@@ -26,6 +26,8 @@ const HOTTEST_G: f64 = 1000.0;
 const BRIGHT: f32 = 0.6;
 /// Room for a speed or a threshold beside the map.
 const HEAD: Vec2 = vec2(44.0, 17.0);
+/// Between its cells.
+const GAP: f32 = 2.0;
 
 /// What is best.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -170,49 +172,40 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, scores: &[Score], best: Option<TrialSett
         list.sort_unstable();
         list.dedup();
     }
-    let count = |list: &[i16]| f32::from(u8::try_from(list.len().max(1)).unwrap_or(u8::MAX));
-    let room =
-        (ui.available_size() - HEAD) / vec2(count(&forces), count(&speeds)) - Vec2::splat(2.0);
-    let size = room.clamp(vec2(44.0, 18.0), vec2(84.0, 26.0));
-    let head_ui = |ui: &mut Ui, text: &str| {
-        let row = Layout::right_to_left(Align::Center);
-        ui.with_layout(row, |ui| {
-            Label::new(text, muted).font(theme::number_small()).ui(ui);
-        });
+    let count = f32::from(u8::try_from(forces.len().max(1)).unwrap_or(u8::MAX));
+    let width = (ui.available_width() - HEAD.x) / count - GAP;
+    let size = vec2(width.clamp(44.0, 84.0), 24.0);
+    let head_ui = |ui: &mut Ui, size: Vec2, text: String| {
+        let (_, place) = ui.allocate_space(size);
+        let (middle, font) = (Align2::CENTER_CENTER, theme::number_small());
+        ui.painter().text(place.center(), middle, text, font, muted);
     };
-    ScrollArea::both()
-        .id_salt("map")
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            let grid = Grid::new("overshoot").spacing(Vec2::splat(2.0));
-            grid.min_col_width(HEAD.x)
-                .min_row_height(HEAD.y)
-                .show(ui, |ui| {
-                    ui.label("");
-                    for force in &forces {
-                        head_ui(ui, &format!("{force} g"));
+    let area = ScrollArea::horizontal().auto_shrink([false, true]);
+    area.id_salt("map").show(ui, |ui| {
+        let grid = Grid::new("overshoot").spacing(Vec2::splat(GAP));
+        grid.min_row_height(HEAD.y).show(ui, |ui| {
+            ui.allocate_space(HEAD);
+            for force in &forces {
+                head_ui(ui, vec2(size.x, HEAD.y), format!("{force} g"));
+            }
+            ui.end_row();
+            for speed in &speeds {
+                head_ui(ui, vec2(HEAD.x, size.y), speed.to_string());
+                for force in &forces {
+                    let is_own = |score: &&Score| {
+                        let setting = score.setting;
+                        setting.speed.get() == *speed && setting.force.get() == *force
+                    };
+                    if let Some(score) = scores.iter().find(is_own) {
+                        cell_ui(ui, pane, (score, size), Some(score.setting) == best);
+                    } else {
+                        ui.allocate_space(size);
                     }
-                    ui.end_row();
-                    for speed in &speeds {
-                        head_ui(ui, &speed.to_string());
-                        for force in &forces {
-                            let is_own = |score: &&Score| {
-                                let setting = score.setting;
-                                setting.speed.get() == *speed && setting.force.get() == *force
-                            };
-                            match scores.iter().find(is_own) {
-                                Some(score) => {
-                                    cell_ui(ui, pane, (score, size), Some(score.setting) == best)
-                                }
-                                None => {
-                                    ui.allocate_space(size);
-                                }
-                            }
-                        }
-                        ui.end_row();
-                    }
-                });
+                }
+                ui.end_row();
+            }
         });
+    });
 }
 
 fn cell_ui(ui: &mut Ui, pane: &Pane<'_>, (score, size): (&Score, Vec2), best: bool) {

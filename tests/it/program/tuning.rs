@@ -214,6 +214,8 @@ async fn where_nothing_can_be_written_it_is_said_and_the_session_stays() {
 #[tokio::test(start_paused = true)]
 async fn note_and_tags_stay_with_their_session() {
     let mut bench = running().await;
+    // Nothing can be saved by itself.
+    std::fs::write(bench.folder.path().join("documents"), "a file").unwrap();
     let id = bench.state().trials.running.unwrap();
     let session = |bench: &Bench| bench.state().trials.session(id).cloned();
     bench.act(Action::Trial(TrialAction::Note(id, "an egg".into())));

@@ -191,6 +191,13 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
         "sliders rest"
     );
     assert!(bench.all_disabled("Open all").iter().all(|off| *off));
+    for field in [
+        "Index force number",
+        "Index speed number",
+        "All speed number",
+    ] {
+        assert_eq!(bench.typed(field), "-", "{field}: each trial sets its own");
+    }
     finish(&mut bench, 60_000);
     assert!(
         !bench.state().hand().is_armed(),
@@ -212,6 +219,29 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
     bench.click("Opens what was measured.");
     bench.run(60);
     assert_eq!(bench.view(), View::Compare);
+}
+
+#[test]
+fn what_was_tried_is_saved_by_itself_and_the_views_say_where() {
+    let mut bench = Bench::keeping(SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    });
+    bench.show(View::Tune);
+    short(&mut bench);
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    bench.until(10_000, |bench| last(bench).origin.is_in_files());
+    for view in [View::Tune, View::Compare] {
+        bench.show(view);
+        let said = bench.texts_with("Saved in ");
+        assert!(
+            said.iter()
+                .any(|text| text.contains("documents/Handscope/")),
+            "{said:?}"
+        );
+    }
 }
 
 #[test]
