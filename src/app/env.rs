@@ -21,4 +21,6 @@ pub struct Env {
     pub files: Arc<dyn ChooseFile>,
     /// Where settings are kept; `None` = nowhere.
     pub settings_path: Option<PathBuf>,
+    /// The person's documents: what nobody was asked about goes into a folder of the day in them; `None` = nowhere.
+    pub documents: Option<PathBuf>,
 }

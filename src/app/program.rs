@@ -26,6 +26,10 @@ use crate::store::calendar::{since_1970, stamp};
 use crate::store::{Job, Saver, on_thread};
 use crate::transport::{Endpoint, PortFound, ports};
 use crate::trials::plan_settings::{from_settings, in_place_of};
+use std::time::Duration;
+
+/// A series is over and written long before, on a disk that works.
+const KEPT_WITHIN: Duration = Duration::from_secs(10);
 
 /// The window is closing.
 #[derive(Clone, Copy)]
@@ -48,6 +52,7 @@ pub struct App {
     exporting: Option<Job<NoticeKind>>,
     importing: Option<Job<Result<Library, NoticeKind>>>,
     sessions: Option<Job<FilesEnd>>,
+    keeping: Option<Job<FilesEnd>>,
 }
 
 impl App {
@@ -93,6 +98,7 @@ impl App {
             exporting: None,
             importing: None,
             sessions: None,
+            keeping: None,
         }
     }
 
@@ -164,9 +170,16 @@ impl App {
         if let Some(end) = Job::take_from(&mut self.exporting) {
             self.tell(end, now);
         }
-        if let Some(end) = Job::take_from(&mut self.sessions) {
+        let kept = Job::take_from(&mut self.keeping);
+        for end in Job::take_from(&mut self.sessions).into_iter().chain(kept) {
             let told = self.state.trials.take(end);
             self.tell(told, now);
+        }
+        while self.keeping.is_none()
+            && let Some(id) = self.state.trials.to_keep.pop_front()
+        {
+            let session = self.state.trials.session(id);
+            self.keeping = session.and_then(|session| SessionFiles::keep(session, &self.env));
         }
         match Job::take_from(&mut self.importing) {
             None => {}
@@ -439,7 +452,8 @@ impl App {
     }
 
     /// The window is about to close. A hand that is armed, or that this program set in motion, is stopped first.
-    /// True once the window may go: the hand rests, or 600 ms have passed. Call it each frame until then.
+    /// True once the window may go: the hand rests, or 600 ms have passed, and what was tried is in files, or
+    /// [`KEPT_WITHIN`] has passed. Call it each frame until then.
     pub fn close(&mut self, now: Moment) -> bool {
         let State { hands, notices, .. } = &mut self.state;
         let closing = *self.closing.get_or_insert_with(|| {
@@ -455,7 +469,11 @@ impl App {
         let saved = self.settings_saver.flush(&self.state.settings, at) && poses;
         let is_held = |hand: &HandState| hand.is_held(closing.since);
         let rests = !closing.held || self.state.hands.iter().all(is_held);
-        saved && rests || now.since(closing.since) >= REST_WITHIN
+        let trials = &self.state.trials;
+        let is_kept = trials.running.is_none() && trials.to_keep.is_empty();
+        let is_kept = is_kept && self.keeping.is_none();
+        let waited = now.since(closing.since);
+        (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN)
     }
 }
 

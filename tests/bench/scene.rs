@@ -73,6 +73,7 @@ impl Scene {
             wake: Arc::new(move || wakes.notify_one()),
             files: Arc::new(NoChoice),
             settings_path: None,
+            documents: None,
         };
         let mut app = App::new(env, Settings::default());
         app.open(Some(hand), clock.now());

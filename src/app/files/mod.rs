@@ -1,6 +1,7 @@
 //! Files of the program: settings, poses, what was found about hands, and what a person exports.
 
 pub mod choose;
+pub mod day_folder;
 pub mod export;
 pub mod pose_file;
 pub(crate) mod quirk_notes;

@@ -1,15 +1,19 @@
 //! Sessions in folders: asked for, written and read away from the window's thread. The formats are in [`crate::trials::session`].
 
 use crate::app::env::Env;
+use crate::app::files::day_folder;
 use crate::app::notices::NoticeKind;
 use crate::app::trials::state::{
     SessionId, SessionOrigin, SessionTrial, TrialSession, TrialsState,
 };
+use crate::store;
 use crate::store::{Job, on_thread, read_text};
 use crate::trials::recording::csv;
 use crate::trials::session::writer::SessionWriter;
 use crate::trials::session::{SESSION_FILE, SessionHead, load};
 use crate::trials::{Criterion, TrialRecording, TrialSummary};
+use futures::future::BoxFuture;
+use std::future::ready;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
@@ -39,26 +43,23 @@ impl SessionFiles {
         criterion: Option<Criterion>,
         env: &Env,
     ) -> Option<Job<FilesEnd>> {
-        if matches!(session.origin, SessionOrigin::Folder(_)) {
-            return None;
-        }
-        let session = session.clone();
-        let chosen = env.files.folder();
-        Some(Job::start(&env.runtime, &env.wake, async move {
-            let Some(folder) = chosen.await else {
-                return FilesEnd::Not(NoticeKind::NoFileChosen);
-            };
-            let folder = folder.join(folder_name(&session.head));
-            let (id, trials) = (session.id, session.trials.len());
-            let place = folder.clone();
-            match on_thread(move || write(session, &place, criterion)).await {
-                Ok(()) => FilesEnd::Saved(id, folder, trials),
-                Err(error) => FilesEnd::Not(NoticeKind::NotSaved {
-                    path: folder,
-                    message: error.to_string(),
-                }),
+        let is_own = !matches!(session.origin, SessionOrigin::Folder(_));
+        is_own.then(|| save_in(session.clone(), criterion, env.files.folder(), env))
+    }
+
+    /// Without asking: writes a session that lies in no file into a new folder in the folder of its day, and note and tags
+    /// of one that was saved into its file.
+    pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<Job<FilesEnd>> {
+        match &session.origin {
+            SessionOrigin::Folder(_) => None,
+            SessionOrigin::Saved(folder) => Some(keep_words(session, folder.clone(), env)),
+            SessionOrigin::Unsaved => {
+                let documents = env.documents.as_deref()?;
+                let folder = day_folder::of_day(documents, &session.head.day);
+                let folder = Box::pin(ready(Some(folder)));
+                (!session.trials.is_empty()).then(|| save_in(session.clone(), None, folder, env))
             }
-        }))
+        }
     }
 
     /// Asks for the `session.toml` of a session and reads its folder.
@@ -79,6 +80,60 @@ impl SessionFiles {
             }
         })
     }
+}
+
+/// Writes a session into a new folder in the one that is chosen.
+fn save_in(
+    session: TrialSession,
+    criterion: Option<Criterion>,
+    chosen: BoxFuture<'static, Option<PathBuf>>,
+    env: &Env,
+) -> Job<FilesEnd> {
+    Job::start(&env.runtime, &env.wake, async move {
+        let Some(folder) = chosen.await else {
+            return FilesEnd::Not(NoticeKind::NoFileChosen);
+        };
+        let name = folder_name(&session.head);
+        let (id, trials) = (session.id, session.trials.len());
+        let asked = folder.join(&name);
+        let work = move || {
+            // Two series that begin in one second do not share a folder.
+            let names = (2..100).map(|number| folder.join(format!("{name}-{number}")));
+            let mut places = std::iter::once(folder.join(&name)).chain(names);
+            let place = places.find(|place| !place.exists());
+            let place = place.ok_or(io::ErrorKind::AlreadyExists)?;
+            write(session, &place, criterion).map(|()| place)
+        };
+        match on_thread(work).await {
+            Ok(folder) => FilesEnd::Saved(id, folder, trials),
+            Err(error) => FilesEnd::Not(NoticeKind::NotSaved {
+                path: asked,
+                message: error.to_string(),
+            }),
+        }
+    })
+}
+
+/// Writes note and tags of a session into its file.
+fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> Job<FilesEnd> {
+    let (id, trials) = (session.id, session.trials.len());
+    let (note, tags) = (session.head.note.clone(), session.head.tags.clone());
+    Job::start(&env.runtime, &env.wake, async move {
+        let place = folder.clone();
+        let work = move || {
+            let mut file = load(&place)?;
+            (file.head.note, file.head.tags) = (note, tags);
+            let text = toml::to_string(&file).map_err(io::Error::other)?;
+            store::replace(&place.join(SESSION_FILE), text.as_bytes())
+        };
+        match on_thread(work).await {
+            Ok(()) => FilesEnd::Saved(id, folder, trials),
+            Err(error) => FilesEnd::Not(NoticeKind::NotSaved {
+                path: folder,
+                message: error.to_string(),
+            }),
+        }
+    })
 }
 
 /// `handscope-trials-2026-11-21-123456`, in universal time.
@@ -138,8 +193,12 @@ fn samples(folder: &Path, name: Option<&str>) -> io::Result<Option<TrialRecordin
 impl TrialsState {
     /// Takes in what came of files, and what to tell of it.
     pub(crate) fn take(&mut self, end: FilesEnd) -> NoticeKind {
+        self.refused = None;
         match end {
-            FilesEnd::Not(notice) => notice,
+            FilesEnd::Not(notice) => {
+                self.refused = Some(notice.clone());
+                notice
+            }
             FilesEnd::Saved(id, path, entries) => {
                 if let Some(session) = self.session_mut(id) {
                     session.origin = SessionOrigin::Saved(path.clone());

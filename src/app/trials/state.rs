@@ -1,9 +1,11 @@
 //! The plan that is being written and the sessions that were run or opened. Sends nothing, reads no clock and no file.
 
+use crate::app::notices::NoticeKind;
 use crate::app::trials::lines::JointLines;
 use crate::trials::recording::TrialRecording;
 use crate::trials::session::SessionHead;
 use crate::trials::{Trial, TrialPlan, TrialSummary};
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -123,6 +125,10 @@ pub struct TrialsState {
     pub last: Option<SessionId>,
     /// The session that is about to be forgotten and lies in no file.
     pub to_confirm: Option<SessionId>,
+    /// Why the last wish about files came to nothing; `None` if it did what it should.
+    pub refused: Option<NoticeKind>,
+    /// Sessions that are to be written without asking, the oldest wish first.
+    pub(crate) to_keep: VecDeque<SessionId>,
     newest: u64,
 }
 

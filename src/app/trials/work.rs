@@ -41,11 +41,13 @@ impl TrialsState {
             TrialAction::Note(id, words) => {
                 if let Some(session) = self.session_mut(id) {
                     session.head.note = words;
+                    self.keep(id);
                 }
             }
             TrialAction::Tags(id, words) => {
                 if let Some(session) = self.session_mut(id) {
                     session.head.tags = tags(&words);
+                    self.keep(id);
                 }
             }
             TrialAction::Forget(id) => self.ask_to_forget(id),
@@ -61,9 +63,17 @@ impl TrialsState {
 }
 
 impl TrialsState {
+    /// Wants a session in its files; one that runs is kept at its end.
+    fn keep(&mut self, id: SessionId) {
+        if self.running != Some(id) {
+            self.to_keep.push_back(id);
+        }
+    }
+
     /// The series that ran into this session is over; what to tell of it.
     fn close(&mut self, id: SessionId, aborted: Option<Abort>) -> NoticeKind {
         self.running = None;
+        self.keep(id);
         let trials = self.session_mut(id).map_or(0, |session| {
             session.head.aborted = aborted.map(EarlyEnd::Here);
             session.trials.len()

@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::app::connect::SimDial;
 use crate::app::env::Env;
+use crate::app::files::day_folder::documents;
 use crate::app::layout::{Layout, WINDOW_LEAST, WindowSize};
 use crate::app::notices::NoticeKind;
 use crate::app::program::App;
@@ -89,6 +90,7 @@ impl Program {
             wake,
             files: Arc::new(NativeDialog),
             settings_path: start.settings_path,
+            documents: documents(),
         };
         let mut app = App::new(env, start.loaded.settings);
         let without = match start.drawing {

@@ -139,6 +139,7 @@ impl Driver {
             wake: Arc::new(|| ()),
             files: Arc::new(NoChoice),
             settings_path,
+            documents: None,
         };
         let settings = Settings {
             theme: scene.theme,

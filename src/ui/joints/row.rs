@@ -158,7 +158,9 @@ impl Row {
     /// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
     fn impact_ui(&self, ui: &mut Ui, rest: &mut Rect, pane: &Pane<'_>) {
         let joint = pane.state.hand().joints[self.dof];
-        if impact::rough_from_speed(joint.force).is_none_or(|rough| joint.speed < rough) {
+        let rough_from = impact::rough_from_speed(joint.force);
+        let is_gentle = rough_from.is_none_or(|rough| joint.speed < rough);
+        if is_gentle || pane.state.hand().runs_series() {
             return;
         }
         let place = take_right(rest, theme::SIGN);

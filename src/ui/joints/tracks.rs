@@ -11,7 +11,7 @@ use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Label, take_left, take_right};
 use crate::ui::kit::look::Pane;
 use crate::ui::kit::number::NumberField;
-use crate::ui::text::{Text, main};
+use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
 use egui::{Color32, Id, Rect, Ui};
 use std::ops::RangeInclusive;
@@ -46,15 +46,19 @@ impl Setting<'_> {
     /// Draws it. What the person set in this frame.
     fn ui(&self, ui: &mut Ui, mut line: Rect, pane: &mut Pane<'_>) -> Option<i16> {
         let look = pane.look;
+        // Each trial sets its own: what a person set is not in force.
+        let runs = pane.state.hand().runs_series();
+        let disabled = runs.then(|| look.say(tune::RUNS));
+        let value = self.value.filter(|_| !runs);
         caption_ui(ui, &mut line, pane, self.caption);
         let field = controls::middle(take_right(&mut line, FIELD), theme::CONTROL);
         let track = Track {
             name: self.name,
             tip: self.tip,
-            disabled: None,
+            disabled,
             max: self.max,
             step: 10,
-            target: self.value,
+            target: value,
             actual: self.actual,
             draws: Actual::Bar,
             color: self.color,
@@ -69,8 +73,8 @@ impl Setting<'_> {
         let number = NumberField {
             name: self.number_name,
             tip: look.say(main::NUMBER_TIP),
-            disabled: None,
-            value: self.value.map(f64::from),
+            disabled,
+            value: value.map(f64::from),
             range: 0.0..=f64::from(self.max),
             decimals: 0,
         };
@@ -185,6 +189,7 @@ impl Row {
     /// Speed.
     pub(crate) fn speed_ui(&self, ui: &mut Ui, line: Rect, pane: &mut Pane<'_>) {
         let joint = pane.state.hand().joints[self.dof];
+        let runs = pane.state.hand().runs_series();
         let setting = Setting {
             caption: main::SPEED,
             name: &self.named(pane, main::NAME_SPEED),
@@ -192,7 +197,7 @@ impl Row {
             tip: &staged(pane, main::SPEED_TIP),
             max: Speed::MAX.get(),
             value: Some(joint.speed.get()),
-            actual: Some(joint.speed.get()),
+            actual: (!runs).then_some(joint.speed.get()),
             color: pane.look.palette.faint,
             tick: None,
             rough_from: impact::rough_from_speed(joint.force).map(Speed::get),
@@ -238,6 +243,7 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         pane.actions.push(Action::ForceOfAll(Force::nearest(value)));
     }
     let speed = same(joints.map(|joint| joint.speed.get()));
+    let runs = pane.state.hand().runs_series();
     let speed = Setting {
         caption: main::SPEED,
         name: &named(main::NAME_SPEED),
@@ -245,7 +251,7 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         tip: &staged(pane, main::SPEED_TIP),
         max: Speed::MAX.get(),
         value: speed,
-        actual: speed,
+        actual: speed.filter(|_| !runs),
         color: look.palette.faint,
         tick: None,
         rough_from: None,

@@ -9,6 +9,7 @@ use crate::hand::{Dof, Moment};
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme::Palette;
 use egui::{Color32, Id};
+use std::fmt::Display;
 
 /// Colours, language and hand of this frame.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +44,19 @@ impl Look {
             Language::Zh => "：",
         };
         format!("{name}{colon}{said}")
+    }
+
+    /// A sentence in the window's language with these parts in it.
+    pub(crate) fn fill(self, text: Text, parts: &[&dyn Display]) -> String {
+        text.fill(self.language, parts)
+    }
+
+    /// Names after each other.
+    pub(crate) fn list(self, names: &[&str]) -> String {
+        names.join(match self.language {
+            Language::En => ", ",
+            Language::Zh => "、",
+        })
     }
 
     /// The colour of a value of this freshness that would be `live`.

@@ -1,6 +1,7 @@
 //! One sentence in all languages of the window. The sentences themselves live beside it.
 
 use crate::app::settings::Language;
+use std::fmt::Display;
 
 /// One sentence in all languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,6 +19,14 @@ impl Text {
             Language::En => self.en,
             Language::Zh => self.zh,
         }
+    }
+
+    /// The sentence with these parts in place of its `{}`, in their order.
+    pub(crate) fn fill(self, language: Language, parts: &[&dyn Display]) -> String {
+        let mut pieces = self.of(language).split("{}");
+        let first = pieces.next().unwrap_or_default().to_owned();
+        let rest = parts.iter().zip(pieces);
+        rest.fold(first, |text, (part, piece)| format!("{text}{part}{piece}"))
     }
 }
 
@@ -67,6 +76,8 @@ mod tests {
     fn no_sentence_lacks_a_language() {
         for text in all() {
             assert!(!text.en.is_empty() && !text.zh.is_empty(), "{text:?}");
+            let parts = |sentence: &str| sentence.matches("{}").count();
+            assert_eq!(parts(text.en), parts(text.zh), "{text:?}");
             assert!(
                 text.en.is_ascii() || text.en.contains(['°', '±']),
                 "{text:?}"

@@ -1,7 +1,6 @@
 //! Why a series or its plan is refused or ended, as sentences in the window's language. Decides nothing.
 
 use crate::app::notices::NoticeKind;
-use crate::app::settings::Language;
 use crate::app::trials::ApproachKind;
 use crate::app::trials::form::ListError;
 use crate::hand::{Dof, Fault};
@@ -22,11 +21,6 @@ pub(crate) fn ended(look: Look, why: &EarlyEnd) -> String {
 /// Why a trial ended early.
 pub(crate) fn abort(look: Look, why: Abort) -> String {
     let joint = |dof: Dof| look.say(words::dof(dof));
-    let of = |dof: Dof, what: Text| format!("{} {}", joint(dof), look.say(what));
-    let stop = match look.language {
-        Language::En => ".",
-        Language::Zh => "。",
-    };
     match why {
         Abort::Person => look.say(tune::BY_PERSON).into(),
         Abort::Disarmed => look.say(tune::DISARMED).into(),
@@ -35,30 +29,29 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
         Abort::Fault { dof, faults } => {
             let name = |fault: Fault| words::fault(fault, look.language).title;
             let names: Vec<&str> = faults.iter().map(name).collect();
-            format!("{} {}{stop}", of(dof, tune::FAULT), names.join(", "))
+            look.fill(tune::FAULT, &[&joint(dof), &look.list(&names)])
         }
         Abort::Heat {
             dof,
             celsius,
             limit,
-        } => format!("{} {limit} °C ({celsius} °C){stop}", of(dof, tune::HEAT)),
+        } => look.fill(tune::HEAT, &[&joint(dof), &celsius, &limit]),
         Abort::Ceiling {
             dof,
             grams,
             ceiling,
-        } => format!("{} {ceiling} g ({grams} g){stop}", of(dof, tune::CEILING)),
-        Abort::Unreached { dof, target } => format!("{} {target}{stop}", of(dof, tune::UNREACHED)),
-        Abort::LimitsRefused { dof } => of(dof, tune::LIMITS_REFUSED),
+        } => look.fill(tune::CEILING, &[&joint(dof), &grams, &ceiling]),
+        Abort::Unreached { dof, target } => look.fill(tune::UNREACHED, &[&joint(dof), &target]),
+        Abort::LimitsRefused { dof } => look.fill(tune::LIMITS_REFUSED, &[&joint(dof)]),
         Abort::Blind { what, dof } => {
-            let what = look.say(group(what));
-            format!("{} {what}{stop}", of(dof, tune::BLIND))
+            look.fill(tune::BLIND, &[&joint(dof), &look.say(group(what))])
         }
         Abort::TooWarm {
             dof,
             celsius,
             limit,
-        } => format!("{} {celsius} °C, {limit} °C{stop}", of(dof, tune::COOLING)),
-        Abort::NoContact { dof } => of(dof, tune::NO_CONTACT),
+        } => look.fill(tune::COOLING, &[&joint(dof), &celsius, &limit]),
+        Abort::NoContact { dof } => look.fill(tune::NO_CONTACT, &[&joint(dof)]),
     }
 }
 
@@ -73,35 +66,31 @@ fn group(what: &str) -> Text {
 
 /// Why a plan cannot be run.
 pub(crate) fn plan_error(look: Look, error: &PlanError) -> String {
-    let say = |text: Text| look.say(text).to_owned();
-    let of = |dof: Dof, what: Text| format!("{} {}", look.say(words::dof(dof)), look.say(what));
+    let joint = |dof: Dof| look.say(words::dof(dof));
     match *error {
-        PlanError::NoJoint => say(tune::NO_JOINT),
-        PlanError::NoWay { dof, .. } => of(dof, tune::NO_WAY),
-        PlanError::NoStart { dof } => of(dof, tune::NO_START),
+        PlanError::NoJoint => look.say(tune::NO_JOINT).into(),
+        PlanError::NoWay { dof, .. } => look.fill(tune::NO_WAY, &[&joint(dof)]),
+        PlanError::NoStart { dof } => look.fill(tune::NO_START, &[&joint(dof)]),
         PlanError::Stage {
             dof, start, close, ..
-        } => {
-            let joint = look.say(words::dof(dof));
-            format!("{} {joint} ({start} - {close})", say(tune::BAD_STAGE))
-        }
-        PlanError::SlowApproach { speed, .. } => format!("{} {speed}", say(tune::SLOW_APPROACH)),
-        PlanError::Until { most, .. } => format!("{} {most}", say(tune::BAD_UNTIL)),
-        PlanError::NoTouch => say(tune::NO_TOUCH),
-        PlanError::Empty => say(tune::NOTHING_TO_TRY),
-        PlanError::NoSpeed => say(tune::SPEED_ZERO),
-        PlanError::TooMany { got } => format!("{} {got}", say(tune::TOO_MANY)),
-        PlanError::Dwell { .. } => say(tune::BAD_DWELL),
-        PlanError::Rest { .. } => say(tune::BAD_REST),
-        PlanError::Ceiling { least, .. } => format!("{} {least}", say(tune::BAD_CEILING)),
-        PlanError::Temperature { .. } => say(tune::BAD_HEAT),
+        } => look.fill(tune::BAD_STAGE, &[&joint(dof), &start, &close]),
+        PlanError::SlowApproach { speed, .. } => look.fill(tune::SLOW_APPROACH, &[&speed]),
+        PlanError::Until { most, .. } => look.fill(tune::BAD_UNTIL, &[&most]),
+        PlanError::NoTouch => look.say(tune::NO_TOUCH).into(),
+        PlanError::Empty => look.say(tune::NOTHING_TO_TRY).into(),
+        PlanError::NoSpeed => look.say(tune::SPEED_ZERO).into(),
+        PlanError::TooMany { got } => look.fill(tune::TOO_MANY, &[&got]),
+        PlanError::Dwell { .. } => look.say(tune::BAD_DWELL).into(),
+        PlanError::Rest { .. } => look.say(tune::BAD_REST).into(),
+        PlanError::Ceiling { least, .. } => look.fill(tune::BAD_CEILING, &[&least]),
+        PlanError::Temperature { .. } => look.say(tune::BAD_HEAT).into(),
     }
 }
 
 /// Why a list of numbers is not taken.
 pub(crate) fn list_error(look: Look, error: ListError) -> String {
     match error {
-        ListError::NotInRange { most } => format!("{} {most}", look.say(tune::LIST_RANGE)),
+        ListError::NotInRange { most } => look.fill(tune::LIST_RANGE, &[&most]),
         ListError::TooLong => look.say(tune::LIST_LONG).into(),
         ListError::Empty => look.say(tune::LIST_EMPTY).into(),
     }
@@ -133,27 +122,18 @@ pub(crate) const fn approach(kind: ApproachKind) -> Text {
 
 /// What became of a series or of its files; empty for everything else.
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
-    let said = |text: Text| look.say(text).to_owned();
     match what {
         NoticeKind::SeriesEnded { trials, aborted } => match aborted {
-            None => format!("{} {trials}", said(tune::ENDED)),
-            Some(why) => {
-                let why = abort(look, *why);
-                format!("{} {trials}. {why}", said(tune::ENDED_EARLY))
-            }
+            None => look.fill(tune::ENDED, &[trials]),
+            Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &abort(look, *why)]),
         },
-        NoticeKind::SeriesRuns => said(tune::RUNS),
+        NoticeKind::SeriesRuns => look.say(tune::RUNS).into(),
         NoticeKind::SessionOpened { path, trials } => {
-            let what = said(tune::MEASURED);
-            format!(
-                "{} {} ({trials} {what})",
-                said(tune::OPENED),
-                path.display()
-            )
+            look.fill(tune::OPENED, &[&path.display(), trials])
         }
         NoticeKind::SessionRefused { path, message } => {
-            let name = format!("{} {}", said(tune::REFUSED), path.display());
-            look.pair(&name, &errors::system(look, message))
+            let why = errors::system(look, message);
+            look.fill(tune::REFUSED, &[&path.display(), &why])
         }
         _ => String::new(),
     }

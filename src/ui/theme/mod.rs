@@ -7,7 +7,6 @@ mod palette;
 mod plot_sizes;
 mod sizes;
 mod style;
-mod trial_sizes;
 mod view_sizes;
 
 pub(crate) use fonts::*;
@@ -17,5 +16,4 @@ pub(crate) use palette::Palette;
 pub(crate) use plot_sizes::*;
 pub(crate) use sizes::*;
 pub(crate) use style::style;
-pub(crate) use trial_sizes::*;
 pub(crate) use view_sizes::*;

@@ -28,3 +28,9 @@ pub(crate) const RECORDING_LEAST: f32 = 46.0;
 pub(crate) const CURSOR_NAMES: f32 = 84.0;
 /// Width of the choice of the time that is shown.
 pub(crate) const PLOT_WINDOW: f32 = 68.0;
+/// How strong the curves behind the chosen one are.
+pub(crate) const CURVE_BEHIND: f32 = 0.3;
+/// A line this near to the pointer is the one that is meant.
+pub(crate) const LINE_NEAR: f32 = 9.0;
+/// Width of the sign of a line in the legend.
+pub(crate) const KEY_SIGN: f32 = 20.0;

@@ -6,10 +6,10 @@ use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
 use crate::ui::kit::card::{Card, Choice, Line, Manner};
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, take_left, take_right, take_top};
+use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::look::{Look, Pane};
 use crate::ui::kit::text_field::TextField;
-use crate::ui::text::{compare, tune};
+use crate::ui::text::{compare, notices, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::BestView;
 use crate::ui::trials::compare_choice::{ShownSessions, TrialKey};
@@ -17,7 +17,7 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::Sheet;
 use crate::ui::trials::compare_table::TableView;
-use egui::{Id, Rect, Ui, UiBuilder};
+use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, ScrollArea, Ui};
 
 /// Characters of a note.
 const NOTE_CHARS: usize = 300;
@@ -37,32 +37,56 @@ pub(crate) struct CompareView {
 
 impl CompareView {
     /// Draws the view.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let trials = &pane.state.trials;
         self.chosen.follow(&trials.sessions);
-        let mut body = controls::card(ui, look, rect);
-        let focus = self.chosen.focus.and_then(|id| trials.session(id));
-        self.head_ui(ui, take_top(&mut body, theme::CONTROL), pane, focus);
-        let Some(focus) = focus else {
-            Label::new(look.say(tune::COMPARE_EMPTY), look.palette.muted)
-                .center()
-                .put(ui, body);
-            return;
-        };
-        let sheet = Sheet { look, trials };
-        compare_list::list_ui(ui, &mut body, sheet, &mut self.chosen);
-        let comparison = self.comparison(pane, focus.id);
-        let curves = body.height() * theme::CURVES_SHARE;
-        let mut upper = take_top(&mut body, curves);
-        let width = (upper.width() * theme::MAP_SHARE).clamp(theme::MAP_LEAST, theme::MAP_MOST);
-        let side = take_right(&mut upper, width);
-        let place = UiBuilder::new().max_rect(upper);
-        ui.scope_builder(place, |ui| {
-            self.curves.ui(ui, pane, &comparison, &mut self.strong)
+        controls::card_ui(ui, look, |ui| {
+            ui.set_min_height(ui.available_height());
+            let focus = self.chosen.focus.and_then(|id| trials.session(id));
+            ui.horizontal(|ui| self.head_ui(ui, pane, focus));
+            let (told, color) = told(pane.state, look, focus);
+            Label::new(&told, color).small().ui(ui);
+            let Some(focus) = focus else {
+                ui.centered_and_justified(|ui| {
+                    Label::new(look.say(tune::COMPARE_EMPTY), look.palette.muted).ui(ui);
+                });
+                return;
+            };
+            compare_list::list_ui(ui, Sheet { look, trials }, &mut self.chosen);
+            let focus = self
+                .chosen
+                .focus
+                .and_then(|id| trials.session(id))
+                .unwrap_or(focus);
+            self.sessions_ui(ui, pane, focus);
         });
-        self.best.ui(ui, side, pane, &comparison, focus);
-        self.table.ui(ui, body, pane, &comparison, &mut self.strong);
+    }
+
+    /// Curves and best over the table.
+    fn sessions_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, focus: &TrialSession) {
+        let comparison = self.comparison(pane, focus.id);
+        let room = ui.available_size();
+        let gap = |left, top| {
+            Frame::new().inner_margin(Margin {
+                left,
+                top,
+                ..Margin::ZERO
+            })
+        };
+        let table = Panel::bottom("trial table").exact_size(room.y * 0.48);
+        let table = table.frame(gap(0, 8)).show_separator_line(false);
+        table.resizable(false).show(ui, |ui| {
+            self.table.ui(ui, pane, &comparison, &mut self.strong);
+        });
+        let best = Panel::right("best").exact_size((room.x * 0.36).clamp(256.0, 440.0));
+        let best = best.frame(gap(12, 0)).show_separator_line(false);
+        best.resizable(false).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                self.best.ui(ui, pane, &comparison, focus);
+            });
+        });
+        self.curves.ui(ui, pane, &comparison, &mut self.strong);
         self.comparison = Some(comparison);
     }
 
@@ -80,59 +104,42 @@ impl CompareView {
     }
 
     /// Note, tags and files of the session at hand.
-    fn head_ui(
-        &mut self,
-        ui: &mut Ui,
-        mut row: Rect,
-        pane: &mut Pane<'_>,
-        now: Option<&TrialSession>,
-    ) {
+    fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, now: Option<&TrialSession>) {
         let look = pane.look;
-        let runs = pane.state.hand().series.as_ref().map(|run| run.session);
         let none = now.is_none().then(|| look.say(tune::COMPARE_EMPTY));
         let id = now.map(|own| own.id);
-        let busy = (id.is_some() && id == runs).then(|| look.say(tune::SAVE_RUNS));
-        let busy = none.or(busy);
+        let runs = id.is_some() && id == pane.state.trials.running;
+        let busy = none.or(runs.then(|| look.say(tune::SAVE_RUNS)));
         let read = now.filter(|own| matches!(own.origin, SessionOrigin::Folder(_)));
         let read = read.map(|_| look.say(tune::SAVE_READ));
         let save = id.map(|id| TrialAction::Save(id, Some(self.best.criterion())));
         let forget = id.map(TrialAction::Forget);
-        for (text, tip, disabled, action) in [
-            (compare::FORGET, compare::FORGET_TIP, busy, forget),
-            (tune::SAVE, tune::SAVE_TIP, busy.or(read), save),
-            (tune::OPEN, tune::OPEN_TIP, None, Some(TrialAction::Open)),
-        ] {
-            let words = look.say(text);
-            let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
-            let place = take_right(&mut row, width);
-            let button = Button::new(words, look.say(tip)).disabled(disabled);
-            let clicked = button.put(ui, look, place, Id::unique(("compare", text.en)));
-            let action = action.filter(|_| clicked.clicked());
-            pane.actions.extend(action.map(Action::Trial));
-        }
-        if let Some(own) = now {
-            self.words_ui(ui, row, pane, own);
-        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for (text, tip, disabled, action) in [
+                (compare::FORGET, compare::FORGET_TIP, busy, forget),
+                (tune::SAVE, tune::SAVE_TIP, busy.or(read), save),
+                (tune::OPEN, tune::OPEN_TIP, None, Some(TrialAction::Open)),
+            ] {
+                let button = Button::new(look.say(text), look.say(tip)).disabled(disabled);
+                if button.ui(ui, look).clicked() {
+                    pane.actions.extend(action.map(Action::Trial));
+                }
+            }
+            if let Some(own) = now {
+                let row = Layout::left_to_right(Align::Center);
+                ui.with_layout(row, |ui| self.words_ui(ui, pane, own));
+            }
+        });
     }
 
-    fn words_ui(
-        &mut self,
-        ui: &mut Ui,
-        mut row: Rect,
-        pane: &mut Pane<'_>,
-        session: &TrialSession,
-    ) {
+    fn words_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         let look = pane.look;
-        let tags = session.head.tags.join(", ");
-        let half = (row.width() - theme::GAP) / 2.0;
-        let id = session.id;
+        let (id, head) = (session.id, &session.head);
+        let tags = head.tags.join(", ");
+        let half = (ui.available_width() - theme::GAP) / 2.0;
+        let note = TrialAction::Note as fn(SessionId, String) -> TrialAction;
         for (name, hint, value, action) in [
-            (
-                tune::NOTE,
-                tune::NOTE_HINT,
-                &session.head.note,
-                TrialAction::Note as fn(SessionId, String) -> TrialAction,
-            ),
+            (tune::NOTE, tune::NOTE_HINT, &head.note, note),
             (tune::TAGS, tune::TAGS_HINT, &tags, TrialAction::Tags),
         ] {
             let field = TextField {
@@ -141,11 +148,31 @@ impl CompareView {
                 value,
                 max: NOTE_CHARS,
             };
-            let place = take_left(&mut row, half);
-            let field_id = Id::unique(("session text", id, name.en));
-            if let Some(text) = field.put(ui, &mut self.typed, place, field_id) {
-                pane.actions.push(Action::Trial(action(id, text)));
-            }
+            ui.push_id((id, name.en), |ui| {
+                ui.set_max_width(half);
+                if let Some(text) = field.ui(ui, &mut self.typed) {
+                    pane.actions.push(Action::Trial(action(id, text)));
+                }
+            });
+        }
+    }
+}
+
+/// What became of the last wish about files, else where the session at hand lies.
+pub(crate) fn told(state: &State, look: Look, now: Option<&TrialSession>) -> (String, Color32) {
+    let palette = look.palette;
+    if let Some(refused) = &state.trials.refused {
+        return (notices::notice(look, refused), palette.warn);
+    }
+    match now.map(|own| &own.origin) {
+        None => (String::new(), palette.muted),
+        Some(SessionOrigin::Unsaved) => (look.say(tune::NOT_SAVED).into(), palette.muted),
+        Some(SessionOrigin::Saved(place)) => {
+            (look.fill(tune::SAVED_IN, &[&place.display()]), palette.ok)
+        }
+        Some(SessionOrigin::Folder(place)) => {
+            let words = look.fill(tune::READ_FROM, &[&place.display()]);
+            (words, palette.muted)
         }
     }
 }
@@ -153,8 +180,7 @@ impl CompareView {
 /// The card of a session that is about to go and lies in no file.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
-    let trials = session.trials.len();
-    let loses = format!("{} {trials}", look.say(compare::FORGET_LOSES));
+    let loses = look.fill(compare::FORGET_LOSES, &[&session.trials.len()]);
     let back = Choice::new(compare::FORGET_NOT, compare::FORGET_NOT_TIP, Manner::Safe);
     let forget = Choice::new(compare::FORGET_SURE, compare::FORGET_TIP, Manner::Danger);
     Some(Card {

@@ -6,21 +6,28 @@ use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::trials::best::{Score, best};
 use crate::trials::{Criterion, TrialSetting};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, take_left, take_right, take_top};
+use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::look::Pane;
 use crate::ui::kit::number::NumberField;
 use crate::ui::text::{Text, compare, tune};
 use crate::ui::theme;
-use crate::ui::trials::compare_choice::choice_ui;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
-use egui::{Align2, CornerRadius, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use egui::{
+    Align2, CornerRadius, Grid, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
+    vec2,
+};
 
 /// Overshoot that the fastest may have, g.
 const OVERSHOOT_G: f64 = 100.0;
 /// The overshoot that is as hot as can be, g.
 const HOTTEST_G: f64 = 1000.0;
+/// From this share of the heat on its colour is strong.
+const BRIGHT: f32 = 0.6;
+/// Room for a speed or a threshold beside the map.
+const HEAD: Vec2 = vec2(44.0, 17.0);
+/// Between its cells.
+const GAP: f32 = 2.0;
 
 /// What is best.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,88 +61,68 @@ impl BestView {
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
-        mut rect: Rect,
         pane: &mut Pane<'_>,
         comparison: &Comparison,
         focus: &TrialSession,
     ) {
         let look = pane.look;
-        let mut row = take_top(&mut rect, theme::CONTROL);
-        for (wanted, text) in [
-            (Wanted::LeastOvershoot, tune::LEAST_OVER),
-            (Wanted::Fastest, tune::FASTEST),
-        ] {
-            let texts = (look.say(text), look.say(tune::BEST_TIP));
-            if choice_ui(ui, &mut row, pane, texts, self.wanted == wanted) {
-                self.wanted = wanted;
+        ui.horizontal_wrapped(|ui| {
+            for (wanted, text) in [
+                (Wanted::LeastOvershoot, tune::LEAST_OVER),
+                (Wanted::Fastest, tune::FASTEST),
+            ] {
+                let button = Button::new(look.say(text), look.say(tune::BEST_TIP));
+                let button = button.choice(self.wanted == wanted);
+                if button.ui(ui, look).clicked() {
+                    self.wanted = wanted;
+                }
             }
-        }
-        self.hold_ui(ui, take_top(&mut rect, theme::CONTROL), pane);
+        });
+        ui.horizontal(|ui| {
+            let name = look.say(tune::HOLD_AT_LEAST);
+            Label::new(name, look.palette.muted).small().ui(ui);
+            let field = NumberField {
+                name,
+                tip: look.say(tune::HOLD_TIP),
+                disabled: None,
+                value: Some(self.steady_g),
+                range: 0.0..=4000.0,
+                decimals: 0,
+            };
+            if let Some(steady_g) = field.ui(ui, look, pane.typing) {
+                self.steady_g = steady_g;
+            }
+        });
         let best = best(&comparison.scores, self.criterion()).map(|score| score.setting);
-        let row = take_top(&mut rect, theme::CONTROL);
-        best_ui(ui, row, pane, comparison, best);
+        best_ui(ui, pane, comparison, best);
         if comparison.sessions().len() > 1 {
-            of_ui(
-                ui,
-                take_top(&mut rect, theme::LIST_LINE),
-                pane,
-                comparison,
-                focus,
-            );
+            of_ui(ui, pane, comparison, focus);
         }
-        map_ui(ui, rect, pane, &comparison.scores, best);
-    }
-
-    fn hold_ui(&mut self, ui: &mut Ui, mut row: Rect, pane: &mut Pane<'_>) {
-        let look = pane.look;
-        let name = look.say(tune::HOLD_AT_LEAST);
-        let place = take_left(&mut row, theme::PLAN_CAPTION);
-        Label::new(name, look.palette.muted).small().put(ui, place);
-        let field = NumberField {
-            name,
-            tip: look.say(tune::HOLD_TIP),
-            disabled: None,
-            value: Some(self.steady_g),
-            range: 0.0..=4000.0,
-            decimals: 0,
-        };
-        let place = take_left(&mut row, theme::PLAN_ANGLE);
-        let id = Id::unique("trial hold");
-        if let Some(steady_g) = field.put(ui, look, pane.typing, place, id) {
-            self.steady_g = steady_g;
-        }
+        let title = Label::new(look.say(tune::MAP), look.palette.muted);
+        title.small().ui(ui);
+        map_ui(ui, pane, &comparison.scores, best);
     }
 }
 
-fn best_ui(
-    ui: &mut Ui,
-    mut row: Rect,
-    pane: &mut Pane<'_>,
-    comparison: &Comparison,
-    best: Option<TrialSetting>,
-) {
-    let look = pane.look;
+fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison, best: Option<TrialSetting>) {
+    let (look, palette) = (pane.look, pane.look.palette);
     let none = look.say(tune::BEST_NONE);
-    let words = look.say(tune::PROMOTE);
-    let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
-    let place = take_right(&mut row, width);
-    let button = Button::new(words, look.say(tune::PROMOTE_TIP));
-    let button = button.disabled(best.is_none().then_some(none));
-    let clicked = button.put(ui, look, place, Id::unique("promote"));
-    if let Some(setting) = best.filter(|_| clicked.clicked()) {
-        for dof in &comparison.joints {
-            pane.actions.extend(staging(*dof, setting));
-        }
-    }
-    let text = best.map_or_else(|| none.to_owned(), setting_words);
-    let color = if best.is_some() {
-        look.palette.ok
-    } else {
-        look.palette.muted
+    let (text, color) = match best {
+        Some(setting) => (setting_words(setting), palette.ok),
+        None => (none.to_owned(), palette.muted),
     };
-    Label::new(&text, color)
-        .named(look.say(tune::BEST))
-        .put(ui, row);
+    ui.horizontal_wrapped(|ui| {
+        let label = Label::new(&text, color).named(look.say(tune::BEST));
+        label.font(theme::title()).ui(ui);
+        let button = Button::new(look.say(tune::PROMOTE), look.say(tune::PROMOTE_TIP));
+        let button = button.disabled(best.is_none().then_some(none));
+        let clicked = button.ui(ui, look).clicked();
+        if let Some(setting) = best.filter(|_| clicked) {
+            let joints = comparison.joints.iter();
+            pane.actions
+                .extend(joints.flat_map(|dof| staging(*dof, setting)));
+        }
+    });
 }
 
 /// What stages a setting as the one after power-up.
@@ -149,25 +136,21 @@ pub(crate) fn staging(dof: Dof, setting: TrialSetting) -> [Action; 2] {
 }
 
 /// Over which sessions map and best are, and why not over all.
-fn of_ui(ui: &mut Ui, row: Rect, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSession) {
+fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSession) {
     let look = pane.look;
-    let differences = &comparison.differences;
-    if differences.is_empty() {
-        Label::new(look.say(compare::TOGETHER), look.palette.muted)
-            .small()
-            .put(ui, row);
-        return;
-    }
+    let differences = comparison.differences.iter();
     let words: Vec<&str> = differences
-        .iter()
         .map(|difference| look.say(difference_words(*difference)))
         .collect();
+    if words.is_empty() {
+        let together = Label::new(look.say(compare::TOGETHER), look.palette.muted);
+        together.small().ui(ui);
+        return;
+    }
     let own = compare_list::name(look, focus.id);
-    let text = format!("{own} {} {}", look.say(compare::ALONE), words.join(", "));
-    Label::new(&text, look.palette.warn)
-        .small()
-        .put(ui, row)
-        .on_hover_text(look.say(compare::ALONE_TIP));
+    let text = look.fill(compare::ALONE, &[&own, &look.list(&words)]);
+    let label = Label::new(&text, look.palette.warn).small().wrap();
+    label.ui(ui).on_hover_text(look.say(compare::ALONE_TIP));
 }
 
 const fn difference_words(difference: SessionDifference) -> Text {
@@ -181,89 +164,69 @@ const fn difference_words(difference: SessionDifference) -> Text {
 }
 
 /// Overshoot as colours with numbers: speeds below each other, thresholds side by side.
-fn map_ui(
-    ui: &mut Ui,
-    mut rect: Rect,
-    pane: &Pane<'_>,
-    scores: &[Score],
-    best: Option<TrialSetting>,
-) {
-    let look = pane.look;
-    let place = take_top(&mut rect, theme::LIST_LINE);
-    let title = look.say(tune::MAP);
-    Label::new(title, look.palette.muted).small().put(ui, place);
+fn map_ui(ui: &mut Ui, pane: &Pane<'_>, scores: &[Score], best: Option<TrialSetting>) {
+    let muted = pane.look.palette.muted;
     let mut speeds: Vec<i16> = scores.iter().map(|own| own.setting.speed.get()).collect();
     let mut forces: Vec<i16> = scores.iter().map(|own| own.setting.force.get()).collect();
     for list in [&mut speeds, &mut forces] {
         list.sort_unstable();
         list.dedup();
     }
-    let count = |list: &[i16]| f32::from(u8::try_from(list.len().max(1)).unwrap_or(u8::MAX));
-    let room = (rect.width() - theme::MAP_HEAD) / count(&forces);
-    let width = room.clamp(theme::MAP_CELL_LEAST, theme::MAP_CELL_MOST);
-    let height = (rect.height() / (count(&speeds) + 1.0)).min(theme::MAP_CELL);
-    let size = vec2(width, height);
-    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-    let number = |center, text: String, color| {
-        painter.text(
-            center,
-            Align2::CENTER_CENTER,
-            text,
-            theme::number_small(),
-            color,
-        )
+    let count = f32::from(u8::try_from(forces.len().max(1)).unwrap_or(u8::MAX));
+    let width = (ui.available_width() - HEAD.x) / count - GAP;
+    let size = vec2(width.clamp(44.0, 84.0), 24.0);
+    let head_ui = |ui: &mut Ui, size: Vec2, text: String| {
+        let (_, place) = ui.allocate_space(size);
+        let (middle, font) = (Align2::CENTER_CENTER, theme::number_small());
+        ui.painter().text(place.center(), middle, text, font, muted);
     };
-    let mut top = rect.min + vec2(theme::MAP_HEAD, 0.0);
-    for force in &forces {
-        let cell = Rect::from_min_size(top, size);
-        number(cell.center(), format!("{force} g"), look.palette.faint);
-        top.x += width;
-    }
-    for (at, speed) in (1_u8..).zip(&speeds) {
-        let mut corner = rect.min + vec2(0.0, height * f32::from(at));
-        let head = Rect::from_min_size(corner, vec2(theme::MAP_HEAD, height));
-        number(head.center(), speed.to_string(), look.palette.faint);
-        corner.x += theme::MAP_HEAD;
-        for force in &forces {
-            let cell = Rect::from_min_size(corner, size).shrink(1.0);
-            corner.x += width;
-            let is_own = |score: &&Score| {
-                score.setting.speed.get() == *speed && score.setting.force.get() == *force
-            };
-            let score = scores.iter().find(is_own);
-            let chosen = score.is_some_and(|score| Some(score.setting) == best);
-            cell_ui(ui, cell.intersect(rect), pane, score, chosen);
-        }
-    }
+    let area = ScrollArea::horizontal().auto_shrink([false, true]);
+    area.id_salt("map").show(ui, |ui| {
+        let grid = Grid::new("overshoot").spacing(Vec2::splat(GAP));
+        grid.min_row_height(HEAD.y).show(ui, |ui| {
+            ui.allocate_space(HEAD);
+            for force in &forces {
+                head_ui(ui, vec2(size.x, HEAD.y), format!("{force} g"));
+            }
+            ui.end_row();
+            for speed in &speeds {
+                head_ui(ui, vec2(HEAD.x, size.y), speed.to_string());
+                for force in &forces {
+                    let is_own = |score: &&Score| {
+                        let setting = score.setting;
+                        setting.speed.get() == *speed && setting.force.get() == *force
+                    };
+                    if let Some(score) = scores.iter().find(is_own) {
+                        cell_ui(ui, pane, (score, size), Some(score.setting) == best);
+                    } else {
+                        ui.allocate_space(size);
+                    }
+                }
+                ui.end_row();
+            }
+        });
+    });
 }
 
-fn cell_ui(ui: &Ui, cell: Rect, pane: &Pane<'_>, score: Option<&Score>, best: bool) {
-    let look = pane.look;
-    let Some(score) = score.filter(|_| cell.is_positive()) else {
-        return;
-    };
+fn cell_ui(ui: &mut Ui, pane: &Pane<'_>, (score, size): (&Score, Vec2), best: bool) {
+    let palette = pane.look.palette;
     let over = score.overshoot_g.map(|spread| spread.max);
     let text = over.map_or_else(|| "-".to_owned(), |over| format!("{over:.0}"));
     let name = format!("{}: {text} g", setting_words(score.setting));
-    let id = Id::unique(("trial map", score.setting));
-    let response = ui.interact(cell, id, Sense::hover());
+    let (cell, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
     response.on_hover_text(&name);
     #[expect(clippy::cast_possible_truncation, reason = "a share of a colour scale")]
     let level = over.map(|over| (over / HOTTEST_G).clamp(0.0, 1.0) as f32);
-    let ground = level.map_or(look.palette.sunken, |level| look.palette.heat(level));
-    let round = CornerRadius::same(theme::ROUND_TINY);
-    ui.painter().rect_filled(cell, round, ground);
-    let ink = match level {
-        Some(level) => look.palette.on_heat(level >= theme::HEAT_BRIGHT),
-        None => look.palette.muted,
+    let (ground, ink) = match level {
+        Some(level) => (palette.heat(level), palette.on_heat(level >= BRIGHT)),
+        None => (palette.sunken, palette.muted),
     };
-    let font = theme::number_small();
+    let round = CornerRadius::same(theme::ROUND_TINY);
+    let edge = if best { theme::STRONG } else { 0.0 };
+    let edge = Stroke::new(edge, palette.accent);
     ui.painter()
-        .text(cell.center(), Align2::CENTER_CENTER, text, font, ink);
-    if best {
-        let stroke = Stroke::new(theme::STRONG, look.palette.accent);
-        ui.painter()
-            .rect_stroke(cell, round, stroke, StrokeKind::Inside);
-    }
+        .rect(cell, round, ground, edge, StrokeKind::Inside);
+    let (middle, font) = (Align2::CENTER_CENTER, theme::number_small());
+    ui.painter().text(cell.center(), middle, text, font, ink);
 }

@@ -1,11 +1,6 @@
-//! What is chosen in the comparison, and the buttons of a row of choices. Holds no trial.
+//! What is chosen in the comparison. Holds no trial.
 
 use crate::app::trials::{SessionId, TrialSession};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, take_left};
-use crate::ui::kit::look::Pane;
-use crate::ui::theme;
-use egui::{Id, Rect, Ui};
 
 /// A trial of a session, by its number.
 pub(crate) type TrialKey = (SessionId, usize);
@@ -54,25 +49,4 @@ impl ShownSessions {
             self.focus = self.focus.filter(|focus| *focus != id);
         }
     }
-}
-
-/// One of a row of choices; true if it was pressed.
-pub(crate) fn choice_ui(
-    ui: &mut Ui,
-    row: &mut Rect,
-    pane: &Pane<'_>,
-    (text, tip): (&str, &str),
-    chosen: bool,
-) -> bool {
-    let width = choice_width(ui, text);
-    let place = take_left(row, width.min(row.width()));
-    row.min.x -= theme::STEP;
-    let button = Button::new(text, tip).choice(chosen);
-    let response = button.put(ui, pane.look, place, Id::unique(("trial choice", text)));
-    response.clicked()
-}
-
-/// The room of one of a row of choices.
-pub(crate) fn choice_width(ui: &Ui, text: &str) -> f32 {
-    controls::text_width(ui, text, theme::body()) + 2.0 * theme::GAP
 }

@@ -2,16 +2,22 @@
 
 use crate::app::trials::comparison::SHOWN_MAX;
 use crate::app::trials::{SessionId, SessionOrigin, TrialSession, TrialsState};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Label, take_left, take_right, take_top};
+use crate::ui::kit::controls::Label;
 use crate::ui::kit::dash;
-use crate::ui::kit::list;
 use crate::ui::kit::look::Look;
 use crate::ui::text::{compare, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::ShownSessions;
-use egui::{Color32, CornerRadius, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo};
+use egui::{Align, Color32, Layout, Role, Stroke, Ui, WidgetInfo};
+use egui_extras::{Column, TableBuilder, TableRow};
 use egui_plot::LineStyle;
+
+const ROW: f32 = 24.0;
+/// Sessions that are seen without scrolling; the last is cut, so that a person sees that there are more.
+const ROWS: f32 = 3.4;
+/// Width of tick, stroke and name, and of how many trials there are and whether they lie in files.
+const LEFT: [f32; 3] = [20.0, 26.0, 92.0];
+const RIGHT: [f32; 2] = [72.0, 128.0];
 
 /// What the list is drawn from.
 #[derive(Clone, Copy)]
@@ -24,7 +30,7 @@ pub(crate) struct Sheet<'a> {
 
 /// A session's name.
 pub(crate) fn name(look: Look, id: SessionId) -> String {
-    format!("{} {}", look.say(tune::SESSION), id.0)
+    look.fill(tune::SESSION, &[&id.0])
 }
 
 /// The stroke of a session that is shown: the newest has the plain one.
@@ -36,66 +42,79 @@ pub(crate) fn style(shown: impl ExactSizeIterator<Item = SessionId>, id: Session
     })
 }
 
-/// Draws the list at the top of `body`, the newest first.
-pub(crate) fn list_ui(ui: &mut Ui, body: &mut Rect, sheet: Sheet<'_>, chosen: &mut ShownSessions) {
+/// Draws the list, the newest first.
+pub(crate) fn list_ui(ui: &mut Ui, sheet: Sheet<'_>, chosen: &mut ShownSessions) {
     let sessions = &sheet.trials.sessions;
-    let count = f32::from(u8::try_from(sessions.len()).unwrap_or(u8::MAX));
-    let (whole, some) = theme::SESSIONS_SEEN;
-    let rows = if count > whole { some } else { count };
-    let place = take_top(body, rows * theme::TRIAL_ROW);
-    list::scroll_ui(ui, place, "sessions", |ui, width| {
-        for session in sessions.iter().rev() {
-            let row = list::piece(ui, width, theme::TRIAL_ROW);
-            row_ui(ui, row, sheet, session, chosen);
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let mut table = TableBuilder::new(ui)
+            .id_salt("sessions")
+            .cell_layout(Layout::left_to_right(Align::Center))
+            .auto_shrink([false, true])
+            .max_scroll_height(ROWS * ROW);
+        for width in LEFT {
+            table = table.column(Column::exact(width));
         }
+        table = table.column(Column::remainder().clip(true));
+        for width in RIGHT {
+            table = table.column(Column::exact(width));
+        }
+        table.body(|body| {
+            body.rows(ROW, sessions.len(), |mut row| {
+                if let Some(session) = sessions.iter().rev().nth(row.index()) {
+                    row_ui(&mut row, sheet, session, chosen);
+                }
+            });
+        });
     });
     if sessions.iter().any(|session| session.lost > 0) {
         let look = sheet.look;
-        let place = take_top(body, theme::LIST_LINE);
-        Label::new(look.say(compare::LOST_WHY), look.palette.warn)
-            .small()
-            .put(ui, place);
+        let why = Label::new(look.say(compare::LOST_WHY), look.palette.warn);
+        why.small().wrap().ui(ui);
     }
 }
 
 fn row_ui(
-    ui: &mut Ui,
-    rect: Rect,
+    row: &mut TableRow<'_, '_>,
     sheet: Sheet<'_>,
     session: &TrialSession,
     chosen: &mut ShownSessions,
 ) {
-    let look = sheet.look;
-    let name = name(look, session.id);
-    let mut row = rect;
-    let tick = take_left(&mut row, theme::SESSION_TICK);
-    let is_focus = chosen.focus == Some(session.id);
-    let response = ui.interact(row, Id::unique(("session", session.id)), Sense::click());
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_focus, &name));
-    let ground = match (is_focus, response.hovered()) {
-        (true, _) => look.palette.wash(look.palette.accent),
-        (false, true) => look.palette.control,
-        (false, false) => Color32::TRANSPARENT,
-    };
-    let round = CornerRadius::same(theme::ROUND_TINY);
-    ui.painter().rect_filled(row, round, ground);
-    controls::focus_ring(ui, look, &response, row);
-    let clicked = response.clicked();
-    response.on_hover_text(look.say(tune::SESSION_TIP));
-    tick_ui(ui, tick, sheet, session.id, chosen);
-    if clicked {
-        chosen.choose(session.id);
-    }
-    parts_ui(
-        ui,
-        row.shrink2(egui::vec2(theme::STEP, 0.0)),
-        sheet,
-        session,
-        chosen,
-    );
+    let (look, palette) = (sheet.look, sheet.look.palette);
+    let (id, name) = (session.id, name(sheet.look, session.id));
+    row.col(|ui| tick_ui(ui, sheet, id, chosen));
+    row.col(|ui| {
+        if chosen.shown.len() > 1 && chosen.shown.contains(&id) {
+            let style = style(chosen.shown.iter().copied(), id);
+            let stroke = Stroke::new(theme::STRONG, palette.text);
+            dash::sample(ui.painter(), ui.max_rect(), style, stroke);
+        }
+    });
+    row.col(|ui| {
+        let response = ui.selectable_label(chosen.focus == Some(id), &name);
+        if response
+            .on_hover_text(look.say(tune::SESSION_TIP))
+            .clicked()
+        {
+            chosen.choose(id);
+        }
+    });
+    row.col(|ui| {
+        let about = about(session);
+        Label::new(&about, palette.muted).small().ui(ui);
+    });
+    let trials = look.fill(compare::TRIALS, &[&session.trials.len()]);
+    row.col(|ui| {
+        Label::new(&trials, palette.muted).small().ui(ui);
+    });
+    row.col(|ui| {
+        let (state, color) = state(sheet, session);
+        let label = look.fill(compare::STATE, &[&name]);
+        Label::new(&state, color).small().named(&label).ui(ui);
+    });
 }
 
-fn tick_ui(ui: &mut Ui, place: Rect, sheet: Sheet<'_>, id: SessionId, chosen: &mut ShownSessions) {
+fn tick_ui(ui: &mut Ui, sheet: Sheet<'_>, id: SessionId, chosen: &mut ShownSessions) {
     let look = sheet.look;
     let mut on = chosen.shown.contains(&id);
     let count = chosen.shown.len();
@@ -103,84 +122,40 @@ fn tick_ui(ui: &mut Ui, place: Rect, sheet: Sheet<'_>, id: SessionId, chosen: &m
         true => (count == 1).then_some(compare::SHOWN_LAST),
         false => (count >= SHOWN_MAX).then_some(compare::SHOWN_ALL),
     };
-    let label = format!("{} {}", look.say(compare::SHOW), name(look, id));
-    let inside = egui::UiBuilder::new().max_rect(place);
-    let tick = ui.scope_builder(inside, |ui| {
-        ui.spacing_mut().interact_size = place.size();
-        let tick = egui::Checkbox::without_text(&mut on);
-        ui.add_enabled(reason.is_none(), tick)
-    });
-    let tick = tick.inner;
+    let label = look.fill(compare::SHOW, &[&name(look, id)]);
+    let tick = egui::Checkbox::without_text(&mut on);
+    let tick = ui.add_enabled(reason.is_none(), tick);
     tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, reason.is_none(), on, &label));
-    let changed = tick.changed();
+    if tick.changed() {
+        chosen.toggle(id);
+    }
     match reason {
         None => tick.on_hover_text(look.say(compare::SHOW_TIP)),
         Some(reason) => tick.on_disabled_hover_text(look.say(reason)),
     };
-    if changed {
-        chosen.toggle(id);
-    }
-}
-
-fn parts_ui(
-    ui: &mut Ui,
-    mut row: Rect,
-    sheet: Sheet<'_>,
-    session: &TrialSession,
-    chosen: &ShownSessions,
-) {
-    let look = sheet.look;
-    let palette = look.palette;
-    let sign = take_left(&mut row, theme::SESSION_DASH);
-    if chosen.shown.len() > 1 && chosen.shown.contains(&session.id) {
-        let style = style(chosen.shown.iter().copied(), session.id);
-        let stroke = Stroke::new(theme::STRONG, palette.text);
-        dash::sample(ui.painter(), sign, style, stroke);
-    }
-    let title = name(look, session.id);
-    let place = take_left(&mut row, theme::SESSION_NAME);
-    Label::new(&title, palette.text).small().put(ui, place);
-    let (state, color) = state(sheet, session);
-    let place = take_right(&mut row, theme::SESSION_STATE);
-    let label = format!("{title}: {}", look.say(tune::SAVE));
-    Label::new(&state, color)
-        .small()
-        .right()
-        .named(&label)
-        .put(ui, place);
-    let trials = format!("{} {}", session.trials.len(), look.say(compare::TRIALS));
-    let place = take_right(&mut row, theme::SESSION_TRIALS);
-    Label::new(&trials, palette.muted)
-        .small()
-        .right()
-        .put(ui, place);
-    Label::new(&about(session), palette.muted)
-        .small()
-        .put(ui, row);
 }
 
 /// The day, the hand, the words. What was tried on the built-in hand belongs to no day.
 fn about(session: &TrialSession) -> String {
     let head = &session.head;
     let day = (!head.simulated).then(|| head.day.clone());
-    let parts = day
-        .into_iter()
-        .chain([head.hand.clone(), head.note.clone()]);
-    let parts = parts.chain([head.tags.join(", ")]);
+    let parts = [
+        day.unwrap_or_default(),
+        head.hand.clone(),
+        head.note.clone(),
+    ];
+    let parts = parts.into_iter().chain([head.tags.join(", ")]);
     let parts: Vec<String> = parts.filter(|part| !part.is_empty()).collect();
     parts.join("  ")
 }
 
 fn state(sheet: Sheet<'_>, session: &TrialSession) -> (String, Color32) {
-    let look = sheet.look;
-    let palette = look.palette;
-    let runs = sheet.trials.running;
+    let (look, palette) = (sheet.look, sheet.look.palette);
     if session.lost > 0 {
-        let lost = format!("{} {}", session.lost, look.say(compare::LOST));
-        return (lost, palette.warn);
+        return (look.fill(compare::LOST, &[&session.lost]), palette.warn);
     }
     let (text, color) = match &session.origin {
-        _ if runs == Some(session.id) => (compare::RUNS, palette.accent),
+        _ if sheet.trials.running == Some(session.id) => (compare::RUNS, palette.accent),
         SessionOrigin::Unsaved => (compare::NOT_SAVED, palette.muted),
         SessionOrigin::Saved(_) => (compare::SAVED, palette.ok),
         SessionOrigin::Folder(_) => (compare::READ, palette.muted),

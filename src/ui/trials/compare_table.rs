@@ -1,11 +1,11 @@
 //! What was measured, one row a trial and joint, and one for each setting that was repeated. Sorts, measures nothing.
 
 use crate::app::settings::Language;
-use crate::app::trials::{ComparedRow, Comparison, RowKey, SessionId, TrialSession};
+use crate::app::trials::{ComparedRow, Comparison, RowKey, SessionId};
 use crate::trials::columns::{Better, COLUMNS, Metric};
 use crate::trials::{JointMetrics, TrialSetting};
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, take_left};
+use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::dash;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{Text, compare, trials, tune, words};
@@ -14,8 +14,15 @@ use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::{end_words, order, setting_words, shown, spread};
 use crate::ui::trials::compare_curves::color;
 use crate::ui::trials::compare_list;
-use egui::{Align2, Color32, CornerRadius, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
-use egui_plot::LineStyle;
+use egui::{Align, Align2, Color32, Layout, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui_extras::{Column, TableBuilder, TableRow};
+
+const ROW: f32 = 20.0;
+/// Height of the head and of a mean over its range.
+const ROW_HIGH: f32 = 36.0;
+/// Width of the session's number, and least width of what the drive said in the end.
+const SESSION: f32 = 56.0;
+const END: f32 = 88.0;
 
 /// What rows can be sorted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,10 +37,7 @@ enum By {
 impl By {
     /// Which rows stand first when a person begins to sort by it.
     fn better(self) -> Better {
-        let Self::Number(metric) = self else {
-            return Better::Lower;
-        };
-        let own = COLUMNS.iter().find(|column| column.metric == metric);
+        let own = COLUMNS.iter().find(|own| Self::Number(own.metric) == self);
         own.map_or(Better::Lower, |column| column.better)
     }
 }
@@ -50,6 +54,8 @@ struct Sorting {
 pub(crate) struct TableView {
     sorting: Sorting,
     laid: Option<Laid>,
+    /// The comparison is another one than the rows were laid out for.
+    is_old: bool,
 }
 
 #[derive(Debug)]
@@ -60,17 +66,6 @@ struct Laid {
     repeated: Vec<(SessionId, TrialSetting)>,
 }
 
-/// One row.
-struct Row<'a> {
-    seen: ComparedRow<'a>,
-    name: String,
-    /// What names of its cells begin with.
-    short: String,
-    end: String,
-    color: Color32,
-    style: LineStyle,
-}
-
 /// What every part of the table is drawn with.
 struct Sheet<'a, 'b> {
     pane: &'a Pane<'b>,
@@ -79,87 +74,90 @@ struct Sheet<'a, 'b> {
 
 impl TableView {
     /// The comparison is another one.
-    pub(crate) fn forget(&mut self) {
-        self.laid = None;
+    pub(crate) const fn forget(&mut self) {
+        self.is_old = true;
     }
 
-    /// Draws the table. A pressed row stands out in the curves.
+    /// Draws the table over all of `ui`. A pressed row stands out in the curves.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
-        rect: Rect,
         pane: &Pane<'_>,
         comparison: &Comparison,
         strong: &mut Option<TrialKey>,
     ) {
         let sheet = Sheet { pane, comparison };
-        let laid = self.laid(&sheet);
-        let session = sheet.session_width();
-        let least =
-            session + theme::TRIAL_FIRST_COLUMN + theme::TRIAL_COLUMNS * theme::TRIAL_COLUMN;
-        let width = rect.width().max(least);
-        let inside = egui::UiBuilder::new().max_rect(rect).id_salt("trial table");
+        let is_pointed = ui.rect_contains_pointer(ui.available_rect_before_wrap());
+        let laid = self.laid(&sheet, is_pointed);
         let sorting = &mut self.sorting;
-        ui.scope_builder(inside, |ui| {
-            ui.shrink_clip_rect(rect);
-            ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
-            let area = egui::ScrollArea::both().auto_shrink(false);
-            area.show_viewport(ui, |ui, seen| {
-                let rows = vec2(width, height(&laid));
-                let place = ui.allocate_space(rows).1;
-                sheet.rows_ui(ui, place, &laid, strong);
-                sheet.repeats_ui(ui, place, &laid);
-                let top = place.top() + seen.top();
-                let head = place.with_min_y(top).with_max_y(top + theme::CONTROL);
-                sheet.head_ui(ui, head, sorting);
+        let several = sheet.several();
+        let palette = pane.look.palette;
+        ui.visuals_mut().selection.bg_fill = palette.wash(palette.accent);
+        ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
+        let width = ui.available_width();
+        ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
+            let mut table = TableBuilder::new(ui)
+                .id_salt(("trials", several))
+                .sense(Sense::click())
+                .cell_layout(Layout::left_to_right(Align::Center))
+                .auto_shrink(false);
+            if several {
+                table = table.column(Column::exact(SESSION));
+            }
+            let number = Column::exact((width * 0.063).clamp(52.0, 84.0));
+            let table = table
+                .column(Column::exact((width * 0.19).clamp(156.0, 260.0)))
+                .columns(number, shown().count())
+                .column(Column::remainder().at_least(END).clip(true))
+                .header(ROW_HIGH, |mut row| sheet.head_ui(&mut row, sorting));
+            let rows = laid.order.iter().map(|_| ROW);
+            let heights = rows.chain(laid.repeated.iter().map(|_| ROW_HIGH));
+            table.body(|body| {
+                body.heterogeneous_rows(heights, |mut row| match laid.order.get(row.index()) {
+                    Some(key) => sheet.row_ui(&mut row, *key, strong),
+                    None => {
+                        let at = row.index() - laid.order.len();
+                        if let Some((id, setting)) = laid.repeated.get(at) {
+                            sheet.repeat_ui(&mut row, *id, *setting);
+                        }
+                    }
+                });
             });
         });
         self.laid = Some(laid);
     }
 
-    /// The rows in their order, reckoned again only when something changed.
-    fn laid(&mut self, sheet: &Sheet<'_, '_>) -> Laid {
+    /// The rows in their order, reckoned again only when something changed; what is new comes last while the pointer is on
+    /// them.
+    fn laid(&mut self, sheet: &Sheet<'_, '_>, is_pointed: bool) -> Laid {
         let (sorting, language) = (self.sorting, sheet.pane.look.language);
         let former = self.laid.take();
         let former = former.filter(|own| own.sorting == sorting && own.language == language);
-        former.unwrap_or_else(|| Laid {
+        let mut order = match former {
+            Some(own) if !self.is_old => return own,
+            Some(own) if is_pointed => own.order,
+            _ => {
+                self.is_old = false;
+                sheet.sorted(sorting)
+            }
+        };
+        let rows = &sheet.comparison.rows;
+        order.retain(|key| rows.contains(key));
+        let new = rows.iter().filter(|key| !order.contains(key));
+        let new: Vec<RowKey> = new.copied().collect();
+        order.extend(new);
+        Laid {
             sorting,
             language,
-            order: sheet.sorted(sorting),
+            order,
             repeated: sheet.repeated(),
-        })
+        }
     }
-}
-
-/// Height of all of it.
-fn height(laid: &Laid) -> f32 {
-    repeats_top(laid) + count(laid.repeated.len()) * theme::FIGURE_ROW * 2.0
-}
-
-/// Where the part of repeats begins, below its title.
-fn repeats_top(laid: &Laid) -> f32 {
-    let rows = theme::CONTROL + count(laid.order.len()) * theme::TRIAL_ROW;
-    match laid.repeated.is_empty() {
-        true => rows,
-        false => rows + theme::GAP + theme::LIST_LINE,
-    }
-}
-
-fn count(number: usize) -> f32 {
-    f32::from(u16::try_from(number).unwrap_or(u16::MAX))
 }
 
 impl<'a> Sheet<'a, '_> {
     fn several(&self) -> bool {
         self.comparison.sessions().len() > 1
-    }
-
-    /// A column of sessions is there if there are several.
-    fn session_width(&self) -> f32 {
-        match self.several() {
-            true => theme::SESSION_COLUMN,
-            false => 0.0,
-        }
     }
 
     fn seen(&self, place: RowKey) -> Option<ComparedRow<'a>> {
@@ -168,28 +166,31 @@ impl<'a> Sheet<'a, '_> {
 
     /// The rows in the order that is asked for; what is not known goes last, whichever way the rest is sorted.
     fn sorted(&self, sorting: Sorting) -> Vec<RowKey> {
-        let mut rows = self.comparison.rows.to_vec();
-        match sorting.by {
-            By::Session => rows.sort_by_key(|place| place.session),
-            By::Trial => rows.sort_by_key(|place| (place.trial, place.session)),
-            By::End => rows.sort_by_cached_key(|place| {
-                let seen = self.seen(*place);
-                seen.map_or_else(String::new, |seen| self.end(seen))
-            }),
+        let count = |number: usize| u32::try_from(number).ok().map(f64::from);
+        let value = |key: &RowKey| match sorting.by {
+            By::Session => count(key.session),
+            By::Trial => count(key.trial),
+            By::End => None,
             By::Number(metric) => {
-                let own = COLUMNS.iter().find(|column| column.metric == metric);
-                let value = own.map(|column| column.value);
-                let value = |place: &RowKey| value?(self.seen(*place)?.joint);
-                let mut known: Vec<(Option<f64>, RowKey)> =
-                    rows.iter().map(|place| (value(place), *place)).collect();
-                known.sort_by(|(a, _), (b, _)| order(*a, *b, sorting.falling));
-                return known.into_iter().map(|(_, place)| place).collect();
+                let own = COLUMNS.iter().find(|column| column.metric == metric)?;
+                (own.value)(self.seen(*key)?.joint)
             }
-        }
-        if sorting.falling {
-            rows.reverse();
-        }
-        rows
+        };
+        let end = |key: &RowKey| match sorting.by {
+            By::End => self.seen(*key).map(|seen| self.end(seen)),
+            _ => None,
+        };
+        let rows = self.comparison.rows.iter();
+        let mut keyed: Vec<_> = rows.map(|key| (value(key), end(key), *key)).collect();
+        keyed.sort_by(|a, b| {
+            let words = if sorting.falling {
+                b.1.cmp(&a.1)
+            } else {
+                a.1.cmp(&b.1)
+            };
+            order(a.0, b.0, sorting.falling).then(words)
+        });
+        keyed.into_iter().map(|(_, _, key)| key).collect()
     }
 
     /// Settings that a session tried more than once, session by session.
@@ -217,96 +218,46 @@ impl<'a> Sheet<'a, '_> {
         }
     }
 
-    fn row(&self, place: RowKey) -> Option<Row<'a>> {
+    fn head_ui(&self, row: &mut TableRow<'_, '_>, sorting: &mut Sorting) {
+        let session = (By::Session, compare::COLUMN_SESSION);
+        let first = [session, (By::Trial, tune::COLUMN_TRIAL)].into_iter();
+        let numbers = shown().map(|(column, title)| (By::Number(column.metric), title));
+        let heads = first.skip(usize::from(!self.several())).chain(numbers);
+        for head in heads.chain([(By::End, tune::COLUMN_END)]) {
+            row.col(|ui| self.head_cell_ui(ui, head, sorting));
+        }
+    }
+
+    /// The head of a column over its unit. A click sorts by it.
+    fn head_cell_ui(&self, ui: &mut Ui, (by, title): (By, Text), sorting: &mut Sorting) {
         let look = self.pane.look;
-        let seen = self.seen(place)?;
-        let (session, tried) = (seen.session, seen.trial);
-        let kind = match tried.is_probe() {
-            true => look.say(tune::PROBE).to_owned(),
-            false => setting_words(tried.setting),
-        };
-        let joint = look.say(words::dof(seen.joint.dof));
-        Some(Row {
-            seen,
-            name: format!("{}  {kind}  {joint}", tried.number),
-            short: match self.several() {
-                true => format!("{}: {}", session.id.0, tried.number),
-                false => tried.number.to_string(),
-            },
-            end: self.end(seen),
-            color: color(self.pane, self.comparison, place, seen),
-            style: compare_list::style(self.comparison.sessions(), session.id),
-        })
-    }
-
-    /// The rows that are seen.
-    fn rows_ui(&self, ui: &mut Ui, place: Rect, laid: &Laid, strong: &mut Option<TrialKey>) {
-        let mut top = place.top() + theme::CONTROL;
-        for own in &laid.order {
-            let rect = place.with_min_y(top).with_max_y(top + theme::TRIAL_ROW);
-            top += theme::TRIAL_ROW;
-            if !ui.is_rect_visible(rect) {
-                continue;
-            }
-            let Some(row) = self.row(*own) else { continue };
-            let key = Some((row.seen.session.id, row.seen.trial.number));
-            if self.row_ui(ui, rect, &row, *strong == key) {
-                *strong = key.filter(|_| *strong != key);
-            }
-        }
-    }
-
-    /// The parts of a row: the session, the trial, the numbers and the end, and the width of a number.
-    fn cells(&self, row: Rect) -> (Rect, Rect, Rect, f32) {
-        let (session, rest) = row.split_left_right_at_x(row.left() + self.session_width());
-        let (first, rest) = rest.split_left_right_at_x(rest.left() + theme::TRIAL_FIRST_COLUMN);
-        (session, first, rest, rest.width() / theme::TRIAL_COLUMNS)
-    }
-
-    fn head_ui(&self, ui: &mut Ui, row: Rect, sorting: &mut Sorting) {
-        let palette = self.pane.look.palette;
-        ui.painter()
-            .rect_filled(row, CornerRadius::ZERO, palette.card);
-        let (session, first, mut rest, each) = self.cells(row);
-        if self.several() {
-            self.head_cell_ui(ui, session, (By::Session, compare::COLUMN_SESSION), sorting);
-        }
-        self.head_cell_ui(ui, first, (By::Trial, tune::COLUMN_TRIAL), sorting);
-        for (column, title) in shown() {
-            let (cell, more) = rest.split_left_right_at_x(rest.left() + each);
-            rest = more;
-            self.head_cell_ui(ui, cell, (By::Number(column.metric), title), sorting);
-        }
-        self.head_cell_ui(ui, rest, (By::End, tune::COLUMN_END), sorting);
-    }
-
-    fn head_cell_ui(
-        &self,
-        ui: &mut Ui,
-        cell: Rect,
-        (by, title): (By, Text),
-        sorting: &mut Sorting,
-    ) {
-        let look = self.pane.look;
-        let text = look.say(title);
+        let (text, place) = (look.say(title), ui.max_rect());
         let is_own = sorting.by == by;
         let button = Button::new(text, look.say(tune::COLUMN_TIP)).choice(is_own);
-        let response = button.ground(ui, look, cell, Id::unique(("trial column", title.en)));
-        let mut words = cell.shrink2(vec2(theme::STEP, 0.0));
+        let response = button.ground(ui, look, place.shrink(1.0), ui.scope_id().with(title.en));
+        let words = place.shrink2(vec2(theme::STEP, 2.0));
+        let (upper, lower) = words.split_top_bottom_at_fraction(0.5);
+        let unit = text.split_once(", ").or_else(|| text.split_once(' '));
+        let (text, unit) = unit.unwrap_or((text, ""));
+        let align = match by {
+            By::Number(_) => Align2::RIGHT_CENTER,
+            _ => Align2::LEFT_CENTER,
+        };
+        for (place, text) in [(upper, text), (lower, unit)] {
+            let (font, color) = (theme::small(), look.palette.muted);
+            controls::paint_text(ui, place, align, text, font, color);
+        }
         if is_own {
             let (arrow, way) = match sorting.falling {
                 true => (theme::TO_BOTTOM, compare::FALLING),
                 false => (theme::TO_TOP, compare::RISING),
             };
-            let place = words.with_min_x(words.right() - theme::SORT_ARROW);
-            words.max.x = place.min.x;
-            let label = format!("{text}: {}", look.say(way));
-            let sign = ui.interact(place, Id::unique("trial sorting"), Sense::hover());
-            sign.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
+            let place = lower.with_max_x(lower.left() + theme::SIGN_SMALL);
             controls::sign(ui, place, arrow, look.palette.accent);
+            ui.ctx().accesskit_node_builder(response.id, |node| {
+                node.set_value(look.say(way));
+            });
         }
-        let (font, color) = (theme::small(), look.palette.muted);
-        controls::paint_text(ui, words, Align2::CENTER_CENTER, text, font, color);
         if response.clicked() {
             *sorting = Sorting {
                 by,
@@ -318,117 +269,97 @@ impl<'a> Sheet<'a, '_> {
         }
     }
 
-    fn row_ui(&self, ui: &mut Ui, rect: Rect, row: &Row<'_>, chosen: bool) -> bool {
+    fn row_ui(&self, row: &mut TableRow<'_, '_>, place: RowKey, strong: &mut Option<TrialKey>) {
         let look = self.pane.look;
-        let (tried, joint) = (row.seen.trial, row.seen.joint);
-        let session = row.seen.session.id;
-        let id = Id::unique(("trial row", session, tried.number, joint.dof));
-        let response = ui.interact(rect, id, Sense::click());
-        let name = match self.several() {
-            true => format!("{}: {}", session.0, row.name),
-            false => row.name.clone(),
+        let Some(seen) = self.seen(place) else { return };
+        let (session, tried) = (seen.session.id, seen.trial);
+        let key = Some((session, tried.number));
+        let is_chosen = *strong == key;
+        row.set_selected(is_chosen);
+        let kind = match tried.is_probe() {
+            true => look.say(tune::PROBE).to_owned(),
+            false => setting_words(tried.setting),
         };
-        response.widget_info(|| WidgetInfo::selected(Role::Row, true, chosen, &name));
-        let ground = match (chosen, response.hovered()) {
-            (true, _) => look.palette.wash(look.palette.accent),
-            (false, true) => look.palette.control,
-            (false, false) => Color32::TRANSPARENT,
+        let joint = look.say(words::dof(seen.joint.dof));
+        let (text, number) = (look.palette.text, tried.number);
+        let name = format!("{number}  {kind}  {joint}");
+        let (short, whole) = match self.several() {
+            true => (
+                format!("{}: {number}", session.0),
+                format!("{}: {name}", session.0),
+            ),
+            false => (number.to_string(), name.clone()),
         };
-        let round = CornerRadius::same(theme::ROUND_TINY);
-        ui.painter().rect_filled(rect, round, ground);
-        let (place, mut first, mut rest, each) = self.cells(rect);
         if self.several() {
-            let text = session.0.to_string();
-            let label = format!("{} {}", row.short, look.say(compare::COLUMN_SESSION));
-            Label::new(&text, look.palette.text)
-                .number()
-                .center()
-                .named(&label)
-                .put(ui, place);
+            let label = format!("{short} {}", look.say(compare::COLUMN_SESSION));
+            row.col(|ui| number_ui(ui, &label, &session.0.to_string(), text));
         }
-        let swatch = take_left(&mut first, theme::KEY_SIGN);
-        let stroke = Stroke::new(theme::BAR, row.color);
-        dash::sample(ui.painter(), swatch, row.style, stroke);
-        Label::new(&row.name, look.palette.text)
-            .small()
-            .put(ui, first);
+        row.col(|ui| {
+            let size = vec2(theme::KEY_SIGN, ui.available_height());
+            let (_, swatch) = ui.allocate_space(size);
+            let color = color(self.pane, self.comparison, place, seen);
+            let style = compare_list::style(self.comparison.sessions(), session);
+            dash::sample(ui.painter(), swatch, style, Stroke::new(theme::BAR, color));
+            ui.add_space(theme::STEP);
+            Label::new(&name, text).small().ui(ui);
+        });
         for (column, title) in shown() {
-            let (cell, more) = rest.split_left_right_at_x(rest.left() + each);
-            rest = more;
-            let text = column.text(joint);
-            let label = format!("{} {}", row.short, look.say(title));
-            Label::new(&text, look.palette.text)
-                .number()
-                .right()
-                .named(&label)
-                .put(ui, cell.with_max_x(cell.right() - theme::GAP));
+            let label = format!("{short} {}", look.say(title));
+            row.col(|ui| number_ui(ui, &label, &column.text(seen.joint), text));
         }
-        Label::new(&row.end, look.palette.muted)
-            .small()
-            .put(ui, rest.translate(vec2(theme::GAP, 0.0)));
-        response.clicked()
+        row.col(|ui| {
+            ui.add_space(theme::GAP);
+            let end = self.end(seen);
+            Label::new(&end, look.palette.muted).small().ui(ui);
+        });
+        let response = row.response();
+        response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_chosen, &whole));
+        if response.clicked() {
+            *strong = key.filter(|_| !is_chosen);
+        }
     }
 
-    /// The spread of settings that were tried more than once.
-    fn repeats_ui(&self, ui: &mut Ui, place: Rect, laid: &Laid) {
-        if laid.repeated.is_empty() {
+    /// The mean and the spread of a setting that was tried more than once.
+    fn repeat_ui(&self, row: &mut TableRow<'_, '_>, id: SessionId, setting: TrialSetting) {
+        let look = self.pane.look;
+        let Some(session) = self.pane.state.trials.session(id) else {
             return;
-        }
-        let look = self.pane.look;
-        let mut top = place.top() + repeats_top(laid);
-        let title = place.with_min_y(top - theme::LIST_LINE).with_max_y(top);
-        Label::new(look.say(tune::REPEATED), look.palette.muted)
-            .small()
-            .put(ui, title);
-        for (id, setting) in &laid.repeated {
-            let rect = place
-                .with_min_y(top)
-                .with_max_y(top + theme::FIGURE_ROW * 2.0);
-            top = rect.bottom();
-            let session = self.pane.state.trials.session(*id);
-            if let Some(session) = session.filter(|_| ui.is_rect_visible(rect)) {
-                self.repeat_ui(ui, rect, session, *setting);
-            }
-        }
-    }
-
-    fn repeat_ui(&self, ui: &mut Ui, rect: Rect, session: &TrialSession, setting: TrialSetting) {
-        let look = self.pane.look;
-        let (place, first, mut rest, each) = self.cells(rect);
-        let mut text = setting_words(setting);
-        Label::new(&text, look.palette.text).small().put(ui, first);
-        if self.several() {
-            let number = session.id.0.to_string();
-            text = format!("{number}: {text}");
-            Label::new(&number, look.palette.text)
-                .number()
-                .center()
-                .put(ui, place);
-        }
+        };
         let own = session.trials.iter().map(|own| &own.summary);
         let own = own.filter(|tried| tried.setting == setting && !tried.is_probe());
+        let count = own.clone().count();
         let joints: Vec<&JointMetrics> = own.flat_map(|tried| &tried.joints).collect();
-        for (column, title) in shown() {
-            let (cell, more) = rest.split_left_right_at_x(rest.left() + each);
-            rest = more;
-            let values: Vec<f64> = joints
-                .iter()
-                .filter_map(|own| (column.value)(own))
-                .collect();
-            let (mean, range) = spread(&values, column.decimals);
-            let (upper, lower) = cell
-                .with_max_x(cell.right() - theme::GAP)
-                .split_top_bottom_at_fraction(0.5);
-            let label = format!("{text} {}", look.say(title));
-            Label::new(&mean, look.palette.text)
-                .number()
-                .right()
-                .named(&label)
-                .put(ui, upper);
-            Label::new(&range, look.palette.faint)
-                .font(theme::number_small())
-                .right()
-                .put(ui, lower);
+        let mut name = setting_words(setting);
+        let title = look.fill(tune::REPEATED, &[&count, &name]);
+        if self.several() {
+            name = format!("{}: {name}", id.0);
+            let label = format!("{name} {}", look.say(compare::COLUMN_SESSION));
+            row.col(|ui| number_ui(ui, &label, &id.0.to_string(), look.palette.text));
         }
+        row.col(|ui| {
+            ui.add_space(theme::KEY_SIGN + theme::STEP);
+            Label::new(&title, look.palette.text).small().ui(ui);
+        });
+        for (column, title) in shown() {
+            let values = joints.iter().filter_map(|own| (column.value)(own));
+            let (mean, range) = spread(&values.collect::<Vec<f64>>(), column.decimals);
+            let label = format!("{name} {}", look.say(title));
+            row.col(|ui| {
+                ui.with_layout(Layout::top_down(Align::Max), |ui| {
+                    number_ui(ui, &label, &mean, look.palette.text);
+                    let range = Label::new(&range, look.palette.muted);
+                    range.font(theme::number_small()).ui(ui);
+                });
+            });
+        }
+        row.col(|_| ());
     }
+}
+
+/// A number against the right edge of its cell.
+fn number_ui(ui: &mut Ui, label: &str, text: &str, color: Color32) {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        ui.add_space(theme::STEP);
+        Label::new(text, color).number().named(label).ui(ui);
+    });
 }

@@ -37,8 +37,7 @@ fn list(trials: TrialsState, shown: &[u64]) -> Harness<'static, ShownSessions> {
             },
             trials: &trials,
         };
-        let mut body = ui.max_rect();
-        compare_list::list_ui(ui, &mut body, sheet, chosen);
+        compare_list::list_ui(ui, sheet, chosen);
     };
     let mut chosen = ShownSessions::default();
     for id in shown {

@@ -6,17 +6,17 @@ use crate::app::trials::{StartRefusal, TrialAction};
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
 use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_top};
+use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::format;
-use crate::ui::kit::list;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::trials::tune_live;
 use crate::ui::trials::tune_result::ResultView;
+use crate::ui::trials::{PLOT_LEAST, line_ui};
 use crate::ui::view::View;
-use egui::{Id, Rect, Ui};
+use egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui};
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
@@ -27,149 +27,123 @@ pub(crate) struct TuneView {
 
 impl TuneView {
     /// Draws the view. The view that was asked for, if one was.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) -> Option<View> {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<View> {
         let look = pane.look;
-        let width = (rect.width() * theme::PLAN_SHARE).clamp(theme::PLAN_LEAST, theme::PLAN_MOST);
-        let mut rest = rect;
-        let plan = take_left(&mut rest, width);
-        let (_, body) = controls::titled_card(ui, look, plan, look.say(tune::PLAN));
-        self.form.ui(ui, body, pane);
-        let (_, body) = controls::titled_card(ui, look, rest, look.say(tune::SERIES));
-        series_ui(ui, body, pane, &mut self.result)
+        let runs = pane.state.hand().runs_series();
+        let frame = Frame::new().inner_margin(Margin {
+            right: 8,
+            ..Margin::ZERO
+        });
+        let width = (ui.available_width() * 0.44).clamp(326.0, 428.0);
+        let plan = Panel::left("plan").exact_size(width).frame(frame);
+        let plan = plan.resizable(false).show_separator_line(false);
+        plan.show(ui, |ui| {
+            controls::card_ui(ui, look, |ui| {
+                controls::head_ui(ui, look, look.say(tune::PLAN), |_| ());
+                self.form.ui(ui, pane);
+            });
+        });
+        controls::card_ui(ui, look, |ui| {
+            ui.set_min_height(ui.available_height());
+            controls::head_ui(ui, look, look.say(tune::SERIES), |_| ());
+            if runs {
+                tune_live::live_ui(ui, pane, &mut self.result.chart);
+                return None;
+            }
+            self.rest_ui(ui, pane)
+        })
     }
-}
 
-fn series_ui(
-    ui: &mut Ui,
-    mut body: Rect,
-    pane: &mut Pane<'_>,
-    result: &mut ResultView,
-) -> Option<View> {
-    let trials = &pane.state.trials;
-    if pane.state.hand().runs_series() {
-        tune_live::live_ui(ui, body, pane, &mut result.chart);
-        return None;
+    /// No series runs: what can begin, and what the last one came to, over its curves.
+    fn rest_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<View> {
+        let trials = &pane.state.trials;
+        let last = trials.last.and_then(|id| trials.session(id));
+        start_ui(ui, pane);
+        let height = ui.available_height();
+        let curves = (height - 260.0).max(height * 0.45);
+        if let Some(session) = last.filter(|_| curves >= PLOT_LEAST) {
+            let panel = Panel::bottom("last series").exact_size(curves);
+            let panel = panel.frame(Frame::new()).resizable(false);
+            panel.show_separator_line(false).show(ui, |ui| {
+                self.result.curves_ui(ui, pane, session);
+            });
+        }
+        let lines = ScrollArea::vertical().id_salt("series").auto_shrink(false);
+        let shown = lines.show(ui, |ui| {
+            let asked = last.and_then(|session| self.result.lines_ui(ui, pane, session));
+            meaning_ui(ui, pane);
+            if last.is_none() {
+                let palette = pane.look.palette;
+                Label::new(pane.look.say(tune::IDLE_TITLE), palette.text).ui(ui);
+                line_ui(ui, pane.look.say(tune::IDLE_BODY), palette.muted);
+            }
+            asked
+        });
+        shown.inner
     }
-    let last = trials.last.and_then(|id| trials.session(id));
-    start_ui(ui, take_top(&mut body, theme::CONTROL_LARGE), pane);
-    let (height, words) = (body.height(), theme::RESULT_WORDS);
-    let curves = (height - words).max(height * theme::RESULT_SHARE);
-    if let Some(session) = last.filter(|_| curves >= theme::TRIAL_PLOT_LEAST) {
-        let (above, below) = body.split_top_bottom_at_y(body.bottom() - curves);
-        body = above.with_max_y(above.bottom() - theme::GAP);
-        result.curves_ui(ui, below, pane, session);
-    }
-    let mut asked = None;
-    list::scroll_ui(ui, body, "trial series", |ui, width| {
-        let look = pane.look;
-        if let Some(reason) = refusal(pane) {
-            list::wrapped_ui(ui, width, 0.0, &reason, look.palette.warn);
-            list::piece(ui, width, theme::STEP);
-        }
-        if let Some(session) = last {
-            asked = result.lines_ui(ui, width, pane, session);
-            list::piece(ui, width, theme::GAP);
-        }
-        meaning_ui(ui, width, pane);
-        if last.is_none() {
-            list::piece(ui, width, theme::GAP);
-            first_ui(ui, width, pane);
-        }
-    });
-    asked
 }
 
 /// Why the series cannot begin, in words.
 fn refusal(pane: &Pane<'_>) -> Option<String> {
-    let look = pane.look;
-    let state = pane.state;
-    if !state.hand().link.state.is_live() {
+    let (look, hand, plan) = (pane.look, pane.state.hand(), &pane.state.trials.plan);
+    if !hand.link.state.is_live() {
         return Some(look.say(tune::NEED_HAND).into());
     }
-    if state.trials.plan.check().is_err() {
+    if plan.check().is_err() {
         return Some(look.say(tune::PLAN_WRONG).into());
     }
-    state
-        .hand()
-        .start_refusal(&state.trials.plan)
-        .map(|why| match why {
-            StartRefusal::NotArmed => look.say(tune::NEED_ARM).into(),
-            StartRefusal::Runs => look.say(tune::RUNS).into(),
-            StartRefusal::Locked(dof) => {
-                let joint = look.say(words::dof(dof));
-                format!("{joint} {}", look.say(tune::NEED_FREE))
-            }
-        })
+    hand.start_refusal(plan).map(|why| match why {
+        StartRefusal::NotArmed => look.say(tune::NEED_ARM).into(),
+        StartRefusal::Runs => look.say(tune::RUNS).into(),
+        StartRefusal::Locked(dof) => look.fill(tune::NEED_FREE, &[&look.say(words::dof(dof))]),
+    })
 }
 
-fn start_ui(ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+/// The button that begins, over why it cannot.
+fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let reason = refusal(pane);
-    let button = Button::new(
-        look.say(tune::START_BUTTON),
-        look.say(tune::START_BUTTON_TIP),
-    )
-    .disabled(reason.as_deref())
-    .weight(Weight::Strong);
-    if button
-        .put(ui, look, rect, Id::unique("start trials"))
-        .clicked()
-    {
-        pane.actions.push(Action::Trial(TrialAction::Start));
-    }
+    let (text, tip) = (tune::START_BUTTON, tune::START_BUTTON_TIP);
+    let button = Button::new(look.say(text), look.say(tip)).large();
+    let button = button.disabled(reason.as_deref()).weight(Weight::Strong);
+    let wide = Layout::top_down_justified(Align::Center);
+    ui.with_layout(wide, |ui| {
+        ui.set_max_height(theme::CONTROL_LARGE);
+        if button.ui(ui, look).clicked() {
+            pane.actions.push(Action::Trial(TrialAction::Start));
+        }
+    });
+    line_ui(ui, reason.as_deref().unwrap_or(" "), look.palette.warn);
 }
 
 /// What will happen, and how hard it may hit.
-fn meaning_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>) {
-    let look = pane.look;
+fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let (look, palette) = (pane.look, pane.look.palette);
     let plan = &pane.state.trials.plan;
     if plan.check().is_err() {
         return;
     }
     let (count, time) = estimate::series(plan);
     let joints: Vec<&str> = plan.joints().map(|dof| look.say(words::dof(dof))).collect();
-    let text = format!(
-        "{} {}. {} {count}, {} {}.",
-        look.say(tune::WILL_CLOSE),
-        joints.join(", "),
-        look.say(tune::WILL),
-        look.say(tune::WILL_TAKE),
-        format::duration(time)
-    );
-    list::wrapped_ui(ui, width, 0.0, &text, look.palette.text);
+    let parts: [&dyn std::fmt::Display; 3] = [&look.list(&joints), &count, &format::duration(time)];
+    line_ui(ui, &look.fill(tune::WILL, &parts), palette.text);
     if count > plan.grid.settings().len() {
-        let probe = look.say(tune::WILL_PROBE);
-        list::wrapped_ui(ui, width, 0.0, probe, look.palette.muted);
+        line_ui(ui, look.say(tune::WILL_PROBE), palette.muted);
     }
     if let Some((setting, peak)) = plan.expected() {
-        let rough = peak >= NOTABLE_G;
-        let color = if rough {
-            look.palette.warn
+        let (peak_g, force) = (format!("{peak:.0}"), setting.force.get());
+        let parts: [&dyn std::fmt::Display; 3] = [&peak_g, &setting.speed.get(), &force];
+        let text = look.fill(tune::EXPECT, &parts);
+        let is_rough = peak >= NOTABLE_G;
+        let color = if is_rough {
+            palette.warn
         } else {
-            look.palette.muted
+            palette.muted
         };
-        let text = format!(
-            "{} {peak:.0} g ({} {}, {} {} g).",
-            look.say(tune::EXPECT),
-            look.say(tune::SPEED),
-            setting.speed.get(),
-            look.say(tune::THRESHOLD),
-            setting.force.get()
-        );
-        list::wrapped_ui(ui, width, 0.0, &text, color);
-        if rough {
-            let why = look.say(tune::EXPECT_WHY);
-            list::wrapped_ui(ui, width, 0.0, why, look.palette.muted);
+        line_ui(ui, &text, color);
+        if is_rough {
+            line_ui(ui, look.say(tune::EXPECT_WHY), palette.muted);
         }
     }
-    list::wrapped_ui(ui, width, 0.0, look.say(tune::ANY_KEY), look.palette.muted);
-}
-
-/// Before the first series: what to do.
-fn first_ui(ui: &mut Ui, width: f32, pane: &Pane<'_>) {
-    let look = pane.look;
-    let title = list::piece(ui, width, theme::TITLE_LINE);
-    Label::new(look.say(tune::IDLE_TITLE), look.palette.text).put(ui, title);
-    let body = look.say(tune::IDLE_BODY);
-    list::wrapped_ui(ui, width, 0.0, body, look.palette.muted);
+    line_ui(ui, look.say(tune::ANY_KEY), palette.muted);
 }

@@ -1,24 +1,22 @@
 //! What came out of the last series: how it ended, the gentlest setting, its curves, and what to do next. Writes nothing.
 
-use crate::app::action::Action;
 use crate::app::trials::{ComparedLines, Comparison, TrialQuantity, TrialSession};
 use crate::params::rows::{ParamId, Value};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Weight, take_left};
-use crate::ui::kit::list;
+use crate::ui::kit::controls::{Button, Weight};
 use crate::ui::kit::look::Pane;
 use crate::ui::plots::chart::{Chart, ChartView};
 use crate::ui::plots::legend::legend_ui;
-use crate::ui::text::{Text, trials, tune};
-use crate::ui::theme;
+use crate::ui::text::{trials, tune};
+use crate::ui::trials::compare;
 use crate::ui::trials::compare_best::staging;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_curves::DrawnTrials;
+use crate::ui::trials::line_ui;
 use crate::ui::trials::plot::trial_chart_ui;
 use crate::ui::view::View;
-use egui::{Color32, Id, Rect, Ui, UiBuilder};
+use egui::Ui;
 
 /// What is kept between frames: figures and curves are not reckoned for each of them.
 #[derive(Debug, Default)]
@@ -29,71 +27,67 @@ pub(crate) struct ResultView {
 }
 
 impl ResultView {
-    /// How it ended, the best and the next step, as lines of a list. The view that was asked for, if one was.
+    /// How it ended, where it lies, the best and the next step. The view that was asked for, if one was.
     pub(crate) fn lines_ui(
         &mut self,
         ui: &mut Ui,
-        width: f32,
         pane: &mut Pane<'_>,
         session: &TrialSession,
     ) -> Option<View> {
-        let (text, color) = outcome(pane, session);
-        list::wrapped_ui(ui, width, 0.0, &text, color);
+        let (look, palette) = (pane.look, pane.look.palette);
+        let (ended, color) = match &session.head.aborted {
+            None => (look.say(tune::ALL_DONE).to_owned(), palette.ok),
+            Some(why) => (trials::ended(look, why), palette.warn),
+        };
+        line_ui(ui, &look.fill(tune::LAST, &[&ended]), color);
+        let (told, color) = compare::told(pane.state, look, Some(session));
+        line_ui(ui, &told, color);
         let (comparison, _) = self.seen(pane, session);
         let gentlest = Criterion::LeastOvershoot { steady_g: 0.0 };
-        let score = best(&comparison.scores, gentlest).cloned();
-        let joints = comparison.joints.to_vec();
-        let look = pane.look;
-        let words = score.as_ref().map_or_else(
-            || look.say(tune::BEST_NONE).to_owned(),
-            |score| best_words(pane, score),
-        );
-        list::wrapped_ui(ui, width, 0.0, &words, look.palette.text);
-        let staged = score.as_ref().is_some_and(|score| {
-            let speed = Value::Number(score.setting.speed.get().into());
-            let force = Value::Number(score.setting.force.get().into());
-            joints.iter().all(|dof| {
-                let device = &pane.state.hand().params;
-                device.staged(ParamId::DefaultSpeed(*dof)) == Some(speed)
-                    && device.staged(ParamId::DefaultForce(*dof)) == Some(force)
+        let score = best(&comparison.scores, gentlest);
+        let none = || look.say(tune::BEST_NONE).to_owned();
+        let words = score.map_or_else(none, |score| best_words(pane, score));
+        line_ui(ui, &words, palette.text);
+        let device = &pane.state.hand().params;
+        let is_staged = score.is_some_and(|score| {
+            let number = |number: i16| Some(Value::Number(number.into()));
+            let (speed, force) = (score.setting.speed.get(), score.setting.force.get());
+            comparison.joints.iter().all(|dof| {
+                device.staged(ParamId::DefaultSpeed(*dof)) == number(speed)
+                    && device.staged(ParamId::DefaultForce(*dof)) == number(force)
             })
         });
-        if staged {
-            let next = look.say(tune::STAGED_NEXT);
-            list::wrapped_ui(ui, width, 0.0, next, look.palette.ok);
+        if is_staged {
+            line_ui(ui, look.say(tune::STAGED_NEXT), palette.ok);
         }
-        list::piece(ui, width, theme::STEP);
-        let mut row = list::piece(ui, width, theme::CONTROL);
-        let mut asked = None;
-        if button_ui(
-            ui,
-            &mut row,
-            pane,
-            (tune::SEE_COMPARE, tune::SEE_COMPARE_TIP),
-        ) {
-            asked = Some(View::Compare);
-        }
-        if staged {
-            if button_ui(ui, &mut row, pane, (tune::SEE_DEVICE, tune::SEE_DEVICE_TIP)) {
-                asked = Some(View::Device);
+        let button_ui = |ui: &mut Ui, text, tip, weight| {
+            let tip = look.say(tip);
+            let button = Button::new(look.say(text), tip).named(tip);
+            button.weight(weight).ui(ui, look).clicked()
+        };
+        let row = ui.horizontal_wrapped(|ui| {
+            let (text, tip) = (tune::SEE_COMPARE, tune::SEE_COMPARE_TIP);
+            let mut asked = button_ui(ui, text, tip, Weight::Normal).then_some(View::Compare);
+            if is_staged {
+                let (text, tip) = (tune::SEE_DEVICE, tune::SEE_DEVICE_TIP);
+                if button_ui(ui, text, tip, Weight::Strong) {
+                    asked = Some(View::Device);
+                }
+            } else if let Some(score) = score {
+                let (text, tip) = (tune::PROMOTE, tune::PROMOTE_TIP);
+                if button_ui(ui, text, tip, Weight::Normal) {
+                    let joints = comparison.joints.iter();
+                    let all = joints.flat_map(|dof| staging(*dof, score.setting));
+                    pane.actions.extend(all);
+                }
             }
-        } else if let Some(score) = score
-            && button_ui(ui, &mut row, pane, (tune::PROMOTE, tune::PROMOTE_TIP))
-        {
-            let all = joints.iter().flat_map(|dof| staging(*dof, score.setting));
-            pane.actions.extend(all.collect::<Vec<Action>>());
-        }
-        asked
+            asked
+        });
+        row.inner
     }
 
     /// The force of all its trials over each other, and what their colours stand for.
-    pub(crate) fn curves_ui(
-        &mut self,
-        ui: &mut Ui,
-        rect: Rect,
-        pane: &Pane<'_>,
-        session: &TrialSession,
-    ) {
+    pub(crate) fn curves_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, session: &TrialSession) {
         let look = pane.look;
         let mut chart = std::mem::take(&mut self.chart);
         let (comparison, picture) = self.seen(pane, session);
@@ -102,16 +96,14 @@ impl ResultView {
             comparison,
             picture,
         };
-        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-            legend_ui(ui, look, &drawn.keys());
-            let force = Chart {
-                curves: drawn.curves().map(|(_, curve)| curve).collect(),
-                levels: drawn.levels(),
-                empty: tune::CURVES_EMPTY,
-                ..Chart::new(look, tune::SHOW_FORCE, ui.available_height())
-            };
-            trial_chart_ui(ui, force, &mut chart);
-        });
+        legend_ui(ui, look, &drawn.keys());
+        let force = Chart {
+            curves: drawn.curves().map(|(_, curve)| curve).collect(),
+            levels: drawn.levels(),
+            empty: tune::CURVES_EMPTY,
+            ..Chart::new(look, tune::SHOW_FORCE, ui.available_height())
+        };
+        trial_chart_ui(ui, force, &mut chart);
         self.chart = chart;
     }
 
@@ -130,23 +122,7 @@ impl ResultView {
     }
 }
 
-fn button_ui(ui: &mut Ui, row: &mut Rect, pane: &Pane<'_>, (text, tip): (Text, Text)) -> bool {
-    let look = pane.look;
-    let (words, tip) = (look.say(text), look.say(tip));
-    let room = controls::text_width(ui, words, theme::body()) + 2.0 * theme::PAD;
-    let weight = match text == tune::SEE_DEVICE {
-        true => Weight::Strong,
-        false => Weight::Normal,
-    };
-    let button = Button::new(words, tip).named(tip).weight(weight);
-    let place = take_left(row, room);
-    let id = Id::unique(("series result", text.en));
-    button.put(ui, look, place, id).clicked()
-}
-
 fn best_words(pane: &Pane<'_>, score: &Score) -> String {
-    let look = pane.look;
-    let setting = setting_words(score.setting);
     let over = score.overshoot_g.map_or_else(
         || "-".to_owned(),
         |spread| match spread.max - spread.min < 1.0 {
@@ -154,21 +130,6 @@ fn best_words(pane: &Pane<'_>, score: &Score) -> String {
             false => format!("{:.0}..{:.0}", spread.min, spread.max),
         },
     );
-    let (best, above) = (look.say(tune::LEAST_OVER), look.say(tune::ABOVE));
-    format!("{best}: {setting}, {above} {over} g")
-}
-
-fn outcome(pane: &Pane<'_>, session: &TrialSession) -> (String, Color32) {
-    let look = pane.look;
-    let last = look.say(tune::LAST);
-    match &session.head.aborted {
-        None => {
-            let done = look.say(tune::ALL_DONE);
-            (format!("{last} {done}"), look.palette.ok)
-        }
-        Some(why) => {
-            let why = trials::ended(look, why);
-            (format!("{last} {why}"), look.palette.warn)
-        }
-    }
+    let setting = setting_words(score.setting);
+    pane.look.fill(tune::BEST_OF, &[&setting, &over])
 }

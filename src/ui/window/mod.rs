@@ -299,12 +299,8 @@ impl Window {
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
             View::Touch => self.touch.large_ui(ui, pane),
-            View::Tune => {
-                if let Some(view) = self.tune.ui(ui, rect, pane) {
-                    self.view = view;
-                }
-            }
-            View::Compare => self.compare.ui(ui, rect, pane),
+            View::Tune => self.view = self.tune.ui(ui, pane).unwrap_or(View::Tune),
+            View::Compare => self.compare.ui(ui, pane),
             View::Faults => self.faults.ui(ui, pane),
             View::Poses => self.poses.ui(ui, pane),
             View::Device => self.device.ui(ui, pane),

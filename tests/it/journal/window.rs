@@ -133,6 +133,7 @@ impl Program {
             wake: Arc::new(|| ()),
             files: Arc::new(InFolder(folder.path().into())),
             settings_path: Some(folder.path().join("settings.toml")),
+            documents: None,
         };
         let mut app = App::new(env, Settings::default());
         app.open(Some(hand.clone()), clock.now());

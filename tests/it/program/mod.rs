@@ -36,7 +36,7 @@ struct Bench {
     app: App,
     clock: Clock,
     hand: SharedHand,
-    _folder: TempDir,
+    folder: TempDir,
     /// Writes to the hand that are not looked at any more.
     seen: usize,
 }
@@ -53,6 +53,7 @@ impl Bench {
         let env = Env {
             dial,
             settings_path: Some(folder.path().join("settings.toml")),
+            documents: Some(folder.path().join("documents")),
             ..env()
         };
         let clock = env.clock;
@@ -61,7 +62,7 @@ impl Bench {
             app,
             clock,
             hand,
-            _folder: folder,
+            folder,
             seen: 0,
         };
         bench.run(1000).await;

@@ -5,11 +5,13 @@ use crate::setup::line::Trouble;
 use handscope::app::action::Action;
 use handscope::app::hand::Preset;
 use handscope::app::notices::NoticeKind;
-use handscope::app::trials::{StartRefusal, TrialAction};
+use handscope::app::trials::{SessionOrigin, StartRefusal, TrialAction};
 use handscope::hand::{Angle, Dof, PerDof, Speed};
 use handscope::trials::Abort;
 use handscope::trials::plan::TrialPlan;
+use handscope::trials::session::load;
 use handscope::trials::summary::EarlyEnd;
+use std::path::{Path, PathBuf};
 use tokio::time::Duration;
 
 fn start(bench: &mut Bench) {
@@ -132,9 +134,88 @@ fn check_ended(bench: &Bench, why: Abort) {
     assert_eq!(trials.running, None);
 }
 
+/// The folder that the newest session was saved to, once it is there.
+async fn saved(bench: &mut Bench) -> PathBuf {
+    for _ in 0..500 {
+        let session = bench.state().trials.sessions.last().unwrap();
+        if let SessionOrigin::Saved(folder) = &session.origin {
+            return folder.clone();
+        }
+        bench.run(20).await;
+    }
+    panic!("{:?}", bench.told());
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_was_tried_is_saved_by_itself_in_a_folder_of_the_day_with_its_words() {
+    let mut places = Vec::new();
+    let mut bench = running().await;
+    for _ in 0..2 {
+        while bench.hand().runs_series() {
+            bench.run(200).await;
+        }
+        let folder = saved(&mut bench).await;
+        let id = bench.state().trials.sessions.last().unwrap().id;
+        bench.act(Action::Trial(TrialAction::Note(id, "an egg".into())));
+        let head = |folder: &Path| load(folder).unwrap().head;
+        for _ in 0..500 {
+            if head(&folder).note == "an egg" {
+                break;
+            }
+            bench.run(20).await;
+        }
+        let day = folder.parent().unwrap();
+        let own = head(&folder);
+        assert_eq!((&*own.note, own.aborted), ("an egg", None));
+        assert!(day.ends_with(format!("documents/Handscope/{}", own.day)));
+        assert!(folder.join("trial-001.csv").is_file() && folder.join("report.html").is_file());
+        places.push(folder);
+        bench.arm().await;
+        start(&mut bench);
+        bench.run(300).await;
+    }
+    assert_ne!(places[0], places[1]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_window_that_closes_ends_the_series_and_saves_what_was_tried() {
+    let mut bench = running().await;
+    bench.run(12_000).await;
+    assert!(bench.hand().runs_series() && bench.state().trials.sessions[0].trials.is_empty());
+    while !bench.app.close(bench.clock.now()) {
+        bench.run(20).await;
+    }
+    let session = &bench.state().trials.sessions[0];
+    assert_eq!(session.head.aborted, Some(EarlyEnd::Here(Abort::Person)));
+    let SessionOrigin::Saved(folder) = &session.origin else {
+        panic!("{:?}", bench.told());
+    };
+    assert_eq!(load(folder).unwrap().trials.len(), session.trials.len());
+}
+
+#[tokio::test(start_paused = true)]
+async fn where_nothing_can_be_written_it_is_said_and_the_session_stays() {
+    let mut bench = running().await;
+    std::fs::write(bench.folder.path().join("documents"), "a file").unwrap();
+    while bench.hand().runs_series() {
+        bench.run(200).await;
+    }
+    for _ in 0..500 {
+        if bench.state().trials.refused.is_some() {
+            break;
+        }
+        bench.run(20).await;
+    }
+    let trials = &bench.state().trials;
+    assert!(matches!(trials.refused, Some(NoticeKind::NotSaved { .. })));
+    assert_eq!(trials.sessions[0].origin, SessionOrigin::Unsaved);
+}
+
 #[tokio::test(start_paused = true)]
 async fn note_and_tags_stay_with_their_session() {
     let mut bench = running().await;
+    // Nothing can be saved by itself.
+    std::fs::write(bench.folder.path().join("documents"), "a file").unwrap();
     let id = bench.state().trials.running.unwrap();
     let session = |bench: &Bench| bench.state().trials.session(id).cloned();
     bench.act(Action::Trial(TrialAction::Note(id, "an egg".into())));

@@ -152,7 +152,7 @@ fn plan(person: &mut Person) {
         ("Force thresholds to try", "200"),
         ("Hold, s", "0.5"),
         ("Rest, s", "0"),
-        ("Force, g", "1500"),
+        ("Force limit, g", "1500"),
     ] {
         person.enter(field, text);
     }

@@ -25,6 +25,7 @@ pub(crate) fn env() -> Env {
         wake: Arc::new(|| ()),
         files: Arc::new(NoChoice),
         settings_path: None,
+        documents: None,
     }
 }
 

@@ -158,6 +158,10 @@ impl Room {
             let env = Env {
                 dial: Arc::clone(socket) as Arc<dyn Dial>,
                 files: Arc::new(InFolder(folder.path().into())),
+                documents: match keeps {
+                    Keeps::Nothing => None,
+                    Keeps::Records => Some(folder.path().join("documents")),
+                },
                 settings_path: match keeps {
                     Keeps::Nothing => None,
                     Keeps::Records => Some(folder.path().join("kept/settings.toml")),
@@ -612,7 +616,12 @@ impl Bench {
 
     /// What stands in a text field.
     pub(crate) fn typed(&self, name: &str) -> String {
-        let node = self.harness.get_by_role_and_label(Role::TextInput, name);
+        self.value(Role::TextInput, name)
+    }
+
+    /// The value of a control.
+    pub(crate) fn value(&self, role: Role, name: &str) -> String {
+        let node = self.harness.get_by_role_and_label(role, name);
         node.value().unwrap_or_default()
     }
 

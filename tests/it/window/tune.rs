@@ -16,7 +16,7 @@ pub(crate) fn short(bench: &mut Bench) {
         ("Index to", "300"),
         ("Hold, s", "0.5"),
         ("Rest, s", "0"),
-        ("Force, g", "4000"),
+        ("Force limit, g", "4000"),
     ] {
         enter(bench, field, text);
     }
@@ -115,8 +115,7 @@ fn a_plan_says_what_it_will_do_and_how_hard_it_may_hit() {
         bench.texts_with("637 g (speed 250, threshold 500 g)").len(),
         1
     );
-    bench.click("To measured contact");
-    bench.run(60);
+    bench.choose("Approach", "Fast to the measured contact");
     assert!(bench.shows("The first, slow one measures the contact."));
     assert!(bench.writes().is_empty(), "planning sends nothing");
 }
@@ -134,9 +133,9 @@ fn what_makes_no_sense_is_said_at_its_field() {
         ),
         ("Speeds to try", "0", "Speed 0 does not move.", "25"),
         (
-            "Force, g",
+            "Force limit, g",
             "100",
-            "Between the largest threshold and 4000 g; at least 500",
+            "The force limit must be 500 to 4000 g.",
             "2000",
         ),
         ("Hold, s", "0.1", "Hold between 0.3 and 600 s.", "1"),
@@ -151,22 +150,22 @@ fn what_makes_no_sense_is_said_at_its_field() {
         assert!(!bench.shows(why));
     }
     enter(&mut bench, "Speeds to try", "25, fast");
-    assert!(bench.shows("Write whole numbers with commas, none above 1000"));
+    assert!(bench.shows("Write whole numbers with commas, none above 1000."));
     assert_eq!(plan(&bench).grid.speeds.len(), 1, "nothing of it is taken");
 }
 
 #[test]
 fn joints_and_poses_make_the_way() {
     let mut bench = on_block();
-    bench.click("Middle: Joints and their way");
+    bench.click("Middle takes part");
     bench.run(60);
     assert!(plan(&bench).close[Dof::Middle].is_some());
     assert_eq!(bench.typed("Middle from"), "1000");
-    bench.click("Index: Joints and their way");
-    bench.click("Middle: Joints and their way");
+    bench.click("Index takes part");
+    bench.click("Middle takes part");
     bench.run(60);
     assert!(bench.shows("Choose at least one joint."));
-    bench.click("Start from...");
+    bench.click("Start from a pose");
     bench.run(60);
     bench.click("The pose the hand has now");
     bench.run(60);
@@ -192,6 +191,13 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
         "sliders rest"
     );
     assert!(bench.all_disabled("Open all").iter().all(|off| *off));
+    for field in [
+        "Index force number",
+        "Index speed number",
+        "All speed number",
+    ] {
+        assert_eq!(bench.typed(field), "-", "{field}: each trial sets its own");
+    }
     finish(&mut bench, 60_000);
     assert!(
         !bench.state().hand().is_armed(),
@@ -213,6 +219,29 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
     bench.click("Opens what was measured.");
     bench.run(60);
     assert_eq!(bench.view(), View::Compare);
+}
+
+#[test]
+fn what_was_tried_is_saved_by_itself_and_the_views_say_where() {
+    let mut bench = Bench::keeping(SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    });
+    bench.show(View::Tune);
+    short(&mut bench);
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    bench.until(10_000, |bench| last(bench).origin.is_in_files());
+    for view in [View::Tune, View::Compare] {
+        bench.show(view);
+        let said = bench.texts_with("Saved in ");
+        assert!(
+            said.iter()
+                .any(|text| text.contains("documents/Handscope/")),
+            "{said:?}"
+        );
+    }
 }
 
 #[test]
@@ -298,7 +327,7 @@ fn the_force_ceiling_ends_it_while_it_closes() {
     let mut bench = on_block();
     short(&mut bench);
     enter(&mut bench, "Speeds to try", "250");
-    enter(&mut bench, "Force, g", "700");
+    enter(&mut bench, "Force limit, g", "700");
     arm(&mut bench);
     bench.click("Start trials");
     finish(&mut bench, 20_000);
@@ -317,8 +346,7 @@ fn the_force_ceiling_ends_it_while_it_closes() {
 fn a_fast_approach_to_the_measured_contact_is_gentle() {
     let mut bench = on_block();
     short(&mut bench);
-    bench.click("To measured contact");
-    bench.run(60);
+    bench.choose("Approach", "Fast to the measured contact");
     arm(&mut bench);
     bench.click("Start trials");
     bench.run(200);
