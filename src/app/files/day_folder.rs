@@ -22,3 +22,30 @@ pub fn documents() -> Option<PathBuf> {
 pub fn of_day(documents: &Path, day: &str) -> PathBuf {
     documents.join("Handscope").join(day)
 }
+
+/// A path in this folder at which nothing lies: the name, or the name with a number before its ending.
+#[must_use]
+pub fn free_path(folder: &Path, name: &str) -> PathBuf {
+    let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
+    let numbered = (2..).map(|number| format!("{stem}-{number}.{ending}"));
+    let mut names = std::iter::once(name.to_owned()).chain(numbered);
+    let free = names.find(|name| !folder.join(name).exists());
+    folder.join(free.as_deref().unwrap_or(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_saved_before_is_never_overwritten() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut names = Vec::new();
+        for _ in 0..3 {
+            let path = free_path(folder.path(), "plots.csv");
+            std::fs::write(&path, "x").unwrap();
+            names.push(path.file_name().unwrap().to_owned());
+        }
+        assert_eq!(names, ["plots.csv", "plots-2.csv", "plots-3.csv"]);
+    }
+}

@@ -1,6 +1,7 @@
 //! Saving to a file that a person chooses: how the place is asked for, and what is written there. Never blocks the window.
 
 use crate::app::env::Env;
+use crate::app::files::day_folder;
 use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
 use crate::history::Table;
@@ -10,6 +11,7 @@ use crate::link::traffic::words::CSV_HEAD;
 use crate::params;
 use crate::params::file::ParamsFile;
 use crate::poses::library::Library;
+use crate::store::calendar;
 use crate::store::{Job, on_thread};
 use std::sync::Arc;
 
@@ -94,15 +96,28 @@ fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
     text
 }
 
-/// Asks for a place and writes; what to tell a person of it.
+/// Writes into the folder of the day in the person's documents, under a name that is free; where there are none, asks for
+/// a place. What to tell a person of it.
 pub(crate) fn save(content: Content, env: &Env) -> Job<NoticeKind> {
-    let chosen = env.files.choose(content.file_name());
+    let chosen = match &env.documents {
+        Some(documents) => {
+            let folder = day_folder::of_day(documents, &calendar::day(calendar::since_1970()));
+            let path = day_folder::free_path(&folder, content.file_name());
+            Box::pin(std::future::ready(Some(path)))
+        }
+        None => env.files.choose(content.file_name()),
+    };
     Job::start(&env.runtime, &env.wake, async move {
         let Some(path) = chosen.await else {
             return NoticeKind::NoFileChosen;
         };
         let place = path.clone();
-        let work = move || std::fs::write(&place, content.bytes()?).map(|()| content.len());
+        let work = move || {
+            if let Some(folder) = place.parent() {
+                std::fs::create_dir_all(folder)?;
+            }
+            std::fs::write(&place, content.bytes()?).map(|()| content.len())
+        };
         match on_thread(work).await {
             Ok(entries) => NoticeKind::Saved { path, entries },
             Err(error) => NoticeKind::NotSaved {

@@ -29,6 +29,7 @@ pub(crate) fn viewport(size: WindowSize) -> ViewportBuilder {
         .with_title("Handscope")
         .with_app_id("handscope")
         .with_inner_size(<[f32; 2]>::from(size))
+        .with_clamp_size_to_monitor_size(true)
         .with_min_inner_size(WINDOW_LEAST)
 }
 

@@ -52,7 +52,7 @@ texts! {
     ALL_WELL: "Nothing wrong", "正常";
     SAVED: "Saved:", "已保存：";
     NOT_SAVED: "Could not be written:", "无法写入：";
-    NO_FILE: "Nothing was saved: no file was chosen. Where no dialog came up, this desktop has none; 'handscope watch --wire' prints frames too.", "未保存：没有选择文件。如果没有出现对话框，说明此桌面不提供；也可使用 handscope watch --wire 输出报文。";
+    NO_FILE: "No file was chosen. Where no dialog came up, this desktop has none.", "没有选择文件。如果没有出现对话框，说明此桌面不提供。";
 
     OPENED: "Wire opened", "线路打开";
     CLOSED: "Wire closed", "线路关闭";
