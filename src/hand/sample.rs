@@ -131,89 +131,99 @@ pub struct Reply<'a> {
 impl HandSample {
     /// Takes every group that the reply covers whole, and says which. Groups covered in part are left as they were.
     pub fn take(&mut self, reply: &Reply<'_>) -> Groups {
+        let taken = self.take_set(reply).into_iter();
+        let taken = taken.chain(self.take_actual(reply));
         let mut fresh = Groups::NONE;
-        let mut put = |group: Group, there: bool| {
-            if there {
-                fresh.insert(group);
-            }
-        };
-        put(
-            Group::AngleSet,
-            shorts(reply, &register::ANGLE_SET, &mut self.angle_set, target),
-        );
-        put(
-            Group::ForceSet,
-            shorts(reply, &register::FORCE_SET, &mut self.force_set, |raw| {
-                Force::new(raw).ok()
-            }),
-        );
-        put(
-            Group::SpeedSet,
-            shorts(reply, &register::SPEED_SET, &mut self.speed_set, |raw| {
-                Speed::new(raw).ok()
-            }),
-        );
-        put(
-            Group::Position,
-            shorts(
-                reply,
-                &register::POS_ACT,
-                &mut self.position,
-                PositionReading::new,
-            ),
-        );
-        put(
-            Group::Angle,
-            shorts(
-                reply,
-                &register::ANGLE_ACT,
-                &mut self.angle,
-                AngleReading::new,
-            ),
-        );
-        put(
-            Group::Force,
-            shorts(
-                reply,
-                &register::FORCE_ACT,
-                &mut self.force,
-                ForceReading::new,
-            ),
-        );
-        put(
-            Group::Current,
-            shorts(
-                reply,
-                &register::CURRENT,
-                &mut self.current,
-                CurrentReading::new,
-            ),
-        );
-        put(
-            Group::Faults,
-            bytes(reply, &register::ERROR, &mut self.faults, Faults::from_raw),
-        );
-        put(
-            Group::Status,
-            bytes(reply, &register::STATUS, &mut self.status, Status::from_raw),
-        );
-        put(
-            Group::Temperature,
-            bytes(
-                reply,
-                &register::TEMP,
-                &mut self.temperature,
-                TemperatureReading::new,
-            ),
-        );
+        for (group, _) in taken.filter(|(_, there)| *there) {
+            fresh.insert(group);
+        }
         for finger in Finger::ALL {
             let block = part(reply, touch_span(finger)).and_then(TactileBlock::decode);
-            put(Group::Tactile(finger), block.is_some());
             if let Some(value) = block {
+                fresh.insert(Group::Tactile(finger));
                 self.tactile[finger] = Some(timed(reply, value));
             }
         }
         fresh
+    }
+
+    /// Takes what is set, and says of each group whether it was there.
+    fn take_set(&mut self, reply: &Reply<'_>) -> [(Group, bool); 3] {
+        let force = |raw| Force::new(raw).ok();
+        let speed = |raw| Speed::new(raw).ok();
+        [
+            (
+                Group::AngleSet,
+                shorts(reply, &register::ANGLE_SET, &mut self.angle_set, target),
+            ),
+            (
+                Group::ForceSet,
+                shorts(reply, &register::FORCE_SET, &mut self.force_set, force),
+            ),
+            (
+                Group::SpeedSet,
+                shorts(reply, &register::SPEED_SET, &mut self.speed_set, speed),
+            ),
+        ]
+    }
+
+    /// Takes what is measured, and says of each group whether it was there.
+    fn take_actual(&mut self, reply: &Reply<'_>) -> [(Group, bool); 7] {
+        [
+            (
+                Group::Position,
+                shorts(
+                    reply,
+                    &register::POS_ACT,
+                    &mut self.position,
+                    PositionReading::new,
+                ),
+            ),
+            (
+                Group::Angle,
+                shorts(
+                    reply,
+                    &register::ANGLE_ACT,
+                    &mut self.angle,
+                    AngleReading::new,
+                ),
+            ),
+            (
+                Group::Force,
+                shorts(
+                    reply,
+                    &register::FORCE_ACT,
+                    &mut self.force,
+                    ForceReading::new,
+                ),
+            ),
+            (
+                Group::Current,
+                shorts(
+                    reply,
+                    &register::CURRENT,
+                    &mut self.current,
+                    CurrentReading::new,
+                ),
+            ),
+            (
+                Group::Faults,
+                bytes(reply, &register::ERROR, &mut self.faults, Faults::from_raw),
+            ),
+            (
+                Group::Status,
+                bytes(reply, &register::STATUS, &mut self.status, Status::from_raw),
+            ),
+            (
+                Group::Temperature,
+                bytes(
+                    reply,
+                    &register::TEMP,
+                    &mut self.temperature,
+                    TemperatureReading::new,
+                ),
+            ),
+        ]
     }
 
     /// True if every joint's angle is known and no older than `limit` at `now`.
