@@ -100,6 +100,7 @@ impl TableView {
                 .id_salt(("trials", several))
                 .sense(Sense::click())
                 .cell_layout(Layout::left_to_right(Align::Center))
+                .min_scrolled_height(0.0)
                 .auto_shrink(false);
             if several {
                 table = table.column(Column::exact(SESSION));
