@@ -22,7 +22,7 @@ use crate::ui::kit::look::Pane;
 use crate::ui::text::{faults, main, notices, panels, words};
 use crate::ui::theme;
 use crate::ui::window::message_log::MessageLog;
-use egui::{Align, CollapsingHeader, Layout, Ui, vec2};
+use egui::{Align, CollapsingHeader, Layout, Ui};
 
 /// What the view remembers.
 #[derive(Debug, Default)]
@@ -76,9 +76,7 @@ impl FaultsView {
 
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let height = drive_tiles::height(ui.max_rect());
-        let (_, tiles) = ui.allocate_space(vec2(ui.available_width(), height));
-        if let Some(pressed) = drive_tiles::tiles_ui(ui, tiles, pane, self.chosen) {
+        if let Some(pressed) = drive_tiles::tiles_ui(ui, pane, self.chosen) {
             self.chosen = (self.chosen != Some(pressed)).then_some(pressed);
             self.recordings.close();
         }
@@ -153,7 +151,7 @@ impl FaultsView {
             }
         });
         match self.section {
-            Section::Log => self.log.ui(ui, ui.available_rect_before_wrap(), pane),
+            Section::Log => self.log.ui(ui, pane),
             Section::Recordings => self.recordings.list_ui(ui, pane),
         }
     }

@@ -4,188 +4,122 @@ use crate::app::hand::Freshness;
 use crate::hand::Dof;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::joints::newest::newest;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_right, take_top};
+use crate::ui::kit::controls::{self, Button, Label, Weight};
 use crate::ui::kit::format;
-use crate::ui::kit::list::{INDENT, LAMP_AT, TITLE_LINE};
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{faults, words};
 use crate::ui::theme;
-use egui::{CornerRadius, Id, Rect, Ui, pos2, vec2};
+use egui::text::LayoutJob;
+use egui::{Align, Color32, Layout, Role, Sense, Ui, UiBuilder, WidgetInfo, vec2};
 
-/// Height of a tile with its cause, and without.
-const TALL: f32 = theme::DRIVE_TILE;
 /// Most lines of a cause.
-const CAUSE_LINES: u8 = 4;
-
-/// The height that the tiles take of a view of this size.
-pub(crate) fn height(view: Rect) -> f32 {
-    match (
-        view.width() >= theme::DRIVE_TILES_ROW,
-        view.height() >= theme::DRIVE_TILES_ROOMY,
-    ) {
-        (true, true) => TALL,
-        (true, false) => theme::DRIVE_TILE_LOW,
-        (false, true) => 2.0 * 84.0 + theme::GAP,
-        (false, false) => 2.0 * theme::DRIVE_TILE_LOW + theme::GAP,
-    }
-}
+const CAUSE_LINES: usize = 4;
 
 /// Draws them; the joint whose tile was pressed.
-pub(crate) fn tiles_ui(
-    ui: &mut Ui,
-    rect: Rect,
-    pane: &Pane<'_>,
-    chosen: Option<Dof>,
-) -> Option<Dof> {
-    let (columns, rows) = if rect.width() >= theme::DRIVE_TILES_ROW {
-        (6.0, 1.0)
-    } else {
-        (3.0, 2.0)
-    };
-    let gap = theme::GAP;
-    let size = vec2(
-        (rect.width() - gap * (columns - 1.0)) / columns,
-        (rect.height() - gap * (rows - 1.0)) / rows,
-    );
+pub(crate) fn tiles_ui(ui: &mut Ui, pane: &Pane<'_>, chosen: Option<Dof>) -> Option<Dof> {
     let mut pressed = None;
-    let mut at = rect.min;
-    for dof in Dof::ALL {
-        let place = Rect::from_min_size(at, size);
-        if tile_ui(ui, place, pane, dof, chosen == Some(dof)) {
-            pressed = Some(dof);
+    ui.columns(Dof::ALL.len(), |columns| {
+        for (ui, dof) in columns.iter_mut().zip(Dof::ALL) {
+            if tile_ui(ui, pane, dof, chosen == Some(dof)) {
+                pressed = Some(dof);
+            }
         }
-        at.x += size.x + gap;
-        if at.x + size.x > rect.right() + 1.0 {
-            at = pos2(rect.left(), at.y + size.y + gap);
-        }
-    }
+    });
     pressed
 }
 
-fn tile_ui(ui: &mut Ui, rect: Rect, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
-    let look = pane.look;
-    let palette = look.palette;
+/// A tile; in a high view it says the cause, too.
+fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
+    let (look, palette) = (pane.look, pane.look.palette);
     let joint = look.say(words::dof(dof));
     let said = DriveWords::of(pane, dof);
     let name = format!("{} {joint}", look.say(faults::DRIVE));
     let mut button = Button::new(joint, look.say(faults::DRIVE_TIP)).named(&name);
     button.selected = Some(chosen);
-    button.weight = if chosen {
-        Weight::Chosen
-    } else {
-        Weight::Normal
-    };
-    let response = button.ground(ui, look, rect, Id::unique(("drive", dof)));
-    let bar = Rect::from_min_size(
-        rect.min + vec2(0.0, theme::STEP),
-        vec2(theme::BAR, rect.height() - theme::GAP),
-    );
-    ui.painter()
-        .rect_filled(bar, CornerRadius::same(2), palette.dof[dof]);
-    let mut inner = rect.shrink2(vec2(theme::GAP, theme::STEP));
-    let mut head = take_top(&mut inner, TITLE_LINE);
-    inner.min.y -= theme::GAP;
-    unseen_mark_ui(ui, &mut head, pane, dof);
-    figures_ui(ui, &mut head, pane, dof);
-    Label::new(joint, palette.dof[dof]).put(ui, head);
-    let mut line = take_top(&mut inner, TITLE_LINE);
-    inner.min.y -= theme::GAP;
-    controls::lamp(ui, pos2(line.left() + LAMP_AT, line.center().y), said.lamp);
-    line.min.x += INDENT;
-    code_ui(ui, &mut line, pane, dof);
-    let ink = if said.freshness == Freshness::Live && said.text == palette.muted {
-        palette.text
-    } else {
-        said.text
-    };
-    Label::new(&said.title, ink)
-        .shorter(&said.short)
-        .put(ui, line);
-    if inner.height() > theme::CAUSE_LEAST
-        && let Some(words) = said.words
-    {
-        let room = inner.shrink2(vec2(0.0, 2.0));
-        let (font, ink) = (theme::small(), look.value(said.freshness, palette.muted));
-        let mut job =
-            egui::text::LayoutJob::simple(words.cause.to_owned(), font, ink, room.width());
-        let line = ui.fonts_mut(|fonts| fonts.row_height(&theme::small()));
-        job.wrap.max_rows = (1..=CAUSE_LINES)
-            .take_while(|lines| f32::from(*lines) * line <= room.height() + 1.0)
-            .last()
-            .map_or(1, usize::from);
-        let galley = ui.painter().layout_job(job);
-        ui.painter()
-            .with_clip_rect(room)
-            .galley(room.min, galley, ink);
+    if chosen {
+        button.weight = Weight::Chosen;
+    }
+    let is_high = ui.available_height() >= 560.0;
+    let height = if is_high { 112.0 } else { 52.0 };
+    let (id, rect) = ui.allocate_space(vec2(ui.available_width(), height));
+    let response = button.ground(ui, look, rect, id);
+    let bar = rect.shrink2(vec2(0.0, theme::STEP));
+    let bar = bar.with_max_x(rect.left() + theme::BAR);
+    ui.painter().rect_filled(bar, 2.0, palette.dof[dof]);
+    let inner = rect.shrink2(vec2(theme::GAP, theme::STEP));
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(inner));
+    ui.spacing_mut().item_spacing = vec2(theme::STEP, 0.0);
+    ui.spacing_mut().interact_size.y = theme::TITLE_LINE;
+    let right = Layout::right_to_left(Align::Center);
+    ui.horizontal(|ui| {
+        Label::new(joint, palette.dof[dof]).ui(ui);
+        ui.with_layout(right, |ui| {
+            unseen_mark_ui(ui, pane, dof);
+            figures_ui(ui, pane, dof);
+        });
+    });
+    ui.horizontal(|ui| {
+        fault_entry::lamp_ui(ui, Some(said.lamp));
+        ui.with_layout(right, |ui| {
+            let (status, _) = pane.newest(dof, pane.state.hand().sample.status);
+            if let Some(status) = status {
+                figure_ui(ui, &status.raw().to_string(), palette.muted);
+            }
+            let ink = match said.freshness == Freshness::Live && said.text == palette.muted {
+                true => palette.text,
+                false => said.text,
+            };
+            let title = Label::new(&said.title, ink).shorter(&said.short);
+            let left = Layout::left_to_right(Align::Center);
+            ui.with_layout(left, |ui| title.ui(ui));
+        });
+    });
+    if let Some(words) = said.words.filter(|_| is_high) {
+        let ink = look.value(said.freshness, palette.muted);
+        let cause = words.cause.to_owned();
+        let mut job = LayoutJob::simple(cause, theme::small(), ink, inner.width());
+        job.wrap.max_rows = CAUSE_LINES;
+        ui.label(job);
     }
     response.clicked()
 }
 
-/// Heat and current, short.
-fn figures_ui(ui: &mut Ui, head: &mut Rect, pane: &Pane<'_>, dof: Dof) {
-    let look = pane.look;
+/// Heat and current, as far as there is room.
+fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
     let sample = &pane.state.hand().sample;
-    let (heat, heat_age) = newest(pane, dof, sample.temperature);
-    let (current, current_age) = newest(pane, dof, sample.current);
+    let (heat, heat_age) = pane.newest(dof, sample.temperature);
+    let (current, current_age) = pane.newest(dof, sample.current);
     let heat = format::whole(heat.map(|heat| heat.raw().into()), 0);
-    let joint = look.say(words::dof(dof));
-    let name = controls::text_width(ui, joint, theme::body()) + theme::GAP;
     let current = format::whole(current.map(|current| current.raw().into()), 0);
     for (text, age) in [
         (format!("{heat} °C"), heat_age),
         (format!("{current} mA"), current_age),
     ] {
-        let width = controls::text_width(ui, &text, theme::number_small()) + 1.0;
-        if head.width() - width < name {
+        if controls::text_width(ui, &text, theme::number_small()) > ui.available_width() {
             return;
         }
-        let place = take_right(head, width);
-        Label::new(&text, look.value(age, look.palette.muted))
-            .font(theme::number_small())
-            .right()
-            .put(ui, place);
+        figure_ui(ui, &text, pane.look.value(age, pane.look.palette.muted));
     }
 }
 
-/// The status code as the hand sent it.
-fn code_ui(ui: &mut Ui, line: &mut Rect, pane: &Pane<'_>, dof: Dof) {
-    let palette = pane.look.palette;
-    let (status, _) = newest(pane, dof, pane.state.hand().sample.status);
-    if let Some(status) = status {
-        let code = status.raw().to_string();
-        let width = controls::text_width(ui, &code, theme::number_small()) + 1.0;
-        Label::new(&code, palette.faint)
-            .font(theme::number_small())
-            .right()
-            .put(ui, take_right(line, width));
-    }
+fn figure_ui(ui: &mut Ui, text: &str, color: Color32) {
+    Label::new(text, color).font(theme::number_small()).ui(ui);
 }
 
-/// A ring for faults of this joint that nobody has seen yet, cut from the right.
-pub(crate) fn unseen_mark_ui(ui: &mut Ui, line: &mut Rect, pane: &Pane<'_>, dof: Dof) {
-    let mut unseen = pane
-        .state
-        .hand()
-        .faults
-        .unseen()
-        .filter(|entry| entry.dof == dof);
-    let Some(first) = unseen.next() else { return };
-    let palette = pane.look.palette;
-    let color = if first.is_active() {
-        palette.bad
-    } else {
-        palette.warn
+/// A ring for faults of this joint that nobody has seen yet.
+pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
+    let mut unseen = pane.state.hand().faults.unseen();
+    let Some(first) = unseen.find(|entry| entry.dof == dof) else {
+        return;
     };
-    let place = take_right(line, theme::UNSEEN_MARK);
+    let palette = pane.look.palette;
+    let is_active = first.is_active();
+    let (place, response) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+    let color = if is_active { palette.bad } else { palette.warn };
     fault_entry::mark(ui, place.center(), color);
     let joint = pane.look.say(words::dof(dof));
     let name = format!("{joint} {}", pane.look.say(faults::UNSEEN_MARK));
-    let id = ui.next_auto_id();
-    ui.skip_ahead_auto_ids(1);
-    let response = ui.interact(place, id, egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let tip = fault_entry::title(pane, dof, first.what);
     response.on_hover_text(format!("{tip}\n{}", pane.look.say(faults::OVER_UNSEEN)));
 }

@@ -8,7 +8,7 @@ use crate::ui::theme;
 use egui::{Id, RichText, Ui};
 
 /// Width of the menu.
-const WIDTH: f32 = theme::MENU_WIDE;
+const WIDTH: f32 = 440.0;
 
 /// Gives the control with this id its menu. `command` is what the control would send as it stands.
 pub(crate) fn frame_menu_ui(ui: &Ui, pane: &Pane<'_>, id: Id, command: &HandCommand) {

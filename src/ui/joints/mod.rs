@@ -2,10 +2,10 @@
 pub(crate) mod drive_lamp;
 pub(crate) mod drive_tiles;
 pub(crate) mod frame_menu;
-pub(crate) mod newest;
 pub(crate) mod rail;
 pub(crate) mod readings;
 pub(crate) mod row;
+pub(crate) mod row_view;
 pub(crate) mod track;
 pub(crate) mod tracks;
 
@@ -14,17 +14,25 @@ use crate::app::hand::Freshness;
 use crate::app::hand::Preset;
 use crate::app::settings::AngleUnit;
 use crate::hand::Dof;
-use crate::ui::joints::row::Row;
+use crate::ui::joints::row_view::{RowStyle, height, row_ui};
 use crate::ui::joints::tracks::all_joints_ui;
 use crate::ui::kit::controls::{self, Button, Label, Weight};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::{layout, main};
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui, vec2};
+use egui::{Align, Layout, ScrollArea, Ui};
 
 /// No line of a row grows higher than this.
-const LINE_MAX: f32 = theme::LINE_HIGH;
+const LINE_MAX: f32 = 28.0;
+
+/// The lowest line of a row: a track fits in it, and on a display that is touched a finger presses it.
+const fn least_line(pixels_per_point: f32) -> f32 {
+    match pixels_per_point >= 1.5 {
+        true => 30.0,
+        false => 19.0,
+    }
+}
 
 /// The column of joints.
 #[derive(Debug, Clone, Copy, Default)]
@@ -46,27 +54,27 @@ impl JointsView {
         let look = pane.look;
         controls::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
-            let line = theme::least_line(ui.pixels_per_point());
+            let line = least_line(ui.pixels_per_point());
             let below = theme::CONTROL_LARGE + theme::CONTROL + 2.0 * theme::GAP;
             let room = ui.available_height() - theme::CONTROL - theme::STEP - below;
-            let fits = room >= 6.0 * row::height(line, true);
+            let fits = room >= 6.0 * height(line, true);
             let each = self.each.unwrap_or(fits);
             let head = look.say(main::JOINTS);
             controls::head_ui(ui, look, head, |ui| self.head_ui(ui, pane, each));
             let lines = if each { 4.0 } else { 2.0 };
             let line = ((room / 6.0 - theme::GAP) / lines).clamp(line, LINE_MAX.max(line));
+            let linked = self.linked;
+            let style = RowStyle { line, each, linked };
             ScrollArea::vertical()
                 .max_height(room)
                 .auto_shrink(false)
                 .show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = 0.0;
                     for dof in Dof::ALL {
-                        Row::new(dof, pane).ui(ui, pane, (line, each), self.linked);
+                        ui.push_id(dof, |ui| row_ui(ui, pane, dof, style));
                     }
                 });
-            let size = vec2(ui.available_width(), theme::CONTROL);
-            let (_, all) = ui.allocate_space(size);
-            all_joints_ui(ui, all, pane);
+            all_joints_ui(ui, pane);
             presets_ui(ui, pane);
         });
     }
@@ -86,19 +94,13 @@ impl JointsView {
         if button.ui(ui, look).clicked() {
             pane.actions.push(Action::AngleUnit(unit.next()));
         }
-        let button = Button::new(
-            look.say(main::LINK_FINGERS),
-            look.say(main::LINK_FINGERS_TIP),
-        )
-        .icon(theme::LINKED)
-        .choice(self.linked);
+        let button = Button::said(look, main::LINK_FINGERS, main::LINK_FINGERS_TIP);
+        let button = button.icon(theme::LINKED).choice(self.linked);
         if button.ui(ui, look).clicked() {
             self.toggle_link();
         }
-        let button = Button::new(look.say(main::EACH), look.say(main::EACH_TIP))
-            .icon(theme::TUNE)
-            .choice(each);
-        if button.ui(ui, look).clicked() {
+        let button = Button::said(look, main::EACH, main::EACH_TIP);
+        if button.icon(theme::TUNE).choice(each).ui(ui, look).clicked() {
             self.each = Some(!each);
         }
         age_ui(ui, pane);
@@ -140,14 +142,10 @@ fn presets_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ];
     ui.columns(presets.len(), |columns| {
         for (ui, (text, tip, preset)) in columns.iter_mut().zip(presets) {
-            let button = Button::new(look.say(text), look.say(tip)).large();
+            let button = Button::said(look, text, tip).large().disabled(not_armed);
             let wide = Layout::top_down_justified(Align::Center);
-            let button = button.disabled(not_armed);
-            if ui
-                .with_layout(wide, |ui| button.ui(ui, look))
-                .inner
-                .clicked()
-            {
+            let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
+            if pressed.clicked() {
                 pane.actions.push(Action::Preset(preset));
             }
         }

@@ -5,15 +5,14 @@ use crate::app::layout::Room;
 use crate::hand::{Dof, Quantity};
 use crate::ui::joints::age_ui;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::joints::newest::newest;
 use crate::ui::joints::row::Row;
 use crate::ui::kit::controls::{self, Button, Label};
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
-use crate::ui::text::{layout, main};
+use crate::ui::text::{Text, layout, main};
 use crate::ui::theme;
 use crate::ui::window::rooms::toggled;
-use egui::{Align, CornerRadius, Layout, Ui, vec2};
+use egui::{Align, Layout, Ui, vec2};
 
 /// Draws the rail. Where joints can be set, its head opens their column.
 pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
@@ -25,11 +24,8 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
             let name = format!("{} {title}", look.say(layout::OPEN));
             let button = Button::new(title, look.say(layout::OPEN_TIP)).named(&name);
             let wide = Layout::top_down_justified(Align::Center);
-            if ui
-                .with_layout(wide, |ui| button.ui(ui, look))
-                .inner
-                .clicked()
-            {
+            let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
+            if pressed.clicked() {
                 let layout = toggled(&pane.state.settings.layout, Room::Joints);
                 pane.actions.push(Action::Layout(layout));
             }
@@ -70,22 +66,22 @@ fn joint_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
                 name.on_hover_text(status);
             });
             ui.with_layout(Layout::top_down(Align::Max), |ui| {
-                let (angle, freshness) = newest(pane, dof, pane.state.hand().sample.angle);
+                let number_ui = |ui: &mut Ui, text: &str, name: Text, freshness| {
+                    let color = look.value(freshness, palette.text);
+                    let name = row.named(pane, name);
+                    Label::new(text, color).number().named(&name).ui(ui);
+                };
+                let (angle, freshness) = pane.newest(dof, pane.state.hand().sample.angle);
                 let text = format::whole(angle.map(|angle| i64::from(angle.raw())), 4);
-                let name = row.named(pane, main::NAME_ANGLE_ACTUAL);
-                let number = Label::new(&text, look.value(freshness, palette.text));
-                number.number().named(&name).ui(ui);
-                let (force, freshness) = newest(pane, dof, pane.state.hand().sample.force);
+                number_ui(ui, &text, main::NAME_ANGLE_ACTUAL, freshness);
+                let (force, freshness) = pane.newest(dof, pane.state.hand().sample.force);
                 let force = force.map(|force| i64::from(force.raw()));
                 let text = format::with_unit(force, 4, Quantity::Force.row().unit);
-                let name = row.named(pane, main::NAME_FORCE_ACTUAL);
-                let number = Label::new(&text, look.value(freshness, palette.text));
-                number.number().named(&name).ui(ui);
+                number_ui(ui, &text, main::NAME_FORCE_ACTUAL, freshness);
             });
         });
     });
     let place = shown.response.rect;
     let bar = place.with_max_x(place.left() + theme::BAR);
-    let round = CornerRadius::same(theme::ROUND_TINY);
-    ui.painter().rect_filled(bar, round, row.color);
+    ui.painter().rect_filled(bar, theme::ROUND_TINY, row.color);
 }

@@ -4,16 +4,16 @@ use crate::ui::kit::controls::focus_ring;
 use crate::ui::kit::look::Look;
 use crate::ui::theme;
 use egui::{
-    Color32, CornerRadius, EventFilter, Id, Key, Rect, Response, Sense, Stroke, StrokeKind, Ui,
-    WidgetInfo, accesskit, pos2, vec2,
+    Color32, EventFilter, Id, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
+    accesskit, pos2, vec2,
 };
 
 /// Height of the rail.
-const RAIL: f32 = theme::TRACK_RAIL;
-/// Distance of the lines of the rough zone.
-const HATCH: f32 = theme::HATCH;
+const RAIL: f32 = 6.0;
 /// Radius of the handle.
-const HANDLE: f32 = theme::HANDLE;
+const HANDLE: f32 = 7.0;
+/// How far what belongs to the rail reaches below it.
+const BELOW: f32 = 5.0;
 
 /// How the actual value is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,36 +53,44 @@ pub(crate) struct Track<'a> {
     pub(crate) peak: Option<i16>,
 }
 
-impl Track<'_> {
+impl<'a> Track<'a> {
+    /// A track that can be moved and shows nothing yet.
+    pub(crate) const fn new(name: &'a str, max: i16, color: Color32) -> Self {
+        Self {
+            name,
+            tip: "",
+            disabled: None,
+            max,
+            step: 10,
+            target: None,
+            actual: None,
+            draws: Actual::Bar,
+            color,
+            tick: None,
+            rough_from: None,
+            peak: None,
+        }
+    }
+
     /// Draws the track. The value that the person moved it to, if they did in this frame.
     pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Option<i16> {
-        let enabled = self.disabled.is_none();
-        let sense = if enabled {
-            Sense::click_and_drag()
-        } else {
-            Sense::hover()
+        let sense = match self.disabled {
+            None => Sense::click_and_drag(),
+            Some(_) => Sense::hover(),
         };
         let response = ui.interact(rect, id, sense);
-        let rail = Rect::from_center_size(
-            rect.center(),
-            vec2((rect.width() - 2.0 * HANDLE).max(1.0), RAIL),
-        );
-        let moved = if enabled {
-            self.moved(ui, &response, rail)
-        } else {
-            None
+        let moved = match self.disabled {
+            None => self.moved(ui, &response, rail_of(rect)),
+            Some(_) => None,
         };
         let shown = moved.or(self.target);
         self.name_it(ui, &response, shown);
         if ui.is_rect_visible(rect) {
-            self.paint(ui, look, &response, rail, shown);
+            self.paint(ui, look, &response, shown);
         }
-        let tip = match self.disabled {
-            Some(reason) => format!("{}\n{reason}", self.tip),
-            None => self.tip.to_owned(),
-        };
-        if !response.dragged() {
-            response.on_hover_text(tip);
+        if !was_held(ui, &response) {
+            let reason = self.disabled.unwrap_or_default();
+            response.on_hover_text(format!("{}\n{reason}", self.tip).trim());
         }
         moved.filter(|value| Some(*value) != self.target)
     }
@@ -117,13 +125,13 @@ impl Track<'_> {
             }
         }
         let asked = ui.input(|input| {
-            input
-                .accesskit_action_requests(response.id, accesskit::Action::SetValue)
-                .filter_map(|request| match request.data {
-                    Some(accesskit::ActionData::NumericValue(value)) => Some(value),
-                    _ => None,
-                })
-                .last()
+            let set = accesskit::Action::SetValue;
+            let requests = input.accesskit_action_requests(response.id, set);
+            let value = |data: Option<&accesskit::ActionData>| match data {
+                Some(accesskit::ActionData::NumericValue(value)) => Some(*value),
+                _ => None,
+            };
+            requests.filter_map(|it| value(it.data.as_ref())).last()
         });
         if let Some(value) = asked {
             return Some(self.nearest(value));
@@ -191,109 +199,57 @@ impl Track<'_> {
         rail.left() + rail.width() * part.clamp(0.0, 1.0)
     }
 
-    fn paint(&self, ui: &Ui, look: Look, response: &Response, rail: Rect, shown: Option<i16>) {
-        let palette = look.palette;
-        let painter = ui.painter();
-        let round = CornerRadius::same(theme::ROUND_TRACK);
+    fn paint(&self, ui: &Ui, look: Look, response: &Response, shown: Option<i16>) {
+        let (palette, painter) = (look.palette, ui.painter());
+        let rail = rail_of(response.rect);
         let ground = rail.expand2(vec2(HANDLE - 1.0, 0.0));
-        painter.rect(
-            ground,
-            round,
-            palette.sunken,
-            Stroke::new(1.0, palette.edge),
-            StrokeKind::Inside,
-        );
+        let edge = Stroke::new(1.0, palette.edge);
+        painter.rect(ground, 3.0, palette.sunken, edge, StrokeKind::Inside);
         if let Some(from) = self.rough_from {
-            self.paint_rough(ui, look, ground, self.x_of(rail, from));
+            paint_rough(ui, look, ground.with_min_x(self.x_of(rail, from)));
         }
         if let Some(tick) = self.tick {
-            let x = self.x_of(rail, tick);
-            let line = [
-                pos2(x, rail.bottom() + 2.0),
-                pos2(x, rail.bottom() + theme::TICK),
-            ];
-            painter.line_segment(line, Stroke::new(1.0, palette.faint));
+            let below = rail.bottom() + 2.0..=rail.bottom() + BELOW;
+            painter.vline(self.x_of(rail, tick), below, (1.0, palette.faint));
         }
-        let actual = self.actual.map(|value| self.x_of(rail, value));
         let target = shown.map(|value| self.x_of(rail, value));
-        self.paint_actual(ui, ground, rail, actual, target);
+        self.paint_actual(ui, rail, target);
         if let Some(peak) = self.peak.filter(|peak| *peak > 0) {
-            let x = self.x_of(rail, peak);
-            let line = [pos2(x, rail.top() - 1.0), pos2(x, rail.bottom() + 1.0)];
-            painter.line_segment(line, Stroke::new(2.0, self.color));
+            let across = rail.y_range().expand(1.0);
+            painter.vline(self.x_of(rail, peak), across, (2.0, self.color));
         }
         if let Some(x) = target {
-            self.paint_handle(ui, look, response, rail, x);
+            self.paint_handle(ui, look, response, pos2(x, rail.center().y));
         }
-        focus_ring(ui, look, response, ground.expand2(vec2(0.0, theme::TICK)));
+        focus_ring(ui, look, response, ground.expand2(vec2(0.0, BELOW)));
     }
 
-    /// Slanted lines on the far end of the rail: more than a colour.
-    fn paint_rough(&self, ui: &Ui, look: Look, ground: Rect, from: f32) {
-        let zone = ground.with_min_x(from).shrink(1.0);
-        if zone.width() <= 0.0 {
-            return;
-        }
-        let painter = ui.painter_at(zone);
-        painter.rect_filled(
-            zone,
-            CornerRadius::ZERO,
-            look.palette.wash(look.palette.warn),
-        );
-        let stroke = Stroke::new(1.0, look.palette.warn.gamma_multiply(0.45));
-        let mut x = zone.left();
-        while x < zone.right() + zone.height() {
-            painter.line_segment(
-                [pos2(x - zone.height(), zone.bottom()), pos2(x, zone.top())],
-                stroke,
-            );
-            x += HATCH;
-        }
-    }
-
-    fn paint_actual(
-        &self,
-        ui: &Ui,
-        ground: Rect,
-        rail: Rect,
-        actual: Option<f32>,
-        target: Option<f32>,
-    ) {
-        let painter = ui.painter();
-        let Some(x) = actual else { return };
+    fn paint_actual(&self, ui: &Ui, rail: Rect, target: Option<f32>) {
+        let Some(actual) = self.actual else { return };
+        let (painter, x) = (ui.painter(), self.x_of(rail, actual));
         match self.draws {
-            Actual::Bar => {
-                if self.actual.is_some_and(|value| value > 0) {
-                    let bar = ground.with_max_x(x).shrink(1.0);
-                    painter.rect_filled(bar, CornerRadius::same(2), self.color);
-                }
+            Actual::Bar if actual > 0 => {
+                let bar = rail.with_min_x(rail.left() - HANDLE + 1.0).with_max_x(x);
+                painter.rect_filled(bar.shrink(1.0), 2.0, self.color);
             }
+            Actual::Bar => {}
             Actual::Marker => {
                 if let Some(target) = target {
                     let span = rail.with_min_x(x.min(target)).with_max_x(x.max(target));
                     let gap = self.color.gamma_multiply(0.45);
-                    painter.rect_filled(span.shrink2(vec2(0.0, 1.0)), CornerRadius::ZERO, gap);
+                    painter.rect_filled(span.shrink2(vec2(0.0, 1.0)), 0.0, gap);
                 }
-                let marker = Rect::from_center_size(
-                    pos2(x, rail.center().y),
-                    vec2(theme::STEP, theme::MARKER),
-                );
-                painter.rect_filled(marker, CornerRadius::same(2), self.color);
+                let marker = Rect::from_center_size(pos2(x, rail.center().y), vec2(4.0, 16.0));
+                painter.rect_filled(marker, 2.0, self.color);
             }
         }
     }
 
-    fn paint_handle(&self, ui: &Ui, look: Look, response: &Response, rail: Rect, x: f32) {
-        let palette = look.palette;
-        let painter = ui.painter();
-        let center = pos2(x, rail.center().y);
+    fn paint_handle(&self, ui: &Ui, look: Look, response: &Response, center: Pos2) {
+        let (palette, painter) = (look.palette, ui.painter());
         if self.disabled.is_some() {
-            painter.circle(
-                center,
-                HANDLE - theme::FOCUS_LINE,
-                palette.card,
-                Stroke::new(theme::LINE_THIN, palette.faint),
-            );
+            let edge = Stroke::new(1.2, palette.faint);
+            painter.circle(center, HANDLE - theme::FOCUS_LINE, palette.card, edge);
             if self.draws == Actual::Marker && self.actual.is_some() {
                 painter.circle_filled(center, 2.0, self.color);
             }
@@ -306,8 +262,45 @@ impl Track<'_> {
     }
 }
 
+/// The line that the middle of the handle runs along.
+fn rail_of(rect: Rect) -> Rect {
+    let width = (rect.width() - 2.0 * HANDLE).max(1.0);
+    Rect::from_center_size(rect.center(), vec2(width, RAIL))
+}
+
+/// True from a press on the track until the pointer has left it: a tooltip would cover the joint that is being set.
+fn was_held(ui: &Ui, response: &Response) -> bool {
+    let held = Id::unique("held track");
+    let before = ui.data(|data| data.get_temp(held)) == Some(response.id);
+    let down = response.is_pointer_button_down_on();
+    let is_held = down || before && response.contains_pointer();
+    if is_held && !before {
+        ui.data_mut(|data| data.insert_temp(held, response.id));
+    } else if before && !is_held {
+        ui.data_mut(|data| data.remove::<Id>(held));
+    }
+    is_held
+}
+
+/// Slanted lines on the far end of the rail: more than a colour.
+fn paint_rough(ui: &Ui, look: Look, zone: Rect) {
+    let zone = zone.shrink(1.0);
+    if zone.width() <= 0.0 {
+        return;
+    }
+    let (painter, warn) = (ui.painter_at(zone), look.palette.warn);
+    painter.rect_filled(zone, 0.0, look.palette.wash(warn));
+    let stroke = Stroke::new(1.0, warn.gamma_multiply(0.45));
+    let mut x = zone.left();
+    while x < zone.right() + zone.height() {
+        let low = pos2(x - zone.height(), zone.bottom());
+        painter.line_segment([low, pos2(x, zone.top())], stroke);
+        x += 5.0;
+    }
+}
+
 /// Points of a touchpad that count as one notch of a wheel.
-const NOTCH: f32 = theme::NOTCH;
+const NOTCH: f32 = 16.0;
 
 /// More steps than this in one frame are not made by a hand.
 const MOST_STEPS: i16 = 100;
@@ -337,6 +330,5 @@ fn wheel_steps(input: &mut egui::InputState) -> i16 {
 }
 
 fn clip(count: usize) -> i16 {
-    // More steps than this in one frame are not made by a hand.
-    i16::try_from(count.min(100)).unwrap_or(100)
+    i16::try_from(count).map_or(MOST_STEPS, |count| count.min(MOST_STEPS))
 }

@@ -487,31 +487,6 @@ pub(crate) fn choose_ui<T: Clone + PartialEq>(
     *chosen != before
 }
 
-/// The ground of a card; what is left inside its padding.
-pub(crate) fn card(ui: &Ui, look: Look, rect: Rect) -> Rect {
-    ui.painter().rect(
-        rect,
-        CornerRadius::same(theme::ROUND),
-        look.palette.card,
-        Stroke::new(1.0, look.palette.edge),
-        StrokeKind::Inside,
-    );
-    rect.shrink(theme::PAD)
-}
-
-/// A card with a title; the title row's free right part, and what is below.
-pub(crate) fn titled_card(ui: &mut Ui, look: Look, rect: Rect, title: &str) -> (Rect, Rect) {
-    let inner = card(ui, look, rect);
-    let (row, rest) = inner.split_top_bottom_at_y(inner.top() + theme::CONTROL);
-    let width = text_width(ui, title, theme::title()).min(row.width()) + 1.0;
-    let (left, right) = row.split_left_right_at_x(row.left() + width);
-    Label::new(title, look.palette.text)
-        .font(theme::title())
-        .put(ui, left);
-    let rest = rest.with_min_y(rest.top() + theme::GAP);
-    (right.with_min_x(right.left() + theme::GAP), rest)
-}
-
 /// True in the frame in which a place is pressed, or its button clicked by a key or a screen reader. A stop does not
 /// wait for the release, and is not lost where a slow frame sees press, release and a pointer that is gone already.
 pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
@@ -560,31 +535,6 @@ pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
         .text(rect.center(), center, theme::WARNING, font, color);
 }
 
-/// A small closed or open padlock.
-pub(crate) fn padlock(ui: &Ui, rect: Rect, color: Color32, closed: Lock) {
-    let icon = match closed {
-        Lock::Closed => theme::LOCKED,
-        Lock::Open => theme::UNLOCKED,
-    };
-    sign(ui, rect, icon, color);
-}
-
-/// How a padlock is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Lock {
-    /// Shut.
-    Closed,
-    /// Open.
-    Open,
-}
-
-/// Cuts a piece of the given width from the right, with a gap.
-pub(crate) fn take_right(rect: &mut Rect, width: f32) -> Rect {
-    let (rest, piece) = rect.split_left_right_at_x(rect.right() - width);
-    *rect = rest.with_max_x(rest.right() - theme::GAP);
-    piece
-}
-
 /// Cuts a piece of the given width from the left, with a gap.
 pub(crate) fn take_left(rect: &mut Rect, width: f32) -> Rect {
     let (piece, rest) = rect.split_left_right_at_x(rect.left() + width);
@@ -597,9 +547,4 @@ pub(crate) fn take_top(rect: &mut Rect, height: f32) -> Rect {
     let (piece, rest) = rect.split_top_bottom_at_y(rect.top() + height);
     *rect = rest.with_min_y(rest.top() + theme::GAP);
     piece
-}
-
-/// A piece of the given height around the middle.
-pub(crate) fn middle(rect: Rect, height: f32) -> Rect {
-    Rect::from_center_size(rect.center(), vec2(rect.width(), height.min(rect.height())))
 }

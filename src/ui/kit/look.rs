@@ -5,7 +5,7 @@ use crate::app::hand::Freshness;
 use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
-use crate::hand::{Dof, Moment};
+use crate::hand::{Dof, Moment, PerDof, Timed};
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme::Palette;
 use egui::{Color32, Id};
@@ -103,6 +103,16 @@ impl Pane<'_> {
     /// How fresh something asked for at `asked` is.
     pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
         self.state.hand().freshness(asked)
+    }
+
+    /// The newest value of one joint, and how fresh it is.
+    pub(crate) fn newest<T: Copy>(
+        &self,
+        dof: Dof,
+        group: Option<Timed<PerDof<T>>>,
+    ) -> (Option<T>, Freshness) {
+        let freshness = self.freshness(group.map(|group| group.asked));
+        (group.map(|group| group.value[dof]), freshness)
     }
 }
 

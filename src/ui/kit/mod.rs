@@ -6,7 +6,6 @@ pub(crate) mod card_tests;
 pub(crate) mod controls;
 pub(crate) mod dash;
 pub(crate) mod format;
-pub(crate) mod list;
 pub(crate) mod look;
 pub(crate) mod number;
 pub(crate) mod reorder;

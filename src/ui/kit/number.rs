@@ -32,18 +32,17 @@ pub(crate) struct NumberField<'a> {
 impl NumberField<'_> {
     /// Draws the field where `ui` is. The number that was typed and confirmed with Enter in this frame.
     pub(crate) fn ui(self, ui: &mut Ui, look: Look, typing: &mut Typing) -> Option<f64> {
-        let (id, rect) = ui.allocate_space(vec2(theme::FIELD, theme::CONTROL));
-        self.put(ui, look, typing, rect, id)
+        let height = theme::CONTROL.min(ui.spacing().interact_size.y);
+        let place = ui.allocate_space(vec2(theme::FIELD, height));
+        self.at(ui, look, typing, place)
     }
 
-    /// Draws the field. The number that was typed and confirmed with Enter in this frame.
-    pub(crate) fn put(
+    fn at(
         self,
         ui: &mut Ui,
         look: Look,
         typing: &mut Typing,
-        rect: Rect,
-        id: Id,
+        (id, rect): (Id, Rect),
     ) -> Option<f64> {
         let decimals = self.decimals;
         let shown = self
@@ -67,7 +66,7 @@ impl NumberField<'_> {
         } else {
             shown
         };
-        let response = self.edit(ui, look, typing, &mut text, rect, id);
+        let response = self.edit(ui, (look, typing), &mut text, (id, rect));
         if response.gained_focus() {
             select_all(ui, id, &text);
         }
@@ -104,11 +103,9 @@ impl NumberField<'_> {
     fn edit(
         &self,
         ui: &mut Ui,
-        look: Look,
-        typing: &Typing,
+        (look, typing): (Look, &Typing),
         text: &mut String,
-        rect: Rect,
-        id: Id,
+        (id, rect): (Id, Rect),
     ) -> egui::Response {
         let palette = look.palette;
         let enabled = self.disabled.is_none();

@@ -12,7 +12,7 @@ texts! {
     ARM: "Arm or disarm", "使能或取消使能";
     LINK: "Link the fingers", "四指联动";
     UNIT: "Unit of angles", "角度单位";
-    UNDO_TARE: "Take taring back", "撤销清零";
+    UNDO_TARE: "Take taring back", "撤销去皮";
     NOTE: "Write a note", "写备注";
     PAUSE: "Pause the plots", "暂停曲线";
     LANGUAGE: "English or Chinese", "中文或英文";
@@ -22,6 +22,9 @@ texts! {
     JOINTS: "Joint that the arrows move", "方向键控制的关节";
     MEASURING: "Measuring", "测量";
     WINDOW: "Window", "窗口";
-    ON_TRACKS: "On a track: arrows 1 step, with Shift 10; wheel; Tab to the next.", "在滑轨上：方向键走一步，加 Shift 走十步；滚轮；Tab 到下一个。";
-    IN_FIELDS: "In a field: Enter takes the number, Esc stops the hand.", "在输入框里：回车确认数值，Esc 停止手。";
+    ZOOM_IN: "Everything larger", "放大";
+    ZOOM_OUT: "Everything smaller", "缩小";
+    ZOOM_RESET: "Original size", "原始大小";
+    ON_TRACKS: "On a track: arrows 10, with Shift 100; wheel; Tab to the next.", "在滑轨上：方向键每次 10，按住 Shift 每次 100；滚轮；Tab 到下一个。";
+    IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc gives the old one back and stops the hand.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值并停止手。";
 }

@@ -111,7 +111,8 @@ texts! {
     SPEED_TIP: "1000 runs the whole stroke in 600 ms without load.", "1000 表示空载时 600 ms 走完全程。";
     STAGED: "Not armed: applies on arming.", "未使能：使能后生效。";
     NUMBER_TIP: "Type a number and press Enter. Nothing is sent before.", "输入数字后按回车。回车之前不会发送。";
-    LOCK_TIP: "Locked: this joint is left alone by Open and by its slider.", "锁定后，“张开”与滑块都不会移动该自由度。";
+    LOCK_TIP: "Locks the joint: it is left alone by Open and by its slider.", "锁定：“张开”与滑块都不再移动该自由度。";
+    UNLOCK_TIP: "Locked: left alone by Open and by its slider. Press to unlock.", "已锁定：“张开”与滑块都不会移动该自由度。按下可解锁。";
     IMPACT_TIP: "Impact zone: the threshold stops the drive, it does not limit the force of a fast finger.\nMeasured on a sister hand. Slow down to 25 before contact to stay within 100 g. The slanted part of each track is this zone.", "冲击区：阈值只让驱动器停止，不能限制快速手指的冲击力。\n数据取自同系列型号实测。接触前降到速度 25，可控制在 100 g 以内。滑轨上的斜线段即为此区。";
     FRAME_TITLE: "What this control sends", "此控件发送的报文";
     FRAME_COPY: "Copy as", "复制为";

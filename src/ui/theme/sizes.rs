@@ -63,14 +63,6 @@ pub(crate) const FAULTS: f32 = 104.0;
 pub(crate) const FAULTS_LEAST: f32 = 84.0;
 /// Widest menu.
 pub(crate) const MENU_WIDTH: f32 = 220.0;
-/// Width of the list of keys.
-pub(crate) const KEY_LIST_WIDTH: f32 = 640.0;
-/// Height of one of its rows.
-pub(crate) const KEY_ROW: f32 = 24.0;
-/// Width of the keys in a row.
-pub(crate) const KEY_COLUMN: f32 = 112.0;
-/// Room above and below a drawn key.
-pub(crate) const KEY_CAP_MARGIN: f32 = 2.0;
 
 /// Corner radius of a badge.
 pub(crate) const ROUND_PILL: u8 = 12;
@@ -78,8 +70,6 @@ pub(crate) const ROUND_PILL: u8 = 12;
 pub(crate) const ROUND_TRACK: u8 = 3;
 /// Width of the ring around what has the keyboard.
 pub(crate) const FOCUS_LINE: f32 = 1.5;
-/// Width of a thin edge.
-pub(crate) const LINE_THIN: f32 = 1.2;
 /// What a lamp shines beyond its edge; the dot in a handle.
 pub(crate) const HALO: f32 = 2.5;
 /// Width of a sign.
@@ -104,67 +94,23 @@ pub(crate) const STOP_WIDTH: f32 = 148.0;
 pub(crate) const ARM_WIDTH: f32 = 96.0;
 /// Height of a caption over its figure.
 pub(crate) const FIGURE: f32 = 34.0;
-/// A small square button.
-pub(crate) const SMALL_BUTTON: f32 = 20.0;
 /// A line of a paragraph.
 pub(crate) const TEXT_LINE: f32 = 16.0;
 /// A line of a list.
 pub(crate) const LIST_LINE: f32 = 17.0;
 /// A row of figures.
 pub(crate) const FIGURE_ROW: f32 = 18.0;
-/// The lowest line that a track fits in.
-pub(crate) const LINE_LOW: f32 = 19.0;
-/// The lowest line that a finger can press, at [`TOUCH_SCALE`].
-pub(crate) const LINE_TOUCH: f32 = 30.0;
-/// Pixels a point from which a display is taken for one that is touched.
-pub(crate) const TOUCH_SCALE: f32 = 1.5;
 
-/// The lowest line of a joint's row on a display of this scale.
-pub(crate) const fn least_line(pixels_per_point: f32) -> f32 {
-    if pixels_per_point >= TOUCH_SCALE {
-        LINE_TOUCH
-    } else {
-        LINE_LOW
-    }
-}
 /// The first line of an entry.
 pub(crate) const TITLE_LINE: f32 = 20.0;
-/// The highest line that a track is drawn in.
-pub(crate) const LINE_HIGH: f32 = 28.0;
-/// Width of a caption in a row.
-pub(crate) const CAPTION: f32 = 36.0;
 /// Width of a number field.
 pub(crate) const FIELD: f32 = 52.0;
-/// What the edges of a field take.
-pub(crate) const FIELD_MARGIN: f32 = 16.0;
 /// What the edges of a number field take.
 pub(crate) const FIELD_MARGIN_SMALL: f32 = 14.0;
-/// Height of a drive's tile with the cause of what it says.
-pub(crate) const DRIVE_TILE: f32 = 112.0;
-/// Width of the readings of a joint.
-pub(crate) const READING: f32 = 112.0;
-/// Width of a joint's name.
-pub(crate) const NAME_COLUMN: f32 = 96.0;
-/// Width of current and temperature where room is short.
-pub(crate) const DRIVE_COLUMN: f32 = 104.0;
 /// Width of counts.
 pub(crate) const COUNT_COLUMN: f32 = 96.0;
-/// Where the bar below a number begins, from its middle.
-pub(crate) const BELOW_NUMBER: f32 = 8.0;
 /// Height of the rail of a track.
 pub(crate) const TRACK_RAIL: f32 = 6.0;
-/// Radius of a track's handle.
-pub(crate) const HANDLE: f32 = 7.0;
-/// Height of the mark of an actual value.
-pub(crate) const MARKER: f32 = 16.0;
-/// Distance of slanted lines.
-pub(crate) const HATCH: f32 = 5.0;
-/// How far a tick reaches below the rail.
-pub(crate) const TICK: f32 = 5.0;
-/// Points of a touchpad that count as one notch of a wheel.
-pub(crate) const NOTCH: f32 = 16.0;
-/// Width of a menu that shows frames.
-pub(crate) const MENU_WIDE: f32 = 440.0;
 /// Width of a card over the window.
 pub(crate) const CARD_WIDTH: f32 = 560.0;
 /// Space inside it.

@@ -1,19 +1,7 @@
 //! Lengths of the single views in points: tiles, columns, rows. No colours, no fonts.
 
-/// Width from which six tiles stand in one row.
-pub(crate) const DRIVE_TILES_ROW: f32 = 840.0;
-/// Height of a tile without its cause.
-pub(crate) const DRIVE_TILE_LOW: f32 = 52.0;
-/// Height of the view from which tiles say the cause, too.
-pub(crate) const DRIVE_TILES_ROOMY: f32 = 560.0;
 /// Size of the number on a tab.
 pub(crate) const FAULT_BADGE: f32 = 16.0;
-/// Width of a message's age.
-pub(crate) const MESSAGE_AGE: f32 = 52.0;
-/// The filter's field has a row of its own where it would be narrower.
-pub(crate) const MESSAGE_FIELD: f32 = 96.0;
-/// Above and below the text of a message.
-pub(crate) const MESSAGE_AIR: f32 = 3.0;
 /// Width of the readings: least and most.
 pub(crate) const TIP_READINGS: (f32, f32) = (150.0, 230.0);
 /// Height from which the forces find room over the channels.
@@ -28,14 +16,8 @@ pub(crate) const FIELD_ROW: f32 = 17.0;
 pub(crate) const FRAME_ROW: f32 = 19.0;
 /// Width of the scroll bar.
 pub(crate) const FRAME_BAR: f32 = 12.0;
-/// Room of a mark for what nobody has seen yet.
-pub(crate) const UNSEEN_MARK: f32 = 12.0;
 /// Width of a ring.
 pub(crate) const RING_LINE: f32 = 1.6;
-/// Where the middle of the first line of a message is.
-pub(crate) const MESSAGE_FIRST: f32 = 7.0;
-/// Height of a line of small words.
-pub(crate) const MESSAGE_LINE: f32 = 14.0;
 /// Least and greatest length of the head of an arrow.
 pub(crate) const ARROW_HEAD: (f32, f32) = (3.0, 8.0);
 /// Width of the line of a force.
@@ -52,7 +34,3 @@ pub(crate) const FRAME_WRONG: egui::Vec2 = egui::vec2(12.0, 11.0);
 pub(crate) const NUMBER_INSET: egui::Margin = egui::Margin::symmetric(6, 0);
 /// Room inside a text field.
 pub(crate) const FIELD_INSET: egui::Margin = egui::Margin::symmetric(8, 2);
-/// Room inside a text field in a low row.
-pub(crate) const FIELD_INSET_LOW: egui::Margin = egui::Margin::symmetric(8, 0);
-/// Height from which a drive's tile says the cause.
-pub(crate) const CAUSE_LEAST: f32 = 26.0;

@@ -5,7 +5,7 @@ use crate::app::readings::friction::{Grip, Hold, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::history::Series;
-use crate::ui::joints::track::{Actual, Track};
+use crate::ui::joints::track::Track;
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::Label;
 use crate::ui::kit::format;
@@ -236,19 +236,13 @@ impl TipDetail {
         Label::new(&caption, look.palette.muted)
             .small()
             .put(ui, left);
+        let name = look.say(panels::TIP_FRICTION_NAME);
         let track = Track {
-            name: look.say(panels::TIP_FRICTION_NAME),
             tip: look.say(panels::TIP_FRICTION_TIP),
-            disabled: None,
-            max: FRICTION_MAX,
             step: 1,
             target: Some(self.friction_percent),
-            actual: None,
-            draws: Actual::Bar,
-            color: look.palette.accent,
             tick: Some(FRICTION_PERCENT),
-            rough_from: None,
-            peak: None,
+            ..Track::new(name, FRICTION_MAX, look.palette.accent)
         };
         if let Some(percent) = track.put(ui, look, right, Id::unique("tip friction")) {
             self.friction_percent = percent.max(1);

@@ -1,12 +1,11 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight, take_left, take_right};
+use crate::ui::kit::controls::{self, Button, Label, Weight};
 use crate::ui::kit::look::Look;
 use crate::ui::text::{Text, keys};
 use crate::ui::theme;
-use crate::ui::window::keys::{ROWS, Wish};
-use egui::{Area, CornerRadius, Id, Order, Rect, Sense, Stroke, StrokeKind, Ui, vec2};
+use crate::ui::window::keys::{ROWS, Wish, ZOOM};
+use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
 
 /// The list, shown or not.
 #[derive(Debug, Default)]
@@ -33,132 +32,99 @@ impl KeyList {
         if !self.open {
             return;
         }
-        let size = vec2(theme::KEY_LIST_WIDTH, height());
-        let rect = Rect::from_center_size(place.center(), size.min(place.size()));
-        let id = Id::unique("key list");
-        let area = Area::new(id).order(Order::Foreground).fixed_pos(rect.min);
-        let shut = area.show(ui.ctx(), |ui| list_ui(ui, rect, look)).inner;
-        let beside = ui.input(|input| {
-            let at = input.pointer.interact_pos();
-            input.pointer.any_pressed() && at.is_some_and(|at| !rect.contains(at))
-        });
-        if shut || beside && !self.fresh {
+        let edge = Stroke::new(theme::LINE, look.palette.accent);
+        let frame = Frame::window(ui.style()).stroke(edge);
+        let window = Window::new(look.say(keys::TITLE))
+            .id(Id::unique("key list"))
+            .title_bar(false)
+            .resizable(false)
+            .frame(frame)
+            .pivot(Align2::CENTER_CENTER)
+            .fixed_pos(place.center())
+            .constrain_to(place);
+        let shown = window.show(ui.ctx(), |ui| list_ui(ui, look));
+        let Some(shown) = shown else { return };
+        let beside = shown.response.clicked_elsewhere();
+        if shown.inner == Some(true) || beside && !self.fresh {
             self.open = false;
         }
         self.fresh = false;
     }
 }
 
-/// The parts of the list: two columns of two.
-fn parts() -> [[(Text, Vec<Wish>); 2]; 2] {
-    let of = |wanted: fn(Wish) -> bool| {
-        let mut wishes: Vec<Wish> = ROWS
-            .iter()
-            .map(|row| row.wish)
-            .filter(|wish| wanted(*wish))
-            .collect();
+/// The columns of the list: titles, each with what is below it.
+fn columns() -> [Vec<(Text, Vec<(String, Text)>)>; 3] {
+    let part = |title: Text, wanted: fn(Wish) -> bool| {
+        let wishes = ROWS.iter().map(|row| row.wish);
+        let mut wishes: Vec<Wish> = wishes.filter(|wish| wanted(*wish)).collect();
         wishes.dedup();
-        wishes
+        let named = |wish: Wish| (wish.keys(), wish.words());
+        (title, wishes.into_iter().map(named).collect::<Vec<_>>())
     };
-    let motion = of(|wish| {
+    let motion = part(keys::MOTION, |wish| {
         matches!(
             wish,
             Wish::Stop | Wish::ArmOrNot | Wish::Open | Wish::Half | Wish::Close
         )
     });
-    let joints = of(|wish| matches!(wish, Wish::Joint(_) | Wish::LinkFingers | Wish::AngleUnit));
-    let measuring =
-        of(|wish| matches!(wish, Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Note));
-    let window = of(|wish| {
+    let joints = part(keys::JOINTS, |wish| {
+        matches!(wish, Wish::Joint(_) | Wish::LinkFingers | Wish::AngleUnit)
+    });
+    let measuring = part(keys::MEASURING, |wish| {
+        matches!(wish, Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Note)
+    });
+    let mut window = part(keys::WINDOW, |wish| {
         matches!(
             wish,
             Wish::View(_) | Wish::Language | Wish::Theme | Wish::List
         )
     });
-    [
-        [(keys::MOTION, motion), (keys::JOINTS, joints)],
-        [(keys::MEASURING, measuring), (keys::WINDOW, window)],
-    ]
-}
-
-fn height() -> f32 {
-    let rows = |column: &[(Text, Vec<Wish>)]| -> usize {
-        column.iter().map(|(_, wishes)| wishes.len() + 1).sum()
-    };
-    let tallest = parts().iter().map(|column| rows(column)).max();
-    let rows = u16::try_from(tallest.unwrap_or_default()).unwrap_or(u16::MAX);
-    let foot = 2.0 * theme::KEY_ROW;
-    f32::from(rows) * theme::KEY_ROW + foot + theme::CONTROL_LARGE + 2.0 * theme::PAD + theme::GAP
+    let zoom = ZOOM.map(|(key, words)| (key.to_owned(), words));
+    window.1.extend(zoom);
+    [vec![motion, measuring], vec![joints], vec![window]]
 }
 
 /// True if it is to be hidden.
-fn list_ui(ui: &mut Ui, rect: Rect, look: Look) -> bool {
+fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    // Nothing below it is pressed through it.
-    ui.allocate_rect(rect, Sense::click());
-    let round = CornerRadius::same(theme::ROUND);
-    let painter = ui.painter();
-    painter.rect_filled(rect, round, palette.card);
-    let edge = Stroke::new(theme::LINE, palette.accent);
-    painter.rect_stroke(rect, round, edge, StrokeKind::Inside);
-    let mut inner = rect.shrink(theme::PAD);
-    let mut head = row(&mut inner, theme::CONTROL_LARGE);
-    let shut = Button::new(look.say(keys::SHUT), look.say(keys::CLOSE))
-        .named(look.say(keys::CLOSE))
-        .weight(Weight::Quiet);
-    let width = controls::text_width(ui, look.say(keys::SHUT), theme::body()) + 2.0 * theme::PAD;
-    let place = take_right(&mut head, width);
-    let shut = shut
-        .put(ui, look, place, Id::unique("close key list"))
-        .clicked();
-    Label::new(look.say(keys::TITLE), palette.text)
-        .font(theme::title())
-        .put(ui, head);
-    let foot = inner.bottom() - 2.0 * theme::KEY_ROW;
-    let (inner, foot) = inner.split_top_bottom_at_y(foot);
-    let (upper, lower) = foot.split_top_bottom_at_fraction(0.5);
-    for (text, place) in [(keys::ON_TRACKS, upper), (keys::IN_FIELDS, lower)] {
-        Label::new(look.say(text), palette.muted)
-            .small()
-            .put(ui, place);
-    }
-    let (left, right) = inner.split_left_right_at_fraction(0.5);
-    let columns = [left.with_max_x(left.right() - theme::PAD), right];
-    for (mut column, parts) in columns.into_iter().zip(parts()) {
-        for (title, wishes) in parts {
-            let place = row(&mut column, theme::KEY_ROW);
-            Label::new(look.say(title), palette.accent)
-                .small()
-                .put(ui, place);
-            for wish in wishes {
-                let place = row(&mut column, theme::KEY_ROW);
-                row_ui(ui, place, look, wish);
-            }
+    let shut = controls::head_ui(ui, look, look.say(keys::TITLE), |ui| {
+        let shut = Button::new(look.say(keys::SHUT), "").weight(Weight::Quiet);
+        shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
+    });
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0 * theme::PAD;
+        for (number, parts) in columns().into_iter().enumerate() {
+            let grid = Grid::new(("keys", number))
+                .num_columns(2)
+                .min_row_height(20.0);
+            grid.spacing([theme::PAD, 2.0]).show(ui, |ui| {
+                for (title, rows) in parts {
+                    Label::new(look.say(title), palette.accent).small().ui(ui);
+                    ui.end_row();
+                    for (keys, words) in rows {
+                        ui.horizontal(|ui| {
+                            ui.spacing_mut().item_spacing.x = theme::STEP;
+                            keys.split(", ").for_each(|key| cap_ui(ui, look, key));
+                        });
+                        Label::new(look.say(words), palette.text).ui(ui);
+                        ui.end_row();
+                    }
+                }
+            });
         }
+    });
+    for text in [keys::ON_TRACKS, keys::IN_FIELDS] {
+        Label::new(look.say(text), palette.muted).small().ui(ui);
     }
     shut
 }
 
-/// A piece from the top, with nothing between it and the next.
-fn row(rect: &mut Rect, height: f32) -> Rect {
-    let (piece, rest) = rect.split_top_bottom_at_y(rect.top() + height);
-    *rect = rest;
-    piece
-}
-
-fn row_ui(ui: &mut Ui, mut place: Rect, look: Look, wish: Wish) {
-    let names = wish.keys();
-    let mut keys = take_left(&mut place, theme::KEY_COLUMN);
-    for name in names.split(", ") {
-        let width = controls::text_width(ui, name, theme::number()) + theme::PAD;
-        let cap = take_left(&mut keys, width).shrink2(vec2(0.0, theme::KEY_CAP_MARGIN));
-        let round = CornerRadius::same(theme::ROUND_SMALL);
-        ui.painter().rect_filled(cap, round, look.palette.control);
-        Label::new(name, look.palette.text)
-            .number()
-            .center()
-            .put(ui, cap);
-        keys.min.x += theme::STEP;
-    }
-    Label::new(look.say(wish.words()), look.palette.text).put(ui, place);
+fn cap_ui(ui: &mut Ui, look: Look, key: &str) {
+    let frame = Frame::new()
+        .fill(look.palette.control)
+        .corner_radius(theme::ROUND_SMALL)
+        .inner_margin(Margin::symmetric(6, 1));
+    frame.show(ui, |ui| {
+        ui.add(egui::Label::new(egui::RichText::new(key).font(theme::number())).extend());
+    });
 }

@@ -99,6 +99,20 @@ pub(crate) static ROWS: [Row; 31] = [
     row(NONE, Key::Questionmark, Wish::List),
 ];
 
+/// The keys with which egui itself makes everything larger and smaller.
+pub(crate) const ZOOM: [(&str, Text); 3] = match cfg!(target_os = "macos") {
+    true => [
+        ("Cmd++", keys::ZOOM_IN),
+        ("Cmd+-", keys::ZOOM_OUT),
+        ("Cmd+0", keys::ZOOM_RESET),
+    ],
+    false => [
+        ("Ctrl++", keys::ZOOM_IN),
+        ("Ctrl+-", keys::ZOOM_OUT),
+        ("Ctrl+0", keys::ZOOM_RESET),
+    ],
+};
+
 impl Row {
     /// As it stands on the keyboard: `Shift+A`.
     pub(crate) fn name(self) -> String {

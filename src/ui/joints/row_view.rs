@@ -1,0 +1,175 @@
+//! One joint's row: name, status, lock, and below them its tracks and readings.
+
+use crate::app::action::Action;
+use crate::app::settings::Language;
+use crate::hand::{Dof, impact};
+use crate::ui::hand::pointed::{self, Place};
+use crate::ui::joints::drive_lamp::DriveWords;
+use crate::ui::joints::drive_tiles;
+use crate::ui::joints::row::{READING, Row, cell};
+use crate::ui::joints::tracks;
+use crate::ui::kit::controls::{self, Button, Label};
+use crate::ui::kit::look::{Explain, Pane};
+use crate::ui::text::{faults, main};
+use crate::ui::theme;
+use egui::{
+    Align, Color32, CursorIcon, Frame, Layout, Margin, Role, Sense, Ui, WidgetInfo, pos2, vec2,
+};
+
+/// How a row is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowStyle {
+    /// Height of its lines.
+    pub(crate) line: f32,
+    /// Force and speed have lines of their own.
+    pub(crate) each: bool,
+    /// The four fingers move together.
+    pub(crate) linked: bool,
+}
+
+/// The height of a row of such lines.
+pub(crate) fn height(line: f32, each: bool) -> f32 {
+    let lines = if each { 4.0 } else { 2.0 };
+    lines * line + theme::GAP
+}
+
+/// Draws the row of a joint.
+pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle) {
+    let (row, palette) = (Row::new(dof, pane), pane.look.palette);
+    let is_pointed = pointed::pointed(ui, Place::Hand) == Some(dof);
+    let wash = palette.wash(row.color);
+    let frame = Frame::new()
+        .fill(if is_pointed {
+            wash
+        } else {
+            Color32::TRANSPARENT
+        })
+        .corner_radius(theme::ROUND_SMALL)
+        .inner_margin(Margin {
+            left: 12,
+            ..Margin::symmetric(0, 4)
+        });
+    let shown = frame.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.spacing_mut().interact_size.y = style.line.min(theme::CONTROL);
+        line_ui(ui, style.line, |ui| head_ui(ui, pane, &row, style.each));
+        line_ui(ui, style.line, |ui| {
+            row.angle_ui(ui, pane, style.linked);
+            let place = cell(ui, READING);
+            match style.each {
+                true => row.angle_reading_ui(ui, place, pane),
+                false => row.short_reading_ui(ui, place, pane),
+            }
+        });
+        if style.each {
+            line_ui(ui, style.line, |ui| {
+                tracks::force_ui(ui, pane, Some(&row));
+                let place = cell(ui, READING);
+                row.force_reading_ui(ui, place, pane);
+            });
+            line_ui(ui, style.line, |ui| {
+                tracks::speed_ui(ui, pane, Some(&row));
+                let place = cell(ui, READING);
+                row.drive_reading_ui(ui, place, pane);
+            });
+        }
+    });
+    let rect = shown.response.rect;
+    if ui.rect_contains_pointer(rect) {
+        pointed::point(ui, Place::Row, dof);
+    }
+    let bar = rect.shrink2(vec2(0.0, theme::STEP));
+    let bar = bar.with_max_x(rect.left() + theme::BAR);
+    ui.painter().rect_filled(bar, theme::ROUND_TINY, row.color);
+    if dof != Dof::Little {
+        let line = (1.0, palette.grid);
+        ui.painter().hline(rect.x_range(), rect.top(), line);
+    }
+}
+
+fn line_ui(ui: &mut Ui, height: f32, add: impl FnOnce(&mut Ui)) {
+    let size = vec2(ui.available_width(), height);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_size(size);
+        add(ui);
+    });
+}
+
+fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row, each: bool) {
+    let name = cell(ui, 84.0);
+    Label::new(row.name, pane.look.palette.text).put(ui, name);
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        lock_ui(ui, pane, row);
+        if !each {
+            let place = cell(ui, 78.0);
+            row.drive_reading_ui(ui, place, pane);
+        }
+        impact_ui(ui, pane, row);
+        drive_tiles::unseen_mark_ui(ui, pane, row.dof);
+        status_ui(ui, pane, row);
+    });
+}
+
+/// Lamp and words of the drive; a click explains them.
+fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
+    let rect = cell(ui, ui.available_width());
+    let said = DriveWords::of(pane, row.dof);
+    let name = row.named(pane, faults::EXPLAIN);
+    let response = ui.interact(rect, row.id("explain"), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    controls::focus_ring(ui, pane.look, &response, rect);
+    if response.clicked() {
+        *pane.explain = Some(Explain::Drive(row.dof));
+    }
+    let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
+    controls::lamp(ui, lamp, said.lamp);
+    let name = row.named(pane, main::STATUS);
+    let label = Label::new(&said.title, said.text).small().named(&name);
+    let place = rect.with_min_x(rect.left() + theme::INDENT);
+    label.shorter(&said.short).put(ui, place);
+    let tip = pane.look.say(faults::EXPLAIN_TIP);
+    let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
+    response
+        .on_hover_text(format!("{cause}\n{advice}\n{tip}").trim())
+        .on_hover_cursor(CursorIcon::PointingHand);
+}
+
+/// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
+fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &Row) {
+    let joint = pane.state.hand().joints[row.dof];
+    let rough_from = impact::rough_from_speed(joint.force);
+    let is_gentle = rough_from.is_none_or(|rough| joint.speed < rough);
+    if is_gentle || pane.state.hand().runs_series() {
+        return;
+    }
+    let (sign, response) = ui.allocate_exact_size(vec2(16.0, 12.0), Sense::hover());
+    controls::warning_sign(ui, sign, pane.look.palette.warn);
+    let name = row.named(pane, main::NAME_IMPACT);
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+    let (speed, force) = (joint.speed.get(), joint.force.get());
+    let peak = impact::overshoot_g(speed.into(), force.into());
+    let measured = match pane.look.language {
+        Language::En => format!(
+            "At speed {speed} a threshold of {force} g was exceeded by about {peak:.0} g on a rigid object."
+        ),
+        Language::Zh => format!(
+            "速度 {speed}、阈值 {force} g 时，抓取刚性物体的实测峰值超出阈值约 {peak:.0} g。"
+        ),
+    };
+    response.on_hover_text(format!("{measured}\n{}", pane.look.say(main::IMPACT_TIP)));
+}
+
+fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
+    let look = pane.look;
+    let locked = pane.state.hand().joints[row.dof].locked;
+    let (icon, tip) = match locked {
+        true => (theme::LOCKED, main::UNLOCK_TIP),
+        false => (theme::UNLOCKED, main::LOCK_TIP),
+    };
+    let name = row.named(pane, main::NAME_LOCK);
+    let mut button = Button::new(&name, look.say(tip)).icon(icon).choice(locked);
+    button.height = ui.spacing().interact_size.y;
+    if button.ui(ui, look).clicked() {
+        pane.actions.push(Action::Lock(row.dof, !locked));
+    }
+}
