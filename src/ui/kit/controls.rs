@@ -560,24 +560,6 @@ pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
         .text(rect.center(), center, theme::WARNING, font, color);
 }
 
-/// A small closed or open padlock.
-pub(crate) fn padlock(ui: &Ui, rect: Rect, color: Color32, closed: Lock) {
-    let icon = match closed {
-        Lock::Closed => theme::LOCKED,
-        Lock::Open => theme::UNLOCKED,
-    };
-    sign(ui, rect, icon, color);
-}
-
-/// How a padlock is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Lock {
-    /// Shut.
-    Closed,
-    /// Open.
-    Open,
-}
-
 /// Cuts a piece of the given width from the right, with a gap.
 pub(crate) fn take_right(rect: &mut Rect, width: f32) -> Rect {
     let (rest, piece) = rect.split_left_right_at_x(rect.right() - width);
@@ -597,9 +579,4 @@ pub(crate) fn take_top(rect: &mut Rect, height: f32) -> Rect {
     let (piece, rest) = rect.split_top_bottom_at_y(rect.top() + height);
     *rect = rest.with_min_y(rest.top() + theme::GAP);
     piece
-}
-
-/// A piece of the given height around the middle.
-pub(crate) fn middle(rect: Rect, height: f32) -> Rect {
-    Rect::from_center_size(rect.center(), vec2(rect.width(), height.min(rect.height())))
 }

@@ -1,18 +1,8 @@
 //! Lists that scroll inside their place, line by line, with texts of as many lines as they need. Knows no list's meaning.
 
-use crate::ui::kit::controls::Label;
 use crate::ui::theme;
 use egui::text::LayoutJob;
 use egui::{Color32, Id, Rect, Response, Ui, UiBuilder, pos2, vec2};
-
-/// Height of a line of small text.
-pub(crate) const LINE: f32 = theme::LIST_LINE;
-/// Height of a line with a lamp or a title.
-pub(crate) const TITLE_LINE: f32 = theme::TITLE_LINE;
-/// Where the middle of a lamp stands in that room.
-pub(crate) const LAMP_AT: f32 = theme::LAMP_AT;
-/// Room for the lamp before a title.
-pub(crate) const INDENT: f32 = theme::INDENT;
 
 /// A list at a place. `lines` adds them from top to bottom with [`piece`], in the width that it is given.
 pub(crate) fn scroll_ui(ui: &mut Ui, rect: Rect, salt: &str, lines: impl FnOnce(&mut Ui, f32)) {
@@ -28,12 +18,6 @@ pub(crate) fn scroll_ui(ui: &mut Ui, rect: Rect, salt: &str, lines: impl FnOnce(
 /// A piece of the list of the given height.
 pub(crate) fn piece(ui: &mut Ui, width: f32, height: f32) -> Rect {
     ui.allocate_space(vec2(width, height)).1
-}
-
-/// One line of small text.
-pub(crate) fn line_ui(ui: &mut Ui, width: f32, text: &str, color: Color32) {
-    let place = piece(ui, width, LINE);
-    Label::new(text, color).small().put(ui, place);
 }
 
 /// Text over as many lines as it needs; where it stands.

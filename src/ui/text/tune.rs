@@ -18,7 +18,7 @@ texts! {
     HEAT: "is too warm, limit:", "温度过高，上限：";
     CEILING: "presses harder than the ceiling:", "的力超过上限：";
     UNREACHED: "did not arrive in time at", "未按时到达";
-    LIMITS_REFUSED: "does not show the speed and force threshold that were set.", "没有显示已设置的速度与力控阈值。";
+    LIMITS_REFUSED: "does not show the speed and force threshold that were set.", "没有显示已设置的速度与力阈值。";
     BLIND: "cannot be watched, its reading is unknown or old:", "无法监视，读数未知或已过时：";
     COOLING: "stayed too warm to begin.", "一直过热，无法开始。";
     NOT_KEPT: "What was read could not be kept.", "读到的数据无法保存。";
@@ -36,7 +36,7 @@ texts! {
     START: "from", "起点";
     START_TIP: "Where the joint stands before each trial, 1000 is open.", "每次试验前的位置，1000 为张开。";
     CLOSE: "to", "终点";
-    CLOSE_TIP: "Where the joint closes to; the force threshold stops it before.", "闭合的目标位置；到达力控阈值时会提前停下。";
+    CLOSE_TIP: "Where the joint closes to; the force threshold stops it before.", "闭合的目标位置；到达力阈值时会提前停下。";
     TAKE_START: "Start from...", "起点取自…";
     TAKE_CLOSE: "Close to...", "终点取自…";
     TAKE_TIP: "Takes the angles of a pose. Nothing moves.", "采用某个姿态的角度，不会运动。";
@@ -45,11 +45,11 @@ texts! {
     SPEEDS: "Speeds", "速度";
     SPEEDS_NAME: "Speeds to try", "试验速度";
     SPEEDS_HINT: "25, 50, 100", "25, 50, 100";
-    FORCES: "Thresholds, g", "力控 g";
-    FORCES_NAME: "Force thresholds to try", "试验力控阈值";
+    FORCES: "Thresholds, g", "力阈值 g";
+    FORCES_NAME: "Force thresholds to try", "试验力阈值";
     FORCES_HINT: "300, 500", "300, 500";
     REPEATS: "Repeats", "重复";
-    REPEATS_TIP: "Trials of each speed with each threshold.", "每个速度与力控阈值组合的试验次数。";
+    REPEATS_TIP: "Trials of each speed with each threshold.", "每个速度与力阈值组合的试验次数。";
     APPROACH: "Approach", "接近方式";
     ONE_STAGE: "One speed", "单速";
     TWO_MEASURED: "To measured contact", "到实测接触处";
@@ -99,7 +99,7 @@ texts! {
     TOO_MANY: "Too many trials; 1000 at most:", "试验次数过多，最多 1000 次：";
     BAD_DWELL: "Hold between 0.3 and 600 s.", "保持时间须在 0.3 至 600 s 之间。";
     BAD_REST: "Rest no longer than 600 s.", "间隔不能超过 600 s。";
-    BAD_CEILING: "Between the largest threshold and 4000 g; at least", "须在最大力控阈值与 4000 g 之间，至少";
+    BAD_CEILING: "Between the largest threshold and 4000 g; at least", "须在最大力阈值与 4000 g 之间，至少";
     BAD_HEAT: "The two temperatures must rise and stay at or below 75 °C.", "两个温度须递增且不超过 75 °C。";
 
     START_BUTTON: "Start trials", "开始试验";
@@ -113,8 +113,8 @@ texts! {
     KEEP_WITH: "Kept with them", "随试验保存";
     WILL_CLOSE: "Closes", "闭合";
     WILL_PROBE: "The first, slow one measures the contact.", "第一次慢速试验用于测量接触位置。";
-    EXPECT: "On a rigid object expect a peak of up to this much above the threshold:", "抓握刚性物体时，峰值最多可超过力控阈值：";
-    EXPECT_WHY: "The threshold stops the drive, it does not regulate force. Slower at the contact is gentler.", "力控阈值只会让驱动器停下，并不调节力。接触时越慢越轻柔。";
+    EXPECT: "On a rigid object expect a peak of up to this much above the threshold:", "抓握刚性物体时，峰值最多可超过力阈值：";
+    EXPECT_WHY: "The threshold stops the drive, it does not regulate force. Slower at the contact is gentler.", "力阈值只会让驱动器停下，并不调节力。接触时越慢越轻柔。";
     ANY_KEY: "Any key ends it with a stop.", "按任意键即停止并结束。";
     STOP_SERIES: "End with a stop", "停止并结束";
     STOP_SERIES_TIP: "Holds the hand and ends the series.", "保持灵巧手当前位置并结束试验。";
@@ -137,7 +137,7 @@ texts! {
     ALL_DONE: "all trials done.", "全部试验已完成。";
     SEE_COMPARE: "Compare", "查看对比";
     SEE_COMPARE_TIP: "Opens what was measured.", "打开测量结果。";
-    ABOVE: "above the threshold:", "超出力控阈值";
+    ABOVE: "above the threshold:", "超出力阈值";
     STAGED_NEXT: "Staged, nothing is written yet. Next: check, apply and save it in Device.", "已暂存，尚未写入。下一步：在“参数”中核对、应用并保存。";
     SEE_DEVICE: "Go to Device", "前往参数";
     SEE_DEVICE_TIP: "Opens the parameters, where what is staged is checked, applied and saved.", "打开参数页，核对、应用并保存暂存的值。";
@@ -145,7 +145,7 @@ texts! {
     IDLE_TITLE: "Nothing tried yet", "还没有试验";
     IDLE_BODY: "Put an object between the fingers, choose how they close, arm the hand and start.", "把物体放在手指之间，设置闭合方式，使能后开始。";
     SPEED: "speed", "速度";
-    THRESHOLD: "threshold", "力控";
+    THRESHOLD: "threshold", "力阈值";
     COMPARE_EMPTY: "Nothing tried yet: run trials in Tune, or open an earlier session.", "还没有试验：请在“调试”中运行，或打开以前的试验。";
     OPEN: "Open", "打开";
     OPEN_TIP: "Opens the session.toml of an earlier session, and what lies beside it.", "打开以前试验的 session.toml 及同一文件夹的数据。";
@@ -178,7 +178,7 @@ texts! {
     COLUMN_HEAT: "Heat, °C", "温升 °C";
     COLUMN_END: "End", "结束";
     REPEATED: "Mean (lowest to highest) of repeats", "重复的平均值（最低到最高）";
-    MAP: "Overshoot, g, by speed and threshold", "超出量 g：速度与力控";
+    MAP: "Overshoot, g, by speed and threshold", "超出量 g：速度与力阈值";
     BEST: "Best", "最佳";
     BEST_NONE: "No setting will do.", "没有满足要求的设置。";
     LEAST_OVER: "Least overshoot", "超出最少";
@@ -187,5 +187,5 @@ texts! {
     HOLD_AT_LEAST: "Holds at least, g", "至少保持 g";
     HOLD_TIP: "Steady force that the best must hold.", "最佳设置必须保持的稳态力。";
     PROMOTE: "Stage as defaults", "暂存为默认";
-    PROMOTE_TIP: "Stages speed and threshold of the best as those after power-up, for the joints tried. Nothing is written.", "把最佳的速度与力控暂存为所试自由度的上电默认值，不写入。";
+    PROMOTE_TIP: "Stages speed and threshold of the best as those after power-up, for the joints tried. Nothing is written.", "把最佳的速度与力阈值暂存为所试自由度的上电默认值，不写入。";
 }

@@ -44,8 +44,6 @@ pub(crate) const MAP_LEAST: f32 = 240.0;
 pub(crate) const MAP_MOST: f32 = 440.0;
 /// Share of the height that the curves get.
 pub(crate) const CURVES_SHARE: f32 = 0.48;
-/// How strong the curves behind the chosen one are.
-pub(crate) const CURVE_BEHIND: f32 = 0.3;
 /// From this share of the heat on its colour is strong.
 pub(crate) const HEAT_BRIGHT: f32 = 0.6;
 /// Sessions whose rows are seen without scrolling, and how many of more.
@@ -64,8 +62,6 @@ pub(crate) const SESSION_STATE: f32 = 116.0;
 pub(crate) const SESSION_COLUMN: f32 = 56.0;
 /// Width of a column's arrow.
 pub(crate) const SORT_ARROW: f32 = 11.0;
-/// A line this near to the pointer is the one that is meant.
-pub(crate) const LINE_NEAR: f32 = 9.0;
 /// Width of the sign of a line in the legend.
 pub(crate) const KEY_SIGN: f32 = 20.0;
 /// Height of the words about a series, where there is plenty.
