@@ -183,7 +183,7 @@ pub(crate) fn hand_ui(
     ui.horizontal(|ui| {
         let name = format!("{}: {endpoint}", look.say(text));
         let button = Button::said(look, text, tip).named(&name);
-        let size = vec2(theme::COUNT_COLUMN, theme::CONTROL_LARGE);
+        let size = vec2(96.0, theme::CONTROL_LARGE);
         let justified = Layout::top_down_justified(Align::Center);
         let button = ui.allocate_ui_with_layout(size, justified, |ui| {
             button.weight(weight).large().ui(ui, look)

@@ -15,6 +15,9 @@ use crate::ui::theme;
 use egui::{Color32, CornerRadius, Frame, Margin, Rect, ScrollArea, Sense, Ui, vec2};
 use std::time::Duration;
 
+/// Size of the number on a tab.
+const FAULT_BADGE: f32 = 16.0;
+
 /// How much is said of a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Depth {
@@ -204,7 +207,7 @@ fn stand(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
 
 /// A ring: something was wrong and is not any more.
 pub(crate) fn mark(ui: &Ui, center: egui::Pos2, color: egui::Color32) {
-    let stroke = egui::Stroke::new(theme::RING_LINE, color);
+    let stroke = egui::Stroke::new(1.6, color);
     ui.painter()
         .circle_stroke(center, theme::LAMP - 0.5, stroke);
 }
@@ -303,12 +306,9 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
         return;
     };
     let count = pane.state.hand().faults.unseen().count().to_string();
-    let width =
-        (controls::text_width(ui, &count, theme::tiny()) + theme::GAP).max(theme::FAULT_BADGE);
-    let place =
-        egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, theme::FAULT_BADGE));
-    ui.painter()
-        .rect_filled(place, theme::FAULT_BADGE / 2.0, color);
+    let width = (controls::text_width(ui, &count, theme::tiny()) + theme::GAP).max(FAULT_BADGE);
+    let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, FAULT_BADGE));
+    ui.painter().rect_filled(place, FAULT_BADGE / 2.0, color);
     let (font, ink) = (theme::tiny(), pane.look.palette.window);
     controls::paint_text(ui, place, egui::Align2::CENTER_CENTER, &count, font, ink);
 }

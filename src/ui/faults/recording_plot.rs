@@ -12,6 +12,9 @@ use crate::ui::text::{faults, words};
 use crate::ui::theme;
 use egui::{Color32, Rect, Stroke, Ui, UiBuilder, vec2};
 
+/// Height of one drive's lane, with its gap.
+const RECORDING_LANE: f32 = 8.0;
+
 /// What the plots of a recording need between frames.
 #[derive(Debug, Default)]
 pub(crate) struct RecordingCharts {
@@ -34,7 +37,7 @@ pub(crate) struct RecordingPlot<'a> {
 /// The height that is left for each of so many plots.
 pub(crate) fn panel_height(rect: Rect, plots: usize) -> f32 {
     let count = f32::from(u8::try_from(plots.max(1)).unwrap_or(u8::MAX));
-    let lanes = theme::PLOT_CAPTION + 6.0 * theme::RECORDING_LANE;
+    let lanes = theme::PLOT_CAPTION + 6.0 * RECORDING_LANE;
     (rect.height() - theme::PLOT_TIME_AXIS - lanes) / count
 }
 
@@ -101,7 +104,7 @@ impl RecordingPlot<'_> {
             }
         });
         for dof in Dof::ALL {
-            let place = vec2(ui.available_width(), theme::RECORDING_LANE);
+            let place = vec2(ui.available_width(), RECORDING_LANE);
             let lane = ui.allocate_space(place).1.shrink2(vec2(0.0, 1.0));
             let (sign, lane) = lane.split_left_right_at_x(lane.left() + theme::PLOT_AXIS);
             let sign = sign

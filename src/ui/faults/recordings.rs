@@ -102,7 +102,7 @@ impl RecordingsView {
         self.head_ui(ui, pane, recording);
         self.tools_ui(ui, pane.look);
         let mut body = ui.available_rect_before_wrap();
-        let width = (body.width() * 0.3).clamp(theme::RECORDINGS_LIST.0, theme::RECORDINGS_LIST.1);
+        let width = (body.width() * 0.3).clamp(168.0, 300.0);
         let (plots, events) = body.split_left_right_at_x(body.right() - width);
         body = plots.with_max_x(plots.right() - theme::GAP);
         let fault = recording.fault();
@@ -118,7 +118,7 @@ impl RecordingsView {
             .iter()
             .filter(|panel| self.shown.shows(panel.kind))
             .collect();
-        while shown.len() > 1 && panel_height(body, shown.len()) < theme::RECORDING_LEAST {
+        while shown.len() > 1 && panel_height(body, shown.len()) < 46.0 {
             shown.pop();
         }
         let plot = RecordingPlot {

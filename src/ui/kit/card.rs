@@ -163,7 +163,7 @@ impl CardView {
         look: Look,
         card: (&Card, bool),
     ) -> Option<usize> {
-        let width = theme::CARD_WIDTH.min(place.width());
+        let width = 560.0_f32.min(place.width());
         let high = vec2(width, self.height.min(place.height()));
         let corner = Rect::from_center_size(place.center(), high).min;
         let room = Rect::from_min_size(corner, vec2(width, place.height()));
@@ -172,7 +172,7 @@ impl CardView {
             .fill(palette.card)
             .stroke(Stroke::new(theme::LINE, palette.accent))
             .corner_radius(theme::ROUND)
-            .inner_margin(theme::CARD_PAD);
+            .inner_margin(20.0);
         let builder = UiBuilder::new().max_rect(room);
         let shown = ui.scope_builder(builder, |ui| {
             frame.show(ui, |ui| {
@@ -214,7 +214,7 @@ impl CardView {
         if let Some(progress) = &card.progress {
             Label::new(&progress.words, palette.muted).ui(ui);
             let bar = ProgressBar::new(progress.part).fill(palette.accent);
-            ui.add(bar.desired_height(theme::TRACK_RAIL));
+            ui.add(bar.desired_height(6.0));
         }
         if let Some(word) = card.word {
             let ask = format!("{} {word}", look.say(cards::TYPE));

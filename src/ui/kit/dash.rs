@@ -1,6 +1,5 @@
 //! Kinds of strokes: lines of one colour that an eye tells apart. Knows no plot.
 
-use crate::ui::theme;
 use egui::{Color32, Painter, Rect, Shape, Stroke};
 use egui_plot::LineStyle;
 
@@ -31,5 +30,5 @@ pub(crate) fn sample(painter: &Painter, place: Rect, style: LineStyle, stroke: S
 
 /// The colour of lines that stand back behind another one.
 pub(crate) fn behind(color: Color32) -> Color32 {
-    color.gamma_multiply(theme::CURVE_BEHIND)
+    color.gamma_multiply(0.3)
 }

@@ -135,7 +135,7 @@ impl NumberField<'_> {
             .frame(frame)
             .clip_text(true)
             .min_size(vec2(rect.width(), rect.height()))
-            .desired_width(rect.width() - theme::FIELD_MARGIN_SMALL);
+            .desired_width(rect.width() - 14.0);
         let place = UiBuilder::new().max_rect(rect);
         let response = ui
             .scope_builder(place, |ui| {

@@ -418,7 +418,7 @@ impl<'a> Chart<'a> {
         };
         let near = self.curves.iter().enumerate().rev();
         let near = near.filter_map(|(index, curve)| Some((index, apart(curve)?)));
-        let near = near.filter(|(_, apart)| *apart <= theme::LINE_NEAR);
+        let near = near.filter(|(_, apart)| *apart <= 9.0);
         near.min_by(|(_, a), (_, b)| a.total_cmp(b))
             .map(|(index, _)| index)
     }

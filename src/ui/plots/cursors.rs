@@ -13,6 +13,11 @@ use crate::ui::text::{Text, plots, words};
 use crate::ui::theme;
 use egui::{Align, Align2, CursorIcon, Grid, Id, Layout, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
+/// Width of a cursor's flag.
+const CURSOR_FLAG: f32 = 16.0;
+/// Width of the names in the cursors' table.
+const CURSOR_NAMES: f32 = 84.0;
+
 /// Names of the cursors.
 const NAMES: [(&str, Text); 2] = [("A", plots::CURSOR_A), ("B", plots::CURSOR_B)];
 /// The columns of the table.
@@ -66,7 +71,7 @@ impl Cursors {
     /// The flags under the lowest plot, by which the cursors are moved.
     pub(crate) fn flags_ui(&mut self, ui: &Ui, look: Look, lowest: &ChartResponse) {
         let frame = *lowest.transform.frame();
-        let half = theme::CURSOR_FLAG / 2.0;
+        let half = CURSOR_FLAG / 2.0;
         let times = lowest.transform.bounds().range_x();
         for (at_s, (short, name)) in self.0.iter_mut().flatten().zip(NAMES) {
             let x = lowest.transform.position_from_point_x(*at_s);
@@ -74,7 +79,7 @@ impl Cursors {
                 x.clamp(frame.left() + half, frame.right() - half),
                 frame.bottom() + half,
             );
-            let flag = Rect::from_center_size(at, vec2(theme::CURSOR_FLAG, theme::CURSOR_FLAG));
+            let flag = Rect::from_center_size(at, vec2(CURSOR_FLAG, CURSOR_FLAG));
             let response = ui.interact(flag, Id::unique(("cursor", short)), Sense::drag());
             response.widget_info(|| WidgetInfo::slider(true, *at_s, look.say(name)));
             ui.painter()
@@ -115,7 +120,7 @@ impl Cursors {
             label.named(look.say(plots::APART)).ui(ui);
             pressed
         });
-        let width = (ui.available_width() - theme::CURSOR_NAMES) / 7.0 - theme::STEP;
+        let width = (ui.available_width() - CURSOR_NAMES) / 7.0 - theme::STEP;
         let cell = |ui: &mut Ui, text: &str, name: Option<&str>| {
             let place = vec2(width, theme::TEXT_LINE);
             let right = Layout::right_to_left(Align::Center);
@@ -131,7 +136,7 @@ impl Cursors {
         };
         let grid = Grid::new("figures").spacing(vec2(theme::STEP, 0.0));
         grid.min_col_width(0.0).min_row_height(0.0).show(ui, |ui| {
-            ui.allocate_space(vec2(theme::CURSOR_NAMES, theme::TEXT_LINE));
+            ui.allocate_space(vec2(CURSOR_NAMES, theme::TEXT_LINE));
             for text in COLUMNS {
                 cell(ui, look.say(text), None);
             }

@@ -20,7 +20,7 @@ const COPY_ROWS_MAX: usize = 20_000;
 /// Title and switches.
 pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
-    let is_narrow = ui.available_width() < theme::PLOT_HEAD_NARROW;
+    let is_narrow = ui.available_width() < 440.0;
     controls::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
         ui.spacing_mut().item_spacing.x = theme::STEP;
         menu_ui(ui, pane, view);
@@ -70,7 +70,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         ui.separator();
         keep_ui(ui, pane, view);
         ui.separator();
-        ui.set_max_width(theme::PLOT_MENU);
+        ui.set_max_width(250.0);
         let hint = egui::RichText::new(look.say(plots::AREA_TIP));
         ui.label(hint.small().color(look.palette.muted));
     });
@@ -156,7 +156,7 @@ fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bo
 fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let mut chosen = pane.state.settings.plot_window;
     let all = PlotWindow::ALL.map(|window| (window, window_text(window)));
-    ui.spacing_mut().combo_width = theme::PLOT_WINDOW;
+    ui.spacing_mut().combo_width = 68.0;
     // All of them without scrolling.
     ui.spacing_mut().combo_height = f32::INFINITY;
     let name = pane.look.say(panels::WINDOW_NAME);
@@ -186,7 +186,7 @@ pub(crate) fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme::STEP, 0.0);
         ui.spacing_mut().button_padding = egui::vec2(theme::STEP, 2.0);
-        ui.spacing_mut().interact_size.y = theme::PLOT_NAMES_ROW;
+        ui.spacing_mut().interact_size.y = 20.0;
         for dof in Dof::ALL {
             let shown = !view.hidden[dof];
             let words = look.say(words::dof(dof));

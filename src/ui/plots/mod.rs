@@ -102,7 +102,7 @@ impl PlotView {
                 let next = shown.get(at + 1).or(shown.first());
                 self.chosen = next.map(|panel| panel.kind);
             }
-            if room(ui, shown.len()) < theme::PLOT_LEAST {
+            if room(ui, shown.len()) < 62.0 {
                 shown = vec![chosen];
             }
         }

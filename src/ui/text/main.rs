@@ -31,7 +31,7 @@ texts! {
     DISARM: "Armed", "已使能";
     ARM_NAME: "Arm the hand", "使能灵巧手";
     DISARM_NAME: "Disarm the hand", "取消使能";
-    ARM_TIP: "Lets your angles, forces and speeds pass to the hand. Nothing moves by arming.", "允许角度、力控阈值和速度发送到灵巧手。使能本身不会产生动作。";
+    ARM_TIP: "Lets your angles, forces and speeds pass to the hand. Nothing moves by arming.", "允许角度、力阈值和速度发送到灵巧手。使能本身不会产生动作。";
     DISARM_TIP: "Setpoints pass. Press to let none pass any more; the hand keeps what it was told.", "设置值正在生效。点击后不再发送，灵巧手保持上一次的设置。";
     STOP: "STOP", "停止";
     STOP_KEYS: "Space or Esc", "空格键或 Esc";
@@ -41,7 +41,7 @@ texts! {
     REFUSED_HOLDING: "A stop is still being confirmed.", "正在确认停止。";
     REFUSED_FAULT: "A drive reports a fault: clear it first.", "驱动器报告故障，请先清除。";
     REFUSED_BUSY: "The hand writes its flash or calibrates: wait until that is over.", "灵巧手正在写闪存或校准：请等待完成。";
-    REFUSED_NO_ANSWER: "The hand did not acknowledge its speed and force limits.", "灵巧手没有确认速度与力控设置。";
+    REFUSED_NO_ANSWER: "The hand did not acknowledge its speed and force limits.", "灵巧手没有确认速度与力阈值设置。";
     REFUSED_POSE: "The angle of a joint is unknown or old:", "有自由度的角度未知或已过时：";
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";
     LOCKED: "This joint is locked.", "该自由度已锁定。";
@@ -92,14 +92,14 @@ texts! {
     THUMB_BEND: "Thumb bend", "大拇指弯曲";
     THUMB_ROTATE: "Thumb rotate", "大拇指旋转";
     ANGLE: "Angle", "角度";
-    FORCE: "Force", "力控";
+    FORCE: "Force", "力阈值";
     SPEED: "Speed", "速度";
     STATUS: "status", "状态";
     NAME_ANGLE_TARGET: "angle target", "角度目标";
     NAME_ANGLE_NUMBER: "angle number", "角度数值";
     NAME_ANGLE_ACTUAL: "actual angle", "实际角度";
-    NAME_FORCE_THRESHOLD: "force threshold", "力控阈值";
-    NAME_FORCE_NUMBER: "force number", "力控阈值数值";
+    NAME_FORCE_THRESHOLD: "force threshold", "力阈值";
+    NAME_FORCE_NUMBER: "force number", "力阈值数值";
     NAME_FORCE_ACTUAL: "live force", "实际受力";
     NAME_SPEED: "speed", "速度";
     NAME_SPEED_NUMBER: "speed number", "速度数值";
@@ -133,7 +133,7 @@ texts! {
     HALF: "Half", "半握";
     HALF_TIP: "Bends fingers and thumb half, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲到一半，按设定的速度。大拇指旋转与锁定的自由度不动。";
     CLOSE: "Close", "握拢";
-    CLOSE_TIP: "Bends fingers and thumb until their force thresholds stop them, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲，直到力控阈值使其停止，按设定的速度。大拇指旋转与锁定的自由度不动。";
+    CLOSE_TIP: "Bends fingers and thumb until their force thresholds stop them, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲，直到力阈值使其停止，按设定的速度。大拇指旋转与锁定的自由度不动。";
     AGE: "Age", "距今";
     AGE_TIP: "These values are old. The age counts from the request that brought them.", "这些数值已过时。时间从读取它们的请求算起。";
     NEVER_READ: "Not read yet", "尚未读取";

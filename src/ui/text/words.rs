@@ -135,7 +135,7 @@ const fn fault_zh(fault: Fault) -> Words {
         Fault::OverCurrent => Words::new(
             "过流故障",
             "驱动器电流过大。",
-            "减小负载、速度或力控阈值，然后清除错误。",
+            "减小负载、速度或力阈值，然后清除错误。",
         ),
         Fault::Motor => Words::new(
             "电机异常",

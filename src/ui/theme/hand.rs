@@ -1,4 +1,4 @@
-//! How the drawn hand is made and lit, in each theme, and the lengths of the view of one fingertip, in points.
+//! How the drawn hand is made and lit, in each theme.
 
 use egui::Color32;
 use glam::Vec3;
@@ -104,10 +104,3 @@ pub(crate) fn lit(light: Vec3, alpha: f32) -> Color32 {
         [red * alpha, green * alpha, blue * alpha, alpha].map(|part| (part * 255.0 + 0.5) as u8);
     Color32::from_rgba_premultiplied(red, green, blue, alpha)
 }
-
-/// Width from which the list of channels finds room beside their plot.
-pub(crate) const CHANNELS_ROOMY: f32 = 330.0;
-/// Width of that list.
-pub(crate) const CHANNEL_LIST: f32 = 176.0;
-/// Height of its rows, at most.
-pub(crate) const CHANNEL_ROW: f32 = 20.0;

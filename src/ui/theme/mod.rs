@@ -4,16 +4,12 @@ mod fonts;
 mod hand;
 mod icons;
 mod palette;
-mod plot_sizes;
 mod sizes;
 mod style;
-mod view_sizes;
 
 pub(crate) use fonts::*;
 pub(crate) use hand::*;
 pub(crate) use icons::*;
 pub(crate) use palette::Palette;
-pub(crate) use plot_sizes::*;
 pub(crate) use sizes::*;
 pub(crate) use style::style;
-pub(crate) use view_sizes::*;

@@ -307,7 +307,7 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
 }
 
 fn arrow_shape(painter: &Painter, from: Pos2, along: Vec2, length: f32, stroke: Stroke) {
-    let head = (length * 0.4).clamp(theme::ARROW_HEAD.0, theme::ARROW_HEAD.1);
+    let head = (length * 0.4).clamp(3.0, 8.0);
     let to = from + along * length;
     let side = along.rot90() * head * 0.5;
     painter.line_segment([from, to - along * head * 0.7], stroke);

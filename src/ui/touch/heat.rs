@@ -6,7 +6,6 @@ use crate::ui::kit::controls::Label;
 use crate::ui::kit::format;
 use crate::ui::kit::look::Pane;
 use crate::ui::text::panels;
-use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
 use egui::{CornerRadius, Rect, Ui, vec2};
 
@@ -34,7 +33,7 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let end = format::counts(Some(FULL_COUNTS));
     let end = Label::new(&end, look.palette.muted).small();
     end.named(look.say(panels::TOUCH_SCALE_END)).ui(ui);
-    let (_, bar) = ui.allocate_space(theme::HEAT_BAR);
+    let (_, bar) = ui.allocate_space(egui::vec2(64.0, 8.0));
     let width = bar.width() / f32::from(STEPS);
     for step in 0..STEPS {
         let left = bar.left_top() + vec2(width * f32::from(step), 0.0);

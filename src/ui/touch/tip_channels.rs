@@ -60,8 +60,8 @@ impl TipChannels {
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             self.head_ui(ui, pane.look);
             ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
-                if ui.available_width() >= theme::CHANNELS_ROOMY {
-                    let place = vec2(theme::CHANNEL_LIST, ui.available_height());
+                if ui.available_width() >= 330.0 {
+                    let place = vec2(176.0, ui.available_height());
                     let down = Layout::top_down(Align::Max);
                     ui.allocate_ui_with_layout(place, down, |ui| list_ui(ui, pane, finger));
                 }
@@ -133,7 +133,7 @@ fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
     head.ui(ui).on_hover_text(look.say(text::NOISE_TIP));
     let now = pane.state.now.secs();
     let rest = hand.tare.rest(finger);
-    let row = (ui.available_height() / 8.0).min(theme::CHANNEL_ROW);
+    let row = (ui.available_height() / 8.0).min(20.0);
     for (channel, at) in (0..8u8).zip(0..) {
         let series = Series::Channel(channel, finger);
         let spread = hand.history.spread(series, now - NOISE_S, now);

@@ -83,11 +83,11 @@ impl TipDetail {
             let compass = controls::take_top(&mut left, size);
             self.compass_ui(ui, compass, pane);
         }
-        let width = (body.width() * 0.28).clamp(theme::TIP_READINGS.0, theme::TIP_READINGS.1);
+        let width = (body.width() * 0.28).clamp(150.0, 230.0);
         let readings = controls::take_left(&mut body, width);
         self.readings_ui(ui, readings, pane);
         body.min.x += theme::GAP;
-        if body.height() >= theme::TIP_BOTH_PLOTS {
+        if body.height() >= 270.0 {
             let forces = body.height() * 0.36;
             let forces = controls::take_top(&mut body, forces);
             let place = UiBuilder::new().max_rect(forces);
@@ -129,8 +129,10 @@ impl TipDetail {
             Stroke::new(theme::FOCUS_LINE, palette.ok),
         );
         painter.circle_stroke(center, ring * (1.0 - NEAR), Stroke::new(1.0, palette.grid));
-        let up =
-            Rect::from_center_size(center - vec2(0.0, radius - theme::GAP), theme::COMPASS_WORD);
+        let up = Rect::from_center_size(
+            center - vec2(0.0, radius - theme::GAP),
+            egui::vec2(40.0, 12.0),
+        );
         let text = look.say(panels::TIP_UP);
         controls::paint_text(
             ui,
@@ -305,6 +307,6 @@ const fn color_of(hold: Hold, palette: &theme::Palette) -> egui::Color32 {
 }
 
 fn needle(painter: &Painter, from: Pos2, by: Vec2, color: egui::Color32) {
-    painter.line_segment([from, from + by], Stroke::new(theme::ARROW_LINE, color));
+    painter.line_segment([from, from + by], Stroke::new(2.5, color));
     painter.circle_filled(from + by, theme::LAMP + 1.0, color);
 }

@@ -80,7 +80,7 @@ fn fields_ui(ui: &mut Ui, look: Look, frame: &Frame) {
     }
     let rest = Column::remainder().clip(true);
     table.columns(rest, 2).body(|body| {
-        body.rows(theme::FIELD_ROW, fields.len(), |mut row| {
+        body.rows(17.0, fields.len(), |mut row| {
             if let Some(field) = fields.get(row.index()) {
                 field_ui(&mut row, look, frame, field);
             }

@@ -92,7 +92,7 @@ pub(crate) fn list_ui(
         }
     });
     table.body(|body| {
-        body.rows(theme::FRAME_ROW, frames.len(), |mut row| {
+        body.rows(19.0, frames.len(), |mut row| {
             let Some(frame) = frames.get(row.index()) else {
                 return;
             };
@@ -110,7 +110,7 @@ fn scrolls(ui: &Ui, body: Rect) -> bool {
     ui.rect_contains_pointer(body)
         && ui.input(|input| {
             let at = input.pointer.interact_pos();
-            let on_bar = at.is_some_and(|at| at.x > body.right() - theme::FRAME_BAR);
+            let on_bar = at.is_some_and(|at| at.x > body.right() - 12.0);
             input.smooth_scroll_delta().y > 0.0 || on_bar && input.pointer.primary_down()
         })
 }
@@ -160,7 +160,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
     row.col(|ui| paint(ui, kind, theme::body(), strong));
     row.col(|ui| {
         if frame.wrong.is_some() {
-            let sign = Rect::from_center_size(ui.max_rect().center(), theme::FRAME_WRONG);
+            let sign = Rect::from_center_size(ui.max_rect().center(), egui::vec2(12.0, 11.0));
             controls::warning_sign(ui, sign, strong);
         }
     });
@@ -181,7 +181,7 @@ fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
         Some(_) => palette.wash(color_of(look, frame)).gamma_multiply(0.6),
         None => return response,
     };
-    ui.painter().rect_filled(rect, theme::ROUND_TRACK, color);
+    ui.painter().rect_filled(rect, 3.0, color);
     response
 }
 

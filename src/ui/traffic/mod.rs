@@ -43,7 +43,7 @@ impl TrafficView {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.update(pane);
         let whole = ui.available_size();
-        let detail = (whole.y * (1.0 - LIST_PART)).max(theme::FRAME_DETAIL_LEAST);
+        let detail = (whole.y * (1.0 - LIST_PART)).max(150.0);
         ui.spacing_mut().item_spacing.y = theme::GAP;
         let size = vec2(whole.x, whole.y - detail.round() - theme::GAP);
         ui.allocate_ui(size, |ui| {
@@ -182,7 +182,7 @@ impl TrafficView {
     fn filter_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
         let filter = &mut self.filter;
-        ui.allocate_ui(vec2(theme::TRAFFIC_FILTER, theme::CONTROL), |ui| {
+        ui.allocate_ui(vec2(220.0, theme::CONTROL), |ui| {
             let (name, hint) = (look.say(traffic::FILTER), look.say(traffic::FILTER_HINT));
             controls::edit_ui(ui, name, hint, &mut filter.text);
         });

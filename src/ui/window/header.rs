@@ -39,7 +39,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) -> bool
 fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::new(look.say(main::STOP), look.say(main::STOP_TIP)).weight(Weight::Stop);
-    let (id, rect) = ui.allocate_space(vec2(theme::STOP_WIDTH, ui.available_height()));
+    let (id, rect) = ui.allocate_space(vec2(148.0, ui.available_height()));
     let response = button.ground(ui, look, rect, id);
     let (center, strong) = (Align2::CENTER_CENTER, look.palette.on_strong);
     let (upper, lower) = rect.shrink(theme::BAR).split_top_bottom_at_fraction(0.6);
@@ -67,7 +67,7 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         .disabled(refusal.as_deref())
         .weight(if armed { Weight::Armed } else { Weight::Strong });
     button.selected = Some(armed);
-    let (id, rect) = ui.allocate_space(vec2(theme::ARM_WIDTH, theme::CONTROL_LARGE));
+    let (id, rect) = ui.allocate_space(vec2(96.0, theme::CONTROL_LARGE));
     if button.put(ui, look, rect, id).clicked() {
         let action = if armed { Action::Disarm } else { Action::Arm };
         pane.actions.push(action);
@@ -77,12 +77,12 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// A button with a lamp before its words.
 fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) -> Response {
     let words = controls::text_width(ui, button.text, theme::body());
-    let size = vec2(words + theme::LAMP_BUTTON, theme::CONTROL_LARGE);
+    let size = vec2(words + 40.0, theme::CONTROL_LARGE);
     let (id, rect) = ui.allocate_space(size);
     let response = button.ground(ui, look, rect, id);
-    let center = pos2(rect.left() + theme::LAMP_IN_BUTTON, rect.center().y);
+    let center = pos2(rect.left() + 16.0, rect.center().y);
     controls::lamp(ui, center, lamp);
-    let words = rect.with_min_x(rect.left() + theme::WORDS_IN_BUTTON);
+    let words = rect.with_min_x(rect.left() + 29.0);
     let (font, color) = (theme::body(), look.palette.text);
     controls::paint_text(ui, words, Align2::LEFT_CENTER, button.text, font, color);
     response
@@ -116,7 +116,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let text = look.say(text);
     let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
-    ui.painter().rect_filled(place, theme::ROUND_PILL, fill);
+    ui.painter().rect_filled(place, 12.0, fill);
     let badge = Label::new(text, color).center().put(ui, place);
     if simulated {
         badge.on_hover_text(look.say(main::SIMULATED_TIP));
@@ -176,7 +176,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
         if ui.available_width() < FIGURE {
             return;
         }
-        let (size, down) = (vec2(FIGURE, theme::FIGURE), Layout::top_down(Align::Min));
+        let (size, down) = (vec2(FIGURE, 34.0), Layout::top_down(Align::Min));
         ui.allocate_ui_with_layout(size, down, |ui| {
             ui.set_width(FIGURE);
             ui.spacing_mut().item_spacing.y = 0.0;

@@ -57,6 +57,15 @@ use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
 use egui::{Frame, Margin, Panel, Rect, Stroke, Ui, UiBuilder};
 
+/// The least width of the joints: every number in its place.
+const JOINTS_LEAST: f32 = 384.0;
+/// Its least width.
+const SIDE_LEAST: f32 = 288.0;
+/// The least width of the plots.
+const PLOTS_LEAST: f32 = 320.0;
+/// Height of the strip in a low window, and its least one.
+const STRIP_LEAST: f32 = 88.0;
+
 /// What the window remembers between frames: the open tab, text in progress, what is hidden.
 #[derive(Debug, Default)]
 pub struct Window {
@@ -229,7 +238,7 @@ impl Window {
             bottom: 0,
             ..MARGIN
         });
-        let height = theme::STATUS + theme::GAP;
+        let height = 40.0 + theme::GAP;
         let asked = bar_ui(ui, ("status", height), status, |ui| {
             if !is_free {
                 ui.disable();
@@ -244,7 +253,7 @@ impl Window {
             ui.disable();
         }
         let tabs = Frame::new().inner_margin(Margin::symmetric(8, 2));
-        let keys_asked = bar_ui(ui, ("tabs", theme::TABS), tabs, |ui| {
+        let keys_asked = bar_ui(ui, ("tabs", 36.0), tabs, |ui| {
             header::tabs_ui(ui, pane, &mut self.view)
         });
         if keys_asked {
@@ -277,17 +286,17 @@ impl Window {
                 ..Margin::ZERO
             });
             let rail = Panel::left("rail").frame(frame).resizable(false);
-            let rail = rail.exact_size(theme::JOINTS_RAIL + theme::GAP);
+            let rail = rail.exact_size(128.0 + theme::GAP);
             rail.show_separator_line(false).show(ui, |ui| {
                 joint_rail::rail_ui(ui, pane, sets_joints);
             });
             return;
         }
-        let designed = ui.ctx().content_rect().width() * theme::JOINTS_SHARE;
+        let designed = ui.ctx().content_rect().width() * 0.29;
         let size = RoomSize {
-            designed: designed.clamp(theme::JOINTS_LEAST, theme::JOINTS_MOST) + theme::GAP,
-            least: theme::JOINTS_LEAST + theme::GAP,
-            rest: theme::PLOTS_LEAST + theme::GAP + theme::SIDE_LEAST,
+            designed: designed.clamp(JOINTS_LEAST, 560.0) + theme::GAP,
+            least: JOINTS_LEAST + theme::GAP,
+            rest: PLOTS_LEAST + theme::GAP + SIDE_LEAST,
         };
         let Self { rooms, joints, .. } = self;
         rooms.room_ui(ui, pane, (Room::Joints, size), |ui, pane| {
@@ -315,31 +324,31 @@ impl Window {
             return;
         }
         let Self { rooms, touch, .. } = self;
-        let strip = if rect.height() < theme::STRIP_ROOMY {
-            theme::STRIP_LEAST
+        let strip = if rect.height() < 640.0 {
+            STRIP_LEAST
         } else {
-            theme::STRIP
+            144.0
         };
         let strip = RoomSize {
             designed: strip + theme::GAP,
-            least: theme::STRIP_LEAST + theme::GAP,
-            rest: theme::UPPER_LEAST,
+            least: STRIP_LEAST + theme::GAP,
+            rest: 300.0,
         };
         let mut poses_asked = false;
         rooms.room_ui(ui, pane, (Room::Strip, strip), |ui, pane| {
             poses_asked = pose_tiles::strip_ui(ui, pane);
         });
-        let side = (rect.width() * theme::SIDE_SHARE).clamp(theme::SIDE_LEAST, theme::SIDE_MOST);
+        let side = (rect.width() * 0.4).clamp(SIDE_LEAST, 560.0);
         let side = RoomSize {
             designed: side + theme::GAP,
-            least: theme::SIDE_LEAST + theme::GAP,
-            rest: theme::PLOTS_LEAST,
+            least: SIDE_LEAST + theme::GAP,
+            rest: PLOTS_LEAST,
         };
         rooms.room_ui(ui, pane, (Room::Side, side), |ui, pane| {
             let faults = RoomSize {
-                designed: theme::FAULTS + theme::GAP,
-                least: theme::FAULTS_LEAST + theme::GAP,
-                rest: theme::TIPS_LEAST,
+                designed: 104.0 + theme::GAP,
+                least: 84.0 + theme::GAP,
+                rest: 200.0,
             };
             rooms.room_ui(ui, pane, (Room::Faults, faults), faults::faults_card_ui);
             touch.small_ui(ui, pane);

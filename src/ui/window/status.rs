@@ -410,7 +410,7 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
     let look = pane.look;
     let palette = look.palette;
     let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-    let sign = Rect::from_center_size(place.center(), vec2(theme::SIGN, theme::SIGN_HEIGHT));
+    let sign = Rect::from_center_size(place.center(), vec2(theme::SIGN, 14.0));
     if worst.color == palette.accent {
         controls::lamp(ui, sign.center(), worst.color);
     } else {
