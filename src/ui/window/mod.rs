@@ -286,7 +286,7 @@ impl Window {
                 ..Margin::ZERO
             });
             let rail = Panel::left("rail").frame(frame).resizable(false);
-            let rail = rail.exact_size(128.0 + theme::GAP);
+            let rail = rail.exact_size(144.0 + theme::GAP);
             rail.show_separator_line(false).show(ui, |ui| {
                 joint_rail::rail_ui(ui, pane, sets_joints);
             });

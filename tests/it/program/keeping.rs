@@ -124,6 +124,7 @@ async fn settings_are_kept_and_setpoints_never() {
             "layout",
             "plot_window",
             "plots",
+            "recent",
             "side",
             "theme"
         ]

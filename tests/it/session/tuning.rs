@@ -196,23 +196,19 @@ fn check_gentle(state: &State, speed: i32) {
     }
 }
 
-/// Stages the best as defaults, applies, and saves to flash.
+/// Stages the best as defaults, applies and saves it in one step.
 fn keep(person: &mut Person) {
     person.press("Stage as defaults");
     person.open("Device", View::Device);
     person.until("the rows", |state| state.hand().params.read_at.is_some());
-    person.press("Apply");
-    person.until("applied rows", |state| {
-        !state.hand().params.is_busy() && state.hand().params.staged(SPEED).is_none()
-    });
     person.press("Save to flash");
-    // The joints that were not tried still have the defaults of the factory.
     person.until("the question", |state| {
         state.hand().params.question.is_some()
     });
-    person.press("Save anyway");
+    person.press("Apply and save");
     person.until("the end of SAVE", |state| {
-        !state.hand().params.is_busy() && state.hand().params.save.is_some()
+        let params = &state.hand().params;
+        !params.is_busy() && params.save.is_some() && params.staged(SPEED).is_none()
     });
 }
 
