@@ -96,12 +96,12 @@ fn line_ui(ui: &mut Ui, height: f32, add: impl FnOnce(&mut Ui)) {
 }
 
 fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row, each: bool) {
-    let name = cell(ui, 84.0);
+    let name = cell(ui, 96.0);
     Label::new(row.name, pane.look.palette.text).put(ui, name);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         lock_ui(ui, pane, row);
         if !each {
-            let place = cell(ui, 78.0);
+            let place = cell(ui, 104.0);
             row.drive_reading_ui(ui, place, pane);
         }
         impact_ui(ui, pane, row);

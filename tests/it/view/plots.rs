@@ -657,7 +657,7 @@ fn switches_table_and_plots_stay_apart_at_every_size_and_in_both_languages() {
                 })
                 .collect();
             all.push(ground);
-            assert!(all.len() > 8 && ground.height() > 50.0, "{size} {ground}");
+            assert!(all.len() > 8 && ground.height() > 36.0, "{size} {ground}");
             while let Some(one) = all.pop() {
                 assert!(screen.contains_rect(one), "{size} {one}");
                 for other in &all {

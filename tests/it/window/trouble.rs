@@ -39,6 +39,8 @@ fn messages_of_several_lines_stand_below_each_other() {
     bench.unplug();
     bench.until(300, |bench| bench.shows("LINK LOST"));
     bench.wait(1500);
+    bench.click_first_button("Faults");
+    bench.run(60);
     let labels = bench.all(Role::Label);
     let is_lost = |(text, _): &&(String, _)| text.starts_with("Link lost. ");
     let column = labels.iter().find(is_lost).unwrap().1.left();

