@@ -24,6 +24,19 @@ struct Seen {
     edges: u8,
 }
 
+/// What is drawn, and how it is seen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Model<'a> {
+    /// Where the eye is.
+    pub(crate) camera: &'a Camera,
+    /// How it is lit.
+    pub(crate) light: &'a Light,
+    /// What there is.
+    pub(crate) parts: &'a [Part<'a>],
+    /// Width of a soft edge in points.
+    pub(crate) feather: f32,
+}
+
 /// Draws parts into a mesh; keeps its buffers from frame to frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Sketch {
@@ -38,21 +51,14 @@ pub(crate) struct Sketch {
 }
 
 impl Sketch {
-    /// Draws all parts into the mesh, the farthest triangles first. `feather` is the width of a soft edge in points.
-    pub(crate) fn draw(
-        &mut self,
-        camera: &Camera,
-        light: &Light,
-        parts: &[Part<'_>],
-        feather: f32,
-        mesh: &mut Mesh,
-    ) {
+    /// Draws all parts into the mesh, the farthest triangles first.
+    pub(crate) fn draw(&mut self, model: Model<'_>, mesh: &mut Mesh) {
         mesh.clear();
         self.seen.clear();
         self.order.clear();
         self.depths.clear();
-        for part in parts {
-            self.part(camera, light, part, mesh);
+        for part in model.parts {
+            self.part(model.camera, model.light, part, mesh);
         }
         self.order.sort_unstable();
         for number in &self.order {
@@ -62,7 +68,7 @@ impl Sketch {
             let [a, b, c] = face.corners;
             for (side, ends) in [[a, b, c], [b, c, a], [c, a, b]].into_iter().enumerate() {
                 if face.edges & (1 << side) != 0 {
-                    soft_edge(mesh, ends, feather);
+                    soft_edge(mesh, ends, model.feather);
                 }
             }
             mesh.indices.extend([a, b, c]);

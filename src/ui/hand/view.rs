@@ -6,7 +6,7 @@ use crate::hand::kinematics::{Segment, Side};
 use crate::ui::hand::camera::{Camera, Turn};
 use crate::ui::hand::light::Light;
 use crate::ui::hand::reach::REACH;
-use crate::ui::hand::render::Sketch;
+use crate::ui::hand::render::{Model, Sketch};
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::theme::Palette;
 use egui::{Mesh, Rect, Response, Shape, Ui};
@@ -130,7 +130,13 @@ pub(crate) fn draw(sketch: &mut Sketch, picture: &HandPicture, setting: &Setting
     let (pose, parts) = picture.parts(palette, is_small);
     let mut light = Light::new(palette.studio, &camera, &pose);
     light.veil = picture.is_stale.then_some((palette.card, STALE_PART));
-    sketch.draw(&camera, &light, &parts, setting.feather, mesh);
+    let model = Model {
+        camera: &camera,
+        light: &light,
+        parts: &parts,
+        feather: setting.feather,
+    };
+    sketch.draw(model, mesh);
     if is_small {
         let (bottom, fade) = (setting.rect.bottom(), setting.rect.height() * FADE_PART);
         for vertex in &mut mesh.vertices {

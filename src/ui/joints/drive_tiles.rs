@@ -25,6 +25,7 @@ pub(crate) fn tiles_ui(ui: &mut Ui, pane: &Pane<'_>, chosen: Option<Dof>) -> Opt
             }
         }
     });
+    ui.add_space(theme::STEP);
     pressed
 }
 
@@ -47,7 +48,8 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
     let bar = bar.with_max_x(rect.left() + theme::BAR);
     ui.painter().rect_filled(bar, 2.0, palette.dof[dof]);
     let inner = rect.shrink2(vec2(theme::GAP, theme::STEP));
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(inner));
+    let down = Layout::top_down(Align::Min);
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(inner).layout(down));
     ui.spacing_mut().item_spacing = vec2(theme::STEP, 0.0);
     ui.spacing_mut().interact_size.y = theme::TITLE_LINE;
     let right = Layout::right_to_left(Align::Center);

@@ -3,6 +3,7 @@
 use crate::ui::kit::look::Look;
 use crate::ui::text::Text;
 use crate::ui::theme::{self, Icon};
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, PointerButton, Pos2,
     Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
@@ -122,7 +123,7 @@ impl<'a> Label<'a> {
         ui.skip_ahead_auto_ids(1);
         let mut response = ui.interact(rect, id, Sense::hover());
         let drawn = self.fitting(ui, rect.width());
-        let elided = paint_text(ui, rect, self.align, drawn, self.font, self.color);
+        let elided = self.paint(ui, rect);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
         if let Some(name) = self.name {
             ui.ctx().accesskit_node_builder(response.id, |node| {
@@ -134,9 +135,21 @@ impl<'a> Label<'a> {
         }
         response
     }
+
+    /// Paints it and nothing else: no node, no tooltip. True if it was cut.
+    pub(crate) fn paint(&self, ui: &Ui, rect: Rect) -> bool {
+        let text = self.fitting(ui, rect.width()).to_owned();
+        let mut job = LayoutJob::simple_singleline(text, self.font.clone(), self.color);
+        job.wrap = TextWrapping::truncate_at_width(rect.width().max(0.0));
+        let galley = ui.painter().layout_job(job);
+        let elided = galley.elided;
+        let at = self.align.align_size_within_rect(galley.size(), rect).min;
+        ui.painter().galley(at, galley, self.color);
+        elided
+    }
 }
 
-/// Paints text inside a rectangle, cut with dots; true if it was cut.
+/// Paints text inside a rectangle, for views that do not paint labels yet.
 pub(crate) fn paint_text(
     ui: &Ui,
     rect: Rect,
@@ -144,14 +157,10 @@ pub(crate) fn paint_text(
     text: &str,
     font: FontId,
     color: Color32,
-) -> bool {
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
-    job.wrap = egui::text::TextWrapping::truncate_at_width(rect.width().max(0.0));
-    let galley = ui.painter().layout_job(job);
-    let elided = galley.elided;
-    let at = align.align_size_within_rect(galley.size(), rect).min;
-    ui.painter().galley(at, galley, color);
-    elided
+) {
+    let mut label = Label::new(text, color).font(font);
+    label.align = align;
+    label.paint(ui, rect);
 }
 
 /// Width of a text on one line.
@@ -291,7 +300,8 @@ impl<'a> Button<'a> {
         }
         let font = self.font();
         let inner = rect.shrink2(vec2(theme::STEP, 0.0));
-        paint_text(ui, inner, Align2::CENTER_CENTER, self.text, font, color);
+        let label = Label::new(self.text, color).font(font).center();
+        label.paint(ui, inner);
         response
     }
 

@@ -1,7 +1,6 @@
 //! Two cursors in the plots, and the table of what lies between them. The figures come from all measurements.
 
 use crate::history::Series;
-use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::{Look, Pane};
@@ -11,7 +10,7 @@ use crate::ui::plots::time_window::Span;
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, plots, words};
 use crate::ui::theme;
-use egui::{Align, Align2, CursorIcon, Grid, Id, Layout, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align, CursorIcon, Grid, Id, Layout, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// Width of a cursor's flag.
 const CURSOR_FLAG: f32 = 16.0;
@@ -84,8 +83,8 @@ impl Cursors {
             response.widget_info(|| WidgetInfo::slider(true, *at_s, look.say(name)));
             ui.painter()
                 .rect_filled(flag, theme::ROUND_SMALL, look.palette.accent);
-            let (font, color) = (theme::number_small(), look.palette.on_accent);
-            controls::paint_text(ui, flag, Align2::CENTER_CENTER, short, font, color);
+            let label = Label::new(short, look.palette.on_accent).center();
+            label.font(theme::number_small()).paint(ui, flag);
             let pointer = response.interact_pointer_pos();
             if let Some(pointer) = pointer.filter(|_| response.dragged()) {
                 let to_s = lowest.transform.value_from_position(pointer).x;

@@ -1,13 +1,13 @@
 //! What happened, as lines across the plots with their words. Knows no curve.
 
 use crate::history::{Mark, MarkKind};
-use crate::ui::kit::controls;
+use crate::ui::kit::controls::{self, Label};
 use crate::ui::kit::look::Pane;
 use crate::ui::plots::chart::{ChartResponse, pointed_s};
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
-use egui::{Align2, Color32, Rect, Ui, pos2, vec2};
+use egui::{Color32, Rect, Ui, pos2, vec2};
 
 /// Characters of a note beside its line; the rest is in the tooltip.
 const NOTE_SHOWN: usize = 24;
@@ -48,7 +48,7 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
         let ground = pane.look.palette.sunken.gamma_multiply(0.8);
         ui.painter()
             .rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, ground);
-        controls::paint_text(ui, place, Align2::LEFT_CENTER, &text, theme::small(), color);
+        Label::new(&text, color).small().paint(ui, place);
         free_from = left + size.x + theme::GAP;
     }
 }

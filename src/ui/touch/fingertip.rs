@@ -85,6 +85,11 @@ impl Tip {
             .map_or(0.0, |counts| counts / FULL_PROXIMITY_COUNTS);
         level.clamp(0.0, 1.0)
     }
+
+    /// How strong its colours are.
+    fn fade(&self) -> f32 {
+        if self.stale { 0.35 } else { 1.0 }
+    }
 }
 
 /// Millimetres of the sensor to points on the screen.
@@ -166,10 +171,9 @@ const PADS: [&[(f32, f32)]; 7] = [
 /// Draws a fingertip into a rectangle, tip up.
 pub(crate) fn paint(painter: &Painter, look: Look, rect: Rect, tip: &Tip) {
     let scale = Scale::fit(rect);
-    let fade = if tip.stale { 0.35 } else { 1.0 };
-    halo(painter, look, &scale, tip, fade);
+    halo(painter, look, &scale, tip);
     skin(painter, look, &scale);
-    pads(painter, look, &scale, tip, fade);
+    pads(painter, look, &scale, tip);
     forces(painter, look, &scale, tip);
 }
 
@@ -200,8 +204,8 @@ fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
     )
 }
 
-fn halo(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
-    let level = tip.nearness() * fade;
+fn halo(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
+    let level = tip.nearness() * tip.fade();
     for (grow, part) in [(1.4, 0.10), (0.9, 0.16), (0.4, 0.26)] {
         let (rect, round) = outline(scale, grow);
         let color = look.palette.accent.gamma_multiply(part * level);
@@ -215,8 +219,8 @@ fn skin(painter: &Painter, look: Look, scale: &Scale) {
     painter.rect(rect, round, look.palette.skin, edge, StrokeKind::Inside);
 }
 
-fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip, fade: f32) {
-    let palette = look.palette;
+fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
+    let (palette, fade) = (look.palette, tip.fade());
     let color = |heat: Option<f32>| {
         heat.map_or(Color32::TRANSPARENT, |heat| {
             palette.heat(heat).gamma_multiply(fade)
@@ -264,7 +268,7 @@ fn crossed(painter: &Painter, pad: &[Pos2], color: Color32) {
 
 /// Draws normal force as a circle and tangential force as an arrow.
 fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
-    let fade = if tip.stale { 0.35 } else { 1.0 };
+    let fade = tip.fade();
     let arrow = match tip.sense {
         Sense::Fine => look.palette.arrow.gamma_multiply(fade),
         Sense::NoNumber | Sense::Beyond => look.palette.warn.gamma_multiply(fade),
@@ -296,19 +300,14 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
     if let Some(shear) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
         let by = scale.end(shear) - scale.middle();
         let stroke = Stroke::new(2.0, arrow);
-        arrow_shape(
-            painter,
-            scale.middle(),
-            by.normalized(),
-            by.length(),
-            stroke,
-        );
+        arrow_shape(painter, scale.middle(), by, stroke);
     }
 }
 
-fn arrow_shape(painter: &Painter, from: Pos2, along: Vec2, length: f32, stroke: Stroke) {
-    let head = (length * 0.4).clamp(3.0, 8.0);
-    let to = from + along * length;
+fn arrow_shape(painter: &Painter, from: Pos2, by: Vec2, stroke: Stroke) {
+    let along = by.normalized();
+    let head = (by.length() * 0.4).clamp(3.0, 8.0);
+    let to = from + by;
     let side = along.rot90() * head * 0.5;
     painter.line_segment([from, to - along * head * 0.7], stroke);
     let points = vec![to, to - along * head + side, to - along * head - side];

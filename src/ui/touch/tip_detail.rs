@@ -17,7 +17,7 @@ use crate::ui::text::{Text, panels, touch as text};
 use crate::ui::theme;
 use crate::ui::touch::table as touch_table;
 use crate::ui::touch::tip_channels::TipChannels;
-use egui::{Align2, Color32, Id, Painter, Pos2, Rect, Stroke, Ui, UiBuilder, Vec2, vec2};
+use egui::{Color32, Id, Painter, Pos2, Rect, Stroke, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::LineStyle;
 
 /// Friction that is taken until a person chooses one, in percent: rubber on smooth plastic is about this.
@@ -134,14 +134,8 @@ impl TipDetail {
             egui::vec2(40.0, 12.0),
         );
         let text = look.say(panels::TIP_UP);
-        controls::paint_text(
-            ui,
-            up,
-            Align2::CENTER_CENTER,
-            text,
-            theme::tiny(),
-            palette.faint,
-        );
+        let label = Label::new(text, palette.faint).font(theme::tiny());
+        label.center().paint(ui, up);
         let (block, freshness) = self.block(pane);
         let (Grip::Ratio(ratio), Some(block)) = (Grip::of(block), block) else {
             return;

@@ -11,7 +11,7 @@ use crate::ui::text::{Text, faults, keys, main, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use crate::ui::window::rooms;
-use egui::{Align, Align2, Color32, CornerRadius, Layout, Rect, Response, Ui, pos2, vec2};
+use egui::{Align, Color32, CornerRadius, Layout, Rect, Response, Ui, pos2, vec2};
 
 /// Draws the bar. STOP can be pressed whatever card is open, the rest only if `is_free`. True if the connection was asked for.
 pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) -> bool {
@@ -41,12 +41,12 @@ fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let button = Button::new(look.say(main::STOP), look.say(main::STOP_TIP)).weight(Weight::Stop);
     let (id, rect) = ui.allocate_space(vec2(148.0, ui.available_height()));
     let response = button.ground(ui, look, rect, id);
-    let (center, strong) = (Align2::CENTER_CENTER, look.palette.on_strong);
+    let strong = look.palette.on_strong;
     let (upper, lower) = rect.shrink(theme::BAR).split_top_bottom_at_fraction(0.6);
-    let word = look.say(main::STOP);
-    controls::paint_text(ui, upper, center, word, theme::large(), strong);
-    let keys = look.say(main::STOP_KEYS);
-    controls::paint_text(ui, lower, center, keys, theme::small(), strong);
+    let word = Label::new(look.say(main::STOP), strong).center();
+    word.font(theme::large()).paint(ui, upper);
+    let keys = Label::new(look.say(main::STOP_KEYS), strong).center();
+    keys.small().paint(ui, lower);
     if controls::pressed(ui, &response) {
         pane.actions.push(Action::Stop);
     }
@@ -83,8 +83,7 @@ fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) ->
     let center = pos2(rect.left() + 16.0, rect.center().y);
     controls::lamp(ui, center, lamp);
     let words = rect.with_min_x(rect.left() + 29.0);
-    let (font, color) = (theme::body(), look.palette.text);
-    controls::paint_text(ui, words, Align2::LEFT_CENTER, button.text, font, color);
+    Label::new(button.text, look.palette.text).paint(ui, words);
     response
 }
 

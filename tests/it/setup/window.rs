@@ -377,6 +377,18 @@ impl Bench {
         self.harness.step();
     }
 
+    /// Puts the pointer to a place and leaves it there.
+    pub(crate) fn point(&mut self, at: egui::Pos2) {
+        self.harness.hover_at(at);
+        self.harness.step();
+    }
+
+    /// Types a text into what has the keyboard.
+    pub(crate) fn write(&mut self, text: &str) {
+        self.harness.event(egui::Event::Text(text.to_owned()));
+        self.run(40);
+    }
+
     /// Takes the pointer out of the window.
     pub(crate) fn point_away(&mut self) {
         self.harness.remove_cursor();

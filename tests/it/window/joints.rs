@@ -150,3 +150,65 @@ fn a_rough_pair_of_speed_and_threshold_is_said_with_its_figure() {
     bench.run(60);
     assert!(bench.shows("Index impact warning"));
 }
+
+#[test]
+fn one_click_on_a_number_selects_all_of_it() {
+    let mut bench = Bench::armed();
+    bench.type_into("Index angle number", "212");
+    bench.key(egui::Key::Enter);
+    bench.run(60);
+    bench.click("Index angle number");
+    bench.run(60);
+    bench.write("700");
+    assert_eq!(bench.typed("Index angle number"), "700");
+    bench.key(egui::Key::Enter);
+    bench.run(60);
+    let target = bench.state().hand().joints[Dof::Index].target.unwrap();
+    assert_eq!(target.get(), 700);
+}
+
+#[test]
+fn escape_gives_the_old_number_back() {
+    let mut bench = Bench::armed();
+    bench.type_into("Index force number", "900");
+    bench.key(egui::Key::Escape);
+    bench.run(200);
+    assert_eq!(bench.typed("Index force number"), "500");
+}
+
+#[test]
+fn a_refused_number_is_told_in_words_and_is_gone_after_a_stop() {
+    let mut bench = Bench::armed();
+    bench.type_into("Index angle number", "abc");
+    bench.key(egui::Key::Enter);
+    bench.run(60);
+    let told = "Only numbers from 0..1000";
+    let before = bench.texts_with("0..1000");
+    assert!(!before.is_empty(), "{told}: {:?}", bench.texts());
+    assert_eq!(bench.typed("Index angle number"), "abc");
+    bench.click_button("STOP");
+    bench.run(200);
+    assert!(bench.texts_with("0..1000").is_empty());
+    assert_ne!(bench.typed("Index angle number"), "abc");
+}
+
+#[test]
+fn no_tooltip_covers_a_joint_until_the_pointer_has_left_its_track() {
+    let mut bench = Bench::armed();
+    let track = bench.rect(Role::Slider, "Index angle target");
+    let tip = |bench: &Bench| !bench.texts_with("0 = bent").is_empty();
+    let rest = |bench: &mut Bench, at: egui::Pos2| {
+        bench.point(at);
+        bench.run(1500);
+    };
+    rest(&mut bench, track.lerp_inside(egui::vec2(0.9, 0.5)));
+    assert!(tip(&bench), "it tells what it is: {:?}", bench.texts());
+    bench.drag("Index angle target", 1.0, 0.7);
+    bench.run(1500);
+    assert!(!tip(&bench), "not after a drag");
+    rest(&mut bench, track.lerp_inside(egui::vec2(0.4, 0.5)));
+    assert!(!tip(&bench), "not while the pointer stays");
+    rest(&mut bench, egui::pos2(2.0, 2.0));
+    rest(&mut bench, track.lerp_inside(egui::vec2(0.4, 0.5)));
+    assert!(tip(&bench), "again once it came back");
+}

@@ -142,6 +142,12 @@ fn the_list_of_keys_opens_and_closes_and_stop_works_over_it() {
         bench.key(open);
         bench.step();
         assert!(bench.shows("Shift+A") && bench.shows("Arm or disarm"));
+        for told in ["arrows 10, with Shift 100", "a click selects all"] {
+            assert_eq!(bench.texts_with(told).len(), 1, "{told}");
+        }
+        for zoom in ["Ctrl++", "Ctrl+-", "Ctrl+0"] {
+            assert!(bench.shows(zoom), "{zoom}");
+        }
         bench.key(open);
         bench.step();
         assert!(!bench.shows("Shift+A"));
