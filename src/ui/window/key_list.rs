@@ -52,8 +52,11 @@ impl KeyList {
     }
 }
 
-/// The columns of the list: titles, each with what is below it.
-fn columns() -> [Vec<(Text, Vec<(String, Text)>)>; 3] {
+/// A title, and below it keys with what they do.
+type Part = (Text, Vec<(String, Text)>);
+
+/// The columns of the list.
+fn columns() -> [Vec<Part>; 3] {
     let part = |title: Text, wanted: fn(Wish) -> bool| {
         let wishes = ROWS.iter().map(|row| row.wish);
         let mut wishes: Vec<Wish> = wishes.filter(|wish| wanted(*wish)).collect();
