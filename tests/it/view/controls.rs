@@ -113,7 +113,7 @@ fn every_control_has_its_name() {
             (Role::TextInput, "angle number"),
             (Role::TextInput, "force number"),
             (Role::TextInput, "speed number"),
-            (Role::CheckBox, "lock"),
+            (Role::Button, "lock"),
         ] {
             harness.get_by_role_and_label(role, &format!("{joint} {what}"));
         }
