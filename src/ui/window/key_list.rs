@@ -42,7 +42,10 @@ impl KeyList {
             .pivot(Align2::CENTER_CENTER)
             .fixed_pos(place.center())
             .constrain_to(place);
-        let shown = window.show(ui.ctx(), |ui| list_ui(ui, look));
+        let shown = window.show(ui.ctx(), |ui| {
+            ui.set_width((place.width() - 4.0 * theme::PAD).min(880.0));
+            list_ui(ui, look)
+        });
         let Some(shown) = shown else { return };
         let beside = shown.response.clicked_elsewhere();
         if shown.inner == Some(true) || beside && !self.fresh {
@@ -94,26 +97,21 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
         let shut = Button::new(look.say(keys::SHUT), "").weight(Weight::Quiet);
         shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
     });
-    ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = 2.0 * theme::PAD;
-        for (number, parts) in columns().into_iter().enumerate() {
-            let grid = Grid::new(("keys", number))
-                .num_columns(2)
-                .min_row_height(20.0);
-            grid.spacing([theme::PAD, 2.0]).show(ui, |ui| {
-                for (title, rows) in parts {
-                    Label::new(look.say(title), palette.accent).small().ui(ui);
-                    ui.end_row();
+    ui.columns_const(|all: &mut [Ui; 3]| {
+        for (ui, parts) in all.iter_mut().zip(columns()) {
+            for (title, rows) in parts {
+                Label::new(look.say(title), palette.accent).small().ui(ui);
+                let grid = Grid::new(title.en).num_columns(2).min_col_width(110.0);
+                grid.min_row_height(20.0).show(ui, |ui| {
                     for (keys, words) in rows {
                         ui.horizontal(|ui| {
-                            ui.spacing_mut().item_spacing.x = theme::STEP;
                             keys.split(", ").for_each(|key| cap_ui(ui, look, key));
                         });
                         Label::new(look.say(words), palette.text).ui(ui);
                         ui.end_row();
                     }
-                }
-            });
+                });
+            }
         }
     });
     for text in [keys::ON_TRACKS, keys::IN_FIELDS] {
@@ -127,7 +125,6 @@ fn cap_ui(ui: &mut Ui, look: Look, key: &str) {
         .fill(look.palette.control)
         .corner_radius(theme::ROUND_SMALL)
         .inner_margin(Margin::symmetric(6, 1));
-    frame.show(ui, |ui| {
-        ui.add(egui::Label::new(egui::RichText::new(key).font(theme::number())).extend());
-    });
+    let key = egui::RichText::new(key).font(theme::number());
+    frame.show(ui, |ui| ui.add(egui::Label::new(key).extend()));
 }

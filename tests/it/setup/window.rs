@@ -370,6 +370,12 @@ impl Bench {
         self.run(200);
     }
 
+    /// Let go, with the pointer left where it is.
+    pub(crate) fn release_at(&mut self, at: egui::Pos2) {
+        self.harness.input_mut().events.push(primary(at, false));
+        self.harness.step();
+    }
+
     /// Puts the pointer over a text and leaves it there.
     pub(crate) fn point_at(&mut self, name: &str) {
         let at = self.rect(Role::Label, name).center();
