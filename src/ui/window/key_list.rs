@@ -55,17 +55,17 @@ impl KeyList {
     }
 }
 
-/// A title, and below it keys with what they do.
+/// A title, and below it the names of keys with what they do.
 type Part = (Text, Vec<(String, Text)>);
 
 /// The columns of the list.
 fn columns() -> [Vec<Part>; 3] {
-    let part = |title: Text, wanted: fn(Wish) -> bool| {
+    let part = |title: Text, wanted: fn(Wish) -> bool| -> Part {
         let wishes = ROWS.iter().map(|row| row.wish);
         let mut wishes: Vec<Wish> = wishes.filter(|wish| wanted(*wish)).collect();
         wishes.dedup();
         let named = |wish: Wish| (wish.keys(), wish.words());
-        (title, wishes.into_iter().map(named).collect::<Vec<_>>())
+        (title, wishes.into_iter().map(named).collect())
     };
     let motion = part(keys::MOTION, |wish| {
         matches!(
