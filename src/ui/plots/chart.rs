@@ -262,10 +262,10 @@ impl<'a> Chart<'a> {
                     let trace = traces.entry(series).or_default();
                     history.trace(series, from_s, to_s, columns, trace);
                     is_decimated |= trace.decimated && !curve.steps;
-                    if let Some(all) = history.summary(series, from_s, to_s) {
-                        let ends = (f64::from(all.min) - zero, f64::from(all.max) - zero);
-                        extent = scales::joined(extent, ends);
-                    }
+                    // A trace keeps every extreme; the point before the left edge is not seen.
+                    let seen = trace.points().filter(|[at_s, _]| *at_s >= from_s);
+                    let values = seen.map(|[_, value]| (value - zero, value - zero));
+                    extent = values.fold(extent, scales::joined);
                 }
             }
         }

@@ -32,7 +32,7 @@ fn pymodbus_is_there() -> bool {
     let asked = Command::new("python3")
         .args([
             "-c",
-            "import pymodbus, serial; pymodbus.client.ModbusSerialClient",
+            "import serial; from pymodbus.client import ModbusSerialClient, ModbusTcpClient",
         ])
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -49,10 +49,15 @@ fn talks(kind: &str, place: &str, unit: &str, hand: &str) {
     let out = listen(command).end().ok().out;
     let lines: Vec<&str> = out.lines().collect();
     assert_eq!(lines[0], "[1000, 1000, 1000, 1000, 1000, 1000]");
-    let ours = run(&["read", "ANGLE_SET", "ANGLE_ACT", "--json", "--hand", hand])
-        .ok()
-        .lines()
-        .remove(0);
+    let read = || run(&["read", "ANGLE_SET", "ANGLE_ACT", "--json", "--hand", hand]);
+    let mut ours = read().ok().lines().remove(0);
+    // A drive needs its dead time before it moves.
+    for _ in 0..50 {
+        if ours["ANGLE_ACT"][3].as_i64().unwrap() < 1000 {
+            break;
+        }
+        ours = read().ok().lines().remove(0);
+    }
     let theirs: Vec<i64> = serde_json::from_str(lines[1]).unwrap();
     assert_eq!(theirs[3], 500);
     assert_eq!(ours["ANGLE_SET"][3], 500);
