@@ -52,7 +52,7 @@ fn a_file_is_read_as_documented_and_unknown_keys_survive() {
     let sequence = &library.sequences[0];
     assert!(sequence.looped);
     assert_eq!(sequence.steps[0].pose, pose.id);
-    assert_eq!(sequence.steps[0].dwell, Millis::nearest(400));
+    assert_eq!(sequence.steps[0].dwell, Millis::try_from(400).unwrap());
     let again = write(&library).unwrap();
     for kept in ["mood = \"calm\"", "colour = \"red\"", "note = \"slow\""] {
         assert!(again.contains(kept), "{kept}\n{again}");
@@ -139,7 +139,7 @@ proptest! {
         library.edit_sequence(own, SequenceEdit::Loop(looped));
         for (at, (pose, dwell, speed)) in steps.into_iter().filter(|(pose, ..)| *pose < ids.len()).enumerate() {
             library.edit_sequence(own, SequenceEdit::Add(ids[pose]));
-            library.edit_sequence(own, SequenceEdit::Dwell(at, Millis::nearest(dwell)));
+            library.edit_sequence(own, SequenceEdit::Dwell(at, Millis::try_from(i64::from(dwell)).unwrap()));
             library.edit_sequence(own, SequenceEdit::Speed(at, Speed::nearest(speed)));
         }
         let text = write(&library).unwrap();

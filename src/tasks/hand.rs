@@ -1,9 +1,7 @@
 //! A hand as tasks see it, how one is reached, and the waits that tasks share.
 
 use crate::hand::{HandCommand, Setpoints, Setting, Span};
-use crate::link::{
-    ArmRequest, LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError,
-};
+use crate::link::{LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError};
 use crate::record::{Calibrated, LinkState, NotSent, Reset, Rest, Saved, Verdict, Written};
 use crate::transport::Endpoint;
 use std::time::Duration;
@@ -41,12 +39,8 @@ pub trait Hand: Clone + Send + Sync + 'static {
     fn calibrate(&self) -> impl Future<Output = Result<Calibrated, RequestError>> + Send;
     /// Holds before anything else, and disarms.
     fn stop(&self);
-    /// Asks to arm.
-    fn arm(&self, request: ArmRequest);
     /// Lets no setpoint pass any more.
     fn disarm(&self);
-    /// Takes the turn at moving the hand.
-    fn take_turn(&self) -> MotionTurn;
     /// Sets targets and limits; false if the turn is over.
     fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool;
     /// Reads at other rates.
@@ -81,14 +75,8 @@ impl Hand for LinkHandle {
     fn stop(&self) {
         Self::stop(self);
     }
-    fn arm(&self, request: ArmRequest) {
-        Self::arm(self, request);
-    }
     fn disarm(&self) {
         Self::disarm(self);
-    }
-    fn take_turn(&self) -> MotionTurn {
-        Self::take_turn(self)
     }
     fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
         Self::set(self, turn, setpoints)

@@ -3,8 +3,6 @@
 
 pub mod apply;
 pub mod calibrate;
-#[cfg(test)]
-mod fake;
 pub mod gesture;
 pub mod hand;
 pub mod place;

@@ -129,11 +129,6 @@ impl TrialSeries {
         }
     }
 
-    /// The settings of the trials that did not begin yet.
-    pub fn ahead(&self) -> impl Iterator<Item = TrialSetting> {
-        self.queue.iter().map(|cell| cell.setting)
-    }
-
     /// The next finished trial. Each is returned once.
     pub fn finished(&mut self) -> Option<Trial> {
         self.done.pop_front()

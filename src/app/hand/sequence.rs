@@ -38,17 +38,6 @@ pub struct SequenceRun {
 }
 
 impl SequenceRun {
-    /// One that stands so and is run by nobody, for pictures and tests.
-    #[must_use]
-    pub const fn standing(sequence: SequenceId, view: PlayView) -> Self {
-        Self {
-            sequence,
-            view,
-            commands: None,
-            task: None,
-        }
-    }
-
     /// True while it may send something.
     #[must_use]
     pub const fn is_running(&self) -> bool {

@@ -209,12 +209,6 @@ impl HandState {
         self.series.is_some()
     }
 
-    /// True while a sequence may send something.
-    #[must_use]
-    pub fn runs_sequence(&self) -> bool {
-        self.sequence.as_ref().is_some_and(SequenceRun::is_running)
-    }
-
     /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.
     #[must_use]
     pub fn arm_refusal(&self) -> Option<ArmRefusal> {

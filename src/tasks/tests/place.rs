@@ -6,10 +6,10 @@ use crate::params::place::{Moved, Place, Places};
 use crate::params::rows::{ParamId, Value};
 use crate::record::Saved;
 use crate::tasks::TaskError;
-use crate::tasks::fake::{Asked, FakeHand, FakeReach, Fate, place_write};
 use crate::tasks::place::{
     KEEP_WITHIN, Person, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
 };
+use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate, place_write};
 use crate::transport::Endpoint;
 use std::collections::BTreeSet;
 use std::path::Path;

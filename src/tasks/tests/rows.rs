@@ -9,10 +9,10 @@ use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, SPANS};
 use crate::record::{Doubt, NotSent, Saved, Verdict};
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
-use crate::tasks::fake::{Asked, FakeHand, FakeReach, Fate};
 use crate::tasks::read::{group, rows};
 use crate::tasks::reset::{ResetEnd, ResetReport, ResetStep, places, reset};
 use crate::tasks::save::{Save, SaveReport, SaveStep, save};
+use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate};
 use crate::tasks::{Consent, TaskError};
 use tempfile::TempDir;
 
