@@ -5,7 +5,7 @@ use crate::app::hand::HandState;
 use crate::app::hand::joint::Move;
 use crate::app::hand::sequence::{Play, SequenceRun};
 use crate::app::running::Running;
-use crate::hand::{Moment, PerDof, Setpoints, Target};
+use crate::hand::{PerDof, Setpoints, Target};
 use crate::history::MarkKind;
 use crate::poses::library::{Library, SequenceId};
 use crate::poses::player::{Pace, Phase, cues};
@@ -111,10 +111,10 @@ impl HandState {
     }
 
     /// A gesture of the hand's own was started.
-    pub(crate) fn gesture_started(&mut self, number: u8, now: Moment) {
-        self.history.mark(now, MarkKind::Gesture(number));
+    pub(crate) fn gesture_started(&mut self, number: u8) {
+        self.history.mark(self.now, MarkKind::Gesture(number));
         self.commanded = true;
-        self.following = PerDof::splat(true);
+        self.steered = PerDof::default();
     }
 }
 

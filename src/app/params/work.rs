@@ -110,7 +110,8 @@ impl HandState {
     }
 
     /// Reads the rows because somebody looks at them, if it is due.
-    pub(crate) fn look_at_params(&mut self, env: &Env, now: Moment) {
+    pub(crate) fn look_at_params(&mut self, env: &Env) {
+        let now = self.now;
         if self.params.look(now) {
             self.param_action(ParamAction::Read, env);
         }
@@ -194,7 +195,8 @@ impl HandState {
     }
 
     /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
-    pub(crate) fn tick_params(&mut self, env: &Env, notices: &mut Notices, now: Moment) {
+    pub(crate) fn tick_params(&mut self, env: &Env, notices: &mut Notices) {
+        let now = self.now;
         self.params.take_task(now);
         if !self.params.is_busy()
             && let Some(agreed) = self.params.save_next.take()

@@ -11,7 +11,6 @@ use crate::app::procedures::reach::{Asking, AtCard};
 use crate::app::procedures::running::{ProcedureTask, ProcedureWork};
 use crate::app::running::Running;
 use crate::app::settings::Settings;
-use crate::hand::Moment;
 use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
 use crate::params::place::{Place, Places, command, new_place};
@@ -108,9 +107,9 @@ impl HandState {
     }
 
     /// A person decided.
-    pub(crate) fn procedure_action(&mut self, action: ProcedureAction, env: &Env, now: Moment) {
+    pub(crate) fn procedure_action(&mut self, action: ProcedureAction, env: &Env) {
         match action {
-            ProcedureAction::Begin => self.begin_procedure(env, now),
+            ProcedureAction::Begin => self.begin_procedure(env),
             ProcedureAction::Keep | ProcedureAction::GoBack => {
                 if let Some(ProcedureTask::Place { keeps, .. }) = &mut self.procedure_work.task {
                     let keeps = keeps.take();
@@ -131,7 +130,8 @@ impl HandState {
         }
     }
 
-    fn begin_procedure(&mut self, env: &Env, now: Moment) {
+    fn begin_procedure(&mut self, env: &Env) {
+        let now = self.now;
         if self.rest_refusal().is_some() || self.procedure_work.task.is_some() {
             return;
         }
@@ -202,8 +202,8 @@ impl HandState {
         env: &Env,
         settings: &mut Settings,
         notices: &mut Notices,
-        now: Moment,
     ) {
+        let now = self.now;
         let mut work = std::mem::take(&mut self.procedure_work);
         self.take_way(&mut work);
         let over = self.take_procedure_task(&mut work, settings);
@@ -213,7 +213,7 @@ impl HandState {
             .and_then(|wishes| wishes.try_recv().ok());
         if let Some(wish) = wish {
             if self.endpoint.as_ref() != Some(&wish.place) {
-                self.go(Some(wish.place), env, notices, now);
+                self.go(Some(wish.place), env, notices);
             }
             if let Some(open) = &self.open {
                 // The task may be over already.
@@ -227,7 +227,7 @@ impl HandState {
             }
             work.task = None;
             self.params.forget_files();
-            self.go_home(env, notices, now);
+            self.go_home(env, notices);
         }
         self.procedure_work = work;
     }
@@ -307,7 +307,7 @@ impl HandState {
     }
 
     /// To the hand, not to another one that was looked for on the way.
-    fn go_home(&mut self, env: &Env, notices: &mut Notices, now: Moment) {
+    fn go_home(&mut self, env: &Env, notices: &mut Notices) {
         let Some(Procedure::Place(card)) = &self.procedure else {
             return;
         };
@@ -316,7 +316,7 @@ impl HandState {
             return;
         };
         if self.endpoint.as_ref() != Some(&there) {
-            self.go(Some(there), env, notices, now);
+            self.go(Some(there), env, notices);
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::app::trials::action::TrialAction;
 use crate::app::trials::form::tags;
 use crate::app::trials::run::SeriesRun;
 use crate::app::trials::state::{SessionId, SessionOrigin, TrialsState};
-use crate::hand::{Dof, Moment, PerDof};
+use crate::hand::{Dof, PerDof};
 use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{SeriesStart, SeriesStep, SeriesView, Told, series};
@@ -128,7 +128,7 @@ impl HandState {
             };
             series(&link, start, ended, tell).await
         });
-        self.following = PerDof::splat(true);
+        self.steered = PerDof::default();
         self.commanded = true;
         let head = self.session_head(plan.clone());
         let session = trials.add(head, SessionOrigin::Unsaved, Vec::new());
@@ -163,12 +163,8 @@ impl HandState {
     }
 
     /// Takes in what the series did.
-    pub(crate) fn tick_series(
-        &mut self,
-        trials: &mut TrialsState,
-        notices: &mut Notices,
-        now: Moment,
-    ) {
+    pub(crate) fn tick_series(&mut self, trials: &mut TrialsState, notices: &mut Notices) {
+        let now = self.now;
         let Some(mut run) = self.series.take() else {
             // One that was broken off with its link has ended there.
             if let Some(session) = trials.running {
@@ -202,7 +198,7 @@ impl HandState {
         notices.push(now, trials.close(run.session, aborted));
         // The task disarmed the hand, or stopped it.
         if self.link.armed == Some(run.epoch) {
-            self.disarm(now);
+            self.disarm();
         }
     }
 }
