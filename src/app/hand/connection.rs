@@ -91,7 +91,7 @@ impl HandState {
             joints: before.joints,
             recorder: before.recorder,
             procedure: before.procedure,
-            procedure_work: before.procedure_work,
+            requested: before.requested,
             leaving: before.leaving,
             listed: before.listed,
             seen_from: Some(before.now),

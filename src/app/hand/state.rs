@@ -6,7 +6,7 @@ use crate::app::hand::open::{Leaving, Open, Pending};
 use crate::app::hand::sequence::SequenceRun;
 use crate::app::params::state::ParamsState;
 use crate::app::procedures::procedure::Procedure;
-use crate::app::procedures::running::ProcedureWork;
+use crate::app::procedures::reach::GoRequest;
 use crate::app::readings::fault_recorder::FaultRecorder;
 use crate::app::readings::faults::FaultList;
 use crate::app::readings::pace::Pace;
@@ -19,6 +19,7 @@ use crate::link::session::motion::arm_refusal;
 use crate::link::{LinkStats, LinkStatus, Traffic};
 use crate::record::{ArmRefusal, LinkState, QuirkSheet};
 use crate::transport::Endpoint;
+use tokio::sync::mpsc;
 
 /// How much a shown value can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,8 +75,8 @@ pub struct HandState {
     pub traffic: Traffic,
     /// What is kept about this hand; `None` for the built-in one, and until it was kept.
     pub sheet: Option<QuirkSheet>,
-    /// What belongs to the card.
-    pub(crate) procedure_work: ProcedureWork,
+    /// Where the task under the card wants the link.
+    pub(crate) requested: Option<mpsc::UnboundedReceiver<GoRequest>>,
     /// The open link.
     pub(crate) open: Option<Open>,
     /// The hand is being left: it was told to hold.

@@ -2,7 +2,7 @@
 
 use crate::cli::out::{Out, say};
 use crate::cli::params::args::ApplyArgs;
-use crate::cli::params::reach::{self, Places, SaidYes};
+use crate::cli::params::reach::{self, Places, said_yes};
 use crate::cli::params::words::risks;
 use crate::params::place::{self, Moved, new_place};
 use crate::params::rows::{ParamId, Value};
@@ -46,7 +46,7 @@ pub(crate) async fn change(
         is_followed: true,
     };
     let mut reach = Places::default();
-    let report = change_place(&mut reach, &change, &files, &mut SaidYes, |_| ()).await?;
+    let report = change_place(&mut reach, &change, &files, said_yes(), |_| ()).await?;
     if let Some(why) = &report.not_noted {
         bail!(
             "the hand was changed, and its backups could not be taken along: they are in {}: {why}",

@@ -5,10 +5,11 @@ use crate::cli::session::{self, ANSWER_WITHIN};
 use crate::link::{Clock, LinkHandle, PollRates, RequestError};
 use crate::params::values::Params;
 use crate::tasks::hand::answers;
-use crate::tasks::place::Person;
+use crate::tasks::place::Decisions;
 use crate::tasks::{Reach, read};
 use crate::transport::Endpoint;
 use anyhow::bail;
+use std::future::ready;
 use std::time::Duration;
 use tokio::time::sleep;
 
@@ -64,14 +65,9 @@ impl Reach for Places {
 }
 
 /// Who said --yes keeps what was asked for; SAVE is a command of its own.
-pub(crate) struct SaidYes;
-
-impl Person for SaidYes {
-    async fn keeps(&mut self) -> bool {
-        true
-    }
-
-    async fn saves(&mut self) -> bool {
-        false
+pub(crate) fn said_yes() -> Decisions {
+    Decisions {
+        keeps: Box::pin(ready(true)),
+        saves: Box::pin(ready(false)),
     }
 }

@@ -6,8 +6,8 @@ use crate::cli::params::{reach, words};
 use crate::cli::session;
 use crate::params::backups::saved_name;
 use crate::record::Saved;
-use crate::tasks::Consent;
-use crate::tasks::save::{Save, SaveStep, save};
+use crate::tasks::save::{Save, save};
+use crate::tasks::{Consent, ParamStep};
 use anyhow::bail;
 use serde_json::json;
 
@@ -28,7 +28,7 @@ async fn save_now(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
         consent: Consent::Given,
     };
     let told = |step| {
-        if let SaveStep::Meant(risks) = step {
+        if let ParamStep::Meant(risks) = step {
             for danger in &risks.dangers {
                 say(&format!("warning: {}", words::danger(danger)));
             }
