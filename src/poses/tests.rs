@@ -139,7 +139,7 @@ proptest! {
         library.edit_sequence(own, SequenceEdit::Loop(looped));
         for (at, (pose, dwell, speed)) in steps.into_iter().filter(|(pose, ..)| *pose < ids.len()).enumerate() {
             library.edit_sequence(own, SequenceEdit::Add(ids[pose]));
-            library.edit_sequence(own, SequenceEdit::Dwell(at, Millis::try_from(i64::from(dwell)).unwrap()));
+            library.edit_sequence(own, SequenceEdit::Dwell(at, Millis::try_from(i64::from(dwell.min(Millis::MAX))).unwrap()));
             library.edit_sequence(own, SequenceEdit::Speed(at, Speed::nearest(speed)));
         }
         let text = write(&library).unwrap();

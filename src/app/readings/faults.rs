@@ -76,19 +76,10 @@ impl FaultEntry {
 }
 
 /// Faults now and before.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct FaultList {
     entries: Vec<FaultEntry>,
     worked_again_c: PerDof<Option<f32>>,
-}
-
-impl Default for FaultList {
-    fn default() -> Self {
-        Self {
-            entries: Vec::new(),
-            worked_again_c: PerDof::splat(None),
-        }
-    }
 }
 
 impl FaultList {

@@ -37,39 +37,24 @@ pub struct Listed {
 
 /// A recording under way.
 #[derive(Debug, Clone)]
-struct Running {
+struct OpenRecording {
     first: Moment,
     until: Moment,
     faults: Vec<FaultAt>,
 }
 
 /// The recorder.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct FaultRecorder {
     events: VecDeque<Event>,
     /// What the drives said before the oldest event.
     before: PerDof<DriveState>,
     now: PerDof<DriveState>,
     events_lost: u64,
-    running: Option<Running>,
+    running: Option<OpenRecording>,
     kept: VecDeque<Listed>,
     next: u64,
     lost_unopened: u64,
-}
-
-impl Default for FaultRecorder {
-    fn default() -> Self {
-        Self {
-            events: VecDeque::new(),
-            before: PerDof::splat(DriveState::default()),
-            now: PerDof::splat(DriveState::default()),
-            events_lost: 0,
-            running: None,
-            kept: VecDeque::new(),
-            next: 0,
-            lost_unopened: 0,
-        }
-    }
 }
 
 impl FaultRecorder {
@@ -127,7 +112,7 @@ impl FaultRecorder {
 
     /// A fault came: it is recorded, in the recording under way or in a new one.
     pub(crate) fn fault(&mut self, dof: Dof, what: FaultKind, now: Moment) {
-        let running = self.running.get_or_insert_with(|| Running {
+        let running = self.running.get_or_insert_with(|| OpenRecording {
             first: now,
             until: now,
             faults: Vec::new(),
@@ -161,7 +146,7 @@ impl FaultRecorder {
     pub(crate) fn another_hand(&mut self, history: &History, hand: &str, now: Moment) {
         self.cut(history, hand, now);
         self.events.clear();
-        self.before = PerDof::splat(DriveState::default());
+        self.before = PerDof::default();
         self.now = self.before;
         self.events_lost = 0;
     }
