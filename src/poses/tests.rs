@@ -192,7 +192,7 @@ fn a_player_waits_for_arrival_then_for_the_dwell_and_loops() {
         Some(Angle::new(0).ok()),
         "from the start again"
     );
-    assert_eq!(player.late(), 1);
+    assert_eq!(player.view().late, 1);
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn one_step_pauses_and_only_a_person_goes_on() {
     assert!(player.tick(ms(100_000), &at(0)).is_some(), "the next pose");
     assert!(player.pause());
     player.resume(Pace::Through, ms(100_500));
-    assert_eq!(player.at(), 1);
+    assert_eq!(player.view().at, 1);
     assert!(
         player.tick(ms(100_500), &at(0)).is_some(),
         "the same pose again"
@@ -218,7 +218,7 @@ fn one_step_pauses_and_only_a_person_goes_on() {
     player.resume(Pace::Through, ms(100_600));
     player.end(End::Person);
     assert_eq!(
-        player.phase(),
+        player.view().phase,
         Phase::Ended(End::Fault),
         "the first reason stays"
     );

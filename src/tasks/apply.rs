@@ -127,7 +127,11 @@ async fn write<H: Hand>(
 
 /// Writes one group. If it is not known what the hand holds then, it is read once more, on a link that came back.
 async fn write_one<H: Hand>(hand: &H, setting: Setting) -> Result<Written, RequestError> {
-    let written = once_at_rest(|| hand.set_kept(setting)).await?;
+    let not_sent = |written: &Written| match written.verdict {
+        Verdict::NotSent(why) => Some(why),
+        _ => None,
+    };
+    let written = once_at_rest(|| hand.set_kept(setting), not_sent).await?;
     if !matches!(written.verdict, Verdict::Unverified { .. }) {
         return Ok(written);
     }

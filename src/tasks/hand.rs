@@ -2,7 +2,7 @@
 
 use crate::hand::{HandCommand, Setpoints, Setting, Span};
 use crate::link::{LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError};
-use crate::record::{Calibrated, LinkState, NotSent, Reset, Rest, Saved, Verdict, Written};
+use crate::record::{Calibrated, LinkState, NotSent, Reset, Rest, Saved, Written};
 use crate::transport::Endpoint;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
@@ -122,50 +122,18 @@ pub(crate) async fn rests<H: Hand>(hand: &H) -> bool {
     }
 }
 
-/// Whether a request was held back because of what the hand does at the moment.
-pub trait Attempt {
-    /// Why nothing was sent, if nothing was.
-    fn not_sent(&self) -> Option<NotSent>;
-}
-
-impl Attempt for Written {
-    fn not_sent(&self) -> Option<NotSent> {
-        match self.verdict {
-            Verdict::NotSent(why) => Some(why),
-            _ => None,
-        }
-    }
-}
-
-impl Attempt for Saved {
-    fn not_sent(&self) -> Option<NotSent> {
-        match self {
-            Self::NotSent(why) => Some(*why),
-            _ => None,
-        }
-    }
-}
-
-impl Attempt for Reset {
-    fn not_sent(&self) -> Option<NotSent> {
-        match self {
-            Self::NotSent(why) => Some(*why),
-            _ => None,
-        }
-    }
-}
-
 /// Asks, and asks again for a while where the hand still moves or an earlier SAVE is too near.
 ///
 /// # Errors
 /// As the link says.
-pub async fn once_at_rest<T: Attempt, F: Future<Output = Result<T, RequestError>>>(
+pub(crate) async fn once_at_rest<T, F: Future<Output = Result<T, RequestError>>>(
     ask: impl Fn() -> F,
+    not_sent: fn(&T) -> Option<NotSent>,
 ) -> Result<T, RequestError> {
     let until = Instant::now() + RESTS_WITHIN;
     loop {
         let end = ask().await?;
-        let wait = match end.not_sent() {
+        let wait = match not_sent(&end) {
             None | Some(NotSent::Armed) => return Ok(end),
             Some(NotSent::TooSoon { wait }) => wait,
             Some(NotSent::Moving | NotSent::RestUnknown | NotSent::Holding) => AGAIN_AFTER,

@@ -100,7 +100,11 @@ pub(crate) async fn save_noted<H: Hand>(
         .await
         .map_err(no_backup)?;
     goes_out();
-    let ended = once_at_rest(|| hand.save()).await;
+    let not_sent = |saved: &Saved| match saved {
+        Saved::NotSent(why) => Some(*why),
+        _ => None,
+    };
+    let ended = once_at_rest(|| hand.save(), not_sent).await;
     // What was not sent must not be noted as of unknown result.
     let noted = match &ended {
         Ok(saved) => saved.clone(),

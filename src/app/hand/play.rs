@@ -8,8 +8,8 @@ use crate::app::running::Running;
 use crate::hand::{PerDof, Setpoints, Target};
 use crate::history::MarkKind;
 use crate::poses::library::{Library, SequenceId};
-use crate::poses::player::{Pace, Phase, cues};
-use crate::tasks::play::{self, PlayCommand, PlayStart, PlayStep, PlayView};
+use crate::poses::player::{Pace, Phase, PlayView, cues};
+use crate::tasks::play::{self, PlayCommand, PlayStart, PlayStep};
 use tokio::sync::mpsc;
 
 /// Wishes that may wait: a person cannot press faster than a task takes them.

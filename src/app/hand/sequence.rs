@@ -2,8 +2,8 @@
 
 use crate::app::running::Running;
 use crate::poses::library::SequenceId;
-use crate::poses::player::{End, Phase};
-use crate::tasks::play::{PlayCommand, PlayStep, PlayView};
+use crate::poses::player::{End, Phase, PlayView};
+use crate::tasks::play::{PlayCommand, PlayStep};
 use tokio::sync::mpsc;
 
 /// What a person does with a sequence.

@@ -12,9 +12,10 @@ use crate::app::trials::state::{SessionId, SessionOrigin, TrialsState};
 use crate::hand::{Dof, PerDof};
 use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
-use crate::tasks::series::{SeriesStart, SeriesStep, SeriesView, Told, series};
+use crate::tasks::series::{SeriesStart, SeriesStep, series};
 use crate::trials::plan_settings::to_settings;
 use crate::trials::recording::TrialRecording;
+use crate::trials::series::SeriesView;
 use crate::trials::session::SessionHead;
 use crate::trials::{Abort, EarlyEnd, Stage, TrialPlan};
 use tokio::sync::oneshot;
@@ -124,7 +125,7 @@ impl HandState {
         let task = Running::start(env, |steps| async move {
             let tell = |step| {
                 steps.tell(step);
-                Told::Kept
+                true
             };
             series(&link, start, ended, tell).await
         });

@@ -11,7 +11,7 @@ use crate::cli::trial::writer::Writer;
 use crate::hand::HandSample;
 use crate::link::{Clock, LinkHandle, Records};
 use crate::record::Record;
-use crate::tasks::series::{self, SeriesStart, SeriesStep, Stop, Told};
+use crate::tasks::series::{self, SeriesStart, SeriesStep, Stop};
 use crate::transport::Endpoint;
 use crate::trials::{Abort, Trial, TrialPlan, TrialSummary};
 use anyhow::bail;
@@ -103,18 +103,18 @@ impl<'a> Finished<'a> {
         }
     }
 
-    fn take(&mut self, step: SeriesStep) -> Told {
+    fn take(&mut self, step: SeriesStep) -> bool {
         match step {
             SeriesStep::View(view) => self.total = view.total,
             SeriesStep::Mark(_) => {}
             SeriesStep::Trial(trial) => {
                 if let Err(error) = self.add(*trial) {
                     self.error.get_or_insert(error);
-                    return Told::Lost;
+                    return false;
                 }
             }
         }
-        Told::Kept
+        true
     }
 
     fn add(&mut self, mut trial: Trial) -> anyhow::Result<()> {
