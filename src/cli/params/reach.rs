@@ -30,7 +30,7 @@ pub(crate) async fn open(hand: &Endpoint) -> anyhow::Result<LinkHandle> {
 /// All rows that can be read, and why others cannot.
 pub(crate) async fn read_rows(hand: &Endpoint) -> anyhow::Result<(Params, Vec<RequestError>)> {
     let link = open(hand).await?;
-    let read::Rows { params, troubles } = read::rows(&link, |_, _| ()).await;
+    let read::ReadRows { params, troubles } = read::rows(&link, |_, _| ()).await;
     if params.is_empty() {
         let why = troubles.last().map(ToString::to_string).unwrap_or_default();
         bail!("cannot read any parameter of {hand}: {why}");

@@ -1,7 +1,7 @@
 //! What the cards of all procedures have in common.
 
 use crate::app::action::Action;
-use crate::app::params::Refusal;
+use crate::app::params::ParamRefusal;
 use crate::app::procedures::ProcedureAction;
 use crate::app::state::State;
 use crate::ui::kit::card::{Card, Choice, Manner, Progress};
@@ -33,6 +33,6 @@ pub(crate) fn cancel() -> Choice {
 
 /// Why nothing can begin now, in words.
 pub(crate) fn reason(state: &State, look: Look) -> Option<String> {
-    let why: Refusal = state.hand().rest_refusal()?;
+    let why: ParamRefusal = state.hand().rest_refusal()?;
     Some(look.say(verdicts::refusal(why)).into())
 }

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::app::params::refusal::Refusal;
+use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
 use crate::ui::kit::controls;
@@ -120,7 +120,7 @@ pub(crate) fn moment(stamp: &str) -> String {
 fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let nothing = pane.state.hand().params.live_params().is_empty();
-    let nothing = nothing.then(|| look.say(verdicts::refusal(Refusal::NothingRead)));
+    let nothing = nothing.then(|| look.say(verdicts::refusal(ParamRefusal::NothingRead)));
     ui.horizontal(|ui| {
         let dump = Button::new(look.say(device::DUMP), look.say(device::DUMP_TIP));
         let open = Button::new(look.say(device::OPEN), look.say(device::OPEN_TIP));

@@ -7,7 +7,7 @@ use crate::app::procedures::{
 };
 use crate::app::state::State;
 use crate::hand::Moment;
-use crate::params::place::{Place, Places};
+use crate::params::place::{PlacePair, WhichPlace};
 use crate::params::rows::ParamId;
 use crate::record::Saved;
 use crate::tasks::TaskError;
@@ -66,7 +66,7 @@ fn step(text: Text, tip: Text, manner: Manner, step: ProcedureAction) -> Choice 
     Choice::new(text, tip, manner).does(Action::Procedure(step))
 }
 
-fn at(look: Look, caption: Text, places: &Places, place: Place) -> String {
+fn at(look: Look, caption: Text, places: &PlacePair, place: WhichPlace) -> String {
     format!("{} {}", look.say(caption), places.endpoint(place))
 }
 
@@ -86,10 +86,15 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let (change, places) = (&run.change, &run.change.places);
     let mut lines = vec![
         from_to(look, change),
-        Line::Note(at(look, cards::NOW_AT, places, Place::Old)),
+        Line::Note(at(look, cards::NOW_AT, places, WhichPlace::Old)),
     ];
     if places.new != places.old {
-        lines.push(Line::Note(at(look, cards::THEN_AT, places, Place::New)));
+        lines.push(Line::Note(at(
+            look,
+            cards::THEN_AT,
+            places,
+            WhichPlace::New,
+        )));
     }
     lines.extend(run.way.as_ref().map(|way| way_line(look, way)));
     let words = match change.id {
@@ -160,12 +165,12 @@ fn keep_card(
     state: &State,
     look: Look,
     change: &PlaceChange,
-    (place, since): (Place, Moment),
+    (place, since): (WhichPlace, Moment),
 ) -> Card {
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
     let words = match place {
-        Place::New => cards::KEEP_THERE,
-        Place::Old => cards::KEEP_WAITS,
+        WhichPlace::New => cards::KEEP_THERE,
+        WhichPlace::Old => cards::KEEP_WAITS,
     };
     let keep = step(
         cards::KEEP,
@@ -206,7 +211,7 @@ fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
         Manner::Safe,
         ProcedureAction::LeaveUnsaved,
     );
-    let mut lines = vec![Line::Words(at(look, cards::OFFER, places, Place::Old))];
+    let mut lines = vec![Line::Words(at(look, cards::OFFER, places, WhichPlace::Old))];
     let (text, manner) = match run.dangers.is_empty() {
         true => (cards::SAVE, Manner::Main),
         false => {
@@ -275,8 +280,13 @@ fn change_over(look: Look, change: &PlaceChange, report: &PlaceReport) -> Card {
             let mut lines = vec![Line::Words(at(look, cards::OVER_KEPT, places, *place))];
             lines.extend(saved_lines(look, places, saved.as_ref()));
             let is_saved = saved.as_ref().is_some_and(Saved::may_be_in_flash);
-            if *place == Place::Old && places.new != places.old && is_saved {
-                lines.push(Line::Words(at(look, cards::OVER_WAITS, places, Place::New)));
+            if *place == WhichPlace::Old && places.new != places.old && is_saved {
+                lines.push(Line::Words(at(
+                    look,
+                    cards::OVER_WAITS,
+                    places,
+                    WhichPlace::New,
+                )));
             }
             if is_saved && places.new != places.old {
                 choices.extend(ways(places));
@@ -293,7 +303,7 @@ fn change_over(look: Look, change: &PlaceChange, report: &PlaceReport) -> Card {
     }
 }
 
-fn saved_lines(look: Look, places: &Places, saved: Option<&Saved>) -> Vec<Line> {
+fn saved_lines(look: Look, places: &PlacePair, saved: Option<&Saved>) -> Vec<Line> {
     let text = match saved {
         None => cards::OVER_UNSAVED,
         Some(Saved::Confirmed) => cards::SAVED_OK,
@@ -311,35 +321,40 @@ fn saved_lines(look: Look, places: &Places, saved: Option<&Saved>) -> Vec<Line> 
     vec![Line::Words(look.say(text).into())]
 }
 
-fn from_line(look: Look, places: &Places) -> Line {
-    Line::Note(at(look, cards::NOW_AT, places, Place::Old))
+fn from_line(look: Look, places: &PlacePair) -> Line {
+    Line::Note(at(look, cards::NOW_AT, places, WhichPlace::Old))
 }
 
 fn backup_line(look: Look, backup: &Path) -> Line {
     Line::Note(format!("{}: {}", look.say(cards::BACKUP), backup.display()))
 }
 
-fn connect(text: Text, places: &Places, place: Place) -> Choice {
+fn connect(text: Text, places: &PlacePair, place: WhichPlace) -> Choice {
     let there = places.endpoint(place).clone();
     Choice::new(text, cards::CONNECT_TIP, Manner::Plain).does(Action::Connect(there))
 }
 
 /// The ways back to a hand: each place where it may be.
-fn ways(places: &Places) -> Vec<Choice> {
-    let mut ways = vec![connect(cards::TO_OLD, places, Place::Old)];
+fn ways(places: &PlacePair) -> Vec<Choice> {
+    let mut ways = vec![connect(cards::TO_OLD, places, WhichPlace::Old)];
     if places.new != places.old {
-        ways.push(connect(cards::TO_NEW, places, Place::New));
+        ways.push(connect(cards::TO_NEW, places, WhichPlace::New));
     }
     ways
 }
 
-fn ask_reset(state: &State, look: Look, places: &Places) -> Card {
+fn ask_reset(state: &State, look: Look, places: &PlacePair) -> Card {
     let mut lines = vec![
         Line::Words(look.say(cards::RESET_WORDS).into()),
-        Line::Note(at(look, cards::NOW_AT, places, Place::Old)),
+        Line::Note(at(look, cards::NOW_AT, places, WhichPlace::Old)),
     ];
     if places.new != places.old {
-        lines.push(Line::Note(at(look, cards::THEN_AT, places, Place::New)));
+        lines.push(Line::Note(at(
+            look,
+            cards::THEN_AT,
+            places,
+            WhichPlace::New,
+        )));
     }
     let begin = step(
         cards::RESET,
@@ -374,7 +389,7 @@ fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
     }
 }
 
-fn reset_over(look: Look, places: &Places, report: &ResetReport) -> Card {
+fn reset_over(look: Look, places: &PlacePair, report: &ResetReport) -> Card {
     let (title, backup) = (cards::RESETTING_TITLE, report.backup.as_path());
     let mut choices = vec![close()];
     let lines = match &report.end {

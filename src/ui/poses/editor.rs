@@ -2,8 +2,8 @@
 
 use crate::app::action::Action;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
-use crate::poses::edit::{LibraryEdit, PoseEdit, Way};
-use crate::poses::library::{NAME_CHARS_MAX, Pose};
+use crate::poses::edit::{LibraryEdit, PoseEdit, ShiftDirection};
+use crate::poses::library::{LibraryPose, NAME_CHARS_MAX};
 use crate::ui::hand::panel;
 use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::look::Pane;
@@ -24,7 +24,7 @@ pub(crate) fn editor_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
     typed: &mut Option<(Id, String)>,
-    pose: &Pose,
+    pose: &LibraryPose,
 ) {
     let height = (ui.available_height() - FIELDS).clamp(48.0, 320.0);
     let (_, picture) = ui.allocate_space(vec2(ui.available_width(), height));
@@ -40,7 +40,7 @@ pub(crate) fn editor_ui(
     });
 }
 
-fn change(pane: &mut Pane<'_>, pose: &Pose, edit: PoseEdit) {
+fn change(pane: &mut Pane<'_>, pose: &LibraryPose, edit: PoseEdit) {
     let edit = LibraryEdit::Pose(pose.id, edit);
     pane.actions.push(Action::Library(edit));
 }
@@ -55,7 +55,12 @@ pub(crate) fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
     });
 }
 
-fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, typed: &mut Option<(Id, String)>, pose: &Pose) {
+fn words_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    typed: &mut Option<(Id, String)>,
+    pose: &LibraryPose,
+) {
     let look = pane.look;
     let tags = pose.tags.join(", ");
     let name = TextField {
@@ -81,7 +86,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, typed: &mut Option<(Id, String)>, 
     }
 }
 
-fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose, dof: Dof) {
+fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
     let look = pane.look;
     if let Some(angle) = angle_ui(ui, pane, ("pose", dof), Some(pose.angles[dof])) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
@@ -118,7 +123,7 @@ pub(crate) fn angle_ui(
     Angle::new(whole(typed)).ok()
 }
 
-fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, (value, max): (i16, f64)| {
         let text = look.say(caption);
@@ -145,12 +150,13 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     }
 }
 
-fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let unknown = pane.state.hand().pose_now().is_none();
     let unknown = unknown.then(|| look.say(poses::CAPTURE_UNKNOWN));
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
-    let [earlier, later] = [Way::Earlier, Way::Later].map(|way| edit(PoseEdit::Shift(way)));
+    let [earlier, later] =
+        [ShiftDirection::Earlier, ShiftDirection::Later].map(|way| edit(PoseEdit::Shift(way)));
     let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
     let again = Action::Recapture(pose.id);
     let button = |text, tip| Button::new(look.say(text), look.say(tip));

@@ -1,6 +1,6 @@
 //! What came of writes and of SAVE, why something cannot be done, and what could hurt, as sentences in the window's language.
 
-use crate::app::params::refusal::Refusal;
+use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::{Doing, SaveEnd};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::rows::ParamId;
@@ -10,18 +10,18 @@ use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, errors, words};
 
 /// Why it cannot be done now.
-pub(crate) const fn refusal(why: Refusal) -> Text {
+pub(crate) const fn refusal(why: ParamRefusal) -> Text {
     match why {
-        Refusal::NoHand => device::WHY_NO_HAND,
-        Refusal::Armed => device::WHY_ARMED,
-        Refusal::Holding => device::WHY_HOLDING,
-        Refusal::Moving => device::WHY_MOVING,
-        Refusal::RestUnknown => device::WHY_REST_UNKNOWN,
-        Refusal::Busy => device::WHY_BUSY,
-        Refusal::NothingStaged => device::WHY_NOTHING_STAGED,
-        Refusal::NothingToUndo => device::WHY_NOTHING_TO_UNDO,
-        Refusal::NoFolder => device::WHY_NO_FOLDER,
-        Refusal::NothingRead => device::WHY_NOTHING_READ,
+        ParamRefusal::NoHand => device::WHY_NO_HAND,
+        ParamRefusal::Armed => device::WHY_ARMED,
+        ParamRefusal::Holding => device::WHY_HOLDING,
+        ParamRefusal::Moving => device::WHY_MOVING,
+        ParamRefusal::RestUnknown => device::WHY_REST_UNKNOWN,
+        ParamRefusal::Busy => device::WHY_BUSY,
+        ParamRefusal::NothingStaged => device::WHY_NOTHING_STAGED,
+        ParamRefusal::NothingToUndo => device::WHY_NOTHING_TO_UNDO,
+        ParamRefusal::NoFolder => device::WHY_NO_FOLDER,
+        ParamRefusal::NothingRead => device::WHY_NOTHING_READ,
     }
 }
 
