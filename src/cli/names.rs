@@ -33,48 +33,16 @@ pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> V
 /// Letters to change, with a bonus for names that hold each other.
 fn unlikeness(name: &str, known: &str) -> usize {
     let holds = name.len() > 2 && (known.contains(name) || name.contains(known));
-    if holds { 1 } else { 2 + distance(name, known) }
-}
-
-/// The edit distance of two texts (Levenshtein), in letters.
-fn distance(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (line, letter) in from.chars().enumerate() {
-        let mut left = line + 1;
-        let mut next = vec![left];
-        for (wanted, above) in to.iter().zip(row.windows(2)) {
-            let (corner, above) = match above {
-                [corner, above] => (*corner, *above),
-                _ => (left, left),
-            };
-            let changed = corner + usize::from(*wanted != letter);
-            left = changed.min(above + 1).min(left + 1);
-            next.push(left);
-        }
-        row = next;
+    if holds {
+        1
+    } else {
+        2 + strsim::levenshtein(name, known)
     }
-    row.last().copied().unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn distances_are_counted_in_letters() {
-        for (from, to, letters) in [
-            ("", "", 0),
-            ("", "TEMP", 4),
-            ("TEMP", "", 4),
-            ("TEMP", "TEMP", 0),
-            ("TMEP", "TEMP", 2),
-            ("TEM", "TEMP", 1),
-            ("STATUT", "STATUS", 1),
-        ] {
-            assert_eq!(distance(from, to), letters, "{from} {to}");
-        }
-    }
 
     #[test]
     fn a_mistyped_register_is_met_with_the_right_one() {

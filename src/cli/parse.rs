@@ -1,6 +1,8 @@
 //! Values as a person types them on the command line. The error is the sentence that clap shows.
 
 use crate::hand::{Angle, Dof, Force, Speed};
+use std::ops::RangeInclusive;
+use std::str::FromStr;
 use std::time::Duration;
 
 /// The longest time an option takes, s: a day.
@@ -14,6 +16,16 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
         return Err(format!("{text} is not between 0 and {SECONDS_MAX} seconds"));
     }
     Ok(Duration::from_secs_f64(seconds))
+}
+
+/// A number within bounds; `what` says what it should be.
+pub(crate) fn number<T: FromStr + PartialOrd>(
+    text: &str,
+    range: RangeInclusive<T>,
+    what: &str,
+) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("'{text}' is not {what}"))
 }
 
 pub(crate) fn dof(text: &str) -> Result<Dof, String> {

@@ -21,7 +21,7 @@ pub(crate) fn runtime() -> anyhow::Result<Runtime> {
     Builder::new_current_thread()
         .enable_all()
         .build()
-        .context("cannot start the link")
+        .context("cannot start the runtime")
 }
 
 /// A link that asks for nothing by itself: the line belongs to what a command asks.

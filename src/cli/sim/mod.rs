@@ -3,8 +3,10 @@
 mod quirks;
 
 use crate::cli::ids::HandIds;
-use crate::cli::interrupt::{Interrupt, PowerCut};
+use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
+use crate::cli::parse::number;
+use crate::cli::session;
 use crate::cli::sim::quirks::Quirk;
 use crate::sim::serve::modbus_tcp;
 #[cfg(unix)]
@@ -28,16 +30,36 @@ use tokio::time::{Instant, interval};
 const LIVE_EACH: Duration = Duration::from_millis(10);
 
 /// A wire being served.
-struct Wire {
+struct ServedWire {
     /// Kind and place, as they are announced.
     name: String,
     /// Resolves only on failure.
     served: BoxFuture<'static, anyhow::Error>,
 }
 
+impl ServedWire {
+    /// `closed` is the error of a server that ends without one.
+    fn new(
+        kind: &str,
+        place: String,
+        closed: String,
+        served: impl Future<Output = io::Result<()>> + Send + 'static,
+    ) -> Self {
+        Self {
+            name: format!("{kind} {place}"),
+            served: Box::pin(async move {
+                match served.await {
+                    Ok(()) => anyhow!(closed),
+                    Err(error) => anyhow!("the server on {place} failed: {error}"),
+                }
+            }),
+        }
+    }
+}
+
 /// What is spoken on a pseudo-terminal.
 #[derive(Clone, Copy)]
-enum Speech {
+enum PtyProtocol {
     Rs485,
     Rtu,
     Slcan,
@@ -101,40 +123,15 @@ pub(crate) fn help() -> String {
 
 /// Serves the hand until a person ends it.
 pub(crate) fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
-    tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .context("cannot start the simulated hand")?
-        .block_on(serve(out, args))
+    session::runtime()?.block_on(serve(out, args))
 }
 
 async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
-    let power = PowerCut::listen()?;
+    let power = Interrupt::power_cut()?;
     let hands = hands(args).context("no hand to simulate")?;
-    let pace = args.baud.map(|baud| LinePace {
-        baud,
-        turnaround: args.turnaround,
-    });
     // All wires are there before any is announced: who waits for one may use all.
-    let mut wires = Vec::new();
-    if let Some(address) = args.tcp {
-        wires.push(serve_tcp(&hands, address).await?);
-    }
-    let links = [
-        (Speech::Rs485, &args.rs485),
-        (Speech::Rtu, &args.rtu),
-        (Speech::Slcan, &args.slcan),
-        (Speech::UsbCan, &args.usbcan),
-    ];
-    for (speech, link) in links {
-        if let Some(link) = link {
-            wires.push(serve_link(&hands, speech, link, pace)?);
-        }
-    }
-    if let Some(interface) = &args.can {
-        wires.push(serve_can(&hands, interface)?);
-    }
+    let wires = wires(&hands, args).await?;
     ensure!(!wires.is_empty(), "no wire to serve the hand on");
     out.lines(wires.iter().map(|wire| format!("ready {}", wire.name)))?;
     out.flush()?;
@@ -147,8 +144,33 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     }
 }
 
+async fn wires(hands: &Hands, args: &SimArgs) -> anyhow::Result<Vec<ServedWire>> {
+    let mut wires = Vec::new();
+    if let Some(address) = args.tcp {
+        wires.push(serve_tcp(hands, address).await?);
+    }
+    let pace = args.baud.map(|baud| LinePace {
+        baud,
+        turnaround: args.turnaround,
+    });
+    for (protocol, link) in [
+        (PtyProtocol::Rs485, &args.rs485),
+        (PtyProtocol::Rtu, &args.rtu),
+        (PtyProtocol::Slcan, &args.slcan),
+        (PtyProtocol::UsbCan, &args.usbcan),
+    ] {
+        if let Some(link) = link {
+            wires.push(serve_link(hands, protocol, link, pace)?);
+        }
+    }
+    if let Some(interface) = &args.can {
+        wires.push(serve_can(hands, interface)?);
+    }
+    Ok(wires)
+}
+
 /// Switches all hands off and on at each signal, and says so once they answer again.
-async fn lose_power(out: &mut Out, mut power: PowerCut, hands: &Hands) -> anyhow::Error {
+async fn lose_power(out: &mut Out, mut power: Interrupt, hands: &Hands) -> anyhow::Error {
     loop {
         power.wished().await;
         hands.with_each(SimHand::switch_off);
@@ -185,7 +207,7 @@ async fn live(hands: &Hands) {
     }
 }
 
-async fn serve_tcp(hands: &Hands, address: SocketAddr) -> anyhow::Result<Wire> {
+async fn serve_tcp(hands: &Hands, address: SocketAddr) -> anyhow::Result<ServedWire> {
     let listener = TcpListener::bind(address)
         .await
         .map_err(|error| anyhow!("cannot serve on {address}: {}", bind_words(&error)))?;
@@ -197,17 +219,9 @@ async fn serve_tcp(hands: &Hands, address: SocketAddr) -> anyhow::Result<Wire> {
             "warning: anyone in the network can reach {bound} and move the simulated hand; 127.0.0.1 keeps it to this computer"
         ));
     }
-    let hands = hands.clone();
-    let served = async move {
-        match modbus_tcp::serve(hands, listener).await {
-            Ok(()) => anyhow!("the server on {bound} ended"),
-            Err(error) => anyhow!("the server on {bound} failed: {error}"),
-        }
-    };
-    Ok(Wire {
-        name: format!("tcp {bound}"),
-        served: Box::pin(served),
-    })
+    let closed = format!("the server on {bound} ended");
+    let served = modbus_tcp::serve(hands.clone(), listener);
+    Ok(ServedWire::new("tcp", bound.to_string(), closed, served))
 }
 
 fn bind_words(error: &io::Error) -> String {
@@ -228,31 +242,24 @@ fn bind_words(error: &io::Error) -> String {
 #[cfg(unix)]
 fn serve_link(
     hands: &Hands,
-    speech: Speech,
+    protocol: PtyProtocol,
     link: &Path,
     pace: Option<LinePace>,
-) -> anyhow::Result<Wire> {
+) -> anyhow::Result<ServedWire> {
     let hands = hands.clone();
-    let (kind, served) = match speech {
-        Speech::Rs485 => ("rs485", pty::serve_rs485(hands, link, pace).map(endless)),
-        Speech::Rtu => (
+    let (kind, served) = match protocol {
+        PtyProtocol::Rs485 => ("rs485", pty::serve_rs485(hands, link, pace).map(endless)),
+        PtyProtocol::Rtu => (
             "rtu",
             pty::serve_rtu(hands, link, pace).map(FutureExt::boxed),
         ),
-        Speech::Slcan => ("slcan", pty::serve_slcan(hands, link).map(endless)),
-        Speech::UsbCan => ("usbcan", pty::serve_usbcan(hands, link).map(endless)),
+        PtyProtocol::Slcan => ("slcan", pty::serve_slcan(hands, link).map(endless)),
+        PtyProtocol::UsbCan => ("usbcan", pty::serve_usbcan(hands, link).map(endless)),
     };
     let served = served.map_err(|error| link_words(link, &error))?;
     let place = link.display().to_string();
-    Ok(Wire {
-        name: format!("{kind} {place}"),
-        served: Box::pin(async move {
-            match served.await {
-                Ok(()) => anyhow!("the pseudo-terminal behind {place} was closed"),
-                Err(error) => anyhow!("the server on {place} failed: {error}"),
-            }
-        }),
-    })
+    let closed = format!("the pseudo-terminal behind {place} was closed");
+    Ok(ServedWire::new(kind, place, closed, served))
 }
 
 /// A server that fails only by ending.
@@ -279,34 +286,26 @@ fn link_words(link: &Path, error: &TransportError) -> anyhow::Error {
 }
 
 #[cfg(target_os = "linux")]
-fn serve_can(hands: &Hands, interface: &str) -> anyhow::Result<Wire> {
-    use crate::sim::serve::can;
+fn serve_can(hands: &Hands, interface: &str) -> anyhow::Result<ServedWire> {
     let wire = crate::transport::can::open(interface, None)
         .map_err(|error| anyhow!("cannot serve on {interface}: {error}"))?;
-    let (hands, place) = (hands.clone(), interface.to_owned());
-    Ok(Wire {
-        name: format!("can {interface}"),
-        served: Box::pin(async move {
-            match can::serve(hands, wire).await {
-                Ok(()) => anyhow!("the CAN interface {place} was closed"),
-                Err(error) => anyhow!("serving on {place} failed: {error}"),
-            }
-        }),
-    })
+    let closed = format!("the CAN interface {interface} was closed");
+    let served = crate::sim::serve::can::serve(hands.clone(), wire);
+    Ok(ServedWire::new("can", interface.to_owned(), closed, served))
 }
 
 #[cfg(not(target_os = "linux"))]
-fn serve_can(_hands: &Hands, _interface: &str) -> anyhow::Result<Wire> {
+fn serve_can(_hands: &Hands, _interface: &str) -> anyhow::Result<ServedWire> {
     Err(anyhow!(crate::transport::TransportError::LinuxOnly))
 }
 
 #[cfg(not(unix))]
 fn serve_link(
     _hands: &Hands,
-    _speech: Speech,
+    _protocol: PtyProtocol,
     link: &Path,
     _pace: Option<LinePace>,
-) -> anyhow::Result<Wire> {
+) -> anyhow::Result<ServedWire> {
     Err(anyhow!(
         "cannot create {}: pseudo-terminals need Linux or macOS; use --tcp here",
         link.display()
@@ -314,12 +313,8 @@ fn serve_link(
 }
 
 fn turnaround(text: &str) -> Result<Duration, String> {
-    match text.parse::<f64>() {
-        Ok(ms) if (0.0..=1000.0).contains(&ms) => Ok(Duration::from_secs_f64(ms / 1000.0)),
-        _ => Err(format!(
-            "'{text}' is not a time between 0 and 1000 milliseconds"
-        )),
-    }
+    let what = "a time between 0 and 1000 milliseconds";
+    number(text, 0.0..=1000.0, what).map(|ms: f64| Duration::from_secs_f64(ms / 1000.0))
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {

@@ -5,11 +5,7 @@ use crate::sim::{Personality, SWITCHES};
 use std::fmt::Write as _;
 
 /// A switch and a position that it has.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Quirk {
-    name: String,
-    value: String,
-}
+pub(crate) type Quirk = (String, String);
 
 /// Reads `NAME=VALUE`.
 pub(crate) fn quirk(text: &str) -> Result<Quirk, String> {
@@ -18,15 +14,14 @@ pub(crate) fn quirk(text: &str) -> Result<Quirk, String> {
         .ok_or_else(|| format!("'{text}' is not a quirk: write NAME=VALUE"))?;
     let known = Personality::default().set(name, value);
     known.map_err(|error| error.to_string())?;
-    let (name, value) = (name.into(), value.into());
-    Ok(Quirk { name, value })
+    Ok((name.into(), value.into()))
 }
 
 /// A hand with these quirks; where a switch is set twice, the last one counts.
 pub(crate) fn personality(quirks: &[Quirk]) -> Personality {
     let mut personality = Personality::default();
-    for quirk in quirks {
-        let known = personality.set(&quirk.name, &quirk.value);
+    for (name, value) in quirks {
+        let known = personality.set(name, value);
         debug_assert!(known.is_ok(), "it was looked up when it was read");
     }
     personality

@@ -71,13 +71,8 @@ pub(crate) async fn drive(
         say("STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply");
     }
     disarm(&link).await;
-    Ok(Outcome {
-        hand: args.hand.to_string(),
-        folder: args.out.clone(),
-        trials: finished.close(report.aborted)?,
-        aborted: report.aborted,
-        stop: report.stop,
-    })
+    let trials = finished.close(report.aborted)?;
+    Ok(Outcome::of(trials, report, args.criterion()))
 }
 
 /// The trials that are over: shown, and written where that is asked.
@@ -128,12 +123,9 @@ impl<'a> Finished<'a> {
     }
 
     fn show(&mut self, trial: &TrialSummary) -> anyhow::Result<()> {
-        if self.json {
-            self.out.line(&output::trial_json(trial).to_string())?;
-        } else {
-            for line in output::trial_lines(trial, self.total) {
-                self.out.line(&line)?;
-            }
+        match self.json {
+            true => self.out.object(&output::trial_json(trial))?,
+            false => self.out.lines(output::trial_lines(trial, self.total))?,
         }
         self.out.flush()
     }

@@ -10,7 +10,6 @@ pub(crate) use args::TrialArgs;
 use crate::cli::args::Cli;
 use crate::cli::out::Out;
 use crate::cli::session;
-use crate::cli::trial::output::{Findings, SessionLine};
 use crate::trials::TrialPlan;
 use anyhow::bail;
 use clap::CommandFactory as _;
@@ -27,17 +26,15 @@ pub(crate) fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
         );
     }
     let outcome = session::runtime()?.block_on(drive::drive(out, args, &plan))?;
-    let found = Findings::of(&outcome, args.criterion());
-    if args.json {
-        out.line(&SessionLine::of(&outcome, &found).json().to_string())?;
-    } else {
-        output::write_found(out, &found, outcome.trials.len())?;
+    match args.json {
+        true => out.object(&outcome.json(args))?,
+        false => out.lines(outcome.lines())?,
     }
     out.flush()?;
     if let Some(why) = outcome.aborted_words() {
-        bail!("{why}{}", output::stop_words(outcome.stop));
+        bail!("{why}{}", output::stop_words(outcome.report.stop));
     }
-    if let Some(criterion) = found.criterion.filter(|_| found.best.is_none()) {
+    if let Some(criterion) = outcome.criterion.filter(|_| outcome.best.is_none()) {
         bail!("no setting that was tried qualifies: {criterion}");
     }
     Ok(())
