@@ -2,7 +2,7 @@
 
 use crate::cli::doctor::checkup::{Checkup, EDGES_MS, Measured, Place, Window};
 use crate::cli::doctor::findings::Finding;
-use crate::transport::{PortFacts, Route};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::time::Duration;
 
@@ -11,8 +11,14 @@ pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     let measured = checkup.answer.as_ref().ok();
     let (mut port, mut network, mut can) = (None, None, None::<Value>);
     match &checkup.place {
-        Place::Port(facts) => port = Some(port_json(facts)),
-        Place::Net(way) => network = way.as_ref().map(net_json),
+        Place::Port(facts) => {
+            let timer = facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms);
+            port = Some(with(facts, "latency_timer_ms", json!(timer)));
+        }
+        Place::Net(route) => {
+            let route = route.as_ref();
+            network = route.map(|route| with(route, "direct", json!(route.is_direct())));
+        }
         #[cfg(target_os = "linux")]
         Place::Can(facts) => can = Some(json!(facts)),
         #[cfg(not(target_os = "linux"))]
@@ -39,35 +45,13 @@ pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     })
 }
 
-fn port_json(facts: &PortFacts) -> Value {
-    let adapter = facts.usb.as_ref().map(|usb| {
-        json!({
-            "vendor_id": usb.vendor_id,
-            "product_id": usb.product_id,
-            "serial": usb.serial,
-            "maker": usb.maker,
-            "product": usb.product,
-            "location": usb.location,
-        })
-    });
-    json!({
-        "device": facts.device,
-        "adapter": adapter,
-        "driver": facts.driver,
-        "rights": facts.rights,
-        "held_by": facts.holder,
-        "latency_timer_ms": facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms),
-    })
-}
-
-fn net_json(way: &Route) -> Value {
-    json!({
-        "to": way.to.to_string(),
-        "from": way.from.to_string(),
-        "interface": way.interface,
-        "prefix": way.prefix,
-        "direct": way.is_direct(),
-    })
+/// The facts as they are, with one more field that follows from them.
+fn with(facts: &impl Serialize, name: &str, value: Value) -> Value {
+    let mut object = json!(facts);
+    if let Value::Object(fields) = &mut object {
+        fields.insert(name.into(), value);
+    }
+    object
 }
 
 fn window_json(window: &Window) -> Value {

@@ -3,6 +3,7 @@
 use crate::cli::doctor::checkup::{Checkup, EDGES_MS, Measured, Place, Window};
 use crate::cli::doctor::findings::Finding;
 use crate::transport::{PortFacts, Route, UsbFound};
+use std::fmt::Display;
 use std::time::Duration;
 
 /// Everything.
@@ -32,8 +33,11 @@ fn row(caption: &str, value: impl AsRef<str>) -> String {
 }
 
 /// A row whose value may be unknown.
-fn known(caption: &str, value: Option<&String>) -> String {
-    row(caption, value.map_or("-", String::as_str))
+fn known(caption: &str, value: Option<impl Display>, unknown: &str) -> String {
+    row(
+        caption,
+        value.map_or(unknown.into(), |value| value.to_string()),
+    )
 }
 
 fn place(place: &Place) -> Vec<String> {
@@ -43,7 +47,10 @@ fn place(place: &Place) -> Vec<String> {
             "built into this program, over a wire in memory",
         )],
         Place::Port(facts) => port(facts),
-        Place::Net(way) => vec![row("route", way.as_ref().map_or_else(no_way, route))],
+        Place::Net(way) => {
+            let none = "none: this computer has no route to it";
+            vec![known("route", way.as_ref().map(route), none)]
+        }
         #[cfg(target_os = "linux")]
         Place::Can(facts) => can(facts),
         #[cfg(not(target_os = "linux"))]
@@ -54,19 +61,17 @@ fn place(place: &Place) -> Vec<String> {
 fn port(facts: &PortFacts) -> Vec<String> {
     let usb = facts.usb.as_ref();
     let timer = usb.and_then(|usb| usb.latency_timer_ms);
-    let or = |value: Option<String>, none: &str| value.unwrap_or_else(|| none.into());
+    let no_adapter = "not on USB, or not listed by the system";
     vec![
-        known("device", facts.device.as_ref()),
-        row(
-            "adapter",
-            or(usb.map(adapter), "not on USB, or not listed by the system"),
-        ),
-        known("driver", facts.driver.as_ref()),
-        known("rights", facts.rights.as_ref()),
-        row("held by", or(facts.holder.clone(), "no other program seen")),
-        row(
+        known("device", facts.device.as_ref(), "-"),
+        known("adapter", usb.map(adapter), no_adapter),
+        known("driver", facts.driver.as_ref(), "-"),
+        known("rights", facts.rights.as_ref(), "-"),
+        known("held by", facts.holder.as_ref(), "no other program seen"),
+        known(
             "latency",
-            or(timer.map(|ms| format!("{ms} ms")), "no timer known"),
+            timer.map(|ms| format!("{ms} ms")),
+            "no timer known",
         ),
     ]
 }
@@ -80,10 +85,6 @@ fn adapter(usb: &UsbFound) -> String {
     let location = location.map(|location| format!("at {location}"));
     let words = names.chain([ids]).chain(serial).chain(location);
     words.collect::<Vec<_>>().join(" ")
-}
-
-fn no_way() -> String {
-    "none: this computer has no route to it".into()
 }
 
 fn route(way: &Route) -> String {
@@ -114,9 +115,9 @@ fn can(facts: &crate::transport::can::facts::CanFacts) -> Vec<String> {
     let queue = facts.queue_len.map(|len| format!("{len} frames"));
     vec![
         row("interface", is),
-        known("bit rate", rate.as_ref()),
-        known("controller", facts.state.as_ref()),
-        known("queue", queue.as_ref()),
+        known("bit rate", rate, "-"),
+        known("controller", facts.state.as_ref(), "-"),
+        known("queue", queue, "-"),
     ]
 }
 
