@@ -66,6 +66,19 @@ impl Out {
         self.line(&serde_json::to_value(object)?.to_string())
     }
 
+    /// Writes a result, as one JSON object or as lines.
+    pub(crate) fn result(
+        &mut self,
+        as_json: bool,
+        object: &impl Serialize,
+        lines: impl IntoIterator<Item = impl AsRef<str>>,
+    ) -> anyhow::Result<()> {
+        match as_json {
+            true => self.object(object),
+            false => self.lines(lines),
+        }
+    }
+
     /// Shows everything written so far.
     pub(crate) fn flush(&mut self) -> anyhow::Result<()> {
         checked(self.to.flush())

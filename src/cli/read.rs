@@ -28,11 +28,7 @@ pub(crate) struct ReadArgs {
 }
 
 /// Reads the registers and prints them. Fails if any could not be read.
-pub(crate) fn run(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
-    session::runtime()?.block_on(read(out, args))
-}
-
-async fn read(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
     let link = session::reach(&args.hand, ONLY_WHAT_IS_ASKED).await?;
     let mut values = Map::new();
     let mut failed = 0;

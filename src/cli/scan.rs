@@ -5,7 +5,6 @@ use crate::app::connect::SimDial;
 use crate::cli::ids::HandIds;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, Told, say};
-use crate::cli::session;
 use crate::hand::HandId;
 use crate::link::Clock;
 use crate::link::scan::{
@@ -70,13 +69,17 @@ impl ScanArgs {
             usb: None,
             speaks,
         };
-        let serial = self
-            .serial
-            .iter()
-            .map(|port| match self.slcan.contains(port) {
-                true => wish(port, Speaks::Either),
-                false => wish(port, Speaks::Hand),
-            });
+        let serial = self.serial.iter().map(|port| {
+            let has_both = self.slcan.contains(port);
+            wish(
+                port,
+                if has_both {
+                    Speaks::Either
+                } else {
+                    Speaks::Hand
+                },
+            )
+        });
         let slcan = self.slcan.iter().map(|port| wish(port, Speaks::CanAdapter));
         let usbcan = self
             .usbcan
@@ -108,48 +111,40 @@ impl ScanArgs {
 }
 
 /// Scans. Fails if nothing was found and a place could not be checked.
-pub(crate) fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
     args.refuse_too_many_hosts();
-    let runtime = session::runtime()?;
-    let done = runtime.block_on(async {
-        let interrupt = Interrupt::listen()?;
-        let clock = Clock::start();
-        let config = ScanConfig {
-            local: args.local(),
-            hosts: args.tcp.clone(),
-            ids: args.ids(),
-            held: None,
-            clock,
-            dial: Arc::new(SimDial::new(clock)),
-            wake: Arc::new(|| ()),
-        };
-        let scan = Scan {
-            out,
-            json: args.json,
-            all_ids: args.all_ids,
-            handle: start(config, &Handle::current()),
-            screen: Screen::new(),
-            found: 0,
-        };
-        scan.run(interrupt).await
-    });
-    // A name that is being resolved cannot be called back, and must not hold up the end.
-    runtime.shutdown_background();
-    done
+    let interrupt = Interrupt::listen()?;
+    let clock = Clock::start();
+    let config = ScanConfig {
+        local: args.local(),
+        hosts: args.tcp.clone(),
+        ids: args.ids(),
+        held: None,
+        clock,
+        dial: Arc::new(SimDial::new(clock)),
+        wake: Arc::new(|| ()),
+    };
+    let printer = ScanPrinter {
+        out,
+        args,
+        handle: start(config, &Handle::current()),
+        progress: ProgressLine::new(),
+        found: 0,
+    };
+    printer.run(interrupt).await
 }
 
-struct Scan<'a> {
+struct ScanPrinter<'a> {
     out: &'a mut Out,
-    json: bool,
-    all_ids: bool,
+    args: &'a ScanArgs,
     handle: ScanHandle,
-    screen: Screen,
+    progress: ProgressLine,
     found: usize,
 }
 
-impl Scan<'_> {
+impl ScanPrinter<'_> {
     async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
-        let mut tick = interval(self.screen.each());
+        let mut tick = interval(self.progress.each());
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
         // The first tick comes at once, when nothing is known yet.
         tick.tick().await;
@@ -159,7 +154,7 @@ impl Scan<'_> {
                 () = interrupt.wished() => break None,
                 event = self.handle.event() => event,
                 _ = tick.tick() => {
-                    self.screen.progress(&self.handle, self.found);
+                    self.progress.show(&self.handle, self.found);
                     continue;
                 }
             };
@@ -169,19 +164,17 @@ impl Scan<'_> {
                 None => break None,
             }
         };
-        self.screen.clear();
+        self.progress.clear();
         self.end(summary)
     }
 
     fn take(&mut self, event: ScanEvent) -> anyhow::Result<()> {
-        self.screen.clear();
+        self.progress.clear();
         match event {
             ScanEvent::Found(found) => {
                 self.found += 1;
-                match self.json {
-                    true => self.out.object(&found_json(&found))?,
-                    false => self.out.line(&found_text(&found))?,
-                }
+                let (object, line) = (found_json(&found), found_text(&found));
+                self.out.result(self.args.json, &object, [line])?;
             }
             ScanEvent::Trouble { place, error } => self.told("trouble", &place, &error)?,
             ScanEvent::Hint(hint) => self.told("hint", &hint.place(), &hint)?,
@@ -194,18 +187,17 @@ impl Scan<'_> {
     fn told(&mut self, what: &str, place: &str, words: &impl Display) -> anyhow::Result<()> {
         let words = words.to_string();
         say(&words);
-        match self.json {
-            true => self
-                .out
-                .object(&json!({ what: { "place": place, "words": words } })),
-            false => Ok(()),
+        if !self.args.json {
+            return Ok(());
         }
+        let trouble = json!({ "place": place, "words": words });
+        self.out.object(&json!({ what: trouble }))
     }
 
     /// Reports the outcome; without a summary, a person ended the scan.
     fn end(self, summary: Option<ScanSummary>) -> anyhow::Result<()> {
         let found = self.found;
-        if self.json {
+        if self.args.json {
             self.out.object(&summary_json(found, summary))?;
         }
         self.out.flush()?;
@@ -218,7 +210,7 @@ impl Scan<'_> {
             ),
             Some(summary) => {
                 let (asked, took_s) = (summary.asked, summary.took.as_secs_f64());
-                let more = match self.all_ids {
+                let more = match self.args.all_ids {
                     true => "",
                     false => "; --all-ids asks all ids",
                 };
@@ -232,12 +224,12 @@ impl Scan<'_> {
 }
 
 /// The progress line on standard error.
-struct Screen {
+struct ProgressLine {
     is_terminal: bool,
     shown: bool,
 }
 
-impl Screen {
+impl ProgressLine {
     fn new() -> Self {
         Self {
             is_terminal: io::stderr().is_terminal(),
@@ -253,7 +245,7 @@ impl Screen {
         }
     }
 
-    fn progress(&mut self, handle: &ScanHandle, found: usize) {
+    fn show(&mut self, handle: &ScanHandle, found: usize) {
         let words = progress_text(handle.progress(), found);
         if self.is_terminal {
             self.shown = true;

@@ -8,7 +8,6 @@ mod text;
 
 use crate::cli::out::Out;
 use crate::cli::parse::seconds;
-use crate::cli::session;
 use crate::transport::Endpoint;
 use anyhow::bail;
 use std::time::Duration;
@@ -27,13 +26,11 @@ pub(crate) struct DoctorArgs {
 }
 
 /// Runs a check-up and prints it. Fails if something is wrong.
-pub(crate) fn run(out: &mut Out, args: &DoctorArgs) -> anyhow::Result<()> {
-    let checkup = session::runtime()?.block_on(measure::check(&args.hand, args.length))?;
+pub(crate) async fn run(out: &mut Out, args: &DoctorArgs) -> anyhow::Result<()> {
+    let checkup = measure::check(&args.hand, args.length).await?;
     let found = findings::judge(&checkup);
-    match args.json {
-        true => out.object(&json::object(&checkup, &found))?,
-        false => out.lines(text::lines(&checkup, &found))?,
-    }
+    let object = json::object(&checkup, &found);
+    out.result(args.json, &object, text::lines(&checkup, &found))?;
     match found.iter().filter(|finding| finding.is_wrong).count() {
         0 => Ok(()),
         1 => bail!("one thing is wrong with {}", args.hand),

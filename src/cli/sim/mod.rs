@@ -6,7 +6,6 @@ use crate::cli::ids::HandIds;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
-use crate::cli::session;
 use crate::cli::sim::quirks::Quirk;
 use crate::sim::serve::modbus_tcp;
 #[cfg(unix)]
@@ -122,11 +121,7 @@ pub(crate) fn help() -> String {
 }
 
 /// Serves the hand until a person ends it.
-pub(crate) fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
-    session::runtime()?.block_on(serve(out, args))
-}
-
-async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let power = Interrupt::power_cut()?;
     let hands = hands(args).context("no hand to simulate")?;

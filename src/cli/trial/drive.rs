@@ -123,10 +123,9 @@ impl<'a> Finished<'a> {
     }
 
     fn show(&mut self, trial: &TrialSummary) -> anyhow::Result<()> {
-        match self.json {
-            true => self.out.object(&output::trial_json(trial))?,
-            false => self.out.lines(output::trial_lines(trial, self.total))?,
-        }
+        let lines = output::trial_lines(trial, self.total);
+        self.out
+            .result(self.json, &output::trial_json(trial), lines)?;
         self.out.flush()
     }
 

@@ -9,14 +9,13 @@ pub(crate) use args::TrialArgs;
 
 use crate::cli::args::Cli;
 use crate::cli::out::Out;
-use crate::cli::session;
 use crate::trials::TrialPlan;
 use anyhow::bail;
 use clap::CommandFactory as _;
 use clap::error::ErrorKind;
 
 /// Runs the series. Fails if it ended early, or if no setting is what was wanted.
-pub(crate) fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
     let plan = plan(args);
     if !args.arm {
         bail!(
@@ -25,11 +24,8 @@ pub(crate) fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
             args.hand
         );
     }
-    let outcome = session::runtime()?.block_on(drive::drive(out, args, &plan))?;
-    match args.json {
-        true => out.object(&outcome.json(args))?,
-        false => out.lines(outcome.lines())?,
-    }
+    let outcome = drive::drive(out, args, &plan).await?;
+    out.result(args.json, &outcome.json(args), outcome.lines())?;
     out.flush()?;
     if let Some(why) = outcome.aborted_words() {
         bail!("{why}{}", output::stop_words(outcome.report.stop));

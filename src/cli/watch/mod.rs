@@ -23,14 +23,12 @@ const FLUSH_EACH: Duration = Duration::from_millis(50);
 const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
 
 /// Watches until the time is up or a person ends it. Fails if the hand never answered.
-pub(crate) fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
-    session::runtime()?.block_on(async {
-        let interrupt = Interrupt::listen()?;
-        match args.wire {
-            true => wire::watch(out, args, interrupt).await,
-            false => Watch::new(out, args).run(interrupt).await,
-        }
-    })
+pub(crate) async fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
+    let interrupt = Interrupt::listen()?;
+    match args.wire {
+        true => wire::watch(out, args, interrupt).await,
+        false => Watch::new(out, args).run(interrupt).await,
+    }
 }
 
 struct Watch<'a> {
