@@ -3,9 +3,7 @@
 mod args;
 mod doctor;
 mod help;
-mod ids;
 mod interrupt;
-mod names;
 mod out;
 mod params;
 mod parse;

@@ -1,7 +1,7 @@
 //! `read`: registers by the manual's names, read one by one and decoded. Writes nothing to the hand.
 
-use crate::cli::names;
 use crate::cli::out::{Out, say};
+use crate::cli::parse;
 use crate::cli::session::{self, ANSWER_WITHIN, ONLY_WHAT_IS_ASKED};
 use crate::cli::value::{value_json, value_text};
 use crate::hand::{Register, Span};
@@ -17,7 +17,7 @@ const PIECE: u16 = 108;
 #[derive(Debug, clap::Args)]
 pub(crate) struct ReadArgs {
     /// Registers by name, in any letter case
-    #[arg(required = true, value_name = "NAME", value_parser = names::register)]
+    #[arg(required = true, value_name = "NAME", value_parser = parse::register)]
     names: Vec<&'static Register>,
     /// The hand to read
     #[arg(long, value_name = "URL")]

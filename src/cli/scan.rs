@@ -2,9 +2,9 @@
 //! addresses. Writes nothing to any hand.
 
 use crate::app::connect::SimDial;
-use crate::cli::ids::HandIds;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, Told, say};
+use crate::cli::parse::{HandIds, hand_ids};
 use crate::hand::HandId;
 use crate::link::Clock;
 use crate::link::scan::{
@@ -48,7 +48,7 @@ pub(crate) struct ScanArgs {
     #[arg(long, value_name = "PORT", value_parser = NonEmptyStringValueParser::new())]
     usbcan: Vec<String>,
     /// Ids to ask on every bus, for example 1-10 or 1,2,7 [default: 1-10]
-    #[arg(long, value_name = "IDS", conflicts_with = "all_ids")]
+    #[arg(long, value_name = "IDS", value_parser = hand_ids, conflicts_with = "all_ids")]
     ids: Option<HandIds>,
     /// Ask all ids, 1 to 254
     #[arg(long)]
@@ -93,7 +93,7 @@ impl ScanArgs {
 
     fn ids(&self) -> Vec<HandId> {
         match &self.ids {
-            Some(ids) => ids.iter().collect(),
+            Some(ids) => ids.0.clone(),
             None if self.all_ids => HandId::all().collect(),
             None => HandId::all().take(usize::from(IDS_UP_TO)).collect(),
         }

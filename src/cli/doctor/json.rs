@@ -1,6 +1,6 @@
 //! A check-up as one JSON object; a contract with scripts, documented in `assets/manual/json.md`.
 
-use crate::cli::doctor::checkup::{Checkup, EDGES_MS, Measured, Place, Window};
+use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, EDGES_MS, Measured};
 use crate::cli::doctor::findings::Finding;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -10,20 +10,20 @@ use std::time::Duration;
 pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     let measured = checkup.answer.as_ref().ok();
     let (mut port, mut network, mut can) = (None, None, None::<Value>);
-    match &checkup.place {
-        Place::Port(facts) => {
+    match &checkup.connection {
+        ConnectionFacts::Port(facts) => {
             let timer = facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms);
             port = Some(with(facts, "latency_timer_ms", json!(timer)));
         }
-        Place::Net(route) => {
+        ConnectionFacts::Net(route) => {
             let route = route.as_ref();
             network = route.map(|route| with(route, "direct", json!(route.is_direct())));
         }
         #[cfg(target_os = "linux")]
-        Place::Can(facts) => can = Some(json!(facts)),
+        ConnectionFacts::Can(facts) => can = Some(json!(facts)),
         #[cfg(not(target_os = "linux"))]
-        Place::NoCan => can = None,
-        Place::BuiltIn => {}
+        ConnectionFacts::NoCan => can = None,
+        ConnectionFacts::BuiltIn => {}
     }
     let status = measured.map(|measured| &measured.status);
     json!({
@@ -54,13 +54,13 @@ fn with(facts: &impl Serialize, name: &str, value: Value) -> Value {
     object
 }
 
-fn window_json(window: &Window) -> Value {
+fn window_json(window: &BlockTiming) -> Value {
     let at = |percent| window.percentile(percent).map(millis);
     json!({
         "name": window.name,
         "address": window.span.address,
         "bytes": window.span.len,
-        "reads": window.reads(),
+        "reads": window.reads,
         "unanswered": window.failed,
         "refused": window.refused,
         "rtt_ms": {"min": at(0), "p50": at(50), "p99": at(99), "max": at(100)},

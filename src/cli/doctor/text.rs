@@ -1,6 +1,6 @@
 //! A check-up as lines of text.
 
-use crate::cli::doctor::checkup::{Checkup, EDGES_MS, Measured, Place, Window};
+use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, EDGES_MS, Measured};
 use crate::cli::doctor::findings::Finding;
 use crate::transport::{PortFacts, Route, UsbFound};
 use std::fmt::Display;
@@ -9,7 +9,7 @@ use std::time::Duration;
 /// Everything.
 pub(crate) fn lines(checkup: &Checkup, found: &[Finding]) -> Vec<String> {
     let mut lines = vec![row("hand", checkup.endpoint.to_string())];
-    lines.extend(place(&checkup.place));
+    lines.extend(connection(&checkup.connection));
     match &checkup.answer {
         Ok(measured) => lines.extend(answer(measured)),
         Err(_) => lines.push(row("answer", "none")),
@@ -40,21 +40,21 @@ fn known(caption: &str, value: Option<impl Display>, unknown: &str) -> String {
     )
 }
 
-fn place(place: &Place) -> Vec<String> {
-    match place {
-        Place::BuiltIn => vec![row(
+fn connection(facts: &ConnectionFacts) -> Vec<String> {
+    match facts {
+        ConnectionFacts::BuiltIn => vec![row(
             "place",
             "built into this program, over a wire in memory",
         )],
-        Place::Port(facts) => port(facts),
-        Place::Net(way) => {
+        ConnectionFacts::Port(facts) => port(facts),
+        ConnectionFacts::Net(way) => {
             let none = "none: this computer has no route to it";
             vec![known("route", way.as_ref().map(route), none)]
         }
         #[cfg(target_os = "linux")]
-        Place::Can(facts) => can(facts),
+        ConnectionFacts::Can(facts) => can(facts),
         #[cfg(not(target_os = "linux"))]
-        Place::NoCan => Vec::new(),
+        ConnectionFacts::NoCan => Vec::new(),
     }
 }
 
@@ -167,7 +167,7 @@ fn errors(measured: &Measured) -> String {
     )
 }
 
-fn trips(window: &Window) -> String {
+fn trips(window: &BlockTiming) -> String {
     let at = |percent| {
         let trip = window.percentile(percent);
         trip.map_or_else(|| "-".into(), millis)
@@ -177,7 +177,7 @@ fn trips(window: &Window) -> String {
         "{:<17}{:>5}{:>8}{:>8}{:>8}{:>8}{:>8} |{}",
         window.name,
         window.span.len,
-        window.reads(),
+        window.reads,
         at(0),
         at(50),
         at(99),
@@ -186,7 +186,7 @@ fn trips(window: &Window) -> String {
     )
 }
 
-fn rate(window: &Window) -> String {
+fn rate(window: &BlockTiming) -> String {
     let (reached, line) = (window.hz(), window.line_hz());
     let hz = |value: Option<f64>| value.map_or_else(|| "-".into(), |hz| format!("{hz:.1}"));
     let share = match reached.zip(line).map(|(reached, line)| reached / line) {

@@ -3,7 +3,7 @@
 mod args;
 mod drive;
 mod output;
-mod writer;
+mod results;
 
 pub(crate) use args::TrialArgs;
 

@@ -1,16 +1,12 @@
 //! `sim`: simulated hands on wires that other programs can open, until the program is ended. How a hand behaves is decided in
 //! [`crate::sim`].
-mod quirks;
-
-use crate::cli::ids::HandIds;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
-use crate::cli::parse::number;
-use crate::cli::sim::quirks::Quirk;
+use crate::cli::parse::{HandIds, hand_ids, number};
 use crate::sim::serve::modbus_tcp;
 #[cfg(unix)]
 use crate::sim::serve::pty;
-use crate::sim::{Hands, Scenario, SharedHand, SimConfig, SimHand};
+use crate::sim::{Hands, Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand};
 use crate::transport::LinePace;
 #[cfg(unix)]
 use crate::transport::TransportError;
@@ -18,6 +14,7 @@ use anyhow::{Context as _, anyhow, ensure};
 #[cfg(unix)]
 use futures::FutureExt;
 use futures::future::{BoxFuture, select_all};
+use std::fmt::Write as _;
 use std::io;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -107,7 +104,7 @@ pub(crate) struct SimArgs {
     #[arg(long, value_name = "NAME", default_value = "idle")]
     scenario: Scenario,
     /// What the hand does where the manual leaves a choice, from the list below; may be repeated
-    #[arg(long = "quirk", value_name = "NAME=VALUE", value_parser = quirks::quirk)]
+    #[arg(long = "quirk", value_name = "NAME=VALUE", value_parser = quirk)]
     quirks: Vec<Quirk>,
 }
 
@@ -117,7 +114,7 @@ On Modbus TCP the unit id selects the hand; 255 means the first, and a single ha
 
 /// What stands under the list of switches.
 pub(crate) fn help() -> String {
-    format!("{SIM_HELP}\n\n{}", quirks::list())
+    format!("{SIM_HELP}\n\n{}", quirk_list())
 }
 
 /// Serves the hand until a person ends it.
@@ -181,12 +178,12 @@ async fn lose_power(out: &mut Out, mut power: Interrupt, hands: &Hands) -> anyho
 fn hands(args: &SimArgs) -> Option<Hands> {
     let begun = Instant::now();
     let seeds = (0..).map(|nth| args.seed.wrapping_add(nth));
-    let mut hands = args.id.iter().zip(seeds).map(|(id, seed)| {
+    let mut hands = args.id.0.iter().zip(seeds).map(|(id, seed)| {
         let hand = SimHand::new(SimConfig {
             seed,
             id: id.get(),
             scenario: args.scenario,
-            personality: quirks::personality(&args.quirks),
+            personality: personality(&args.quirks),
         });
         SharedHand::new(hand, begun)
     });
@@ -322,12 +319,74 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 const SIM_HANDS_MAX: usize = 32;
 
 fn few_ids(text: &str) -> Result<HandIds, String> {
-    let ids: HandIds = text.parse()?;
-    let asked = ids.iter().len();
+    let ids = hand_ids(text)?;
+    let asked = ids.0.len();
     if asked > SIM_HANDS_MAX {
         return Err(format!(
             "'{text}' asks for {asked} hands; at most {SIM_HANDS_MAX} can be simulated at once"
         ));
     }
     Ok(ids)
+}
+
+/// A switch and a position that it has.
+type Quirk = (String, String);
+
+/// Reads `NAME=VALUE`.
+fn quirk(text: &str) -> Result<Quirk, String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or_else(|| format!("'{text}' is not a quirk: write NAME=VALUE"))?;
+    let known = Personality::default().set(name, value);
+    known.map_err(|error| error.to_string())?;
+    Ok((name.into(), value.into()))
+}
+
+/// A hand with these quirks; where a switch is set twice, the last one counts.
+fn personality(quirks: &[Quirk]) -> Personality {
+    let mut personality = Personality::default();
+    for (name, value) in quirks {
+        let known = personality.set(name, value);
+        debug_assert!(known.is_ok(), "it was looked up when it was read");
+    }
+    personality
+}
+
+/// All switches and positions, for the help text.
+fn quirk_list() -> String {
+    let mut text = String::from(
+        "Quirks: what the hand does where the manual leaves a choice. The first value of each is the default.\n",
+    );
+    for switch in SWITCHES {
+        let values = switch.values.join("|");
+        // Writing to a string cannot fail.
+        let _written = writeln!(text, "  {}={values}\n      {}", switch.name, switch.about);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::GapAnswer;
+
+    #[test]
+    fn quirks_are_read_by_name_and_wrong_ones_say_what_there_is() {
+        let all = [
+            quirk("gap=refused").unwrap(),
+            quirk("doubles=some").unwrap(),
+        ];
+        assert_eq!(personality(&all).gap, GapAnswer::Refused);
+        for (text, part) in [
+            ("gap", "NAME=VALUE"),
+            ("gap=ajar", "through, refused"),
+            ("warp=9", "no quirk 'warp'"),
+        ] {
+            let error = quirk(text).unwrap_err();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+        for switch in SWITCHES {
+            assert!(quirk_list().contains(switch.name));
+        }
+    }
 }
