@@ -26,10 +26,10 @@ pub struct MotionTurn(pub(crate) u64);
 /// One open link, for as many as want to use it. The wire closes with the last of its handles; the hand keeps what it was
 /// told last.
 #[derive(Debug, Clone)]
-pub struct LinkHandle(Arc<Shared>);
+pub struct LinkHandle(Arc<LinkShared>);
 
 #[derive(Debug)]
-struct Shared {
+struct LinkShared {
     wanted: Arc<watch::Sender<Wanted>>,
     requests: mpsc::Sender<Request>,
     records: broadcast::WeakSender<Record>,
@@ -38,7 +38,7 @@ struct Shared {
     tap: WireTap,
 }
 
-impl Drop for Shared {
+impl Drop for LinkShared {
     fn drop(&mut self) {
         self.wanted.send_modify(|wanted| wanted.closed = true);
     }
@@ -54,7 +54,7 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
     let (status_in, status) = watch::channel(LinkStatus::default());
     let (stats_in, stats) = watch::channel(LinkStats::default());
     let tap = WireTap::default();
-    let shared = Shared {
+    let shared = LinkShared {
         wanted: Arc::clone(&wanted),
         requests,
         records: told.downgrade(),

@@ -44,7 +44,7 @@ pub struct Press {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Tip {
+struct TipModel {
     rest: [f64; 8],
     noise: [f64; 8],
     proximity_noise: f64,
@@ -56,7 +56,7 @@ struct Tip {
 /// The five fingertip sensors.
 #[derive(Debug, Clone)]
 pub struct Touch {
-    tips: PerFinger<Tip>,
+    tips: PerFinger<TipModel>,
 }
 
 impl Touch {
@@ -65,7 +65,7 @@ impl Touch {
     pub fn new(rng: &mut fastrand::Rng) -> Self {
         let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
         Self {
-            tips: PerFinger::from_fn(|_| Tip {
+            tips: PerFinger::from_fn(|_| TipModel {
                 rest: [(); 8].map(|()| between(2_800_000.0, 3_000_000.0)),
                 noise: [0.0; 8],
                 proximity_noise: 0.0,
@@ -121,7 +121,7 @@ impl Touch {
     }
 }
 
-impl Tip {
+impl TipModel {
     /// Where the object presses, mm: it wanders a little, and slides in a slip.
     fn spot(&self, slip: Slip, t_s: f64) -> (f64, f64) {
         let x = 1.6 * (0.31 * t_s + self.phase).sin();

@@ -18,12 +18,12 @@ pub(crate) struct LineMeter {
     busy: Duration,
     on_wire: Duration,
     writes: Duration,
-    groups: [Sum; PollGroup::ALL.len()],
+    groups: [TimeSum; PollGroup::ALL.len()],
     shown: bool,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Sum {
+struct TimeSum {
     time: Duration,
     parts: u32,
 }

@@ -206,12 +206,12 @@ impl Joining {
 }
 
 /// Bytes of registers around a window that could be read with it.
-struct Room {
+struct Margins {
     before: u16,
     behind: u16,
 }
 
-fn room(window: Span) -> Room {
+fn room(window: Span) -> Margins {
     let region = REGIONS.into_iter().find(|region| region.covers(window));
     let region = region.unwrap_or(window);
     let gaps_before = GAPS.iter().map(|gap| gap.end());
@@ -222,7 +222,7 @@ fn room(window: Span) -> Room {
     let end = gaps_behind
         .filter(|start| *start >= window.end())
         .fold(region.end(), u32::min);
-    Room {
+    Margins {
         before: u16::try_from(u32::from(window.address).saturating_sub(start)).unwrap_or(0) / 2 * 2,
         behind: u16::try_from(end.saturating_sub(window.end())).unwrap_or(0) / 2 * 2,
     }

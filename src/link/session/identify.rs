@@ -55,7 +55,7 @@ const OTHER_TOUCH_SHAPES: [Span; 3] = [
     clippy::large_enum_variant,
     reason = "it lives on the stack, for one question"
 )]
-enum Heard {
+enum IdentityReply {
     Bytes(Bytes),
     Refused,
     Silent,
@@ -129,7 +129,7 @@ impl Session {
                 Ok(Some(words)) => return Ok(judged_packing(id, &words)),
                 Ok(None) => break,
                 Err(error) => {
-                    if let Heard::Refused = self.unanswered(bus, error).await? {
+                    if let IdentityReply::Refused = self.unanswered(bus, error).await? {
                         break;
                     }
                 }
@@ -140,21 +140,21 @@ impl Session {
 
     async fn ask_rest(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<Quirks, End> {
         let baud_code = match self.ask(bus, &BAUD_SHAPES, until).await? {
-            Heard::Bytes(bytes) => bytes.first().copied(),
+            IdentityReply::Bytes(bytes) => bytes.first().copied(),
             _ => None,
         };
         // Where a run is asked for in pieces, no question is worth leading through the gap.
         let gap = match bus.cost().turns(GAP_SHAPES[0].len) {
             0 | 1 => self.ask(bus, &GAP_SHAPES, until).await?,
-            _ => Heard::Unasked,
+            _ => IdentityReply::Unasked,
         };
         let touch = self.ask_touch(bus, until).await?;
         let gap = match gap {
-            Heard::Bytes(_) => Some(GapRead::Through),
-            Heard::Refused => Some(GapRead::Split),
+            IdentityReply::Bytes(_) => Some(GapRead::Through),
+            IdentityReply::Refused => Some(GapRead::Split),
             // The serial framing has no word for no: silence is one if the next question is answered.
-            Heard::Silent if !bus.has_words() && touch.is_some() => Some(GapRead::Split),
-            Heard::Silent | Heard::Unasked => None,
+            IdentityReply::Silent if !bus.has_words() && touch.is_some() => Some(GapRead::Split),
+            IdentityReply::Silent | IdentityReply::Unasked => None,
         };
         Ok(Quirks {
             baud_code,
@@ -190,10 +190,10 @@ impl Session {
         bus: &mut dyn Bus,
         shapes: &[Span],
         until: Moment,
-    ) -> Result<Heard, End> {
+    ) -> Result<IdentityReply, End> {
         let mut heard = self.ask_once(bus, shapes, until).await?;
         for _ in 1..ASKED {
-            if matches!(heard, Heard::Silent) {
+            if matches!(heard, IdentityReply::Silent) {
                 heard = self.ask_once(bus, shapes, until).await?;
             }
         }
@@ -205,30 +205,34 @@ impl Session {
         bus: &mut dyn Bus,
         shapes: &[Span],
         until: Moment,
-    ) -> Result<Heard, End> {
+    ) -> Result<IdentityReply, End> {
         if self.hurried(until) {
-            return Ok(Heard::Unasked);
+            return Ok(IdentityReply::Unasked);
         }
         self.take_turn(bus).await?;
         let Some(span) = bus.choose(shapes) else {
-            return Ok(Heard::Unasked);
+            return Ok(IdentityReply::Unasked);
         };
         let (limit, asked) = (self.reply_limit(bus, span.len), self.now());
         match bus.read(span, limit).await {
             Ok(bytes) => {
                 self.answered(self.now().since(asked));
-                Ok(Heard::Bytes(bytes))
+                Ok(IdentityReply::Bytes(bytes))
             }
             Err(error) => self.unanswered(bus, error).await,
         }
     }
 
-    async fn unanswered(&mut self, bus: &mut dyn Bus, error: BusError) -> Result<Heard, End> {
+    async fn unanswered(
+        &mut self,
+        bus: &mut dyn Bus,
+        error: BusError,
+    ) -> Result<IdentityReply, End> {
         match error {
             BusError::Lost(error) => return Err(End::Lost(error.into())),
             BusError::Refused { .. } => {
                 self.counters.stats.refusals += 1;
-                return Ok(Heard::Refused);
+                return Ok(IdentityReply::Refused);
             }
             BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
             BusError::Ambiguous => {}
@@ -241,7 +245,7 @@ impl Session {
             () = stop => {}
             settled = bus.quiet() => lost(settled)?,
         }
-        Ok(Heard::Silent)
+        Ok(IdentityReply::Silent)
     }
 
     /// True if there is no time for another question.
@@ -267,11 +271,11 @@ fn judged_packing(id: Option<&Bytes>, words: &[u16]) -> Option<BytePacking> {
     BytePacking::detect(at_id, words.first_chunk()?)
 }
 
-fn judged(heard: &Heard) -> Option<TouchVariant> {
+fn judged(heard: &IdentityReply) -> Option<TouchVariant> {
     match heard {
-        Heard::Bytes(bytes) => Some(TouchVariant::judge(bytes)),
-        Heard::Refused => Some(TouchVariant::Unknown(TouchDoubt::Refused)),
-        Heard::Silent | Heard::Unasked => None,
+        IdentityReply::Bytes(bytes) => Some(TouchVariant::judge(bytes)),
+        IdentityReply::Refused => Some(TouchVariant::Unknown(TouchDoubt::Refused)),
+        IdentityReply::Silent | IdentityReply::Unasked => None,
     }
 }
 

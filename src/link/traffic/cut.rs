@@ -68,7 +68,7 @@ impl Cutter {
     }
 
     fn cut(&mut self, look: &impl Fn(&[u8]) -> Seen, out: &mut impl FnMut(Cut), silent: bool) {
-        let mut run = Run::default();
+        let mut run = NoiseRun::default();
         let mut at = 0;
         while let Some(rest @ [_, ..]) = self.waiting.get(at..) {
             let (len, wrong) = match look(rest) {
@@ -107,12 +107,12 @@ fn until_next(bytes: &[u8], len: usize, look: impl Fn(&[u8]) -> Seen) -> usize {
 
 /// Bytes that begin no frame, one behind the other.
 #[derive(Default)]
-struct Run {
+struct NoiseRun {
     bytes: Vec<u8>,
     wrong: Option<Wrong>,
 }
 
-impl Run {
+impl NoiseRun {
     fn take(&mut self, rest: &[u8], wrong: Wrong, out: &mut impl FnMut(Cut)) {
         if self.bytes.len() >= RUN_MAX {
             self.end(out);

@@ -19,7 +19,7 @@ const REPLY_WITHIN: Duration = Duration::from_secs(1);
 
 /// A request that waits for its reply.
 #[derive(Debug, Clone, Copy)]
-struct Asked {
+struct OpenRequest {
     number: u64,
     at: Moment,
     writes: bool,
@@ -27,7 +27,7 @@ struct Asked {
     transaction: Option<u16>,
 }
 
-impl Asked {
+impl OpenRequest {
     fn is_answered_by(&self, said: &Said) -> bool {
         self.is_of_kind(said)
             && said.transaction == self.transaction
@@ -51,8 +51,8 @@ impl Asked {
 pub struct Matching {
     form: Form,
     hand: u16,
-    open: Option<Asked>,
-    given_up: VecDeque<Asked>,
+    open: Option<OpenRequest>,
+    given_up: VecDeque<OpenRequest>,
     saving: bool,
     packing: BytePacking,
 }
@@ -113,7 +113,7 @@ impl Matching {
         let before = self.open.take().map(|open| self.give_up(open));
         let span = said.span?;
         self.saving |= said.kind == Kind::Write && span.address == SAVE.address;
-        self.open = Some(Asked {
+        self.open = Some(OpenRequest {
             number: frame.number,
             at: frame.at,
             writes: said.kind == Kind::Write,
@@ -123,7 +123,7 @@ impl Matching {
         before
     }
 
-    fn give_up(&mut self, open: Asked) -> u64 {
+    fn give_up(&mut self, open: OpenRequest) -> u64 {
         if self.given_up.len() >= GIVEN_UP_MAX {
             self.given_up.pop_front();
         }

@@ -55,7 +55,7 @@ impl Direction {
 
 /// One frame as JSON.
 #[derive(Serialize)]
-struct Line<'a> {
+struct FrameJson<'a> {
     number: u64,
     time_s: f64,
     direction: &'static str,
@@ -118,7 +118,7 @@ impl Frame {
     #[must_use]
     pub fn json_line(&self) -> String {
         let hex = self.hex();
-        let line = Line {
+        let line = FrameJson {
             number: self.number,
             time_s: self.at.secs(),
             direction: self.direction.name(),

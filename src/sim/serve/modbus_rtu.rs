@@ -29,7 +29,7 @@ const LONG_FRAMING: usize = 9;
 /// # Errors
 /// None: the end of the wire is the only end there is.
 pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) -> io::Result<()> {
-    let mut line = Line {
+    let mut line = RtuServer {
         hands: hands.into(),
         wire,
         held: ArrayVec::new(),
@@ -39,7 +39,7 @@ pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) -> io::Result<()> {
     Ok(())
 }
 
-struct Line<W> {
+struct RtuServer<W> {
     hands: Hands,
     wire: W,
     held: ArrayVec<u8, CHUNK>,
@@ -47,7 +47,7 @@ struct Line<W> {
     is_noisy: bool,
 }
 
-impl<W: Wire> Line<W> {
+impl<W: Wire> RtuServer<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {

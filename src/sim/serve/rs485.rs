@@ -28,7 +28,7 @@ const SILENCE: Duration = Duration::from_millis(50);
 
 /// Answers on `wire` until the other side hangs up. Silent for other ids, bad frames and runs it refuses.
 pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
-    let mut line = Line {
+    let mut line = Rs485Server {
         hands: hands.into(),
         wire,
         decoder: RequestDecoder::default(),
@@ -37,13 +37,13 @@ pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
     let _hung_up = line.run().await;
 }
 
-struct Line<W> {
+struct Rs485Server<W> {
     hands: Hands,
     wire: W,
     decoder: RequestDecoder,
 }
 
-impl<W: Wire> Line<W> {
+impl<W: Wire> Rs485Server<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {

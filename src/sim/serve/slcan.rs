@@ -23,7 +23,7 @@ const FLAGS: &[u8] = b"F00\r";
 
 /// Answers on `wire` until the other side hangs up. At another bit rate than the hand's nobody is on the bus.
 pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
-    let mut adapter = Adapter {
+    let mut adapter = SlcanServer {
         hands: hands.into(),
         wire,
         mode: Mode::Closed,
@@ -41,7 +41,7 @@ enum Mode {
     Listening,
 }
 
-struct Adapter<W> {
+struct SlcanServer<W> {
     hands: Hands,
     wire: W,
     mode: Mode,
@@ -49,7 +49,7 @@ struct Adapter<W> {
     bitrate: Option<u32>,
 }
 
-impl<W: Wire> Adapter<W> {
+impl<W: Wire> SlcanServer<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut decoder = CommandDecoder::default();
         let mut chunk = [0; CHUNK];
