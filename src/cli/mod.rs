@@ -22,7 +22,7 @@ mod window;
 use anyhow::Context as _;
 use args::{Cli, Command};
 use clap::{CommandFactory as _, Parser as _};
-use out::{Out, ReaderGone, Told, WrongUsage};
+use out::{AlreadyReported, Out, ReaderGone, WrongUsage};
 use std::process::ExitCode;
 use tokio::runtime::Builder;
 
@@ -42,7 +42,7 @@ pub fn run() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if error.is::<ReaderGone>() => ExitCode::SUCCESS,
-        Err(error) if error.is::<Told>() => ExitCode::FAILURE,
+        Err(error) if error.is::<AlreadyReported>() => ExitCode::FAILURE,
         Err(error) if error.is::<WrongUsage>() => {
             out::say(&error.to_string());
             ExitCode::from(WRONG_USAGE)

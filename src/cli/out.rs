@@ -20,7 +20,7 @@ pub(crate) struct ReaderGone;
 /// The command failed, and has already said why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("already reported")]
-pub(crate) struct Told;
+pub(crate) struct AlreadyReported;
 
 /// Wrong usage that clap cannot see. Nothing was done.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -97,7 +97,7 @@ fn checked(written: io::Result<()>) -> anyhow::Result<()> {
 pub(crate) fn end(is_done: bool) -> anyhow::Result<()> {
     match is_done {
         true => Ok(()),
-        false => Err(Told.into()),
+        false => Err(AlreadyReported.into()),
     }
 }
 

@@ -3,12 +3,12 @@
 
 use crate::app::connect::SimDial;
 use crate::cli::interrupt::Interrupt;
-use crate::cli::out::{Out, Told, say};
+use crate::cli::out::{AlreadyReported, Out, say};
 use crate::cli::parse::{HandIds, hand_ids};
 use crate::hand::HandId;
 use crate::link::Clock;
 use crate::link::scan::{
-    Found, HOSTS_MAX, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanProgress,
+    FoundHand, HOSTS_MAX, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanPort, ScanProgress,
     ScanSummary, Speaks, start,
 };
 use crate::transport::UsbFound;
@@ -64,7 +64,7 @@ impl ScanArgs {
         if self.tcp.is_empty() && named.iter().all(|list| list.is_empty()) {
             return Local::Listed;
         }
-        let wish = |port: &String, speaks| PortWish {
+        let wish = |port: &String, speaks| ScanPort {
             port: port.clone(),
             usb: None,
             speaks,
@@ -204,7 +204,7 @@ impl ScanPrinter<'_> {
         match summary {
             _ if found > 0 => Ok(()),
             None => bail!("the scan was ended before it found a hand"),
-            Some(summary) if summary.failed > 0 => Err(Told.into()),
+            Some(summary) if summary.failed > 0 => Err(AlreadyReported.into()),
             Some(summary) if summary.places == 0 => bail!(
                 "there is nothing to scan: the system lists no serial port and no CAN interface; plug the adapter in, or name what to scan with --serial, --can, --slcan, --usbcan or --tcp"
             ),
@@ -280,7 +280,7 @@ fn progress_text(progress: ScanProgress, found: usize) -> String {
     )
 }
 
-fn found_text(found: &Found) -> String {
+fn found_text(found: &FoundHand) -> String {
     let about = found.usb.as_ref().map(usb_text).unwrap_or_default();
     format!(
         "{}  HAND_ID {}  {:.1} ms  {about}",
@@ -308,7 +308,7 @@ fn usb_text(usb: &UsbFound) -> String {
     text.trim_start().to_owned()
 }
 
-fn found_json(found: &Found) -> Value {
+fn found_json(found: &FoundHand) -> Value {
     json!({ "hand": {
         "url": found.endpoint.to_string(),
         "kind": found.endpoint.kind(),
@@ -340,8 +340,8 @@ fn summary_json(found: usize, summary: Option<ScanSummary>) -> Value {
 mod tests {
     use super::*;
 
-    fn found(usb: Option<UsbFound>) -> Found {
-        Found {
+    fn found(usb: Option<UsbFound>) -> FoundHand {
+        FoundHand {
             endpoint: "rs485:/dev/ttyUSB0?id=3".parse().unwrap(),
             hand_id: 3,
             round_trip: Duration::from_micros(9_870),

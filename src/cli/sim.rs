@@ -6,7 +6,7 @@ use crate::cli::parse::{HandIds, hand_ids, number};
 use crate::sim::serve::modbus_tcp;
 #[cfg(unix)]
 use crate::sim::serve::pty;
-use crate::sim::{Hands, Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand};
+use crate::sim::{Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand, SimHands};
 use crate::transport::LinePace;
 #[cfg(unix)]
 use crate::transport::TransportError;
@@ -136,7 +136,7 @@ pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     }
 }
 
-async fn wires(hands: &Hands, args: &SimArgs) -> anyhow::Result<Vec<ServedWire>> {
+async fn wires(hands: &SimHands, args: &SimArgs) -> anyhow::Result<Vec<ServedWire>> {
     let mut wires = Vec::new();
     if let Some(address) = args.tcp {
         wires.push(serve_tcp(hands, address).await?);
@@ -162,7 +162,7 @@ async fn wires(hands: &Hands, args: &SimArgs) -> anyhow::Result<Vec<ServedWire>>
 }
 
 /// Switches all hands off and on at each signal, and says so once they answer again.
-async fn lose_power(out: &mut Out, mut power: Interrupt, hands: &Hands) -> anyhow::Error {
+async fn lose_power(out: &mut Out, mut power: Interrupt, hands: &SimHands) -> anyhow::Error {
     loop {
         power.wished().await;
         hands.with_each(SimHand::switch_off);
@@ -175,7 +175,7 @@ async fn lose_power(out: &mut Out, mut power: Interrupt, hands: &Hands) -> anyho
 }
 
 /// Separate hands, each with its own memory, body and random numbers.
-fn hands(args: &SimArgs) -> Option<Hands> {
+fn hands(args: &SimArgs) -> Option<SimHands> {
     let begun = Instant::now();
     let seeds = (0..).map(|nth| args.seed.wrapping_add(nth));
     let mut hands = args.id.0.iter().zip(seeds).map(|(id, seed)| {
@@ -188,10 +188,10 @@ fn hands(args: &SimArgs) -> Option<Hands> {
         SharedHand::new(hand, begun)
     });
     let first = hands.next()?;
-    Some(Hands::new(first, hands.collect()))
+    Some(SimHands::new(first, hands.collect()))
 }
 
-async fn live(hands: &Hands) {
+async fn live(hands: &SimHands) {
     let mut tick = interval(LIVE_EACH);
     loop {
         tick.tick().await;
@@ -199,7 +199,7 @@ async fn live(hands: &Hands) {
     }
 }
 
-async fn serve_tcp(hands: &Hands, address: SocketAddr) -> anyhow::Result<ServedWire> {
+async fn serve_tcp(hands: &SimHands, address: SocketAddr) -> anyhow::Result<ServedWire> {
     let listener = TcpListener::bind(address)
         .await
         .map_err(|error| anyhow!("cannot serve on {address}: {}", bind_words(&error)))?;
@@ -233,7 +233,7 @@ fn bind_words(error: &io::Error) -> String {
 
 #[cfg(unix)]
 fn serve_link(
-    hands: &Hands,
+    hands: &SimHands,
     protocol: PtyProtocol,
     link: &Path,
     pace: Option<LinePace>,
@@ -278,7 +278,7 @@ fn link_words(link: &Path, error: &TransportError) -> anyhow::Error {
 }
 
 #[cfg(target_os = "linux")]
-fn serve_can(hands: &Hands, interface: &str) -> anyhow::Result<ServedWire> {
+fn serve_can(hands: &SimHands, interface: &str) -> anyhow::Result<ServedWire> {
     let wire = crate::transport::can::open(interface, None)
         .map_err(|error| anyhow!("cannot serve on {interface}: {error}"))?;
     let closed = format!("the CAN interface {interface} was closed");
@@ -287,13 +287,13 @@ fn serve_can(hands: &Hands, interface: &str) -> anyhow::Result<ServedWire> {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn serve_can(_hands: &Hands, _interface: &str) -> anyhow::Result<ServedWire> {
+fn serve_can(_hands: &SimHands, _interface: &str) -> anyhow::Result<ServedWire> {
     Err(anyhow!(crate::transport::TransportError::LinuxOnly))
 }
 
 #[cfg(not(unix))]
 fn serve_link(
-    _hands: &Hands,
+    _hands: &SimHands,
     _protocol: PtyProtocol,
     link: &Path,
     _pace: Option<LinePace>,

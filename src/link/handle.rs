@@ -8,7 +8,7 @@ use crate::link::session::conversation::Session;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::tap::WireTap;
-use crate::link::wanted::{Ends, Wanted};
+use crate::link::wanted::{Ends, PendingControl};
 use crate::record::{Calibrated, Record, Reset, Saved, Written};
 use std::sync::Arc;
 use tokio::sync::broadcast::error::{RecvError, TryRecvError};
@@ -30,7 +30,7 @@ pub struct LinkHandle(Arc<LinkShared>);
 
 #[derive(Debug)]
 struct LinkShared {
-    wanted: Arc<watch::Sender<Wanted>>,
+    wanted: Arc<watch::Sender<PendingControl>>,
     requests: mpsc::Sender<Request>,
     records: broadcast::WeakSender<Record>,
     status: watch::Receiver<LinkStatus>,
@@ -48,7 +48,7 @@ impl Drop for LinkShared {
 /// Writes nothing by itself.
 #[must_use]
 pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle, Records) {
-    let wanted = Arc::new(watch::Sender::new(Wanted::default()));
+    let wanted = Arc::new(watch::Sender::new(PendingControl::default()));
     let (requests, asked) = mpsc::channel(REQUESTS_MAX);
     let (told, records) = broadcast::channel(RECORDS_MAX);
     let (status_in, status) = watch::channel(LinkStatus::default());

@@ -56,7 +56,7 @@ const OPEN_WITHIN: f64 = 20.0;
 
 /// What a joint is told.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Goal {
+pub enum DriveGoal {
     /// Go to this position, counts.
     Position(f64),
     /// Stop where it is.
@@ -65,7 +65,7 @@ pub enum Goal {
 
 /// The settings that act at once.
 #[derive(Debug, Clone, Copy)]
-pub struct Setting {
+pub struct DriveSettings {
     /// Units of SPEED_SET.
     pub speed: f64,
     /// Force threshold, g.
@@ -87,7 +87,7 @@ pub struct Drive {
     position: f64,
     velocity: f64,
     phase: DrivePhase,
-    pending: ArrayVec<(u64, Goal), PENDING_MAX>,
+    pending: ArrayVec<(u64, DriveGoal), PENDING_MAX>,
     status: Status,
     faults: Faults,
     current_ma: f64,
@@ -257,7 +257,7 @@ impl Drive {
     }
 
     /// Takes a command that acts after the dead time.
-    pub fn command(&mut self, goal: Goal, now_ms: u64) {
+    pub fn command(&mut self, goal: DriveGoal, now_ms: u64) {
         let due = now_ms + DEAD_TIME_MS;
         if self.pending.is_full() {
             self.pending.pop();
@@ -266,7 +266,7 @@ impl Drive {
     }
 
     /// One millisecond.
-    pub fn step(&mut self, now_ms: u64, setting: Setting) {
+    pub fn step(&mut self, now_ms: u64, setting: DriveSettings) {
         while let Some((due, goal)) = self.pending.first().copied() {
             if due > now_ms {
                 break;
@@ -319,14 +319,14 @@ impl Drive {
         self.broken |= most.is_some_and(|most| self.load_g() > most);
     }
 
-    fn begin(&mut self, goal: Goal, setting: Setting) {
+    fn begin(&mut self, goal: DriveGoal, setting: DriveSettings) {
         match goal {
-            Goal::Freeze => {
+            DriveGoal::Freeze => {
                 if matches!(self.phase, DrivePhase::Moving { .. }) {
                     self.stop_moving(Status::PositionReached);
                 }
             }
-            Goal::Position(to) => {
+            DriveGoal::Position(to) => {
                 let to = to.clamp(0.0, STROKE);
                 if self.is_there(to) {
                     self.stop_moving(Status::PositionReached);
@@ -349,7 +349,7 @@ impl Drive {
     }
 
     /// True if its threshold stopped it and the grip is still there: told to close again, it does not push (manual 2.6.12).
-    fn holds(&self, to: f64, setting: Setting) -> bool {
+    fn holds(&self, to: f64, setting: DriveSettings) -> bool {
         let closes = self.status == Status::ForceReached && to > self.position;
         closes && self.load_g() >= HELD_PART * setting.threshold_g.max(1.0)
     }
@@ -365,7 +365,7 @@ impl Drive {
         !dead && (!only_opens || to < self.position)
     }
 
-    fn move_on(&mut self, to: f64, setting: Setting) {
+    fn move_on(&mut self, to: f64, setting: DriveSettings) {
         let way = to - self.position;
         let top = setting.speed * COUNTS_PER_SPEED;
         // The last counts are taken slowly enough to end on the target.

@@ -55,11 +55,11 @@ struct TipModel {
 
 /// The five fingertip sensors.
 #[derive(Debug, Clone)]
-pub struct Touch {
+pub struct TouchSensors {
     tips: PerFinger<TipModel>,
 }
 
-impl Touch {
+impl TouchSensors {
     /// Sensors with their own rest counts, drawn from `rng`.
     #[must_use]
     pub fn new(rng: &mut fastrand::Rng) -> Self {
@@ -155,7 +155,7 @@ mod tests {
 
     fn block(force_g: f64, gap: Option<f64>) -> TactileBlock {
         let mut rng = fastrand::Rng::with_seed(3);
-        let mut touch = Touch::new(&mut rng);
+        let mut touch = TouchSensors::new(&mut rng);
         touch.measure(&mut rng);
         let block = touch.block(Finger::Index, Press { force_g, gap }, Slip::default(), 1.0);
         TactileBlock::decode(&block.encode()).unwrap()

@@ -35,12 +35,12 @@ pub struct FaultOdds {
 
 /// The speed of a serial line: bytes take ten bits each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pace {
+pub struct LineSpeed {
     /// Bits a second; 0 counts as 1.
     pub baud: u32,
 }
 
-impl Pace {
+impl LineSpeed {
     fn time_of(self, bytes: usize) -> Duration {
         let bits = u64::try_from(bytes)
             .unwrap_or(u64::MAX)
@@ -63,7 +63,7 @@ pub struct FaultPlan {
     /// Most bits that are flipped in one chunk, at least 1.
     pub flips_max: u8,
     /// Speed of the line; `None` = no time at all.
-    pub pace: Option<Pace>,
+    pub pace: Option<LineSpeed>,
 }
 
 impl FaultPlan {
@@ -389,7 +389,7 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn a_paced_line_takes_ten_bits_a_byte() {
-        let pace = Some(Pace { baud: 115_200 });
+        let pace = Some(LineSpeed { baud: 115_200 });
         let (mut near, mut far, _switch) = faulty_pair(FaultPlan {
             pace,
             ..FaultPlan::quiet(1)

@@ -1,8 +1,8 @@
 //! CAN frames over a wire: as text or packets through a serial adapter, or as Linux's frames. Asks nothing of a hand.
 
-use crate::codec::can::{CanFrame, RECORD_LEN, Record, from_record, to_record};
-use crate::codec::slcan::{Answer, AnswerDecoder, Command, bitrate_code, encode_command};
-use crate::codec::usbcan::{self, Content, PacketDecoder};
+use crate::codec::can::{CanFrame, CanRecord, RECORD_LEN, from_record, to_record};
+use crate::codec::slcan::{AnswerDecoder, SlcanAnswer, SlcanCommand, bitrate_code, encode_command};
+use crate::codec::usbcan::{self, PacketContent, PacketDecoder};
 use crate::link::bus::error::{BusError, lost};
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use arrayvec::ArrayVec;
@@ -95,12 +95,12 @@ impl CanPort {
         // Ends a half-sent line of whoever was here before.
         self.put(b"\r").await?;
         // An adapter that is closed already says that it failed; either is fine.
-        self.tell(&Command::Close).await?;
+        self.tell(&SlcanCommand::Close).await?;
         self.drain().await?;
-        if self.tell(&Command::Bitrate(code)).await? {
+        if self.tell(&SlcanCommand::Bitrate(code)).await? {
             return Err(refused);
         }
-        if self.tell(&Command::Open).await? {
+        if self.tell(&SlcanCommand::Open).await? {
             return Err(BusError::Lost(TransportError::Io {
                 place: self.place.clone(),
                 message: "the CAN adapter could not go on the bus".into(),
@@ -113,7 +113,7 @@ impl CanPort {
     /// Leaves the bus, if the wire takes it at once.
     pub(crate) fn close(&mut self) {
         if matches!(self.form, CanEncoding::Text { .. })
-            && let Some(line) = encode_command(&Command::Close)
+            && let Some(line) = encode_command(&SlcanCommand::Close)
         {
             // A wire that does not take it is gone.
             let _taken = self.put(&line).now_or_never();
@@ -121,7 +121,7 @@ impl CanPort {
     }
 
     /// Tells the adapter something; true if it said that it failed.
-    async fn tell(&mut self, command: &Command) -> Result<bool, BusError> {
+    async fn tell(&mut self, command: &SlcanCommand) -> Result<bool, BusError> {
         let Some(line) = encode_command(command) else {
             return Ok(false);
         };
@@ -152,7 +152,7 @@ impl CanPort {
 
     pub(crate) async fn send(&mut self, frame: &CanFrame) -> Result<(), BusError> {
         match self.form {
-            CanEncoding::Text { .. } => match encode_command(&Command::Send(frame.clone())) {
+            CanEncoding::Text { .. } => match encode_command(&SlcanCommand::Send(frame.clone())) {
                 Some(line) => self.put(&line).await,
                 None => Ok(()),
             },
@@ -190,13 +190,13 @@ impl CanPort {
     fn take(&mut self, byte: u8) -> Result<(), BusError> {
         match &mut self.form {
             CanEncoding::Text { decoder, .. } => match decoder.push(byte) {
-                Some(Answer::Done | Answer::Sent) => self.done = true,
-                Some(Answer::Failed) => self.failed = true,
-                Some(Answer::Frame(frame)) => self.inbox.push_back(frame),
-                Some(Answer::Other(_)) | None => {}
+                Some(SlcanAnswer::Done | SlcanAnswer::Sent) => self.done = true,
+                Some(SlcanAnswer::Failed) => self.failed = true,
+                Some(SlcanAnswer::Frame(frame)) => self.inbox.push_back(frame),
+                Some(SlcanAnswer::Other(_)) | None => {}
             },
             CanEncoding::Packets(decoder) => {
-                if let Some(Content::Frame(frame)) = decoder.push(byte) {
+                if let Some(PacketContent::Frame(frame)) = decoder.push(byte) {
                     self.inbox.push_back(frame);
                 }
             }
@@ -213,11 +213,11 @@ impl CanPort {
 
     fn take_record(&mut self, record: &[u8; RECORD_LEN]) -> Result<(), BusError> {
         match from_record(record) {
-            Record::Frame(frame) => self.inbox.push_back(frame),
-            Record::ErrorPassive => self.passive = true,
-            Record::ErrorActive => self.passive = false,
-            Record::Other => {}
-            Record::BusOff => {
+            CanRecord::Frame(frame) => self.inbox.push_back(frame),
+            CanRecord::ErrorPassive => self.passive = true,
+            CanRecord::ErrorActive => self.passive = false,
+            CanRecord::Other => {}
+            CanRecord::BusOff => {
                 return Err(BusError::Lost(TransportError::BusOff {
                     place: self.place.clone(),
                 }));

@@ -6,7 +6,7 @@ use crate::link::bus::late_replies::LateReplies;
 use crate::link::bus::{self, BusError};
 use crate::link::clock::Clock;
 use crate::link::scan::board::Board;
-use crate::link::scan::event::{Found, ScanEvent, ScanHint};
+use crate::link::scan::event::{FoundHand, ScanEvent, ScanHint};
 use crate::link::scan::heard::LentWire;
 use crate::link::scan::plan::{Lane, LaneKind, Try, same_line};
 use crate::transport::{Dial, Endpoint, TransportError};
@@ -18,7 +18,7 @@ use tokio::sync::mpsc;
 use tokio::time::Instant;
 
 /// What all lanes of a scan share.
-pub(crate) struct Room {
+pub(crate) struct ScanContext {
     pub(crate) dial: Arc<dyn Dial>,
     pub(crate) clock: Clock,
     pub(crate) events: mpsc::Sender<ScanEvent>,
@@ -28,7 +28,7 @@ pub(crate) struct Room {
     pub(crate) range_told: AtomicBool,
 }
 
-impl Room {
+impl ScanContext {
     pub(crate) async fn tell(&self, event: ScanEvent) {
         // Nobody listens any more when the scan is being ended.
         let _unheard = self.events.send(event).await;
@@ -88,7 +88,7 @@ impl Noticed {
 
 /// One place being looked at.
 struct LaneScan {
-    room: Arc<Room>,
+    room: Arc<ScanContext>,
     nth: usize,
     lane: Lane,
     open: Option<(Endpoint, LentWire)>,
@@ -101,7 +101,7 @@ struct LaneScan {
 }
 
 /// Goes through all tries of a lane, or until what it learned makes the rest needless.
-pub(crate) async fn look(room: Arc<Room>, nth: usize, lane: Lane) {
+pub(crate) async fn look(room: Arc<ScanContext>, nth: usize, lane: Lane) {
     let mut look = LaneScan {
         room,
         nth,
@@ -150,7 +150,7 @@ impl LaneScan {
     async fn found(&mut self, one: &Try, hand_id: u8, round_trip: Duration) {
         self.found += 1;
         self.room.board().summary.found += 1;
-        let found = Found {
+        let found = FoundHand {
             endpoint: one.endpoint.clone(),
             hand_id,
             round_trip,

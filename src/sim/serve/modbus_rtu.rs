@@ -2,7 +2,7 @@
 
 use crate::codec::modbus_rtu::crc16;
 use crate::sim::personality::RtuReplyGap;
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::modbus;
 use crate::transport::Wire;
 use arrayvec::ArrayVec;
@@ -28,7 +28,7 @@ const LONG_FRAMING: usize = 9;
 ///
 /// # Errors
 /// None: the end of the wire is the only end there is.
-pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) -> io::Result<()> {
+pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) -> io::Result<()> {
     let mut line = RtuServer {
         hands: hands.into(),
         wire,
@@ -40,7 +40,7 @@ pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) -> io::Result<()> {
 }
 
 struct RtuServer<W> {
-    hands: Hands,
+    hands: SimHands,
     wire: W,
     held: ArrayVec<u8, CHUNK>,
     /// What comes is not listened to until the line is silent.

@@ -6,9 +6,9 @@ use crate::codec::rs485::{
 };
 use crate::hand::Span;
 use crate::sim::hand::SimHand;
-use crate::sim::memory::Refusal;
+use crate::sim::memory::AccessError;
 use crate::sim::personality::{AnyId, LongRead};
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
 use std::io;
@@ -27,7 +27,7 @@ const CHUNK: usize = 512;
 const SILENCE: Duration = Duration::from_millis(50);
 
 /// Answers on `wire` until the other side hangs up. Silent for other ids, bad frames and runs it refuses.
-pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
+pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
     let mut line = Rs485Server {
         hands: hands.into(),
         wire,
@@ -38,7 +38,7 @@ pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
 }
 
 struct Rs485Server<W> {
-    hands: Hands,
+    hands: SimHands,
     wire: W,
     decoder: RequestDecoder,
 }
@@ -141,7 +141,9 @@ fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
                 Ok(effect) => effect
                     .is_acked
                     .then(|| encode_write_ack(effect.ack_id, *address, ACK)),
-                Err(Refusal::ReadOnly { .. }) => Some(encode_write_ack(hand.id(), *address, NAK)),
+                Err(AccessError::ReadOnly { .. }) => {
+                    Some(encode_write_ack(hand.id(), *address, NAK))
+                }
                 Err(_) => None,
             }
         }
