@@ -105,15 +105,15 @@ impl Segment {
 pub const RANGE: PerDof<f32> = PerDof::new([1.4381, 1.4381, 1.4381, 1.4381, 0.5864, 1.1641]);
 
 /// Where a segment hangs and how it stands there (roll, pitch, yaw), and how it follows its drive, about z.
-struct Joint {
+struct SegmentJoint {
     parent: Segment,
     at: [f32; 3],
     turned: [f32; 3],
     ratio: f32,
 }
 
-const fn joint(parent: Segment, at: [f32; 3], turned: [f32; 3], ratio: f32) -> Joint {
-    Joint {
+const fn joint(parent: Segment, at: [f32; 3], turned: [f32; 3], ratio: f32) -> SegmentJoint {
+    SegmentJoint {
         parent,
         at,
         turned,
@@ -123,7 +123,7 @@ const fn joint(parent: Segment, at: [f32; 3], turned: [f32; 3], ratio: f32) -> J
 
 /// The joints of all segments but the palm, in the order of [`Segment::ALL`].
 #[rustfmt::skip]
-const JOINTS: [Joint; 12] = [
+const JOINTS: [SegmentJoint; 12] = [
     joint(Palm, [25.916, 0.565, 153.65], [1.4661, 0.0, -FRAC_PI_2], 1.0),
     joint(Little1, SECOND, [0.0; 3], 1.0843),
     joint(Palm, [4.530, 0.565, 156.83], [1.5184, 0.0, -FRAC_PI_2], 1.0),

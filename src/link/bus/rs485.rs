@@ -51,7 +51,7 @@ pub(crate) struct Rs485 {
 }
 
 /// What an open request waits for.
-enum Expected {
+enum ExpectedReply {
     Bytes(Span),
     /// Of a write to this address. Manual: silent on who acknowledges a change of HAND_ID; the older manual shows the new
     /// id (protocol choice 9).
@@ -103,7 +103,7 @@ impl Rs485 {
     async fn exchange(
         &mut self,
         frame: &Frame,
-        expected: &Expected,
+        expected: &ExpectedReply,
         limit: Duration,
     ) -> Result<Fit, BusError> {
         self.take_waiting()?;
@@ -159,7 +159,7 @@ impl Rs485 {
     }
 
     /// The reply to the open request, if it is there; others are counted and dropped.
-    fn fitting(&mut self, expected: &Expected) -> Option<Fit> {
+    fn fitting(&mut self, expected: &ExpectedReply) -> Option<Fit> {
         while let Some(reply) = self.decoder.next() {
             self.sort_overheard();
             match self.fit(&reply, expected) {
@@ -174,9 +174,9 @@ impl Rs485 {
         None
     }
 
-    fn fit(&self, reply: &Reply, expected: &Expected) -> Fit {
+    fn fit(&self, reply: &Reply, expected: &ExpectedReply) -> Fit {
         match (reply, expected) {
-            (Reply::Read { id, address, bytes }, Expected::Bytes(span))
+            (Reply::Read { id, address, bytes }, ExpectedReply::Bytes(span))
                 if *id == self.id.get()
                     && *address == span.address
                     && bytes.len() == usize::from(span.len) =>
@@ -189,7 +189,7 @@ impl Rs485 {
                     address,
                     value: 1,
                 },
-                Expected::Ack {
+                ExpectedReply::Ack {
                     address: wanted,
                     new_id,
                 },
@@ -199,11 +199,11 @@ impl Rs485 {
     }
 
     /// A reply that is no answer to the open request.
-    fn unfit_reply(&mut self, reply: &Reply, expected: &Expected) {
+    fn unfit_reply(&mut self, reply: &Reply, expected: &ExpectedReply) {
         // Manual: 1 acknowledges. What comes in place of it with another value says nothing of flash, though a result looks
         // the same: that comes after the acknowledgement.
         match (reply, expected) {
-            (Reply::WriteAck { address, .. }, Expected::Ack { address: own, .. })
+            (Reply::WriteAck { address, .. }, ExpectedReply::Ack { address: own, .. })
                 if address == own =>
             {
                 self.foreign += 1;
@@ -263,7 +263,9 @@ impl Bus for Rs485 {
 
     async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
         let frame = encode_read(self.id, span).ok_or(BusError::TooLong)?;
-        let result = self.exchange(&frame, &Expected::Bytes(span), limit).await;
+        let result = self
+            .exchange(&frame, &ExpectedReply::Bytes(span), limit)
+            .await;
         match result {
             Ok(_) => self.late.answered(Some(span)),
             Err(_) => self.late.gave_up(span, self.clock.now()),
@@ -282,7 +284,7 @@ impl Bus for Rs485 {
         let address = write.address();
         let is_id = address == HAND_ID.address;
         let new_id = write.bytes().first().copied().filter(|_| is_id);
-        self.exchange(&frame, &Expected::Ack { address, new_id }, limit)
+        self.exchange(&frame, &ExpectedReply::Ack { address, new_id }, limit)
             .await?;
         self.late.answered(None);
         Ok(())

@@ -20,9 +20,9 @@ pub(crate) struct OtherController {
     counted: u64,
     requests: ArrayVec<Moment, REQUESTS>,
     noticed: Option<Moment>,
-    angles: Held<PerDof<Option<Target>>>,
-    forces: Held<PerDof<Option<Force>>>,
-    speeds: Held<PerDof<Option<Speed>>>,
+    angles: GroupMemory<PerDof<Option<Target>>>,
+    forces: GroupMemory<PerDof<Option<Force>>>,
+    speeds: GroupMemory<PerDof<Option<Speed>>>,
     /// Setpoints that changed though nobody here wrote them.
     pub(crate) changes: u64,
 }
@@ -92,14 +92,14 @@ impl OtherController {
 
 /// One group of setpoints as the hand holds it.
 #[derive(Debug)]
-struct Held<T> {
+struct GroupMemory<T> {
     known: Option<T>,
     /// Read once and unlike what was known: one reading may be wrong, two are not.
     doubted: bool,
     wrote: Option<Moment>,
 }
 
-impl<T> Default for Held<T> {
+impl<T> Default for GroupMemory<T> {
     fn default() -> Self {
         Self {
             known: None,
@@ -109,7 +109,7 @@ impl<T> Default for Held<T> {
     }
 }
 
-impl<T: Copy + PartialEq> Held<T> {
+impl<T: Copy + PartialEq> GroupMemory<T> {
     /// We wrote it: what was read before says nothing any more, however long the next reading takes.
     fn wrote(&mut self, now: Moment) {
         self.wrote = Some(now);

@@ -308,7 +308,7 @@ fn frames(write: &RegisterWrite, wire: RecipeWire, id: u16) -> Vec<RecipeFrame> 
             })
             .collect(),
         RecipeWire::Slcan => can_frames(write, id)
-            .filter_map(|frame| slcan::encode_command(&slcan::Command::Send(frame)))
+            .filter_map(|frame| slcan::encode_command(&slcan::SlcanCommand::Send(frame)))
             .map(|line| plain(line.to_vec()))
             .collect(),
         RecipeWire::UsbCan => can_frames(write, id)

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// How frames stand on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Form {
+pub enum FrameFormat {
     /// The private framing (manual 2.2).
     Rs485,
     /// Modbus RTU (manual 2.4).
@@ -238,7 +238,7 @@ pub struct Frame {
     /// Which way it went.
     pub direction: Direction,
     /// How it stands on the wire.
-    pub form: Form,
+    pub form: FrameFormat,
     /// All of it, as it passed.
     pub bytes: Box<[u8]>,
     /// What it is.

@@ -6,9 +6,9 @@ use crate::codec::rs485::{
 };
 use crate::hand::Span;
 use crate::sim::hand::SimHand;
-use crate::sim::memory::Refusal;
+use crate::sim::memory::AccessError;
 use crate::sim::personality::{AnyId, LongRead};
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
 use std::io;
@@ -27,8 +27,8 @@ const CHUNK: usize = 512;
 const SILENCE: Duration = Duration::from_millis(50);
 
 /// Answers on `wire` until the other side hangs up. Silent for other ids, bad frames and runs it refuses.
-pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
-    let mut line = Line {
+pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
+    let mut line = Rs485Server {
         hands: hands.into(),
         wire,
         decoder: RequestDecoder::default(),
@@ -37,13 +37,13 @@ pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
     let _hung_up = line.run().await;
 }
 
-struct Line<W> {
-    hands: Hands,
+struct Rs485Server<W> {
+    hands: SimHands,
     wire: W,
     decoder: RequestDecoder,
 }
 
-impl<W: Wire> Line<W> {
+impl<W: Wire> Rs485Server<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {
@@ -141,7 +141,9 @@ fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
                 Ok(effect) => effect
                     .is_acked
                     .then(|| encode_write_ack(effect.ack_id, *address, ACK)),
-                Err(Refusal::ReadOnly { .. }) => Some(encode_write_ack(hand.id(), *address, NAK)),
+                Err(AccessError::ReadOnly { .. }) => {
+                    Some(encode_write_ack(hand.id(), *address, NAK))
+                }
                 Err(_) => None,
             }
         }

@@ -16,7 +16,7 @@ use handscope::app::state::State;
 use handscope::hand::{Dof, Moment, SerialSpeed};
 use handscope::record::LinkState;
 use handscope::sim::serve::SharedHand;
-use handscope::sim::{Hands, SimConfig, SimHand};
+use handscope::sim::{SimConfig, SimHand, SimHands};
 use handscope::transport::{
     BoxedWire, Dial, Endpoint, FaultPlan, PortFound, Wire, faulty_pair, pair,
 };
@@ -82,7 +82,7 @@ impl Dial for Socket {
                 (ours, its)
             }
         };
-        let hands = Hands::new(self.hand.clone(), self.others.lock().unwrap().clone());
+        let hands = SimHands::new(self.hand.clone(), self.others.lock().unwrap().clone());
         let mut tasks = Vec::new();
         let its = match endpoint {
             Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
