@@ -368,10 +368,9 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     }
 }
 
-/// The newest message, while it is new. A fault has a warning and a list of its own.
+/// The newest message that nobody read and that is still so, while it is new. A fault has a warning and a list of its own.
 fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
-    let mut all = pane.state.notices.log();
-    let newest = all.find(|one| !matches!(one.what, NoticeKind::Fault { .. }))?;
+    let newest = pane.state.notices.iter().next()?;
     let moves = pane.state.hand().mover().is_some();
     let is_new = pane.state.now.since(newest.at) < NEWS_FOR;
     (is_new && (newest.level > Level::Info || !moves)).then_some(newest)
