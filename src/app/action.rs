@@ -9,7 +9,7 @@ use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::readings::fault_recorder::{PersonAct, RecordingId};
 use crate::app::readings::faults::FaultKind;
 use crate::app::scan::ScanWish;
-use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme};
+use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
 use crate::hand::{
@@ -117,6 +117,8 @@ pub enum Action {
     Language(Language),
     /// Divide the window like this.
     Layout(Layout),
+    /// Draw everything so much larger than designed.
+    Zoom(Zoom),
     /// How angles are written and typed.
     AngleUnit(AngleUnit),
     /// Seconds that the plots show.

@@ -358,6 +358,7 @@ impl App {
             Action::Theme(theme) => settings.theme = theme,
             Action::Side(side) => settings.side = side,
             Action::Layout(layout) => settings.layout = layout,
+            Action::Zoom(zoom) => settings.zoom = zoom,
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,
             Action::PlotWindow(window) => settings.plot_window = window,

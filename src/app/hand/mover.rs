@@ -60,6 +60,16 @@ impl HandState {
             None => Mover::Setpoints,
         })
     }
+    /// True if nothing moves the hand for certain, and nothing may: a hand that was never heard does not count as one.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        if !self.link.state.is_live() {
+            return self.sample.angle.is_none();
+        }
+        let armed = self.is_armed() || self.link.armed.is_some();
+        !armed && self.link.rest == Rest::Resting && self.mover().is_none()
+    }
+
     /// True if no setpoint passes any more and each drive says that it stopped: the link tells rest a second later, as a
     /// hand acts late.
     fn came_to_rest(&self) -> bool {

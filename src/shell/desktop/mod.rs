@@ -3,6 +3,7 @@
 pub(crate) mod dialog;
 pub(crate) mod failure;
 pub(crate) mod gl;
+pub(crate) mod icon;
 pub(crate) mod libraries;
 pub(crate) mod options;
 pub(crate) mod program;
