@@ -325,7 +325,6 @@ impl ParamsState {
     }
 
     fn save_ended(&mut self, end: Result<SaveReport, TaskError>, now: Moment) {
-        self.forget_files();
         let end = match end {
             Ok(report) => match report.not_noted {
                 None => SaveEnd::Told(report.saved),
@@ -335,6 +334,7 @@ impl ParamsState {
             Err(TaskError::NotAsked(error)) => SaveEnd::NotAsked(error),
             Err(error) => return self.refused(Wanted::Save, error),
         };
+        self.forget_files();
         self.save = Some((end, now));
     }
 
