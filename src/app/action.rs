@@ -16,6 +16,7 @@ use crate::hand::{
     Angle, Dof, Finger, Force, Gesture, GestureRoute, GestureStore, Moment, PerDof, Speed,
     UserGesture,
 };
+use crate::history::Mark;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::{Library, PoseId};
@@ -127,6 +128,8 @@ pub enum Action {
     ShowPlot(PlotKind, bool),
     /// Put a note of these words into the history at a moment; of no words, none.
     Note(Moment, String),
+    /// Take a note out of the history again.
+    RemoveMark(Mark),
     /// Count the channels of these fingertips from now: one, or all.
     Tare(Option<Finger>),
     /// What a kept row is to hold once it is applied, or nothing any more. Writes nothing.

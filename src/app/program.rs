@@ -294,6 +294,7 @@ impl App {
                     hand.history.mark(at, note);
                 }
             }
+            Action::RemoveMark(mark) => hand.history.remove_mark(&mark),
             Action::Stage(id, value) => hand.params.stage(id, value),
             action => self.pose_action(action, now),
         }

@@ -55,5 +55,9 @@ texts! {
     NOTE_KEEP: "Keep", "保存";
     NOTE_KEEP_TIP: "Puts the note where its key was pressed.", "把标记放在按键时刻。";
     NOTE_CANCEL: "Cancel", "取消";
+    NOTES: "Notes", "标记列表";
+    NOTE_SHOW_TIP: "Shows this moment in the plots.", "在曲线中显示该时刻。";
+    NOTE_DELETE: "Delete the note", "删除标记";
+    NOTE_DELETE_TIP: "Takes the note out of the plots.", "从曲线中删除该标记。";
     NOTE_CANCEL_TIP: "Makes no note.", "不添加标记。";
 }
