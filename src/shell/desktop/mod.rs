@@ -4,6 +4,7 @@ pub(crate) mod card;
 pub(crate) mod dialog;
 pub(crate) mod failure;
 pub(crate) mod gl;
+pub(crate) mod icon;
 pub(crate) mod libraries;
 pub(crate) mod options;
 pub(crate) mod program;

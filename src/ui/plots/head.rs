@@ -8,6 +8,7 @@ use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Weight};
 use crate::ui::kit::look::{Look, Pane};
 use crate::ui::plots::PlotView;
+use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
 use crate::ui::text::{Text, panels, plots, words};
 use crate::ui::theme;
@@ -68,6 +69,10 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         ui.checkbox(&mut view.large, look.say(plots::ENLARGE));
         view.note_asked |= entry_ui(ui, look, (plots::NOTE_NAME, plots::NOTE_TIP));
         ui.separator();
+        if let Some(at_s) = notes_ui(ui, pane) {
+            view.view.time.center(at_s);
+            Popup::close_all(ui.ctx());
+        }
         keep_ui(ui, pane, view);
         ui.separator();
         ui.set_max_width(250.0);

@@ -5,6 +5,7 @@ pub(crate) mod cursors;
 pub(crate) mod head;
 pub(crate) mod legend;
 pub(crate) mod marks;
+pub(crate) mod notes;
 pub(crate) mod panels;
 pub(crate) mod scales;
 pub(crate) mod time_window;

@@ -35,7 +35,7 @@ texts! {
     DISARM_TIP: "Setpoints pass. Press to let none pass any more; the hand keeps what it was told.", "设置值正在生效。点击后不再发送，灵巧手保持上一次的设置。";
     STOP: "STOP", "停止";
     STOP_KEYS: "Space or Esc", "空格键或 Esc";
-    STOP_TIP: "Holds the pose: every joint is told to stay where it is. Space or Esc does the same.\nIt is not an emergency stop: in danger cut the 24 V supply.", "保持当前姿态：令所有自由度停在原位。空格键或 Esc 键作用相同。\n这不是急停：遇到危险请切断 24 V 电源。";
+    STOP_TIP: "Holds the pose: every joint is told to stay where it is. Space or Esc does the same; while the hand rests Esc first closes what is open.\nIt is not an emergency stop: in danger cut the 24 V supply.", "保持当前姿态：令所有自由度停在原位。空格键或 Esc 键作用相同；灵巧手静止时，Esc 先关闭已打开的内容。\n这不是急停：遇到危险请切断 24 V 电源。";
 
     REFUSED_OFFLINE: "There is no live hand.", "没有在线的灵巧手。";
     REFUSED_HOLDING: "A stop is still being confirmed.", "正在确认停止。";

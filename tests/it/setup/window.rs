@@ -248,6 +248,17 @@ impl Bench {
         Self::begin(Room::new(config, settings, Keeps::Records), size)
     }
 
+    /// A start with these settings; nothing is kept on disk.
+    pub(crate) fn with(settings: Settings) -> Self {
+        let room = Room::new(SimConfig::default(), settings, Keeps::Nothing);
+        Self::begin(room, LARGE)
+    }
+
+    /// How much larger than designed everything is drawn.
+    pub(crate) fn zoom(&self) -> f32 {
+        self.harness.ctx.zoom_factor()
+    }
+
     /// Asks for something as a view does that is not open.
     pub(crate) fn act(&mut self, action: Action) {
         self.harness.state_mut().program.act(action);
