@@ -1,7 +1,7 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
 use crate::app::files::export::Content;
-use crate::app::hand::preset::Preset;
+use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
 use crate::app::layout::Layout;
 use crate::app::params::action::ParamAction;

@@ -276,8 +276,8 @@ impl History {
     }
 
     /// Memory held by the channels of the fingertips, in bytes.
-    #[must_use]
-    pub fn channel_bytes(&self) -> usize {
+    #[cfg(test)]
+    pub(crate) fn channel_bytes(&self) -> usize {
         let channels = self.tracks.iter().skip(FIRST_CHANNELS);
         channels.map(Track::bytes).sum()
     }
@@ -323,8 +323,8 @@ impl History {
     }
 
     /// Time of the newest measurement, in seconds.
-    #[must_use]
-    pub fn last_secs(&self) -> Option<f64> {
+    #[cfg(test)]
+    pub(crate) fn last_secs(&self) -> Option<f64> {
         self.tracks
             .iter()
             .filter_map(Track::last_s)
@@ -332,8 +332,8 @@ impl History {
     }
 
     /// Memory held, in bytes.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
+    #[cfg(test)]
+    pub(crate) fn bytes(&self) -> usize {
         self.tracks.iter().map(Track::bytes).sum()
     }
 

@@ -68,12 +68,6 @@ impl Content {
         }
     }
 
-    /// True if there is nothing to save.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     fn bytes(&self) -> std::io::Result<Vec<u8>> {
         Ok(match self {
             Self::Traffic(form, frames) => frame_lines(*form, frames).into_bytes(),

@@ -2,7 +2,7 @@
 
 use crate::setup::hand;
 use crate::setup::link;
-use crate::setup::program::{Program, env};
+use crate::setup::program::{InFolder, Program, env};
 use crate::setup::time::Time;
 use egui::{Key, Modifiers, Rect, Vec2, vec2};
 use egui_kittest::Harness;
@@ -10,7 +10,6 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::files::choose::InFolder;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::{Dof, Moment, SerialSpeed};
