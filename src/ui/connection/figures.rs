@@ -2,9 +2,10 @@
 
 use crate::link::PollGroup;
 use crate::ui::connection::link_words::link_words;
-use crate::ui::kit::controls::{self, Label};
-use crate::ui::kit::format::{self, UNKNOWN};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{
+    self, Label, Pane,
+    format::{self, UNKNOWN},
+};
 use crate::ui::text::{Text, errors, panels};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, vec2};
@@ -20,15 +21,15 @@ const BUDGET: [(Text, f32); 3] = [
 pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let link = &pane.state.hand().link;
-    controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
         let (word, color) = link_words(pane);
         let since = format::age(pane.state.now.since(link.since));
         let since = format!("{}{} {since}", look.say(word), look.say(panels::SINCE));
         ui.horizontal(|ui| {
             let lamp = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
             let (lamp, _) = ui.allocate_exact_size(lamp, egui::Sense::hover());
-            controls::lamp(ui, lamp.center(), color);
+            kit::lamp(ui, lamp.center(), color);
             Label::new(&since, look.palette.text).wrap().ui(ui);
         });
         let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
@@ -121,8 +122,8 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &Pane<'_>) {
             }
         });
     };
-    controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
         figure_ui(ui, pane, "", |ui| {
             for (head, width) in BUDGET {
                 let head = Label::new(look.say(head), look.palette.muted).small();

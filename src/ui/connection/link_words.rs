@@ -2,7 +2,7 @@
 
 use crate::link::Dialling;
 use crate::record::LinkState;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::Pane;
 use crate::ui::text::{Text, main, words};
 use egui::Color32;
 

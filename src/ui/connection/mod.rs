@@ -13,8 +13,7 @@ use crate::sim::Scenario;
 use crate::transport::{Endpoint, Packing};
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
 use crate::ui::text::{errors, panels, quirks, scan as scan_text};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
@@ -141,8 +140,8 @@ impl ConnectionForm {
 
     fn form_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::card_ui(ui, look, |ui| {
-            controls::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
+        kit::card_ui(ui, look, |ui| {
+            kit::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
             self.kinds_ui(ui, look);
             ui.add_space(theme::STEP);
             for key in self.kind.1 {
@@ -246,7 +245,7 @@ impl ConnectionForm {
         let caption = look.say(panels::setting(key));
         row_ui(ui, look, caption, |ui| {
             if all.is_empty() {
-                controls::edit_ui(ui, caption, "", text);
+                kit::edit_ui(ui, caption, "", text);
                 return;
             }
             if all.iter().all(|(value, _)| value != text) {
@@ -257,7 +256,7 @@ impl ConnectionForm {
                 .map(|(value, text)| (value.clone(), text.as_str()));
             let all: Vec<(String, &str)> = all.collect();
             ui.spacing_mut().combo_width = ui.available_width();
-            controls::choose_ui(ui, caption, text, &all);
+            kit::choose_ui(ui, caption, text, &all);
         });
         if key == "port" {
             self.ports_ui(ui, pane);
@@ -329,8 +328,8 @@ fn recent_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     if recent.is_empty() {
         return;
     }
-    controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(panels::RECENT), |_| ());
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(panels::RECENT), |_| ());
         for endpoint in recent {
             let (place, id) = match &endpoint {
                 Endpoint::Sim { .. } => (String::new(), None),

@@ -4,9 +4,7 @@ use crate::link::quirks::baud_of_code;
 use crate::link::quirks::book::{self, QuirkBook};
 use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, format::UNKNOWN};
 use crate::ui::text::{Text, quirks as text};
 use egui::Ui;
 
@@ -29,8 +27,8 @@ pub(crate) fn sheet_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     let said = |text: Text| look.say(text).to_owned();
     let quirks = &pane.state.hand().link.quirks;
-    controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(text::SHEET), |ui| copy_ui(ui, pane));
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(text::SHEET), |ui| copy_ui(ui, pane));
         line(ui, text::HAND_ID, quirks.hand_id.map(|id| id.to_string()));
         if let Some(packing) = packing(pane) {
             line(ui, text::PACKING, Some(packing));

@@ -4,8 +4,7 @@ use crate::app::action::Action;
 use crate::app::scan::{IdRange, ScanRemark, ScanWish};
 use crate::link::scan::Hosts;
 use crate::transport::Endpoint;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{Text, errors, scan};
 use crate::ui::theme;
 use egui::{Align, Layout, ProgressBar, Ui, vec2};
@@ -31,8 +30,8 @@ impl ScanPanel {
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::card_ui(ui, look, |ui| {
-            controls::head_ui(ui, look, look.say(scan::FIND), |_| ());
+        kit::card_ui(ui, look, |ui| {
+            kit::head_ui(ui, look, look.say(scan::FIND), |_| ());
             self.ports_ui(ui, pane);
             self.address_ui(ui, pane);
             ui.separator();
@@ -71,11 +70,11 @@ impl ScanPanel {
         let look = pane.look;
         ui.horizontal(|ui| {
             let text = look.say(scan::SCAN_HOST);
-            let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+            let width = kit::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
             let width = ui.available_width() - width - theme::GAP;
             ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
                 let name = look.say(scan::ADDRESS);
-                controls::edit_ui(ui, name, name, &mut self.address)
+                kit::edit_ui(ui, name, name, &mut self.address)
             });
             let missing = self.address.trim().is_empty();
             let missing = missing.then_some(scan::ADDRESS_EMPTY);

@@ -7,9 +7,7 @@ use crate::app::readings::cooling::{Course, Goal, Source};
 use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::{Dof, Fault};
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::theme;
 use egui::{Color32, CornerRadius, Frame, Margin, Rect, ScrollArea, Sense, Ui, vec2};
@@ -121,7 +119,7 @@ pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> egui::Pos2 {
     let size = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
     let center = ui.allocate_exact_size(size, Sense::hover()).0.center();
     if let Some(color) = color {
-        controls::lamp(ui, center, color);
+        kit::lamp(ui, center, color);
     }
     center
 }
@@ -306,11 +304,11 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
         return;
     };
     let count = pane.state.hand().faults.unseen().count().to_string();
-    let width = (controls::text_width(ui, &count, theme::tiny()) + theme::GAP).max(FAULT_BADGE);
+    let width = (kit::text_width(ui, &count, theme::tiny()) + theme::GAP).max(FAULT_BADGE);
     let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, FAULT_BADGE));
     ui.painter().rect_filled(place, FAULT_BADGE / 2.0, color);
     let (font, ink) = (theme::tiny(), pane.look.palette.window);
-    controls::paint_text(ui, place, egui::Align2::CENTER_CENTER, &count, font, ink);
+    kit::paint_text(ui, place, egui::Align2::CENTER_CENTER, &count, font, ink);
 }
 
 /// The colour of what nobody has seen: loud while it lasts. `None` if all was seen.

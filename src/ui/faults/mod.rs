@@ -16,9 +16,7 @@ use crate::ui::faults::entry::{
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::drive_tiles;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{faults, main, notices, panels, words};
 use crate::ui::theme;
 use crate::ui::window::message_log::MessageLog;
@@ -46,8 +44,8 @@ enum Section {
 pub(crate) fn faults_card_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let title = look.say(panels::FAULTS);
-    controls::full_card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, title, |ui| clear_ui(ui, pane));
+    kit::full_card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, title, |ui| clear_ui(ui, pane));
         scroll_ui(ui, |ui| {
             let open = entry::steady(ui, pane, |entry| entry.is_active() || !entry.seen);
             if open.is_empty() {
@@ -81,7 +79,7 @@ impl FaultsView {
             self.recordings.close();
         }
         if let Some(recording) = self.recordings.opened(pane) {
-            controls::full_card_ui(ui, pane.look, |ui| {
+            kit::full_card_ui(ui, pane.look, |ui| {
                 self.recordings.recording_ui(ui, pane, &recording);
             });
             return;
@@ -90,17 +88,17 @@ impl FaultsView {
         ui.columns(2, |columns| {
             let [left, right] = columns else { return };
             left.push_id("faults", |ui| {
-                controls::full_card_ui(ui, look, |ui| self.faults_ui(ui, pane));
+                kit::full_card_ui(ui, look, |ui| self.faults_ui(ui, pane));
             });
             right.push_id("beside", |ui| {
-                controls::full_card_ui(ui, look, |ui| self.beside_ui(ui, pane));
+                kit::full_card_ui(ui, look, |ui| self.beside_ui(ui, pane));
             });
         });
     }
 
     fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::head_ui(ui, look, look.say(panels::FAULTS), |ui| {
+        kit::head_ui(ui, look, look.say(panels::FAULTS), |ui| {
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
         });
@@ -241,7 +239,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
 fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.separator();
-    controls::head_ui(ui, look, look.say(faults::MEANINGS), |_| ());
+    kit::head_ui(ui, look, look.say(faults::MEANINGS), |_| ());
     say_ui(ui, look.say(faults::MEANINGS_FAULT), look.palette.muted);
     for bit in 0..5 {
         meaning_ui(ui, pane, words::fault(Fault::from_bit(bit), look.language));

@@ -2,8 +2,7 @@
 
 use crate::app::readings::fault_recorder::{DriveState, Recording, RecordingId};
 use crate::hand::{Dof, PerDof, Status};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Label, Look};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::panels::{Panel, PlotLine};
 use crate::ui::plots::time_window::Span;

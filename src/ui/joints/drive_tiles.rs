@@ -4,9 +4,7 @@ use crate::app::hand::Freshness;
 use crate::hand::Dof;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{faults, words};
 use crate::ui::theme;
 use egui::text::LayoutJob;
@@ -97,7 +95,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
         (format!("{heat} °C"), heat_age),
         (format!("{current} mA"), current_age),
     ] {
-        if controls::text_width(ui, &text, theme::number_small()) > ui.available_width() {
+        if kit::text_width(ui, &text, theme::number_small()) > ui.available_width() {
             return;
         }
         figure_ui(ui, &text, pane.look.value(age, pane.look.palette.muted));

@@ -16,9 +16,7 @@ use crate::app::settings::AngleUnit;
 use crate::hand::Dof;
 use crate::ui::joints::row_view::{RowStyle, height, row_ui};
 use crate::ui::joints::tracks::all_joints_ui;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{layout, main};
 use crate::ui::theme;
 use egui::{Align, Layout, ScrollArea, Ui};
@@ -52,7 +50,7 @@ impl JointsView {
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             let line = least_line(ui.pixels_per_point());
             let below = theme::CONTROL_LARGE + theme::CONTROL + 2.0 * theme::GAP;
@@ -60,7 +58,7 @@ impl JointsView {
             let fits = room >= 6.0 * height(line, true);
             let each = self.each.unwrap_or(fits);
             let head = look.say(main::JOINTS);
-            controls::head_ui(ui, look, head, |ui| self.head_ui(ui, pane, each));
+            kit::head_ui(ui, look, head, |ui| self.head_ui(ui, pane, each));
             let lines = if each { 4.0 } else { 2.0 };
             let line = ((room / 6.0 - theme::GAP) / lines).clamp(line, LINE_MAX.max(line));
             let linked = self.linked;

@@ -1,7 +1,6 @@
 //! The sliding track: a handle for what is wanted over a bar for what is. Knows numbers, not joints.
 
-use crate::ui::kit::controls::focus_ring;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, focus_ring};
 use crate::ui::theme;
 use egui::{
     Color32, EventFilter, Id, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo,

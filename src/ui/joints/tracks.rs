@@ -6,9 +6,7 @@ use crate::hand::{Angle, Dof, Force, HandCommand, PerDof, Speed, Target, impact}
 use crate::ui::joints::frame_menu::frame_menu_ui;
 use crate::ui::joints::row::{READING, Row, cell};
 use crate::ui::joints::track::{Actual, Track};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
+use crate::ui::kit::{Label, NumberField, Pane};
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, Ui};

@@ -6,8 +6,7 @@ use crate::app::state::State;
 use crate::hand::{Dof, ForceReading};
 use crate::record::Calibrated;
 use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Check, Checks, Offsets, TAKES};
-use crate::ui::kit::card::{Card, Choice, Line, Manner};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Card, Choice, Line, Look, Manner};
 use crate::ui::params::choices::{cancel, close, reason, under_way};
 use crate::ui::text::{Text, cards, errors, words};
 

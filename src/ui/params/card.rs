@@ -7,8 +7,7 @@ use crate::app::params::state::{Question, Wanted};
 use crate::app::state::State;
 use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::params::danger::Danger;
-use crate::ui::kit::card::{Card, Choice, Line, Manner};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Card, Choice, Line, Look, Manner};
 use crate::ui::params::table::value_text;
 use crate::ui::text::{cards, device, verdicts, words};
 

@@ -4,8 +4,7 @@ use crate::app::action::Action;
 use crate::app::params::Refusal;
 use crate::app::procedures::ProcedureAction;
 use crate::app::state::State;
-use crate::ui::kit::card::{Card, Choice, Manner, Progress};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Card, Choice, Look, Manner, Progress};
 use crate::ui::text::{Text, cards, verdicts};
 
 /// A card of something that goes on by itself.

@@ -5,16 +5,14 @@ use crate::app::params::action::ParamAction;
 use crate::app::params::refusal::Refusal;
 use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{cards, device, errors, verdicts};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui};
 
 /// Draws the card: beside the table its parts under each other, below it side by side.
 pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    controls::card_ui(ui, pane.look, |ui| {
+    kit::card_ui(ui, pane.look, |ui| {
         let height = ui.available_height();
         ui.set_min_height(height);
         if height > ui.available_width() {
@@ -45,7 +43,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     };
     let save = Button::new(look.say(device::SAVE), look.say(device::SAVE_TIP));
     let save = save.weight(weight).disabled(reason);
-    controls::head_ui(ui, look, look.say(device::FLASH), |ui| {
+    kit::head_ui(ui, look, look.say(device::FLASH), |ui| {
         if save.ui(ui, look).clicked() {
             pane.actions.push(Action::Param(ParamAction::Save));
         }

@@ -10,10 +10,7 @@ pub(crate) mod table;
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::params::table::Shown;
 use crate::ui::text::{device, errors, verdicts};
 use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, Ui};
@@ -44,7 +41,7 @@ impl DeviceView {
         flash
             .resizable(false)
             .show(ui, |ui| flash::flash_ui(ui, pane));
-        controls::card_ui(ui, pane.look, |ui| {
+        kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             if let Some(compared) = &pane.state.hand().params.compared {
                 return file::file_ui(ui, pane, compared);
@@ -63,7 +60,7 @@ impl DeviceView {
         ui.scope(|ui| {
             ui.set_max_width(200.0);
             let (name, hint) = (look.say(device::FIND), look.say(device::FIND_HINT));
-            controls::edit_ui(ui, name, hint, &mut self.shown.words);
+            kit::edit_ui(ui, name, hint, &mut self.shown.words);
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let refusal = pane.state.hand().read_refusal();

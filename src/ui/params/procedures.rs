@@ -15,8 +15,7 @@ use crate::tasks::place::{
     KEEP_WITHIN, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, taken_back_at,
 };
 use crate::tasks::reset::{ResetEnd, ResetReport, ResetStep};
-use crate::ui::kit::card::{Card, Choice, Line, Manner, Progress};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Card, Choice, Line, Look, Manner, Progress};
 use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
 use crate::ui::params::choices::{cancel, close, reason, under_way};

@@ -6,13 +6,11 @@ use crate::app::hand::Freshness;
 use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{
+    self, Button, Label, NumberField, Pane, TextField,
+    format::{self, UNKNOWN},
+    whole,
+};
 use crate::ui::text::{Text, device, verdicts};
 use crate::ui::theme;
 use egui::{Align, Color32, Id, Layout, Ui, UiBuilder, vec2};
@@ -244,15 +242,15 @@ pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
 /// A value, and beside or below it what is to be known of it.
 pub(crate) fn cell_ui(ui: &mut Ui, (name, value, color): (&str, &str, Color32), below: &str) {
     let muted = ui.visuals().weak_text_color();
-    let fits = controls::text_width(ui, value, theme::number()) <= ui.available_width();
+    let fits = kit::text_width(ui, value, theme::number()) <= ui.available_width();
     let label = Label::new(value, color).named(name);
     let label = if fits { label.number() } else { label.small() };
     if below.is_empty() {
         label.ui(ui);
         return;
     }
-    let both = controls::text_width(ui, value, theme::number())
-        + controls::text_width(ui, below, theme::small());
+    let both =
+        kit::text_width(ui, value, theme::number()) + kit::text_width(ui, below, theme::small());
     let add = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
         label.ui(ui);
@@ -386,7 +384,7 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
         .collect();
     let mut chosen = value;
     ui.spacing_mut().combo_width = 0.0;
-    controls::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
+    kit::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
 }
 
 fn address_ui(

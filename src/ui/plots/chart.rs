@@ -1,9 +1,7 @@
 //! The one plot of the program: curves over time in `egui_plot`, with what that lacks. Knows no hand.
 
 use crate::history::{History, Series, Trace};
-use crate::ui::kit::controls::{self, Label};
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{self, Label, Look, format::UNKNOWN};
 use crate::ui::plots::bars;
 use crate::ui::plots::scales::{self, Scales};
 use crate::ui::plots::time_window::{Span, TimeWindow};
@@ -292,7 +290,7 @@ impl<'a> Chart<'a> {
                     (is_fixed, plots::RANGE_FIXED, plots::RANGE_TIP),
                     (is_decimated, plots::DECIMATED, plots::DECIMATED_TIP),
                 ] {
-                    let width = controls::text_width(ui, look.say(text), theme::tiny());
+                    let width = kit::text_width(ui, look.say(text), theme::tiny());
                     if is_said && width <= ui.available_width() {
                         let label = Label::new(look.say(text), look.palette.muted);
                         label

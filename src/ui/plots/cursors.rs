@@ -1,9 +1,7 @@
 //! Two cursors in the plots, and the table of what lies between them. The figures come from all measurements.
 
 use crate::history::Series;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{Button, Label, Look, Pane, format::UNKNOWN};
 use crate::ui::plots::chart::ChartResponse;
 use crate::ui::plots::panels::{Panel, PlotLine};
 use crate::ui::plots::time_window::Span;

@@ -4,9 +4,7 @@ use crate::app::action::Action;
 use crate::app::files::export::Content;
 use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Weight};
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Button, Look, Pane, Weight};
 use crate::ui::plots::PlotView;
 use crate::ui::plots::panels::PANELS;
 use crate::ui::text::{Text, panels, plots, words};
@@ -21,7 +19,7 @@ const COPY_ROWS_MAX: usize = 20_000;
 pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let is_narrow = ui.available_width() < 440.0;
-    controls::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
+    kit::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
         ui.spacing_mut().item_spacing.x = theme::STEP;
         menu_ui(ui, pane, view);
         let text = look.say(plots::CURSORS);
@@ -160,7 +158,7 @@ fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     // All of them without scrolling.
     ui.spacing_mut().combo_height = f32::INFINITY;
     let name = pane.look.say(panels::WINDOW_NAME);
-    if controls::choose_ui(ui, name, &mut chosen, &all) {
+    if kit::choose_ui(ui, name, &mut chosen, &all) {
         view.view.time.resize(chosen.seconds());
         pane.actions.push(Action::PlotWindow(chosen));
     }

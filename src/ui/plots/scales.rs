@@ -1,7 +1,6 @@
 //! Value scales: round by themselves, or as a person set them by dragging, by the wheel or by typing the ends.
 
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
+use crate::ui::kit::{NumberField, Pane};
 use crate::ui::text::{Text, plots};
 use crate::ui::theme;
 use egui::{CursorIcon, Popup, PopupCloseBehavior, Response, Role, Sense, Ui, WidgetInfo};

@@ -11,10 +11,7 @@ use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{Pose, PoseId};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::reorder::Reorder;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder::Reorder};
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, tile_ui};
@@ -60,7 +57,7 @@ impl PoseView {
         if newest != self.shown {
             (self.shown, self.chosen) = (newest, newest);
         }
-        controls::card_ui(ui, pane.look, |ui| {
+        kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             ui.horizontal(|ui| self.head_ui(ui, pane));
             match self.section {
@@ -99,7 +96,7 @@ impl PoseView {
             ui.scope(|ui| {
                 ui.set_max_width(200.0);
                 let (name, hint) = (look.say(poses::FIND), look.say(poses::FIND_HINT));
-                controls::edit_ui(ui, name, hint, &mut self.find);
+                kit::edit_ui(ui, name, hint, &mut self.find);
             });
         });
         let chosen = self.chosen.and_then(|chosen| library.pose(chosen));

@@ -5,11 +5,7 @@ use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit, Way};
 use crate::poses::library::{Millis, Sequence, Step};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::reorder;
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder, whole};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
@@ -99,7 +95,7 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
     let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
     let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id(at));
     let (words, left) = (rect.shrink2(vec2(theme::STEP, 0.0)), Align2::LEFT_CENTER);
-    controls::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
+    kit::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
     if response.clicked() {
         response.request_focus();
     }

@@ -7,11 +7,7 @@ use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId, Step};
 use crate::poses::player::{End, Phase};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::reorder::Reorder;
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder::Reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
@@ -144,7 +140,7 @@ impl SequenceView {
         if !all.iter().any(|(pose, _)| *pose == self.adding) {
             self.adding = all.first().and_then(|(pose, _)| *pose);
         }
-        controls::choose_ui(ui, look.say(poses::POSE), &mut self.adding, &all);
+        kit::choose_ui(ui, look.say(poses::POSE), &mut self.adding, &all);
         let button = Button::new(look.say(poses::ADD), look.say(poses::ADD_TIP));
         if button.ui(ui, look).clicked()
             && let Some(pose) = self.adding
@@ -219,7 +215,7 @@ fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
         let name = pose.map_or("", |pose| pose.name.as_str());
         let text = format!("{} {name}", at + 1);
         let (inner, center) = (inner.shrink2(vec2(theme::STEP, 0.0)), Align2::CENTER_CENTER);
-        controls::paint_text(ui, inner, center, &text, theme::small(), color);
+        kit::paint_text(ui, inner, center, &text, theme::small(), color);
         x += width;
     }
 }

@@ -5,10 +5,7 @@ use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::Pose;
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::reorder;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
 use crate::ui::text::{main, panels, poses};
 use crate::ui::theme;
 use egui::{Align2, Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
@@ -96,8 +93,8 @@ pub(crate) fn tile_ui(
         false => pose.tags.join(" · "),
     };
     let (center, palette) = (Align2::CENTER_CENTER, look.palette);
-    controls::paint_text(&ui, upper, center, &pose.name, theme::body(), palette.text);
-    controls::paint_text(&ui, lower, center, &about, theme::small(), palette.muted);
+    kit::paint_text(&ui, upper, center, &pose.name, theme::body(), palette.text);
+    kit::paint_text(&ui, lower, center, &about, theme::small(), palette.muted);
     go_ui(&mut ui, pane, pose);
     response.clicked()
 }
@@ -105,8 +102,8 @@ pub(crate) fn tile_ui(
 /// The overview's strip: the person's poses first, then named gestures, then the other numbers. True if all are wanted.
 pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
     let look = pane.look;
-    controls::card_ui(ui, look, |ui| {
-        let opened = controls::head_ui(ui, look, look.say(poses::STRIP), |ui| {
+    kit::card_ui(ui, look, |ui| {
+        let opened = kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
             let all = Button::new(look.say(poses::EVERY), look.say(poses::EVERY_TIP));
             let opened = all.ui(ui, look).clicked();
             let tip = look.say(poses::CAPTURE_TIP);
@@ -165,7 +162,7 @@ fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     panel::pose_ui(ui, look, picture.shrink(2.0), &shares(&pose.angles));
     let words = words.shrink2(vec2(theme::STEP, 0.0));
     let (left, color) = (Align2::LEFT_CENTER, button.text_color(look));
-    controls::paint_text(ui, words, left, &pose.name, theme::body(), color);
+    kit::paint_text(ui, words, left, &pose.name, theme::body(), color);
     if response.clicked() {
         pane.actions.push(Action::Recall(pose.id));
     }

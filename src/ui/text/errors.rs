@@ -10,8 +10,7 @@ use crate::poses::file::{PoseFileCause, PoseFileError};
 use crate::tasks::TaskError;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::{Remedy, TransportError};
-use crate::ui::kit::format::sentence;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, format::sentence};
 use std::fmt::Display;
 
 /// The error's own words in English; else what `zh` makes of it.

@@ -2,8 +2,7 @@
 
 use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanWish};
 use crate::transport::{Endpoint, UsbFound};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::{Text, texts};
 use crate::ui::text::{errors, panels};
 

@@ -1,8 +1,7 @@
 //! Sentences of the fingertips and the drawn hand.
 
 use crate::app::settings::Language;
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::texts;
 use std::time::Duration;
 

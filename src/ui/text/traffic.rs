@@ -3,7 +3,7 @@
 use crate::app::settings::Language;
 use crate::link::traffic::fields::FieldName;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::Look;
 use crate::ui::text::phrase::{Text, texts};
 
 texts! {

@@ -5,8 +5,7 @@ use crate::app::trials::ApproachKind;
 use crate::app::trials::form::ListError;
 use crate::hand::{Dof, Fault};
 use crate::trials::{Abort, EarlyEnd, PlanError, Stage};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{errors, tune, words};
 

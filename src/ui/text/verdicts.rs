@@ -5,7 +5,7 @@ use crate::app::params::state::{Doing, SaveEnd};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::rows::ParamId;
 use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::Look;
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, errors, words};
 

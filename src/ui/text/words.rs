@@ -3,7 +3,7 @@
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Finger, Status, Words};
 use crate::record::{ArmRefusal, LinkState};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::Look;
 use crate::ui::text::main;
 use crate::ui::text::phrase::Text;
 

@@ -2,9 +2,7 @@
 
 use crate::app::hand::Freshness;
 use crate::hand::{Finger, PerFinger, TactileBlock};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Label, Pane, format};
 use crate::ui::text::panels;
 use crate::ui::touch::fingertip::{Sense, Tip};
 use egui::{CornerRadius, Rect, Ui, vec2};

@@ -9,9 +9,7 @@ use crate::app::action::Action;
 use crate::app::readings::friction::Hold;
 use crate::hand::Finger;
 use crate::ui::hand::panel::HandPanel;
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{panels, touch as text, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
@@ -42,9 +40,9 @@ impl TouchView {
     pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let tips = heat::tips(pane);
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
-            controls::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
+            kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
                 heat::scale_ui(ui, pane);
             });
             let width = ui.available_width();
@@ -125,13 +123,13 @@ impl TouchView {
                 ..Margin::ZERO
             };
             left.frame(Frame::new().inner_margin(gap)).show(ui, |ui| {
-                controls::card_ui(ui, look, |ui| {
-                    controls::head_ui(ui, look, look.say(panels::HAND), |_| {});
+                kit::card_ui(ui, look, |ui| {
+                    kit::head_ui(ui, look, look.say(panels::HAND), |_| {});
                     self.hand_ui(ui, pane);
                 });
             });
-            controls::card_ui(ui, look, |ui| {
-                controls::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
+            kit::card_ui(ui, look, |ui| {
+                kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
                     heat::scale_ui(ui, pane);
                 });
                 self.tare_ui(ui, pane);
@@ -146,7 +144,7 @@ impl TouchView {
             });
         });
         ui.add_space(theme::GAP);
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             self.lower_ui(ui, pane);
         });
@@ -157,7 +155,7 @@ impl TouchView {
         let finger = self.detail.finger;
         let name = look.say(words::finger(finger));
         let title = format!("{}: {name}", look.say(panels::TIP));
-        controls::head_ui(ui, look, &title, |ui| {
+        kit::head_ui(ui, look, &title, |ui| {
             for (name, tip, numbers) in [
                 (text::NUMBERS, text::NUMBERS_TIP, true),
                 (text::DETAIL, text::DETAIL_TIP, false),

@@ -2,9 +2,7 @@
 
 use crate::hand::Finger;
 use crate::history::Series;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{Button, Label, Look, Pane, format};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels, touch as text};

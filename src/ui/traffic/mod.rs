@@ -7,8 +7,7 @@ use crate::app::action::Action;
 use crate::app::files::export::{Content, TrafficForm};
 use crate::link::tap::Direction;
 use crate::link::traffic::frame::Frame;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{Text, traffic};
 use crate::ui::theme;
 use crate::ui::traffic::filter::{Filter, Passed};
@@ -47,11 +46,11 @@ impl TrafficView {
         ui.spacing_mut().item_spacing.y = theme::GAP;
         let size = vec2(whole.x, whole.y - detail.round() - theme::GAP);
         ui.allocate_ui(size, |ui| {
-            controls::full_card_ui(ui, pane.look, |ui| self.list_ui(ui, pane));
+            kit::full_card_ui(ui, pane.look, |ui| self.list_ui(ui, pane));
         });
         self.copy_by_key(ui);
         let chosen: Vec<&Frame> = self.chosen().collect();
-        controls::full_card_ui(ui, pane.look, |ui| {
+        kit::full_card_ui(ui, pane.look, |ui| {
             detail::detail_ui(ui, pane.look, &chosen)
         });
     }
@@ -81,7 +80,7 @@ impl TrafficView {
     fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.spacing_mut().item_spacing.y = theme::STEP;
-        controls::head_ui(ui, look, look.say(traffic::TITLE), |ui| {
+        kit::head_ui(ui, look, look.say(traffic::TITLE), |ui| {
             Label::new(&self.count(pane), look.palette.muted).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {
@@ -184,7 +183,7 @@ impl TrafficView {
         let filter = &mut self.filter;
         ui.allocate_ui(vec2(220.0, theme::CONTROL), |ui| {
             let (name, hint) = (look.say(traffic::FILTER), look.say(traffic::FILTER_HINT));
-            controls::edit_ui(ui, name, hint, &mut filter.text);
+            kit::edit_ui(ui, name, hint, &mut filter.text);
         });
         for (text, way) in [
             (traffic::WAY_ALL, None),

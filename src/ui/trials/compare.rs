@@ -4,11 +4,7 @@
 use crate::app::action::Action;
 use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
-use crate::ui::kit::card::{Card, Choice, Line, Manner};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::look::{Look, Pane};
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Card, Choice, Label, Line, Look, Manner, Pane, TextField};
 use crate::ui::text::{compare, notices, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::BestView;
@@ -41,7 +37,7 @@ impl CompareView {
         let look = pane.look;
         let trials = &pane.state.trials;
         self.chosen.follow(&trials.sessions);
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             let focus = self.chosen.focus.and_then(|id| trials.session(id));
             ui.horizontal(|ui| self.head_ui(ui, pane, focus));

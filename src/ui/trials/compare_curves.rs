@@ -4,9 +4,7 @@
 use crate::app::trials::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, TrialQuantity,
 };
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::dash;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Button, Label, Pane, dash};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::legend::{Key, fits, legend_ui};
 use crate::ui::text::{Text, compare, tune, words};

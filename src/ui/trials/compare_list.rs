@@ -2,9 +2,7 @@
 
 use crate::app::trials::comparison::SHOWN_MAX;
 use crate::app::trials::{SessionId, SessionOrigin, TrialSession, TrialsState};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::dash;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Label, Look, dash};
 use crate::ui::text::{compare, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::ShownSessions;

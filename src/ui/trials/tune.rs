@@ -5,10 +5,7 @@ use crate::app::action::Action;
 use crate::app::trials::{StartRefusal, TrialAction};
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::tune_form::TuneForm;
@@ -38,14 +35,14 @@ impl TuneView {
         let plan = Panel::left("plan").exact_size(width).frame(frame);
         let plan = plan.resizable(false).show_separator_line(false);
         plan.show(ui, |ui| {
-            controls::card_ui(ui, look, |ui| {
-                controls::head_ui(ui, look, look.say(tune::PLAN), |_| ());
+            kit::card_ui(ui, look, |ui| {
+                kit::head_ui(ui, look, look.say(tune::PLAN), |_| ());
                 self.form.ui(ui, pane);
             });
         });
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
-            controls::head_ui(ui, look, look.say(tune::SERIES), |_| ());
+            kit::head_ui(ui, look, look.say(tune::SERIES), |_| ());
             if runs {
                 tune_live::live_ui(ui, pane, &mut self.result.chart);
                 return None;

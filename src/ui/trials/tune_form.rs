@@ -5,12 +5,7 @@ use crate::app::trials::form::{ListError, PlanSide, list, set_target, tags, take
 use crate::app::trials::{ApproachKind, PlanField, TrialAction};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::{Approach, TrialPlan, Until};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
-use crate::ui::kit::number::whole;
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, whole};
 use crate::ui::text::{Text, trials, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::line_ui;
@@ -342,7 +337,7 @@ impl Pass<'_, '_> {
         ui.horizontal(|ui| {
             self.caption_ui(ui, tune::APPROACH, 64.0);
             ui.spacing_mut().combo_width = ui.available_width();
-            if controls::choose_ui(ui, look.say(tune::APPROACH), &mut kind, &all) {
+            if kit::choose_ui(ui, look.say(tune::APPROACH), &mut kind, &all) {
                 let fast = self.form.fast;
                 self.plan.approach = match kind.usual() {
                     None => Approach::OneStage,

@@ -5,10 +5,7 @@ use crate::app::hand::Freshness;
 use crate::app::trials::SeriesRun;
 use crate::hand::Dof;
 use crate::trials::recording::{TrialRecording, seconds};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::text::{trials, tune, words};
 use crate::ui::theme;
@@ -31,7 +28,7 @@ pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
     ui.with_layout(wide, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);
         let response = button.large().ui(ui, look);
-        if controls::pressed(ui, &response) {
+        if kit::pressed(ui, &response) {
             pane.actions.push(Action::Stop);
         }
     });

@@ -4,8 +4,7 @@ use crate::app::trials::{ComparedLines, Comparison, TrialQuantity, TrialSession}
 use crate::params::rows::{ParamId, Value};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
-use crate::ui::kit::controls::{Button, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Button, Pane, Weight};
 use crate::ui::plots::chart::{Chart, ChartView};
 use crate::ui::plots::legend::legend_ui;
 use crate::ui::text::{trials, tune};

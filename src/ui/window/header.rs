@@ -4,9 +4,7 @@ use crate::app::action::Action;
 use crate::app::settings::{Language, Theme};
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Explain, Look, Pane};
+use crate::ui::kit::{self, Button, Explain, Label, Look, Pane, Weight, format};
 use crate::ui::text::{Text, faults, keys, main, words};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -47,7 +45,7 @@ fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     word.font(theme::large()).paint(ui, upper);
     let keys = Label::new(look.say(main::STOP_KEYS), strong).center();
     keys.small().paint(ui, lower);
-    if controls::pressed(ui, &response) {
+    if kit::pressed(ui, &response) {
         pane.actions.push(Action::Stop);
     }
 }
@@ -76,12 +74,12 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// A button with a lamp before its words.
 fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) -> Response {
-    let words = controls::text_width(ui, button.text, theme::body());
+    let words = kit::text_width(ui, button.text, theme::body());
     let size = vec2(words + 40.0, theme::CONTROL_LARGE);
     let (id, rect) = ui.allocate_space(size);
     let response = button.ground(ui, look, rect, id);
     let center = pos2(rect.left() + 16.0, rect.center().y);
-    controls::lamp(ui, center, lamp);
+    kit::lamp(ui, center, lamp);
     let words = rect.with_min_x(rect.left() + 29.0);
     Label::new(button.text, look.palette.text).paint(ui, words);
     response
@@ -113,7 +111,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
         (None, _) => (main::NO_HAND, palette.control, palette.muted),
     };
     let text = look.say(text);
-    let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+    let width = kit::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
     ui.painter().rect_filled(place, 12.0, fill);
     let badge = Label::new(text, color).center().put(ui, place);
@@ -123,7 +121,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     if let (Some(endpoint), false) = (&pane.state.hand().endpoint, simulated) {
         let text = endpoint.to_string();
         let most = ui.available_width() * 0.5;
-        let width = controls::text_width(ui, &text, theme::number()) + 1.0;
+        let width = kit::text_width(ui, &text, theme::number()) + 1.0;
         ui.scope(|ui| {
             ui.set_max_width(width.min(most));
             let scheme = text.split(':').next().unwrap_or_default();

@@ -3,9 +3,7 @@
 use crate::app::notices::{Level, Notice};
 use crate::app::settings::Language;
 use crate::hand::Moment;
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Button, Label, Look, Pane, format};
 use crate::ui::text::{Text, faults, notices};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Sense, Ui, vec2};
@@ -65,7 +63,7 @@ impl MessageLog {
             look.say(faults::LOG_FILTER),
             look.say(faults::LOG_FILTER_HINT),
         );
-        controls::edit_ui(ui, name, hint, &mut self.words);
+        kit::edit_ui(ui, name, hint, &mut self.words);
         self.update(ui, pane);
         if !self.lines.is_empty() {
             self.lines_ui(ui, pane);
@@ -165,7 +163,7 @@ impl MessageLog {
                 row.col(|ui| {
                     let size = vec2(LAMP, theme::TEXT_LINE);
                     let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-                    controls::lamp(ui, place.center(), level_look(look, line.level).1);
+                    kit::lamp(ui, place.center(), level_look(look, line.level).1);
                 });
                 row.col(|ui| {
                     let label = Label::new(&line.text, look.palette.text);

@@ -3,8 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::layout::{Layout, Room, RoomLayout};
-use crate::ui::kit::controls::{Button, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Button, Pane, Weight};
 use crate::ui::text::{Text, layout, main, panels};
 use crate::ui::theme;
 use egui::{Frame, Margin, Panel, Popup, Ui};

@@ -9,9 +9,7 @@ use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
 use crate::ui::theme;
@@ -321,7 +319,7 @@ impl StatusLine {
         let keep = Button::new(look.say(plots::NOTE_KEEP), look.say(plots::NOTE_KEEP_TIP));
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
         let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
-        let words = controls::text_width(ui, &title, theme::body()) + theme::GAP;
+        let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
         let edit = TextEdit::singleline(&mut self.note)
             .char_limit(NOTE_MAX)
             .hint_text(look.say(plots::NOTE_HINT))
@@ -401,7 +399,7 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
         }
     };
     let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-    controls::lamp(ui, lamp.center(), color);
+    kit::lamp(ui, lamp.center(), color);
     Label::new(&words, palette.text).ui(ui);
 }
 
@@ -412,9 +410,9 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
     let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
     let sign = Rect::from_center_size(place.center(), vec2(theme::SIGN, 14.0));
     if worst.color == palette.accent {
-        controls::lamp(ui, sign.center(), worst.color);
+        kit::lamp(ui, sign.center(), worst.color);
     } else {
-        controls::warning_sign(ui, sign, worst.color);
+        kit::warning_sign(ui, sign, worst.color);
     }
     let row = Layout::right_to_left(Align::Center);
     let shown = ui.with_layout(row, |ui| {
