@@ -2,10 +2,7 @@
 
 use crate::link::PollGroup;
 use crate::ui::connection::link_words::link_words;
-use crate::ui::kit::{
-    self, Label, Pane,
-    format::{self, UNKNOWN},
-};
+use crate::ui::kit::{self, Label, Pane, format};
 use crate::ui::text::{Text, errors, panels};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, vec2};
@@ -68,7 +65,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     let live = pane.state.hand().link.state.is_live();
     let measured = |text, value: String| match live {
         true => (text, value, palette.text),
-        false => (text, UNKNOWN.to_owned(), palette.faint),
+        false => (text, format::UNKNOWN.to_owned(), palette.faint),
     };
     let trip = |value| format!("{} ms", format::millis(value));
     let count = |text, value: u64| (text, value.to_string(), palette.text);
@@ -112,7 +109,7 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &Pane<'_>) {
                 let name = format!("{caption}: {}", look.say(head));
                 let (text, color) = match live {
                     true => (value.as_str(), look.palette.text),
-                    false => (UNKNOWN, look.palette.faint),
+                    false => (format::UNKNOWN, look.palette.faint),
                 };
                 cell_ui(ui, width, |ui| {
                     if !value.is_empty() {

@@ -183,7 +183,7 @@ impl ConnectionForm {
         let Some(key) = self.place() else { return };
         let (place, ids) = (self.field(key).to_owned(), self.scan.ids);
         let missing = place.is_empty().then_some(scan_text::ADDRESS_EMPTY);
-        let button = Button::said(look, panels::SCAN_HERE, panels::SCAN_HERE_TIP).large();
+        let button = Button::said(look, panels::SCAN_HERE).large();
         let wish = match key {
             _ if !scan::start_ui(ui, pane, button, missing) => return,
             "host" => return self.scan.scan_hosts(pane, place),
@@ -196,7 +196,7 @@ impl ConnectionForm {
     fn ports_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         row_ui(ui, look, "", |ui| {
-            let find = Button::said(look, panels::PORTS_REFRESH, panels::PORTS_REFRESH_TIP);
+            let find = Button::said(look, panels::PORTS_REFRESH);
             if find.ui(ui, look).clicked() {
                 pane.actions.push(Action::FindPorts);
             }
@@ -262,7 +262,7 @@ impl ConnectionForm {
             self.ports_ui(ui, pane);
         }
         if key == "packing" {
-            let tip = Label::new(look.say(quirks::PACKING_TIP), look.palette.muted);
+            let tip = Label::new(look.tip(quirks::PACKING), look.palette.muted);
             tip.small().wrap().ui(ui);
         }
     }
@@ -277,7 +277,7 @@ impl ConnectionForm {
             label.named(look.say(panels::ENDPOINT)).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {
-            let connect = Button::said(look, panels::CONNECT, panels::CONNECT_TIP);
+            let connect = Button::said(look, panels::CONNECT);
             if connect
                 .weight(Weight::Strong)
                 .large()
@@ -290,7 +290,7 @@ impl ConnectionForm {
                 }
             }
             let none = pane.state.hand().endpoint.is_none();
-            let disconnect = Button::said(look, panels::DISCONNECT, panels::DISCONNECT_TIP)
+            let disconnect = Button::said(look, panels::DISCONNECT)
                 .disabled(none.then(|| look.say(panels::DISCONNECT_NONE)));
             if disconnect.large().ui(ui, look).clicked() {
                 pane.actions.push(Action::Disconnect);

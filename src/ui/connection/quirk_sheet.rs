@@ -4,7 +4,7 @@ use crate::link::quirks::baud_of_code;
 use crate::link::quirks::book::{self, QuirkBook};
 use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
-use crate::ui::kit::{self, Button, Label, Pane, format::UNKNOWN};
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, quirks as text};
 use egui::Ui;
 
@@ -20,7 +20,7 @@ pub(crate) fn sheet_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     let line = |ui: &mut Ui, caption: Text, value: Option<String>| {
         let caption = look.say(caption);
-        let value = value.unwrap_or_else(|| UNKNOWN.to_owned());
+        let value = value.unwrap_or_else(|| format::UNKNOWN.to_owned());
         row_ui(ui, look, caption, |ui| {
             Label::new(&value, color).named(caption).wrap().ui(ui);
         });
@@ -89,7 +89,7 @@ fn copy_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let hand = pane.state.hand();
     let endpoint = hand.endpoint.as_ref().filter(|_| hand.link.state.is_live());
     let off = endpoint.is_none().then(|| look.say(text::COPY_OFF));
-    let button = Button::said(look, text::COPY, text::COPY_TIP).disabled(off);
+    let button = Button::said(look, text::COPY).disabled(off);
     if button.ui(ui, look).clicked()
         && let Some(endpoint) = endpoint
     {

@@ -44,12 +44,12 @@ impl ScanPanel {
         let look = pane.look;
         ui.horizontal_wrapped(|ui| {
             if pane.state.scan.is_running() {
-                let cancel = Button::said(look, scan::CANCEL, scan::CANCEL_TIP);
+                let cancel = Button::said(look, scan::CANCEL);
                 if cancel.large().ui(ui, look).clicked() {
                     pane.actions.push(Action::CancelScan);
                 }
             } else {
-                let (text, tip) = (look.say(scan::SCAN_PORTS), look.say(scan::SCAN_PORTS_TIP));
+                let (text, tip) = (look.say(scan::SCAN_PORTS), look.tip(scan::SCAN_PORTS));
                 let button = Button::new(text, tip).weight(Weight::Strong).large();
                 if start_ui(ui, pane, button, None) {
                     pane.actions.push(Action::Scan(ScanWish::Ports(self.ids)));
@@ -58,7 +58,9 @@ impl ScanPanel {
             Label::new(look.say(scan::IDS), look.palette.muted).ui(ui);
             for (range, text) in [(IdRange::Few, scan::IDS_FEW), (IdRange::All, scan::IDS_ALL)] {
                 let name = format!("{}: {}", look.say(scan::IDS), look.say(text));
-                let button = Button::said(look, text, scan::IDS_TIP).named(&name);
+                let button = Button::said(look, text)
+                    .tip(look.tip(scan::IDS))
+                    .named(&name);
                 if button.choice(self.ids == range).ui(ui, look).clicked() {
                     self.ids = range;
                 }
@@ -78,7 +80,7 @@ impl ScanPanel {
             });
             let missing = self.address.trim().is_empty();
             let missing = missing.then_some(scan::ADDRESS_EMPTY);
-            let button = Button::new(text, look.say(scan::SCAN_HOST_TIP));
+            let button = Button::new(text, look.tip(scan::SCAN_HOST));
             if start_ui(ui, pane, button, missing) {
                 self.scan_hosts(pane, self.address.clone());
             }
@@ -174,14 +176,14 @@ pub(crate) fn hand_ui(
     let look = pane.look;
     let hand = pane.state.hand();
     let is_now = hand.link.state.is_live() && hand.endpoint.as_ref() == Some(endpoint);
-    let (text, tip, weight) = if is_now {
-        (scan::CONNECTED, scan::CONNECTED_TIP, Weight::Chosen)
+    let (text, weight) = if is_now {
+        (scan::CONNECTED, Weight::Chosen)
     } else {
-        (scan::USE, scan::USE_TIP, Weight::Normal)
+        (scan::USE, Weight::Normal)
     };
     ui.horizontal(|ui| {
         let name = format!("{}: {endpoint}", look.say(text));
-        let button = Button::said(look, text, tip).named(&name);
+        let button = Button::said(look, text).named(&name);
         let size = vec2(96.0, theme::CONTROL_LARGE);
         let justified = Layout::top_down_justified(Align::Center);
         let button = ui.allocate_ui_with_layout(size, justified, |ui| {

@@ -151,7 +151,7 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
         }
         let text = look.say(faults::SEEN);
         let name = format!("{text}: {title}");
-        let button = Button::new(text, look.say(faults::SEEN_TIP)).named(&name);
+        let button = Button::new(text, look.tip(faults::SEEN)).named(&name);
         if button.ui(ui, look).clicked() {
             pane.actions.push(Action::SeenFault(entry.dof, entry.what));
         }
@@ -174,7 +174,7 @@ fn foot_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) -> Option<Recording
         recording.filter(|_| {
             let words = look.say(faults::RECORDING);
             let name = format!("{words}: {}", title(pane, entry.dof, entry.what));
-            let button = Button::new(words, look.say(faults::RECORDING_OPEN_TIP));
+            let button = Button::new(words, look.tip(faults::RECORDING_OPEN));
             button.named(&name).ui(ui, look).clicked()
         })
     });
@@ -328,7 +328,7 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
 pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let none = pane.state.hand().faults.unseen().next().is_none();
-    let button = Button::said(look, faults::SEEN_ALL, faults::SEEN_ALL_TIP);
+    let button = Button::said(look, faults::SEEN_ALL);
     let none = none.then(|| look.say(faults::SEEN_NONE));
     if button.disabled(none).ui(ui, look).clicked() {
         pane.actions.push(Action::SeenFaults);

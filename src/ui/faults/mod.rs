@@ -165,7 +165,7 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         Some(NothingToClear::OnlyHeat) => Some(faults::CLEAR_ONLY_HEAT),
         None => None,
     };
-    let button = Button::said(look, panels::CLEAR, panels::CLEAR_TIP);
+    let button = Button::said(look, panels::CLEAR);
     let reason = reason.map(|reason| look.say(reason));
     if button.disabled(reason).ui(ui, look).clicked() {
         pane.actions.push(Action::ClearErrors);
@@ -176,7 +176,7 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn forget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     CollapsingHeader::new(look.say(faults::TIDY)).show_unindented(ui, |ui| {
-        let button = Button::said(look, faults::FORGET, faults::FORGET_TIP);
+        let button = Button::said(look, faults::FORGET);
         if button.ui(ui, look).clicked() {
             pane.actions.push(Action::ForgetFaults);
         }
@@ -215,7 +215,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         lamp_ui(ui, Some(said.lamp));
         Label::new(&title, palette.text).ui(ui);
         let close = look.say(faults::CHOSEN_CLOSE);
-        let button = Button::new(close, look.say(faults::DRIVE_TIP)).weight(Weight::Quiet);
+        let button = Button::new(close, look.tip(faults::DRIVE)).weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
     let sample = &pane.state.hand().sample;
@@ -288,7 +288,7 @@ fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
             let name = format!("{}: {text}", look.say(main::DISMISS));
-            let button = Button::said(look, main::DISMISS, main::DISMISS_TIP);
+            let button = Button::said(look, main::DISMISS);
             let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
             if button.ui(ui, look).clicked() {
                 pane.actions.push(Action::Dismiss(notice.id));

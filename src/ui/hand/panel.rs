@@ -47,7 +47,7 @@ impl HandPanel {
         let finger = answer.joint.map(crate::hand::Dof::finger);
         let clicked = finger.filter(|_| answer.response.clicked());
         answer.response.on_hover_text(finger.map_or_else(
-            || look.say(panels::HAND_PICTURE_TIP).to_owned(),
+            || look.tip(panels::HAND_PICTURE).to_owned(),
             |finger| said(pane, finger),
         ));
         clicked

@@ -33,7 +33,7 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
     let joint = look.say(words::dof(dof));
     let said = DriveWords::of(pane, dof);
     let name = format!("{} {joint}", look.say(faults::DRIVE));
-    let mut button = Button::new(joint, look.say(faults::DRIVE_TIP)).named(&name);
+    let mut button = Button::new(joint, look.tip(faults::DRIVE)).named(&name);
     button.selected = Some(chosen);
     if chosen {
         button.weight = Weight::Chosen;

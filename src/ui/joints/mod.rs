@@ -92,12 +92,12 @@ impl JointsView {
         if button.ui(ui, look).clicked() {
             pane.actions.push(Action::AngleUnit(unit.next()));
         }
-        let button = Button::said(look, main::LINK_FINGERS, main::LINK_FINGERS_TIP);
+        let button = Button::said(look, main::LINK_FINGERS);
         let button = button.icon(theme::LINKED).choice(self.linked);
         if button.ui(ui, look).clicked() {
             self.toggle_link();
         }
-        let button = Button::said(look, main::EACH, main::EACH_TIP);
+        let button = Button::said(look, main::EACH);
         if button.icon(theme::TUNE).choice(each).ui(ui, look).clicked() {
             self.each = Some(!each);
         }
@@ -127,25 +127,24 @@ pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
         }
     };
     let label = Label::new(&text, color).small().ui(ui);
-    label.on_hover_text(look.say(main::AGE_TIP));
+    label.on_hover_text(look.tip(main::AGE));
 }
 
 fn presets_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let not_armed = pane.unready();
     let presets = [
-        (main::OPEN, main::OPEN_TIP, Preset::Open),
-        (main::HALF, main::HALF_TIP, Preset::Half),
-        (main::CLOSE, main::CLOSE_TIP, Preset::Close),
+        (main::OPEN, Preset::Open),
+        (main::HALF, Preset::Half),
+        (main::CLOSE, Preset::Close),
     ];
     ui.columns(presets.len(), |columns| {
-        for (ui, (text, tip, preset)) in columns.iter_mut().zip(presets) {
-            let button = Button::said(look, text, tip).large().disabled(not_armed);
+        for (ui, (text, preset)) in columns.iter_mut().zip(presets) {
+            let button = Button::said(look, text).large().disabled(not_armed);
             let wide = Layout::top_down_justified(Align::Center);
-            let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
-            if pressed.clicked() {
-                pane.actions.push(Action::Preset(preset));
-            }
+            ui.with_layout(wide, |ui| {
+                button.sends(ui, pane, Action::Preset(preset));
+            });
         }
     });
 }

@@ -20,7 +20,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
         let title = look.say(main::JOINTS);
         if can_open {
             let name = format!("{} {title}", look.say(layout::OPEN));
-            let button = Button::new(title, look.say(layout::OPEN_TIP)).named(&name);
+            let button = Button::new(title, look.tip(layout::OPEN)).named(&name);
             let wide = Layout::top_down_justified(Align::Center);
             let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
             if pressed.clicked() {

@@ -126,7 +126,7 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
     let label = Label::new(&said.title, said.text).small().named(&name);
     let place = rect.with_min_x(rect.left() + theme::INDENT);
     label.shorter(&said.short).put(ui, place);
-    let tip = pane.look.say(faults::EXPLAIN_TIP);
+    let tip = pane.look.tip(faults::EXPLAIN);
     let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
     response
         .on_hover_text(format!("{cause}\n{advice}\n{tip}").trim())

@@ -66,7 +66,7 @@ impl Row {
             number_name: &self.named(pane, main::NAME_ANGLE_NUMBER),
             id: self.id("angle"),
             track: Track {
-                tip: look.say(main::ANGLE_TIP),
+                tip: look.tip(main::ANGLE),
                 disabled: pane.unready().or(locked),
                 target: joint.target.map(Angle::get),
                 actual: angle.and_then(|angle| angle.hold()).map(Angle::get),
@@ -111,7 +111,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
     let runs = series(pane);
     let value = value_of(row, joints.map(|joint| joint.force.get()));
     let mut track = Track {
-        tip: &staged(pane, main::FORCE_TIP),
+        tip: &staged(pane, main::FORCE.tip()),
         disabled: runs,
         target: value.filter(|_| runs.is_none()),
         tick: Some(Force::RATED.get()),
@@ -157,7 +157,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
         number_name: &named(pane, row, main::NAME_SPEED_NUMBER),
         id: id_of(row, "speed"),
         track: Track {
-            tip: &staged(pane, main::SPEED_TIP),
+            tip: &staged(pane, main::SPEED.tip()),
             disabled: runs,
             target: value,
             actual: value,

@@ -29,7 +29,6 @@ pub(crate) enum Manner {
 #[derive(Debug, Clone)]
 pub(crate) struct Choice {
     text: Text,
-    tip: Text,
     manner: Manner,
     disabled: Option<String>,
     does: Vec<Action>,
@@ -37,10 +36,9 @@ pub(crate) struct Choice {
 
 impl Choice {
     /// A button that asks for nothing yet.
-    pub(crate) const fn new(text: Text, tip: Text, manner: Manner) -> Self {
+    pub(crate) const fn new(text: Text, manner: Manner) -> Self {
         Self {
             text,
-            tip,
             manner,
             disabled: None,
             does: Vec::new(),
@@ -49,7 +47,7 @@ impl Choice {
 
     /// The usual way out.
     pub(crate) const fn cancel() -> Self {
-        Self::new(cards::CANCEL, cards::CANCEL_TIP, Manner::Safe)
+        Self::new(cards::CANCEL, Manner::Safe)
     }
 
     /// Asks for this too.
@@ -248,7 +246,7 @@ impl CardView {
             let is_danger = choice.manner == Manner::Danger;
             let reason = choice.disabled.clone();
             let reason = reason.or_else(|| untyped.clone().filter(|_| is_danger));
-            let button = Button::new(look.say(choice.text), look.say(choice.tip))
+            let button = Button::said(look, choice.text)
                 .weight(weight(choice.manner))
                 .disabled(reason.as_deref())
                 .large()

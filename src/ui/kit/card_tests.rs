@@ -63,7 +63,7 @@ fn frame(ui: &mut Ui, room: &mut Room) {
 }
 
 const fn text(en: &'static str) -> Text {
-    Text { en, zh: en }
+    Text::new(en, en)
 }
 
 fn card() -> Card {
@@ -84,10 +84,9 @@ fn card() -> Card {
         word: None,
         choices: vec![
             Choice::cancel().does(Action::Param(ParamAction::Decline)),
-            Choice::new(text("Other"), cards::CANCEL_TIP, Manner::Plain),
-            Choice::new(text("Best"), cards::CANCEL_TIP, Manner::Main)
-                .disabled(Some("not yet".into())),
-            Choice::new(cards::TYPE, cards::CANCEL_TIP, Manner::Danger).does(Action::Disarm),
+            Choice::new(text("Other"), Manner::Plain),
+            Choice::new(text("Best"), Manner::Main).disabled(Some("not yet".into())),
+            Choice::new(cards::TYPE, Manner::Danger).does(Action::Disarm),
         ],
     }
 }

@@ -38,7 +38,7 @@ fn ask(state: &State, look: Look, run: &Checks) -> Card {
     lines.extend(Dof::ALL.map(|dof| row(look, dof, &[force])));
     let not_yet =
         (!run.is_ready(sample, link, now)).then(|| look.say(cards::CALIBRATE_NOT_YET).to_owned());
-    let begin = Choice::new(cards::CALIBRATE, cards::CALIBRATE_TIP, Manner::Main)
+    let begin = Choice::new(cards::CALIBRATE, Manner::Main)
         .does(Action::Procedure(ProcedureAction::Begin))
         .disabled(reason(state, look).or(not_yet));
     Card {

@@ -32,8 +32,8 @@ fn card(state: &State, look: Look, question: &Question) -> Card {
     };
     let why = state.hand().write_refusal();
     let why = why.map(|why| look.say(verdicts::refusal(why)).to_owned());
-    let back = Choice::new(device::DECLINE, device::DECLINE_TIP, Manner::Safe);
-    let agree = Choice::new(agree, device::AGREE_TIP, manner);
+    let back = Choice::new(device::DECLINE, Manner::Safe);
+    let agree = Choice::new(agree, manner);
     let mut all = match question.what {
         Wanted::Apply(_) => Vec::new(),
         Wanted::Save => changes(state, look),

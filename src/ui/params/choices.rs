@@ -21,8 +21,7 @@ pub(crate) fn under_way(look: Look, title: Text, words: &str, part: f32) -> Card
 
 /// The way out of a card that was read.
 pub(crate) fn close() -> Choice {
-    Choice::new(cards::CLOSE, cards::CLOSE_TIP, Manner::Safe)
-        .does(Action::Procedure(ProcedureAction::Close))
+    Choice::new(cards::CLOSE, Manner::Safe).does(Action::Procedure(ProcedureAction::Close))
 }
 
 /// The way out of a card that asks.

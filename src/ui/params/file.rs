@@ -53,20 +53,13 @@ fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
     let count = compared.chosen().iter().count();
     let text = format!("{} ({count})", look.say(device::STAGE_TICKED));
     let none = (count == 0).then(|| look.say(device::STAGE_NONE));
-    let stage = Button::new(&text, look.say(device::STAGE_TICKED_TIP))
+    let stage = Button::new(&text, look.tip(device::STAGE_TICKED))
         .named(look.say(device::STAGE_TICKED))
         .weight(Weight::Strong)
         .disabled(none);
-    if stage.ui(ui, look).clicked() {
-        pane.actions.push(Action::Param(ParamAction::StageTicked));
-    }
-    let (text, tip) = (device::CLOSE_FILE, device::CLOSE_FILE_TIP);
-    if Button::new(look.say(text), look.say(tip))
-        .ui(ui, look)
-        .clicked()
-    {
-        pane.actions.push(Action::Param(ParamAction::CloseFile));
-    }
+    stage.sends(ui, pane, Action::Param(ParamAction::StageTicked));
+    let close = Button::said(look, device::CLOSE_FILE);
+    close.sends(ui, pane, Action::Param(ParamAction::CloseFile));
 }
 
 fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (ParamId, Value)) {

@@ -41,7 +41,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
         true => Weight::Strong,
         false => Weight::Normal,
     };
-    let save = Button::new(look.say(device::SAVE), look.say(device::SAVE_TIP));
+    let save = Button::said(look, device::SAVE);
     let save = save.weight(weight).disabled(reason);
     kit::head_ui(ui, look, look.say(device::FLASH), |ui| {
         if save.ui(ui, look).clicked() {
@@ -120,8 +120,8 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let nothing = pane.state.hand().params.live_params().is_empty();
     let nothing = nothing.then(|| look.say(verdicts::refusal(Refusal::NothingRead)));
     ui.horizontal(|ui| {
-        let dump = Button::new(look.say(device::DUMP), look.say(device::DUMP_TIP));
-        let open = Button::new(look.say(device::OPEN), look.say(device::OPEN_TIP));
+        let dump = Button::said(look, device::DUMP);
+        let open = Button::said(look, device::OPEN);
         if dump.disabled(nothing).ui(ui, look).clicked() {
             pane.actions.push(Action::Param(ParamAction::Dump));
         }
@@ -172,17 +172,11 @@ pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let live = pane.state.hand().link.state.is_live();
     let reason = (!live).then(|| look.say(cards::NO_HAND));
-    let reset = Button::new(
-        look.say(cards::RESET_ENTRY),
-        look.say(cards::RESET_ENTRY_TIP),
-    );
+    let reset = Button::said(look, cards::RESET_ENTRY);
     if reset.disabled(reason).ui(ui, look).clicked() {
         pane.actions.push(Action::FactoryReset);
     }
-    let calibrate = Button::new(
-        look.say(cards::CALIBRATE_ENTRY),
-        look.say(cards::CALIBRATE_ENTRY_TIP),
-    );
+    let calibrate = Button::said(look, cards::CALIBRATE_ENTRY);
     if calibrate.disabled(reason).ui(ui, look).clicked() {
         pane.actions.push(Action::CalibrateForce);
     }

@@ -65,11 +65,11 @@ impl DeviceView {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let refusal = pane.state.hand().read_refusal();
             let refusal = refusal.map(|why| look.say(verdicts::refusal(why)));
-            let read = Button::new(look.say(device::READ), look.say(device::READ_TIP));
+            let read = Button::said(look, device::READ);
             if read.disabled(refusal).ui(ui, look).clicked() {
                 pane.actions.push(Action::Param(ParamAction::Read));
             }
-            let only = Button::new(look.say(device::ONLY), look.say(device::ONLY_TIP));
+            let only = Button::said(look, device::ONLY);
             if only.choice(self.shown.only).ui(ui, look).clicked() {
                 self.shown.only = !self.shown.only;
             }
@@ -93,13 +93,12 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         None => Weight::Strong,
         Some(_) => Weight::Normal,
     };
-    let apply = Button::new(&apply, look.say(device::APPLY_TIP))
+    let apply = Button::new(&apply, look.tip(device::APPLY))
         .named(look.say(device::APPLY))
         .weight(weight);
-    let tool = |text, tip| Button::new(look.say(text), look.say(tip));
-    let undo = tool(device::UNDO, device::UNDO_TIP);
-    let drop = tool(device::UNSTAGE_ALL, device::UNSTAGE_ALL_TIP);
-    let copy = tool(device::COPY, device::COPY_TIP);
+    let undo = Button::said(look, device::UNDO);
+    let drop = Button::said(look, device::UNSTAGE_ALL);
+    let copy = Button::said(look, device::COPY);
     let tools = [
         (apply, why(hand.apply_refusal()), ParamAction::Apply),
         (undo, why(hand.undo_refusal()), ParamAction::Undo),
@@ -107,9 +106,9 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (copy, unknown, ParamAction::CopyLive),
     ];
     for (button, disabled, wish) in tools {
-        if button.disabled(disabled).ui(ui, look).clicked() {
-            pane.actions.push(Action::Param(wish));
-        }
+        button
+            .disabled(disabled)
+            .sends(ui, pane, Action::Param(wish));
     }
 }
 

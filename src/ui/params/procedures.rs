@@ -61,8 +61,8 @@ fn not_begun(look: Look, title: Text, error: &TaskError) -> Card {
     }
 }
 
-fn step(text: Text, tip: Text, manner: Manner, step: ProcedureAction) -> Choice {
-    Choice::new(text, tip, manner).does(Action::Procedure(step))
+fn step(text: Text, manner: Manner, step: ProcedureAction) -> Choice {
+    Choice::new(text, manner).does(Action::Procedure(step))
 }
 
 fn at(look: Look, caption: Text, places: &Places, place: Place) -> String {
@@ -97,12 +97,7 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
         _ => cards::FOLLOWED,
     };
     lines.push(Line::Words(look.say(words).into()));
-    let begin = step(
-        cards::CHANGE,
-        cards::CHANGE_TIP,
-        Manner::Danger,
-        ProcedureAction::Begin,
-    );
+    let begin = step(cards::CHANGE, Manner::Danger, ProcedureAction::Begin);
     Card {
         title: look.say(titles(change)[0]).into(),
         lines,
@@ -166,18 +161,8 @@ fn keep_card(
         Place::New => cards::KEEP_THERE,
         Place::Old => cards::KEEP_WAITS,
     };
-    let keep = step(
-        cards::KEEP,
-        cards::KEEP_TIP,
-        Manner::Main,
-        ProcedureAction::Keep,
-    );
-    let go_back = step(
-        cards::GO_BACK,
-        cards::GO_BACK_TIP,
-        Manner::Plain,
-        ProcedureAction::GoBack,
-    );
+    let keep = step(cards::KEEP, Manner::Main, ProcedureAction::Keep);
+    let go_back = step(cards::GO_BACK, Manner::Plain, ProcedureAction::GoBack);
     let reached = state.hand().link.state.is_live();
     let lost = (!reached).then(|| look.say(cards::NO_HAND).to_owned());
     Card {
@@ -199,12 +184,7 @@ fn keep_card(
 /// SAVE writes all that the hand holds: what could hurt among it is told before.
 fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
     let places = &run.change.places;
-    let unsaved = step(
-        cards::UNSAVED,
-        cards::UNSAVED_TIP,
-        Manner::Safe,
-        ProcedureAction::LeaveUnsaved,
-    );
+    let unsaved = step(cards::UNSAVED, Manner::Safe, ProcedureAction::LeaveUnsaved);
     let mut lines = vec![Line::Words(at(look, cards::OFFER, places, Place::Old))];
     let (text, manner) = match run.dangers.is_empty() {
         true => (cards::SAVE, Manner::Main),
@@ -217,10 +197,7 @@ fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
     Card {
         title: look.say(cards::OFFER_TITLE).into(),
         lines,
-        choices: vec![
-            unsaved,
-            step(text, cards::SAVE_TIP, manner, ProcedureAction::Save),
-        ],
+        choices: vec![unsaved, step(text, manner, ProcedureAction::Save)],
         ..Card::default()
     }
 }
@@ -320,7 +297,7 @@ fn backup_line(look: Look, backup: &Path) -> Line {
 
 fn connect(text: Text, places: &Places, place: Place) -> Choice {
     let there = places.endpoint(place).clone();
-    Choice::new(text, cards::CONNECT_TIP, Manner::Plain).does(Action::Connect(there))
+    Choice::new(text, Manner::Plain).does(Action::Connect(there))
 }
 
 /// The ways back to a hand: each place where it may be.
@@ -340,12 +317,7 @@ fn ask_reset(state: &State, look: Look, places: &Places) -> Card {
     if places.new != places.old {
         lines.push(Line::Note(at(look, cards::THEN_AT, places, Place::New)));
     }
-    let begin = step(
-        cards::RESET,
-        cards::RESET_TIP,
-        Manner::Danger,
-        ProcedureAction::Begin,
-    );
+    let begin = step(cards::RESET, Manner::Danger, ProcedureAction::Begin);
     Card {
         title: look.say(cards::RESET_TITLE).into(),
         lines,

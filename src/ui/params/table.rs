@@ -6,11 +6,7 @@ use crate::app::hand::Freshness;
 use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
-use crate::ui::kit::{
-    self, Button, Label, NumberField, Pane, TextField,
-    format::{self, UNKNOWN},
-    whole,
-};
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format, whole};
 use crate::ui::text::{Text, device, verdicts};
 use crate::ui::theme;
 use egui::{Align, Color32, Id, Layout, Ui, UiBuilder, vec2};
@@ -235,7 +231,7 @@ pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
     match (speed, value) {
         (Some(speed), _) => speed.baud().to_string(),
         (None, Some(value)) => value.to_string(),
-        (None, None) => UNKNOWN.into(),
+        (None, None) => format::UNKNOWN.into(),
     }
 }
 
@@ -344,7 +340,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(
     });
     if staged.is_some() {
         let label = format!("{} {whole_name}", look.say(device::UNSTAGE));
-        let drop = Button::new(&label, look.say(device::UNSTAGE_TIP)).icon(theme::CLOSE);
+        let drop = Button::new(&label, look.tip(device::UNSTAGE)).icon(theme::CLOSE);
         if drop.ui(ui, look).clicked() {
             pane.actions.push(Action::Stage(id, None));
         }
@@ -364,7 +360,7 @@ fn number_ui(
     };
     let field = NumberField {
         name,
-        tip: pane.look.say(device::STAGED_TIP),
+        tip: pane.look.tip(device::STAGED),
         disabled: None,
         value,
         range: f64::from(min)..=f64::from(max),
@@ -395,7 +391,7 @@ fn address_ui(
     let text = value.map_or_else(String::new, |value| value.to_string());
     let field = TextField {
         name,
-        hint: UNKNOWN,
+        hint: format::UNKNOWN,
         value: &text,
         max: ADDRESS_MAX,
     };
@@ -416,7 +412,7 @@ fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
         Some(_) if hand.is_simulated() => Some(device::CHANGE_SIM),
         Some(_) => hand.write_refusal().map(verdicts::refusal),
     };
-    let button = Button::new(look.say(device::CHANGE), look.say(device::CHANGE_TIP))
+    let button = Button::said(look, device::CHANGE)
         .named(&label)
         .disabled(reason.map(|reason| look.say(reason)));
     let pressed = button.ui(ui, look);

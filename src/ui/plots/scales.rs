@@ -159,7 +159,7 @@ impl Scales {
                 }
                 let automatic = ui.button(look.say(plots::RANGE_AUTO));
                 if automatic
-                    .on_hover_text(look.say(plots::RANGE_AUTO_TIP))
+                    .on_hover_text(look.tip(plots::RANGE_AUTO))
                     .clicked()
                 {
                     self.forget(title);
@@ -170,7 +170,7 @@ impl Scales {
             self.forget(title);
             Popup::close_all(&axis.ctx);
         }
-        axis.on_hover_text(look.say(plots::RANGE_TIP));
+        axis.on_hover_text(look.tip(plots::RANGE));
     }
 }
 

@@ -86,7 +86,7 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose, dof: Dof) {
     let text = look.say(poses::LEAVE);
     let label = format!("{} {text}", look.say(words::dof(dof)));
     let leave = pose.leave[dof];
-    let button = Button::new(text, look.say(poses::LEAVE_TIP)).named(&label);
+    let button = Button::new(text, look.tip(poses::LEAVE)).named(&label);
     if button.choice(leave).ui(ui, look).clicked() {
         change(pane, pose, PoseEdit::Leave(dof, !leave));
     }
@@ -105,7 +105,7 @@ pub(crate) fn angle_ui(
     let label = format!("{name} {of} {}", look.say(poses::ANGLE));
     let field = NumberField {
         name: &label,
-        tip: look.say(poses::ANGLE_TIP),
+        tip: look.tip(poses::ANGLE),
         disabled: None,
         value: angle.map(|angle| f64::from(angle.get())),
         range: 0.0..=1000.0,
@@ -132,8 +132,8 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
         field.ui(ui, look, pane.typing).map(whole)
     };
     let (speed, force) = (pose.speed.get(), pose.force.get());
-    let speed = number(pane, poses::SPEED, poses::SPEED_TIP, (speed, 1000.0));
-    let force = number(pane, poses::FORCE, poses::FORCE_TIP, (force, 3000.0));
+    let speed = number(pane, poses::SPEED, poses::SPEED.tip(), (speed, 1000.0));
+    let force = number(pane, poses::FORCE, poses::FORCE.tip(), (force, 3000.0));
     if let Some(speed) = speed.and_then(|speed| Speed::new(speed).ok()) {
         change(pane, pose, PoseEdit::Speed(speed));
     }
@@ -150,15 +150,18 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let [earlier, later] = [Way::Earlier, Way::Later].map(|way| edit(PoseEdit::Shift(way)));
     let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
     let again = Action::Recapture(pose.id);
-    let button = |text, tip| Button::new(look.say(text), look.say(tip));
     let [left, right] = [
         (poses::EARLIER, theme::TO_LEFT),
         (poses::LATER, theme::TO_RIGHT),
     ]
-    .map(|(text, icon)| button(text, poses::SHIFT_TIP).icon(icon));
-    let retake = button(poses::RECAPTURE, poses::RECAPTURE_TIP).disabled(unknown);
-    let double = button(poses::DUPLICATE, poses::DUPLICATE_TIP);
-    let away = button(poses::DELETE, poses::DELETE_TIP);
+    .map(|(text, icon)| {
+        Button::said(look, text)
+            .tip(look.say(poses::SHIFT_TIP))
+            .icon(icon)
+    });
+    let retake = Button::said(look, poses::RECAPTURE).disabled(unknown);
+    let double = Button::said(look, poses::DUPLICATE);
+    let away = Button::said(look, poses::DELETE);
     for row in [
         &[(retake, again), (double, copy)][..],
         &[(left, earlier), (right, later), (away, delete)],

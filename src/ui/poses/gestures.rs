@@ -66,7 +66,7 @@ impl GestureView {
             true => (panels::GESTURE_NAME_DONE, Weight::Strong),
             false => (panels::GESTURE_NAME_EDIT, Weight::Normal),
         };
-        let tip = look.say(panels::GESTURE_NAME_EDIT_TIP);
+        let tip = look.tip(panels::GESTURE_NAME_EDIT);
         let mut button = Button::new(look.say(text), tip).weight(weight);
         button.selected = Some(self.naming);
         if button.ui(ui, look).clicked() {

@@ -63,7 +63,7 @@ pub(crate) fn step_ui(
         (
             theme::CLOSE,
             poses::REMOVE,
-            poses::REMOVE_TIP,
+            poses::REMOVE.tip(),
             SequenceEdit::Remove(at),
         ),
         (theme::TO_BOTTOM, poses::LATER, poses::SHIFT_TIP, later),
@@ -135,10 +135,10 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, step):
         typed.inner.map(whole)
     };
     let millis = |time: Millis| (f64::from(time.get()), f64::from(Millis::MAX));
-    let limit = number(pane, poses::LIMIT, poses::LIMIT_TIP, millis(step.limit));
-    let dwell = number(pane, poses::DWELL, poses::DWELL_TIP, millis(step.dwell));
+    let limit = number(pane, poses::LIMIT, poses::LIMIT.tip(), millis(step.limit));
+    let dwell = number(pane, poses::DWELL, poses::DWELL.tip(), millis(step.dwell));
     let now = (f64::from(step.speed.get()), 1000.0);
-    let speed = number(pane, poses::STEP_SPEED, poses::SPEED_TIP, now);
+    let speed = number(pane, poses::STEP_SPEED, poses::SPEED.tip(), now);
     let time = |typed: i64| Millis::try_from(typed).ok();
     if let Some(limit) = limit.and_then(time) {
         change(pane, sequence, SequenceEdit::Limit(at, limit));

@@ -7,7 +7,7 @@ use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId, Step};
 use crate::poses::player::{End, Phase};
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder::Reorder};
+use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
@@ -25,7 +25,7 @@ pub(crate) struct SequenceView {
     chosen: Option<SequenceId>,
     shown: Option<SequenceId>,
     adding: Option<PoseId>,
-    order: Reorder,
+    order: reorder::Reorder,
 }
 
 /// A part of the view with a card's distance to what is at its left.
@@ -69,7 +69,7 @@ impl SequenceView {
     fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let library = &pane.state.poses.library;
-        let tip = look.say(poses::NEW_SEQUENCE_TIP);
+        let tip = look.tip(poses::NEW_SEQUENCE);
         let new = Button::new(look.say(poses::NEW_SEQUENCE), tip);
         let none = library.poses.is_empty();
         let new = new.disabled(none.then(|| look.say(poses::NEEDS_POSES)));
@@ -141,7 +141,7 @@ impl SequenceView {
             self.adding = all.first().and_then(|(pose, _)| *pose);
         }
         kit::choose_ui(ui, look.say(poses::POSE), &mut self.adding, &all);
-        let button = Button::new(look.say(poses::ADD), look.say(poses::ADD_TIP));
+        let button = Button::said(look, poses::ADD);
         if button.ui(ui, look).clicked()
             && let Some(pose) = self.adding
         {
@@ -173,11 +173,11 @@ fn head_ui(
     sequence: &Sequence,
 ) {
     let look = pane.look;
-    let delete = Button::new(look.say(poses::DELETE), look.say(poses::DELETE_TIP));
+    let delete = Button::said(look, poses::DELETE);
     if delete.ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Delete);
     }
-    let looped = Button::new(look.say(poses::LOOP), look.say(poses::LOOP_TIP));
+    let looped = Button::said(look, poses::LOOP);
     if looped.choice(sequence.looped).ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Loop(!sequence.looped));
     }
@@ -290,28 +290,28 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
     let cannot = empty.or(pane.unready());
     let go_on = match paused {
-        true => (poses::RESUME, poses::RESUME_TIP, idle, Play::Resume),
-        false => (poses::PAUSE, poses::PAUSE_TIP, idle, Play::Pause),
+        true => (poses::RESUME, idle, Play::Resume),
+        false => (poses::PAUSE, idle, Play::Pause),
     };
     let dry_run = match dry {
-        true => (poses::DRY_END, poses::DRY_TIP, None, Play::EndDry),
-        false => (poses::DRY, poses::DRY_TIP, empty, Play::Dry(id)),
+        true => (poses::DRY_END, None, Play::EndDry),
+        false => (poses::DRY, empty, Play::Dry(id)),
     };
     let all = [
         dry_run,
-        (poses::START, poses::START_TIP, cannot, Play::Start(id)),
-        (poses::STEP, poses::STEP_TIP, cannot, Play::Step(id)),
+        (poses::START, cannot, Play::Start(id)),
+        (poses::STEP, cannot, Play::Step(id)),
         go_on,
-        (poses::END, poses::END_TIP, idle, Play::End),
+        (poses::END, idle, Play::End),
     ];
-    for (ui, (text, tip, disabled, play)) in columns.iter_mut().zip(all) {
+    for (ui, (text, disabled, play)) in columns.iter_mut().zip(all) {
         let weight = match text == poses::START {
             true => Weight::Strong,
             false => Weight::Normal,
         };
-        let button = Button::new(look.say(text), look.say(tip)).weight(weight);
-        if button.disabled(disabled).large().ui(ui, look).clicked() {
-            pane.actions.push(Action::Play(play));
-        }
+        let button = Button::said(look, text).weight(weight).large();
+        button
+            .disabled(disabled)
+            .sends(ui, pane, Action::Play(play));
     }
 }

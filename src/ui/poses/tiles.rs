@@ -40,7 +40,7 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
 pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
-    let button = Button::new(look.say(poses::RECALL), look.say(poses::RECALL_TIP))
+    let button = Button::said(look, poses::RECALL)
         .named(&name)
         .disabled(refusal(pane, pose))
         .weight(Weight::Strong);
@@ -104,9 +104,9 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
         let opened = kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
-            let all = Button::new(look.say(poses::EVERY), look.say(poses::EVERY_TIP));
+            let all = Button::said(look, poses::EVERY);
             let opened = all.ui(ui, look).clicked();
-            let tip = look.say(poses::CAPTURE_TIP);
+            let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
             opened
         });
@@ -153,7 +153,7 @@ pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
 fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
-    let button = Button::new(&pose.name, look.say(poses::RECALL_TIP))
+    let button = Button::new(&pose.name, look.tip(poses::RECALL))
         .named(&name)
         .disabled(refusal(pane, pose));
     let (id, rect) = ui.allocate_space(STRIP_TILE);

@@ -109,7 +109,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         | NoticeKind::SessionOpened { .. }
         | NoticeKind::SessionRefused { .. } => trials::notice(look, what),
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
-        NoticeKind::GestureStoreOff => said(poses::STORE_OFF_TIP),
+        NoticeKind::GestureStoreOff => said(poses::STORE_OFF.tip()),
         // The words of the graphics driver help whoever mends it.
         NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
             Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),

@@ -10,11 +10,10 @@ texts! {
     SHEET: "About this hand", "此手的特性";
     HAND_ID: "HAND_ID", "HAND_ID";
     BAUD_CODE: "REDU_RATIO", "REDU_RATIO";
-    PACKING: "Modbus bytes", "Modbus 字节";
+    PACKING: "Modbus bytes", "Modbus 字节", "How this hand puts single bytes (SAVE, faults) into Modbus words. Choose only if it cannot be found out and its papers say so: a wrong choice writes to the wrong address.", "本手将单字节（SAVE、故障）放入 Modbus 字的方式。仅当无法识别且资料有说明时才手动选择：选错会写到错误的地址。";
     GAP: "Gap 1558..1581", "地址 1558..1581";
     TOUCH: "Fingertips", "指尖";
     SEEN: "Seen", "连接日期";
-    PACKING_TIP: "How this hand puts single bytes (SAVE, faults) into Modbus words. Choose only if it cannot be found out and its papers say so: a wrong choice writes to the wrong address.", "本手将单字节（SAVE、故障）放入 Modbus 字的方式。仅当无法识别且资料有说明时才手动选择：选错会写到错误的地址。";
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
     LOW: "low first", "低字节在前";
@@ -31,8 +30,7 @@ texts! {
     CHECK: "unknown: check sum differs", "未知：校验不一致";
     REFUSED: "unknown: not readable", "未知：无法读取";
     BAUD_NONE: "unknown", "未知";
-    COPY: "Copy", "复制";
-    COPY_TIP: "Copies this sheet as text, for a report or another computer.", "复制为文本。";
+    COPY: "Copy", "复制", "Copies this sheet as text, for a report or another computer.", "复制为文本。";
     COPY_OFF: "No hand has answered yet.", "灵巧手尚未应答。";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
     NOT_KEPT: "What was found out about this hand could not be kept:", "本手识别结果无法写入：";

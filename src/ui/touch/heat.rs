@@ -51,7 +51,7 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
         .small()
         .shorter(look.say(panels::TOUCH_SCALE_SHORT))
         .ui(ui)
-        .on_hover_text(look.say(panels::TOUCH_TIP));
+        .on_hover_text(look.tip(panels::TOUCH));
 }
 
 fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock) -> Tip {

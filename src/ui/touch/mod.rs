@@ -87,10 +87,7 @@ impl TouchView {
                 fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
                 let name = format!("{}: {name}", look.say(panels::TIP));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-                if response
-                    .on_hover_text(look.say(panels::TOUCH_TIP))
-                    .clicked()
-                {
+                if response.on_hover_text(look.tip(panels::TOUCH)).clicked() {
                     self.detail.finger = finger;
                 }
             }
@@ -156,18 +153,11 @@ impl TouchView {
         let name = look.say(words::finger(finger));
         let title = format!("{}: {name}", look.say(panels::TIP));
         kit::head_ui(ui, look, &title, |ui| {
-            for (name, tip, numbers) in [
-                (text::NUMBERS, text::NUMBERS_TIP, true),
-                (text::DETAIL, text::DETAIL_TIP, false),
-            ] {
-                let button = Button::new(look.say(name), look.say(tip));
-                let button = button.choice(self.numbers == numbers);
-                if button.ui(ui, look).clicked() {
-                    self.numbers = numbers;
-                }
-            }
-            let assumed = Label::new(look.say(text::ASSUMED), look.palette.muted).small();
-            assumed.ui(ui).on_hover_text(look.say(text::ASSUMED_TIP));
+            let shown = (&mut self.numbers, text::NUMBERS.tip());
+            let all = [(true, text::NUMBERS), (false, text::DETAIL)];
+            kit::pick_ui(ui, look, shown, all);
+            let assumed = Label::note(look, text::ASSUMED).ui(ui);
+            assumed.on_hover_text(look.tip(text::ASSUMED));
             let rest = pane.state.hand().tare.rest(finger);
             let tared = match rest {
                 None => look.say(text::NO_ZERO).to_owned(),
@@ -198,7 +188,7 @@ impl TouchView {
         let look = pane.look;
         let name = look.say(words::finger(finger));
         let label = format!("{}: {name}", look.say(panels::TIP));
-        let button = Button::new(name, look.say(panels::TOUCH_TIP))
+        let button = Button::new(name, look.tip(panels::TOUCH))
             .named(&label)
             .choice(self.detail.finger == finger);
         let id = Id::unique(("tip", finger));
@@ -224,8 +214,8 @@ impl TouchView {
             _ => look.palette.warn,
         };
         let meaning = look.say(match sense {
-            Sense::Beyond => text::BEYOND_TIP,
-            _ => panels::TOUCH_TIP,
+            Sense::Beyond => text::BEYOND.tip(),
+            _ => panels::TOUCH.tip(),
         });
         let freshness = pane.state.hand().tip_freshness(finger);
         let builder = egui::UiBuilder::new()
@@ -262,14 +252,14 @@ impl TouchView {
         let undo = look.say(panels::TARE_UNDO);
         ui.horizontal(|ui| {
             for (words, tip, disabled, action) in [
-                (all, panels::TARE_ALL_TIP, offline, Action::Tare(None)),
+                (all, panels::TARE_ALL.tip(), offline, Action::Tare(None)),
                 (
                     &one,
-                    panels::TARE_ONE_TIP,
+                    panels::TARE_ONE.tip(),
                     offline,
                     Action::Tare(Some(finger)),
                 ),
-                (undo, panels::TARE_UNDO_TIP, nothing, Action::UndoTare),
+                (undo, panels::TARE_UNDO.tip(), nothing, Action::UndoTare),
             ] {
                 let button = Button::new(words, look.say(tip)).disabled(disabled);
                 if button.ui(ui, look).clicked() {

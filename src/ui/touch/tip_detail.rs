@@ -201,7 +201,7 @@ impl TipDetail {
                 .right();
             let response = label.named(look.say(*caption)).put(ui, place);
             if *caption == text::CHECK {
-                response.on_hover_text(look.say(text::CHECK_TIP));
+                response.on_hover_text(look.tip(text::CHECK));
             }
         }
         let place = kit::take_top(&mut rest, row);
@@ -231,7 +231,7 @@ impl TipDetail {
             .put(ui, left);
         let name = look.say(panels::TIP_FRICTION_NAME);
         let track = Track {
-            tip: look.say(panels::TIP_FRICTION_TIP),
+            tip: look.tip(panels::TIP_FRICTION),
             step: 1,
             target: Some(self.friction_percent),
             tick: Some(FRICTION_PERCENT),

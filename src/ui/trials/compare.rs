@@ -111,12 +111,12 @@ impl CompareView {
         let save = id.map(|id| TrialAction::Save(id, Some(self.best.criterion())));
         let forget = id.map(TrialAction::Forget);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            for (text, tip, disabled, action) in [
-                (compare::FORGET, compare::FORGET_TIP, busy, forget),
-                (tune::SAVE, tune::SAVE_TIP, busy.or(read), save),
-                (tune::OPEN, tune::OPEN_TIP, None, Some(TrialAction::Open)),
+            for (text, disabled, action) in [
+                (compare::FORGET, busy, forget),
+                (tune::SAVE, busy.or(read), save),
+                (tune::OPEN, None, Some(TrialAction::Open)),
             ] {
-                let button = Button::new(look.say(text), look.say(tip)).disabled(disabled);
+                let button = Button::said(look, text).disabled(disabled);
                 if button.ui(ui, look).clicked() {
                     pane.actions.extend(action.map(Action::Trial));
                 }
@@ -177,8 +177,8 @@ pub(crate) fn told(state: &State, look: Look, now: Option<&TrialSession>) -> (St
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
     let loses = look.fill(compare::FORGET_LOSES, &[&session.trials.len()]);
-    let back = Choice::new(compare::FORGET_NOT, compare::FORGET_NOT_TIP, Manner::Safe);
-    let forget = Choice::new(compare::FORGET_SURE, compare::FORGET_TIP, Manner::Danger);
+    let back = Choice::new(compare::FORGET_NOT, Manner::Safe);
+    let forget = Choice::new(compare::FORGET_SURE, Manner::Danger);
     Some(Card {
         title: look.say(compare::FORGET_TITLE).into(),
         lines: vec![

@@ -69,7 +69,7 @@ impl BestView {
                 (Wanted::LeastOvershoot, tune::LEAST_OVER),
                 (Wanted::Fastest, tune::FASTEST),
             ] {
-                let button = Button::new(look.say(text), look.say(tune::BEST_TIP));
+                let button = Button::new(look.say(text), look.tip(tune::BEST));
                 let button = button.choice(self.wanted == wanted);
                 if button.ui(ui, look).clicked() {
                     self.wanted = wanted;
@@ -112,7 +112,7 @@ fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison, best: Opti
     ui.horizontal_wrapped(|ui| {
         let label = Label::new(&text, color).named(look.say(tune::BEST));
         label.font(theme::title()).ui(ui);
-        let button = Button::new(look.say(tune::PROMOTE), look.say(tune::PROMOTE_TIP));
+        let button = Button::said(look, tune::PROMOTE);
         let button = button.disabled(best.is_none().then_some(none));
         let clicked = button.ui(ui, look).clicked();
         if let Some(setting) = best.filter(|_| clicked) {
@@ -148,7 +148,7 @@ fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSes
     let own = compare_list::name(look, focus.id);
     let text = look.fill(compare::ALONE, &[&own, &look.list(&words)]);
     let label = Label::new(&text, look.palette.warn).small().wrap();
-    label.ui(ui).on_hover_text(look.say(compare::ALONE_TIP));
+    label.ui(ui).on_hover_text(look.tip(compare::ALONE));
 }
 
 const fn difference_words(difference: SessionDifference) -> Text {

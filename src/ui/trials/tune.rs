@@ -100,15 +100,12 @@ fn refusal(pane: &Pane<'_>) -> Option<String> {
 fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let reason = refusal(pane);
-    let (text, tip) = (tune::START_BUTTON, tune::START_BUTTON_TIP);
-    let button = Button::new(look.say(text), look.say(tip)).large();
+    let button = Button::said(look, tune::START_BUTTON).large();
     let button = button.disabled(reason.as_deref()).weight(Weight::Strong);
     let wide = Layout::top_down_justified(Align::Center);
     ui.with_layout(wide, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::Trial(TrialAction::Start));
-        }
+        button.sends(ui, pane, Action::Trial(TrialAction::Start));
     });
     line_ui(ui, reason.as_deref().unwrap_or(" "), look.palette.warn);
 }

@@ -22,8 +22,7 @@ pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
         return;
     };
     let look = pane.look;
-    let (text, tip) = (tune::STOP_SERIES, tune::STOP_SERIES_TIP);
-    let button = Button::new(look.say(text), look.say(tip)).weight(Weight::Stop);
+    let button = Button::said(look, tune::STOP_SERIES).weight(Weight::Stop);
     let wide = Layout::top_down_justified(Align::Center);
     ui.with_layout(wide, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);

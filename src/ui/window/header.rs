@@ -36,7 +36,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) -> bool
 
 fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let button = Button::new(look.say(main::STOP), look.say(main::STOP_TIP)).weight(Weight::Stop);
+    let button = Button::said(look, main::STOP).weight(Weight::Stop);
     let (id, rect) = ui.allocate_space(vec2(148.0, ui.available_height()));
     let response = button.ground(ui, look, rect, id);
     let strong = look.palette.on_strong;
@@ -56,9 +56,9 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let refusal = pane.state.hand().arm_refusal();
     let refusal = refusal.map(|reason| words::refusal(look, reason));
     let (text, name, tip) = if armed {
-        (main::DISARM, main::DISARM_NAME, main::DISARM_TIP)
+        (main::DISARM, main::DISARM_NAME, main::DISARM.tip())
     } else {
-        (main::ARM, main::ARM_NAME, main::ARM_TIP)
+        (main::ARM, main::ARM_NAME, main::ARM.tip())
     };
     let mut button = Button::new(look.say(text), look.say(tip))
         .named(look.say(name))
@@ -94,7 +94,7 @@ fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let count = pane.state.hand().faults.unseen().count();
     let (before, after) = (look.say(faults::UNSEEN_BEFORE), look.say(faults::UNSEEN));
     let text = format!("{before} {count} {after}");
-    let button = Button::new(text.trim(), look.say(faults::UNSEEN_TIP));
+    let button = Button::new(text.trim(), look.tip(faults::UNSEEN));
     if lamp_button_ui(ui, look, button, color).clicked() {
         *pane.explain = Some(Explain::Faults);
     }
@@ -116,7 +116,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.painter().rect_filled(place, 12.0, fill);
     let badge = Label::new(text, color).center().put(ui, place);
     if simulated {
-        badge.on_hover_text(look.say(main::SIMULATED_TIP));
+        badge.on_hover_text(look.tip(main::SIMULATED));
     }
     if let (Some(endpoint), false) = (&pane.state.hand().endpoint, simulated) {
         let text = endpoint.to_string();
@@ -165,7 +165,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
         (
             main::ERRORS,
             errors.to_string(),
-            main::ERRORS_TIP,
+            main::ERRORS.tip(),
             error_color,
         ),
     ];
@@ -215,7 +215,7 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut View) -> bool
         if button.ui(ui, look).clicked() {
             pane.actions.push(Action::Theme(theme.other()));
         }
-        let list = Button::new("?", look.say(keys::BUTTON_TIP))
+        let list = Button::new("?", look.tip(keys::BUTTON))
             .named(look.say(keys::BUTTON))
             .weight(Weight::Quiet);
         let list = list.ui(ui, look).clicked();

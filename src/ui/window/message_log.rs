@@ -86,7 +86,9 @@ impl MessageLog {
                 (faults::LEVEL_ALARM, Some(Level::Alarm)),
             ] {
                 let name = look.pair(look.say(faults::LEVEL), look.say(text));
-                let button = Button::said(look, text, faults::LEVEL_TIP).named(&name);
+                let button = Button::said(look, text)
+                    .tip(look.tip(faults::LEVEL))
+                    .named(&name);
                 if button.choice(self.least == least).ui(ui, look).clicked() {
                     self.least = least;
                 }
@@ -98,7 +100,7 @@ impl MessageLog {
                 };
                 let name = look.pair(look.say(faults::COPY), look.say(faults::LOG));
                 let none = self.lines.is_empty().then(|| look.say(faults::LOG_NONE));
-                let copy = Button::new(&text, look.say(faults::COPY_TIP)).named(&name);
+                let copy = Button::new(&text, look.tip(faults::COPY)).named(&name);
                 if copy.disabled(none).ui(ui, look).clicked() {
                     ui.ctx().copy_text(self.text(look));
                     self.copied = Some(self.lines.len());

@@ -139,7 +139,7 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
         ),
         aside: String::new(),
         color: look.value(pane.freshness(Some(faults.asked)), look.palette.bad),
-        help: Help::View(View::Faults, main::FAULT_SHOW, main::FAULT_SHOW_TIP),
+        help: Help::View(View::Faults, main::FAULT_SHOW, main::FAULT_SHOW.tip()),
     })
 }
 
@@ -184,7 +184,7 @@ fn connecting(pane: &Pane<'_>) -> Option<Warning> {
         body: format!("{} {hand}", pane.look.say(main::CONNECTING_BODY)),
         aside: retry(pane),
         color: pane.look.palette.accent,
-        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP),
+        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN.tip()),
     })
 }
 
@@ -194,7 +194,7 @@ fn empty(pane: &Pane<'_>) -> Option<Warning> {
         body: pane.look.say(main::EMPTY_BODY).into(),
         aside: String::new(),
         color: pane.look.palette.accent,
-        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP),
+        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN.tip()),
     })
 }
 
@@ -311,12 +311,9 @@ impl StatusLine {
     fn note_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let Some(at) = self.note_at else { return };
         let look = pane.look;
-        let cancel = Button::new(
-            look.say(plots::NOTE_CANCEL),
-            look.say(plots::NOTE_CANCEL_TIP),
-        );
+        let cancel = Button::said(look, plots::NOTE_CANCEL);
         let cancelled = cancel.ui(ui, look).clicked();
-        let keep = Button::new(look.say(plots::NOTE_KEEP), look.say(plots::NOTE_KEEP_TIP));
+        let keep = Button::said(look, plots::NOTE_KEEP);
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
         let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
@@ -355,7 +352,7 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
         return;
     };
     if let Some(end) = end {
-        let button = Button::new(look.say(layout::END), look.say(layout::END_TIP));
+        let button = Button::said(look, layout::END);
         let name = format!("{}: {words}", look.say(layout::END));
         if button.named(&name).ui(ui, look).clicked() {
             pane.actions.push(end);
