@@ -76,7 +76,10 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     [
         vec![
             measured(panels::STATE_RATE, format::hertz(stats.state_hz)),
-            measured(panels::TACTILE_RATE, format::hertz(stats.tactile_hz)),
+            measured(
+                panels::group(PollGroup::Tactile),
+                format::hertz(stats.tactile_hz),
+            ),
             measured(panels::RTT_P50, trip(stats.rtt_p50)),
             measured(panels::RTT_P99, trip(stats.rtt_p99)),
         ],
@@ -123,13 +126,13 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &Pane<'_>) {
         kit::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
         figure_ui(ui, pane, "", |ui| {
             for (head, width) in BUDGET {
-                let head = Label::new(look.say(head), look.palette.muted).small();
+                let head = Label::note(look, head);
                 cell_ui(ui, width, |ui| drop(head.ui(ui)));
             }
         });
         for (group, used) in PollGroup::ALL.into_iter().zip(&line.groups) {
             let values = [rate(used.could_hz), percent(used.share), rate(used.hz)];
-            row(ui, name(group), values);
+            row(ui, panels::group(group), values);
         }
         let share = |share| [String::new(), percent(share), String::new()];
         row(ui, panels::BUDGET_WRITES, share(line.writes));
@@ -173,14 +176,4 @@ fn percent(share: f64) -> String {
         return format!("{percent:.1} %");
     }
     format!("{percent:.0} %")
-}
-
-const fn name(group: PollGroup) -> Text {
-    match group {
-        PollGroup::Motion => panels::GROUP_MOTION,
-        PollGroup::Drives => panels::GROUP_DRIVES,
-        PollGroup::Temperature => panels::GROUP_TEMPERATURE,
-        PollGroup::Tactile => panels::TACTILE_RATE,
-        PollGroup::Settings => panels::GROUP_SETTINGS,
-    }
 }

@@ -9,6 +9,7 @@ use crate::app::action::Action;
 use crate::app::scan::ScanWish;
 use crate::hand::SerialSpeed;
 use crate::link::scan::plan::BITRATES;
+use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
 use crate::transport::{Endpoint, Packing};
 use crate::ui::connection::rows::{expert_ui, row_ui};
@@ -197,12 +198,9 @@ impl ConnectionForm {
         let look = pane.look;
         row_ui(ui, look, "", |ui| {
             let find = Button::said(look, panels::PORTS_REFRESH);
-            if find.ui(ui, look).clicked() {
-                pane.actions.push(Action::FindPorts);
-            }
+            find.sends(ui, pane, Action::FindPorts);
             if pane.state.ports.is_empty() {
-                let none = Label::new(look.say(panels::PORTS_NONE), look.palette.muted);
-                none.small().wrap().ui(ui);
+                Label::note(look, panels::PORTS_NONE).wrap().ui(ui);
             }
         });
         for port in &pane.state.ports {
@@ -262,7 +260,7 @@ impl ConnectionForm {
             self.ports_ui(ui, pane);
         }
         if key == "packing" {
-            let tip = Label::new(look.tip(quirks::PACKING), look.palette.muted);
+            let tip = Label::new(look.tip(quirks::fact(Fact::Packing)), look.palette.muted);
             tip.small().wrap().ui(ui);
         }
     }
@@ -292,9 +290,7 @@ impl ConnectionForm {
             let none = pane.state.hand().endpoint.is_none();
             let disconnect = Button::said(look, panels::DISCONNECT)
                 .disabled(none.then(|| look.say(panels::DISCONNECT_NONE)));
-            if disconnect.large().ui(ui, look).clicked() {
-                pane.actions.push(Action::Disconnect);
-            }
+            disconnect.large().sends(ui, pane, Action::Disconnect);
             self.scan_ui(ui, pane);
         });
         if let (Err(error), true) = (&parsed, self.refused.as_ref() == Some(&spelled)) {

@@ -45,9 +45,7 @@ impl ScanPanel {
         ui.horizontal_wrapped(|ui| {
             if pane.state.scan.is_running() {
                 let cancel = Button::said(look, scan::CANCEL);
-                if cancel.large().ui(ui, look).clicked() {
-                    pane.actions.push(Action::CancelScan);
-                }
+                cancel.large().sends(ui, pane, Action::CancelScan);
             } else {
                 let (text, tip) = (look.say(scan::SCAN_PORTS), look.tip(scan::SCAN_PORTS));
                 let button = Button::new(text, tip).weight(Weight::Strong).large();
@@ -55,7 +53,7 @@ impl ScanPanel {
                     pane.actions.push(Action::Scan(ScanWish::Ports(self.ids)));
                 }
             }
-            Label::new(look.say(scan::IDS), look.palette.muted).ui(ui);
+            Label::muted(look, scan::IDS).ui(ui);
             for (range, text) in [(IdRange::Few, scan::IDS_FEW), (IdRange::All, scan::IDS_ALL)] {
                 let name = format!("{}: {}", look.say(scan::IDS), look.say(text));
                 let button = Button::said(look, text)

@@ -152,9 +152,7 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
         let text = look.say(faults::SEEN);
         let name = format!("{text}: {title}");
         let button = Button::new(text, look.tip(faults::SEEN)).named(&name);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::SeenFault(entry.dof, entry.what));
-        }
+        button.sends(ui, pane, Action::SeenFault(entry.dof, entry.what));
     });
 }
 
@@ -329,8 +327,7 @@ pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let none = pane.state.hand().faults.unseen().next().is_none();
     let button = Button::said(look, faults::SEEN_ALL);
-    let none = none.then(|| look.say(faults::SEEN_NONE));
-    if button.disabled(none).ui(ui, look).clicked() {
-        pane.actions.push(Action::SeenFaults);
-    }
+    button
+        .disabled_if(none, look.say(faults::SEEN_NONE))
+        .sends(ui, pane, Action::SeenFaults);
 }

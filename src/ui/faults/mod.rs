@@ -167,9 +167,7 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     let button = Button::said(look, panels::CLEAR);
     let reason = reason.map(|reason| look.say(reason));
-    if button.disabled(reason).ui(ui, look).clicked() {
-        pane.actions.push(Action::ClearErrors);
-    }
+    button.disabled(reason).sends(ui, pane, Action::ClearErrors);
 }
 
 /// A drawer with what tidies the list.
@@ -177,9 +175,7 @@ fn forget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     CollapsingHeader::new(look.say(faults::TIDY)).show_unindented(ui, |ui| {
         let button = Button::said(look, faults::FORGET);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::ForgetFaults);
-        }
+        button.sends(ui, pane, Action::ForgetFaults);
     });
 }
 
@@ -194,7 +190,7 @@ fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
     };
     ui.horizontal(|ui| {
         lamp_ui(ui, Some(color));
-        Label::new(look.say(text), look.palette.muted).ui(ui);
+        Label::muted(look, text).ui(ui);
     });
     let hint = look.say(panels::FAULTS_NONE_HINT);
     inset_ui(ui, |ui| say_ui(ui, hint, look.palette.muted));
@@ -290,9 +286,7 @@ fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
             let name = format!("{}: {text}", look.say(main::DISMISS));
             let button = Button::said(look, main::DISMISS);
             let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
-            if button.ui(ui, look).clicked() {
-                pane.actions.push(Action::Dismiss(notice.id));
-            }
+            button.sends(ui, pane, Action::Dismiss(notice.id));
             let age = format::age(pane.state.now.since(notice.at));
             Label::new(&age, palette.muted).small().ui(ui);
             ui.with_layout(Layout::left_to_right(Align::TOP), |ui| {

@@ -86,9 +86,7 @@ impl RecordingPlot<'_> {
         let palette = self.look.palette;
         ui.horizontal(|ui| {
             ui.set_height(theme::PLOT_CAPTION);
-            Label::new(self.look.say(faults::LANES), palette.muted)
-                .small()
-                .ui(ui);
+            Label::note(self.look, faults::LANES).ui(ui);
             for (dof, at_s) in Dof::ALL
                 .into_iter()
                 .zip(view.pointed_s().into_iter().cycle())

@@ -110,8 +110,7 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
 fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
     if shown.actual.all().is_none() {
         let place = picture.with_min_y(picture.bottom() - theme::PAD);
-        kit::Label::new(look.say(text::UNKNOWN), look.palette.muted)
-            .small()
+        kit::Label::note(look, text::UNKNOWN)
             .center()
             .put(ui, place);
     }

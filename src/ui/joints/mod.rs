@@ -89,9 +89,7 @@ impl JointsView {
         let button = Button::new(text, look.say(main::UNIT_TIP))
             .named(look.say(main::UNIT_NAME))
             .weight(Weight::Quiet);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::AngleUnit(unit.next()));
-        }
+        button.sends(ui, pane, Action::AngleUnit(unit.next()));
         let button = Button::said(look, main::LINK_FINGERS);
         let button = button.icon(theme::LINKED).choice(self.linked);
         if button.ui(ui, look).clicked() {

@@ -168,7 +168,5 @@ fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
     let name = row.named(pane, main::NAME_LOCK);
     let mut button = Button::new(&name, look.say(tip)).icon(icon).choice(locked);
     button.height = ui.spacing().interact_size.y;
-    if button.ui(ui, look).clicked() {
-        pane.actions.push(Action::Lock(row.dof, !locked));
-    }
+    button.sends(ui, pane, Action::Lock(row.dof, !locked));
 }

@@ -178,7 +178,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
 
 /// Force threshold and speed of all joints; what differs from joint to joint is not known here.
 pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let name = Label::new(pane.look.say(main::ALL_JOINTS), pane.look.palette.text);
+    let name = Label::said(pane.look, main::ALL_JOINTS);
     ui.horizontal(|ui| {
         name.ui(ui);
         ui.columns(2, |columns| {

@@ -31,7 +31,7 @@ fn ask(state: &State, look: Look, run: &Checks) -> Card {
     let mut lines = vec![Line::Words(look.say(cards::CALIBRATE_WORDS).into())];
     for check in Check::ALL {
         let is_so = run.check(check, sample, link, now);
-        lines.push(Line::Check(is_so, look.say(check_words(check)).into()));
+        lines.push(Line::Check(is_so, look.say(cards::check(check)).into()));
     }
     let force = sample.force.map(|force| force.value.map(ForceReading::raw));
     lines.push(head(look, &[cards::OFFSET_NOW]));
@@ -87,15 +87,4 @@ fn row(look: Look, dof: Dof, columns: &[Option<Offsets>]) -> Line {
         None => "-".into(),
     });
     Line::Cells([name].into_iter().chain(grams).collect())
-}
-
-const fn check_words(check: Check) -> Text {
-    match check {
-        Check::Open => cards::CHECK_OPEN,
-        Check::Still => cards::CHECK_STILL,
-        Check::Untouched => cards::CHECK_UNTOUCHED,
-        Check::Steady => cards::CHECK_STEADY,
-        Check::NoFault => cards::CHECK_NO_FAULT,
-        Check::Disarmed => cards::CHECK_DISARMED,
-    }
 }

@@ -31,7 +31,7 @@ fn card(state: &State, look: Look, question: &Question) -> Card {
         false => Manner::Main,
     };
     let why = state.hand().write_refusal();
-    let why = why.map(|why| look.say(verdicts::refusal(why)).to_owned());
+    let why = why.map(|why| look.say(device::refusal(why)).to_owned());
     let back = Choice::new(device::DECLINE, Manner::Safe);
     let agree = Choice::new(agree, manner);
     let mut all = match question.what {

@@ -5,7 +5,7 @@ use crate::app::params::Refusal;
 use crate::app::procedures::ProcedureAction;
 use crate::app::state::State;
 use crate::ui::kit::{Card, Choice, Look, Manner, Progress};
-use crate::ui::text::{Text, cards, verdicts};
+use crate::ui::text::{Text, cards, device};
 
 /// A card of something that goes on by itself.
 pub(crate) fn under_way(look: Look, title: Text, words: &str, part: f32) -> Card {
@@ -32,5 +32,5 @@ pub(crate) fn cancel() -> Choice {
 /// Why nothing can begin now, in words.
 pub(crate) fn reason(state: &State, look: Look) -> Option<String> {
     let why: Refusal = state.hand().rest_refusal()?;
-    Some(look.say(verdicts::refusal(why)).into())
+    Some(look.say(device::refusal(why)).into())
 }

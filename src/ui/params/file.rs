@@ -33,7 +33,7 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
         let grid = Grid::new("compared").num_columns(3).min_col_width(width);
         grid.show(ui, |ui| {
             for text in [device::TAKE, device::LIVE, device::IN_FILE] {
-                Label::new(look.say(text), palette.muted).small().ui(ui);
+                Label::note(look, text).ui(ui);
             }
             ui.end_row();
             for row in file.params.iter() {
@@ -52,11 +52,10 @@ fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
     let look = pane.look;
     let count = compared.chosen().iter().count();
     let text = format!("{} ({count})", look.say(device::STAGE_TICKED));
-    let none = (count == 0).then(|| look.say(device::STAGE_NONE));
     let stage = Button::new(&text, look.tip(device::STAGE_TICKED))
         .named(look.say(device::STAGE_TICKED))
         .weight(Weight::Strong)
-        .disabled(none);
+        .disabled_if(count == 0, look.say(device::STAGE_NONE));
     stage.sends(ui, pane, Action::Param(ParamAction::StageTicked));
     let close = Button::said(look, device::CLOSE_FILE);
     close.sends(ui, pane, Action::Param(ParamAction::CloseFile));

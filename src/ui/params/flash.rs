@@ -34,7 +34,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let look = pane.look;
     let hand = pane.state.hand();
     let reason = hand.save_refusal();
-    let reason = reason.map(|why| look.say(verdicts::refusal(why)));
+    let reason = reason.map(|why| look.say(device::refusal(why)));
     // Bright only where it is the next thing to do.
     let unsaved = hand.params.unsaved();
     let weight = match hand.params.to_apply().is_empty() && !unsaved.is_empty() {
@@ -44,9 +44,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let save = Button::said(look, device::SAVE);
     let save = save.weight(weight).disabled(reason);
     kit::head_ui(ui, look, look.say(device::FLASH), |ui| {
-        if save.ui(ui, look).clicked() {
-            pane.actions.push(Action::Param(ParamAction::Save));
-        }
+        save.sends(ui, pane, Action::Param(ParamAction::Save));
     });
     let lines = lines(pane, reason);
     let area = ScrollArea::vertical().id_salt("flash").max_height(most);
@@ -118,18 +116,15 @@ pub(crate) fn moment(stamp: &str) -> String {
 fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let nothing = pane.state.hand().params.live_params().is_empty();
-    let nothing = nothing.then(|| look.say(verdicts::refusal(Refusal::NothingRead)));
+    let nothing = nothing.then(|| look.say(device::refusal(Refusal::NothingRead)));
     ui.horizontal(|ui| {
         let dump = Button::said(look, device::DUMP);
         let open = Button::said(look, device::OPEN);
-        if dump.disabled(nothing).ui(ui, look).clicked() {
-            pane.actions.push(Action::Param(ParamAction::Dump));
-        }
-        if open.ui(ui, look).clicked() {
-            pane.actions.push(Action::Param(ParamAction::Open));
-        }
+        dump.disabled(nothing)
+            .sends(ui, pane, Action::Param(ParamAction::Dump));
+        open.sends(ui, pane, Action::Param(ParamAction::Open));
     });
-    let title = Label::new(look.say(device::BACKUPS), look.palette.text);
+    let title = Label::said(look, device::BACKUPS);
     title.font(theme::title()).ui(ui);
     let backups = &pane.state.hand().params.backups;
     let most = ui.available_height() - theme::CONTROL - theme::GAP;
@@ -137,8 +132,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let area = area.id_salt("backups").min_scrolled_height(0.0);
     area.show(ui, |ui| {
         if backups.is_empty() {
-            let none = Label::new(look.say(device::BACKUPS_NONE), look.palette.muted);
-            none.small().wrap().ui(ui);
+            Label::note(look, device::BACKUPS_NONE).wrap().ui(ui);
         }
         for backup in backups.iter().rev() {
             backup_ui(ui, pane, backup);
@@ -171,13 +165,11 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
 pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let live = pane.state.hand().link.state.is_live();
-    let reason = (!live).then(|| look.say(cards::NO_HAND));
-    let reset = Button::said(look, cards::RESET_ENTRY);
-    if reset.disabled(reason).ui(ui, look).clicked() {
-        pane.actions.push(Action::FactoryReset);
-    }
-    let calibrate = Button::said(look, cards::CALIBRATE_ENTRY);
-    if calibrate.disabled(reason).ui(ui, look).clicked() {
-        pane.actions.push(Action::CalibrateForce);
+    for (text, action) in [
+        (cards::RESET_ENTRY, Action::FactoryReset),
+        (cards::CALIBRATE_ENTRY, Action::CalibrateForce),
+    ] {
+        let button = Button::said(look, text).disabled_if(!live, look.say(cards::NO_HAND));
+        button.sends(ui, pane, action);
     }
 }

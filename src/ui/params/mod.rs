@@ -10,6 +10,7 @@ pub(crate) mod table;
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
+use crate::app::params::refusal::Refusal;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::params::table::Shown;
 use crate::ui::text::{device, errors, verdicts};
@@ -64,11 +65,10 @@ impl DeviceView {
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let refusal = pane.state.hand().read_refusal();
-            let refusal = refusal.map(|why| look.say(verdicts::refusal(why)));
+            let refusal = refusal.map(|why| look.say(device::refusal(why)));
             let read = Button::said(look, device::READ);
-            if read.disabled(refusal).ui(ui, look).clicked() {
-                pane.actions.push(Action::Param(ParamAction::Read));
-            }
+            read.disabled(refusal)
+                .sends(ui, pane, Action::Param(ParamAction::Read));
             let only = Button::said(look, device::ONLY);
             if only.choice(self.shown.only).ui(ui, look).clicked() {
                 self.shown.only = !self.shown.only;
@@ -80,13 +80,13 @@ impl DeviceView {
 /// What is done with what is staged.
 fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, hand) = (pane.look, pane.state.hand());
-    let why = |why: Option<_>| why.map(|why| look.say(verdicts::refusal(why)));
+    let why = |why: Option<_>| why.map(|why| look.say(device::refusal(why)));
     let apply = match hand.params.to_apply().iter().count() {
         0 => look.say(device::APPLY).to_owned(),
         count => format!("{} ({count})", look.say(device::APPLY)),
     };
     let nothing = hand.params.all_staged().is_empty();
-    let nothing = nothing.then(|| look.say(device::WHY_NOTHING_STAGED));
+    let nothing = nothing.then(|| look.say(device::refusal(Refusal::NothingStaged)));
     let is_known = hand.sample.speed_set.is_some() && hand.link.state.is_live();
     let unknown = (!is_known).then(|| look.say(device::COPY_UNKNOWN));
     let weight = match hand.apply_refusal() {

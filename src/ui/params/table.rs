@@ -73,7 +73,7 @@ pub(crate) fn table_ui(
             true => device::NO_DIFFERENCE,
             false => device::FIND_NONE,
         };
-        Label::new(look.say(text), look.palette.muted).ui(ui);
+        Label::muted(look, text).ui(ui);
         return;
     }
     ui.visuals_mut().selection.bg_fill = look.palette.wash(look.palette.accent);
@@ -95,9 +95,7 @@ pub(crate) fn table_ui(
     let table = table.header(theme::LIST_LINE, |mut head| {
         for text in heads {
             head.col(|ui| {
-                Label::new(look.say(text), look.palette.muted)
-                    .small()
-                    .ui(ui);
+                Label::note(look, text).ui(ui);
             });
         }
     });
@@ -108,11 +106,8 @@ pub(crate) fn table_ui(
                 continue;
             }
             line_ui(&mut body, theme::CONTROL_LARGE, |ui| {
-                let title = Label::new(look.say(title), look.palette.text);
-                title.font(theme::title()).ui(ui);
-                Label::new(look.say(about), look.palette.muted)
-                    .small()
-                    .ui(ui);
+                Label::said(look, title).font(theme::title()).ui(ui);
+                Label::note(look, about).ui(ui);
             });
             for id in own {
                 let height = match id.is_place() {
@@ -279,8 +274,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
             label.named(&verdict).ui(ui);
         }
         if id.is_place() {
-            let about = Label::new(look.say(verdicts::about(id)), palette.muted);
-            about.small().wrap().ui(ui);
+            Label::note(look, verdicts::about(id)).wrap().ui(ui);
         }
     });
 }
@@ -341,9 +335,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(
     if staged.is_some() {
         let label = format!("{} {whole_name}", look.say(device::UNSTAGE));
         let drop = Button::new(&label, look.tip(device::UNSTAGE)).icon(theme::CLOSE);
-        if drop.ui(ui, look).clicked() {
-            pane.actions.push(Action::Stage(id, None));
-        }
+        drop.sends(ui, pane, Action::Stage(id, None));
     }
 }
 
@@ -410,7 +402,7 @@ fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let reason = match wanted {
         None => Some(device::CHANGE_NONE),
         Some(_) if hand.is_simulated() => Some(device::CHANGE_SIM),
-        Some(_) => hand.write_refusal().map(verdicts::refusal),
+        Some(_) => hand.write_refusal().map(device::refusal),
     };
     let button = Button::said(look, device::CHANGE)
         .named(&label)

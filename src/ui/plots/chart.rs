@@ -296,7 +296,7 @@ impl<'a> Chart<'a> {
                 ] {
                     let width = kit::text_width(ui, look.say(text), theme::tiny());
                     if is_said && width <= ui.available_width() {
-                        let label = Label::new(look.say(text), look.palette.muted);
+                        let label = Label::muted(look, text);
                         label
                             .font(theme::tiny())
                             .ui(ui)

@@ -145,7 +145,6 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
 fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let look = pane.look;
     let unknown = pane.state.hand().pose_now().is_none();
-    let unknown = unknown.then(|| look.say(poses::CAPTURE_UNKNOWN));
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
     let [earlier, later] = [Way::Earlier, Way::Later].map(|way| edit(PoseEdit::Shift(way)));
     let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
@@ -159,7 +158,8 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
             .tip(look.say(poses::SHIFT_TIP))
             .icon(icon)
     });
-    let retake = Button::said(look, poses::RECAPTURE).disabled(unknown);
+    let retake =
+        Button::said(look, poses::RECAPTURE).disabled_if(unknown, look.say(poses::CAPTURE_UNKNOWN));
     let double = Button::said(look, poses::DUPLICATE);
     let away = Button::said(look, poses::DELETE);
     for row in [
@@ -168,9 +168,7 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     ] {
         ui.horizontal(|ui| {
             for (button, action) in row {
-                if button.ui(ui, look).clicked() {
-                    pane.actions.push(action.clone());
-                }
+                button.sends(ui, pane, action.clone());
             }
         });
     }

@@ -52,8 +52,7 @@ impl GestureEditor {
             GestureStore::Off => &[poses::STORE_OFF.tip()],
         };
         for text in known {
-            let label = Label::new(look.say(*text), look.palette.muted);
-            label.small().wrap().ui(ui);
+            Label::note(look, *text).wrap().ui(ui);
         }
     }
 
@@ -101,9 +100,9 @@ impl GestureEditor {
             let text = look.say(text);
             let name = format!("{}: {text}", look.say(poses::STORE_NAME));
             let button = Button::new(text, look.say(poses::STORE_TIP)).named(&name);
-            if button.choice(now == store).ui(ui, look).clicked() {
-                pane.actions.push(Action::GestureStore(store));
-            }
+            button
+                .choice(now == store)
+                .sends(ui, pane, Action::GestureStore(store));
         }
         if now == GestureStore::Register1066 {
             let span = stored_gesture(self.gesture);

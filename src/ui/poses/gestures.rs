@@ -124,9 +124,6 @@ fn route_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
     });
     for text in [panels::GESTURES_TIP, known] {
-        Label::new(look.say(text), look.palette.muted)
-            .small()
-            .wrap()
-            .ui(ui);
+        Label::note(look, text).wrap().ui(ui);
     }
 }

@@ -111,9 +111,7 @@ impl PoseView {
         let all = pane.state.poses.library.poses.iter().enumerate();
         let shown: Vec<(usize, &Pose)> = all.filter(|(_, pose)| pose.has(&words)).collect();
         if shown.is_empty() {
-            Label::new(pane.look.say(poses::FIND_NONE), pane.look.palette.muted)
-                .wrap()
-                .ui(ui);
+            Label::muted(pane.look, poses::FIND_NONE).wrap().ui(ui);
         }
         let gap = theme::STEP;
         let room = ui.available_width() - theme::GAP;
@@ -165,10 +163,9 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
         let open = PerDof::splat(Some(1.0));
         panel::pose_ui(ui, look, picture, &open);
-        let title = Label::new(look.say(poses::EMPTY_TITLE), look.palette.text);
+        let title = Label::said(look, poses::EMPTY_TITLE);
         title.font(theme::title()).ui(ui);
-        let body = Label::new(look.say(poses::EMPTY_BODY), look.palette.muted);
-        body.wrap().ui(ui);
+        Label::muted(look, poses::EMPTY_BODY).wrap().ui(ui);
         ui.add_space(theme::GAP);
         let tip = look.tip(poses::CAPTURE);
         let button = Button::new(look.say(poses::EMPTY_BUTTON), tip).weight(Weight::Strong);

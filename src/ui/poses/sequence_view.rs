@@ -107,7 +107,7 @@ impl SequenceView {
         let foot = theme::CONTROL + theme::CONTROL_LARGE + 4.0 * theme::STEP;
         let most = ui.available_height() - foot;
         if sequence.steps.is_empty() {
-            Label::new(pane.look.say(poses::STEPS_EMPTY), pane.look.palette.muted).ui(ui);
+            Label::muted(pane.look, poses::STEPS_EMPTY).ui(ui);
         }
         let area = ScrollArea::vertical().auto_shrink([false, true]);
         let area = area
@@ -154,11 +154,9 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
     ui.vertical_centered(|ui| {
         ui.add_space(ui.available_height() * 0.3);
-        let title = Label::new(look.say(poses::SEQUENCE_EMPTY), palette.text);
+        let title = Label::said(look, poses::SEQUENCE_EMPTY);
         title.font(theme::title()).ui(ui);
-        Label::new(look.say(poses::SEQUENCE_EMPTY_BODY), palette.muted)
-            .wrap()
-            .ui(ui);
+        Label::muted(look, poses::SEQUENCE_EMPTY_BODY).wrap().ui(ui);
         if pane.state.poses.library.poses.is_empty() {
             Label::new(look.say(poses::NEEDS_POSES), palette.warn).ui(ui);
         }

@@ -44,9 +44,7 @@ pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
         .named(&name)
         .disabled(refusal(pane, pose))
         .weight(Weight::Strong);
-    if button.ui(ui, look).clicked() {
-        pane.actions.push(Action::Recall(pose.id));
-    }
+    button.sends(ui, pane, Action::Recall(pose.id));
 }
 
 /// A tile of the library: picture, name, tags. True if it was chosen.
@@ -124,7 +122,7 @@ fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     let library = &state.poses.library;
     if library.poses.is_empty() {
-        Label::new(look.say(poses::STRIP_EMPTY), look.palette.muted).ui(ui);
+        Label::muted(look, poses::STRIP_EMPTY).ui(ui);
     }
     for pose in &library.poses {
         small_tile_ui(ui, pane, pose);

@@ -1,5 +1,6 @@
 //! Sentences of the cards over the window. No layout, no numbers.
 
+use crate::tasks::calibrate::Check;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -81,12 +82,6 @@ texts! {
     CALIBRATE: "Calibrate", "校准", "Sends GESTURE_FORCE_CLB.", "发送 GESTURE_FORCE_CLB。";
     CALIBRATE_NOT_YET: "Not all of it is so yet.", "条件尚未全部满足。";
     CALIBRATE_ENTRY: "Calibrate force", "力校准", "Opens a card that checks what must be so first.", "打开卡片，先检查所需条件。";
-    CHECK_OPEN: "Fingers and thumb are open", "手指和拇指已张开";
-    CHECK_STILL: "No joint moves", "各关节静止";
-    CHECK_UNTOUCHED: "Nothing is touched", "没有接触物体";
-    CHECK_STEADY: "The force is steady for 2 s", "力稳定 2 秒";
-    CHECK_NO_FAULT: "No drive has a fault", "驱动器没有故障";
-    CHECK_DISARMED: "The hand is not armed", "灵巧手未使能";
     CALIBRATING: "The hand calibrates its force sensors", "灵巧手正在校准";
     MEASURING: "Measuring the new zero", "正在测量新的零点";
     CALIBRATED: "The hand says that it is finished.", "灵巧手报告校准完成。";
@@ -98,4 +93,14 @@ texts! {
     OFFSET_NOW: "Force, g", "力 g";
     OFFSET_BEFORE: "Before, g", "校准前 g";
     OFFSET_AFTER: "After, g", "校准后 g";
+
+    /// What must be so before a calibration.
+    fn check(Check) {
+        Check::Open => "Fingers and thumb are open", "手指和拇指已张开";
+        Check::Still => "No joint moves", "各关节静止";
+        Check::Untouched => "Nothing is touched", "没有接触物体";
+        Check::Steady => "The force is steady for 2 s", "力稳定 2 秒";
+        Check::NoFault => "No drive has a fault", "驱动器没有故障";
+        Check::Disarmed => "The hand is not armed", "灵巧手未使能";
+    }
 }

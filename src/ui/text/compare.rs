@@ -1,5 +1,6 @@
 //! Sentences of comparing sessions of trials. What was measured is named in [`crate::ui::text::tune`].
 
+use crate::app::trials::SessionDifference;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -23,11 +24,15 @@ texts! {
     FALLING: "falling", "降序";
     OF_ALL: "curves of", "条曲线，共";
     ALONE: "{} alone: the sessions differ in {}", "仅统计{}，各轮差异：{}", "Figures of such sessions cannot be compared, so map and best setting are of the selected session.", "存在差异的试验不能合并统计，超出量图与最佳设置只针对所选的轮次。";
-    HAND: "hand", "灵巧手";
-    JOINTS: "joints", "自由度";
-    WAY: "start or target", "起点或终点";
-    APPROACH: "approach", "接近方式";
-    DWELL: "time held", "保持时间";
     TOGETHER: "Over all sessions shown", "统计所有显示的轮次";
     STATE: "{}: saved", "{}的保存状态";
+
+    /// What keeps sessions from being compared.
+    fn difference(SessionDifference) {
+        SessionDifference::Hand => "hand", "灵巧手";
+        SessionDifference::Joints => "joints", "自由度";
+        SessionDifference::Way => "start or target", "起点或终点";
+        SessionDifference::Approach => "approach", "接近方式";
+        SessionDifference::Dwell => "time held", "保持时间";
+    }
 }

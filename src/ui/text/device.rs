@@ -1,5 +1,6 @@
 //! Sentences of what the hand keeps: rows, verdicts, SAVE, files.
 
+use crate::app::params::refusal::Refusal;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -57,16 +58,6 @@ texts! {
     AGO: "ago", "前";
     TROUBLE: "Not all rows could be read, and nothing was written on the strength of them:", "部分行无法读取，因此未写入任何内容：";
 
-    WHY_NO_HAND: "No hand answers.", "没有灵巧手应答。";
-    WHY_ARMED: "The hand is armed: disarm it first.", "灵巧手已使能：请先取消使能。";
-    WHY_HOLDING: "A stop is being confirmed.", "正在确认停止。";
-    WHY_MOVING: "The hand moves: wait until it rests.", "灵巧手在运动：请等它静止。";
-    WHY_REST_UNKNOWN: "It is not known whether the hand rests: wait for its status.", "尚不清楚灵巧手是否静止：请等待状态更新。";
-    WHY_BUSY: "Something is under way.", "正在进行其他操作。";
-    WHY_NOTHING_STAGED: "Nothing is staged that can be applied.", "没有可应用的暂存值。";
-    WHY_NOTHING_TO_UNDO: "No apply of this session changed anything.", "本次没有可撤销的应用。";
-    WHY_NO_FOLDER: "There is no place for the backup.", "没有存放备份的位置。";
-    WHY_NOTHING_READ: "No row was read yet.", "尚未读取任何行。";
 
     APPLIED: "applied, read back", "已应用并读回";
     NOT_TAKEN: "refused", "被拒绝";
@@ -148,4 +139,18 @@ texts! {
     WHY_BEFORE_SAVE: "before save", "保存前";
     WHY_BEFORE_APPLY: "before apply", "应用前";
     WHY_BEFORE_RESET: "before reset", "复位前";
+
+    /// Why it cannot be done now.
+    fn refusal(Refusal) {
+        Refusal::NoHand => "No hand answers.", "没有灵巧手应答。";
+        Refusal::Armed => "The hand is armed: disarm it first.", "灵巧手已使能：请先取消使能。";
+        Refusal::Holding => "A stop is being confirmed.", "正在确认停止。";
+        Refusal::Moving => "The hand moves: wait until it rests.", "灵巧手在运动：请等它静止。";
+        Refusal::RestUnknown => "It is not known whether the hand rests: wait for its status.", "尚不清楚灵巧手是否静止：请等待状态更新。";
+        Refusal::Busy => "Something is under way.", "正在进行其他操作。";
+        Refusal::NothingStaged => "Nothing is staged that can be applied.", "没有可应用的暂存值。";
+        Refusal::NothingToUndo => "No apply of this session changed anything.", "本次没有可撤销的应用。";
+        Refusal::NoFolder => "There is no place for the backup.", "没有存放备份的位置。";
+        Refusal::NothingRead => "No row was read yet.", "尚未读取任何行。";
+    }
 }

@@ -1,5 +1,6 @@
 //! Sentences of the top bar, the banners, the tabs and the joints.
 
+use crate::record::LinkState;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -9,13 +10,7 @@ texts! {
     NO_HAND: "NO HAND", "无连接";
     ENDPOINT_TIP: "Where the hand is. Press the lamp beside it to change it.", "灵巧手的连接地址。点击旁边的状态灯可更改。";
 
-    STATE_OFFLINE: "Offline", "离线";
     STATE_CONNECTING: "Connecting", "连接中";
-    STATE_IDENTIFYING: "Identifying", "识别中";
-    STATE_MONITORING: "Monitoring", "监视";
-    STATE_ARMED: "Armed", "已使能";
-    STATE_HOLDING: "Holding", "保持中";
-    STATE_FAULT: "Fault", "故障";
     STATE_LOST: "Link lost", "连接断开";
     LINK_BUTTON: "Link state", "连接状态";
     LINK_TIP: "Shows where the link stands. Press to open the connection.", "显示连接状态。点击打开连接设置。";
@@ -120,4 +115,14 @@ texts! {
     CLOSE: "Close", "握拢", "Bends fingers and thumb until their force thresholds stop them, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲，直到力阈值使其停止，按设定的速度。大拇指旋转与锁定的自由度不动。";
     AGE: "Age", "距今", "These values are old. The age counts from the request that brought them.", "这些数值已过时。时间从读取它们的请求算起。";
     NEVER_READ: "Not read yet", "尚未读取";
+
+    /// The word for a state of the link.
+    fn link_state(LinkState) {
+        LinkState::Offline => "Offline", "离线";
+        LinkState::Identifying => "Identifying", "识别中";
+        LinkState::Monitoring => "Monitoring", "监视";
+        LinkState::Armed => "Armed", "已使能";
+        LinkState::Holding => "Holding", "保持中";
+        LinkState::Fault => "Fault", "故障";
+    }
 }

@@ -1,7 +1,11 @@
 //! Sentences of the plots, the fingertips, the fault list, the gestures and the connection.
 
+use crate::app::readings::friction::Hold;
+use crate::link::PollGroup;
+use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
 use crate::ui::text::phrase::{Text, texts};
+use crate::ui::text::quirks;
 
 texts! {
     HISTORY: "History", "曲线";
@@ -65,11 +69,6 @@ texts! {
     TIP_MARGIN: "Slip margin", "防滑余量";
     TIP_FRICTION: "Friction", "摩擦系数", "Friction between fingertip and object, from 0.01 to 1.5. The program cannot know it: choose it for your object. The ring shows it.", "指尖与物体间的摩擦系数，0.01 到 1.5。程序无法得知，请按物体选择；圆环表示该值。";
     TIP_FRICTION_NAME: "Friction, percent", "摩擦系数，百分比";
-    TIP_UNKNOWN: "Not known", "未知";
-    TIP_LOOSE: "No contact", "没有接触";
-    TIP_HOLDS: "Holds", "稳定";
-    TIP_NEAR: "Near to slipping", "接近打滑";
-    TIP_SLIPS: "Slips at this friction", "按此摩擦会打滑";
 
     FAULTS: "Faults", "故障";
     FAULTS_NONE: "No faults", "没有故障";
@@ -141,13 +140,6 @@ texts! {
     UNIT: "Unit id", "单元标识符";
     SEED: "Seed", "种子";
     SCENARIO: "Scenario", "场景";
-    SCENARIO_IDLE: "Soft ball", "软球";
-    SCENARIO_FREE: "Nothing to hold", "无物体";
-    SCENARIO_RIGID: "Hard block", "硬块";
-    SCENARIO_FRAGILE: "Fragile cup", "易碎杯";
-    SCENARIO_GRASP: "Grasps by itself", "自动抓握";
-    SCENARIO_FAULTS: "All faults in turn", "依次出现各种故障";
-    SCENARIO_EXTREMES: "Impossible values", "异常数值";
     EXPERT: "For experts", "专家选项";
     SCAN_HERE: "Scan", "扫描", "Looks for hands here and nowhere else, at all speeds and in all protocols. It only reads.", "仅在此处以各种波特率与协议查找灵巧手。只读取，不写入。";
     RECENT: "Recent hands", "最近的灵巧手";
@@ -170,13 +162,8 @@ texts! {
     BUDGET_SHARE: "share", "占比";
     BUDGET_COULD: "alone", "独占可达";
     BUDGET_WRITES: "Writes", "写入";
-    GROUP_MOTION: "Angles, forces", "角度、受力";
-    GROUP_DRIVES: "Currents, faults", "电流、故障";
-    GROUP_TEMPERATURE: "Temperatures", "温度";
-    GROUP_SETTINGS: "Setpoints", "设定值";
     LINE_USED: "Line used", "线路占用";
     STATE_RATE: "Motion state", "运动状态";
-    TACTILE_RATE: "Fingertips", "指尖";
     RTT_P50: "Round trip, median", "往返时间，中位数";
     RTT_P99: "Round trip, 99 %", "往返时间，99 %";
     READS: "Reads", "读取次数";
@@ -189,18 +176,34 @@ texts! {
     REFUSALS: "Refusals", "拒绝";
     RECONNECTS: "Reconnects", "重新连接";
     DROPPED: "Samples dropped", "丢弃样本";
-}
 
-/// What the built-in hand does, with the name that endpoints have for it.
-pub(crate) const fn scenario(scenario: Scenario) -> Text {
-    match scenario {
-        Scenario::Idle => SCENARIO_IDLE,
-        Scenario::Free => SCENARIO_FREE,
-        Scenario::Rigid => SCENARIO_RIGID,
-        Scenario::Fragile => SCENARIO_FRAGILE,
-        Scenario::Grasp => SCENARIO_GRASP,
-        Scenario::Faults => SCENARIO_FAULTS,
-        Scenario::Extremes => SCENARIO_EXTREMES,
+    /// What the built-in hand does, with the name that endpoints have for it.
+    fn scenario(Scenario) {
+        Scenario::Idle => "Soft ball", "软球";
+        Scenario::Free => "Nothing to hold", "无物体";
+        Scenario::Rigid => "Hard block", "硬块";
+        Scenario::Fragile => "Fragile cup", "易碎杯";
+        Scenario::Grasp => "Grasps by itself", "自动抓握";
+        Scenario::Faults => "All faults in turn", "依次出现各种故障";
+        Scenario::Extremes => "Impossible values", "异常数值";
+    }
+
+    /// How firmly a fingertip holds.
+    fn hold(Hold) {
+        Hold::Unknown => "Not known", "未知";
+        Hold::Loose => "No contact", "没有接触";
+        Hold::Firm => "Holds", "稳定";
+        Hold::Near => "Near to slipping", "接近打滑";
+        Hold::Slips => "Slips at this friction", "按此摩擦会打滑";
+    }
+
+    /// What is read together.
+    fn group(PollGroup) {
+        PollGroup::Motion => "Angles, forces", "角度、受力";
+        PollGroup::Drives => "Currents, faults", "电流、故障";
+        PollGroup::Temperature => "Temperatures", "温度";
+        PollGroup::Tactile => "Fingertips", "指尖";
+        PollGroup::Settings => "Setpoints", "设定值";
     }
 }
 
@@ -228,7 +231,7 @@ pub(crate) fn setting(key: &str) -> Text {
         "baud" => BAUD,
         "bitrate" => BITRATE,
         "unit" => UNIT,
-        "packing" => crate::ui::text::quirks::PACKING,
+        "packing" => quirks::fact(Fact::Packing),
         _ => HAND_ID,
     }
 }

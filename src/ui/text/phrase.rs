@@ -50,16 +50,30 @@ impl Text {
     }
 }
 
-/// Writes a table of sentences as constants, and a list of them all for the tests. A row holds English and Chinese, and
-/// for a control its tooltip in both.
+/// Writes a table of sentences as constants, then functions that name each value of a type, and a list of them all for
+/// the tests. A row holds English and Chinese, and for a control its tooltip in both.
 macro_rules! texts {
-    ($($name:ident: $en:literal, $zh:literal $(, $tip_en:literal, $tip_zh:literal)?;)*) => {
+    (
+        $($name:ident: $en:literal, $zh:literal $(, $tip_en:literal, $tip_zh:literal)?;)*
+        $(
+            $(#[$doc:meta])+
+            fn $of:ident($type:ty) { $($value:pat => $of_en:literal, $of_zh:literal $(, $of_tip_en:literal, $of_tip_zh:literal)?;)* }
+        )*
+    ) => {
         $(
             #[doc = $en]
             pub(crate) const $name: $crate::ui::text::Text = $crate::ui::text::Text::new($en, $zh)$(.with_tip($tip_en, $tip_zh))?;
         )*
+        $(
+            $(#[$doc])+
+            pub(crate) fn $of(of: $type) -> $crate::ui::text::Text {
+                match of {
+                    $($value => $crate::ui::text::Text::new($of_en, $of_zh)$(.with_tip($of_tip_en, $of_tip_zh))?,)*
+                }
+            }
+        )*
         #[cfg(test)]
-        pub(crate) const ALL: &[$crate::ui::text::Text] = &[$($name),*];
+        pub(crate) const ALL: &[$crate::ui::text::Text] = &[$($name,)* $($($crate::ui::text::Text::new($of_en, $of_zh)$(.with_tip($of_tip_en, $of_tip_zh))?,)*)*];
     };
 }
 pub(crate) use texts;

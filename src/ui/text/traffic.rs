@@ -4,7 +4,7 @@ use crate::app::settings::Language;
 use crate::link::traffic::fields::FieldName;
 use crate::link::traffic::frame::{Kind, Wrong};
 use crate::ui::kit::Look;
-use crate::ui::text::phrase::{Text, texts};
+use crate::ui::text::phrase::texts;
 
 texts! {
     TITLE: "Traffic", "报文";
@@ -47,88 +47,49 @@ texts! {
     NOT_SAVED: "Could not be written:", "无法写入：";
     NO_FILE: "No file was chosen. Where no dialog came up, this desktop has none.", "没有选择文件。如果没有出现对话框，说明此桌面不提供。";
 
-    OPENED: "Wire opened", "线路打开";
-    CLOSED: "Wire closed", "线路关闭";
-    BROKEN: "Wire broke", "线路断开";
-    GAP: "Not kept", "未保留";
-    READ: "Read", "读取";
-    READ_REPLY: "Values", "数值";
-    WRITE: "Write", "写入";
-    WRITE_REPLY: "Taken", "确认";
-    REFUSAL: "Refused", "拒绝";
-    SAVE_RESULT: "Save result", "保存结果";
-    ADAPTER: "To adapter", "适配器命令";
-    ADAPTER_REPLY: "Adapter", "适配器";
-    NOISE: "No frame", "非报文";
 
-    HEADER: "Header", "帧头";
-    ID: "Hand id", "灵巧手 ID";
-    UNIT: "Unit id", "单元标识符";
-    LENGTH: "Length", "长度";
-    COMMAND: "Command", "命令";
-    FUNCTION: "Function", "功能码";
-    ADDRESS: "Address", "地址";
-    WANTED: "Bytes wanted", "读取字节数";
-    WORDS: "Words", "字数";
-    DATA: "Data", "数据";
-    ACKNOWLEDGE: "Acknowledgement", "确认";
-    CODE: "Code", "异常码";
-    CHECKSUM: "Checksum", "校验和";
-    CRC: "CRC", "CRC";
-    TRANSACTION: "Transaction", "事务编号";
-    PROTOCOL: "Protocol", "协议";
-    CAN_ID: "Identifier", "标识符";
-    FILLER: "Filler", "填充";
-    FRAME_KIND: "Kind of frame", "帧类型";
-    TAIL: "Tail", "帧尾";
-    TEXT_LINE: "Text", "文本";
-    UNKNOWN: "Unknown", "未知";
-}
 
-/// What a frame is, in a word.
-pub(crate) const fn kind(kind: Kind) -> Text {
-    match kind {
-        Kind::Opened => OPENED,
-        Kind::Closed => CLOSED,
-        Kind::Broken => BROKEN,
-        Kind::Gap => GAP,
-        Kind::Read => READ,
-        Kind::ReadReply => READ_REPLY,
-        Kind::Write => WRITE,
-        Kind::WriteReply => WRITE_REPLY,
-        Kind::Refusal => REFUSAL,
-        Kind::SaveResult => SAVE_RESULT,
-        Kind::Adapter => ADAPTER,
-        Kind::AdapterReply => ADAPTER_REPLY,
-        Kind::Noise => NOISE,
+    /// What a frame is, in a word.
+    fn kind(Kind) {
+        Kind::Opened => "Wire opened", "线路打开";
+        Kind::Closed => "Wire closed", "线路关闭";
+        Kind::Broken => "Wire broke", "线路断开";
+        Kind::Gap => "Not kept", "未保留";
+        Kind::Read => "Read", "读取";
+        Kind::ReadReply => "Values", "数值";
+        Kind::Write => "Write", "写入";
+        Kind::WriteReply => "Taken", "确认";
+        Kind::Refusal => "Refused", "拒绝";
+        Kind::SaveResult => "Save result", "保存结果";
+        Kind::Adapter => "To adapter", "适配器命令";
+        Kind::AdapterReply => "Adapter", "适配器";
+        Kind::Noise => "No frame", "非报文";
     }
-}
 
-/// What some bytes are, in a word.
-pub(crate) const fn field(name: FieldName) -> Text {
-    match name {
-        FieldName::Header => HEADER,
-        FieldName::Id => ID,
-        FieldName::Unit => UNIT,
-        FieldName::Length => LENGTH,
-        FieldName::Command => COMMAND,
-        FieldName::Function => FUNCTION,
-        FieldName::Address => ADDRESS,
-        FieldName::Wanted => WANTED,
-        FieldName::Words => WORDS,
-        FieldName::Data => DATA,
-        FieldName::Acknowledge => ACKNOWLEDGE,
-        FieldName::Code => CODE,
-        FieldName::Checksum => CHECKSUM,
-        FieldName::Crc => CRC,
-        FieldName::Transaction => TRANSACTION,
-        FieldName::Protocol => PROTOCOL,
-        FieldName::CanId => CAN_ID,
-        FieldName::Filler => FILLER,
-        FieldName::FrameKind => FRAME_KIND,
-        FieldName::Tail => TAIL,
-        FieldName::Text => TEXT_LINE,
-        FieldName::Unknown => UNKNOWN,
+    /// What some bytes are, in a word.
+    fn field(FieldName) {
+        FieldName::Header => "Header", "帧头";
+        FieldName::Id => "Hand id", "灵巧手 ID";
+        FieldName::Unit => "Unit id", "单元标识符";
+        FieldName::Length => "Length", "长度";
+        FieldName::Command => "Command", "命令";
+        FieldName::Function => "Function", "功能码";
+        FieldName::Address => "Address", "地址";
+        FieldName::Wanted => "Bytes wanted", "读取字节数";
+        FieldName::Words => "Words", "字数";
+        FieldName::Data => "Data", "数据";
+        FieldName::Acknowledge => "Acknowledgement", "确认";
+        FieldName::Code => "Code", "异常码";
+        FieldName::Checksum => "Checksum", "校验和";
+        FieldName::Crc => "CRC", "CRC";
+        FieldName::Transaction => "Transaction", "事务编号";
+        FieldName::Protocol => "Protocol", "协议";
+        FieldName::CanId => "Identifier", "标识符";
+        FieldName::Filler => "Filler", "填充";
+        FieldName::FrameKind => "Kind of frame", "帧类型";
+        FieldName::Tail => "Tail", "帧尾";
+        FieldName::Text => "Text", "文本";
+        FieldName::Unknown => "Unknown", "未知";
     }
 }
 

@@ -1,5 +1,7 @@
 //! Sentences of the plan of grasp trials, its running, and what was measured.
 
+use crate::app::trials::{ApproachKind, TrialQuantity};
+use crate::trials::Stage;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -22,10 +24,6 @@ texts! {
     COOLING: "{} stayed too warm to begin: {} °C, limit {} °C.", "{}一直过热，无法开始：{} °C，上限 {} °C。";
     NOT_KEPT: "What was read could not be kept.", "读到的数据无法保存。";
     NO_CONTACT: "{} felt no contact that could be approached.", "{}没有感到接触，无法确定接触位置。";
-    ANGLE: "angle", "角度";
-    FORCE: "force", "力";
-    TEMPERATURE: "temperature", "温度";
-    FAULTS: "fault", "故障";
 
     PLAN_IGNORED: "The plan of trials of last time is of another version; the first plan is shown:", "上次的试验计划版本不同，已改用初始计划：";
     PLAN: "Plan", "试验计划";
@@ -47,11 +45,6 @@ texts! {
     FORCES_HINT: "300, 500", "300, 500";
     REPEATS: "Repeats", "重复次数", "Trials of each speed with each threshold.", "每个速度与力阈值组合的试验次数。";
     APPROACH: "Approach", "接近方式";
-    ONE_STAGE: "One speed all the way", "全程同一速度";
-    TWO_MEASURED: "Fast to the measured contact", "快速到实测接触处";
-    TWO_ANGLE: "Fast to an angle", "快速到指定角度";
-    TWO_PROXIMITY: "Fast until the fingertip is near", "快速到指尖接近物体";
-    TWO_TOUCH: "Fast until first touch", "快速到首次触碰";
     FAST: "Fast speed", "快速段速度", "Speed until the fast part ends.", "快速段的速度。";
     UNTIL_MARGIN: "Slow down before contact by", "接触前减速的提前量", "Units of the angle before the contact that a first, slow trial measures.", "距首次慢速试验测得的接触处的提前量，角度单位。";
     UNTIL_ANGLE: "Slow down at angle", "减速的角度", "The joints stop at this angle by themselves, then go on slowly.", "自由度先停在该角度，再慢速继续。";
@@ -104,13 +97,6 @@ texts! {
     PROGRESS: "Progress", "进度";
     LIVE_FORCE: "Force now, g", "当前的力 g";
     LIVE_EMPTY: "Waits for the trial", "等待试验开始";
-    STAGE_RESTING: "resting", "间隔";
-    STAGE_PREPARING: "going to the start", "正在回到起点";
-    STAGE_QUIET: "still, limits being confirmed", "静止，正在确认设置";
-    STAGE_CLOSING: "closing", "正在闭合";
-    STAGE_DWELLING: "holding", "保持中";
-    STAGE_RELEASING: "opening", "正在张开";
-    STAGE_OVER: "over", "已结束";
     PROBE: "looks for the contact", "寻找接触位置";
     LAST: "Last series: {}", "上一轮：{}";
     ALL_DONE: "all trials done.", "全部试验已完成。";
@@ -128,10 +114,6 @@ texts! {
     SAVE_RUNS: "This series still runs.", "该轮试验仍在进行。";
     SESSION: "Session {}", "第 {} 轮", "Selects this session for note, tags and files. Shows it alone unless it is shown already.", "选择该轮次的备注、标签与文件；若未显示，则只显示它。";
     SHOWN_TIP: "Shows this quantity.", "显示该量。";
-    SHOW_FORCE: "Force, g", "力 g";
-    SHOW_ANGLE: "Angle", "角度";
-    SHOW_CURRENT: "Current, mA", "电流 mA";
-    SHOW_TOUCH: "Touch, N", "触觉 N";
     ON_COMMAND: "From command", "从指令起";
     ON_CONTACT: "From contact", "从接触起";
     ALIGN_TIP: "Where the time of each curve begins. Without a contact a curve is left out.", "各曲线的时间起点。没有接触的曲线不显示。";
@@ -166,4 +148,40 @@ texts! {
     SAVED_IN: "Saved in {}", "已保存到 {}";
     READ_FROM: "Read from {}", "读取自 {}";
     NOT_SAVED: "Not saved yet", "尚未保存";
+
+    /// What the hand does in a series.
+    fn stage(Stage) {
+        Stage::Resting => "resting", "间隔";
+        Stage::Preparing => "going to the start", "正在回到起点";
+        Stage::Quiet => "still, limits being confirmed", "静止，正在确认设置";
+        Stage::Closing => "closing", "正在闭合";
+        Stage::Dwelling => "holding", "保持中";
+        Stage::Releasing => "opening", "正在张开";
+        Stage::Over => "over", "已结束";
+    }
+
+    /// How the object is reached.
+    fn approach(ApproachKind) {
+        ApproachKind::OneStage => "One speed all the way", "全程同一速度";
+        ApproachKind::Measured => "Fast to the measured contact", "快速到实测接触处";
+        ApproachKind::Angle => "Fast to an angle", "快速到指定角度";
+        ApproachKind::Proximity => "Fast until the fingertip is near", "快速到指尖接近物体";
+        ApproachKind::Touch => "Fast until first touch", "快速到首次触碰";
+    }
+
+    /// What cannot be watched.
+    fn group(&str) {
+        "angle" => "angle", "角度";
+        "force" => "force", "力";
+        "temperature" => "temperature", "温度";
+        _ => "fault", "故障";
+    }
+
+    /// A quantity of trials.
+    fn quantity(TrialQuantity) {
+        TrialQuantity::Force => "Force, g", "力 g";
+        TrialQuantity::Angle => "Angle", "角度";
+        TrialQuantity::Current => "Current, mA", "电流 mA";
+        TrialQuantity::Touch => "Touch, N", "触觉 N";
+    }
 }

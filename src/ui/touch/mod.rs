@@ -262,9 +262,7 @@ impl TouchView {
                 (undo, panels::TARE_UNDO.tip(), nothing, Action::UndoTare),
             ] {
                 let button = Button::new(words, look.say(tip)).disabled(disabled);
-                if button.ui(ui, look).clicked() {
-                    pane.actions.push(action);
-                }
+                button.sends(ui, pane, action);
             }
         });
     }

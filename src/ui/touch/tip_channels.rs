@@ -114,7 +114,7 @@ fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
     let look = pane.look;
     let hand = pane.state.hand();
     ui.spacing_mut().item_spacing.y = 0.0;
-    let head = Label::new(look.say(text::NOISE_HEAD), look.palette.muted).small();
+    let head = Label::note(look, text::NOISE_HEAD);
     head.ui(ui).on_hover_text(look.tip(text::NOISE));
     let now = pane.state.now.secs();
     let rest = hand.tare.rest(finger);

@@ -193,9 +193,7 @@ impl TipDetail {
         for (caption, value, color) in &rows {
             let place = kit::take_top(&mut rest, row);
             rest.min.y -= theme::GAP;
-            Label::new(look.say(*caption), look.palette.muted)
-                .small()
-                .put(ui, place);
+            Label::note(look, *caption).put(ui, place);
             let label = Label::new(value, look.value(freshness, *color))
                 .number()
                 .right();
@@ -219,7 +217,7 @@ impl TipDetail {
             let wash = look.palette.wash(color);
             ui.painter().rect_filled(ground, theme::STEP, wash);
         }
-        Label::new(look.say(words_of(hold)), color).put(ui, place);
+        Label::new(look.say(panels::hold(hold)), color).put(ui, place);
     }
 
     fn friction_ui(&mut self, ui: &mut Ui, rect: Rect, look: Look) {
@@ -273,17 +271,6 @@ impl TipDetail {
             ..Chart::new(look, text::FORCES, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);
-    }
-}
-
-/// How a grip stands, in words.
-const fn words_of(hold: Hold) -> Text {
-    match hold {
-        Hold::Unknown => panels::TIP_UNKNOWN,
-        Hold::Loose => panels::TIP_LOOSE,
-        Hold::Firm => panels::TIP_HOLDS,
-        Hold::Near => panels::TIP_NEAR,
-        Hold::Slips => panels::TIP_SLIPS,
     }
 }
 

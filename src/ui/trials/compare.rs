@@ -45,7 +45,7 @@ impl CompareView {
             Label::new(&told, color).small().ui(ui);
             let Some(focus) = focus else {
                 ui.centered_and_justified(|ui| {
-                    Label::new(look.say(tune::COMPARE_EMPTY), look.palette.muted).ui(ui);
+                    Label::muted(look, tune::COMPARE_EMPTY).ui(ui);
                 });
                 return;
             };

@@ -1,13 +1,13 @@
 //! The map of overshoot over speed and threshold, and the best setting by what a person wants. Writes nothing.
 
 use crate::app::action::Action;
-use crate::app::trials::{Comparison, SessionDifference, TrialSession};
+use crate::app::trials::{Comparison, TrialSession};
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::trials::best::{Score, best};
 use crate::trials::{Criterion, TrialSetting};
 use crate::ui::kit::{Button, Label, NumberField, Pane};
-use crate::ui::text::{Text, compare, tune};
+use crate::ui::text::{compare, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
@@ -96,8 +96,7 @@ impl BestView {
         if comparison.sessions().len() > 1 {
             of_ui(ui, pane, comparison, focus);
         }
-        let title = Label::new(look.say(tune::MAP), look.palette.muted);
-        title.small().ui(ui);
+        Label::note(look, tune::MAP).ui(ui);
         map_ui(ui, pane, &comparison.scores, best);
     }
 }
@@ -138,27 +137,16 @@ fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSes
     let look = pane.look;
     let differences = comparison.differences.iter();
     let words: Vec<&str> = differences
-        .map(|difference| look.say(difference_words(*difference)))
+        .map(|difference| look.say(compare::difference(*difference)))
         .collect();
     if words.is_empty() {
-        let together = Label::new(look.say(compare::TOGETHER), look.palette.muted);
-        together.small().ui(ui);
+        Label::note(look, compare::TOGETHER).ui(ui);
         return;
     }
     let own = compare_list::name(look, focus.id);
     let text = look.fill(compare::ALONE, &[&own, &look.list(&words)]);
     let label = Label::new(&text, look.palette.warn).small().wrap();
     label.ui(ui).on_hover_text(look.tip(compare::ALONE));
-}
-
-const fn difference_words(difference: SessionDifference) -> Text {
-    match difference {
-        SessionDifference::Hand => compare::HAND,
-        SessionDifference::Joints => compare::JOINTS,
-        SessionDifference::Way => compare::WAY,
-        SessionDifference::Approach => compare::APPROACH,
-        SessionDifference::Dwell => compare::DWELL,
-    }
 }
 
 /// Overshoot as colours with numbers: speeds below each other, thresholds side by side.

@@ -71,7 +71,7 @@ impl TuneView {
             meaning_ui(ui, pane);
             if last.is_none() {
                 let palette = pane.look.palette;
-                Label::new(pane.look.say(tune::IDLE_TITLE), palette.text).ui(ui);
+                Label::said(pane.look, tune::IDLE_TITLE).ui(ui);
                 line_ui(ui, pane.look.say(tune::IDLE_BODY), palette.muted);
             }
             asked

@@ -148,7 +148,7 @@ impl Pass<'_, '_> {
     fn title_ui(&self, ui: &mut Ui, text: Text) {
         let look = self.pane.look;
         ui.add_space(theme::STEP);
-        Label::new(look.say(text), look.palette.text).ui(ui);
+        Label::said(look, text).ui(ui);
     }
 
     /// What is wrong here, once.
@@ -163,9 +163,7 @@ impl Pass<'_, '_> {
         let row = Layout::left_to_right(Align::Center);
         ui.allocate_ui_with_layout(vec2(width, theme::CONTROL), row, |ui| {
             ui.set_min_size(vec2(width, theme::CONTROL));
-            Label::new(look.say(text), look.palette.muted)
-                .small()
-                .ui(ui);
+            Label::note(look, text).ui(ui);
         });
     }
 
@@ -332,7 +330,7 @@ impl Pass<'_, '_> {
     fn approach_ui(&mut self, ui: &mut Ui) {
         let look = self.pane.look;
         let mut kind = ApproachKind::of(self.plan.approach);
-        let all = ApproachKind::ALL.map(|kind| (kind, look.say(trials::approach(kind))));
+        let all = ApproachKind::ALL.map(|kind| (kind, look.say(tune::approach(kind))));
         ui.horizontal(|ui| {
             self.caption_ui(ui, tune::APPROACH, 64.0);
             ui.spacing_mut().combo_width = ui.available_width();

@@ -7,7 +7,7 @@ use crate::hand::Dof;
 use crate::trials::recording::{TrialRecording, seconds};
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
-use crate::ui::text::{trials, tune, words};
+use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::plot::trial_chart_ui;
 use crate::ui::trials::{PLOT_LEAST, line_ui};
@@ -41,7 +41,7 @@ pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
 fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     let (look, palette) = (pane.look, pane.look.palette);
     let (number, total) = (run.view.number, run.view.total);
-    let stage = look.say(trials::stage(run.view.stage));
+    let stage = look.say(tune::stage(run.view.stage));
     let trial = look.fill(tune::TRIAL, &[&number, &total, &stage]);
     let name = look.say(tune::PROGRESS);
     let label = Label::new(&trial, palette.text).font(theme::title());

@@ -97,7 +97,11 @@ impl ResultView {
             curves: drawn.curves().map(|(_, curve)| curve).collect(),
             levels: drawn.levels(),
             empty: tune::CURVES_EMPTY,
-            ..Chart::new(look, tune::SHOW_FORCE, ui.available_height())
+            ..Chart::new(
+                look,
+                tune::quantity(TrialQuantity::Force),
+                ui.available_height(),
+            )
         };
         trial_chart_ui(ui, force, &mut chart);
         self.chart = chart;

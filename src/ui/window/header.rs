@@ -202,9 +202,7 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut View) -> bool
         let button = Button::new(text, look.say(main::LANGUAGE_TIP))
             .named(look.say(main::LANGUAGE_NAME))
             .weight(Weight::Quiet);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::Language(language.other()));
-        }
+        button.sends(ui, pane, Action::Language(language.other()));
         let icon = match theme {
             Theme::Dark => theme::DARK,
             Theme::Light => theme::LIGHT,
@@ -212,9 +210,7 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut View) -> bool
         let button = Button::new(look.say(main::THEME_NAME), look.say(main::THEME_TIP))
             .icon(icon)
             .weight(Weight::Quiet);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::Theme(theme.other()));
-        }
+        button.sends(ui, pane, Action::Theme(theme.other()));
         let list = Button::new("?", look.tip(keys::BUTTON))
             .named(look.say(keys::BUTTON))
             .weight(Weight::Quiet);

@@ -106,7 +106,7 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
                         ui.horizontal(|ui| {
                             keys.split(", ").for_each(|key| cap_ui(ui, look, key));
                         });
-                        Label::new(look.say(words), palette.text).ui(ui);
+                        Label::said(look, words).ui(ui);
                         ui.end_row();
                     }
                 });
@@ -114,7 +114,7 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
         }
     });
     for text in [keys::ON_TRACKS, keys::IN_FIELDS] {
-        Label::new(look.say(text), palette.muted).small().ui(ui);
+        Label::note(look, text).ui(ui);
     }
     shut
 }

@@ -73,7 +73,7 @@ impl MessageLog {
             Some(_) => faults::LOG_NONE_PASS,
             None => faults::LOG_NONE,
         };
-        Label::new(look.say(text), look.palette.muted).ui(ui);
+        Label::muted(look, text).ui(ui);
     }
 
     /// Levels and copying.
@@ -99,9 +99,12 @@ impl MessageLog {
                     Some(lines) => format!("{} ({lines})", look.say(faults::COPIED)),
                 };
                 let name = look.pair(look.say(faults::COPY), look.say(faults::LOG));
-                let none = self.lines.is_empty().then(|| look.say(faults::LOG_NONE));
                 let copy = Button::new(&text, look.tip(faults::COPY)).named(&name);
-                if copy.disabled(none).ui(ui, look).clicked() {
+                if copy
+                    .disabled_if(self.lines.is_empty(), look.say(faults::LOG_NONE))
+                    .ui(ui, look)
+                    .clicked()
+                {
                     ui.ctx().copy_text(self.text(look));
                     self.copied = Some(self.lines.len());
                 }

@@ -354,9 +354,7 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     if let Some(end) = end {
         let button = Button::said(look, layout::END);
         let name = format!("{}: {words}", look.say(layout::END));
-        if button.named(&name).ui(ui, look).clicked() {
-            pane.actions.push(end);
-        }
+        button.named(&name).sends(ui, pane, end);
     }
     if is_aside {
         Label::new(&words, look.palette.text).ui(ui);
@@ -391,7 +389,7 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
                 true => layout::AT_REST,
                 false => layout::NO_HAND,
             };
-            Label::new(look.say(words), palette.muted).ui(ui);
+            Label::muted(look, words).ui(ui);
             return;
         }
     };
@@ -450,9 +448,7 @@ fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) -> Option<View> {
         }
         Help::Dismiss(id) => {
             let button = Button::new(look.say(layout::UNDERSTOOD), "");
-            if button.ui(ui, look).clicked() {
-                pane.actions.push(Action::Dismiss(*id));
-            }
+            button.sends(ui, pane, Action::Dismiss(*id));
             None
         }
     }
