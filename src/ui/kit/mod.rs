@@ -11,7 +11,7 @@ mod number;
 pub(crate) mod reorder;
 mod text_field;
 
-pub(crate) use card::{Card, CardView, Choice, Line, Manner, Progress};
+pub(crate) use card::{Card, CardView, Choice, Manner};
 pub(crate) use controls::{
     Button, Label, Weight, card_ui, choose_ui, edit_ui, focus_ring, full_card_ui, head_ui, lamp,
     paint_text, pick_ui, pressed, sign, take_left, take_top, text_width, warning_sign,

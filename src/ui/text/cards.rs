@@ -8,7 +8,7 @@ texts! {
     CLOSE: "Done", "完成", "Closes this card.", "关闭此卡片。";
     TYPE: "To go on, type", "要继续，请输入";
     NO_HAND: "No hand answers.", "没有灵巧手应答。";
-    BACKUP: "Backup", "备份";
+    BACKUP: "Backup:", "备份：";
     BACKING_UP: "Keeping a backup of what the hand holds", "正在备份灵巧手的参数";
     NO_BACKUP: "No backup could be made, and nothing was written.", "无法备份，未写入任何内容。";
 

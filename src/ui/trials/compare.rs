@@ -4,7 +4,7 @@
 use crate::app::action::Action;
 use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
-use crate::ui::kit::{self, Button, Card, Choice, Label, Line, Look, Manner, Pane, TextField};
+use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, TextField};
 use crate::ui::text::{compare, notices, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::BestView;
@@ -179,16 +179,10 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let loses = look.fill(compare::FORGET_LOSES, &[&session.trials.len()]);
     let back = Choice::new(compare::FORGET_NOT, Manner::Safe);
     let forget = Choice::new(compare::FORGET_SURE, Manner::Danger);
-    Some(Card {
-        title: look.say(compare::FORGET_TITLE).into(),
-        lines: vec![
-            Line::Words(compare_list::name(look, session.id)),
-            Line::Warning(loses),
-        ],
-        choices: vec![
-            back.does(Action::Trial(TrialAction::CancelForget)),
-            forget.does(Action::Trial(TrialAction::ConfirmForget)),
-        ],
-        ..Card::default()
-    })
+    let card = Card::new(look, compare::FORGET_TITLE)
+        .words(compare_list::name(look, session.id))
+        .warning(loses)
+        .choice(back.does(Action::Trial(TrialAction::CancelForget)))
+        .choice(forget.does(Action::Trial(TrialAction::ConfirmForget)));
+    Some(card)
 }

@@ -269,7 +269,7 @@ impl Window {
         let card = guard::card_of(pane.state, pane.look);
         let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
         let card = card.or_else(|| compare::card_of(pane.state, pane.look));
-        let asked = self.cards.ui(ui, covered, pane.look, card);
+        let asked = self.cards.ui(ui, covered, card);
         pane.actions.extend(asked);
     }
 
