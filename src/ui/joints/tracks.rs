@@ -6,9 +6,7 @@ use crate::hand::{Angle, Dof, Force, HandCommand, PerDof, Speed, Target, impact}
 use crate::ui::joints::frame_menu::frame_menu_ui;
 use crate::ui::joints::row::{READING, Row, cell};
 use crate::ui::joints::track::{Actual, Track};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
+use crate::ui::kit::{Label, NumberField, Pane};
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, Ui};
@@ -68,7 +66,7 @@ impl Row {
             number_name: &self.named(pane, main::NAME_ANGLE_NUMBER),
             id: self.id("angle"),
             track: Track {
-                tip: look.say(main::ANGLE_TIP),
+                tip: look.tip(main::ANGLE),
                 disabled: pane.unready().or(locked),
                 target: joint.target.map(Angle::get),
                 actual: angle.and_then(|angle| angle.hold()).map(Angle::get),
@@ -113,7 +111,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
     let runs = series(pane);
     let value = value_of(row, joints.map(|joint| joint.force.get()));
     let mut track = Track {
-        tip: &staged(pane, main::FORCE_TIP),
+        tip: &staged(pane, main::FORCE.tip()),
         disabled: runs,
         target: value.filter(|_| runs.is_none()),
         tick: Some(Force::RATED.get()),
@@ -159,7 +157,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
         number_name: &named(pane, row, main::NAME_SPEED_NUMBER),
         id: id_of(row, "speed"),
         track: Track {
-            tip: &staged(pane, main::SPEED_TIP),
+            tip: &staged(pane, main::SPEED.tip()),
             disabled: runs,
             target: value,
             actual: value,
@@ -180,7 +178,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
 
 /// Force threshold and speed of all joints; what differs from joint to joint is not known here.
 pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let name = Label::new(pane.look.say(main::ALL_JOINTS), pane.look.palette.text);
+    let name = Label::said(pane.look, main::ALL_JOINTS);
     ui.horizontal(|ui| {
         name.ui(ui);
         ui.columns(2, |columns| {

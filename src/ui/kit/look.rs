@@ -37,6 +37,11 @@ impl Look {
         text.of(self.language)
     }
 
+    /// The tooltip of a control in the window's language.
+    pub(crate) const fn tip(self, text: Text) -> &'static str {
+        self.say(text.tip())
+    }
+
     /// A name and what is said of it, with the colon of the language.
     pub(crate) fn pair(self, name: &str, said: &str) -> String {
         let colon = match self.language {

@@ -6,13 +6,7 @@ use crate::app::hand::Freshness;
 use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format, whole};
 use crate::ui::text::{Text, device, verdicts};
 use crate::ui::theme;
 use egui::{Align, Color32, Id, Layout, Ui, UiBuilder, vec2};
@@ -79,7 +73,7 @@ pub(crate) fn table_ui(
             true => device::NO_DIFFERENCE,
             false => device::FIND_NONE,
         };
-        Label::new(look.say(text), look.palette.muted).ui(ui);
+        Label::muted(look, text).ui(ui);
         return;
     }
     ui.visuals_mut().selection.bg_fill = look.palette.wash(look.palette.accent);
@@ -101,9 +95,7 @@ pub(crate) fn table_ui(
     let table = table.header(theme::LIST_LINE, |mut head| {
         for text in heads {
             head.col(|ui| {
-                Label::new(look.say(text), look.palette.muted)
-                    .small()
-                    .ui(ui);
+                Label::note(look, text).ui(ui);
             });
         }
     });
@@ -114,11 +106,8 @@ pub(crate) fn table_ui(
                 continue;
             }
             line_ui(&mut body, theme::CONTROL_LARGE, |ui| {
-                let title = Label::new(look.say(title), look.palette.text);
-                title.font(theme::title()).ui(ui);
-                Label::new(look.say(about), look.palette.muted)
-                    .small()
-                    .ui(ui);
+                Label::said(look, title).font(theme::title()).ui(ui);
+                Label::note(look, about).ui(ui);
             });
             for id in own {
                 let height = match id.is_place() {
@@ -237,22 +226,22 @@ pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
     match (speed, value) {
         (Some(speed), _) => speed.baud().to_string(),
         (None, Some(value)) => value.to_string(),
-        (None, None) => UNKNOWN.into(),
+        (None, None) => format::UNKNOWN.into(),
     }
 }
 
 /// A value, and beside or below it what is to be known of it.
 pub(crate) fn cell_ui(ui: &mut Ui, (name, value, color): (&str, &str, Color32), below: &str) {
     let muted = ui.visuals().weak_text_color();
-    let fits = controls::text_width(ui, value, theme::number()) <= ui.available_width();
+    let fits = kit::text_width(ui, value, theme::number()) <= ui.available_width();
     let label = Label::new(value, color).named(name);
     let label = if fits { label.number() } else { label.small() };
     if below.is_empty() {
         label.ui(ui);
         return;
     }
-    let both = controls::text_width(ui, value, theme::number())
-        + controls::text_width(ui, below, theme::small());
+    let both =
+        kit::text_width(ui, value, theme::number()) + kit::text_width(ui, below, theme::small());
     let add = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
         label.ui(ui);
@@ -285,8 +274,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
             label.named(&verdict).ui(ui);
         }
         if id.is_place() {
-            let about = Label::new(look.say(verdicts::about(id)), palette.muted);
-            about.small().wrap().ui(ui);
+            Label::note(look, verdicts::about(id)).wrap().ui(ui);
         }
     });
 }
@@ -346,10 +334,8 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(
     });
     if staged.is_some() {
         let label = format!("{} {whole_name}", look.say(device::UNSTAGE));
-        let drop = Button::new(&label, look.say(device::UNSTAGE_TIP)).icon(theme::CLOSE);
-        if drop.ui(ui, look).clicked() {
-            pane.actions.push(Action::Stage(id, None));
-        }
+        let drop = Button::new(&label, look.tip(device::UNSTAGE)).icon(theme::CLOSE);
+        drop.sends(ui, pane, Action::Stage(id, None));
     }
 }
 
@@ -366,7 +352,7 @@ fn number_ui(
     };
     let field = NumberField {
         name,
-        tip: pane.look.say(device::STAGED_TIP),
+        tip: pane.look.tip(device::STAGED),
         disabled: None,
         value,
         range: f64::from(min)..=f64::from(max),
@@ -386,7 +372,7 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
         .collect();
     let mut chosen = value;
     ui.spacing_mut().combo_width = 0.0;
-    controls::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
+    kit::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
 }
 
 fn address_ui(
@@ -397,7 +383,7 @@ fn address_ui(
     let text = value.map_or_else(String::new, |value| value.to_string());
     let field = TextField {
         name,
-        hint: UNKNOWN,
+        hint: format::UNKNOWN,
         value: &text,
         max: ADDRESS_MAX,
     };
@@ -416,9 +402,9 @@ fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let reason = match wanted {
         None => Some(device::CHANGE_NONE),
         Some(_) if hand.is_simulated() => Some(device::CHANGE_SIM),
-        Some(_) => hand.write_refusal().map(verdicts::refusal),
+        Some(_) => hand.write_refusal().map(device::refusal),
     };
-    let button = Button::new(look.say(device::CHANGE), look.say(device::CHANGE_TIP))
+    let button = Button::said(look, device::CHANGE)
         .named(&label)
         .disabled(reason.map(|reason| look.say(reason)));
     let pressed = button.ui(ui, look);

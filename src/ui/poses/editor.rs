@@ -5,10 +5,7 @@ use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::edit::{LibraryEdit, PoseEdit, Way};
 use crate::poses::library::{NAME_CHARS_MAX, Pose};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{Button, Label, NumberField, Pane, TextField, whole};
 use crate::ui::poses::tiles::{go_ui, shares};
 use crate::ui::text::{Text, poses, words};
 use crate::ui::theme;
@@ -89,7 +86,7 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose, dof: Dof) {
     let text = look.say(poses::LEAVE);
     let label = format!("{} {text}", look.say(words::dof(dof)));
     let leave = pose.leave[dof];
-    let button = Button::new(text, look.say(poses::LEAVE_TIP)).named(&label);
+    let button = Button::new(text, look.tip(poses::LEAVE)).named(&label);
     if button.choice(leave).ui(ui, look).clicked() {
         change(pane, pose, PoseEdit::Leave(dof, !leave));
     }
@@ -108,7 +105,7 @@ pub(crate) fn angle_ui(
     let label = format!("{name} {of} {}", look.say(poses::ANGLE));
     let field = NumberField {
         name: &label,
-        tip: look.say(poses::ANGLE_TIP),
+        tip: look.tip(poses::ANGLE),
         disabled: None,
         value: angle.map(|angle| f64::from(angle.get())),
         range: 0.0..=1000.0,
@@ -135,8 +132,8 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
         field.ui(ui, look, pane.typing).map(whole)
     };
     let (speed, force) = (pose.speed.get(), pose.force.get());
-    let speed = number(pane, poses::SPEED, poses::SPEED_TIP, (speed, 1000.0));
-    let force = number(pane, poses::FORCE, poses::FORCE_TIP, (force, 3000.0));
+    let speed = number(pane, poses::SPEED, poses::SPEED.tip(), (speed, 1000.0));
+    let force = number(pane, poses::FORCE, poses::FORCE.tip(), (force, 3000.0));
     if let Some(speed) = speed.and_then(|speed| Speed::new(speed).ok()) {
         change(pane, pose, PoseEdit::Speed(speed));
     }
@@ -148,29 +145,30 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
 fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let look = pane.look;
     let unknown = pane.state.hand().pose_now().is_none();
-    let unknown = unknown.then(|| look.say(poses::CAPTURE_UNKNOWN));
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
     let [earlier, later] = [Way::Earlier, Way::Later].map(|way| edit(PoseEdit::Shift(way)));
     let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
     let again = Action::Recapture(pose.id);
-    let button = |text, tip| Button::new(look.say(text), look.say(tip));
     let [left, right] = [
         (poses::EARLIER, theme::TO_LEFT),
         (poses::LATER, theme::TO_RIGHT),
     ]
-    .map(|(text, icon)| button(text, poses::SHIFT_TIP).icon(icon));
-    let retake = button(poses::RECAPTURE, poses::RECAPTURE_TIP).disabled(unknown);
-    let double = button(poses::DUPLICATE, poses::DUPLICATE_TIP);
-    let away = button(poses::DELETE, poses::DELETE_TIP);
+    .map(|(text, icon)| {
+        Button::said(look, text)
+            .tip(look.say(poses::SHIFT_TIP))
+            .icon(icon)
+    });
+    let retake =
+        Button::said(look, poses::RECAPTURE).disabled_if(unknown, look.say(poses::CAPTURE_UNKNOWN));
+    let double = Button::said(look, poses::DUPLICATE);
+    let away = Button::said(look, poses::DELETE);
     for row in [
         &[(retake, again), (double, copy)][..],
         &[(left, earlier), (right, later), (away, delete)],
     ] {
         ui.horizontal(|ui| {
             for (button, action) in row {
-                if button.ui(ui, look).clicked() {
-                    pane.actions.push(action.clone());
-                }
+                button.sends(ui, pane, action.clone());
             }
         });
     }

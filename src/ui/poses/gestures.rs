@@ -3,10 +3,7 @@
 
 use crate::app::action::Action;
 use crate::hand::{Gesture, GestureRoute};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight};
 use crate::ui::poses::gesture_editor::GestureEditor;
 use crate::ui::poses::tiles::gesture_ui;
 use crate::ui::text::{panels, poses};
@@ -69,7 +66,7 @@ impl GestureView {
             true => (panels::GESTURE_NAME_DONE, Weight::Strong),
             false => (panels::GESTURE_NAME_EDIT, Weight::Normal),
         };
-        let tip = look.say(panels::GESTURE_NAME_EDIT_TIP);
+        let tip = look.tip(panels::GESTURE_NAME_EDIT);
         let mut button = Button::new(look.say(text), tip).weight(weight);
         button.selected = Some(self.naming);
         if button.ui(ui, look).clicked() {
@@ -122,14 +119,11 @@ fn route_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let name = look.say(panels::GESTURE_ROUTE);
     ui.horizontal(|ui| {
         Label::new(name, look.palette.text).ui(ui);
-        if controls::choose_ui(ui, name, &mut route, &routes) {
+        if kit::choose_ui(ui, name, &mut route, &routes) {
             pane.actions.push(Action::GestureRoute(route));
         }
     });
     for text in [panels::GESTURES_TIP, known] {
-        Label::new(look.say(text), look.palette.muted)
-            .small()
-            .wrap()
-            .ui(ui);
+        Label::note(look, text).wrap().ui(ui);
     }
 }

@@ -5,11 +5,7 @@ use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit, Way};
 use crate::poses::library::{Millis, Sequence, Step};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::reorder;
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder, whole};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
@@ -67,7 +63,7 @@ pub(crate) fn step_ui(
         (
             theme::CLOSE,
             poses::REMOVE,
-            poses::REMOVE_TIP,
+            poses::REMOVE.tip(),
             SequenceEdit::Remove(at),
         ),
         (theme::TO_BOTTOM, poses::LATER, poses::SHIFT_TIP, later),
@@ -99,7 +95,7 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
     let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
     let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id(at));
     let (words, left) = (rect.shrink2(vec2(theme::STEP, 0.0)), Align2::LEFT_CENTER);
-    controls::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
+    kit::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
     if response.clicked() {
         response.request_focus();
     }
@@ -139,10 +135,10 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, step):
         typed.inner.map(whole)
     };
     let millis = |time: Millis| (f64::from(time.get()), f64::from(Millis::MAX));
-    let limit = number(pane, poses::LIMIT, poses::LIMIT_TIP, millis(step.limit));
-    let dwell = number(pane, poses::DWELL, poses::DWELL_TIP, millis(step.dwell));
+    let limit = number(pane, poses::LIMIT, poses::LIMIT.tip(), millis(step.limit));
+    let dwell = number(pane, poses::DWELL, poses::DWELL.tip(), millis(step.dwell));
     let now = (f64::from(step.speed.get()), 1000.0);
-    let speed = number(pane, poses::STEP_SPEED, poses::SPEED_TIP, now);
+    let speed = number(pane, poses::STEP_SPEED, poses::SPEED.tip(), now);
     let time = |typed: i64| Millis::try_from(typed).ok();
     if let Some(limit) = limit.and_then(time) {
         change(pane, sequence, SequenceEdit::Limit(at, limit));

@@ -5,12 +5,7 @@ use crate::app::trials::form::{ListError, PlanSide, list, set_target, tags, take
 use crate::app::trials::{ApproachKind, PlanField, TrialAction};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::{Approach, TrialPlan, Until};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
-use crate::ui::kit::number::whole;
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, whole};
 use crate::ui::text::{Text, trials, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::line_ui;
@@ -60,25 +55,25 @@ struct Pass<'a, 'p> {
 /// A number of the form: where it stands, what it is called and does, and what may be typed.
 struct Number {
     field: PlanField,
-    texts: (Text, Text),
+    text: Text,
     range: (f64, f64),
     decimals: usize,
 }
 
 impl Number {
-    const fn new(field: PlanField, texts: (Text, Text), range: (f64, f64)) -> Self {
+    const fn new(field: PlanField, text: Text, range: (f64, f64)) -> Self {
         Self {
             field,
-            texts,
+            text,
             range,
             decimals: 0,
         }
     }
 
-    const fn seconds(field: PlanField, texts: (Text, Text)) -> Self {
+    const fn seconds(field: PlanField, text: Text) -> Self {
         Self {
             decimals: 1,
-            ..Self::new(field, texts, (0.0, 600.0))
+            ..Self::new(field, text, (0.0, 600.0))
         }
     }
 }
@@ -153,7 +148,7 @@ impl Pass<'_, '_> {
     fn title_ui(&self, ui: &mut Ui, text: Text) {
         let look = self.pane.look;
         ui.add_space(theme::STEP);
-        Label::new(look.say(text), look.palette.text).ui(ui);
+        Label::said(look, text).ui(ui);
     }
 
     /// What is wrong here, once.
@@ -168,9 +163,7 @@ impl Pass<'_, '_> {
         let row = Layout::left_to_right(Align::Center);
         ui.allocate_ui_with_layout(vec2(width, theme::CONTROL), row, |ui| {
             ui.set_min_size(vec2(width, theme::CONTROL));
-            Label::new(look.say(text), look.palette.muted)
-                .small()
-                .ui(ui);
+            Label::note(look, text).ui(ui);
         });
     }
 
@@ -191,11 +184,11 @@ impl Pass<'_, '_> {
             let angle = self.form.targets[dof];
             set_target(&mut self.plan, dof, (!takes_part).then_some(angle));
         }
-        let start = (tune::START_NAME, tune::START_TIP);
+        let start = (tune::START_NAME, tune::START.tip());
         if let Some(angle) = self.angle_ui(ui, dof, start, self.plan.start[dof]) {
             self.plan.start[dof] = Some(angle);
         }
-        let close = (tune::CLOSE_NAME, tune::CLOSE_TIP);
+        let close = (tune::CLOSE_NAME, tune::CLOSE.tip());
         if takes_part && let Some(angle) = self.angle_ui(ui, dof, close, target) {
             self.plan.close[dof] = Some(angle);
         }
@@ -265,8 +258,7 @@ impl Pass<'_, '_> {
         if let Some(forces) = self.list_ui(ui, PlanField::Forces, texts, forces) {
             self.plan.grid.forces = forces.into_iter().map(Force::nearest).collect();
         }
-        let texts = (tune::REPEATS, tune::REPEATS_TIP);
-        let number = Number::new(PlanField::Repeats, texts, (1.0, 1000.0));
+        let number = Number::new(PlanField::Repeats, tune::REPEATS, (1.0, 1000.0));
         let repeats = u16::try_from(self.plan.grid.repeats).unwrap_or(u16::MAX);
         if let Some(repeats) = self.number_ui(ui, &number, repeats.into()) {
             self.plan.grid.repeats = usize::try_from(whole(repeats)).unwrap_or(1);
@@ -318,10 +310,10 @@ impl Pass<'_, '_> {
     /// A number in a row of its own, over what is wrong with it.
     fn number_ui(&mut self, ui: &mut Ui, number: &Number, value: f64) -> Option<f64> {
         let look = self.pane.look;
-        let (name, tip) = number.texts;
+        let name = number.text;
         let field = NumberField {
             name: look.say(name),
-            tip: look.say(tip),
+            tip: look.tip(name),
             disabled: self.disabled,
             value: Some(value),
             range: number.range.0..=number.range.1,
@@ -338,11 +330,11 @@ impl Pass<'_, '_> {
     fn approach_ui(&mut self, ui: &mut Ui) {
         let look = self.pane.look;
         let mut kind = ApproachKind::of(self.plan.approach);
-        let all = ApproachKind::ALL.map(|kind| (kind, look.say(trials::approach(kind))));
+        let all = ApproachKind::ALL.map(|kind| (kind, look.say(tune::approach(kind))));
         ui.horizontal(|ui| {
             self.caption_ui(ui, tune::APPROACH, 64.0);
             ui.spacing_mut().combo_width = ui.available_width();
-            if controls::choose_ui(ui, look.say(tune::APPROACH), &mut kind, &all) {
+            if kit::choose_ui(ui, look.say(tune::APPROACH), &mut kind, &all) {
                 let fast = self.form.fast;
                 self.plan.approach = match kind.usual() {
                     None => Approach::OneStage,
@@ -353,17 +345,16 @@ impl Pass<'_, '_> {
         let Approach::TwoStage { fast, until } = self.plan.approach else {
             return;
         };
-        let texts = (tune::FAST, tune::FAST_TIP);
-        let number = Number::new(PlanField::Fast, texts, (1.0, 1000.0));
+        let number = Number::new(PlanField::Fast, tune::FAST, (1.0, 1000.0));
         let typed = self.number_ui(ui, &number, fast.get().into());
         let fast = typed.map_or(fast, |typed| Speed::nearest(whole(typed)));
-        let (texts, most) = match until {
-            Until::Measured { .. } => ((tune::UNTIL_MARGIN, tune::UNTIL_MARGIN_TIP), 500.0),
-            Until::Angle(_) => ((tune::UNTIL_ANGLE, tune::UNTIL_ANGLE_TIP), 1000.0),
-            Until::Proximity(_) => ((tune::UNTIL_PROXIMITY, tune::UNTIL_PROXIMITY_TIP), 16e6),
-            Until::Touch(_) => ((tune::UNTIL_TOUCH, tune::UNTIL_TOUCH_TIP), 3000.0),
+        let (text, most) = match until {
+            Until::Measured { .. } => (tune::UNTIL_MARGIN, 500.0),
+            Until::Angle(_) => (tune::UNTIL_ANGLE, 1000.0),
+            Until::Proximity(_) => (tune::UNTIL_PROXIMITY, 16e6),
+            Until::Touch(_) => (tune::UNTIL_TOUCH, 3000.0),
         };
-        let number = Number::new(PlanField::Until, texts, (0.0, most));
+        let number = Number::new(PlanField::Until, text, (0.0, most));
         let typed = self.number_ui(ui, &number, until.value().into());
         let typed = typed.and_then(|typed| Until::new(until.name(), whole(typed)).ok());
         let until = typed.unwrap_or(until);
@@ -372,11 +363,11 @@ impl Pass<'_, '_> {
 
     fn times_ui(&mut self, ui: &mut Ui) {
         let of = |seconds: f64| Duration::try_from_secs_f64(seconds).unwrap_or_default();
-        let dwell = Number::seconds(PlanField::Dwell, (tune::DWELL, tune::DWELL_TIP));
+        let dwell = Number::seconds(PlanField::Dwell, tune::DWELL);
         if let Some(dwell) = self.number_ui(ui, &dwell, self.plan.dwell.as_secs_f64()) {
             self.plan.dwell = of(dwell);
         }
-        let rest = Number::seconds(PlanField::Rest, (tune::REST, tune::REST_TIP));
+        let rest = Number::seconds(PlanField::Rest, tune::REST);
         if let Some(rest) = self.number_ui(ui, &rest, self.plan.grid.rest.as_secs_f64()) {
             self.plan.grid.rest = of(rest);
         }
@@ -384,19 +375,17 @@ impl Pass<'_, '_> {
 
     fn limits_ui(&mut self, ui: &mut Ui) {
         let limits = self.plan.limits;
-        let texts = (tune::CEILING_CAPTION, tune::CEILING_TIP);
-        let number = Number::new(PlanField::Ceiling, texts, (1.0, 4000.0));
+        let number = Number::new(PlanField::Ceiling, tune::CEILING_CAPTION, (1.0, 4000.0));
         if let Some(ceiling) = self.number_ui(ui, &number, limits.ceiling_g.into()) {
             self.plan.limits.ceiling_g = i16::try_from(whole(ceiling)).unwrap_or(i16::MAX);
         }
         let celsius = |typed: f64| u8::try_from(whole(typed)).unwrap_or(u8::MAX);
-        let texts = (tune::START_C, tune::START_C_TIP);
-        let number = Number::new(PlanField::Heat, texts, (1.0, 100.0));
+        let number = Number::new(PlanField::Heat, tune::START_C, (1.0, 100.0));
         if let Some(start) = self.number_ui(ui, &number, limits.start_c.into()) {
             self.plan.limits.start_c = celsius(start);
         }
-        let texts = (tune::STOP_C, tune::STOP_C_TIP);
-        let number = Number { texts, ..number };
+        let text = tune::STOP_C;
+        let number = Number { text, ..number };
         if let Some(stop) = self.number_ui(ui, &number, limits.stop_c.into()) {
             self.plan.limits.stop_c = celsius(stop);
         }

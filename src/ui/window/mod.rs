@@ -35,8 +35,7 @@ use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
 use crate::ui::joints::row::Row;
-use crate::ui::kit::card::CardView;
-use crate::ui::kit::look::{Explain, Look, Pane, Typing};
+use crate::ui::kit::{CardView, Explain, Look, Pane, Typing};
 use crate::ui::params::DeviceView;
 use crate::ui::params::card as device_card;
 use crate::ui::params::procedures as guard;
@@ -297,7 +296,7 @@ impl Window {
         let card = guard::card_of(pane.state, pane.look);
         let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
         let card = card.or_else(|| compare::card_of(pane.state, pane.look));
-        let asked = self.cards.ui(ui, covered, pane.look, card);
+        let asked = self.cards.ui(ui, covered, card);
         pane.actions.extend(asked);
     }
 

@@ -9,9 +9,7 @@ use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
 use crate::ui::theme;
@@ -141,7 +139,7 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
         ),
         aside: String::new(),
         color: look.value(pane.freshness(Some(faults.asked)), look.palette.bad),
-        help: Help::View(View::Faults, main::FAULT_SHOW, main::FAULT_SHOW_TIP),
+        help: Help::View(View::Faults, main::FAULT_SHOW, main::FAULT_SHOW.tip()),
     })
 }
 
@@ -186,7 +184,7 @@ fn connecting(pane: &Pane<'_>) -> Option<Warning> {
         body: format!("{} {hand}", pane.look.say(main::CONNECTING_BODY)),
         aside: retry(pane),
         color: pane.look.palette.accent,
-        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP),
+        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN.tip()),
     })
 }
 
@@ -196,7 +194,7 @@ fn empty(pane: &Pane<'_>) -> Option<Warning> {
         body: pane.look.say(main::EMPTY_BODY).into(),
         aside: String::new(),
         color: pane.look.palette.accent,
-        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP),
+        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN.tip()),
     })
 }
 
@@ -323,15 +321,12 @@ impl StatusLine {
     fn note_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let Some(at) = self.note_at else { return };
         let look = pane.look;
-        let cancel = Button::new(
-            look.say(plots::NOTE_CANCEL),
-            look.say(plots::NOTE_CANCEL_TIP),
-        );
+        let cancel = Button::said(look, plots::NOTE_CANCEL);
         let cancelled = cancel.ui(ui, look).clicked();
-        let keep = Button::new(look.say(plots::NOTE_KEEP), look.say(plots::NOTE_KEEP_TIP));
+        let keep = Button::said(look, plots::NOTE_KEEP);
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
         let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
-        let words = controls::text_width(ui, &title, theme::body()) + theme::GAP;
+        let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
         let hint = match pane.state.hand().rests() {
             true => plots::NOTE_HINT,
             false => plots::NOTE_HINT_MOVING,
@@ -371,11 +366,9 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
         return;
     };
     if let Some(end) = end {
-        let button = Button::new(look.say(layout::END), look.say(layout::END_TIP));
+        let button = Button::said(look, layout::END);
         let name = format!("{}: {words}", look.say(layout::END));
-        if button.named(&name).ui(ui, look).clicked() {
-            pane.actions.push(end);
-        }
+        button.named(&name).sends(ui, pane, end);
     }
     if is_aside {
         Label::new(&words, look.palette.text).ui(ui);
@@ -409,12 +402,12 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
                 true => layout::AT_REST,
                 false => layout::NO_HAND,
             };
-            Label::new(look.say(words), palette.muted).ui(ui);
+            Label::muted(look, words).ui(ui);
             return;
         }
     };
     let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-    controls::lamp(ui, lamp.center(), color);
+    kit::lamp(ui, lamp.center(), color);
     Label::new(&words, palette.text).ui(ui);
 }
 
@@ -425,9 +418,9 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
     let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
     let sign = Rect::from_center_size(place.center(), vec2(theme::SIGN, 14.0));
     if worst.color == palette.accent {
-        controls::lamp(ui, sign.center(), worst.color);
+        kit::lamp(ui, sign.center(), worst.color);
     } else {
-        controls::warning_sign(ui, sign, worst.color);
+        kit::warning_sign(ui, sign, worst.color);
     }
     let row = Layout::right_to_left(Align::Center);
     let shown = ui.with_layout(row, |ui| {
@@ -468,9 +461,7 @@ fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) -> Option<View> {
         }
         Help::Dismiss(id) => {
             let button = Button::new(look.say(layout::UNDERSTOOD), "");
-            if button.ui(ui, look).clicked() {
-                pane.actions.push(Action::Dismiss(*id));
-            }
+            button.sends(ui, pane, Action::Dismiss(*id));
             None
         }
     }
