@@ -31,7 +31,7 @@ const ACTIVE: u8 = 0x40;
 /// The data bytes of one frame.
 pub type CanData = ArrayVec<u8, 8>;
 /// A run of memory cut into what single frames carry.
-pub type Pieces = ArrayVec<Span, PIECES_MAX>;
+pub type ReadPieces = ArrayVec<Span, PIECES_MAX>;
 
 /// What a frame is about: bits 26 to 28 of the identifier. The wrist's flags (4, 5) are not this hand's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,12 +131,12 @@ pub fn write_requests(hand: u16, write: &RegisterWrite) -> Option<ArrayVec<CanFr
 /// `None` for an empty run, one past address 4095, or one of more than [`PIECES_MAX`] pieces.
 // Manual: 2.3 says nothing of more than 8 bytes; others cut by address too.
 #[must_use]
-pub fn split(span: Span) -> Option<Pieces> {
+pub fn split(span: Span) -> Option<ReadPieces> {
     let end = u16::try_from(span.end()).ok()?;
     if span.len == 0 || end > ADDRESS_MAX + 1 {
         return None;
     }
-    let mut pieces = Pieces::new();
+    let mut pieces = ReadPieces::new();
     let mut from = span.address;
     while from < end {
         let last = end.min(from + PIECE_MAX);

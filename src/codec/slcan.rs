@@ -1,5 +1,6 @@
 //! The text protocol of serial CAN adapters (Lawicel: `O`, `C`, `S0`..`S8`, `T`, CR and BEL), both sides. No port, no clock.
 
+use crate::codec::NoiseCounts;
 use crate::codec::can::{CanData, CanFrame};
 use arrayvec::ArrayVec;
 
@@ -54,15 +55,6 @@ pub enum SlcanAnswer {
     Other(u8),
 }
 
-/// What a decoder met apart from good lines. Counts only grow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct NoiseCounts {
-    /// Lines that were no such thing, or had noise in front.
-    pub bad_lines: u64,
-    /// Bytes thrown away with them.
-    pub skipped_bytes: u64,
-}
-
 /// The code of a bit rate, if it has one.
 #[must_use]
 pub fn bitrate_code(bitrate: u32) -> Option<u8> {
@@ -92,7 +84,7 @@ pub fn encode_command(command: &SlcanCommand) -> Option<SlcanLine> {
     Some(line)
 }
 
-/// What an adapter sends for this; `None` for [`Answer::Other`].
+/// What an adapter sends for this; `None` for [`SlcanAnswer::Other`].
 #[must_use]
 pub fn encode_answer(answer: &SlcanAnswer) -> Option<SlcanLine> {
     let mut line = SlcanLine::new();
@@ -154,7 +146,7 @@ impl Collector {
         if whole.is_some() {
             return whole;
         }
-        self.counts.bad_lines += 1;
+        self.counts.resyncs += 1;
         // Noise in front of a frame: `T` is no digit, so the last one begins it.
         let from = line.iter().rposition(|byte| *byte == b'T');
         let found = from.and_then(|from| Some((from, parse(line.get(from..)?)?)));
@@ -412,7 +404,7 @@ mod tests {
         ] {
             let (found, counts) = answers(&[noise, b"T018400012F401\r"].concat());
             assert_eq!(found, std::slice::from_ref(&good), "{noise:?}");
-            assert_eq!(counts.bad_lines, 1, "{noise:?}");
+            assert_eq!(counts.resyncs, 1, "{noise:?}");
             let want = noise.len() - usize::from(noise.ends_with(b"\r"));
             assert_eq!(counts.skipped_bytes, want as u64, "{noise:?}");
         }

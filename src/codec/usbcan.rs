@@ -9,6 +9,7 @@
 //! Not known: whether the maker's adapter takes settings at all, such as a bit rate; what it says when the bus does not
 //! take a frame; and whether it wants A5 put in: the demos put none, and so both are read here. Settings are never sent.
 
+use crate::codec::NoiseCounts;
 use crate::codec::can::{CanData, CanFrame};
 use arrayvec::ArrayVec;
 
@@ -61,17 +62,6 @@ pub enum PacketStart {
     Open,
     /// No packet begins here.
     Nothing,
-}
-
-/// What a decoder met apart from good packets. Counts only grow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct NoiseCounts {
-    /// Packets whose sum was wrong.
-    pub checksum_errors: u64,
-    /// Runs of bytes that had to be skipped to find the next packet.
-    pub resyncs: u64,
-    /// Bytes skipped.
-    pub skipped_bytes: u64,
 }
 
 /// The packet that carries a frame.

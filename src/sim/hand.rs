@@ -171,7 +171,7 @@ impl SimHand {
     /// The bytes of a run as they are at `now`.
     ///
     /// # Errors
-    /// [`Refusal`] for runs that leave the memory, or cross the gap on a hand that does not answer there.
+    /// [`AccessError`] for runs that leave the memory, or cross the gap on a hand that does not answer there.
     pub fn read(&mut self, span: Span, now: Moment) -> Result<Vec<u8>, AccessError> {
         self.advance_to(now);
         if self.supply.is_off(self.now_ms) {
@@ -193,7 +193,7 @@ impl SimHand {
     /// A write from outside, over a serial line with the maker's framing, where late frames follow.
     ///
     /// # Errors
-    /// [`Refusal`] for runs that leave the memory. A value that the hand does not take is no error: it is dropped.
+    /// [`AccessError`] for runs that leave the memory. A value that the hand does not take is no error: it is dropped.
     pub fn write(
         &mut self,
         address: u16,

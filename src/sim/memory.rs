@@ -116,7 +116,7 @@ impl Memory {
     /// The bytes of a run, which must lie in the memory.
     ///
     /// # Errors
-    /// [`Refusal::Unmapped`] beyond 4095, [`Refusal::Empty`] without a byte.
+    /// [`AccessError::Unmapped`] beyond 4095, [`AccessError::Empty`] without a byte.
     pub fn read(&self, span: Span) -> Result<&[u8], AccessError> {
         check(span, MEMORY_LEN)?;
         let from = usize::from(span.address);
@@ -131,7 +131,7 @@ impl Memory {
     /// As [`Self::read`], with zeros for what lies beyond the memory, up to address 65535.
     ///
     /// # Errors
-    /// [`Refusal::Unmapped`] beyond 65535, [`Refusal::Empty`] without a byte.
+    /// [`AccessError::Unmapped`] beyond 65535, [`AccessError::Empty`] without a byte.
     pub fn read_on(&self, span: Span) -> Result<Vec<u8>, AccessError> {
         check(span, usize::from(u16::MAX) + 1)?;
         let inside = self.ram.iter().skip(usize::from(span.address)).copied();
@@ -179,7 +179,7 @@ impl Memory {
     /// Manual: it has no answer that says no. A refused element is acknowledged and has no effect.
     ///
     /// # Errors
-    /// [`Refusal::Unmapped`] beyond 4095, [`Refusal::Empty`] without a byte.
+    /// [`AccessError::Unmapped`] beyond 4095, [`AccessError::Empty`] without a byte.
     pub fn write(
         &mut self,
         address: u16,

@@ -6,7 +6,7 @@
 //! to the same write sent again. Nothing is planned or retried here.
 
 use crate::codec::can::{
-    CanData, CanFrame, CanFunction, CanId, Pieces, may_cut, read_request, split, write_requests,
+    CanData, CanFrame, CanFunction, CanId, ReadPieces, may_cut, read_request, split, write_requests,
 };
 use crate::hand::{RegisterWrite, Span, register};
 use crate::link::bus::can_port::CanPort;
@@ -121,8 +121,8 @@ impl Can {
     }
 
     /// The pieces of a run that no late reply can answer; none if there is no such cut.
-    fn clear_pieces(&mut self, span: Span) -> Option<Pieces> {
-        let mut clear = Pieces::new();
+    fn clear_pieces(&mut self, span: Span) -> Option<ReadPieces> {
+        let mut clear = ReadPieces::new();
         for piece in split(span)? {
             if self.is_clear(piece) {
                 clear.try_push(piece).ok()?;
@@ -325,9 +325,10 @@ impl Bus for Can {
     }
 
     fn counts(&self) -> BusCounts {
+        let noise = self.port.noise();
         BusCounts {
-            checksum_errors: self.port.bad_sums(),
-            resyncs: self.port.bad_lines(),
+            checksum_errors: noise.checksum_errors,
+            resyncs: noise.resyncs,
             foreign_replies: self.foreign,
             foreign_requests: self.foreign_requests,
         }

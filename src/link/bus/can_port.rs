@@ -1,5 +1,6 @@
 //! CAN frames over a wire: as text or packets through a serial adapter, or as Linux's frames. Asks nothing of a hand.
 
+use crate::codec::NoiseCounts;
 use crate::codec::can::{CanFrame, CanRecord, RECORD_LEN, from_record, to_record};
 use crate::codec::slcan::{AnswerDecoder, SlcanAnswer, SlcanCommand, bitrate_code, encode_command};
 use crate::codec::usbcan::{self, PacketContent, PacketDecoder};
@@ -243,20 +244,12 @@ impl CanPort {
         self.failed = false;
     }
 
-    /// Lines that were no slcan text, or runs of bytes that were no packets.
-    pub(crate) fn bad_lines(&self) -> u64 {
+    /// What was no line or packet.
+    pub(crate) fn noise(&self) -> NoiseCounts {
         match &self.form {
-            CanEncoding::Text { decoder, .. } => decoder.counts().bad_lines,
-            CanEncoding::Packets(decoder) => decoder.counts().resyncs,
-            CanEncoding::Records(_) => 0,
-        }
-    }
-
-    /// Packets whose sum was wrong.
-    pub(crate) const fn bad_sums(&self) -> u64 {
-        match &self.form {
-            CanEncoding::Packets(decoder) => decoder.counts().checksum_errors,
-            CanEncoding::Text { .. } | CanEncoding::Records(_) => 0,
+            CanEncoding::Text { decoder, .. } => decoder.counts(),
+            CanEncoding::Packets(decoder) => decoder.counts(),
+            CanEncoding::Records(_) => NoiseCounts::default(),
         }
     }
 }

@@ -85,7 +85,7 @@ pub fn said_line(direction: Direction, line: &[u8]) -> FrameContent {
         Direction::FromHand => {
             let mut decoder = AnswerDecoder::default();
             let said = line.iter().find_map(|byte| decoder.push(*byte));
-            let noisy = (decoder.counts().bad_lines > 0).then_some(Wrong::Line);
+            let noisy = (decoder.counts().resyncs > 0).then_some(Wrong::Line);
             match said {
                 Some(SlcanAnswer::Frame(frame)) => said_frame(direction, &frame).wrong(noisy),
                 Some(SlcanAnswer::Failed) => FrameContent::new(Kind::AdapterReply)

@@ -47,14 +47,7 @@ impl Decoder {
     /// For a link to this hand.
     #[must_use]
     pub fn new(endpoint: &Endpoint) -> Self {
-        let form = match endpoint {
-            Endpoint::Sim { .. } | Endpoint::Rs485(_) => FrameFormat::Rs485,
-            Endpoint::Rtu(_) => FrameFormat::Rtu,
-            Endpoint::Tcp { .. } => FrameFormat::Tcp,
-            Endpoint::Can { .. } => FrameFormat::Can,
-            Endpoint::Slcan { .. } => FrameFormat::Slcan,
-            Endpoint::UsbCan { .. } => FrameFormat::UsbCan,
-        };
+        let form = FrameFormat::of(endpoint);
         let hand = id_of(endpoint);
         Self {
             form,

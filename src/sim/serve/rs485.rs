@@ -1,8 +1,8 @@
 //! Simulated hands on a serial wire, private framing (manual 2.2). Opens no port.
 
 use crate::codec::rs485::{
-    Frame, READ_LEN_MAX, Request, RequestDecoder, encode_calibration_end, encode_read_reply,
-    encode_save_result, encode_write_ack,
+    READ_LEN_MAX, RequestDecoder, Rs485Frame, Rs485Request, encode_calibration_end,
+    encode_read_reply, encode_save_result, encode_write_ack,
 };
 use crate::hand::Span;
 use crate::sim::hand::SimHand;
@@ -124,9 +124,9 @@ impl<W: Wire> Rs485Server<W> {
     }
 }
 
-fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
+fn answer(hand: &SharedHand, request: &Rs485Request) -> Option<Rs485Frame> {
     hand.with(|hand, now| match request {
-        Request::Read { id, span } if is_meant(hand, *id) => {
+        Rs485Request::Read { id, span } if is_meant(hand, *id) => {
             let cut = hand.personality().long_read == LongRead::Truncate;
             let len = match span.len {
                 ..=READ_LEN_MAX => span.len,
@@ -136,7 +136,7 @@ fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
             let bytes = hand.read(Span::new(span.address, len), now).ok()?;
             encode_read_reply(hand.id(), span.address, &bytes)
         }
-        Request::Write { id, address, bytes } if is_meant(hand, *id) => {
+        Rs485Request::Write { id, address, bytes } if is_meant(hand, *id) => {
             match hand.write(*address, bytes, now) {
                 Ok(effect) => effect
                     .is_acked

@@ -48,8 +48,8 @@ texts! {
     UNREACHABLE_TITLE: "NO CONNECTION", "无法连接";
     ALARM_TITLE: "STOP NOT CONFIRMED", "停止未确认";
     ALARM_BODY: "Feedback does not show rest: the hand may still move. Hold is being repeated. Cut the 24 V supply.", "反馈未显示静止：灵巧手可能仍在运动。正在重复发送保持指令。请切断 24 V 电源。";
-    RIVAL_TITLE: "ANOTHER CONTROLLER", "另有控制器";
-    RIVAL_BODY: "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
+    OTHER_CONTROLLER_TITLE: "ANOTHER CONTROLLER", "另有控制器";
+    OTHER_CONTROLLER_BODY: "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
     FAULT_TITLE: "FAULT", "故障";
     FAULT_BODY: "A drive reports a fault. Setpoints do not pass until it is cleared.", "驱动器报告故障。清除之前不会发送设置值。";
     FAULT_SHOW: "Show faults", "查看故障", "Opens the list of faults with causes and advice.", "打开故障列表，查看原因与建议。";

@@ -52,7 +52,7 @@ fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
         alarm(pane),
         lost(pane),
         faults(pane),
-        rival(pane),
+        other_controller(pane),
         stale(pane),
         connecting(pane),
         empty(pane),
@@ -143,11 +143,11 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
     })
 }
 
-fn rival(pane: &Pane<'_>) -> Option<Warning> {
+fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
     let link = &pane.state.hand().link;
     (link.state.is_live() && link.other_controller).then(|| Warning {
-        title: main::RIVAL_TITLE,
-        body: pane.look.say(main::RIVAL_BODY).into(),
+        title: main::OTHER_CONTROLLER_TITLE,
+        body: pane.look.say(main::OTHER_CONTROLLER_BODY).into(),
         aside: String::new(),
         color: pane.look.palette.warn,
         help: Help::None,

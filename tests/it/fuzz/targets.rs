@@ -7,7 +7,7 @@ use handscope::codec::mbap::{self, MbapSplitter};
 use handscope::codec::modbus::{BytePacking, bytes_from_words, words_for};
 use handscope::codec::modbus_rtu::{self, RtuSplitter, crc16};
 use handscope::codec::rs485::{
-    BUFFER_LEN, Reply, ReplyDecoder, Request, RequestDecoder, client, device, encode_read,
+    BUFFER_LEN, ReplyDecoder, RequestDecoder, Rs485Reply, Rs485Request, client, device, encode_read,
 };
 use handscope::codec::slcan::{
     AnswerDecoder, CommandDecoder, SlcanAnswer, SlcanCommand, encode_answer, encode_command,
@@ -123,10 +123,10 @@ fn rs485_client(state: &mut State, bytes: &[u8]) {
         while let Some(reply) = replies.next() {
             *accepted += 1;
             let frame = match &reply {
-                Reply::Read { id, address, bytes } => {
+                Rs485Reply::Read { id, address, bytes } => {
                     device::encode_read_reply(*id, *address, bytes).unwrap()
                 }
-                Reply::WriteAck { id, address, value } => {
+                Rs485Reply::WriteAck { id, address, value } => {
                     device::encode_write_ack(*id, *address, *value)
                 }
             };
@@ -156,7 +156,7 @@ fn rs485_device(state: &mut State, bytes: &[u8]) {
         let taken = requests.push(bytes);
         while let Some(request) = requests.next() {
             *accepted += 1;
-            if let Request::Read { id, span } = &request
+            if let Rs485Request::Read { id, span } = &request
                 && let (Ok(id), true) = (HandId::new(*id), (1..=252).contains(&span.len))
             {
                 let frame = encode_read(id, *span).unwrap();
@@ -305,7 +305,7 @@ fn usbcan_packets(state: &mut State, bytes: &[u8]) {
             let packet = usbcan::encode(frame);
             let read = packet.iter().filter_map(|byte| again.push(*byte));
             assert_eq!(read.collect::<Vec<_>>(), [content]);
-            assert_eq!(again.counts(), usbcan::NoiseCounts::default());
+            assert_eq!(again.counts(), handscope::codec::NoiseCounts::default());
         }
     }
 }
