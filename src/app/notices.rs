@@ -221,6 +221,12 @@ pub enum NoticeKind {
 }
 
 impl NoticeKind {
+    /// A file could not be written there.
+    pub(crate) fn not_saved(path: PathBuf, error: &std::io::Error) -> Self {
+        let message = error.to_string();
+        Self::NotSaved { path, message }
+    }
+
     /// How much it matters.
     #[must_use]
     pub const fn level(&self) -> Level {

@@ -16,7 +16,7 @@ use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
 use crate::app::state::{PortChoice, State};
 use crate::app::trials::TrialAction;
-use crate::app::trials::files::{FilesEnd, SessionFiles};
+use crate::app::trials::files::{self, FilesEnd};
 use crate::hand::Moment;
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
@@ -179,7 +179,7 @@ impl App {
             && let Some(id) = self.state.trials.to_keep.pop_front()
         {
             let session = self.state.trials.session(id);
-            self.keeping = session.and_then(|session| SessionFiles::keep(session, &self.env));
+            self.keeping = session.and_then(|session| files::keep(session, &self.env));
         }
         match Job::take_from(&mut self.importing) {
             None => {}
@@ -413,10 +413,10 @@ impl App {
         match action {
             TrialAction::Start => hands.shown_mut().start_series(trials, &self.env),
             TrialAction::Open | TrialAction::Save(..) if self.sessions.is_some() => {}
-            TrialAction::Open => self.sessions = Some(SessionFiles::open(&self.env)),
+            TrialAction::Open => self.sessions = Some(files::open(&self.env)),
             TrialAction::Save(id, criterion) => {
                 let session = trials.session(id);
-                let save = |session| SessionFiles::save(session, criterion, &self.env);
+                let save = |session| files::save(session, criterion, &self.env);
                 self.sessions = session.and_then(save);
             }
             action => trials.act(action, settings),

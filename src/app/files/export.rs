@@ -114,10 +114,7 @@ pub(crate) fn save(content: Content, env: &Env) -> Job<NoticeKind> {
         };
         match on_thread(work).await {
             Ok(entries) => NoticeKind::Saved { path, entries },
-            Err(error) => NoticeKind::NotSaved {
-                message: error.to_string(),
-                path,
-            },
+            Err(error) => NoticeKind::not_saved(path, &error),
         }
     })
 }

@@ -93,7 +93,7 @@ fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
 
 /// A switch for each plot. The last one that is shown stays.
 fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let shown = pane.state.settings.plots;
+    let shown = pane.state.settings.plots.clone();
     for panel in &PANELS {
         let mut on = shown.shows(panel.kind);
         let enabled = !on || shown.count() > 1;

@@ -82,7 +82,7 @@ impl PlotView {
     }
 
     fn body_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let plots = pane.state.settings.plots;
+        let plots = &pane.state.settings.plots;
         let shown = PANELS.iter().filter(|panel| plots.shows(panel.kind));
         let mut shown: Vec<&Panel> = shown.collect();
         let at = shown
