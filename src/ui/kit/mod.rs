@@ -17,5 +17,5 @@ pub(crate) use controls::{
     paint_text, pick_ui, pressed, sign, take_left, take_top, text_width, warning_sign,
 };
 pub(crate) use look::{Explain, Look, Pane, Typing};
-pub(crate) use number::{NumberField, whole};
+pub(crate) use number::NumberField;
 pub(crate) use text_field::TextField;
