@@ -243,7 +243,7 @@ impl ConnectionForm {
         let caption = look.say(panels::setting(key));
         row_ui(ui, look, caption, |ui| {
             if all.is_empty() {
-                kit::edit_ui(ui, caption, "", text);
+                kit::edit_ui(ui, (caption, ""), text);
                 return;
             }
             if all.iter().all(|(value, _)| value != text) {

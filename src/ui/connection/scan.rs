@@ -74,7 +74,7 @@ impl ScanPanel {
             let width = ui.available_width() - width - theme::GAP;
             ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
                 let name = look.say(scan::ADDRESS);
-                kit::edit_ui(ui, name, name, &mut self.address)
+                kit::edit_ui(ui, (name, name), &mut self.address)
             });
             let missing = self.address.trim().is_empty();
             let missing = missing.then_some(scan::ADDRESS_EMPTY);

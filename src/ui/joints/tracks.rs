@@ -40,15 +40,12 @@ impl Setting<'_> {
         if let Some(command) = &self.command {
             frame_menu_ui(ui, pane, self.id, command);
         }
-        let number = NumberField {
-            name: self.number_name,
-            tip: look.say(main::NUMBER_TIP),
-            disabled: self.track.disabled,
-            value: self.track.target.map(|target| self.scale.shown(target)),
-            range: self.scale.low..=self.scale.high,
-            decimals: self.scale.decimals,
-        };
-        let typed = number.ui(ui, look, pane.typing);
+        let (scale, tip) = (self.scale, look.say(main::NUMBER_TIP));
+        let number = NumberField::new(self.number_name, tip, scale.low..=scale.high)
+            .disabled(self.track.disabled)
+            .decimals(scale.decimals);
+        let value = self.track.target.map(|target| scale.shown(target));
+        let typed = number.ui(ui, pane, value);
         typed.map(|typed| self.scale.raw(typed)).or(moved)
     }
 }

@@ -302,7 +302,7 @@ impl CardView {
             let ask = format!("{} {word}", look.say(cards::TYPE));
             ui.horizontal(|ui| {
                 Label::new(&ask, palette.text).ui(ui);
-                let field = controls::edit_ui(ui, &ask, "", &mut self.typed);
+                let field = controls::edit_ui(ui, (&ask, ""), &mut self.typed);
                 if is_new {
                     field.request_focus();
                 }

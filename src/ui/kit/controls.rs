@@ -501,7 +501,7 @@ pub(crate) fn head_ui<R>(
 }
 
 /// A line of text that counts as it is typed.
-pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> Response {
+pub(crate) fn edit_ui(ui: &mut Ui, (name, hint): (&str, &str), text: &mut String) -> Response {
     let edit = egui::TextEdit::singleline(text)
         .hint_text(hint.to_owned())
         .align(Align2::LEFT_CENTER)
@@ -510,12 +510,17 @@ pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) ->
         .align(Align2::LEFT_CENTER)
         .desired_width(ui.available_width());
     let response = ui.add(edit);
+    named_field(&response, name, true, text);
+    response
+}
+
+/// Tells a screen reader the name of a text field, and what stands in it.
+pub(crate) fn named_field(response: &Response, name: &str, enabled: bool, text: &str) {
     response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
-        info.current_text_value = Some(text.clone());
+        let mut info = WidgetInfo::labeled(Role::TextInput, enabled, name);
+        info.current_text_value = Some(text.to_owned());
         info
     });
-    response
 }
 
 /// A button for each value, of which one is chosen; `tip` explains those whose text has none. True if another was chosen.

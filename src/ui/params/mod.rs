@@ -14,13 +14,12 @@ use crate::app::params::refusal::Refusal;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::params::table::Shown;
 use crate::ui::text::{device, errors, verdicts};
-use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, Ui};
+use egui::{Align, Color32, Frame, Layout, Margin, Panel, Ui};
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct DeviceView {
     shown: Shown,
-    typed: Option<(Id, String)>,
 }
 
 impl DeviceView {
@@ -51,7 +50,7 @@ impl DeviceView {
             ui.horizontal(|ui| tools_ui(ui, pane));
             let (words, color) = status(pane);
             Label::new(&words, color).small().ui(ui);
-            table::table_ui(ui, pane, &self.shown, &mut self.typed);
+            table::table_ui(ui, pane, &self.shown);
         });
     }
 
@@ -60,8 +59,7 @@ impl DeviceView {
         let look = pane.look;
         ui.scope(|ui| {
             ui.set_max_width(200.0);
-            let (name, hint) = (look.say(device::FIND), look.say(device::FIND_HINT));
-            kit::edit_ui(ui, name, hint, &mut self.shown.words);
+            kit::edit_ui(ui, look.both(device::FIND), &mut self.shown.words);
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let refusal = pane.state.hand().read_refusal();

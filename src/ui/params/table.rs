@@ -6,10 +6,10 @@ use crate::app::hand::Freshness;
 use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format, whole};
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
 use crate::ui::text::{Text, device, verdicts};
 use crate::ui::theme;
-use egui::{Align, Color32, Id, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
 
 /// Characters of an address.
@@ -59,12 +59,7 @@ impl Shown {
 }
 
 /// Draws the table.
-pub(crate) fn table_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    shown: &Shown,
-    typed: &mut Option<(Id, String)>,
-) {
+pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &Shown) {
     let look = pane.look;
     let rows = ParamId::all().into_iter();
     let rows: Vec<ParamId> = rows.filter(|id| shown.passes(pane, *id)).collect();
@@ -114,7 +109,7 @@ pub(crate) fn table_ui(
                     true => ROW_HIGH,
                     false => ROW,
                 };
-                body.row(height, |row| row_ui(row, pane, id, typed));
+                body.row(height, |row| row_ui(row, pane, id));
                 if has_trouble(pane, id) {
                     line_ui(&mut body, theme::LIST_LINE, |ui| verdict_ui(ui, pane, id));
                 }
@@ -143,12 +138,7 @@ fn has_trouble(pane: &Pane<'_>, id: ParamId) -> bool {
     end.is_some_and(|end| end.verdict != RowVerdict::Applied)
 }
 
-fn row_ui(
-    mut row: TableRow<'_, '_>,
-    pane: &mut Pane<'_>,
-    id: ParamId,
-    typed: &mut Option<(Id, String)>,
-) {
+fn row_ui(mut row: TableRow<'_, '_>, pane: &mut Pane<'_>, id: ParamId) {
     let (book, muted) = (&pane.state.hand().params, pane.look.palette.muted);
     row.set_selected(book.staged(id).is_some());
     row.col(|ui| name_ui(ui, pane, id));
@@ -161,7 +151,7 @@ fn row_ui(
                 (ROW - theme::CONTROL) / 2.0
             };
             ui.add_space(field);
-            ui.horizontal(|ui| staged_ui(ui, pane, id, typed));
+            ui.horizontal(|ui| staged_ui(ui, pane, id));
             if id.is_place() {
                 change_ui(ui, pane, id);
             }
@@ -308,7 +298,7 @@ fn live_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
 }
 
 /// The field of what is to be staged, and the way to drop it.
-fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(Id, String)>) {
+fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let book = &pane.state.hand().params;
     let staged = book.staged(id);
@@ -320,7 +310,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(
         let width = ui.available_width() - theme::CONTROL - theme::GAP;
         ui.set_max_width(width);
         let new = match id {
-            ParamId::IpAddress => address_ui(ui, (&name, shown), typed),
+            ParamId::IpAddress => address_ui(ui, pane, (&name, shown)),
             ParamId::ReduRatio => speed_ui(ui, &name, shown),
             _ => number_ui(ui, pane, (&name, id), shown),
         };
@@ -345,19 +335,13 @@ fn number_ui(
 ) -> Option<Value> {
     let (min, max) = id.range()?;
     let value = match value {
-        Some(Value::Number(number)) => Some(f64::from(number)),
+        Some(Value::Number(number)) => Some(number),
         _ => None,
     };
-    let field = NumberField {
-        name,
-        tip: pane.look.tip(device::STAGED),
-        disabled: None,
-        value,
-        range: f64::from(min)..=f64::from(max),
-        decimals: 0,
-    };
-    let typed = field.ui(ui, pane.look, pane.typing)?;
-    Some(Value::Number(i32::try_from(whole(typed)).ok()?))
+    let tip = pane.look.tip(device::STAGED);
+    let field = NumberField::new(name, tip, min.into()..=max.into());
+    let typed = field.whole_ui(ui, pane, value)?;
+    Some(Value::Number(i32::try_from(typed).ok()?))
 }
 
 fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
@@ -375,17 +359,13 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
 
 fn address_ui(
     ui: &mut Ui,
+    pane: &mut Pane<'_>,
     (name, value): (&str, Option<Value>),
-    typed: &mut Option<(Id, String)>,
 ) -> Option<Value> {
     let text = value.map_or_else(String::new, |value| value.to_string());
-    let field = TextField {
-        name,
-        hint: format::UNKNOWN,
-        value: &text,
-        max: ADDRESS_MAX,
-    };
-    field.ui(ui, typed)?.parse().ok().map(Value::Address)
+    let field = TextField::new(name, ADDRESS_MAX).hint(format::UNKNOWN);
+    let typed = field.ui(ui, pane, &text)?;
+    typed.parse().ok().map(Value::Address)
 }
 
 /// A row that says where the hand is found is not written from the table: it is changed under a card, with a way back.

@@ -178,15 +178,9 @@ fn end_ui(ui: &mut Ui, pane: &mut Pane<'_>, (title, end): (Text, Text), value: f
     let look = pane.look;
     let name = format!("{}: {}", look.say(end), look.say(title));
     let row = ui.horizontal(|ui| {
-        let field = NumberField {
-            name: &name,
-            tip: look.say(plots::RANGE_END_TIP),
-            disabled: None,
-            value: Some(value),
-            range: -MOST..=MOST,
-            decimals: 2,
-        };
-        let typed = ui.scope(|ui| field.ui(ui, look, pane.typing)).inner;
+        let tip = look.say(plots::RANGE_END_TIP);
+        let field = NumberField::new(&name, tip, -MOST..=MOST).decimals(2);
+        let typed = ui.scope(|ui| field.ui(ui, pane, Some(value))).inner;
         ui.label(look.say(end));
         typed
     });

@@ -5,7 +5,7 @@ use crate::app::hand::gestures::StoreVerdict;
 use crate::hand::command::stored_gesture;
 use crate::hand::{Angle, GestureStore, PerDof, UserGesture};
 use crate::ui::hand::panel;
-use crate::ui::kit::{Button, Label, NumberField, Pane, Weight, whole};
+use crate::ui::kit::{Button, Label, NumberField, Pane, Weight};
 use crate::ui::poses::editor::{caption_ui, six_ui};
 use crate::ui::text::{main, poses};
 use egui::{Ui, vec2};
@@ -69,16 +69,9 @@ impl GestureEditor {
         let look = pane.look;
         let text = look.say(poses::USER_GESTURE);
         caption_ui(ui, text, look.palette.text);
-        let field = NumberField {
-            name: text,
-            tip: look.tip(poses::USER_GESTURE),
-            disabled: None,
-            value: Some(f64::from(self.gesture.get())),
-            range: 14.0..=40.0,
-            decimals: 0,
-        };
-        let typed = field.ui(ui, look, pane.typing);
-        if let Some(gesture) = typed.and_then(|typed| UserGesture::new(whole(typed)).ok()) {
+        let field = NumberField::new(text, look.tip(poses::USER_GESTURE), 14.0..=40.0);
+        let typed = field.whole_ui(ui, pane, Some(self.gesture.get()));
+        if let Some(gesture) = typed.and_then(|typed| UserGesture::new(typed).ok()) {
             self.gesture = gesture;
             self.reading = false;
         }

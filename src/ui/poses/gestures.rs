@@ -7,7 +7,7 @@ use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight};
 use crate::ui::poses::gesture_editor::GestureEditor;
 use crate::ui::poses::tiles::gesture_ui;
 use crate::ui::text::{panels, poses};
-use egui::{CollapsingHeader, Grid, Id, ScrollArea, Ui};
+use egui::{CollapsingHeader, Grid, ScrollArea, Ui};
 
 /// Characters that a name may have.
 const NAME_MAX: usize = 24;
@@ -19,8 +19,6 @@ const NAMES: usize = 4;
 pub(crate) struct GestureView {
     /// True while names are typed instead of gestures started.
     naming: bool,
-    /// The name being typed.
-    typed: Option<(Id, String)>,
     editor: GestureEditor,
 }
 
@@ -71,7 +69,6 @@ impl GestureView {
         button.selected = Some(self.naming);
         if button.ui(ui, look).clicked() {
             self.naming = !self.naming;
-            self.typed = None;
         }
     }
 
@@ -82,15 +79,10 @@ impl GestureView {
                 let number = gesture.get().to_string();
                 let name = format!("{} {number}", look.say(panels::GESTURE_NAME));
                 let known = pane.state.settings.gesture_name(gesture);
-                let field = TextField {
-                    name: &name,
-                    hint: &number,
-                    value: known.unwrap_or_default(),
-                    max: NAME_MAX,
-                };
+                let field = TextField::new(&name, NAME_MAX).hint(&number);
                 ui.scope(|ui| {
                     ui.set_width(120.0);
-                    if let Some(name) = field.ui(ui, &mut self.typed) {
+                    if let Some(name) = field.ui(ui, pane, known.unwrap_or_default()) {
                         pane.actions.push(Action::NameGesture(gesture, name));
                     }
                 });

@@ -17,7 +17,7 @@ use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, tile_ui};
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Align, Id, Layout, ScrollArea, Ui, vec2};
+use egui::{Align, Layout, ScrollArea, Ui, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -47,7 +47,6 @@ pub(crate) struct PoseView {
     order: reorder::Reorder,
     /// Only poses with these words are shown.
     find: String,
-    typed: Option<(Id, String)>,
 }
 
 impl PoseView {
@@ -62,7 +61,7 @@ impl PoseView {
             ui.horizontal(|ui| self.head_ui(ui, pane));
             match self.section {
                 Section::Mine => self.mine_ui(ui, pane),
-                Section::Sequences => self.sequences.ui(ui, pane, &mut self.typed),
+                Section::Sequences => self.sequences.ui(ui, pane),
                 Section::InHand => self.gestures.ui(ui, pane),
             }
         });
@@ -90,8 +89,7 @@ impl PoseView {
             capture_ui(ui, pane, capture.weight(Weight::Strong));
             ui.scope(|ui| {
                 ui.set_max_width(200.0);
-                let (name, hint) = (look.say(poses::FIND), look.say(poses::FIND_HINT));
-                kit::edit_ui(ui, name, hint, &mut self.find);
+                kit::edit_ui(ui, look.both(poses::FIND), &mut self.find);
             });
         });
         let chosen = self.chosen.and_then(|chosen| library.pose(chosen));
@@ -100,7 +98,7 @@ impl PoseView {
         let width = (ui.available_width() * 0.42).clamp(268.0, 380.0);
         beside(width, "pose").show(ui, |ui| {
             if let Some(pose) = chosen {
-                editor::editor_ui(ui, pane, &mut self.typed, pose);
+                editor::editor_ui(ui, pane, pose);
             }
         });
         self.tiles_ui(ui, pane);

@@ -5,7 +5,7 @@ use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit, Way};
 use crate::poses::library::{Millis, Sequence, Step};
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder, whole};
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
@@ -117,22 +117,15 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, step):
     let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, (value, max): (f64, f64)| {
         let text = look.say(caption);
         let label = format!("{} {} {text}", look.say(poses::STEP), at + 1);
-        let field = NumberField {
-            name: &label,
-            tip: look.say(tip),
-            disabled: None,
-            value: Some(value),
-            range: 0.0..=max,
-            decimals: 0,
-        };
+        let field = NumberField::new(&label, look.say(tip), 0.0..=max);
         let (size, down) = (vec2(58.0, 36.0), Layout::top_down(Align::Min));
         let typed = ui.allocate_ui_with_layout(size, down, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.spacing_mut().interact_size.y = 20.0;
             Label::new(text, look.palette.muted).small().ui(ui);
-            field.ui(ui, look, pane.typing)
+            field.whole_ui(ui, pane, Some(value))
         });
-        typed.inner.map(whole)
+        typed.inner
     };
     let millis = |time: Millis| (f64::from(time.get()), f64::from(Millis::MAX));
     let limit = number(pane, poses::LIMIT, poses::LIMIT.tip(), millis(step.limit));

@@ -12,7 +12,7 @@ use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
 use egui::{
-    Align, Align2, Frame, Id, Layout, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2,
+    Align, Align2, Frame, Layout, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2,
 };
 use std::time::Duration;
 
@@ -43,12 +43,7 @@ pub(crate) fn beside(width: f32, id: &'static str) -> Panel {
 
 impl SequenceView {
     /// Draws the list, and the chosen sequence.
-    pub(crate) fn ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        typed: &mut Option<(Id, String)>,
-    ) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let state = pane.state;
         let newest = state.poses.newest_sequence;
         if newest != self.shown {
@@ -60,7 +55,7 @@ impl SequenceView {
         self.chosen = chosen.map(|sequence| sequence.id);
         let width = ui.available_width() - 148.0;
         beside(width, "sequence").show(ui, |ui| match chosen {
-            Some(sequence) => self.sequence_ui(ui, pane, typed, sequence),
+            Some(sequence) => self.sequence_ui(ui, pane, sequence),
             None => empty_ui(ui, pane),
         });
         self.list_ui(ui, pane);
@@ -93,15 +88,9 @@ impl SequenceView {
         });
     }
 
-    fn sequence_ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        typed: &mut Option<(Id, String)>,
-        sequence: &Sequence,
-    ) {
+    fn sequence_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
         let right = Layout::right_to_left(Align::Center);
-        ui.horizontal(|ui| ui.with_layout(right, |ui| head_ui(ui, pane, typed, sequence)));
+        ui.horizontal(|ui| ui.with_layout(right, |ui| head_ui(ui, pane, sequence)));
         timeline_ui(ui, pane, sequence);
         picture_ui(ui, pane, sequence);
         let foot = theme::CONTROL + theme::CONTROL_LARGE + 4.0 * theme::STEP;
@@ -164,12 +153,7 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
 }
 
 /// From right to left.
-fn head_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    typed: &mut Option<(Id, String)>,
-    sequence: &Sequence,
-) {
+fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
     let delete = Button::said(look, poses::DELETE);
     if delete.ui(ui, look).clicked() {
@@ -180,13 +164,8 @@ fn head_ui(
         change(pane, sequence, SequenceEdit::Loop(!sequence.looped));
     }
     let name = format!("{} {}", look.say(poses::SEQUENCE), look.say(poses::NAME));
-    let field = TextField {
-        name: &name,
-        hint: "",
-        value: &sequence.name,
-        max: NAME_CHARS_MAX,
-    };
-    if let Some(name) = field.ui(ui, typed) {
+    let field = TextField::new(&name, NAME_CHARS_MAX);
+    if let Some(name) = field.ui(ui, pane, &sequence.name) {
         change(pane, sequence, SequenceEdit::Rename(name));
     }
 }

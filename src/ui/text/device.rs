@@ -6,8 +6,7 @@ use crate::ui::text::phrase::texts;
 texts! {
     REFUSED: "Nothing of the file was taken.", "文件未被采用。";
 
-    FIND: "Find parameters", "查找参数";
-    FIND_HINT: "Filter", "筛选";
+    FIND: "Find parameters", "查找参数", "Filter", "筛选";
     FIND_NONE: "No row has these words.", "没有符合的行。";
     NO_DIFFERENCE: "No row differs.", "没有不同的行。";
     ONLY: "Only differences", "只看不同", "Shows only rows in which live, staged, saved and factory are not all the same.", "只显示实际值、暂存值、已存值与出厂值不完全相同的行。";

@@ -54,8 +54,7 @@ texts! {
     LOG_NONE: "Nothing has happened yet.", "还没有消息。";
     LOG_NONE_PASS: "No message passes the filter.", "没有符合条件的消息。";
     LOG_LOST: "older messages were dropped:", "已丢弃的较早消息：";
-    LOG_FILTER: "Filter messages", "筛选消息";
-    LOG_FILTER_HINT: "words", "关键词";
+    LOG_FILTER: "Filter messages", "筛选消息", "words", "关键词";
     LEVEL: "Level", "级别", "Shows messages of this level and above.", "显示此级别及以上的消息。";
     LEVEL_ALL: "All", "全部";
     LEVEL_WARN: "Warnings", "警告";

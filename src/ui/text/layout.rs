@@ -16,8 +16,7 @@ texts! {
     MOVES_SETPOINTS: "The hand moves to your setpoints", "灵巧手正在移向设定值";
     MOVES_UNKNOWN: "The hand moves, and not because of this window", "灵巧手正在运动，但并非由本窗口发起";
     END: "End", "结束", "Ends it and holds the hand where it is.", "结束并保持灵巧手当前位置。";
-    STOP_NOT_SENT: "STOP COULD NOT BE SENT", "停止命令未能发出";
-    STOP_NOT_SENT_BODY: "No hand answers. If it moves, switch off its 24 V supply.", "没有灵巧手应答。若仍在运动，请关闭 24 V 电源。";
+    STOP_NOT_SENT: "STOP COULD NOT BE SENT", "停止命令未能发出", "No hand answers. If it moves, switch off its 24 V supply.", "没有灵巧手应答。若仍在运动，请关闭 24 V 电源。";
     UNDERSTOOD: "Understood", "知道了";
     OPEN: "Expand", "展开", "Shows this room again.", "重新显示此区域。";
     SIDE: "Fingertips and faults", "指尖与故障";

@@ -36,26 +36,19 @@ texts! {
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";
     LOCKED: "This joint is locked.", "该自由度已锁定。";
 
-    CONNECTING_TITLE: "CONNECTING", "正在连接";
-    CONNECTING_BODY: "Asking the hand to answer; nothing is written to it:", "正在等待灵巧手应答，不写入任何数据：";
-    EMPTY_TITLE: "NOT CONNECTED", "未连接";
-    EMPTY_BODY: "Choose the hand to talk to, or the built-in simulated one.", "请选择要连接的灵巧手，或内置的仿真手。";
+    CONNECTING_TITLE: "CONNECTING", "正在连接", "Asking the hand to answer; nothing is written to it:", "正在等待灵巧手应答，不写入任何数据：";
+    EMPTY_TITLE: "NOT CONNECTED", "未连接", "Choose the hand to talk to, or the built-in simulated one.", "请选择要连接的灵巧手，或内置的仿真手。";
     EMPTY_OPEN: "Connection", "连接设置", "Opens the connection.", "打开连接设置。";
-    LOST_TITLE: "LINK LOST", "连接断开";
-    LOST_BODY: "The hand may still be moving or gripping. Cut the 24 V supply if needed.", "灵巧手可能仍在运动或抓握。必要时请切断 24 V 电源。";
+    LOST_TITLE: "LINK LOST", "连接断开", "The hand may still be moving or gripping. Cut the 24 V supply if needed.", "灵巧手可能仍在运动或抓握。必要时请切断 24 V 电源。";
     LOST_RETRY_IN: "Next try in", "重试倒计时";
     LOST_TRYING: "Trying, attempt", "正在重试，第";
     UNREACHABLE_TITLE: "NO CONNECTION", "无法连接";
-    ALARM_TITLE: "STOP NOT CONFIRMED", "停止未确认";
-    ALARM_BODY: "Feedback does not show rest: the hand may still move. Hold is being repeated. Cut the 24 V supply.", "反馈未显示静止：灵巧手可能仍在运动。正在重复发送保持指令。请切断 24 V 电源。";
-    OTHER_CONTROLLER_TITLE: "ANOTHER CONTROLLER", "另有控制器";
-    OTHER_CONTROLLER_BODY: "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
-    FAULT_TITLE: "FAULT", "故障";
-    FAULT_BODY: "A drive reports a fault. Setpoints do not pass until it is cleared.", "驱动器报告故障。清除之前不会发送设置值。";
+    ALARM_TITLE: "STOP NOT CONFIRMED", "停止未确认", "Feedback does not show rest: the hand may still move. Hold is being repeated. Cut the 24 V supply.", "反馈未显示静止：灵巧手可能仍在运动。正在重复发送保持指令。请切断 24 V 电源。";
+    OTHER_CONTROLLER_TITLE: "ANOTHER CONTROLLER", "另有控制器", "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
+    FAULT_TITLE: "FAULT", "故障", "A drive reports a fault. Setpoints do not pass until it is cleared.", "驱动器报告故障。清除之前不会发送设置值。";
     FAULT_SHOW: "Show faults", "查看故障", "Opens the list of faults with causes and advice.", "打开故障列表，查看原因与建议。";
     LIST_END: ". ", "。";
-    STALE_TITLE: "OLD VALUES", "数据过时";
-    STALE_BODY: "No fresh feedback for", "没有新反馈已有";
+    STALE_TITLE: "OLD VALUES", "数据过时", "No fresh feedback for", "没有新反馈已有";
 
     TAB_LIVE: "Live", "总览";
     TAB_TOUCH: "Touch", "触觉";

@@ -75,7 +75,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::LatencyTimer { port, ms } => latency_timer(look, port, *ms),
         NoticeKind::Reconnected => said(panels::NOTICE_RECONNECTED),
         NoticeKind::HoldConfirmed { after } => told(panels::NOTICE_HELD, &format::age(*after)),
-        NoticeKind::HoldAlarm => said(main::ALARM_BODY),
+        NoticeKind::HoldAlarm => said(main::ALARM_TITLE.tip()),
         NoticeKind::StopNotSent => said(panels::NOTICE_STOP_NOT_SENT),
         NoticeKind::TareUnderLoad { finger, newtons } => {
             let finger = look.say(words::finger(*finger));

@@ -39,8 +39,7 @@ texts! {
     RECALL: "Go", "执行", "Takes this pose within its speed and force. Locked and left joints stay.", "按该姿态的速度与力执行。已锁定或不参与的自由度不动。";
     RECALL_NAME: "Go to", "执行姿态";
     NAME: "Name", "名称";
-    TAGS: "Tags", "标签";
-    TAGS_HINT: "separated by commas", "用逗号分隔";
+    TAGS: "Tags", "标签", "separated by commas", "用逗号分隔";
     ANGLE: "angle", "角度", "0 bent to 1000 open.", "0 弯曲，1000 张开。";
     LEAVE: "leave alone", "不参与", "This joint stays where it is when the pose is taken.", "执行该姿态时，此自由度保持不动。";
     SPEED: "Speed", "速度", "Speed of the joints on the way, 0 to 1000.", "运动速度，0 到 1000。";
@@ -90,8 +89,7 @@ texts! {
     EXPERT: "For experts: gesture numbers 14 to 40, and the register that starts a gesture", "高级：手势 14 至 40 的编辑与启动方式";
     STORE_NAME: "Where gestures are stored", "手势存储位置";
     STORE_CAPTION: "Register", "寄存器";
-    FIND: "Find poses", "查找姿态";
-    FIND_HINT: "name or tag", "名称或标签";
+    FIND: "Find poses", "查找姿态", "name or tag", "名称或标签";
     FIND_NONE: "No pose has these words in its name or tags.", "没有名称或标签含这些字的姿态。";
     STORE_TIP: "The manual describes gestures 14 to 40 but lists no address for their angles. Off: none is read or written.", "手册说明了手势 14 至 40，但没有列出其角度的地址。选择关闭则不读写这些地址。";
     STORE_1066: "From 1066", "自 1066 起";

@@ -23,8 +23,7 @@ texts! {
     EXPORT_CSV: "Export CSV", "导出 CSV", "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";
     EXPORT_JSON: "Export JSON", "导出 JSON", "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";
     EXPORT_NONE: "The list is empty.", "列表为空。";
-    FILTER: "Filter", "筛选";
-    FILTER_HINT: "name or hex bytes", "名称或十六进制字节";
+    FILTER: "Filter", "筛选", "name or hex bytes", "名称或十六进制字节";
     WAY_ALL: "Both ways", "双向";
     WAY_OUT: "To hand", "发往手";
     WAY_IN: "From hand", "来自手";

@@ -38,11 +38,9 @@ texts! {
     TAKE_NOW: "The pose the hand has now", "灵巧手当前的姿态";
     SETTINGS: "Settings to try", "试验的设置";
     SPEEDS: "Speeds", "速度";
-    SPEEDS_NAME: "Speeds to try", "试验速度";
-    SPEEDS_HINT: "25, 50, 100", "25, 50, 100";
+    SPEEDS_NAME: "Speeds to try", "试验速度", "25, 50, 100", "25, 50, 100";
     FORCES: "Thresholds, g", "力阈值 g";
-    FORCES_NAME: "Force thresholds to try", "试验力阈值";
-    FORCES_HINT: "300, 500", "300, 500";
+    FORCES_NAME: "Force thresholds to try", "试验力阈值", "300, 500", "300, 500";
     REPEATS: "Repeats", "重复次数", "Trials of each speed with each threshold.", "每个速度与力阈值组合的试验次数。";
     APPROACH: "Approach", "接近方式";
     FAST: "Fast speed", "快速段速度", "Speed until the fast part ends.", "快速段的速度。";
@@ -56,10 +54,8 @@ texts! {
     CEILING_CAPTION: "Force limit, g", "力上限 g", "Force above the reading at rest that ends the series with a stop.", "超过静止读数达到此力时，立即停止并结束。";
     STOP_C: "Stop at, °C", "停止温度 °C", "Drive temperature that ends the series with a stop.", "驱动器达到此温度时，立即停止并结束。";
     START_C: "Begin below, °C", "开始温度 °C", "A trial begins only when all drives are below this temperature; until then it waits.", "所有驱动器低于此温度才开始试验，否则等待。";
-    NOTE: "Note", "备注";
-    NOTE_HINT: "what is held, where it lies", "抓握的物体与摆放";
-    TAGS: "Tags", "标签";
-    TAGS_HINT: "separated by commas", "用逗号分隔";
+    NOTE: "Note", "备注", "what is held, where it lies", "抓握的物体与摆放";
+    TAGS: "Tags", "标签", "separated by commas", "用逗号分隔";
 
     LIST_RANGE: "Write whole numbers with commas, none above {}.", "请输入用逗号分隔的整数，最大为 {}。";
     LIST_LONG: "At most 20 numbers.", "最多 20 个数。";

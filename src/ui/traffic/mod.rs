@@ -184,8 +184,7 @@ impl TrafficView {
         let look = pane.look;
         let filter = &mut self.filter;
         ui.allocate_ui(vec2(220.0, theme::CONTROL), |ui| {
-            let (name, hint) = (look.say(traffic::FILTER), look.say(traffic::FILTER_HINT));
-            kit::edit_ui(ui, name, hint, &mut filter.text);
+            kit::edit_ui(ui, look.both(traffic::FILTER), &mut filter.text);
         });
         let ways = [
             (None, traffic::WAY_ALL),

@@ -13,7 +13,7 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::Sheet;
 use crate::ui::trials::compare_table::TableView;
-use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, ScrollArea, Ui};
+use egui::{Align, Color32, Frame, Layout, Margin, Panel, ScrollArea, Ui};
 
 /// Characters of a note.
 const NOTE_CHARS: usize = 300;
@@ -28,7 +28,6 @@ pub(crate) struct CompareView {
     /// The trial that stands out.
     strong: Option<TrialKey>,
     best: BestView,
-    typed: Option<(Id, String)>,
 }
 
 impl CompareView {
@@ -128,25 +127,20 @@ impl CompareView {
         });
     }
 
-    fn words_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
+    fn words_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         let look = pane.look;
         let (id, head) = (session.id, &session.head);
         let tags = head.tags.join(", ");
         let half = (ui.available_width() - theme::GAP) / 2.0;
         let note = TrialAction::Note as fn(SessionId, String) -> TrialAction;
-        for (name, hint, value, action) in [
-            (tune::NOTE, tune::NOTE_HINT, &head.note, note),
-            (tune::TAGS, tune::TAGS_HINT, &tags, TrialAction::Tags),
+        for (name, value, action) in [
+            (tune::NOTE, &head.note, note),
+            (tune::TAGS, &tags, TrialAction::Tags),
         ] {
-            let field = TextField {
-                name: look.say(name),
-                hint: look.say(hint),
-                value,
-                max: NOTE_CHARS,
-            };
+            let field = TextField::new(look.say(name), NOTE_CHARS).hint(look.tip(name));
             ui.push_id((id, name.en), |ui| {
                 ui.set_max_width(half);
-                if let Some(text) = field.ui(ui, &mut self.typed) {
+                if let Some(text) = field.ui(ui, pane, value) {
                     pane.actions.push(Action::Trial(action(id, text)));
                 }
             });

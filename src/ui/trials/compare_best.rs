@@ -79,15 +79,8 @@ impl BestView {
         ui.horizontal(|ui| {
             let name = look.say(tune::HOLD_AT_LEAST);
             Label::new(name, look.palette.muted).small().ui(ui);
-            let field = NumberField {
-                name,
-                tip: look.say(tune::HOLD_TIP),
-                disabled: None,
-                value: Some(self.steady_g),
-                range: 0.0..=4000.0,
-                decimals: 0,
-            };
-            if let Some(steady_g) = field.ui(ui, look, pane.typing) {
+            let field = NumberField::new(name, look.say(tune::HOLD_TIP), 0.0..=4000.0);
+            if let Some(steady_g) = field.ui(ui, pane, Some(self.steady_g)) {
                 self.steady_g = steady_g;
             }
         });

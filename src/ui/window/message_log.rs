@@ -59,11 +59,7 @@ impl MessageLog {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
         self.tools_ui(ui, look);
-        let (name, hint) = (
-            look.say(faults::LOG_FILTER),
-            look.say(faults::LOG_FILTER_HINT),
-        );
-        kit::edit_ui(ui, name, hint, &mut self.words);
+        kit::edit_ui(ui, look.both(faults::LOG_FILTER), &mut self.words);
         self.update(ui, pane);
         if !self.lines.is_empty() {
             self.lines_ui(ui, pane);
