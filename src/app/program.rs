@@ -297,6 +297,7 @@ impl App {
                     hand.history.mark(at, note);
                 }
             }
+            Action::RemoveMark(mark) => hand.history.remove_mark(&mark),
             Action::Stage(id, value) => hand.params.stage(id, value),
             action => self.pose_action(action, now),
         }
@@ -363,6 +364,7 @@ impl App {
             Action::Theme(theme) => settings.theme = theme,
             Action::Side(side) => settings.side = side,
             Action::Layout(layout) => settings.layout = layout,
+            Action::Zoom(zoom) => settings.zoom = zoom,
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,
             Action::PlotWindow(window) => settings.plot_window = window,

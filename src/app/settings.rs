@@ -203,6 +203,30 @@ impl ShownPlots {
     }
 }
 
+/// How much larger than designed everything is drawn, within what can be read and used.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "f32", into = "f32")]
+pub struct Zoom(f32);
+
+impl From<f32> for Zoom {
+    fn from(factor: f32) -> Self {
+        let sane = factor.is_finite();
+        Self(if sane { factor.clamp(0.5, 3.0) } else { 1.0 })
+    }
+}
+
+impl From<Zoom> for f32 {
+    fn from(zoom: Zoom) -> Self {
+        zoom.0
+    }
+}
+
+impl Default for Zoom {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
 /// Hands that are remembered: what fits a glance.
 pub const RECENT_MAX: usize = 5;
 /// What is kept from one start to the next. Unknown keys of the file survive in [`Self::others`].
@@ -233,6 +257,8 @@ pub struct Settings {
     pub gesture_names: BTreeMap<String, String>,
     /// How the window is divided.
     pub layout: Layout,
+    /// How much larger than designed everything is drawn.
+    pub zoom: Zoom,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,

@@ -207,6 +207,11 @@ impl History {
         self.marks.push(Mark { at, kind });
     }
 
+    /// Takes a mark away again.
+    pub fn remove_mark(&mut self, mark: &Mark) {
+        self.marks.remove(mark);
+    }
+
     /// The marks of a stretch of time, oldest first.
     pub fn marks(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Mark> {
         self.marks.between(from_s, to_s)

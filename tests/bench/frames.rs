@@ -18,14 +18,14 @@ const WARM: usize = 20;
 /// A display of 60 Hz.
 const FRAME_EACH: Duration = Duration::from_millis(16);
 /// What a frame may take: the middle one, and 99 of 100.
-const AIM_MS: f64 = 3.0;
-const AIM_SLOW_MS: f64 = 6.0;
+const AIM_MS: f64 = 2.5;
+const AIM_SLOW_MS: f64 = 4.0;
 /// A dead link may cost no more than this, as a part of what a live one costs.
 const AIM_DEAD: f64 = 1.1;
 /// Until a link that is gone is known to be gone.
 const DEAD_AFTER: Duration = Duration::from_secs(3);
 /// Growth that is still none: what one figure differs from the next anyway.
-const SAME: f64 = 1.15;
+const SAME: f64 = 1.1;
 
 const WINDOWS: [(PlotWindow, &str); 3] = [
     (PlotWindow::S10, "10 s"),

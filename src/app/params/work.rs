@@ -299,7 +299,6 @@ impl ParamsState {
     }
 
     fn save_ended(&mut self, end: Result<SaveReport, TaskError>, now: Moment) {
-        self.files = None;
         let end = match end {
             Ok(report) => match report.not_noted {
                 None => SaveEnd::Told(report.saved),
@@ -309,6 +308,7 @@ impl ParamsState {
             Err(TaskError::NotAsked(error)) => SaveEnd::NotAsked(error),
             Err(error) => return self.refused(WriteRequest::Save, error),
         };
+        self.files = None;
         self.save = Some((end, now));
     }
 

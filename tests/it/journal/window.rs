@@ -161,6 +161,11 @@ impl Program {
 
     async fn until(&mut self, words: &[&str]) {
         let over = Instant::now() + PATIENCE;
+        // A task takes an answer in the frame after it was given, and tells its next step in the one after that.
+        if words == ["decision"] {
+            self.frame().await;
+            self.frame().await;
+        }
         while !self.is(words) {
             assert!(Instant::now() < over, "{words:?} does not come");
             self.frame().await;
@@ -173,8 +178,12 @@ impl Program {
             ["live"] => state.hand().link.state.is_live(),
             ["lost"] => !state.hand().link.state.is_live(),
             ["armed"] => state.hand().link.state == LinkState::Armed,
-            ["idle"] => !state.hand().params.is_busy(),
-            ["decision"] => decides(state.hand().procedure.as_ref().expect("a card")),
+            // Files are listed on a thread, which knows nothing of virtual time.
+            ["idle"] => !state.hand().params.is_busy() && state.hand().params.files.is_some(),
+            ["decision"] => {
+                let decides = decides(state.hand().procedure.as_ref().expect("a card"));
+                decides && state.hand().params.files.is_some()
+            }
             ["series", "over"] => !state.hand().runs_series(),
             ["sequence", "over"] => !state
                 .hand()

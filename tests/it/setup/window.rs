@@ -15,7 +15,7 @@ use handscope::app::state::State;
 use handscope::hand::{Dof, Moment, SerialSpeed};
 use handscope::record::LinkState;
 use handscope::sim::serve::SharedHand;
-use handscope::sim::{Hands, SimConfig, SimHand};
+use handscope::sim::{SimConfig, SimHand, SimHands};
 use handscope::transport::{
     BoxedWire, Dial, Endpoint, FaultPlan, PortFound, Wire, faulty_pair, pair,
 };
@@ -81,7 +81,7 @@ impl Dial for Socket {
                 (ours, its)
             }
         };
-        let hands = Hands::new(self.hand.clone(), self.others.lock().unwrap().clone());
+        let hands = SimHands::new(self.hand.clone(), self.others.lock().unwrap().clone());
         let mut tasks = Vec::new();
         let its = match endpoint {
             Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
@@ -245,6 +245,17 @@ impl Bench {
             ..Settings::default()
         };
         Self::begin(Room::new(config, settings, Keeps::Records), size)
+    }
+
+    /// A start with these settings; nothing is kept on disk.
+    pub(crate) fn with(settings: Settings) -> Self {
+        let room = Room::new(SimConfig::default(), settings, Keeps::Nothing);
+        Self::begin(room, LARGE)
+    }
+
+    /// How much larger than designed everything is drawn.
+    pub(crate) fn zoom(&self) -> f32 {
+        self.harness.ctx.zoom_factor()
     }
 
     /// Asks for something as a view does that is not open.
