@@ -41,7 +41,7 @@ impl Table {
 
     /// Lines of the text after its head. The work grows with the measurements.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.lines().count()
     }
 
@@ -145,7 +145,7 @@ mod tests {
             "",
         ];
         assert_eq!(table.csv(), lines.join("\n"));
-        assert_eq!(table.len(), 5);
+        assert_eq!(table.rows(), 5);
     }
 
     #[test]

@@ -58,10 +58,10 @@ impl Export {
 
     /// Entries in it; a picture is one.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn entries(&self) -> usize {
         match self {
             Self::Traffic(_, frames) => frames.len(),
-            Self::Plots(table) | Self::Recording(table) => table.len(),
+            Self::Plots(table) | Self::Recording(table) => table.rows(),
             Self::Picture(bytes) => usize::from(!bytes.is_empty()),
             Self::Poses(library) => library.poses.len() + library.sequences.len(),
             Self::Params(file) => file.params.iter().count(),
@@ -110,7 +110,7 @@ pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
             if let Some(folder) = place.parent() {
                 std::fs::create_dir_all(folder)?;
             }
-            std::fs::write(&place, content.bytes()?).map(|()| content.len())
+            std::fs::write(&place, content.bytes()?).map(|()| content.entries())
         };
         match on_thread(work).await {
             Ok(entries) => NoticeKind::Saved { path, entries },

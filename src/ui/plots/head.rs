@@ -119,7 +119,7 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     {
         let table = history.table(&series, from_s, to_s);
         ui.copy_text(table.csv());
-        view.copied = Some(table.len());
+        view.copied = Some(table.rows());
     }
     if let Some(rows) = view.copied {
         ui.label(format!("{} {rows}", look.say(plots::COPIED)));
