@@ -14,7 +14,6 @@ pub mod serial;
 pub mod tcp;
 pub mod wire;
 
-pub use crate::transport::endpoint::packing::{NoPacking, Packing};
 pub use crate::transport::endpoint::route::{Route, route};
 pub use crate::transport::serial::adapter::{Adapter, Whereabouts, is_same_port};
 pub use crate::transport::serial::permission::Remedy;

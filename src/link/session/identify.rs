@@ -1,7 +1,7 @@
 //! Identifies a hand on a fresh wire, by reading only: is it there, and how does it differ from others. Bounded in time, and
 //! cut short by a stop; nothing is written.
 
-use crate::codec::modbus::BytePacking;
+use crate::hand::register::BytePacking;
 use crate::hand::register::{ANGLE_ACT, HAND_ID, REDU_RATIO, TEMP, TOUCH};
 use crate::hand::{Moment, Span};
 use crate::link::bus::error::id_of;

@@ -8,9 +8,10 @@ pub(crate) mod scan;
 use crate::app::action::Action;
 use crate::app::scan::ScanWish;
 use crate::hand::SerialSpeed;
+use crate::hand::register::BytePacking;
 use crate::link::scan::plan::BITRATES;
 use crate::sim::Scenario;
-use crate::transport::{Endpoint, Packing};
+use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
 use crate::ui::kit::controls::{self, Button, Label, Weight};
@@ -234,7 +235,7 @@ impl ConnectionForm {
                 .map(|it| said(it.name(), panels::scenario(it)))
                 .to_vec(),
             "packing" => {
-                let all = Packing::ALL.map(|it| said(it.name(), quirks::chosen(it)));
+                let all = BytePacking::ALL.map(|it| said(it.key(), quirks::packing(it)));
                 [said("", quirks::AS_FOUND)]
                     .into_iter()
                     .chain(all)

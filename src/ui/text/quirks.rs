@@ -1,9 +1,8 @@
 //! Sentences about what a hand was found to do in its own way.
 
-use crate::codec::modbus::BytePacking;
+use crate::hand::register::BytePacking;
 use crate::link::{GapRead, TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
-use crate::transport::Packing;
 use crate::ui::text::phrase::{Text, texts};
 
 texts! {
@@ -54,15 +53,6 @@ pub(crate) const fn packing(packing: BytePacking) -> Text {
         BytePacking::LowFirst => LOW,
         BytePacking::HighFirst => HIGH,
         BytePacking::OnePerWord => ONE,
-    }
-}
-
-/// A packing that a person says.
-pub(crate) const fn chosen(packing: Packing) -> Text {
-    match packing {
-        Packing::Low => LOW,
-        Packing::High => HIGH,
-        Packing::One => ONE,
     }
 }
 
