@@ -7,8 +7,8 @@ use crate::cli::params::{place, reach};
 use crate::params::changes::RowOutcome;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
-use crate::tasks::TaskError;
-use crate::tasks::apply::{Applied, Apply, ApplyStep, Otherwise, apply};
+use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
+use crate::tasks::{ParamStep, TaskError};
 use anyhow::{anyhow, bail};
 use serde_json::json;
 
@@ -55,7 +55,7 @@ async fn rows(
     };
     let link = reach::open(&args.common.hand).await?;
     let told = |step| {
-        if let ApplyStep::Meant(risks) = step {
+        if let ParamStep::Meant(risks) = step {
             words::warn(&risks);
         }
     };

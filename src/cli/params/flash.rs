@@ -7,9 +7,9 @@ use crate::cli::params::words;
 use crate::params::backups::saved_name;
 use crate::params::rows::ParamId;
 use crate::record::Saved;
-use crate::tasks::Consent;
 use crate::tasks::reset::{self, ResetEnd};
-use crate::tasks::save::{self, Save, SaveStep};
+use crate::tasks::save::{self, Save};
+use crate::tasks::{Consent, ParamStep};
 use anyhow::bail;
 use serde_json::json;
 
@@ -26,7 +26,7 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
         consent: Consent::Given,
     };
     let told = |step| {
-        if let SaveStep::Meant(risks) = step {
+        if let ParamStep::Meant(risks) = step {
             words::warn(&risks);
         }
     };

@@ -2,7 +2,7 @@
 
 use crate::cli::out::{Out, say};
 use crate::cli::params::args::ApplyArgs;
-use crate::cli::params::reach::{self, LinkOpener, SaidYes};
+use crate::cli::params::reach::{self, LinkOpener, said_yes};
 use crate::cli::params::words;
 use crate::params::place::{self, Moved, new_place};
 use crate::params::rows::{ParamId, Value};
@@ -44,7 +44,7 @@ pub(crate) async fn change(
         is_followed: true,
     };
     let mut reach = LinkOpener::default();
-    let report = change_place(&mut reach, &change, &files, &mut SaidYes, |_| ()).await?;
+    let report = change_place(&mut reach, &change, &files, said_yes(), |_| ()).await?;
     if let Some(why) = &report.not_noted {
         bail!(
             "the hand was changed, and its backups could not be taken along: they are in {}: {why}",

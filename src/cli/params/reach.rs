@@ -4,8 +4,9 @@ use crate::cli::session::{self, ANSWER_WITHIN};
 use crate::link::{Clock, LinkHandle, PollRates};
 use crate::tasks::Reach;
 use crate::tasks::hand::answers;
-use crate::tasks::place::Person;
+use crate::tasks::place::Decisions;
 use crate::transport::Endpoint;
+use std::future::ready;
 use std::time::Duration;
 use tokio::time::sleep;
 
@@ -42,14 +43,9 @@ impl Reach for LinkOpener {
 }
 
 /// Who said --yes keeps what was asked for; SAVE is a command of its own.
-pub(crate) struct SaidYes;
-
-impl Person for SaidYes {
-    async fn keeps(&mut self) -> bool {
-        true
-    }
-
-    async fn saves(&mut self) -> bool {
-        false
+pub(crate) fn said_yes() -> Decisions {
+    Decisions {
+        keeps: Box::pin(ready(true)),
+        saves: Box::pin(ready(false)),
     }
 }

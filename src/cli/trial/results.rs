@@ -7,7 +7,7 @@ use crate::cli::trial::output::{trial_json, trial_lines};
 use crate::link::LinkHandle;
 use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
-use crate::tasks::series::{SeriesStep, Told};
+use crate::tasks::series::SeriesStep;
 use crate::trials::session::SessionHead;
 use crate::trials::session::writer::SessionWriter;
 use crate::trials::{Abort, EarlyEnd, Trial, TrialPlan, TrialSummary};
@@ -68,19 +68,19 @@ impl<'a> TrialResults<'a> {
         })
     }
 
-    /// Takes a step of the series. One that cannot be shown or written ends it.
-    pub(crate) fn take(&mut self, step: SeriesStep) -> Told {
+    /// Takes a step of the series; false if it cannot be shown or written, which ends the series.
+    pub(crate) fn take(&mut self, step: SeriesStep) -> bool {
         match step {
             SeriesStep::View(view) => self.total = view.total,
             SeriesStep::Mark(_) => {}
             SeriesStep::Trial(trial) => {
                 if let Err(error) = self.add(*trial) {
                     self.error.get_or_insert(error);
-                    return Told::Lost;
+                    return false;
                 }
             }
         }
-        Told::Kept
+        true
     }
 
     fn add(&mut self, mut trial: Trial) -> anyhow::Result<()> {

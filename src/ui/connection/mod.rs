@@ -10,12 +10,12 @@ use crate::app::scan::ScanWish;
 use crate::hand::SerialSpeed;
 use crate::hand::register::BytePacking;
 use crate::link::scan::plan::BITRATES;
+use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
 use crate::ui::text::{errors, panels, quirks, scan as scan_text};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
@@ -142,8 +142,8 @@ impl ConnectionForm {
 
     fn form_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::card_ui(ui, look, |ui| {
-            controls::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
+        kit::card_ui(ui, look, |ui| {
+            kit::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
             self.kinds_ui(ui, look);
             ui.add_space(theme::STEP);
             for key in self.kind.1 {
@@ -185,7 +185,7 @@ impl ConnectionForm {
         let Some(key) = self.place() else { return };
         let (place, ids) = (self.field(key).to_owned(), self.scan.ids);
         let missing = place.is_empty().then_some(scan_text::ADDRESS_EMPTY);
-        let button = Button::said(look, panels::SCAN_HERE, panels::SCAN_HERE_TIP).large();
+        let button = Button::said(look, panels::SCAN_HERE).large();
         let wish = match key {
             _ if !scan::start_ui(ui, pane, button, missing) => return,
             "host" => return self.scan.scan_hosts(pane, place),
@@ -198,13 +198,10 @@ impl ConnectionForm {
     fn ports_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         row_ui(ui, look, "", |ui| {
-            let find = Button::said(look, panels::PORTS_REFRESH, panels::PORTS_REFRESH_TIP);
-            if find.ui(ui, look).clicked() {
-                pane.actions.push(Action::FindPorts);
-            }
+            let find = Button::said(look, panels::PORTS_REFRESH);
+            find.sends(ui, pane, Action::FindPorts);
             if pane.state.ports.is_empty() {
-                let none = Label::new(look.say(panels::PORTS_NONE), look.palette.muted);
-                none.small().wrap().ui(ui);
+                Label::note(look, panels::PORTS_NONE).wrap().ui(ui);
             }
         });
         for port in &pane.state.ports {
@@ -247,7 +244,7 @@ impl ConnectionForm {
         let caption = look.say(panels::setting(key));
         row_ui(ui, look, caption, |ui| {
             if all.is_empty() {
-                controls::edit_ui(ui, caption, "", text);
+                kit::edit_ui(ui, (caption, ""), text);
                 return;
             }
             if all.iter().all(|(value, _)| value != text) {
@@ -258,13 +255,13 @@ impl ConnectionForm {
                 .map(|(value, text)| (value.clone(), text.as_str()));
             let all: Vec<(String, &str)> = all.collect();
             ui.spacing_mut().combo_width = ui.available_width();
-            controls::choose_ui(ui, caption, text, &all);
+            kit::choose_ui(ui, caption, text, &all);
         });
         if key == "port" {
             self.ports_ui(ui, pane);
         }
         if key == "packing" {
-            let tip = Label::new(look.say(quirks::PACKING_TIP), look.palette.muted);
+            let tip = Label::new(look.tip(quirks::fact(Fact::Packing)), look.palette.muted);
             tip.small().wrap().ui(ui);
         }
     }
@@ -279,7 +276,7 @@ impl ConnectionForm {
             label.named(look.say(panels::ENDPOINT)).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {
-            let connect = Button::said(look, panels::CONNECT, panels::CONNECT_TIP);
+            let connect = Button::said(look, panels::CONNECT);
             if connect
                 .weight(Weight::Strong)
                 .large()
@@ -292,11 +289,9 @@ impl ConnectionForm {
                 }
             }
             let none = pane.state.hand().endpoint.is_none();
-            let disconnect = Button::said(look, panels::DISCONNECT, panels::DISCONNECT_TIP)
+            let disconnect = Button::said(look, panels::DISCONNECT)
                 .disabled(none.then(|| look.say(panels::DISCONNECT_NONE)));
-            if disconnect.large().ui(ui, look).clicked() {
-                pane.actions.push(Action::Disconnect);
-            }
+            disconnect.large().sends(ui, pane, Action::Disconnect);
             self.scan_ui(ui, pane);
         });
         if let (Err(error), true) = (&parsed, self.refused.as_ref() == Some(&spelled)) {
@@ -330,8 +325,8 @@ fn recent_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     if recent.is_empty() {
         return;
     }
-    controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(panels::RECENT), |_| ());
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(panels::RECENT), |_| ());
         for endpoint in recent {
             let (place, id) = match &endpoint {
                 Endpoint::Sim { .. } => (String::new(), None),

@@ -2,8 +2,7 @@
 
 use crate::app::readings::fault_recorder::{DriveState, Recording, RecordingId};
 use crate::hand::{Dof, PerDof, Status};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Label, Look};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::panels::{Panel, PlotLine};
 use crate::ui::plots::time_window::Span;
@@ -87,9 +86,7 @@ impl RecordingPlot<'_> {
         let palette = self.look.palette;
         ui.horizontal(|ui| {
             ui.set_height(theme::PLOT_CAPTION);
-            Label::new(self.look.say(faults::LANES), palette.muted)
-                .small()
-                .ui(ui);
+            Label::note(self.look, faults::LANES).ui(ui);
             for (dof, at_s) in Dof::ALL
                 .into_iter()
                 .zip(view.pointed_s().into_iter().cycle())

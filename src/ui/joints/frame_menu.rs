@@ -3,7 +3,7 @@
 use crate::hand::HandCommand;
 use crate::link::traffic::FrameFormat;
 use crate::link::traffic::compose::{FrameSnippet, SnippetFormat};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::Pane;
 use crate::ui::text::main;
 use crate::ui::theme;
 use egui::{Id, RichText, Ui};

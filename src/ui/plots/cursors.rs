@@ -1,9 +1,7 @@
 //! Two cursors in the plots, and the table of what lies between them. The figures come from all measurements.
 
 use crate::history::Series;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{Button, Label, Look, Pane, format};
 use crate::ui::plots::chart::ChartResponse;
 use crate::ui::plots::panels::{Panel, PlotLine};
 use crate::ui::plots::time_window::Span;
@@ -109,7 +107,7 @@ impl Cursors {
         let look = pane.look;
         let title = look.say(panel.title);
         let head = ui.horizontal(|ui| {
-            let button = Button::new(title, look.say(plots::FIGURES_TIP));
+            let button = Button::new(title, look.tip(plots::FIGURES));
             let pressed = button
                 .named(look.say(plots::FIGURES))
                 .ui(ui, look)
@@ -145,8 +143,10 @@ impl Cursors {
                 Label::new(name, look.palette.dof[line.dof]).small().ui(ui);
                 for (value, column) in figures(pane, line.series, at).into_iter().zip(COLUMNS) {
                     let digits = panel.row.decimals.max(1);
-                    let text =
-                        value.map_or_else(|| UNKNOWN.into(), |value| format!("{value:.digits$}"));
+                    let text = value.map_or_else(
+                        || format::UNKNOWN.into(),
+                        |value| format!("{value:.digits$}"),
+                    );
                     let named = format!("{name} {title}: {}", look.say(column));
                     cell(ui, &text, Some(&named));
                 }

@@ -6,8 +6,7 @@ use crate::app::settings::Language;
 use crate::hand::Words;
 use crate::record::Disarmed;
 use crate::record::quirk_sheet::Difference;
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, errors, main, panels, poses, quirks, traffic, trials, tune, words};
 use std::path::Path;
@@ -76,7 +75,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::LatencyTimer { port, ms } => latency_timer(look, port, *ms),
         NoticeKind::Reconnected => said(panels::NOTICE_RECONNECTED),
         NoticeKind::HoldConfirmed { after } => told(panels::NOTICE_HELD, &format::age(*after)),
-        NoticeKind::HoldAlarm => said(main::ALARM_BODY),
+        NoticeKind::HoldAlarm => said(main::ALARM_TITLE.tip()),
         NoticeKind::StopNotSent => said(panels::NOTICE_STOP_NOT_SENT),
         NoticeKind::TareUnderLoad { finger, newtons } => {
             let finger = look.say(words::finger(*finger));
@@ -110,7 +109,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         | NoticeKind::SessionOpened { .. }
         | NoticeKind::SessionRefused { .. } => trials::notice(look, what),
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
-        NoticeKind::GestureStoreOff => said(poses::STORE_OFF_TIP),
+        NoticeKind::GestureStoreOff => said(poses::STORE_OFF.tip()),
         // The words of the graphics driver help whoever mends it.
         NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
             Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),

@@ -1,7 +1,6 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{self, Button, Label, Look, Weight};
 use crate::ui::text::{Text, keys};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
@@ -20,6 +19,11 @@ impl KeyList {
     pub(crate) fn toggle(&mut self) {
         self.open = !self.open;
         self.fresh = self.open;
+    }
+
+    /// True while it is shown.
+    pub(crate) const fn is_open(&self) -> bool {
+        self.open
     }
 
     /// Shows it no more.
@@ -93,7 +97,7 @@ fn columns() -> [Vec<Part>; 3] {
 /// True if it is to be hidden.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    let shut = controls::head_ui(ui, look, look.say(keys::TITLE), |ui| {
+    let shut = kit::head_ui(ui, look, look.say(keys::TITLE), |ui| {
         let shut = Button::new(look.say(keys::SHUT), "").weight(Weight::Quiet);
         shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
     });
@@ -107,15 +111,15 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
                         ui.horizontal(|ui| {
                             keys.split(", ").for_each(|key| cap_ui(ui, look, key));
                         });
-                        Label::new(look.say(words), palette.text).ui(ui);
+                        Label::said(look, words).ui(ui);
                         ui.end_row();
                     }
                 });
             }
         }
     });
-    for text in [keys::ON_TRACKS, keys::IN_FIELDS] {
-        Label::new(look.say(text), palette.muted).small().ui(ui);
+    for text in [keys::ON_TRACKS, keys::IN_FIELDS, keys::ESCAPE] {
+        Label::note(look, text).ui(ui);
     }
     shut
 }

@@ -26,7 +26,7 @@ use crate::app::hand::{Play, Preset};
 use crate::app::layout::Room;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::ProcedureAction;
-use crate::app::settings::{Language, Theme};
+use crate::app::settings::{Language, Theme, Zoom};
 use crate::app::state::State;
 use crate::app::trials::TrialAction;
 
@@ -35,8 +35,7 @@ use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
 use crate::ui::joints::row::Row;
-use crate::ui::kit::card::CardView;
-use crate::ui::kit::look::{Explain, Look, Pane, Typing};
+use crate::ui::kit::{CardView, Explain, Look, Pane, Typing};
 use crate::ui::params::DeviceView;
 use crate::ui::params::card as device_card;
 use crate::ui::params::procedures as guard;
@@ -48,14 +47,14 @@ use crate::ui::trials::compare;
 use crate::ui::trials::compare::CompareView;
 use crate::ui::view::View;
 use crate::ui::window::key_list::KeyList;
-use crate::ui::window::keys::Wish;
+use crate::ui::window::keys::{Escape, Wish};
 use crate::ui::window::rooms::{RoomSize, Rooms};
 use crate::ui::window::status::StatusLine;
 
 use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
-use egui::{Frame, Margin, Panel, Rect, Stroke, Ui, UiBuilder};
+use egui::{Frame, Key, Margin, Panel, Rect, Stroke, Ui, UiBuilder};
 
 /// The least width of the joints: every number in its place.
 const JOINTS_LEAST: f32 = 384.0;
@@ -72,6 +71,8 @@ pub struct Window {
     view: View,
     installed: Option<(Theme, Language)>,
     typing: Typing,
+    /// A field had the keyboard in the last frame: Esc takes it away before anybody can ask.
+    typed: bool,
     joints: JointsView,
     plots: PlotView,
     faults: FaultsView,
@@ -118,12 +119,15 @@ impl Window {
 
     /// Draws the window over all of `ui` and returns what the person asked for, stop first.
     pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
+        // What is kept holds from the second frame on.
+        let zoomed = self.installed.and_then(|_| zoomed(ui, state));
         self.install_if_changed(ui, state);
-        let mut actions = Vec::new();
+        let mut actions = Vec::from_iter(zoomed);
+        let escape = self.escape(ui, state);
         let mut wishes = if state.hand().runs_series() {
             keys::take_any(ui)
         } else {
-            keys::take(ui)
+            keys::take(ui, escape)
         };
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
@@ -143,6 +147,7 @@ impl Window {
         }
         self.parts_ui(ui, &mut pane);
         self.typing = typing;
+        self.typed = ui.ctx().text_edit_focused();
         self.explain(explain);
         stop_first(actions, stopped)
     }
@@ -195,6 +200,24 @@ impl Window {
         pane.actions.extend(action);
     }
 
+    /// What Esc does now: it closes what is open while the hand rests for certain.
+    fn escape(&mut self, ui: &Ui, state: &State) -> Escape {
+        let is_open = self.key_list.is_open()
+            || self.status.writes_note()
+            || self.cards.informs()
+            || self.typed
+            || egui::Popup::is_any_open(ui.ctx());
+        if !is_open || !state.hand().rests() {
+            return Escape::Stops;
+        }
+        // Popups, fields and cards do so themselves.
+        if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.key_list.hide();
+            self.status.drop_note();
+        }
+        Escape::Closes
+    }
+
     fn explain(&mut self, explain: Option<Explain>) {
         let Some(explain) = explain else { return };
         self.view = View::Faults;
@@ -207,7 +230,10 @@ impl Window {
     fn install_if_changed(&mut self, ui: &mut Ui, state: &State) {
         let wanted = (state.settings.theme, state.settings.language);
         match self.installed.replace(wanted) {
-            None => install(ui.ctx(), wanted.0, wanted.1),
+            None => {
+                install(ui.ctx(), wanted.0, wanted.1);
+                ui.ctx().set_zoom_factor(state.settings.zoom.into());
+            }
             Some((theme, _)) if theme != wanted.0 => restyle(ui.ctx(), wanted.0),
             Some(_) => return,
         }
@@ -270,7 +296,7 @@ impl Window {
         let card = guard::card_of(pane.state, pane.look);
         let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
         let card = card.or_else(|| compare::card_of(pane.state, pane.look));
-        let asked = self.cards.ui(ui, covered, pane.look, card);
+        let asked = self.cards.ui(ui, covered, card);
         pane.actions.extend(asked);
     }
 
@@ -414,6 +440,12 @@ fn alone_ui(ui: &mut Ui, state: &State, part: impl FnOnce(&mut Ui, Rect, &mut Pa
     ui.painter()
         .rect_filled(whole, 0.0, pane.look.palette.window);
     part(ui, whole, &mut pane);
+}
+
+/// What the keys of the zoom did in the last frame, to be kept.
+fn zoomed(ui: &Ui, state: &State) -> Option<Action> {
+    let zoom = Zoom::from(ui.ctx().zoom_factor());
+    (zoom != state.settings.zoom).then_some(Action::Zoom(zoom))
 }
 
 /// True while a card covers the body of the window.

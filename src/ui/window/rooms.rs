@@ -3,8 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::layout::{Layout, Room, RoomLayout};
-use crate::ui::kit::controls::{Button, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Button, Pane, Weight};
 use crate::ui::text::{Text, layout, main, panels};
 use crate::ui::theme;
 use egui::{Frame, Margin, Panel, Popup, Ui};
@@ -119,7 +118,7 @@ fn along(size: egui::Vec2, is_upright: bool) -> f32 {
 /// The window's menu: which rooms are open, and the layout put back.
 pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let button = Button::new(look.say(layout::MENU), look.say(layout::MENU_TIP))
+    let button = Button::said(look, layout::MENU)
         .icon(theme::MENU)
         .weight(Weight::Quiet);
     let response = button.ui(ui, look);
@@ -134,7 +133,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         ui.separator();
         let reset = ui.button(look.say(layout::RESET));
-        if reset.on_hover_text(look.say(layout::RESET_TIP)).clicked() {
+        if reset.on_hover_text(look.tip(layout::RESET)).clicked() {
             after = before.reset();
         }
         if after != before {
