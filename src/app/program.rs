@@ -26,6 +26,7 @@ use crate::store::calendar::{since_1970, stamp};
 use crate::store::{Job, Saver, on_thread};
 use crate::transport::{Endpoint, PortFound, ports};
 use crate::trials::plan_settings::{from_settings, in_place_of};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// A series is over and written long before, on a disk that works.
@@ -189,7 +190,10 @@ impl App {
                 self.state.poses.import(library);
                 self.tell(NoticeKind::PosesImported { poses, sequences }, now);
             }
-            Some(Err(refused)) => self.tell(refused, now),
+            Some(Err(refused)) => {
+                self.state.poses.refused = Some(refused.clone());
+                self.tell(refused, now);
+            }
         }
     }
 
@@ -224,7 +228,7 @@ impl App {
             Action::Param(action) => self.param_action(action),
             Action::Trial(action) => self.trial_action(action),
             Action::Save(content) => self.export(content),
-            Action::ImportPoses => self.import_poses(),
+            Action::ImportPoses(typed) => self.import_poses(typed),
             Action::ExportPoses => self.export(Content::Poses(self.state.poses.library.clone())),
             Action::FindPorts => self.find_ports(),
             Action::Connect(endpoint) => self.connect(Some(endpoint), now),
@@ -412,8 +416,10 @@ impl App {
         } = &mut self.state;
         match action {
             TrialAction::Start => hands.shown_mut().start_series(trials, &self.env),
-            TrialAction::Open | TrialAction::Save(..) if self.sessions.is_some() => {}
-            TrialAction::Open => self.sessions = Some(SessionFiles::open(&self.env)),
+            TrialAction::Open(_) | TrialAction::Save(..) if self.sessions.is_some() => {}
+            TrialAction::Open(typed) => {
+                self.sessions = Some(SessionFiles::open(typed, &self.env));
+            }
             TrialAction::Save(id, criterion) => {
                 let session = trials.session(id);
                 let save = |session| SessionFiles::save(session, criterion, &self.env);
@@ -430,9 +436,10 @@ impl App {
         }
     }
 
-    fn import_poses(&mut self) {
+    fn import_poses(&mut self, typed: Option<PathBuf>) {
         if self.importing.is_none() {
-            self.importing = Some(pose_file::import(&self.env));
+            self.state.poses.refused = None;
+            self.importing = Some(pose_file::import(typed, &self.env));
         }
     }
 

@@ -1,6 +1,7 @@
 //! Sessions in folders: asked for, written and read away from the window's thread. The formats are in [`crate::trials::session`].
 
 use crate::app::env::Env;
+use crate::app::files::choose::place_of;
 use crate::app::files::day_folder;
 use crate::app::notices::NoticeKind;
 use crate::app::trials::state::{
@@ -29,8 +30,10 @@ pub(crate) enum FilesEnd {
     Saved(SessionId, PathBuf, usize),
     /// A session was read.
     Opened(PathBuf, Box<TrialSession>),
-    /// Neither.
+    /// None was written.
     Not(NoticeKind),
+    /// None was read.
+    NotOpened(NoticeKind),
 }
 
 /// Files of sessions.
@@ -62,18 +65,21 @@ impl SessionFiles {
         }
     }
 
-    /// Asks for the `session.toml` of a session and reads its folder.
-    pub(crate) fn open(env: &Env) -> Job<FilesEnd> {
-        let chosen = env.files.open(SESSION_FILE);
+    /// Reads the folder of a session whose place was typed, else asks for its `session.toml`.
+    pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> Job<FilesEnd> {
+        let chosen = place_of(typed, env.files.as_ref(), SESSION_FILE);
         Job::start(&env.runtime, &env.wake, async move {
             let Some(file) = chosen.await else {
-                return FilesEnd::Not(NoticeKind::NoFileChosen);
+                return FilesEnd::NotOpened(NoticeKind::NoFileChosen);
             };
             let path = file.clone();
-            let work = move || read_session(file.parent().unwrap_or(Path::new(".")));
+            let work = move || match file.is_dir() {
+                true => read_session(&file),
+                false => read_session(file.parent().unwrap_or(Path::new("."))),
+            };
             match on_thread(work).await {
                 Ok(session) => FilesEnd::Opened(path, Box::new(session)),
-                Err(error) => FilesEnd::Not(NoticeKind::SessionRefused {
+                Err(error) => FilesEnd::NotOpened(NoticeKind::SessionRefused {
                     path,
                     message: error.to_string(),
                 }),
@@ -194,8 +200,9 @@ impl TrialsState {
     /// Takes in what came of files, and what to tell of it.
     pub(crate) fn take(&mut self, end: FilesEnd) -> NoticeKind {
         self.refused = None;
+        self.asks_path = matches!(end, FilesEnd::NotOpened(_));
         match end {
-            FilesEnd::Not(notice) => {
+            FilesEnd::Not(notice) | FilesEnd::NotOpened(notice) => {
                 self.refused = Some(notice.clone());
                 notice
             }

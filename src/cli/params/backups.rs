@@ -27,8 +27,8 @@ pub(crate) fn run(out: &mut Out, args: &Common) -> anyhow::Result<()> {
     }
     for backup in &backups {
         let path = backup.path.display();
-        match &backup.about {
-            Ok((at, why)) => out.line(&format!("{at}  {why:<14} {path}"))?,
+        match &backup.file {
+            Ok(file) => out.line(&format!("{}  {:<14} {path}", file.at, file.why))?,
             Err(error) => say(&format!("{path}: {error}")),
         }
     }
@@ -43,8 +43,8 @@ pub(crate) fn run(out: &mut Out, args: &Common) -> anyhow::Result<()> {
 }
 
 fn object(backup: &Backup) -> Value {
-    match &backup.about {
-        Ok((at, why)) => json!({ "path": backup.path, "at": at, "why": why }),
+    match &backup.file {
+        Ok(file) => json!({ "path": backup.path, "at": file.at, "why": file.why }),
         Err(error) => json!({ "path": backup.path, "error": error.to_string() }),
     }
 }

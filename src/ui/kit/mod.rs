@@ -8,5 +8,6 @@ pub(crate) mod dash;
 pub(crate) mod format;
 pub(crate) mod look;
 pub(crate) mod number;
+pub(crate) mod path_field;
 pub(crate) mod reorder;
 pub(crate) mod text_field;

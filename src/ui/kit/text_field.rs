@@ -1,7 +1,8 @@
 //! A line of text that counts when it is left, and not when it is left with Esc. Knows nothing of what it names.
 
+use crate::ui::kit::look::Look;
 use crate::ui::theme;
-use egui::{Id, Key, Rect, Role, TextEdit, Ui, WidgetInfo, vec2};
+use egui::{Id, Key, Rect, Role, TextEdit, Tooltip, Ui, WidgetInfo, vec2};
 
 /// A text field at a place.
 #[derive(Debug, Clone, Copy)]
@@ -62,4 +63,11 @@ impl TextField<'_> {
         let text = text.trim();
         (!escaped && text != self.value).then(|| text.to_owned())
     }
+}
+
+/// Why what stands in a field was not taken, over what is below it, so that nothing moves under the pointer.
+pub(crate) fn refused_ui(ui: &Ui, look: Look, (id, rect): (Id, Rect), words: &str) {
+    let id = id.with("refused");
+    let tooltip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), id, rect);
+    tooltip.show(|ui| ui.colored_label(look.palette.bad, words));
 }

@@ -8,7 +8,8 @@ use crate::params::backups::Backup;
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
-use crate::ui::text::{cards, device, errors, verdicts};
+use crate::ui::kit::path_field::path_ui;
+use crate::ui::text::{cards, device, errors, notices, verdicts};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui};
 
@@ -131,6 +132,14 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             pane.actions.push(Action::Param(ParamAction::Open));
         }
     });
+    if let Some(refused) = &pane.state.hand().params.file_refused {
+        let words = notices::notice(look, refused);
+        Label::new(&words, look.palette.warn).small().wrap().ui(ui);
+        if let Some(path) = path_ui(ui, look, "parameters") {
+            pane.actions
+                .push(Action::Param(ParamAction::OpenBackup(path)));
+        }
+    }
     let title = Label::new(look.say(device::BACKUPS), look.palette.text);
     title.font(theme::title()).ui(ui);
     let backups = &pane.state.hand().params.backups;
@@ -149,11 +158,14 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.horizontal(|ui| guarded_ui(ui, pane));
 }
 
-/// One backup as a button.
+/// One backup as a button, with the hand below it.
 fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     let look = pane.look;
-    let (words, unreadable) = match &backup.about {
-        Ok((at, why)) => (format!("{} {}", moment(at), verdicts::why(look, why)), None),
+    let (words, unreadable) = match &backup.file {
+        Ok(file) => {
+            let why = verdicts::why(look, &file.why);
+            (format!("{} {why}", moment(&file.at)), None)
+        }
         Err(error) => {
             let name = backup.path.file_name().unwrap_or_default();
             (
@@ -166,6 +178,11 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     if button.ui(ui, look).clicked() {
         let wish = ParamAction::OpenBackup(backup.path.clone());
         pane.actions.push(Action::Param(wish));
+    }
+    if let Ok(file) = &backup.file {
+        let label = format!("{}: {words}", look.say(device::BACKUP_OF));
+        let hand = Label::new(&file.hand, look.palette.muted).small();
+        hand.named(&label).wrap().ui(ui);
     }
 }
 

@@ -10,10 +10,10 @@ use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::format;
 use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::look::{Look, Pane};
 use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::text_field::TextField;
-use crate::ui::text::{Text, device, verdicts};
+use crate::ui::kit::text_field::{TextField, refused_ui};
+use crate::ui::text::{Text, device, panels, verdicts};
 use crate::ui::theme;
 use egui::{Align, Color32, Id, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
@@ -334,7 +334,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(
         let width = ui.available_width() - theme::CONTROL - theme::GAP;
         ui.set_max_width(width);
         let new = match id {
-            ParamId::IpAddress => address_ui(ui, (&name, shown), typed),
+            ParamId::IpAddress => address_ui(ui, look, (&name, shown), typed),
             ParamId::ReduRatio => speed_ui(ui, &name, shown),
             _ => number_ui(ui, pane, (&name, id), shown),
         };
@@ -389,8 +389,10 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
     controls::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
 }
 
+/// What was typed and is no address stays, with the reason beside it.
 fn address_ui(
     ui: &mut Ui,
+    look: Look,
     (name, value): (&str, Option<Value>),
     typed: &mut Option<(Id, String)>,
 ) -> Option<Value> {
@@ -401,7 +403,17 @@ fn address_ui(
         value: &text,
         max: ADDRESS_MAX,
     };
-    field.ui(ui, typed)?.parse().ok().map(Value::Address)
+    let (id, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
+    let left = field.put(ui, typed, rect, id);
+    let address = left.as_ref().and_then(|text| text.parse().ok());
+    if let Some(text) = left.filter(|text| !text.is_empty() && address.is_none()) {
+        *typed = Some((id, text));
+    }
+    let stays = typed.as_ref().is_some_and(|(field, _)| *field == id);
+    if stays && !ui.memory(|memory| memory.has_focus(id)) {
+        refused_ui(ui, look, (id, rect), look.say(panels::ADDRESS_WRONG));
+    }
+    address.map(Value::Address)
 }
 
 /// A row that says where the hand is found is not written from the table: it is changed under a card, with a way back.

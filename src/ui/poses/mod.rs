@@ -14,11 +14,12 @@ use crate::ui::hand::panel;
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight};
 use crate::ui::kit::look::Pane;
+use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::reorder::Reorder;
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, tile_ui};
-use crate::ui::text::{Text, poses};
+use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, ScrollArea, Ui, vec2};
 
@@ -63,6 +64,7 @@ impl PoseView {
         controls::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             ui.horizontal(|ui| self.head_ui(ui, pane));
+            refused_ui(ui, pane);
             match self.section {
                 Section::Mine => self.mine_ui(ui, pane),
                 Section::Sequences => self.sequences.ui(ui, pane, &mut self.typed),
@@ -163,13 +165,31 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             nothing,
             Action::ExportPoses,
         ),
-        (poses::IMPORT, poses::IMPORT_TIP, None, Action::ImportPoses),
+        (
+            poses::IMPORT,
+            poses::IMPORT_TIP,
+            None,
+            Action::ImportPoses(None),
+        ),
         (poses::UNDO, poses::UNDO_TIP, no_undo, undo),
     ] {
         let button = Button::new(look.say(text), look.say(tip)).disabled(disabled);
         if button.ui(ui, look).clicked() {
             pane.actions.push(action);
         }
+    }
+}
+
+/// Why the last file was not taken, and a field for the path of another.
+fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let Some(refused) = &pane.state.poses.refused else {
+        return;
+    };
+    let words = notices::notice(pane.look, refused);
+    let label = Label::new(&words, pane.look.palette.warn);
+    label.small().wrap().ui(ui);
+    if let Some(path) = path_ui(ui, pane.look, "poses") {
+        pane.actions.push(Action::ImportPoses(Some(path)));
     }
 }
 

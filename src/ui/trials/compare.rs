@@ -8,6 +8,7 @@ use crate::ui::kit::card::{Card, Choice, Line, Manner};
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label};
 use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::text_field::TextField;
 use crate::ui::text::{compare, notices, tune};
 use crate::ui::theme;
@@ -47,6 +48,12 @@ impl CompareView {
             ui.horizontal(|ui| self.head_ui(ui, pane, focus));
             let (told, color) = told(pane.state, look, focus);
             Label::new(&told, color).small().ui(ui);
+            if trials.asks_path
+                && let Some(path) = path_ui(ui, look, "session")
+            {
+                pane.actions
+                    .push(Action::Trial(TrialAction::Open(Some(path))));
+            }
             let Some(focus) = focus else {
                 ui.centered_and_justified(|ui| {
                     Label::new(look.say(tune::COMPARE_EMPTY), look.palette.muted).ui(ui);
@@ -118,7 +125,12 @@ impl CompareView {
             for (text, tip, disabled, action) in [
                 (compare::FORGET, compare::FORGET_TIP, busy, forget),
                 (tune::SAVE, tune::SAVE_TIP, busy.or(read), save),
-                (tune::OPEN, tune::OPEN_TIP, None, Some(TrialAction::Open)),
+                (
+                    tune::OPEN,
+                    tune::OPEN_TIP,
+                    None,
+                    Some(TrialAction::Open(None)),
+                ),
             ] {
                 let button = Button::new(look.say(text), look.say(tip)).disabled(disabled);
                 if button.ui(ui, look).clicked() {
