@@ -139,6 +139,8 @@ pub enum Action {
     Param(ParamAction),
     /// Take the last taring back.
     UndoTare,
+    /// Count the fingertips from the taring that was kept of this hand.
+    TakeKeptTare,
     /// Let the plots stand still; nothing is lost meanwhile.
     PausePlots(bool),
 }

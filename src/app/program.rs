@@ -155,6 +155,7 @@ impl App {
             hand.tick_params(env, notices, now);
             hand.tick_series(trials, notices, now);
             hand.tick_procedure(env, settings, notices, now);
+            hand.offer_tare(settings, now);
             hand.record();
             hand.go_on_leaving(env, notices, now);
             self.quirk_notes.tick(hand, env, notices, now);
@@ -287,8 +288,15 @@ impl App {
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
             Action::Procedure(action) => hand.procedure_action(action, env, now),
-            Action::Tare(finger) => hand.tare(finger, notices, now),
-            Action::UndoTare => hand.tare.undo(),
+            Action::Tare(finger) => {
+                hand.tare(finger, notices, now);
+                hand.keep_tare(settings);
+            }
+            Action::UndoTare => {
+                hand.tare.undo();
+                hand.keep_tare(settings);
+            }
+            Action::TakeKeptTare => hand.take_kept_tare(notices, now),
             Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
             Action::SeenFaults => hand.faults.see_all(),
             Action::ForgetFaults => hand.faults.forget(),

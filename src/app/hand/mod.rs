@@ -13,6 +13,7 @@ pub mod preset;
 pub mod requests;
 pub mod sequence;
 pub mod state;
+pub(crate) mod taring;
 
 pub use crate::app::hand::preset::Preset;
 pub use crate::app::hand::sequence::Play;
