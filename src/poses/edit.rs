@@ -145,7 +145,15 @@ impl PoseLibrary {
         let Some(at) = self.poses.iter().position(|pose| pose.id == id) else {
             return;
         };
+        let Some(pose) = self.poses.get_mut(at) else {
+            return;
+        };
         match edit {
+            PoseEdit::Tags(text) => pose.tags = tags(&text),
+            PoseEdit::Angle(dof, angle) => pose.angles[dof] = angle,
+            PoseEdit::Leave(dof, leave) => pose.leave[dof] = leave,
+            PoseEdit::Speed(speed) => pose.speed = speed,
+            PoseEdit::Force(force) => pose.force = force,
             PoseEdit::Shift(way) => shift(&mut self.poses, at, way),
             PoseEdit::Move(to) => put(&mut self.poses, at, to),
             PoseEdit::Duplicate => self.duplicate(at),
@@ -161,11 +169,6 @@ impl PoseLibrary {
                 let name = free_name(&clean(&name), taken);
                 if let Some(pose) = self.poses.get_mut(at).filter(|_| !name.is_empty()) {
                     pose.name = name;
-                }
-            }
-            value => {
-                if let Some(pose) = self.poses.get_mut(at) {
-                    set(pose, value);
                 }
             }
         }
@@ -249,21 +252,6 @@ impl LibraryPose {
             force: Force::GENTLE,
             others: toml::Table::new(),
         }
-    }
-}
-
-fn set(pose: &mut LibraryPose, edit: PoseEdit) {
-    match edit {
-        PoseEdit::Tags(text) => pose.tags = tags(&text),
-        PoseEdit::Angle(dof, angle) => pose.angles[dof] = angle,
-        PoseEdit::Leave(dof, leave) => pose.leave[dof] = leave,
-        PoseEdit::Speed(speed) => pose.speed = speed,
-        PoseEdit::Force(force) => pose.force = force,
-        PoseEdit::Rename(_)
-        | PoseEdit::Shift(_)
-        | PoseEdit::Move(_)
-        | PoseEdit::Duplicate
-        | PoseEdit::Delete => {}
     }
 }
 

@@ -89,9 +89,9 @@ impl Hand for LinkHandle {
 /// Goes where a hand may be. A port has room for one link, so the one of before is given up.
 pub trait Reach: Send {
     /// What it reaches.
-    type Hand: Hand;
+    type Link: Hand;
     /// The hand that answers at a place; `None` if none does within [`REACHED_WITHIN`].
-    fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<Self::Hand>> + Send;
+    fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<Self::Link>> + Send;
 }
 
 /// Waits until the hand answers; false if it does not in time.

@@ -27,7 +27,7 @@ impl Default for JointControl {
 }
 
 /// Where joints go and within which limits; what is `None` stays as it is.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Move {
     pub(crate) to: PerDof<Option<Angle>>,
     pub(crate) speed: PerDof<Option<Speed>>,

@@ -111,8 +111,7 @@ impl HandState {
     pub(crate) fn preset(&mut self, preset: Preset) {
         self.take_over_for(&Move {
             to: PerDof::from_fn(|dof| preset.angle(dof)),
-            speed: PerDof::splat(None),
-            force: PerDof::splat(None),
+            ..Move::default()
         });
     }
 
@@ -129,8 +128,7 @@ impl HandState {
     pub(crate) fn try_angles(&mut self, angles: PerDof<Angle>) {
         self.take_over_for(&Move {
             to: angles.map(Some),
-            speed: PerDof::splat(None),
-            force: PerDof::splat(None),
+            ..Move::default()
         });
     }
 

@@ -21,7 +21,7 @@ pub(crate) struct Asking {
 }
 
 impl Reach for Asking {
-    type Hand = LinkHandle;
+    type Link = LinkHandle;
 
     async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
         let (opened, open) = oneshot::channel();

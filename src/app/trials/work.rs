@@ -61,9 +61,7 @@ impl TrialsState {
             TrialAction::Start | TrialAction::Open(_) | TrialAction::Save(..) => {}
         }
     }
-}
 
-impl TrialsState {
     /// Wants a session in its files; one that runs is kept at its end.
     fn keep(&mut self, id: SessionId) {
         if self.running != Some(id) {

@@ -31,7 +31,7 @@ pub(crate) struct LinkOpener {
 }
 
 impl Reach for LinkOpener {
-    type Hand = LinkHandle;
+    type Link = LinkHandle;
 
     async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
         if std::mem::replace(&mut self.has_been_open, true) {

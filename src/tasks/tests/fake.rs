@@ -432,7 +432,7 @@ pub(crate) struct FakeReach<F> {
 }
 
 impl<F: FnMut(&Endpoint) -> bool + Send> Reach for FakeReach<F> {
-    type Hand = FakeHand;
+    type Link = FakeHand;
 
     async fn reach(&mut self, place: &Endpoint) -> Option<FakeHand> {
         (self.is_there)(place).then(|| self.hand.clone())
