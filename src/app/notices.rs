@@ -5,7 +5,7 @@ use crate::hand::{Dof, Finger, Gesture, Moment, UserGesture};
 use crate::link::{LinkTrouble, RequestError};
 use crate::params::file::ParamsFileError;
 use crate::poses::file::PoseFileError;
-use crate::record::quirk_sheet::Difference;
+use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed};
 use crate::trials::Abort;
 use std::collections::VecDeque;
@@ -30,7 +30,7 @@ pub enum Level {
 
 /// What was asked of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Asked {
+pub enum RequestKind {
     /// A stored pose.
     Gesture(Gesture),
     /// To store a pose in the hand.
@@ -87,14 +87,14 @@ pub enum NoticeKind {
     /// Something was asked and did not work.
     RequestFailed {
         /// What was asked.
-        what: Asked,
+        what: RequestKind,
         /// Why.
         error: RequestError,
     },
     /// Something was asked and the hand acknowledged it. It does not say that it is done.
     Acknowledged {
         /// What was asked.
-        what: Asked,
+        what: RequestKind,
     },
     /// A gesture moves all joints, and this one is locked. Nothing was sent.
     GestureWouldMoveLocked {
@@ -199,7 +199,7 @@ pub enum NoticeKind {
     /// The hand at this address answers otherwise than the one of last time: it may be another.
     HandDiffers {
         /// In what.
-        differences: Vec<Difference>,
+        differences: Vec<FactDifference>,
         /// Day of last time.
         last_seen: String,
     },

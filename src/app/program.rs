@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::env::Env;
-use crate::app::files::export::{self, Content};
+use crate::app::files::export::{self, Export};
 use crate::app::files::pose_file;
 use crate::app::files::quirk_notes::QuirkNotes;
 use crate::app::files::settings_file;
@@ -20,10 +20,10 @@ use crate::app::trials::files::{self, FilesEnd};
 use crate::hand::Moment;
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
-use crate::poses::library::{Library, Pose};
+use crate::poses::library::{LibraryPose, PoseLibrary};
 use crate::poses::preview::Preview;
 use crate::store::calendar::{since_1970, stamp};
-use crate::store::{Job, Saver, on_thread};
+use crate::store::{BackgroundJob, Saver, on_thread};
 use crate::transport::{Endpoint, PortFound, ports};
 use crate::trials::plan_settings::{from_settings, in_place_of};
 use std::time::Duration;
@@ -44,15 +44,15 @@ pub struct App {
     env: Env,
     state: State,
     settings_saver: Saver<Settings>,
-    pose_saver: Saver<Library>,
+    pose_saver: Saver<PoseLibrary>,
     quirk_notes: QuirkNotes,
     scanner: Scanner,
     closing: Option<Closing>,
-    finding_ports: Option<Job<Vec<PortFound>>>,
-    exporting: Option<Job<NoticeKind>>,
-    importing: Option<Job<Result<Library, NoticeKind>>>,
-    sessions: Option<Job<FilesEnd>>,
-    keeping: Option<Job<FilesEnd>>,
+    finding_ports: Option<BackgroundJob<Vec<PortFound>>>,
+    exporting: Option<BackgroundJob<NoticeKind>>,
+    importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
+    sessions: Option<BackgroundJob<FilesEnd>>,
+    keeping: Option<BackgroundJob<FilesEnd>>,
 }
 
 impl App {
@@ -164,14 +164,17 @@ impl App {
     }
 
     fn take_jobs(&mut self, now: Moment) {
-        if let Some(found) = Job::take_from(&mut self.finding_ports) {
+        if let Some(found) = BackgroundJob::take_from(&mut self.finding_ports) {
             self.state.ports = found.into_iter().map(choice).collect();
         }
-        if let Some(end) = Job::take_from(&mut self.exporting) {
+        if let Some(end) = BackgroundJob::take_from(&mut self.exporting) {
             self.tell(end, now);
         }
-        let kept = Job::take_from(&mut self.keeping);
-        for end in Job::take_from(&mut self.sessions).into_iter().chain(kept) {
+        let kept = BackgroundJob::take_from(&mut self.keeping);
+        for end in BackgroundJob::take_from(&mut self.sessions)
+            .into_iter()
+            .chain(kept)
+        {
             let told = self.state.trials.take(end);
             self.tell(told, now);
         }
@@ -181,7 +184,7 @@ impl App {
             let session = self.state.trials.session(id);
             self.keeping = session.and_then(|session| files::keep(session, &self.env));
         }
-        match Job::take_from(&mut self.importing) {
+        match BackgroundJob::take_from(&mut self.importing) {
             None => {}
             // All of it is added, or nothing.
             Some(Ok(library)) => {
@@ -225,7 +228,7 @@ impl App {
             Action::Trial(action) => self.trial_action(action),
             Action::Save(content) => self.export(content),
             Action::ImportPoses => self.import_poses(),
-            Action::ExportPoses => self.export(Content::Poses(self.state.poses.library.clone())),
+            Action::ExportPoses => self.export(Export::Poses(self.state.poses.library.clone())),
             Action::FindPorts => self.find_ports(),
             Action::Connect(endpoint) => self.connect(Some(endpoint)),
             Action::Disconnect => self.connect(None),
@@ -311,7 +314,9 @@ impl App {
         let hand = hands.shown_mut();
         match action {
             Action::Capture(name) => match hand.pose_now() {
-                Some(angles) => poses.newest = poses.library.add_pose(&name, Pose::at(angles)),
+                Some(angles) => {
+                    poses.newest = poses.library.add_pose(&name, LibraryPose::at(angles))
+                }
                 None => notices.push(now, NoticeKind::PoseUnknown),
             },
             Action::Recapture(id) => match hand.pose_now() {
@@ -397,7 +402,7 @@ impl App {
                     params,
                     ..ParamsFile::default()
                 };
-                self.export(Content::Params(Box::new(file)));
+                self.export(Export::Params(Box::new(file)));
             }
             action => self.state.hands.shown_mut().param_action(action, &self.env),
         }
@@ -424,7 +429,7 @@ impl App {
     }
 
     /// One file at a time: while a dialog is open, another is not opened.
-    fn export(&mut self, content: Content) {
+    fn export(&mut self, content: Export) {
         if self.exporting.is_none() {
             self.exporting = Some(export::save(content, &self.env));
         }
@@ -439,7 +444,11 @@ impl App {
     fn find_ports(&mut self) {
         if self.finding_ports.is_none() {
             let find = async { on_thread(|| Ok(ports())).await.unwrap_or_default() };
-            self.finding_ports = Some(Job::start(&self.env.runtime, &self.env.wake, find));
+            self.finding_ports = Some(BackgroundJob::start(
+                &self.env.runtime,
+                &self.env.wake,
+                find,
+            ));
         }
     }
 

@@ -30,7 +30,7 @@ pub enum IdRange {
 
 /// What a person wants to be looked through.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ScanWish {
+pub enum ScanTarget {
     /// All serial ports and CAN interfaces of this computer.
     Ports(IdRange),
     /// This serial port, as a line or as a CAN adapter.
@@ -75,7 +75,7 @@ pub struct ScanState {
     /// Where it stands.
     pub stage: ScanStage,
     /// What was asked for.
-    pub wish: Option<ScanWish>,
+    pub wish: Option<ScanTarget>,
     /// How far it is.
     pub progress: ScanProgress,
     /// Places that it looks at.
@@ -126,7 +126,7 @@ impl Scanner {
     /// Begins a scan; one that runs goes on instead. `held` is the hand that is connected now.
     pub(crate) fn begin(
         &mut self,
-        wish: ScanWish,
+        wish: ScanTarget,
         held: Option<Endpoint>,
         env: &Env,
         book: &mut ScanState,
@@ -140,8 +140,8 @@ impl Scanner {
             ..ScanState::default()
         };
         let (local, hosts, ids) = match wish {
-            ScanWish::Ports(ids) => (Local::Listed, Vec::new(), ids),
-            ScanWish::Port(port, ids) => {
+            ScanTarget::Ports(ids) => (Local::Listed, Vec::new(), ids),
+            ScanTarget::Port(port, ids) => {
                 let wish = ScanPort {
                     port,
                     usb: None,
@@ -149,8 +149,8 @@ impl Scanner {
                 };
                 (named(vec![wish], Vec::new()), Vec::new(), ids)
             }
-            ScanWish::Interface(can, ids) => (named(Vec::new(), vec![can]), Vec::new(), ids),
-            ScanWish::Hosts(hosts) => (named(Vec::new(), Vec::new()), vec![hosts], IdRange::Few),
+            ScanTarget::Interface(can, ids) => (named(Vec::new(), vec![can]), Vec::new(), ids),
+            ScanTarget::Hosts(hosts) => (named(Vec::new(), Vec::new()), vec![hosts], IdRange::Few),
         };
         let ids = match ids {
             IdRange::Few => FEW,

@@ -19,7 +19,7 @@ pub struct Table {
 }
 
 /// What was received or happened at one moment.
-struct Line<'a> {
+struct TableLine<'a> {
     time_s: f64,
     /// The row of each group, if it has one at this moment.
     rows: Vec<Option<usize>>,
@@ -76,7 +76,7 @@ impl Table {
     }
 
     /// One line for each moment, in the order of time.
-    fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+    fn lines(&self) -> impl Iterator<Item = TableLine<'_>> {
         let mut next = vec![0; self.groups.len()];
         let mut marks = self.marks.iter().peekable();
         std::iter::from_fn(move || {
@@ -91,7 +91,7 @@ impl Table {
                 *next += usize::from(is_here);
                 is_here.then_some(row)
             });
-            Some(Line {
+            Some(TableLine {
                 time_s,
                 rows: rows.collect(),
                 event: marks

@@ -6,14 +6,14 @@ use crate::transport::Endpoint;
 
 /// Where the hand is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Place {
+pub enum WhichPlace {
     /// Where it was.
     Old,
     /// Where it will be, if the change acts at once.
     New,
 }
 
-impl Place {
+impl WhichPlace {
     /// The other one.
     #[must_use]
     pub const fn other(self) -> Self {
@@ -61,20 +61,20 @@ impl Moved {
 
 /// Both places of a hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Places {
+pub struct PlacePair {
     /// Where it was.
     pub old: Endpoint,
     /// Where it will be; as old where this wire finds it by something else.
     pub new: Endpoint,
 }
 
-impl Places {
+impl PlacePair {
     /// The endpoint of a place.
     #[must_use]
-    pub const fn endpoint(&self, place: Place) -> &Endpoint {
+    pub const fn endpoint(&self, place: WhichPlace) -> &Endpoint {
         match place {
-            Place::Old => &self.old,
-            Place::New => &self.new,
+            WhichPlace::Old => &self.old,
+            WhichPlace::New => &self.new,
         }
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
-    ENTRIES_MAX, Library, Millis, Pose, PoseId, STEPS_MAX, Sequence, SequenceId, Step, TAGS_MAX,
-    clean, free_name,
+    ENTRIES_MAX, LibraryPose, Millis, PoseId, PoseLibrary, STEPS_MAX, Sequence, SequenceId,
+    SequenceStep, TAGS_MAX, clean, free_name,
 };
 
 /// To which side something moves in its row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Way {
+pub enum ShiftDirection {
     /// Towards the first.
     Earlier,
     /// Towards the last.
@@ -31,7 +31,7 @@ pub enum PoseEdit {
     /// Force threshold of recalling.
     Force(Force),
     /// Another place in the order.
-    Shift(Way),
+    Shift(ShiftDirection),
     /// To this place in the order, 0 for the first; those between make room.
     Move(usize),
     /// A copy behind it.
@@ -52,7 +52,7 @@ pub enum SequenceEdit {
     /// A step away.
     Remove(usize),
     /// Another place for a step.
-    Shift(usize, Way),
+    Shift(usize, ShiftDirection),
     /// A step from one place to another; those between make room.
     Move(usize, usize),
     /// Speed of a step.
@@ -78,9 +78,9 @@ pub enum LibraryEdit {
     Undo,
 }
 
-impl Library {
+impl PoseLibrary {
     /// Adds a pose behind the others; `None` if the library is full.
-    pub fn add_pose(&mut self, name: &str, mut pose: Pose) -> Option<PoseId> {
+    pub fn add_pose(&mut self, name: &str, mut pose: LibraryPose) -> Option<PoseId> {
         if self.poses.len() >= ENTRIES_MAX {
             return None;
         }
@@ -205,7 +205,7 @@ impl Library {
             SequenceEdit::Loop(looped) => sequence.looped = looped,
             SequenceEdit::Add(pose) => {
                 if let Some(speed) = speed.filter(|_| sequence.steps.len() < STEPS_MAX) {
-                    sequence.steps.push(Step::new(pose, speed));
+                    sequence.steps.push(SequenceStep::new(pose, speed));
                 }
             }
             SequenceEdit::Remove(at) if at < sequence.steps.len() => {
@@ -221,7 +221,7 @@ impl Library {
     }
 }
 
-impl Step {
+impl SequenceStep {
     /// A step with the waiting times that a person starts from.
     #[must_use]
     pub fn new(pose: PoseId, speed: Speed) -> Self {
@@ -235,7 +235,7 @@ impl Step {
     }
 }
 
-impl Pose {
+impl LibraryPose {
     /// A pose with gentle limits, moving every joint. Its name and id are given when it is added.
     #[must_use]
     pub fn at(angles: PerDof<Angle>) -> Self {
@@ -252,7 +252,7 @@ impl Pose {
     }
 }
 
-fn set(pose: &mut Pose, edit: PoseEdit) {
+fn set(pose: &mut LibraryPose, edit: PoseEdit) {
     match edit {
         PoseEdit::Tags(text) => pose.tags = tags(&text),
         PoseEdit::Angle(dof, angle) => pose.angles[dof] = angle,
@@ -278,10 +278,10 @@ pub(crate) fn tags(text: &str) -> Vec<String> {
     tags
 }
 
-fn shift<T>(row: &mut [T], at: usize, way: Way) {
+fn shift<T>(row: &mut [T], at: usize, way: ShiftDirection) {
     let other = match way {
-        Way::Earlier => at.checked_sub(1),
-        Way::Later => Some(at + 1),
+        ShiftDirection::Earlier => at.checked_sub(1),
+        ShiftDirection::Later => Some(at + 1),
     };
     if let Some(other) = other.filter(|other| (*other).max(at) < row.len()) {
         row.swap(at, other);
@@ -300,7 +300,7 @@ fn put<T>(row: &mut [T], from: usize, to: usize) {
     }
 }
 
-fn change(sequence: &mut Sequence, at: usize, change: impl FnOnce(&mut Step)) {
+fn change(sequence: &mut Sequence, at: usize, change: impl FnOnce(&mut SequenceStep)) {
     if let Some(step) = sequence.steps.get_mut(at) {
         change(step);
     }

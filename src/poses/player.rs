@@ -1,7 +1,7 @@
 //! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
 
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
-use crate::poses::library::{Library, PoseId, SequenceId};
+use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
 use std::time::Duration;
 
 /// One step, with all that it needs: a pose that is edited meanwhile does not change what runs.
@@ -23,7 +23,7 @@ pub struct Cue {
 
 /// The steps of a sequence as they are now.
 #[must_use]
-pub fn cues(library: &Library, sequence: SequenceId) -> Vec<Cue> {
+pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
     let steps = library.sequence(sequence).into_iter();
     let steps = steps.flat_map(|own| &own.steps);
     let cues = steps.filter_map(|step| {
@@ -42,7 +42,7 @@ pub fn cues(library: &Library, sequence: SequenceId) -> Vec<Cue> {
 
 /// Why a sequence is over. Nothing starts it again but a person.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum End {
+pub enum PlayEnd {
     /// Every step was played.
     Finished,
     /// A person ended it.
@@ -59,7 +59,7 @@ pub enum End {
 
 /// Where a sequence stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Phase {
+pub enum PlayPhase {
     /// On the way to a pose.
     Moving {
         /// Since when.
@@ -73,12 +73,12 @@ pub enum Phase {
     /// A person paused it, or the one step that was asked for is done.
     Paused,
     /// Over.
-    Ended(End),
+    Ended(PlayEnd),
 }
 
 /// Whether a sequence goes on by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pace {
+pub enum PlayMode {
     /// Step after step.
     Through,
     /// One step, then a pause.
@@ -91,7 +91,7 @@ pub struct PlayView {
     /// The step, 0 the first.
     pub at: usize,
     /// What it does.
-    pub phase: Phase,
+    pub phase: PlayPhase,
     /// Steps that ran into their time limit.
     pub late: u32,
 }
@@ -101,7 +101,7 @@ pub struct PlayView {
 pub struct Player {
     cues: Vec<Cue>,
     looped: bool,
-    pace: Pace,
+    pace: PlayMode,
     view: PlayView,
     /// The current cue has not been sent yet.
     due: bool,
@@ -112,11 +112,11 @@ pub struct Player {
 impl Player {
     /// Begins with the first step. Without steps it is over at once.
     #[must_use]
-    pub const fn start(cues: Vec<Cue>, looped: bool, pace: Pace, now: Moment) -> Self {
+    pub const fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
         let phase = if cues.is_empty() {
-            Phase::Ended(End::Finished)
+            PlayPhase::Ended(PlayEnd::Finished)
         } else {
-            Phase::Moving { since: now }
+            PlayPhase::Moving { since: now }
         };
         Self {
             due: !cues.is_empty(),
@@ -148,13 +148,13 @@ impl Player {
     /// True once nothing is sent any more.
     #[must_use]
     pub const fn is_over(&self) -> bool {
-        matches!(self.view.phase, Phase::Ended(_))
+        matches!(self.view.phase, PlayPhase::Ended(_))
     }
 
     /// True while a person can resume it.
     #[must_use]
     pub const fn is_paused(&self) -> bool {
-        matches!(self.view.phase, Phase::Paused)
+        matches!(self.view.phase, PlayPhase::Paused)
     }
 
     /// Advances the time. Returns the cue to send now, if one is due.
@@ -162,11 +162,11 @@ impl Player {
     /// `seen`: the fresh angle of each joint that takes part. A joint that is left alone by the cue is not looked at.
     pub fn tick(&mut self, now: Moment, seen: &PerDof<Option<i16>>) -> Option<Cue> {
         match self.view.phase {
-            Phase::Moving { since } if !self.due => self.moving(since, now, seen),
-            Phase::Dwelling { since } => self.dwelling(since, now),
+            PlayPhase::Moving { since } if !self.due => self.moving(since, now, seen),
+            PlayPhase::Dwelling { since } => self.dwelling(since, now),
             _ => {}
         }
-        if !self.due || !matches!(self.view.phase, Phase::Moving { .. }) {
+        if !self.due || !matches!(self.view.phase, PlayPhase::Moving { .. }) {
             return None;
         }
         self.due = false;
@@ -190,7 +190,7 @@ impl Player {
         }
         self.view.late += u32::from(!is_there);
         self.arrived = true;
-        self.view.phase = Phase::Dwelling { since: now };
+        self.view.phase = PlayPhase::Dwelling { since: now };
     }
 
     fn dwelling(&mut self, since: Moment, now: Moment) {
@@ -199,8 +199,8 @@ impl Player {
             return;
         }
         match self.pace {
-            Pace::Through => self.advance(now),
-            Pace::OneStep => self.view.phase = Phase::Paused,
+            PlayMode::Through => self.advance(now),
+            PlayMode::OneStep => self.view.phase = PlayPhase::Paused,
         }
     }
 
@@ -211,14 +211,14 @@ impl Player {
         } else if self.looped {
             self.view.at = 0;
         } else {
-            self.view.phase = Phase::Ended(End::Finished);
+            self.view.phase = PlayPhase::Ended(PlayEnd::Finished);
             return;
         }
         self.begin(now);
     }
 
     const fn begin(&mut self, now: Moment) {
-        self.view.phase = Phase::Moving { since: now };
+        self.view.phase = PlayPhase::Moving { since: now };
         self.due = true;
         self.arrived = false;
     }
@@ -227,16 +227,16 @@ impl Player {
     pub const fn pause(&mut self) -> bool {
         let ran = matches!(
             self.view.phase,
-            Phase::Moving { .. } | Phase::Dwelling { .. }
+            PlayPhase::Moving { .. } | PlayPhase::Dwelling { .. }
         );
         if ran {
-            self.view.phase = Phase::Paused;
+            self.view.phase = PlayPhase::Paused;
         }
         ran
     }
 
     /// Goes on where it was paused: to the same pose if it was not reached, else to the next one.
-    pub fn resume(&mut self, pace: Pace, now: Moment) {
+    pub fn resume(&mut self, pace: PlayMode, now: Moment) {
         if !self.is_paused() {
             return;
         }
@@ -249,9 +249,9 @@ impl Player {
     }
 
     /// Ends it, for good. The first reason stays.
-    pub const fn end(&mut self, why: End) {
+    pub const fn end(&mut self, why: PlayEnd) {
         if !self.is_over() {
-            self.view.phase = Phase::Ended(why);
+            self.view.phase = PlayPhase::Ended(why);
             self.due = false;
         }
     }

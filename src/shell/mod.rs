@@ -6,7 +6,7 @@ pub mod headless;
 pub mod raster;
 
 use crate::app::action::Action;
-use crate::app::files::export::Content;
+use crate::app::files::export::Export;
 use crate::app::program::App;
 use crate::app::state::State;
 use crate::hand::Moment;
@@ -77,7 +77,7 @@ impl Cockpit {
         let mut draw = |ui: &mut egui::Ui| window.plots_alone_ui(ui, state);
         let drawn = self.snap.and_then(|snap| snap(size, now.secs(), &mut draw));
         if let Some(bytes) = drawn {
-            self.app.act(Action::Save(Content::Picture(bytes)), now);
+            self.app.act(Action::Save(Export::Picture(bytes)), now);
         }
     }
 

@@ -4,7 +4,7 @@
 use crate::hand::Moment;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
-use crate::params::place::{Moved, Place, Places, command};
+use crate::params::place::{Moved, PlacePair, WhichPlace, command};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, decoded, span_of};
 use crate::record::Saved;
@@ -32,7 +32,7 @@ pub struct PlaceChange {
     /// What it is to hold.
     pub wanted: Value,
     /// Where the hand is found before and after.
-    pub places: Places,
+    pub places: PlacePair,
     /// Whether this wire finds the hand by it, and the change may act at once.
     pub is_followed: bool,
 }
@@ -53,17 +53,17 @@ pub enum PlaceStep {
     /// What the hand holds, once it is kept.
     BackedUp(PathBuf, Params),
     /// The hand, or another one, is looked for there.
-    Looking(Place),
+    Looking(WhichPlace),
     /// The value is written there.
-    Writing(Place),
+    Writing(WhichPlace),
     /// There, or held and waiting for power: a person says whether it stays, within [`KEEP_WITHIN`].
-    Keeping(Place),
+    Keeping(WhichPlace),
     /// It is taken back.
     Returning,
     /// Kept: a person says whether it goes into flash.
-    Offering(Place),
+    Offering(WhichPlace),
     /// SAVE is under way.
-    Saving(Place),
+    Saving(WhichPlace),
 }
 
 /// How it ended.
@@ -81,11 +81,11 @@ pub enum PlaceEnd {
     /// It was taken back: the hand is as it was before.
     Back,
     /// It could not be taken back: the hand is there and holds the new value.
-    NotBack(Place),
+    NotBack(WhichPlace),
     /// Kept; with what is known of flash, if SAVE was asked for.
     Kept {
         /// Where the hand answers now.
-        at: Place,
+        at: WhichPlace,
         /// The result of SAVE.
         saved: Option<Saved>,
     },
@@ -98,10 +98,10 @@ pub enum PlaceEnd {
 impl PlaceEnd {
     /// Where the hand is; `None` = nobody knows.
     #[must_use]
-    pub const fn place(&self) -> Option<Place> {
+    pub const fn place(&self) -> Option<WhichPlace> {
         match self {
             Self::NotWritten | Self::Occupied | Self::NotTaken { .. } | Self::Back => {
-                Some(Place::Old)
+                Some(WhichPlace::Old)
             }
             Self::NotBack(at) | Self::Kept { at, .. } => Some(*at),
             Self::Unseen(_) | Self::Nowhere => None,
@@ -153,20 +153,20 @@ pub async fn change_place<R: Reach>(
         seen: None,
         not_noted: None,
     };
-    let moved = run.go(Place::Old, change.wanted).await;
+    let moved = run.go(WhichPlace::Old, change.wanted).await;
     let end = match &moved {
         None => PlaceEnd::NotWritten,
         Some(Moved::Occupied) => PlaceEnd::Occupied,
         Some(Moved::Nowhere) => PlaceEnd::Nowhere,
         Some(Moved::Stayed | Moved::Refused { .. }) if run.seen != Some(change.before) => {
-            run.bring_back(Place::Old).await
+            run.bring_back(WhichPlace::Old).await
         }
         Some(Moved::Stayed) => PlaceEnd::NotTaken { reason: None },
         Some(Moved::Refused { reason }) => PlaceEnd::NotTaken {
             reason: Some(reason.clone()),
         },
-        Some(Moved::There) => run.decide(Place::New, params, decisions).await,
-        Some(Moved::Waits) => run.decide(Place::Old, params, decisions).await,
+        Some(Moved::There) => run.decide(WhichPlace::New, params, decisions).await,
+        Some(Moved::Waits) => run.decide(WhichPlace::Old, params, decisions).await,
     };
     Ok(PlaceReport {
         backup,
@@ -188,7 +188,7 @@ struct ChangeRun<'a, R, T> {
 
 impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     /// What a hand that answers there holds in the row; `None` if nobody does.
-    async fn holds(&mut self, at: Place) -> Option<Value> {
+    async fn holds(&mut self, at: WhichPlace) -> Option<Value> {
         (self.tell)(PlaceStep::Looking(at));
         self.seen = None;
         let hand = self.reach.reach(self.change.places.endpoint(at)).await?;
@@ -199,9 +199,9 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     }
 
     /// Writes a value where the hand is and looks where it answers then; `None` if nothing could be written.
-    async fn go(&mut self, from: Place, value: Value) -> Option<Moved> {
+    async fn go(&mut self, from: WhichPlace, value: Value) -> Option<Moved> {
         // Back at its old place, a value is only put back.
-        let is_back_there = from == Place::Old && value == self.change.before;
+        let is_back_there = from == WhichPlace::Old && value == self.change.before;
         let follows = self.change.is_followed && !is_back_there;
         // A new id may be another hand's; a hand of another serial speed cannot be heard here.
         let may_be_taken = follows && self.change.id == ParamId::HandId;
@@ -239,15 +239,15 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     }
 
     /// The hand answers: a person keeps the change, or it is taken back.
-    async fn decide(&mut self, at: Place, params: Params, decisions: Decisions) -> PlaceEnd {
+    async fn decide(&mut self, at: WhichPlace, params: Params, decisions: Decisions) -> PlaceEnd {
         (self.tell)(PlaceStep::Keeping(at));
         let keeps = timeout(KEEP_WITHIN, decisions.keeps).await;
         if !keeps.unwrap_or(false) {
             (self.tell)(PlaceStep::Returning);
             return self.take_back(at).await;
         }
-        if at == Place::New {
-            self.adopt(Place::New, Place::Old).await;
+        if at == WhichPlace::New {
+            self.adopt(WhichPlace::New, WhichPlace::Old).await;
         }
         (self.tell)(PlaceStep::Offering(at));
         match decisions.saves.await {
@@ -257,7 +257,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     }
 
     /// What is known of the hand at one place is found at another too.
-    async fn adopt(&mut self, to: Place, from: Place) {
+    async fn adopt(&mut self, to: WhichPlace, from: WhichPlace) {
         let places = &self.change.places;
         let former = self.backups.beside(places.endpoint(from));
         let there = self.backups.beside(places.endpoint(to));
@@ -267,7 +267,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     }
 
     /// Finds the hand and gives it back what it held.
-    async fn take_back(&mut self, last: Place) -> PlaceEnd {
+    async fn take_back(&mut self, last: WhichPlace) -> PlaceEnd {
         let mut end = PlaceEnd::Nowhere;
         for _round in 0..ROUNDS {
             end = PlaceEnd::Nowhere;
@@ -286,7 +286,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         end
     }
 
-    async fn bring_back(&mut self, from: Place) -> PlaceEnd {
+    async fn bring_back(&mut self, from: WhichPlace) -> PlaceEnd {
         match self.go(from, self.change.before).await {
             None => PlaceEnd::NotWritten,
             // At a place of its own, or held where it is: both is as before.
@@ -298,7 +298,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         }
     }
 
-    async fn save(&mut self, at: Place, mut params: Params) -> PlaceEnd {
+    async fn save(&mut self, at: WhichPlace, mut params: Params) -> PlaceEnd {
         let unsaved = PlaceEnd::Kept { at, saved: None };
         let place = self.change.places.endpoint(at);
         let Some(hand) = self.reach.reach(place).await else {
@@ -320,7 +320,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
             self.not_noted.get_or_insert(why);
         }
         // Once it is switched off and on the hand may be at the other place.
-        if !(at == Place::New && saved == Saved::Confirmed) {
+        if !(at == WhichPlace::New && saved == Saved::Confirmed) {
             self.adopt(at.other(), at).await;
         }
         // Some hands let a new id or speed act at SAVE.
@@ -328,7 +328,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
             saved,
             Saved::Confirmed | Saved::ReadBack | Saved::Unknown { .. }
         );
-        if at == Place::Old && self.change.is_followed && acts {
+        if at == WhichPlace::Old && self.change.is_followed && acts {
             return self.locate(saved).await;
         }
         let saved = Some(saved);
@@ -337,7 +337,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
 
     async fn locate(&mut self, saved: Saved) -> PlaceEnd {
         for _round in 0..ROUNDS {
-            for at in [Place::Old, Place::New] {
+            for at in [WhichPlace::Old, WhichPlace::New] {
                 if self.holds(at).await.is_some() {
                     let saved = Some(saved);
                     return PlaceEnd::Kept { at, saved };

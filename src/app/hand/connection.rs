@@ -2,7 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
-use crate::app::hand::open::{Leaving, Open};
+use crate::app::hand::open::{Leaving, OpenLink};
 use crate::app::notices::{NoticeKind, Notices};
 use crate::hand::Moment;
 use crate::history::History;
@@ -53,7 +53,7 @@ impl HandState {
             dial: Arc::clone(&env.dial),
             wake: Arc::clone(&env.wake),
         };
-        let open = Open::new(link::open(config, &env.runtime));
+        let open = OpenLink::new(link::open(config, &env.runtime));
         self.replace(Some(endpoint), Some(open), notices);
     }
 
@@ -62,7 +62,7 @@ impl HandState {
     pub(crate) fn replace(
         &mut self,
         endpoint: Option<Endpoint>,
-        open: Option<Open>,
+        open: Option<OpenLink>,
         notices: &mut Notices,
     ) {
         let former = self.name();

@@ -4,7 +4,7 @@ use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 
 /// One joint as a person sets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Joint {
+pub struct JointControl {
     /// Where the slider stands: the actual angle while not armed, the person's wish while armed. `None` = not known.
     pub target: Option<Angle>,
     /// Force threshold; sent at arming and when changed while armed.
@@ -15,7 +15,7 @@ pub struct Joint {
     pub locked: bool,
 }
 
-impl Default for Joint {
+impl Default for JointControl {
     fn default() -> Self {
         Self {
             target: None,

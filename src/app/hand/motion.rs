@@ -6,7 +6,7 @@ use crate::app::notices::{NoticeKind, Notices};
 use crate::hand::{Angle, Dof, Finger, Force, PerDof, Setpoints, Speed, Target};
 use crate::history::MarkKind;
 use crate::link::ArmRequest;
-use crate::poses::library::Pose;
+use crate::poses::library::LibraryPose;
 use crate::record::LinkState;
 use crate::trials::Abort;
 
@@ -117,7 +117,7 @@ impl HandState {
     }
 
     /// Takes a pose: speed and force first, then the angles of joints that are free. Arms nothing; true if something was sent.
-    pub(crate) fn recall(&mut self, pose: &Pose) -> bool {
+    pub(crate) fn recall(&mut self, pose: &LibraryPose) -> bool {
         self.take_over_for(&Move {
             to: pose.targets(),
             speed: PerDof::splat(Some(pose.speed)),

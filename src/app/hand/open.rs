@@ -1,21 +1,21 @@
 //! An open link, a hand that is being left, and requests whose end is awaited.
 
-use crate::app::notices::Asked;
+use crate::app::notices::RequestKind;
 use crate::hand::{Moment, PerDof};
 use crate::link::{LinkHandle, MotionTurn, Records, RequestError};
-use crate::store::Job;
+use crate::store::BackgroundJob;
 use crate::transport::Endpoint;
 
 /// An open link.
 #[derive(Debug)]
-pub(crate) struct Open {
+pub(crate) struct OpenLink {
     pub(crate) link: LinkHandle,
     pub(crate) records: Records,
     /// The turn at moving the hand, as long as no task has it.
     pub(crate) turn: MotionTurn,
 }
 
-impl Open {
+impl OpenLink {
     /// With this link and what is heard of it.
     pub(crate) fn new((link, records): (LinkHandle, Records)) -> Self {
         Self {
@@ -40,6 +40,6 @@ pub(crate) type RequestEnd = Result<Option<PerDof<i16>>, RequestError>;
 /// A request whose end is awaited.
 #[derive(Debug)]
 pub(crate) struct Pending {
-    pub(crate) what: Asked,
-    pub(crate) end: Option<Job<RequestEnd>>,
+    pub(crate) what: RequestKind,
+    pub(crate) end: Option<BackgroundJob<RequestEnd>>,
 }

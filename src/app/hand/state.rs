@@ -1,15 +1,15 @@
 //! Everything about one hand in one value: its link, the newest readings, what was measured, faults, setpoints, tasks.
 
 use crate::app::hand::gestures::GestureState;
-use crate::app::hand::joint::Joint;
-use crate::app::hand::open::{Leaving, Open, Pending};
+use crate::app::hand::joint::JointControl;
+use crate::app::hand::open::{Leaving, OpenLink, Pending};
 use crate::app::hand::sequence::SequenceRun;
 use crate::app::params::state::ParamsState;
 use crate::app::procedures::procedure::Procedure;
 use crate::app::procedures::reach::GoRequest;
 use crate::app::readings::fault_recorder::FaultRecorder;
 use crate::app::readings::faults::FaultList;
-use crate::app::readings::pace::Pace;
+use crate::app::readings::pace::ReadingPace;
 use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
 use crate::app::trials::run::SeriesRun;
@@ -46,15 +46,15 @@ pub struct HandState {
     /// The newest of everything the hand said, with its times. Kept when the link is lost, and then old.
     pub sample: HandSample,
     /// How often angles, and with them what else tells the motion, are read.
-    pub pace: Pace,
+    pub pace: ReadingPace,
     /// How often a fingertip is read.
-    pub tip_pace: PerFinger<Pace>,
+    pub tip_pace: PerFinger<ReadingPace>,
     /// What the tactile channels are counted from.
     pub tare: Tare,
     /// The highest forces of the last seconds.
     pub peaks: ForcePeaks,
     /// The six joints as a person sets them.
-    pub joints: PerDof<Joint>,
+    pub joints: PerDof<JointControl>,
     /// What was measured over the last minutes.
     pub history: History,
     /// Faults now and before.
@@ -78,7 +78,7 @@ pub struct HandState {
     /// Where the task under the card wants the link.
     pub(crate) requested: Option<mpsc::UnboundedReceiver<GoRequest>>,
     /// The open link.
-    pub(crate) open: Option<Open>,
+    pub(crate) open: Option<OpenLink>,
     /// The hand is being left: it was told to hold.
     pub(crate) leaving: Option<Leaving>,
     /// Requests whose end is awaited.
@@ -118,7 +118,7 @@ impl HandState {
         self.freshness_at(asked, self.tip_pace[finger])
     }
 
-    fn freshness_at(&self, asked: Option<Moment>, pace: Pace) -> Freshness {
+    fn freshness_at(&self, asked: Option<Moment>, pace: ReadingPace) -> Freshness {
         match asked {
             None => Freshness::Unknown,
             Some(_) if !self.link.state.is_live() => Freshness::Stale,

@@ -5,14 +5,14 @@ use crate::params::file::ParamsFileError;
 use crate::params::values::Params;
 use crate::tasks::TaskError;
 use crate::tasks::apply::Applied;
-use crate::tasks::read::Rows;
+use crate::tasks::read::ReadRows;
 use crate::tasks::save::SaveReport;
 use std::io;
 
 /// How a task ended.
 #[derive(Debug)]
 pub(crate) enum ParamsEnd {
-    Read(Rows),
+    Read(ReadRows),
     Applied(Params, Result<Applied, TaskError>),
     Saved(Result<SaveReport, TaskError>),
 }

@@ -11,9 +11,9 @@ use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::danger::{Danger, worse};
 use crate::params::file::{ParamsFile, ParamsFileError};
 use crate::params::rows::{ParamId, Value};
-use crate::params::values::{Difference, Params};
+use crate::params::values::{ParamDifference, Params};
 use crate::record::Saved;
-use crate::store::Job;
+use crate::store::BackgroundJob;
 use crate::tasks::ParamStep;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -118,9 +118,9 @@ pub struct ParamsState {
     /// What runs.
     pub(crate) task: Option<Running<ParamStep, ParamsEnd>>,
     /// The files are being read.
-    pub(crate) listing: Option<Job<FilesRead>>,
+    pub(crate) listing: Option<BackgroundJob<FilesRead>>,
     /// A file that is looked at is being chosen and read.
-    pub(crate) opening: Option<Job<Result<(PathBuf, ParamsFile), NoticeKind>>>,
+    pub(crate) opening: Option<BackgroundJob<Result<(PathBuf, ParamsFile), NoticeKind>>>,
 }
 
 impl ParamsState {
@@ -175,7 +175,7 @@ impl ParamsState {
 
     /// The rows that a SAVE would change for the next power-up, as far as this program knows.
     #[must_use]
-    pub fn unsaved(&self) -> Vec<Difference> {
+    pub fn unsaved(&self) -> Vec<ParamDifference> {
         let before = self.before_changes(&self.live_params());
         before.differences(&self.to_save())
     }

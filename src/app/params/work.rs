@@ -17,9 +17,9 @@ use crate::params::danger::Danger;
 use crate::params::file::{self, ParamsFile, ParamsFileError};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
-use crate::store::{Job, on_thread};
+use crate::store::{BackgroundJob, on_thread};
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
-use crate::tasks::read::{Rows, rows};
+use crate::tasks::read::{ReadRows, rows};
 use crate::tasks::save::{Save, SaveReport, save};
 use crate::tasks::{Consent, ParamStep, TaskError};
 use futures::future::BoxFuture;
@@ -187,7 +187,7 @@ impl HandState {
                 Err(error) => Err(NoticeKind::ParamsRefused { path, error }),
             }
         };
-        self.params.opening = Some(Job::start(&env.runtime, &env.wake, open));
+        self.params.opening = Some(BackgroundJob::start(&env.runtime, &env.wake, open));
     }
 
     /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
@@ -203,10 +203,10 @@ impl HandState {
                 false => self.params.save = Some((SaveEnd::NotApplied, now)),
             }
         }
-        if let Some(read) = Job::take_from(&mut self.params.listing) {
+        if let Some(read) = BackgroundJob::take_from(&mut self.params.listing) {
             self.params.show_files(read);
         }
-        match Job::take_from(&mut self.params.opening) {
+        match BackgroundJob::take_from(&mut self.params.opening) {
             None => {}
             Some(Ok((path, file))) => self.params.show_file(&path, file),
             Some(Err(refused)) => notices.push(now, refused),
@@ -237,7 +237,7 @@ impl HandState {
             Ok(FilesRead::of(files))
         });
         let list = async move { list.await.ok() };
-        self.params.listing = Some(Job::start_fallible(&env.runtime, &env.wake, list));
+        self.params.listing = Some(BackgroundJob::start_fallible(&env.runtime, &env.wake, list));
     }
 }
 
@@ -275,7 +275,7 @@ impl ParamsState {
         }
     }
 
-    fn rows_read(&mut self, rows: Rows, now: Moment) {
+    fn rows_read(&mut self, rows: ReadRows, now: Moment) {
         if !rows.params.is_empty() {
             self.read_at = Some(now);
         }

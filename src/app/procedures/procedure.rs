@@ -3,8 +3,8 @@
 use crate::app::running::Running;
 use crate::hand::Moment;
 use crate::params::danger::Danger;
-use crate::params::place::{Place, Places};
-use crate::store::Job;
+use crate::params::place::{PlacePair, WhichPlace};
+use crate::store::BackgroundJob;
 use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Checks, Offsets};
 use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep};
@@ -118,14 +118,14 @@ pub struct PlaceProcedure {
     pub(crate) run: Option<Running<PlaceStep, Result<PlaceReport, TaskError>>>,
     pub(crate) keeps: Option<oneshot::Sender<bool>>,
     pub(crate) saves: Option<oneshot::Sender<bool>>,
-    pub(crate) looking: Option<Job<Option<Route>>>,
+    pub(crate) looking: Option<BackgroundJob<Option<Route>>>,
 }
 
 /// A return to the factory's parameters.
 #[derive(Debug)]
 pub struct ResetProcedure {
     /// Where the hand is before and after.
-    pub places: Places,
+    pub places: PlacePair,
     /// Where it stands.
     pub stage: ProcedureStage<ResetStep, Result<ResetReport, TaskError>>,
     pub(crate) run: Option<Running<ResetStep, Result<ResetReport, TaskError>>>,
@@ -158,12 +158,12 @@ impl Procedure {
 impl PlaceProcedure {
     /// Where the hand is, as far as the card knows; `None` if nobody does.
     #[must_use]
-    pub fn place(&self) -> Option<Place> {
+    pub fn place(&self) -> Option<WhichPlace> {
         match &self.stage {
             ProcedureStage::Over(Ok(report)) => report.end.place(),
             ProcedureStage::Doing(PlaceStep::Keeping(at) | PlaceStep::Offering(at), _) => Some(*at),
             ProcedureStage::Asking | ProcedureStage::Doing(..) | ProcedureStage::Over(Err(_)) => {
-                Some(Place::Old)
+                Some(WhichPlace::Old)
             }
         }
     }

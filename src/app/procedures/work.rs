@@ -12,9 +12,9 @@ use crate::app::running::Running;
 use crate::app::settings::Settings;
 use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
-use crate::params::place::{Place, Places, command, new_place};
+use crate::params::place::{PlacePair, WhichPlace, command, new_place};
 use crate::params::rows::{ParamId, Value};
-use crate::store::Job;
+use crate::store::BackgroundJob;
 use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateStep, Checks, calibrate};
 use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, PlaceStep, change_place};
@@ -44,14 +44,14 @@ impl HandState {
         if let Value::Address(address) = wanted {
             way = Some(WayTo::Asked);
             let look = async move { route(&address.to_string(), DEFAULT_TCP_PORT).await.ok() };
-            looking = Some(Job::start(&env.runtime, &env.wake, look));
+            looking = Some(BackgroundJob::start(&env.runtime, &env.wake, look));
         }
         self.procedure = Some(Procedure::Place(PlaceProcedure {
             change: PlaceChange {
                 id,
                 before,
                 wanted,
-                places: Places { old, new },
+                places: PlacePair { old, new },
                 is_followed,
             },
             stage: ProcedureStage::Asking,
@@ -224,7 +224,7 @@ impl HandState {
         match &mut self.procedure {
             None => false,
             Some(Procedure::Place(card)) => {
-                if let Some(found) = Job::take_from(&mut card.looking) {
+                if let Some(found) = BackgroundJob::take_from(&mut card.looking) {
                     card.way = Some(found.map_or(WayTo::None, WayTo::Known));
                 }
                 let is_over = card.stage.take_news(&mut card.run, |step, at| {
@@ -270,7 +270,7 @@ impl HandState {
         let Some(Procedure::Place(card)) = &self.procedure else {
             return;
         };
-        let home: Option<Place> = card.place();
+        let home: Option<WhichPlace> = card.place();
         let Some(there) = home.map(|place| card.change.places.endpoint(place).clone()) else {
             return;
         };

@@ -8,7 +8,7 @@ pub const TOUCHED_N: f32 = 0.3;
 
 /// The reading of one fingertip that its channels are counted from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Rest {
+pub struct TareZero {
     /// The eight channels, counts.
     pub raw: [u32; 8],
     /// When it was received.
@@ -20,14 +20,14 @@ pub struct Rest {
 /// The rests of all fingertips, and those before the last taring.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tare {
-    rests: PerFinger<Option<Rest>>,
-    before: Option<PerFinger<Option<Rest>>>,
+    rests: PerFinger<Option<TareZero>>,
+    before: Option<PerFinger<Option<TareZero>>>,
 }
 
 impl Tare {
     /// What this fingertip is counted from; `None` before it was read untouched.
     #[must_use]
-    pub fn rest(&self, finger: Finger) -> Option<Rest> {
+    pub fn rest(&self, finger: Finger) -> Option<TareZero> {
         self.rests[finger]
     }
 
@@ -80,9 +80,9 @@ fn load(sample: &HandSample, finger: Finger) -> Option<f32> {
     (normal >= TOUCHED_N).then_some(normal)
 }
 
-fn reading(sample: &HandSample, finger: Finger, chosen: bool) -> Option<Rest> {
+fn reading(sample: &HandSample, finger: Finger, chosen: bool) -> Option<TareZero> {
     let block = sample.tactile[finger]?;
-    Some(Rest {
+    Some(TareZero {
         raw: block.value.raw,
         at: block.received,
         chosen,

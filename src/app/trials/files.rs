@@ -8,7 +8,7 @@ use crate::app::trials::state::{
 };
 use crate::store;
 use crate::store::calendar::stamp;
-use crate::store::{Job, on_thread, read_text};
+use crate::store::{BackgroundJob, on_thread, read_text};
 use crate::trials::recording::csv;
 use crate::trials::session::writer::SessionWriter;
 use crate::trials::session::{SESSION_FILE, SessionHead, load};
@@ -39,14 +39,14 @@ pub(crate) fn save(
     session: &TrialSession,
     criterion: Option<Criterion>,
     env: &Env,
-) -> Option<Job<FilesEnd>> {
+) -> Option<BackgroundJob<FilesEnd>> {
     let is_own = !matches!(session.origin, SessionOrigin::Folder(_));
     is_own.then(|| save_in(session.clone(), criterion, env.files.folder(), env))
 }
 
 /// Without asking: writes a session that lies in no file into a new folder in the folder of its day, and note and tags
 /// of one that was saved into its file.
-pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<Job<FilesEnd>> {
+pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BackgroundJob<FilesEnd>> {
     match &session.origin {
         SessionOrigin::Folder(_) => None,
         SessionOrigin::Saved(folder) => Some(keep_words(session, folder.clone(), env)),
@@ -60,9 +60,9 @@ pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<Job<FilesEnd>> {
 }
 
 /// Asks for the `session.toml` of a session and reads its folder.
-pub(crate) fn open(env: &Env) -> Job<FilesEnd> {
+pub(crate) fn open(env: &Env) -> BackgroundJob<FilesEnd> {
     let chosen = env.files.open(SESSION_FILE);
-    Job::start(&env.runtime, &env.wake, async move {
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
         let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
         let folder = path.parent().unwrap_or(Path::new(".")).to_owned();
         match on_thread(move || read_session(&folder)).await {
@@ -81,8 +81,8 @@ fn save_in(
     criterion: Option<Criterion>,
     chosen: BoxFuture<'static, Option<PathBuf>>,
     env: &Env,
-) -> Job<FilesEnd> {
-    Job::start(&env.runtime, &env.wake, async move {
+) -> BackgroundJob<FilesEnd> {
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
         let folder = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
         let name = folder_name(&session.head);
         let (id, trials) = (session.id, session.trials.len());
@@ -99,10 +99,10 @@ fn save_in(
 }
 
 /// Writes note and tags of a session into its file.
-fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> Job<FilesEnd> {
+fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> BackgroundJob<FilesEnd> {
     let (id, trials) = (session.id, session.trials.len());
     let (note, tags) = (session.head.note.clone(), session.head.tags.clone());
-    Job::start(&env.runtime, &env.wake, async move {
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
         let place = folder.clone();
         let work = move || {
             let mut file = load(&place)?;

@@ -168,7 +168,7 @@ fn known(files: &Backups) -> anyhow::Result<Known> {
 /// All rows that can be read, and why others cannot.
 async fn read_rows(hand: &Endpoint) -> anyhow::Result<(Params, Vec<RequestError>)> {
     let link = reach::open(hand).await?;
-    let read::Rows { params, troubles } = read::rows(&link, |_, _| ()).await;
+    let read::ReadRows { params, troubles } = read::rows(&link, |_, _| ()).await;
     if params.is_empty() {
         let why = troubles.last().map(ToString::to_string).unwrap_or_default();
         bail!("cannot read any parameter of {hand}: {why}");

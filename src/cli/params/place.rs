@@ -40,7 +40,7 @@ pub(crate) async fn change(
         id,
         before,
         wanted,
-        places: place::Places { old, new },
+        places: place::PlacePair { old, new },
         is_followed: true,
     };
     let mut reach = LinkOpener::default();

@@ -3,7 +3,7 @@
 use crate::hand::{Dof, HandCommand};
 use crate::params::backups::Backups;
 use crate::params::changes::RowVerdict;
-use crate::params::place::Places;
+use crate::params::place::PlacePair;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::record::{Calibrated, NotSent, Rest, Saved};
@@ -139,7 +139,7 @@ async fn where_a_hand_is_found_is_not_changed_unless_it_is_known_to_rest() {
             id: ParamId::HandId,
             before: Value::Number(1),
             wanted: Value::Number(7),
-            places: Places {
+            places: PlacePair {
                 new: "rs485:/dev/x?id=7".parse().unwrap(),
                 old: place,
             },

@@ -4,7 +4,7 @@ use crate::hand::{Dof, Setting, Span};
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::changes::{RowOutcome, undo_of};
-use crate::params::place::Place;
+use crate::params::place::WhichPlace;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, SPANS};
 use crate::record::{Doubt, NotSent, Saved, Verdict};
@@ -333,7 +333,7 @@ async fn reset_of(
     (end, steps)
 }
 
-fn looked(steps: &[ResetStep]) -> Vec<Place> {
+fn looked(steps: &[ResetStep]) -> Vec<WhichPlace> {
     let looks = steps.iter().filter_map(|step| match step {
         ResetStep::Looking(place) => Some(*place),
         _ => None,
@@ -345,16 +345,16 @@ fn looked(steps: &[ResetStep]) -> Vec<Place> {
 async fn the_hand_is_looked_for_at_the_factorys_place_first_and_in_rounds() {
     let (end, steps) = reset_of("rs485:/dev/x?id=7", Fate::AnswerLost, |_| false).await;
     assert_eq!(end.unwrap().end, ResetEnd::Nowhere);
-    assert_eq!(looked(&steps), [Place::New, Place::Old].repeat(3));
+    assert_eq!(looked(&steps), [WhichPlace::New, WhichPlace::Old].repeat(3));
 
     let (end, steps) = reset_of("rs485:/dev/x?id=1", Fate::Answered, |look| look == 1).await;
-    assert_eq!(looked(&steps), [Place::New; 2]);
+    assert_eq!(looked(&steps), [WhichPlace::New; 2]);
     let report = end.unwrap();
     assert!(report.is_acknowledged);
     let ResetEnd::Found { at, left, .. } = report.end else {
         panic!("{:?}", report.end);
     };
-    assert_eq!((at, left), (Place::New, Vec::new()));
+    assert_eq!((at, left), (WhichPlace::New, Vec::new()));
 }
 
 #[tokio::test(start_paused = true)]
@@ -368,7 +368,7 @@ async fn what_was_not_taken_is_told_as_it_is() {
     let ResetEnd::Found { at, left, .. } = end.unwrap().end else {
         panic!("it answers at its old place");
     };
-    assert_eq!((at, left), (Place::Old, vec![ParamId::HandId]));
+    assert_eq!((at, left), (WhichPlace::Old, vec![ParamId::HandId]));
 }
 
 #[tokio::test(start_paused = true)]

@@ -6,7 +6,7 @@ mod rows;
 pub(crate) mod scan;
 
 use crate::app::action::Action;
-use crate::app::scan::ScanWish;
+use crate::app::scan::ScanTarget;
 use crate::hand::SerialSpeed;
 use crate::hand::register::BytePacking;
 use crate::link::scan::plan::BITRATES;
@@ -189,8 +189,8 @@ impl ConnectionForm {
         let wish = match key {
             _ if !scan::start_ui(ui, pane, button, missing) => return,
             "host" => return self.scan.scan_hosts(pane, place),
-            "interface" => ScanWish::Interface(place, ids),
-            _ => ScanWish::Port(place, ids),
+            "interface" => ScanTarget::Interface(place, ids),
+            _ => ScanTarget::Port(place, ids),
         };
         pane.actions.push(Action::Scan(wish));
     }

@@ -1,7 +1,7 @@
 //! Looking for hands: what to scan, how far it is, what was found. Asks for scans and connections; opens nothing.
 
 use crate::app::action::Action;
-use crate::app::scan::{IdRange, ScanRemark, ScanWish};
+use crate::app::scan::{IdRange, ScanRemark, ScanTarget};
 use crate::link::scan::Hosts;
 use crate::transport::Endpoint;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
@@ -50,7 +50,7 @@ impl ScanPanel {
                 let (text, tip) = (look.say(scan::SCAN_PORTS), look.tip(scan::SCAN_PORTS));
                 let button = Button::new(text, tip).weight(Weight::Strong).large();
                 if start_ui(ui, pane, button, None) {
-                    pane.actions.push(Action::Scan(ScanWish::Ports(self.ids)));
+                    pane.actions.push(Action::Scan(ScanTarget::Ports(self.ids)));
                 }
             }
             Label::muted(look, scan::IDS).ui(ui);
@@ -104,7 +104,7 @@ impl ScanPanel {
     /// Scans what was typed, or says why it cannot be.
     pub(crate) fn scan_hosts(&mut self, pane: &mut Pane<'_>, typed: String) {
         match typed.parse() {
-            Ok(hosts) => pane.actions.push(Action::Scan(ScanWish::Hosts(hosts))),
+            Ok(hosts) => pane.actions.push(Action::Scan(ScanTarget::Hosts(hosts))),
             Err(_) => self.refused = Some(typed.clone()),
         }
         self.address = typed;

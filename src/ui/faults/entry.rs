@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::hand::Freshness;
 use crate::app::readings::cooling;
-use crate::app::readings::cooling::{Course, Goal, Source};
+use crate::app::readings::cooling::{CoolingGoal, Course, GoalSource};
 use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::{Dof, Fault};
@@ -248,7 +248,7 @@ fn clear_words_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) {
 fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
     let look = pane.look;
     let state = pane.state;
-    let goal = Goal::of(state.hand().faults.worked_again_c(dof));
+    let goal = CoolingGoal::of(state.hand().faults.worked_again_c(dof));
     let celsius = state
         .hand()
         .sample
@@ -279,8 +279,8 @@ fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
         ),
     };
     let tip = match goal.source {
-        Source::Assumed => faults::COOL_ASSUMED,
-        Source::Observed => faults::COOL_OBSERVED,
+        GoalSource::Assumed => faults::COOL_ASSUMED,
+        GoalSource::Observed => faults::COOL_OBSERVED,
     };
     let text = format!("{} {celsius} °C · {more}", look.say(faults::COOL_NOW));
     (text, look.say(tip))

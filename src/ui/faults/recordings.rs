@@ -1,7 +1,7 @@
 //! The recordings around faults: their list, and one of them opened with its plots and events. Plays nothing back.
 
 use crate::app::action::Action;
-use crate::app::files::export::Content;
+use crate::app::files::export::Export;
 use crate::app::readings::fault_recorder::{Listed, Recording, RecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
 use crate::ui::faults::entry::{self as fault_entry, lamp_ui, say_ui, scroll_ui};
@@ -140,7 +140,7 @@ impl RecordingsView {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let save = Button::said(look, faults::RECORDING_SAVE).weight(Weight::Strong);
                 if save.ui(ui, look).clicked() {
-                    let content = Content::Recording(recording.table());
+                    let content = Export::Recording(recording.table());
                     pane.actions.push(Action::Save(content));
                 }
                 let title = title(pane, recording);

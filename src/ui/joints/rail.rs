@@ -1,7 +1,7 @@
 //! The joints where they are not set: name, lamp, actual angle and force of each. Sets nothing.
 
 use crate::app::action::Action;
-use crate::app::layout::Room;
+use crate::app::layout::WindowRoom;
 use crate::hand::{Dof, Quantity};
 use crate::ui::joints::age_ui;
 use crate::ui::joints::drive_lamp::DriveWords;
@@ -24,7 +24,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
             let wide = Layout::top_down_justified(Align::Center);
             let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
             if pressed.clicked() {
-                let layout = toggled(&pane.state.settings.layout, Room::Joints);
+                let layout = toggled(&pane.state.settings.layout, WindowRoom::Joints);
                 pane.actions.push(Action::Layout(layout));
             }
         } else {

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::app::params::refusal::Refusal;
+use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
@@ -116,7 +116,7 @@ pub(crate) fn moment(stamp: &str) -> String {
 fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let nothing = pane.state.hand().params.live_params().is_empty();
-    let nothing = nothing.then(|| look.say(device::refusal(Refusal::NothingRead)));
+    let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingRead)));
     ui.horizontal(|ui| {
         let dump = Button::said(look, device::DUMP);
         let open = Button::said(look, device::OPEN);

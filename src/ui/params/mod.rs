@@ -10,7 +10,7 @@ pub(crate) mod table;
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::app::params::refusal::Refusal;
+use crate::app::params::refusal::ParamRefusal;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::params::table::Shown;
 use crate::ui::text::{device, errors, verdicts};
@@ -84,7 +84,7 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         count => format!("{} ({count})", look.say(device::APPLY)),
     };
     let nothing = hand.params.all_staged().is_empty();
-    let nothing = nothing.then(|| look.say(device::refusal(Refusal::NothingStaged)));
+    let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingStaged)));
     let is_known = hand.sample.speed_set.is_some() && hand.link.state.is_live();
     let unknown = (!is_known).then(|| look.say(device::COPY_UNKNOWN));
     let weight = match hand.apply_refusal() {

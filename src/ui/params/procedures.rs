@@ -7,7 +7,7 @@ use crate::app::procedures::{
 };
 use crate::app::state::State;
 use crate::hand::Moment;
-use crate::params::place::{Place, Places};
+use crate::params::place::{PlacePair, WhichPlace};
 use crate::params::rows::ParamId;
 use crate::record::Saved;
 use crate::tasks::TaskError;
@@ -71,7 +71,7 @@ fn from_to(look: Look, change: &PlaceChange) -> String {
 }
 
 /// Where the hand is now, and where it will be if that is elsewhere.
-fn now_and_then(card: Card, places: &Places) -> Card {
+fn now_and_then(card: Card, places: &PlacePair) -> Card {
     let card = card.note((cards::NOW_AT, &places.old));
     match places.new == places.old {
         true => card,
@@ -137,7 +137,7 @@ fn keep_card(
     state: &State,
     look: Look,
     change: &PlaceChange,
-    (place, since): (Place, Moment),
+    (place, since): (WhichPlace, Moment),
 ) -> Card {
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
     let left = format!("{:.0} s", seconds.ceil());
@@ -146,8 +146,8 @@ fn keep_card(
     Card::new(look, cards::KEEP_TITLE)
         .words(from_to(look, change))
         .words(match place {
-            Place::New => cards::KEEP_THERE,
-            Place::Old => cards::KEEP_WAITS,
+            WhichPlace::New => cards::KEEP_THERE,
+            WhichPlace::Old => cards::KEEP_WAITS,
         })
         .note((cards::NOW_AT, change.places.endpoint(place)))
         .progress(
@@ -171,7 +171,7 @@ fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
         .choice(step(text, manner, ProcedureAction::Save))
 }
 
-fn change_over(card: Card, places: &Places, report: &PlaceReport) -> Card {
+fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
     let now_at = (cards::NOW_AT, &places.old);
     let card = card.choice(close());
     match &report.end {
@@ -206,7 +206,7 @@ fn change_over(card: Card, places: &Places, report: &PlaceReport) -> Card {
             let mut card = save_end(card, places, saved.as_ref());
             let is_saved = saved.as_ref().is_some_and(Saved::may_be_in_flash);
             if is_saved && places.new != places.old {
-                if *place == Place::Old {
+                if *place == WhichPlace::Old {
                     card = card.words((cards::OVER_WAITS, &places.new));
                 }
                 card = ways(card, places);
@@ -217,7 +217,7 @@ fn change_over(card: Card, places: &Places, report: &PlaceReport) -> Card {
 }
 
 /// What is known of the flash after a change was kept.
-fn save_end(card: Card, places: &Places, saved: Option<&Saved>) -> Card {
+fn save_end(card: Card, places: &PlacePair, saved: Option<&Saved>) -> Card {
     let said = match saved {
         None => cards::OVER_UNSAVED,
         Some(Saved::Confirmed) => cards::SAVED_OK,
@@ -232,7 +232,7 @@ fn save_end(card: Card, places: &Places, saved: Option<&Saved>) -> Card {
 }
 
 /// Both places where the hand may be.
-fn both(card: Card, places: &Places) -> Card {
+fn both(card: Card, places: &PlacePair) -> Card {
     card.note(places.old.to_string())
         .note(places.new.to_string())
 }
@@ -242,7 +242,7 @@ fn backup(card: Card, backup: &Path) -> Card {
 }
 
 /// The ways back to a hand: each place where it may be.
-fn ways(card: Card, places: &Places) -> Card {
+fn ways(card: Card, places: &PlacePair) -> Card {
     let connect = |text, place: &Endpoint| {
         Choice::new(text, Manner::Plain).does(Action::Connect(place.clone()))
     };
@@ -271,7 +271,7 @@ fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
     }
 }
 
-fn reset_over(card: Card, places: &Places, report: &ResetReport) -> Card {
+fn reset_over(card: Card, places: &PlacePair, report: &ResetReport) -> Card {
     let card = card.choice(close());
     let card = match &report.end {
         ResetEnd::NotSent(_) => return card.warning(cards::RESET_NOT_SENT),

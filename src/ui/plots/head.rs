@@ -1,7 +1,7 @@
 //! What stands over the plots: window, pause, cursors, the menu, and the joints. Draws no curve.
 
 use crate::app::action::Action;
-use crate::app::files::export::Content;
+use crate::app::files::export::Export;
 use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Look, Pane, Weight};
@@ -126,7 +126,7 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     }
     let save = entry_ui(ui, look, plots::SAVE_CSV).then(|| {
         let table = history.table(&series, from_s, to_s);
-        Action::Save(Content::Plots(table))
+        Action::Save(Export::Plots(table))
     });
     let picture = entry_ui(ui, look, plots::SAVE_PNG);
     let picture = picture.then(|| Action::SavePicture(view.pixels()));

@@ -2,8 +2,8 @@
 
 use crate::app::action::Action;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
-use crate::poses::edit::{LibraryEdit, PoseEdit, Way};
-use crate::poses::library::{NAME_CHARS_MAX, Pose};
+use crate::poses::edit::{LibraryEdit, PoseEdit, ShiftDirection};
+use crate::poses::library::{LibraryPose, NAME_CHARS_MAX};
 use crate::ui::hand::panel;
 use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
 use crate::ui::poses::tiles::{go_ui, shares};
@@ -17,7 +17,7 @@ const TAGS_MAX: usize = 120;
 const FIELDS: f32 = 11.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
 
 /// Draws the editor of one pose.
-pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let height = (ui.available_height() - FIELDS).clamp(48.0, 320.0);
     let (_, picture) = ui.allocate_space(vec2(ui.available_width(), height));
     panel::pose_ui(ui, pane.look, picture, &shares(&pose.angles));
@@ -32,7 +32,7 @@ pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     });
 }
 
-fn change(pane: &mut Pane<'_>, pose: &Pose, edit: PoseEdit) {
+fn change(pane: &mut Pane<'_>, pose: &LibraryPose, edit: PoseEdit) {
     let edit = LibraryEdit::Pose(pose.id, edit);
     pane.actions.push(Action::Library(edit));
 }
@@ -47,7 +47,7 @@ pub(crate) fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
     });
 }
 
-fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let tags = pose.tags.join(", ");
     let name = TextField::new(look.say(poses::NAME), NAME_CHARS_MAX);
@@ -63,7 +63,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     }
 }
 
-fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose, dof: Dof) {
+fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
     let look = pane.look;
     if let Some(angle) = angle_ui(ui, pane, ("pose", dof), Some(pose.angles[dof])) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
@@ -93,7 +93,7 @@ pub(crate) fn angle_ui(
     Angle::new(typed).ok()
 }
 
-fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let mut number = |pane: &mut Pane<'_>, caption: Text, value: i16, max: f64| {
         let text = look.say(caption);
@@ -112,11 +112,12 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     }
 }
 
-fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let unknown = pane.state.hand().pose_now().is_none();
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
-    let [earlier, later] = [Way::Earlier, Way::Later].map(|way| edit(PoseEdit::Shift(way)));
+    let [earlier, later] =
+        [ShiftDirection::Earlier, ShiftDirection::Later].map(|way| edit(PoseEdit::Shift(way)));
     let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
     let again = Action::Recapture(pose.id);
     let [left, right] = [

@@ -9,7 +9,7 @@ pub(crate) mod tiles;
 use crate::app::action::Action;
 use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
-use crate::poses::library::{Pose, PoseId};
+use crate::poses::library::{LibraryPose, PoseId};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
 use crate::ui::poses::gestures::GestureView;
@@ -107,7 +107,7 @@ impl PoseView {
     fn tiles_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let words = self.find.trim().to_lowercase();
         let all = pane.state.poses.library.poses.iter().enumerate();
-        let shown: Vec<(usize, &Pose)> = all.filter(|(_, pose)| pose.has(&words)).collect();
+        let shown: Vec<(usize, &LibraryPose)> = all.filter(|(_, pose)| pose.has(&words)).collect();
         if shown.is_empty() {
             Label::muted(pane.look, poses::FIND_NONE).wrap().ui(ui);
         }

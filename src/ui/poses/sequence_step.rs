@@ -2,8 +2,8 @@
 
 use crate::app::action::Action;
 use crate::hand::Speed;
-use crate::poses::edit::{LibraryEdit, SequenceEdit, Way};
-use crate::poses::library::{Millis, Sequence, Step};
+use crate::poses::edit::{LibraryEdit, SequenceEdit, ShiftDirection};
+use crate::poses::library::{Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder};
 use crate::ui::poses::tiles::shares;
@@ -36,7 +36,7 @@ pub(crate) fn step_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
     sequence: &Sequence,
-    (at, step): (usize, &Step),
+    (at, step): (usize, &SequenceStep),
 ) {
     let look = pane.look;
     let place = ui.max_rect();
@@ -56,8 +56,8 @@ pub(crate) fn step_ui(
     ui.spacing_mut().item_spacing.x = theme::STEP;
     ui.set_min_height(ui.available_height());
     let (earlier, later) = (
-        SequenceEdit::Shift(at, Way::Earlier),
-        SequenceEdit::Shift(at, Way::Later),
+        SequenceEdit::Shift(at, ShiftDirection::Earlier),
+        SequenceEdit::Shift(at, ShiftDirection::Later),
     );
     for (icon, caption, tip, edit) in [
         (
@@ -101,8 +101,8 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
     }
     if let Some(way) = reorder::keyed(ui, &response) {
         let to = match way {
-            Way::Earlier => at.saturating_sub(1),
-            Way::Later => (at + 1).min(sequence.steps.len().saturating_sub(1)),
+            ShiftDirection::Earlier => at.saturating_sub(1),
+            ShiftDirection::Later => (at + 1).min(sequence.steps.len().saturating_sub(1)),
         };
         // The keyboard goes with the step.
         ui.memory_mut(|memory| memory.request_focus(id(to)));
@@ -112,7 +112,12 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
 }
 
 /// From right to left.
-fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, step): (usize, &Step)) {
+fn numbers_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    sequence: &Sequence,
+    (at, step): (usize, &SequenceStep),
+) {
     let look = pane.look;
     let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, (value, max): (f64, f64)| {
         let text = look.say(caption);

@@ -4,8 +4,8 @@ use crate::app::action::Action;
 use crate::app::hand::Play;
 use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
-use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId, Step};
-use crate::poses::player::{End, Phase};
+use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId, SequenceStep};
+use crate::poses::player::{PlayEnd, PlayPhase};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
@@ -176,7 +176,7 @@ fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
     let (_, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
     let now = step_now(pane, sequence);
     // A step without dwell is still seen; its way takes time as well.
-    let length = |step: &Step| Duration::from_millis(600 + u64::from(step.dwell.get()));
+    let length = |step: &SequenceStep| Duration::from_millis(600 + u64::from(step.dwell.get()));
     let whole: Duration = sequence.steps.iter().map(length).sum();
     let mut x = rect.left();
     for (at, step) in sequence.steps.iter().enumerate() {
@@ -234,15 +234,15 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
         return (look.say(poses::SAY_IDLE).into(), palette.muted);
     };
     let (text, color) = match run.view.phase {
-        Phase::Moving { .. } => (poses::SAY_MOVING, palette.armed),
-        Phase::Dwelling { .. } => (poses::SAY_DWELLING, palette.armed),
-        Phase::Paused => (poses::SAY_PAUSED, palette.warn),
-        Phase::Ended(End::Finished) => (poses::END_FINISHED, palette.ok),
-        Phase::Ended(End::Person) => (poses::END_PERSON, palette.muted),
-        Phase::Ended(End::Disarmed) => (poses::END_DISARMED, palette.warn),
-        Phase::Ended(End::Fault) => (poses::END_FAULT, palette.bad),
-        Phase::Ended(End::LinkLost) => (poses::END_LOST, palette.bad),
-        Phase::Ended(End::TakenOver) => (poses::END_TAKEN, palette.warn),
+        PlayPhase::Moving { .. } => (poses::SAY_MOVING, palette.armed),
+        PlayPhase::Dwelling { .. } => (poses::SAY_DWELLING, palette.armed),
+        PlayPhase::Paused => (poses::SAY_PAUSED, palette.warn),
+        PlayPhase::Ended(PlayEnd::Finished) => (poses::END_FINISHED, palette.ok),
+        PlayPhase::Ended(PlayEnd::Person) => (poses::END_PERSON, palette.muted),
+        PlayPhase::Ended(PlayEnd::Disarmed) => (poses::END_DISARMED, palette.warn),
+        PlayPhase::Ended(PlayEnd::Fault) => (poses::END_FAULT, palette.bad),
+        PlayPhase::Ended(PlayEnd::LinkLost) => (poses::END_LOST, palette.bad),
+        PlayPhase::Ended(PlayEnd::TakenOver) => (poses::END_TAKEN, palette.warn),
     };
     let mut words = look.say(text).to_owned();
     if run.is_running() {

@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
-use crate::poses::library::Pose;
+use crate::poses::library::LibraryPose;
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
 use crate::ui::text::{main, panels, poses};
@@ -19,7 +19,7 @@ pub(crate) fn shares(angles: &PerDof<Angle>) -> PerDof<Option<f32>> {
 }
 
 /// Why this pose cannot be taken now.
-fn refusal(pane: &Pane<'_>, pose: &Pose) -> Option<&'static str> {
+fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     if let Some(unready) = pane.unready() {
         return Some(unready);
     }
@@ -37,7 +37,7 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
 }
 
 /// A button that takes a pose.
-pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
     let button = Button::said(look, poses::RECALL)
@@ -52,7 +52,7 @@ pub(crate) fn tile_ui(
     ui: &mut Ui,
     rect: Rect,
     pane: &mut Pane<'_>,
-    (pose, chosen): (&Pose, bool),
+    (pose, chosen): (&LibraryPose, bool),
 ) -> bool {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::POSE), pose.name);
@@ -148,7 +148,7 @@ pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     }
 }
 
-fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
     let button = Button::new(&pose.name, look.tip(poses::RECALL))

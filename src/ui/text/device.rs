@@ -1,6 +1,6 @@
 //! Sentences of what the hand keeps: rows, verdicts, SAVE, files.
 
-use crate::app::params::refusal::Refusal;
+use crate::app::params::refusal::ParamRefusal;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -140,16 +140,16 @@ texts! {
     WHY_BEFORE_RESET: "before reset", "复位前";
 
     /// Why it cannot be done now.
-    fn refusal(Refusal) {
-        Refusal::NoHand => "No hand answers.", "没有灵巧手应答。";
-        Refusal::Armed => "The hand is armed: disarm it first.", "灵巧手已使能：请先取消使能。";
-        Refusal::Holding => "A stop is being confirmed.", "正在确认停止。";
-        Refusal::Moving => "The hand moves: wait until it rests.", "灵巧手在运动：请等它静止。";
-        Refusal::RestUnknown => "It is not known whether the hand rests: wait for its status.", "尚不清楚灵巧手是否静止：请等待状态更新。";
-        Refusal::Busy => "Something is under way.", "正在进行其他操作。";
-        Refusal::NothingStaged => "Nothing is staged that can be applied.", "没有可应用的暂存值。";
-        Refusal::NothingToUndo => "No apply of this session changed anything.", "本次没有可撤销的应用。";
-        Refusal::NoFolder => "There is no place for the backup.", "没有存放备份的位置。";
-        Refusal::NothingRead => "No row was read yet.", "尚未读取任何行。";
+    fn refusal(ParamRefusal) {
+        ParamRefusal::NoHand => "No hand answers.", "没有灵巧手应答。";
+        ParamRefusal::Armed => "The hand is armed: disarm it first.", "灵巧手已使能：请先取消使能。";
+        ParamRefusal::Holding => "A stop is being confirmed.", "正在确认停止。";
+        ParamRefusal::Moving => "The hand moves: wait until it rests.", "灵巧手在运动：请等它静止。";
+        ParamRefusal::RestUnknown => "It is not known whether the hand rests: wait for its status.", "尚不清楚灵巧手是否静止：请等待状态更新。";
+        ParamRefusal::Busy => "Something is under way.", "正在进行其他操作。";
+        ParamRefusal::NothingStaged => "Nothing is staged that can be applied.", "没有可应用的暂存值。";
+        ParamRefusal::NothingToUndo => "No apply of this session changed anything.", "本次没有可撤销的应用。";
+        ParamRefusal::NoFolder => "There is no place for the backup.", "没有存放备份的位置。";
+        ParamRefusal::NothingRead => "No row was read yet.", "尚未读取任何行。";
     }
 }

@@ -1,11 +1,11 @@
 //! Messages, troubles of the link and failed requests as sentences in the window's language. Decides nothing.
 
-use crate::app::notices::{Asked, NoticeKind};
+use crate::app::notices::{NoticeKind, RequestKind};
 use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
 use crate::hand::Words;
 use crate::record::Disarmed;
-use crate::record::quirk_sheet::Difference;
+use crate::record::quirk_sheet::FactDifference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, errors, main, panels, poses, quirks, traffic, trials, tune, words};
@@ -19,16 +19,16 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
     }
 }
 
-fn asked(look: Look, what: Asked) -> String {
+fn asked(look: Look, what: RequestKind) -> String {
     match what {
-        Asked::Gesture(gesture) => format!("{} {}", look.say(panels::GESTURE), gesture.get()),
-        Asked::StoreGesture(gesture) => {
+        RequestKind::Gesture(gesture) => format!("{} {}", look.say(panels::GESTURE), gesture.get()),
+        RequestKind::StoreGesture(gesture) => {
             format!("{} {}", look.say(poses::STORE_ASKED), gesture.get())
         }
-        Asked::ReadGesture(gesture) => {
+        RequestKind::ReadGesture(gesture) => {
             format!("{} {}", look.say(poses::READ_ASKED), gesture.get())
         }
-        Asked::ClearErrors => look.say(panels::CLEAR).into(),
+        RequestKind::ClearErrors => look.say(panels::CLEAR).into(),
     }
 }
 
@@ -171,9 +171,9 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
     }
 }
 
-fn differing(look: Look, differences: &[Difference], last_seen: &str) -> String {
+fn differing(look: Look, differences: &[FactDifference], last_seen: &str) -> String {
     let facts = differences.iter().map(|difference| {
-        let Difference { fact, before, now } = difference;
+        let FactDifference { fact, before, now } = difference;
         format!("{}: {before} -> {now}", look.say(quirks::fact(*fact)))
     });
     let facts: Vec<String> = facts.collect();

@@ -1,6 +1,6 @@
 //! Sentences of the plots, the fingertips, the fault list, the gestures and the connection.
 
-use crate::app::readings::friction::Hold;
+use crate::app::readings::friction::GripState;
 use crate::link::PollGroup;
 use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
@@ -189,12 +189,12 @@ texts! {
     }
 
     /// How firmly a fingertip holds.
-    fn hold(Hold) {
-        Hold::Unknown => "Not known", "未知";
-        Hold::Loose => "No contact", "没有接触";
-        Hold::Firm => "Holds", "稳定";
-        Hold::Near => "Near to slipping", "接近打滑";
-        Hold::Slips => "Slips at this friction", "按此摩擦会打滑";
+    fn hold(GripState) {
+        GripState::Unknown => "Not known", "未知";
+        GripState::Loose => "No contact", "没有接触";
+        GripState::Firm => "Holds", "稳定";
+        GripState::Near => "Near to slipping", "接近打滑";
+        GripState::Slips => "Slips at this friction", "按此摩擦会打滑";
     }
 
     /// What is read together.

@@ -1,6 +1,6 @@
 //! Sentences of looking for hands. Decides nothing.
 
-use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanWish};
+use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanTarget};
 use crate::transport::{Endpoint, UsbFound};
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::{Text, texts};
@@ -82,8 +82,8 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
     Err(match &book.wish {
         _ if summary.places == 0 && !book.remarks.is_empty() => NOWHERE,
         _ if summary.places == 0 => NO_PLACES,
-        Some(ScanWish::Hosts(_)) => NOTHING_THERE,
-        Some(ScanWish::Ports(ids) | ScanWish::Port(_, ids) | ScanWish::Interface(_, ids))
+        Some(ScanTarget::Hosts(_)) => NOTHING_THERE,
+        Some(ScanTarget::Ports(ids) | ScanTarget::Port(_, ids) | ScanTarget::Interface(_, ids))
             if *ids == IdRange::All =>
         {
             NOTHING_AT_ALL

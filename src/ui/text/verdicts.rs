@@ -1,6 +1,6 @@
 //! What came of writes and of SAVE, why something cannot be done, and what could hurt, as sentences in the window's language.
 
-use crate::app::params::refusal::Refusal;
+use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::{Doing, SaveEnd};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::rows::ParamId;
@@ -86,10 +86,10 @@ pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
 
 fn not_sent(look: Look, why: NotSent) -> String {
     let text = match why {
-        NotSent::Armed => device::refusal(Refusal::Armed),
-        NotSent::Holding => device::refusal(Refusal::Holding),
-        NotSent::Moving => device::refusal(Refusal::Moving),
-        NotSent::RestUnknown => device::refusal(Refusal::RestUnknown),
+        NotSent::Armed => device::refusal(ParamRefusal::Armed),
+        NotSent::Holding => device::refusal(ParamRefusal::Holding),
+        NotSent::Moving => device::refusal(ParamRefusal::Moving),
+        NotSent::RestUnknown => device::refusal(ParamRefusal::RestUnknown),
         NotSent::TooSoon { wait } => {
             let wait = wait.as_secs_f64().ceil();
             return format!("{} {wait} s", look.say(device::TOO_SOON));

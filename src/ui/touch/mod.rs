@@ -6,7 +6,7 @@ pub(crate) mod tip_channels;
 pub(crate) mod tip_detail;
 
 use crate::app::action::Action;
-use crate::app::readings::friction::Hold;
+use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
 use crate::ui::hand::panel::HandPanel;
 use crate::ui::kit::{self, Button, Label, Pane, format};
@@ -201,7 +201,7 @@ impl TouchView {
         let (below, color) = match (sense, self.detail.hold(finger)) {
             (Sense::NoNumber, _) => (look.say(text::NO_NUMBER).to_owned(), look.palette.warn),
             (Sense::Beyond, _) => (look.say(text::BEYOND).to_owned(), look.palette.warn),
-            (Sense::Fine, Hold::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
+            (Sense::Fine, GripState::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
             (Sense::Fine, _) => {
                 let shear = format::newtons(block.map(|block| block.tangential_n));
                 // The arrow says the direction, too.

@@ -1,7 +1,7 @@
 //! One fingertip in detail: how near its grip is to slipping, its forces and channels over time.
 
 use crate::app::hand::Freshness;
-use crate::app::readings::friction::{Grip, Hold, NEAR};
+use crate::app::readings::friction::{Grip, GripState, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::history::Series;
@@ -34,7 +34,7 @@ pub(crate) struct TipDetail {
     /// The fingertip.
     pub(crate) finger: Finger,
     friction_percent: i16,
-    holds: PerFinger<Hold>,
+    holds: PerFinger<GripState>,
     channels: TipChannels,
     chart: ChartView,
 }
@@ -67,7 +67,7 @@ impl TipDetail {
     }
 
     /// How the grip of a fingertip stood when it was looked at last.
-    pub(crate) fn hold(&self, finger: Finger) -> Hold {
+    pub(crate) fn hold(&self, finger: Finger) -> GripState {
         self.holds[finger]
     }
 
@@ -212,7 +212,7 @@ impl TipDetail {
     fn verdict_ui(&self, ui: &mut Ui, place: Rect, look: Look) {
         let hold = self.hold(self.finger);
         let color = color_of(hold, look.palette);
-        if hold == Hold::Slips {
+        if hold == GripState::Slips {
             let ground = place.expand2(vec2(theme::STEP, 0.0));
             let wash = look.palette.wash(color);
             ui.painter().rect_filled(ground, theme::STEP, wash);
@@ -275,12 +275,12 @@ impl TipDetail {
 }
 
 /// The colour of how a grip stands.
-const fn color_of(hold: Hold, palette: &theme::Palette) -> egui::Color32 {
+const fn color_of(hold: GripState, palette: &theme::Palette) -> egui::Color32 {
     match hold {
-        Hold::Unknown | Hold::Loose => palette.faint,
-        Hold::Firm => palette.ok,
-        Hold::Near => palette.warn,
-        Hold::Slips => palette.bad,
+        GripState::Unknown | GripState::Loose => palette.faint,
+        GripState::Firm => palette.ok,
+        GripState::Near => palette.warn,
+        GripState::Slips => palette.bad,
     }
 }
 

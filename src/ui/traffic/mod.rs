@@ -4,7 +4,7 @@ pub(crate) mod filter;
 pub(crate) mod list;
 
 use crate::app::action::Action;
-use crate::app::files::export::{Content, TrafficForm};
+use crate::app::files::export::{Export, TrafficForm};
 use crate::link::tap::Direction;
 use crate::link::traffic::frame::Frame;
 use crate::ui::kit::{self, Button, Label, Pane};
@@ -174,7 +174,7 @@ impl TrafficView {
             let button = Button::said(look, text);
             if button.disabled(nothing).ui(ui, look).clicked() {
                 let frames = self.passed.frames().iter().cloned().collect();
-                let content = Content::Traffic(form, frames);
+                let content = Export::Traffic(form, frames);
                 pane.actions.push(Action::Save(content));
             }
         }
