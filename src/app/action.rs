@@ -21,6 +21,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::{PoseId, PoseLibrary};
 use crate::transport::Endpoint;
+use std::path::PathBuf;
 
 /// One thing a person asked for. Returned by the views, carried out by `App::act`.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,8 +66,8 @@ pub enum Action {
     Play(Play),
     /// What is asked about grasp trials.
     Trial(TrialAction),
-    /// Ask for a file of poses and add what it holds.
-    ImportPoses,
+    /// Add what a file of poses holds: one at a place that was typed, else one that is asked for.
+    ImportPoses(Option<PathBuf>),
     /// Ask where the poses should go, and write them.
     ExportPoses,
     /// Give a gesture a name; empty takes it away.
@@ -138,6 +139,8 @@ pub enum Action {
     Param(ParamAction),
     /// Take the last taring back.
     UndoTare,
+    /// Count the fingertips from the taring that was kept of this hand.
+    TakeKeptTare,
     /// Let the plots stand still; nothing is lost meanwhile.
     PausePlots(bool),
 }

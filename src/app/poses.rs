@@ -1,5 +1,6 @@
 //! The library with what goes on around it: undo, the dry run, what was added last. Sends nothing.
 
+use crate::app::notices::NoticeKind;
 use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
 use crate::poses::preview::Preview;
@@ -15,6 +16,8 @@ pub struct PoseState {
     pub recalled: Option<PoseId>,
     /// The pose that was made last, for the view to show.
     pub newest: Option<PoseId>,
+    /// Why the last file was not taken.
+    pub refused: Option<NoticeKind>,
     /// The sequence that was made last, for the view to show.
     pub newest_sequence: Option<SequenceId>,
     before: Option<PoseLibrary>,

@@ -26,6 +26,7 @@ use crate::store::calendar::{since_1970, stamp};
 use crate::store::{BackgroundJob, Saver, on_thread};
 use crate::transport::{Endpoint, PortFound, ports};
 use crate::trials::plan_settings::{from_settings, in_place_of};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// A series is over and written long before, on a disk that works.
@@ -154,6 +155,7 @@ impl App {
             hand.tick_params(env, notices);
             hand.tick_series(trials, notices);
             hand.tick_procedure(env, settings, notices);
+            hand.offer_tare(settings, now);
             hand.record();
             hand.go_on_leaving(env, notices);
             self.quirk_notes.tick(hand, env, notices, now);
@@ -170,11 +172,13 @@ impl App {
         if let Some(end) = BackgroundJob::take_from(&mut self.exporting) {
             self.tell(end, now);
         }
+        let asked = BackgroundJob::take_from(&mut self.sessions);
+        if let Some(end) = &asked {
+            let trials = &mut self.state.trials;
+            trials.asks_path = std::mem::take(&mut trials.is_opening) && end.is_err();
+        }
         let kept = BackgroundJob::take_from(&mut self.keeping);
-        for end in BackgroundJob::take_from(&mut self.sessions)
-            .into_iter()
-            .chain(kept)
-        {
+        for end in asked.into_iter().chain(kept) {
             let told = self.state.trials.take(end);
             self.tell(told, now);
         }
@@ -192,7 +196,10 @@ impl App {
                 self.state.poses.import(library);
                 self.tell(NoticeKind::PosesImported { poses, sequences }, now);
             }
-            Some(Err(refused)) => self.tell(refused, now),
+            Some(Err(refused)) => {
+                self.state.poses.refused = Some(refused.clone());
+                self.tell(refused, now);
+            }
         }
     }
 
@@ -227,7 +234,7 @@ impl App {
             Action::Param(action) => self.param_action(action),
             Action::Trial(action) => self.trial_action(action),
             Action::Save(content) => self.export(content),
-            Action::ImportPoses => self.import_poses(),
+            Action::ImportPoses(typed) => self.import_poses(typed),
             Action::ExportPoses => self.export(Export::Poses(self.state.poses.library.clone())),
             Action::FindPorts => self.find_ports(),
             Action::Connect(endpoint) => self.connect(Some(endpoint)),
@@ -286,8 +293,15 @@ impl App {
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
             Action::Procedure(action) => hand.procedure_action(action, env),
-            Action::Tare(finger) => hand.tare(finger, notices),
-            Action::UndoTare => hand.tare.undo(),
+            Action::Tare(finger) => {
+                hand.tare(finger, notices, now);
+                hand.keep_tare(settings);
+            }
+            Action::UndoTare => {
+                hand.tare.undo();
+                hand.keep_tare(settings);
+            }
+            Action::TakeKeptTare => hand.take_kept_tare(notices, now),
             Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
             Action::SeenFaults => hand.faults.see_all(),
             Action::ForgetFaults => hand.faults.forget(),
@@ -417,8 +431,11 @@ impl App {
         } = &mut self.state;
         match action {
             TrialAction::Start => hands.shown_mut().start_series(trials, &self.env),
-            TrialAction::Open | TrialAction::Save(..) if self.sessions.is_some() => {}
-            TrialAction::Open => self.sessions = Some(files::open(&self.env)),
+            TrialAction::Open(_) | TrialAction::Save(..) if self.sessions.is_some() => {}
+            TrialAction::Open(typed) => {
+                trials.is_opening = true;
+                self.sessions = Some(files::open(typed, &self.env));
+            }
             TrialAction::Save(id, criterion) => {
                 let session = trials.session(id);
                 let save = |session| files::save(session, criterion, &self.env);
@@ -435,9 +452,10 @@ impl App {
         }
     }
 
-    fn import_poses(&mut self) {
+    fn import_poses(&mut self, typed: Option<PathBuf>) {
         if self.importing.is_none() {
-            self.importing = Some(pose_file::import(&self.env));
+            self.state.poses.refused = None;
+            self.importing = Some(pose_file::import(typed, &self.env));
         }
     }
 

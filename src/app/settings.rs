@@ -1,6 +1,7 @@
 //! What is kept from one start to the next. Never a setpoint: a plan of trials moves nothing before a person arms and starts it.
 
 use crate::app::layout::Layout;
+use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute, GestureStore};
 use crate::poses::library::clean;
@@ -229,6 +230,8 @@ impl Default for Zoom {
 
 /// Hands that are remembered: what fits a glance.
 pub const RECENT_MAX: usize = 5;
+/// Hands whose taring is kept; the oldest goes first.
+pub const TARES_MAX: usize = 20;
 /// What is kept from one start to the next. Unknown keys of the file survive in [`Self::others`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -259,6 +262,8 @@ pub struct Settings {
     pub layout: Layout,
     /// How much larger than designed everything is drawn.
     pub zoom: Zoom,
+    /// What a person tared last, by the place and id of the hand.
+    pub tares: BTreeMap<String, KeptTare>,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,
@@ -275,6 +280,19 @@ impl Settings {
         self.recent.insert(0, text.clone());
         self.recent.truncate(RECENT_MAX);
         self.endpoint = Some(text);
+    }
+
+    /// Keeps what a person tared at a hand, or lets go of it.
+    pub(crate) fn keep_tare(&mut self, hand: String, kept: Option<KeptTare>) {
+        match kept {
+            Some(kept) => self.tares.insert(hand, kept),
+            None => self.tares.remove(&hand),
+        };
+        while self.tares.len() > TARES_MAX {
+            let oldest = self.tares.iter().min_by_key(|(_, kept)| kept.unix_s);
+            let oldest = oldest.map(|(hand, _)| hand.clone()).unwrap_or_default();
+            self.tares.remove(&oldest);
+        }
     }
 
     /// The name that a person gave to a gesture. Manual: 2.6.7 lists no names by number, so there are no others.
@@ -311,6 +329,22 @@ mod tests {
         let spelled = ports.map(|port| format!("rs485:{port}?baud=115200&id=1"));
         assert_eq!(settings.recent, spelled);
         assert_eq!(settings.endpoint.as_ref(), spelled.first());
+    }
+
+    #[test]
+    fn the_tarings_of_the_last_hands_are_kept() {
+        let mut settings = Settings::default();
+        for unix_s in 0..25 {
+            let kept = KeptTare {
+                unix_s,
+                ..KeptTare::default()
+            };
+            settings.keep_tare(format!("hand {unix_s}"), Some(kept));
+        }
+        assert_eq!(settings.tares.len(), TARES_MAX);
+        assert!(!settings.tares.contains_key("hand 4"), "the oldest went");
+        settings.keep_tare("hand 24".into(), None);
+        assert!(!settings.tares.contains_key("hand 24"));
     }
 
     #[test]

@@ -61,18 +61,13 @@ fn check_command(words: &[String], mut command: Command) -> Result<(), WrongUsag
 }
 
 fn unknown(word: &str, path: &str, command: &Command) -> WrongUsage {
-    let commands = command.get_subcommands().map(Command::get_name);
-    let (what, known): (String, Vec<&str>) = if path.is_empty() {
-        let topics = TOPICS.iter().map(|topic| topic.name);
-        (
-            "there is no command or topic".into(),
-            commands.chain(topics).collect(),
-        )
-    } else {
-        (
-            format!("'handscope{path}' has no command"),
-            commands.collect(),
-        )
+    let mut known: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+    let what = match path {
+        "" => {
+            known.extend(TOPICS.iter().map(|topic| topic.name));
+            "there is no command or topic".to_owned()
+        }
+        path => format!("'handscope{path}' has no command"),
     };
     if known.is_empty() {
         return WrongUsage(format!("{what} '{word}'; try 'handscope help{path}'"));

@@ -241,10 +241,7 @@ fn serve_link(
     let hands = hands.clone();
     let (kind, served) = match protocol {
         PtyProtocol::Rs485 => ("rs485", pty::serve_rs485(hands, link, pace).map(endless)),
-        PtyProtocol::Rtu => (
-            "rtu",
-            pty::serve_rtu(hands, link, pace).map(FutureExt::boxed),
-        ),
+        PtyProtocol::Rtu => ("rtu", pty::serve_rtu(hands, link, pace).map(endless)),
         PtyProtocol::Slcan => ("slcan", pty::serve_slcan(hands, link).map(endless)),
         PtyProtocol::UsbCan => ("usbcan", pty::serve_usbcan(hands, link).map(endless)),
     };

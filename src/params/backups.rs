@@ -23,12 +23,12 @@ pub struct Backups {
 }
 
 /// One backup.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Backup {
     /// Its path.
     pub path: PathBuf,
-    /// When and why it was made, or why it cannot be read.
-    pub about: Result<(String, String), ParamsFileError>,
+    /// What is in it, with when, where and why it was made; or why it cannot be read.
+    pub file: Result<ParamsFile, ParamsFileError>,
 }
 
 /// What is known of the flash.
@@ -175,9 +175,8 @@ impl Backups {
     /// The system's error; a missing folder holds no backups.
     pub fn backups(&self) -> io::Result<Vec<Backup>> {
         let paths = self.backup_paths()?.into_iter();
-        let about = |path: &Path| file::load(path).map(|file| (file.at, file.why));
         let backups = paths.map(|path| Backup {
-            about: about(&path),
+            file: file::load(&path),
             path,
         });
         Ok(backups.collect())
@@ -335,11 +334,9 @@ mod tests {
         let backups = record.backups().unwrap();
         assert_eq!(backups.len(), BACKUPS_MAX);
         assert!(!first.exists() && same_second.exists(), "the oldest went");
-        let about = backups.last().unwrap().about.clone().unwrap();
-        assert_eq!(
-            about,
-            ("2026-11-21T00:00:49Z".into(), "before reset".into())
-        );
+        let newest = backups.last().unwrap().file.clone().unwrap();
+        let about = [newest.at.as_str(), newest.why.as_str()];
+        assert_eq!(about, ["2026-11-21T00:00:49Z", "before reset"]);
     }
 
     #[test]

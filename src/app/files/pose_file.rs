@@ -1,6 +1,7 @@
 //! Files of poses on disk: read at start and for import, bounded, off the window's thread. Knows no setpoint.
 
 use crate::app::env::Env;
+use crate::app::files::choose::place_of;
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
 use crate::poses::file::{PoseFileCause, PoseFileError};
@@ -56,9 +57,12 @@ pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
     }
 }
 
-/// Asks for a file and reads it.
-pub(crate) fn import(env: &Env) -> BackgroundJob<Result<PoseLibrary, NoticeKind>> {
-    let chosen = env.files.open(FILE_NAME);
+/// Reads the file at a place that was typed, else asks for one.
+pub(crate) fn import(
+    typed: Option<PathBuf>,
+    env: &Env,
+) -> BackgroundJob<Result<PoseLibrary, NoticeKind>> {
+    let chosen = place_of(typed, env.files.as_ref(), FILE_NAME);
     BackgroundJob::start(&env.runtime, &env.wake, async move {
         let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
         let place = path.clone();

@@ -11,6 +11,7 @@ pub mod play;
 pub mod requests;
 pub mod sequence;
 pub mod state;
+pub(crate) mod taring;
 
 pub use crate::app::hand::joint::Preset;
 pub use crate::app::hand::sequence::Play;

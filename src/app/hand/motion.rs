@@ -1,9 +1,9 @@
 //! What a person asks of the hand, and the rules that stand before it. Opens no link, writes no file.
 
+use crate::app::hand::HandState;
 use crate::app::hand::joint::{Move, Preset};
-use crate::app::hand::{Freshness, HandState};
 use crate::app::notices::{NoticeKind, Notices};
-use crate::hand::{Angle, Dof, Finger, Force, PerDof, Setpoints, Speed, Target};
+use crate::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use crate::history::MarkKind;
 use crate::link::ArmRequest;
 use crate::poses::library::LibraryPose;
@@ -176,18 +176,6 @@ impl HandState {
         }
         if let Some(open) = &mut self.open {
             open.turn = open.link.take_turn();
-        }
-    }
-
-    /// Counts tactile channels from now, where the reading is fresh: one fingertip, or all. Refused where one is touched.
-    pub(crate) fn tare(&mut self, finger: Option<Finger>, notices: &mut Notices) {
-        let fresh: Vec<Finger> = Finger::ALL
-            .into_iter()
-            .filter(|each| finger.is_none_or(|finger| finger == *each))
-            .filter(|each| self.tip_freshness(*each) == Freshness::Live)
-            .collect();
-        if let Err((finger, newtons)) = self.tare.tare(fresh, &self.sample) {
-            notices.push(self.now, NoticeKind::TareUnderLoad { finger, newtons });
         }
     }
 

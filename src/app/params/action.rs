@@ -26,7 +26,7 @@ pub enum ParamAction {
     Dump,
     /// Ask for a parameter file and compare it with the hand. Writes nothing.
     Open,
-    /// Compare a backup with the hand. Writes nothing.
+    /// Compare a backup, or a file whose path was typed, with the hand. Writes nothing.
     OpenBackup(PathBuf),
     /// Tick a row of the file, or not.
     Tick(ParamId),

@@ -113,6 +113,8 @@ pub struct ParamsState {
     pub backups: Vec<Backup>,
     /// A file that is compared with the hand.
     pub compared: Option<Compared>,
+    /// Why the last file was not opened.
+    pub file_refused: Option<NoticeKind>,
     /// What is saved once the running apply is over, and with which dangers.
     pub(crate) save_next: Option<Vec<Danger>>,
     /// What runs.

@@ -178,6 +178,7 @@ impl HandState {
         if self.params.opening.is_some() {
             return;
         }
+        self.params.file_refused = None;
         let open = async move {
             let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
             let place = path.clone();
@@ -209,7 +210,10 @@ impl HandState {
         match BackgroundJob::take_from(&mut self.params.opening) {
             None => {}
             Some(Ok((path, file))) => self.params.show_file(&path, file),
-            Some(Err(refused)) => notices.push(now, refused),
+            Some(Err(refused)) => {
+                self.params.file_refused = Some(refused.clone());
+                notices.push(now, refused);
+            }
         }
         self.list_files(env);
     }

@@ -2,6 +2,9 @@
 //! Changes no reading.
 
 use crate::hand::{Finger, HandSample, Moment, PerFinger};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// From this normal force on a fingertip counts as touched, in newtons: its own noise stays below.
 pub const TOUCHED_N: f32 = 0.3;
@@ -13,15 +16,46 @@ pub struct TareZero {
     pub raw: [u32; 8],
     /// When it was received.
     pub at: Moment,
-    /// True if a person chose it, false for the first reading.
-    pub chosen: bool,
+    /// Where it comes from.
+    pub source: Source,
+}
+
+/// Where the rest of a fingertip comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// The first reading of the untouched fingertip.
+    First,
+    /// A person tared it.
+    Person,
+    /// A person tared it in an earlier session, so long before [`Rest::at`].
+    Kept(Duration),
+}
+
+/// A taring as it is kept from one start to the next.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct KeptTare {
+    /// When, in seconds since 1970.
+    pub unix_s: u64,
+    /// The eight channels of the fingertips that were tared, counts, by the finger's name.
+    pub tips: BTreeMap<String, [u32; 8]>,
+}
+
+/// A taring that was kept, and how old it was when the hand was found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Offer {
+    kept: KeptTare,
+    age: Duration,
+    at: Moment,
 }
 
 /// The rests of all fingertips, and those before the last taring.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Tare {
     rests: PerFinger<Option<TareZero>>,
     before: Option<PerFinger<Option<TareZero>>>,
+    /// Looked for once a connection.
+    offer: Option<Option<Offer>>,
 }
 
 impl Tare {
@@ -29,6 +63,14 @@ impl Tare {
     #[must_use]
     pub fn rest(&self, finger: Finger) -> Option<TareZero> {
         self.rests[finger]
+    }
+
+    /// When a person tared last, if one did and it was not undone.
+    #[must_use]
+    pub fn chosen_at(&self) -> Option<Moment> {
+        let chosen = self.rests.iter().filter_map(|(_, rest)| *rest);
+        let chosen = chosen.filter(|rest| rest.source == Source::Person);
+        chosen.map(|rest| rest.at).max()
     }
 
     /// Whether there is a taring to take back.
@@ -41,7 +83,7 @@ impl Tare {
     pub(crate) fn begin(&mut self, sample: &HandSample) {
         for (finger, rest) in self.rests.iter_mut() {
             if rest.is_none() && load(sample, finger).is_none() {
-                *rest = reading(sample, finger, false);
+                *rest = reading(sample, finger, Source::First);
             }
         }
     }
@@ -58,12 +100,83 @@ impl Tare {
             if let Some(newtons) = load(sample, finger) {
                 return Err((finger, newtons));
             }
-            rests[finger] = reading(sample, finger, true).or(rests[finger]);
+            rests[finger] = reading(sample, finger, Source::Person).or(rests[finger]);
         }
+        self.put(rests);
+        Ok(())
+    }
+
+    fn put(&mut self, rests: PerFinger<Option<TareZero>>) {
         if self.rests != rests {
             self.before = Some(std::mem::replace(&mut self.rests, rests));
         }
+    }
+
+    /// True once it was looked for what is kept of the hand.
+    pub(crate) const fn was_offered(&self) -> bool {
+        self.offer.is_some()
+    }
+
+    /// Offers what is kept of the hand, if there is something. `since_1970` and `now` are the same moment.
+    pub(crate) fn offer(&mut self, kept: Option<KeptTare>, since_1970: Duration, now: Moment) {
+        let offer = |kept: KeptTare| Offer {
+            age: since_1970.saturating_sub(Duration::from_secs(kept.unix_s)),
+            kept,
+            at: now,
+        };
+        self.offer = Some(kept.map(offer));
+    }
+
+    /// How old the taring is that is offered; `None` if there is none.
+    #[must_use]
+    pub fn offered(&self, now: Moment) -> Option<Duration> {
+        let offer = self.offer.as_ref()?.as_ref()?;
+        Some(offer.age + now.since(offer.at))
+    }
+
+    /// Counts these fingertips from what was kept, where it was. Nothing is changed where one is touched: that one, and
+    /// what presses it in newtons.
+    pub(crate) fn take_kept(
+        &mut self,
+        fingers: impl IntoIterator<Item = Finger>,
+        sample: &HandSample,
+        now: Moment,
+    ) -> Result<(), (Finger, f32)> {
+        let (Some(Some(offer)), Some(age)) = (&self.offer, self.offered(now)) else {
+            return Ok(());
+        };
+        let mut rests = self.rests;
+        for finger in fingers {
+            if let Some(newtons) = load(sample, finger) {
+                return Err((finger, newtons));
+            }
+            let raw = offer.kept.tips.get(finger.name());
+            let source = Source::Kept(age);
+            let rest = raw.map(|raw| TareZero {
+                raw: *raw,
+                at: now,
+                source,
+            });
+            rests[finger] = rest.or(rests[finger]);
+        }
+        self.put(rests);
         Ok(())
+    }
+
+    /// What a person chose, to be kept; else what was kept before. `since_1970` and `now` are the same moment.
+    pub(crate) fn to_keep(&self, since_1970: Duration, now: Moment) -> Option<KeptTare> {
+        let Some(at) = self.chosen_at() else {
+            let offer = self.offer.as_ref()?.as_ref();
+            return offer.map(|offer| offer.kept.clone());
+        };
+        let rests = self.rests.iter().filter_map(|(finger, rest)| {
+            let rest = rest.filter(|rest| rest.source != Source::First)?;
+            Some((finger.name().to_owned(), rest.raw))
+        });
+        Some(KeptTare {
+            unix_s: since_1970.saturating_sub(now.since(at)).as_secs(),
+            tips: rests.collect(),
+        })
     }
 
     /// Takes the last taring back, once.
@@ -80,12 +193,12 @@ fn load(sample: &HandSample, finger: Finger) -> Option<f32> {
     (normal >= TOUCHED_N).then_some(normal)
 }
 
-fn reading(sample: &HandSample, finger: Finger, chosen: bool) -> Option<TareZero> {
+fn reading(sample: &HandSample, finger: Finger, source: Source) -> Option<TareZero> {
     let block = sample.tactile[finger]?;
     Some(TareZero {
         raw: block.value.raw,
         at: block.received,
-        chosen,
+        source,
     })
 }
 
@@ -118,12 +231,10 @@ mod tests {
         let mut tare = Tare::default();
         tare.begin(&sample(100, 1));
         tare.begin(&sample(200, 2));
-        assert_eq!(counted_from(&tare), Some(100));
-        assert!(tare.rest(Finger::Index).is_some_and(|rest| !rest.chosen));
+        assert_eq!((counted_from(&tare), tare.chosen_at()), (Some(100), None));
         tare.tare(Finger::ALL, &sample(300, 3)).unwrap();
         assert_eq!(counted_from(&tare), Some(300));
-        let rest = tare.rest(Finger::Index).expect("tared");
-        assert_eq!((rest.chosen, rest.at), (true, Moment::from_micros(3000)));
+        assert_eq!(tare.chosen_at(), Some(Moment::from_micros(3000)));
     }
 
     #[test]
@@ -143,6 +254,36 @@ mod tests {
         let refused = tare.tare(Finger::ALL, &pressed(3));
         assert_eq!(refused, Err((Finger::Index, 4.5)));
         assert_eq!((counted_from(&tare), tare.can_undo()), (Some(100), false));
+    }
+
+    #[test]
+    fn what_was_kept_is_offered_and_taken_only_where_nothing_presses() {
+        let mut former = Tare::default();
+        let at = |secs: u64| Moment::from_micros(secs * 1_000_000);
+        assert_eq!(former.to_keep(Duration::from_secs(1000), at(0)), None);
+        former.tare([Finger::Index], &sample(300, 3)).unwrap();
+        let kept = former.to_keep(Duration::from_secs(1000), at(0)).unwrap();
+        let mut tare = Tare::default();
+        tare.begin(&sample(100, 1));
+        tare.offer(Some(kept), Duration::from_secs(1060), at(5));
+        assert_eq!(counted_from(&tare), Some(100), "only offered");
+        assert_eq!(tare.offered(at(7)), Some(Duration::from_secs(62)));
+        let mut pressed = sample(900, 8);
+        if let Some(block) = &mut pressed.tactile[Finger::Index] {
+            block.value.normal_n = 4.5;
+        }
+        let refused = tare.take_kept(Finger::ALL, &pressed, at(8));
+        assert_eq!(refused, Err((Finger::Index, 4.5)));
+        assert_eq!(counted_from(&tare), Some(100));
+        tare.take_kept(Finger::ALL, &sample(400, 8), at(8)).unwrap();
+        let rest = tare.rest(Finger::Index).unwrap();
+        let source = Source::Kept(Duration::from_secs(63));
+        assert_eq!((rest.raw[0], rest.source), (300, source));
+        assert_eq!(tare.chosen_at(), None, "not chosen in this session");
+        tare.undo();
+        assert_eq!(counted_from(&tare), Some(100));
+        let again = tare.to_keep(Duration::from_secs(2000), at(9)).unwrap();
+        assert_eq!(again.unix_s, 1000, "what was kept before");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::app::trials::state::SessionId;
 use crate::trials::{Criterion, TrialPlan};
+use std::path::PathBuf;
 
 /// What a person asks for about trials.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,8 +21,8 @@ pub enum TrialAction {
     ConfirmForget,
     /// No, it stays.
     CancelForget,
-    /// Ask for a saved session, and read it.
-    Open,
+    /// Read a saved session: one at a place that was typed, else one that is asked for.
+    Open(Option<PathBuf>),
     /// Ask for a folder and save a session in a new one inside it; the report names the best by this.
     Save(SessionId, Option<Criterion>),
 }

@@ -1,6 +1,7 @@
 //! Sessions in folders: asked for, written and read away from the window's thread. The formats are in [`crate::trials::session`].
 
 use crate::app::env::Env;
+use crate::app::files::choose::place_of;
 use crate::app::files::day_folder;
 use crate::app::notices::NoticeKind;
 use crate::app::trials::state::{
@@ -59,12 +60,15 @@ pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BackgroundJob<Fi
     }
 }
 
-/// Asks for the `session.toml` of a session and reads its folder.
-pub(crate) fn open(env: &Env) -> BackgroundJob<FilesEnd> {
-    let chosen = env.files.open(SESSION_FILE);
+/// Reads the folder of a session whose place was typed, else asks for its `session.toml`.
+pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd> {
+    let chosen = place_of(typed, env.files.as_ref(), SESSION_FILE);
     BackgroundJob::start(&env.runtime, &env.wake, async move {
         let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
-        let folder = path.parent().unwrap_or(Path::new(".")).to_owned();
+        let folder = match path.is_dir() {
+            true => path.clone(),
+            false => path.parent().unwrap_or(Path::new(".")).to_owned(),
+        };
         match on_thread(move || read_session(&folder)).await {
             Ok(session) => Ok(FilesDone::Opened(path, Box::new(session))),
             Err(error) => Err(NoticeKind::SessionRefused {

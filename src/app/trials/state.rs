@@ -127,6 +127,10 @@ pub struct TrialsState {
     pub to_confirm: Option<SessionId>,
     /// Why the last wish about files came to nothing; `None` if it did what it should.
     pub refused: Option<NoticeKind>,
+    /// A session was to be read and was not: its path may be typed.
+    pub asks_path: bool,
+    /// A person asked for that, and it is not over.
+    pub(crate) is_opening: bool,
     /// Sessions that are to be written without asking, the oldest wish first.
     pub(crate) to_keep: VecDeque<SessionId>,
     newest: u64,

@@ -58,7 +58,7 @@ impl TrialsState {
                 }
             }
             TrialAction::CancelForget => self.to_confirm = None,
-            TrialAction::Start | TrialAction::Open | TrialAction::Save(..) => {}
+            TrialAction::Start | TrialAction::Open(_) | TrialAction::Save(..) => {}
         }
     }
 

@@ -26,35 +26,28 @@ pub(crate) struct Finding {
     pub(crate) advice: String,
 }
 
-/// What was found so far.
-#[derive(Default)]
-struct Findings(Vec<Finding>);
-
-impl Findings {
-    fn add(&mut self, is_wrong: bool, what: impl Into<String>, advice: impl Into<String>) {
-        self.0.push(Finding {
-            is_wrong,
-            what: what.into(),
-            advice: advice.into(),
-        });
+fn wrong(what: impl Into<String>, advice: impl Into<String>) -> Finding {
+    Finding {
+        is_wrong: true,
+        what: what.into(),
+        advice: advice.into(),
     }
+}
 
-    fn wrong(&mut self, what: impl Into<String>, advice: impl Into<String>) {
-        self.add(true, what, advice);
-    }
-
-    fn hint(&mut self, what: impl Into<String>, advice: impl Into<String>) {
-        self.add(false, what, advice);
+fn hint(what: impl Into<String>, advice: impl Into<String>) -> Finding {
+    Finding {
+        is_wrong: false,
+        ..wrong(what, advice)
     }
 }
 
 /// All findings, the worst first.
 pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
-    let mut found = Findings::default();
+    let mut found = Vec::new();
     let endpoint = &checkup.endpoint;
     match &checkup.answer {
         // The sentence says itself what to do.
-        Err(why) => found.wrong(why, ""),
+        Err(why) => found.push(wrong(why, "")),
         Ok(measured) => answers(measured, &mut found),
     }
     let measured = checkup.answer.as_ref().ok();
@@ -67,82 +60,82 @@ pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
         ConnectionFacts::NoCan => {}
         ConnectionFacts::BuiltIn => {}
     }
-    found.0.sort_by_key(|finding| !finding.is_wrong);
-    found.0
+    found.sort_by_key(|finding| !finding.is_wrong);
+    found
 }
 
-fn answers(measured: &Measured, found: &mut Findings) {
+fn answers(measured: &Measured, found: &mut Vec<Finding>) {
     if let Some(why) = &measured.lost {
-        found.wrong(
+        found.push(wrong(
             format!("the link was lost during the check: {why}"),
             "check plug, cable and the hand's power",
-        );
+        ));
     }
     let requests = measured.requests().max(1);
     let per_mille = |count: u64| count * 1000 / requests;
     let stats = &measured.stats;
     if per_mille(stats.timeouts) > TIMEOUTS_PER_MILLE {
-        found.wrong(
+        found.push(wrong(
             format!(
                 "{} of {requests} requests went without a reply",
                 stats.timeouts
             ),
             "check the cable, the termination, and whether two devices share an id",
-        );
+        ));
     }
     if per_mille(stats.checksum_errors) > CHECKSUMS_PER_MILLE {
-        found.wrong(
+        found.push(wrong(
             format!("{} replies had a wrong checksum", stats.checksum_errors),
             "check termination, ground and cable length; on RS485, Modbus RTU has a better check than the maker's framing",
-        );
+        ));
     }
     if measured.status.other_controller || stats.foreign_requests > 0 {
-        found.wrong(
+        found.push(wrong(
             format!(
                 "another controller talks to this hand ({} times noticed)",
                 stats.foreign_requests
             ),
             "close the other program, or take the other master off the bus",
-        );
+        ));
     }
     let slowest = measured
         .windows
         .iter()
         .filter_map(|window| window.percentile(50));
     if let Some(trip) = slowest.max().filter(|trip| *trip > SLOW) {
-        found.wrong(
+        found.push(wrong(
             format!("a reply takes {} ms", trip.as_millis()),
             "choose a higher baud rate, or check the latency of adapter and network",
-        );
+        ));
     }
     if measured.status.echoes {
-        found.hint(
+        found.push(hint(
             "the adapter echoes what is sent; the echo is ignored",
             "nothing to do; switching the echo off would free the line",
-        );
+        ));
     }
 }
 
-fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut Findings) {
+fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut Vec<Finding>) {
     // A port that could not be opened because of it has been told of with this name already.
     if let Some(holder) = facts.holder.as_ref().filter(|_| measured.is_some()) {
-        found.wrong(
+        found.push(wrong(
             format!("{port} is also open in {holder}"),
             "close that program: two programs mix up each other's replies",
-        );
+        ));
     }
     let timer = facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms);
     match timer {
-        Some(ms) if ms > TIMER_MS => found.wrong(
+        Some(ms) if ms > TIMER_MS => found.push(wrong(
             format!("the USB adapter holds replies back for up to {ms} ms (latency timer)"),
             timer_advice(facts, port),
-        ),
+        )),
         // The driver says that the timer is short: then it is the hand that takes so long.
         Some(_) => {}
-        None if measured.is_some_and(|measured| measured.ticks_seen) => found.wrong(
+        None if measured.is_some_and(|measured| measured.ticks_seen) => found.push(wrong(
             "replies come every 16 ms, as from a USB adapter with a latency timer of 16 ms",
             timer_advice(facts, port),
-        ),
+        )),
         None => {}
     }
 }
@@ -159,7 +152,7 @@ fn timer_advice(facts: &PortFacts, port: &str) -> String {
     format!("run 'echo 1 | sudo tee /sys/bus/usb-serial/devices/{name}/latency_timer'")
 }
 
-fn net(way: Option<&Route>, is_answered: bool, found: &mut Findings) {
+fn net(way: Option<&Route>, is_answered: bool, found: &mut Vec<Finding>) {
     let Some(way) = way.filter(|way| way.is_direct() == Some(false)) else {
         return;
     };
@@ -173,8 +166,8 @@ fn net(way: Option<&Route>, is_answered: bool, found: &mut Findings) {
         neighbour(way)
     );
     match is_answered {
-        true => found.hint(what, ""),
-        false => found.wrong(what, advice),
+        true => found.push(hint(what, "")),
+        false => found.push(wrong(what, advice)),
     }
 }
 
@@ -191,28 +184,28 @@ fn neighbour(way: &Route) -> String {
 }
 
 #[cfg(target_os = "linux")]
-fn can(interface: &str, facts: &crate::transport::can::facts::CanFacts, found: &mut Findings) {
+fn can(interface: &str, facts: &crate::transport::can::facts::CanFacts, found: &mut Vec<Finding>) {
     use crate::transport::can::facts::QUEUE_LEN_USUAL;
     let is_well = |state: &&str| matches!(*state, "ERROR-ACTIVE" | "STOPPED");
     if let Some(state) = facts.state.as_deref().filter(|state| !is_well(state)) {
-        found.wrong(
+        found.push(wrong(
             format!("the controller of {interface} is {state}"),
             "check bit rate, cable, and termination at both ends",
-        );
+        ));
     }
     let is_usual = |rate: &u64| matches!(*rate, 1_000_000 | 500_000);
     if let Some(rate) = facts.bitrate.filter(|rate| !is_usual(rate)) {
-        found.hint(
+        found.push(hint(
             format!("{interface} runs at {rate} bit/s; hands are delivered with 1000000"),
             format!("run 'sudo ip link set {interface} down', then 'sudo ip link set {interface} up type can bitrate 1000000'"),
-        );
+        ));
     }
     let queue_len = facts.queue_len.filter(|_| facts.is_up == Some(true));
     if let Some(len) = queue_len.filter(|len| *len <= QUEUE_LEN_USUAL) {
-        found.hint(
+        found.push(hint(
             format!("{interface} queues only {len} frames"),
             format!("if frames are refused, run 'sudo ip link set {interface} txqueuelen 100'"),
-        );
+        ));
     }
 }
 

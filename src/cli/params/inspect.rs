@@ -133,8 +133,8 @@ pub(crate) fn backups(out: &mut Out, args: &Common) -> anyhow::Result<()> {
     }
     for backup in &backups {
         let path = backup.path.display();
-        match &backup.about {
-            Ok((at, why)) => out.line(&format!("{at}  {why:<14} {path}"))?,
+        match &backup.file {
+            Ok(file) => out.line(&format!("{}  {:<14} {path}", file.at, file.why))?,
             Err(error) => say(&format!("{path}: {error}")),
         }
     }
@@ -146,8 +146,8 @@ pub(crate) fn backups(out: &mut Out, args: &Common) -> anyhow::Result<()> {
 }
 
 fn backup_json(backup: &Backup) -> Value {
-    match &backup.about {
-        Ok((at, why)) => json!({ "path": backup.path, "at": at, "why": why }),
+    match &backup.file {
+        Ok(file) => json!({ "path": backup.path, "at": file.at, "why": file.why }),
         Err(error) => json!({ "path": backup.path, "error": error.to_string() }),
     }
 }

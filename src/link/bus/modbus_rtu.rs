@@ -1,7 +1,8 @@
 //! Requests over Modbus RTU (manual 2.4), through tokio-modbus. Replies have neither number nor address, only a length:
 //! no length is asked for again while a reply of that length may still come.
 
-use crate::codec::modbus::{BytePacking, words_for};
+use crate::codec::modbus::words_for;
+use crate::hand::register::BytePacking;
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::late_replies::LateReplies;
 

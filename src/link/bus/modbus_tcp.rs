@@ -1,6 +1,6 @@
 //! Requests over Modbus TCP (manual 2.5), through tokio-modbus. Replies carry a number, which the filter checks.
 
-use crate::codec::modbus::BytePacking;
+use crate::hand::register::BytePacking;
 use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::client::Bus;
 use crate::link::bus::error::{BusCounts, BusError, Bytes};

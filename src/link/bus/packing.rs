@@ -1,11 +1,11 @@
 //! Single bytes over Modbus, where the manual leaves their packing open: which pieces a read falls into, and which writes
 //! are safe. Asks nothing itself.
 
-use crate::codec::modbus::BytePacking;
+use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
 use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::error::BusError;
-use crate::transport::{Endpoint, Packing};
+use crate::transport::Endpoint;
 use arrayvec::ArrayVec;
 
 /// The groups of single bytes: ERROR, STATUS, TEMP, one behind the other.
@@ -103,16 +103,11 @@ impl WordUse {
 
 /// What a person said in the endpoint.
 pub(crate) fn chosen(endpoint: &Endpoint) -> Option<BytePacking> {
-    let packing = match endpoint {
+    match endpoint {
         Endpoint::Tcp { packing, .. } => *packing,
         Endpoint::Rtu(line) => line.packing,
         _ => None,
-    };
-    packing.map(|packing| match packing {
-        Packing::Low => BytePacking::LowFirst,
-        Packing::High => BytePacking::HighFirst,
-        Packing::One => BytePacking::OnePerWord,
-    })
+    }
 }
 
 /// One past the last byte, which lies below 65536 for every span that Modbus can name.

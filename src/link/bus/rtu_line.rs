@@ -1,7 +1,8 @@
 //! A serial line that lets only the reply to the open request through to the Modbus client, and that its bus can
 //! listen to between requests. Which request is made, and when, is not decided here.
 
-use crate::codec::modbus_rtu::{FRAME_LEN_MAX, RtuNoise, RtuReply, RtuSplitter};
+use crate::codec::NoiseCounts;
+use crate::codec::modbus_rtu::{FRAME_LEN_MAX, RtuReply, RtuSplitter};
 use crate::link::bus::echo::Echo;
 use crate::transport::BoxedWire;
 use arrayvec::ArrayVec;
@@ -128,7 +129,7 @@ impl RtuLine {
     }
 
     /// What was skipped since the line was opened.
-    pub(crate) fn noise(&self) -> RtuNoise {
+    pub(crate) fn noise(&self) -> NoiseCounts {
         self.line().splitter.noise()
     }
 

@@ -323,10 +323,7 @@ impl Session {
         tokio::select! {
             biased;
             () = stop => Ok(()),
-            settled = bus.quiet() => match settled {
-                Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
-                _ => Ok(()),
-            },
+            settled = bus.quiet() => unless_lost(settled),
         }
     }
 
@@ -396,6 +393,14 @@ impl Session {
             self.counters.stats.line = line;
         }
         self.ends.stats.send_replace(self.counters.stats);
+    }
+}
+
+/// Of all failures only a lost wire ends the conversation.
+pub(crate) fn unless_lost(done: Result<(), BusError>) -> Result<(), WireEnd> {
+    match done {
+        Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
+        _ => Ok(()),
     }
 }
 

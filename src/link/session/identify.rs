@@ -1,13 +1,12 @@
 //! Identifies a hand on a fresh wire, by reading only: is it there, and how does it differ from others. Bounded in time, and
 //! cut short by a stop; nothing is written.
 
-use crate::codec::modbus::BytePacking;
-use crate::hand::register::{ANGLE_ACT, HAND_ID, REDU_RATIO, TEMP, TOUCH};
+use crate::hand::register::{ANGLE_ACT, BytePacking, HAND_ID, REDU_RATIO, TEMP, TOUCH};
 use crate::hand::{Moment, Span};
 use crate::link::bus::error::id_of;
 use crate::link::bus::{Bus, BusError, Bytes};
 use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
-use crate::link::session::conversation::{Session, WireEnd, closed, stopped};
+use crate::link::session::conversation::{Session, WireEnd, closed, stopped, unless_lost};
 use crate::link::status::LinkTrouble;
 use std::sync::Arc;
 use std::time::Duration;
@@ -92,7 +91,7 @@ impl Session {
     /// Asks for the id until something comes. A refusal is an answer too, without an id.
     async fn first_answer(&mut self, bus: &mut dyn Bus) -> Result<Option<Bytes>, WireEnd> {
         for _ in 0..TRIES {
-            self.take_turn(bus).await?;
+            self.turn(bus).await?;
             // Where all are open, the id may be asked in the same words again: it does not change.
             let span = bus.choose(&ID_SHAPES).unwrap_or(HAND_ID.span());
             let span = Span::new(span.address, span.len + u16::from(bus.has_words()));
@@ -103,7 +102,7 @@ impl Session {
                 Err(BusError::Lost(error)) => return Err(WireEnd::Lost(error.into())),
                 Err(BusError::Timeout { .. } | BusError::TooLong | BusError::Ambiguous) => {
                     self.counters.stats.timeouts += 1;
-                    lost(bus.quiet().await)?;
+                    unless_lost(bus.quiet().await)?;
                 }
             }
         }
@@ -123,7 +122,7 @@ impl Session {
             if self.hurried(until) {
                 break;
             }
-            self.take_turn(bus).await?;
+            self.turn(bus).await?;
             let limit = self.reply_limit(bus, 2 * BytePacking::OnePerWord.words_per_group());
             match bus.words(TEMP.address, limit).await {
                 Ok(Some(words)) => return Ok(judged_packing(id, &words)),
@@ -209,7 +208,7 @@ impl Session {
         if self.hurried(until) {
             return Ok(IdentityReply::Unasked);
         }
-        self.take_turn(bus).await?;
+        self.turn(bus).await?;
         let Some(span) = bus.choose(shapes) else {
             return Ok(IdentityReply::Unasked);
         };
@@ -243,7 +242,7 @@ impl Session {
         tokio::select! {
             biased;
             () = stop => {}
-            settled = bus.quiet() => lost(settled)?,
+            settled = bus.quiet() => unless_lost(settled)?,
         }
         Ok(IdentityReply::Silent)
     }
@@ -251,18 +250,6 @@ impl Session {
     /// True if there is no time for another question.
     fn hurried(&self, until: Moment) -> bool {
         self.now() >= until || self.ends.wanted.borrow().stop
-    }
-
-    async fn take_turn(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
-        lost(bus.turn().await)
-    }
-}
-
-/// Of all failures only a lost wire ends the conversation.
-fn lost(done: Result<(), BusError>) -> Result<(), WireEnd> {
-    match done {
-        Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
-        _ => Ok(()),
     }
 }
 

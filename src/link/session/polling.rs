@@ -75,7 +75,7 @@ impl Session {
             Ok(Some(bytes)) => {
                 self.answered(took);
                 self.watch_ticks(span.len, took);
-                self.counters.read(self.plan.cost(), span, took);
+                self.counters.line.read(self.plan.cost(), span, took);
                 let bytes = &bytes;
                 self.take(&Reply {
                     span,
@@ -86,7 +86,7 @@ impl Session {
                 Ok(())
             }
             Err(error) => {
-                self.counters.failed(took);
+                self.counters.line.failed(took);
                 self.plan.failed(span, received);
                 self.failed(bus, &error).await
             }

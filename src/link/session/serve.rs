@@ -1,12 +1,11 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::ArmEpoch;
-use crate::hand::{HandCommand, RegisterWrite};
+use crate::hand::{ArmEpoch, HandCommand, RegisterWrite};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
 use crate::link::request::RequestError;
-use crate::link::session::conversation::{Session, WireEnd};
+use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
 use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::status::{ArmRequest, LinkTrouble};
@@ -333,7 +332,9 @@ impl Session {
             number,
             fate: fate(&written),
         });
-        self.counters.wrote(self.plan.cost(), write.span(), took);
+        self.counters
+            .line
+            .wrote(self.plan.cost(), write.span(), took);
         written?;
         self.answered(took);
         Ok(())
@@ -358,10 +359,7 @@ impl Session {
 
     /// Waits for the line; of all failures it can only be lost.
     pub(crate) async fn turn(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
-        match bus.turn().await {
-            Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
-            _ => Ok(()),
-        }
+        unless_lost(bus.turn().await)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::hand::register::{DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, SAVE};
 use crate::hand::{HandCommand, Moment, Setting, Span};
 use crate::link::bus::{Bus, BusError, ResultFrame};
 use crate::link::request::{Answer, Request, RequestError};
-use crate::link::session::conversation::{Session, WireEnd};
+use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::save_watch::{Ack, Next};
 use crate::link::wanted::PendingControl;
 use crate::record::{
@@ -339,10 +339,7 @@ impl Session {
         tokio::select! {
             biased;
             _ = wanted.wait_for(PendingControl::is_any) => Ok(()),
-            heard = bus.listen() => match heard {
-                Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
-                _ => Ok(()),
-            },
+            heard = bus.listen() => unless_lost(heard),
             () = over => Ok(()),
         }
     }

@@ -1,8 +1,8 @@
 //! Sets what comes in against what was asked: which request a reply answers, and what is out of place. One request is
 //! open at a time, as the link has it.
 
-use crate::codec::modbus::BytePacking;
 use crate::codec::rs485::SaveResult;
+use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, SAVE, STATUS, TEMP};
 use crate::hand::{Moment, Span};
 use crate::link::tap::Direction;

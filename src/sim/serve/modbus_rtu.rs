@@ -25,18 +25,15 @@ const SHORT_LEN: usize = 8;
 const LONG_FRAMING: usize = 9;
 
 /// Answers on `wire` until the other side hangs up. Silent for other ids and bad frames.
-///
-/// # Errors
-/// None: the end of the wire is the only end there is.
-pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) -> io::Result<()> {
+pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
     let mut line = RtuServer {
         hands: hands.into(),
         wire,
         held: ArrayVec::new(),
         is_noisy: false,
     };
+    // The end of the wire is the only end there is, and the only error.
     let _hung_up = line.run().await;
-    Ok(())
 }
 
 struct RtuServer<W> {

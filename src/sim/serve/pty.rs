@@ -7,7 +7,6 @@ use crate::sim::serve::slcan;
 use crate::sim::serve::usbcan;
 use crate::transport::{LinePace, PtyLink, TransportError, paced};
 use std::future::Future;
-use std::io;
 use std::path::Path;
 
 /// Makes the link at `path` at once, and answers there while the returned future lives. Clients may come and go;
@@ -30,7 +29,7 @@ pub fn serve_rs485(
     })
 }
 
-/// As [`serve_rs485`], in Modbus RTU. The future ends with an error only if the system has no pseudo-terminals left.
+/// As [`serve_rs485`], in Modbus RTU.
 ///
 /// # Errors
 /// As [`serve_rs485`].
@@ -38,7 +37,7 @@ pub fn serve_rtu(
     hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
     pace: Option<LinePace>,
-) -> Result<impl Future<Output = io::Result<()>> + Send + 'static, TransportError> {
+) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let (hands, link) = (hands.into(), line(path, pace)?);
     Ok(async move {
         match pace {

@@ -8,17 +8,19 @@ pub(crate) mod scan;
 use crate::app::action::Action;
 use crate::app::scan::ScanTarget;
 use crate::hand::SerialSpeed;
+use crate::hand::register::BytePacking;
 use crate::link::scan::plan::BITRATES;
 use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
-use crate::transport::{Endpoint, Packing};
+use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
-use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, refused_ui};
 use crate::ui::text::{errors, panels, quirks, scan as scan_text};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 use std::collections::BTreeMap;
+use std::net::Ipv4Addr;
 
 /// Width from which the scan has a column of its own.
 const THREE_COLUMNS: f32 = 1400.0;
@@ -231,7 +233,7 @@ impl ConnectionForm {
                 .map(|it| said(it.name(), panels::scenario(it)))
                 .to_vec(),
             "packing" => {
-                let all = Packing::ALL.map(|it| said(it.name(), quirks::chosen(it)));
+                let all = BytePacking::ALL.map(|it| said(it.key(), quirks::packing(it)));
                 [said("", quirks::AS_FOUND)]
                     .into_iter()
                     .chain(all)
@@ -243,7 +245,11 @@ impl ConnectionForm {
         let caption = look.say(panels::setting(key));
         row_ui(ui, look, caption, |ui| {
             if all.is_empty() {
-                kit::edit_ui(ui, (caption, ""), text);
+                let field = kit::edit_ui(ui, (caption, ""), text);
+                if key == "host" && !field.has_focus() && is_wrong_ip(text) {
+                    let words = look.say(panels::ADDRESS_WRONG);
+                    refused_ui(ui, look, (field.id, field.rect), words);
+                }
                 return;
             }
             if all.iter().all(|(value, _)| value != text) {
@@ -298,6 +304,14 @@ impl ConnectionForm {
             Label::new(&text, look.palette.warn).wrap().ui(ui);
         }
     }
+}
+
+/// True for digits and dots that are no address; with letters it is a name. A port may stand behind it.
+fn is_wrong_ip(text: &str) -> bool {
+    let text = text.trim();
+    let host = text.split_once(':').map_or(text, |(host, _)| host);
+    let plain = |letter: char| letter.is_ascii_digit() || letter == '.';
+    !host.is_empty() && host.chars().all(plain) && host.parse::<Ipv4Addr>().is_err()
 }
 
 /// A column that scrolls by itself.

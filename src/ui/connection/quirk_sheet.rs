@@ -89,7 +89,12 @@ fn packing(pane: &Pane<'_>) -> Option<String> {
     };
     Some(match chosen {
         None => look.say(found).to_owned(),
-        Some(chosen) => format!("{} ({chosen}: {})", look.say(found), look.say(text::CHOSEN)),
+        Some(chosen) => format!(
+            "{} ({}: {})",
+            look.say(found),
+            chosen.key(),
+            look.say(text::CHOSEN)
+        ),
     })
 }
 

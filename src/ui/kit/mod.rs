@@ -8,6 +8,7 @@ pub(crate) mod dash;
 pub(crate) mod format;
 mod look;
 mod number;
+pub(crate) mod path_field;
 pub(crate) mod reorder;
 mod text_field;
 
@@ -18,4 +19,4 @@ pub(crate) use controls::{
 };
 pub(crate) use look::{Explain, Look, Pane, Typing};
 pub(crate) use number::NumberField;
-pub(crate) use text_field::TextField;
+pub(crate) use text_field::{TextField, refused_ui};

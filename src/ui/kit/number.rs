@@ -3,6 +3,7 @@
 use crate::ui::kit::controls;
 use crate::ui::kit::format::UNKNOWN;
 use crate::ui::kit::look::{Look, Pane, Typing};
+use crate::ui::kit::text_field::refused_ui;
 use crate::ui::text::main;
 use crate::ui::theme;
 use egui::text::{CCursor, CCursorRange};
@@ -97,11 +98,8 @@ impl<'a> NumberField<'a> {
         let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let (from, to) = (self.range.start(), self.range.end());
         if typing.refused == Some(id) {
-            // Over what is beside the field, so that nothing moves under the pointer.
             let text = format!("{} {from}..{to}", look.say(main::ONLY_FROM_TO));
-            let layer = response.layer_id;
-            egui::Tooltip::always_open(ui.ctx().clone(), layer, id.with("refused"), &response)
-                .show(|ui| ui.colored_label(look.palette.bad, text));
+            refused_ui(ui, look, (id, response.rect), &text);
         } else {
             response.on_hover_text(match self.disabled {
                 Some(reason) => reason.to_owned(),

@@ -5,8 +5,9 @@ use crate::app::params::action::ParamAction;
 use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
+use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
-use crate::ui::text::{cards, device, errors, verdicts};
+use crate::ui::text::{cards, device, errors, notices, verdicts};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui};
 
@@ -124,6 +125,14 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             .sends(ui, pane, Action::Param(ParamAction::Dump));
         open.sends(ui, pane, Action::Param(ParamAction::Open));
     });
+    if let Some(refused) = &pane.state.hand().params.file_refused {
+        let words = notices::notice(look, refused);
+        Label::new(&words, look.palette.warn).small().wrap().ui(ui);
+        if let Some(path) = path_ui(ui, look, "parameters") {
+            pane.actions
+                .push(Action::Param(ParamAction::OpenBackup(path)));
+        }
+    }
     let title = Label::said(look, device::BACKUPS);
     title.font(theme::title()).ui(ui);
     let backups = &pane.state.hand().params.backups;
@@ -141,11 +150,14 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.horizontal(|ui| guarded_ui(ui, pane));
 }
 
-/// One backup as a button.
+/// One backup as a button, with the hand below it.
 fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     let look = pane.look;
-    let (words, unreadable) = match &backup.about {
-        Ok((at, why)) => (format!("{} {}", moment(at), verdicts::why(look, why)), None),
+    let (words, unreadable) = match &backup.file {
+        Ok(file) => {
+            let why = verdicts::why(look, &file.why);
+            (format!("{} {why}", moment(&file.at)), None)
+        }
         Err(error) => {
             let name = backup.path.file_name().unwrap_or_default();
             (
@@ -158,6 +170,11 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     if button.ui(ui, look).clicked() {
         let wish = ParamAction::OpenBackup(backup.path.clone());
         pane.actions.push(Action::Param(wish));
+    }
+    if let Ok(file) = &backup.file {
+        let label = format!("{}: {words}", look.say(device::BACKUP_OF));
+        let hand = Label::new(&file.hand, look.palette.muted).small();
+        hand.named(&label).wrap().ui(ui);
     }
 }
 

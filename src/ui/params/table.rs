@@ -7,10 +7,11 @@ use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
-use crate::ui::text::{Text, device, verdicts};
+use crate::ui::text::{Text, device, panels, verdicts};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
+use std::net::Ipv4Addr;
 
 /// Characters of an address.
 const ADDRESS_MAX: usize = 15;
@@ -357,13 +358,16 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
     kit::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
 }
 
+/// What was typed and is no address stays, with the reason beside it.
 fn address_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
     (name, value): (&str, Option<Value>),
 ) -> Option<Value> {
     let text = value.map_or_else(String::new, |value| value.to_string());
+    let words = pane.look.say(panels::ADDRESS_WRONG);
     let field = TextField::new(name, ADDRESS_MAX).hint(format::UNKNOWN);
+    let field = field.check(|text| text.parse::<Ipv4Addr>().is_ok(), words);
     let typed = field.ui(ui, pane, &text)?;
     typed.parse().ok().map(Value::Address)
 }

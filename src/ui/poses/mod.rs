@@ -11,11 +11,12 @@ use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{LibraryPose, PoseId};
 use crate::ui::hand::panel;
+use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, tile_ui};
-use crate::ui::text::{Text, poses};
+use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
 use egui::{Align, Layout, ScrollArea, Ui, vec2};
 
@@ -59,6 +60,7 @@ impl PoseView {
         kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             ui.horizontal(|ui| self.head_ui(ui, pane));
+            refused_ui(ui, pane);
             match self.section {
                 Section::Mine => self.mine_ui(ui, pane),
                 Section::Sequences => self.sequences.ui(ui, pane),
@@ -146,11 +148,24 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let undo = Action::Library(LibraryEdit::Undo);
     for (text, disabled, action) in [
         (poses::EXPORT, nothing, Action::ExportPoses),
-        (poses::IMPORT, None, Action::ImportPoses),
+        (poses::IMPORT, None, Action::ImportPoses(None)),
         (poses::UNDO, no_undo, undo),
     ] {
         let button = Button::said(look, text).disabled(disabled);
         button.sends(ui, pane, action);
+    }
+}
+
+/// Why the last file was not taken, and a field for the path of another.
+fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let Some(refused) = &pane.state.poses.refused else {
+        return;
+    };
+    let words = notices::notice(pane.look, refused);
+    let label = Label::new(&words, pane.look.palette.warn);
+    label.small().wrap().ui(ui);
+    if let Some(path) = path_ui(ui, pane.look, "poses") {
+        pane.actions.push(Action::ImportPoses(Some(path)));
     }
 }
 

@@ -122,6 +122,7 @@ texts! {
     DUMP: "Dump to file", "导出到文件", "Writes what was read to a file of parameters.", "把读到的值写入参数文件。";
     OPEN: "Open file", "打开文件", "Shows a file of parameters beside the hand. Writes nothing.", "把参数文件与灵巧手对照显示，不写入任何内容。";
     BACKUPS: "Backups", "备份";
+    BACKUP_OF: "Hand of the backup", "备份所属灵巧手";
     BACKUPS_NONE: "None yet. One is made before each save.", "还没有备份。每次保存前会自动备份。";
     BACKUP_TIP: "Shows this backup beside the hand. Writes nothing.", "把此备份与灵巧手对照显示，不写入任何内容。";
     COMPARED: "Beside the hand", "与灵巧手对照";

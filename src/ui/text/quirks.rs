@@ -1,9 +1,8 @@
 //! Sentences about what a hand was found to do in its own way.
 
-use crate::codec::modbus::BytePacking;
+use crate::hand::register::BytePacking;
 use crate::link::{GapRead, TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
-use crate::transport::Packing;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -49,12 +48,5 @@ texts! {
         BytePacking::LowFirst => "low first", "低字节在前";
         BytePacking::HighFirst => "high first", "高字节在前";
         BytePacking::OnePerWord => "one a word", "每字一字节";
-    }
-
-    /// A packing that a person says.
-    fn chosen(Packing) {
-        Packing::Low => "low first", "低字节在前";
-        Packing::High => "high first", "高字节在前";
-        Packing::One => "one a word", "每字一字节";
     }
 }

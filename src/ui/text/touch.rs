@@ -1,6 +1,8 @@
 //! Sentences of the fingertips and the drawn hand.
 
+use crate::app::readings::tare::{Source, TareZero};
 use crate::app::settings::Language;
+use crate::hand::Moment;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::texts;
 use std::time::Duration;
@@ -32,14 +34,33 @@ texts! {
     SLIP: "Slip", "打滑";
     TARED_NAME: "Taring of the chosen fingertip", "所选指尖的去皮状态";
     NOT_TARED: "Zero: first reading", "零点：首次读数";
+    KEPT_NAME: "Take the kept taring", "采用已保存的去皮";
+    KEPT_TIP: "Counts from what was tared at this hand in an earlier session. Refused while a fingertip is touched.", "采用此前对同一灵巧手保存的去皮零点。指尖受力时拒绝。";
     NO_ZERO: "No zero yet: it is touched", "尚无零点：正在受力";
 }
 
-/// How long ago a fingertip was tared.
-pub(crate) fn tared(look: Look, ago: Duration) -> String {
+/// Where the zero of a fingertip comes from, and how old it is.
+pub(crate) fn zero(look: Look, rest: TareZero, now: Moment) -> String {
+    let since = now.since(rest.at);
+    let (ago, kept) = match rest.source {
+        Source::First => return look.say(NOT_TARED).to_owned(),
+        Source::Person => (since, false),
+        Source::Kept(age) => (age + since, true),
+    };
     let ago = format::age(ago);
+    match (look.language, kept) {
+        (Language::En, false) => format!("Tared {ago} ago"),
+        (Language::En, true) => format!("Tared {ago} ago, kept"),
+        (Language::Zh, false) => format!("{ago}前去皮"),
+        (Language::Zh, true) => format!("{ago}前去皮（已保存）"),
+    }
+}
+
+/// A taring that was kept.
+pub(crate) fn kept(look: Look, age: Duration) -> String {
+    let age = format::age(age);
     match look.language {
-        Language::En => format!("Tared {ago} ago"),
-        Language::Zh => format!("{ago}前去皮"),
+        Language::En => format!("Taring of {age} ago"),
+        Language::Zh => format!("{age}前的去皮"),
     }
 }

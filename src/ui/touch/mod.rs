@@ -161,8 +161,7 @@ impl TouchView {
             let rest = pane.state.hand().tare.rest(finger);
             let tared = match rest {
                 None => look.say(text::NO_ZERO).to_owned(),
-                Some(rest) if !rest.chosen => look.say(text::NOT_TARED).to_owned(),
-                Some(rest) => text::tared(look, pane.state.now.since(rest.at)),
+                Some(rest) => text::zero(look, rest, pane.state.now),
             };
             let tared = Label::new(&tared, look.palette.muted).small();
             tared.named(look.say(text::TARED_NAME)).ui(ui);
@@ -250,6 +249,7 @@ impl TouchView {
         let all = look.say(panels::TARE_ALL);
         let nothing = (!hand.tare.can_undo()).then(|| look.say(panels::TARE_NOTHING));
         let undo = look.say(panels::TARE_UNDO);
+        let offered = hand.tare.offered(pane.state.now);
         ui.horizontal(|ui| {
             for (words, tip, disabled, action) in [
                 (all, panels::TARE_ALL.tip(), offline, Action::Tare(None)),
@@ -263,6 +263,14 @@ impl TouchView {
             ] {
                 let button = Button::new(words, look.say(tip)).disabled(disabled);
                 button.sends(ui, pane, action);
+            }
+            if let Some(age) = offered {
+                let words = text::kept(look, age);
+                let kept = Button::new(&words, look.say(text::KEPT_TIP));
+                let kept = kept.named(look.say(text::KEPT_NAME)).disabled(offline);
+                if kept.ui(ui, look).clicked() {
+                    pane.actions.push(Action::TakeKeptTare);
+                }
             }
         });
     }

@@ -4,6 +4,7 @@
 use crate::app::action::Action;
 use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
+use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, TextField};
 use crate::ui::text::{compare, notices, tune};
 use crate::ui::theme;
@@ -42,6 +43,12 @@ impl CompareView {
             ui.horizontal(|ui| self.head_ui(ui, pane, focus));
             let (told, color) = told(pane.state, look, focus);
             Label::new(&told, color).small().ui(ui);
+            if trials.asks_path
+                && let Some(path) = path_ui(ui, look, "session")
+            {
+                pane.actions
+                    .push(Action::Trial(TrialAction::Open(Some(path))));
+            }
             let Some(focus) = focus else {
                 ui.centered_and_justified(|ui| {
                     Label::muted(look, tune::COMPARE_EMPTY).ui(ui);
@@ -113,7 +120,7 @@ impl CompareView {
             for (text, disabled, action) in [
                 (compare::FORGET, busy, forget),
                 (tune::SAVE, busy.or(read), save),
-                (tune::OPEN, None, Some(TrialAction::Open)),
+                (tune::OPEN, None, Some(TrialAction::Open(None))),
             ] {
                 let button = Button::said(look, text).disabled(disabled);
                 if button.ui(ui, look).clicked() {

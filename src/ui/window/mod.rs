@@ -353,7 +353,7 @@ impl Window {
         let strip = if rect.height() < 640.0 {
             STRIP_LEAST
         } else {
-            144.0
+            160.0
         };
         let strip = RoomSize {
             designed: strip + theme::GAP,

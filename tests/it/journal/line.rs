@@ -221,7 +221,7 @@ impl Line {
         let (kind, hands) = (place.kind(), self.hands.clone());
         tokio::spawn(async move {
             match kind {
-                "rtu" => drop(modbus_rtu::serve(hands, at_hand).await),
+                "rtu" => modbus_rtu::serve(hands, at_hand).await,
                 "tcp" => modbus_tcp::serve_client(hands, at_hand).await,
                 "slcan" => slcan::serve(hands, at_hand).await,
                 _ => rs485::serve(hands, at_hand).await,

@@ -239,8 +239,8 @@ impl Program {
                 .iter()
                 .map(|file| format!("doubtful {}", file.verdict)),
         );
-        let abouts = book.backups.iter().flat_map(|backup| &backup.about);
-        said.extend(abouts.map(|(_, why)| format!("backup {why}")));
+        let backups = book.backups.iter().flat_map(|backup| &backup.file);
+        said.extend(backups.map(|file| format!("backup {}", file.why)));
         said.extend(
             state
                 .hand()

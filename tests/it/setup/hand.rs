@@ -53,7 +53,7 @@ pub(crate) fn serve(
 ) -> JoinHandle<()> {
     let hands: SimHands = hands.into();
     match endpoint {
-        Endpoint::Rtu(_) => tokio::spawn(modbus_rtu::serve(hands, far).map(drop)),
+        Endpoint::Rtu(_) => tokio::spawn(modbus_rtu::serve(hands, far)),
         Endpoint::Tcp { .. } => tokio::spawn(modbus_tcp::serve_client(hands, far)),
         Endpoint::Can { .. } => tokio::spawn(can::serve(hands, far).map(drop)),
         Endpoint::Slcan { .. } => tokio::spawn(slcan::serve(hands, far)),

@@ -1,5 +1,6 @@
 //! The real program with its real window, in front of a simulated hand on a wire that can be pulled. Virtual time only.
 
+use crate::setup::faulty::{FaultPlan, faulty_pair};
 use crate::setup::hand;
 use crate::setup::link;
 use crate::setup::program::{InFolder, Program, env};
@@ -16,9 +17,7 @@ use handscope::hand::{Dof, Moment, SerialSpeed};
 use handscope::record::LinkState;
 use handscope::sim::serve::SharedHand;
 use handscope::sim::{SimConfig, SimHand, SimHands};
-use handscope::transport::{
-    BoxedWire, Dial, Endpoint, FaultPlan, PortFound, Wire, faulty_pair, pair,
-};
+use handscope::transport::{BoxedWire, Dial, Endpoint, PortFound, Wire, pair};
 use handscope::ui::View;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};

@@ -430,6 +430,40 @@ fn host_and_port_are_one_field() {
 }
 
 #[test]
+fn a_wrong_address_is_told_beside_its_field_and_a_name_is_none() {
+    for (typed, is_wrong) in [
+        ("192.168.11", true),
+        ("192.168.11.999:6000", true),
+        ("192.168.11.7", false),
+        ("hand.local:6000", false),
+        ("::1", false),
+    ] {
+        let mut harness = open_at(states::empty(), View::Connection, LARGE);
+        harness.get_by_label("Kind of link: Modbus TCP").click();
+        harness.run_steps(2);
+        let field = |harness: &Harness<'static, Shown>| {
+            let field = harness.get_by_role_and_label(Role::TextInput, "Address");
+            field.focus();
+        };
+        field(&harness);
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.run_steps(1);
+        let edit = harness.get_by_role_and_label(Role::TextInput, "Address");
+        edit.type_text(typed);
+        harness.run_steps(2);
+        let told = |harness: &Harness<'static, Shown>| {
+            let all = harness.query_all_by_label_contains("No IP address: four numbers");
+            all.count() > 0
+        };
+        assert!(!told(&harness), "not while it is typed");
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        assert_eq!(told(&harness), is_wrong, "{typed}");
+    }
+}
+
+#[test]
 fn a_wrong_field_is_told_after_connecting_was_tried_and_in_the_windows_language() {
     for (language, kind, words) in [
         (

@@ -274,6 +274,20 @@ fn forgetting_what_is_in_files_leaves_the_files() {
 }
 
 #[test]
+fn the_folder_of_a_session_can_be_typed() {
+    let mut bench = tried();
+    let folder = save(&mut bench);
+    bench.click("Open");
+    bench.run(400);
+    assert_eq!(bench.texts_with("Nothing was opened.").len(), 2);
+    bench.type_into("Path of the file", &folder.display().to_string());
+    bench.key(egui::Key::Enter);
+    bench.until(5000, |bench| bench.state().trials.sessions.len() == 2);
+    bench.run(60);
+    assert!(!bench.shows("Path of the file"));
+}
+
+#[test]
 fn a_bad_session_is_refused_whole_with_one_sentence() {
     let mut bench = tried();
     let folder = save(&mut bench);

@@ -118,6 +118,22 @@ fn half_a_number_and_one_out_of_range_stage_nothing_and_staging_writes_nothing()
 }
 
 #[test]
+fn a_wrong_address_stays_with_the_reason_beside_it_and_stages_nothing() {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    let reason = "No IP address: four numbers from 0 to 255, as 192.168.11.210";
+    for wrong in ["192.168.11", "192.168.11.999"] {
+        stage(&mut bench, "IP address staged", wrong);
+        assert_eq!(staged(&bench, ParamId::IpAddress), None);
+        assert_eq!(bench.typed("IP address staged"), wrong);
+        assert!(bench.shows(reason), "{wrong}");
+    }
+    stage(&mut bench, "IP address staged", "192.168.11.7");
+    assert!(staged(&bench, ParamId::IpAddress).is_some());
+    assert!(!bench.shows(reason));
+}
+
+#[test]
 fn the_serial_speed_is_chosen_in_baud_and_shown_in_baud() {
     let mut bench = Bench::live();
     open(&mut bench);
@@ -575,6 +591,31 @@ fn a_file_is_compared_row_by_row_and_only_ticked_rows_are_staged() {
 }
 
 #[test]
+fn where_no_file_was_chosen_its_path_can_be_typed_and_the_outcome_stands_there() {
+    let mut bench = Bench::live();
+    open(&mut bench);
+    assert!(!bench.shows("Path of the file"));
+    bench.click("Open file");
+    bench.run(400);
+    assert!(bench.shows("Path of the file"), "there was none");
+    let path = bench.folder().join("elsewhere.toml");
+    bench.type_into("Path of the file", &path.display().to_string());
+    bench.key(Key::Enter);
+    bench.run(400);
+    let told = bench.texts_with("elsewhere.toml");
+    assert_eq!(told.len(), 2, "in the view and in the line: {told:?}");
+    bench.click("Dump to file");
+    bench.run(400);
+    std::fs::rename(bench.folder().join("handscope-params.toml"), path).unwrap();
+    bench.click("Open path");
+    bench.run(400);
+    let compared = bench.state().hand().params.compared.as_ref().unwrap();
+    assert_eq!(compared.name, "elsewhere.toml");
+    assert!(!bench.shows("Path of the file"), "it was taken");
+    assert_eq!(bench.writes(), []);
+}
+
+#[test]
 fn a_bad_file_is_refused_whole_with_the_name_of_the_field() {
     let mut bench = Bench::live();
     open(&mut bench);
@@ -616,6 +657,9 @@ fn a_backup_is_a_way_back() {
         .into_iter()
         .find(|name| name.ends_with("before save"))
         .unwrap();
+    assert!(name.contains(" UTC "), "its time: {name}");
+    let hand = bench.reading(&format!("Hand of the backup: {name}"));
+    assert_eq!(hand, bench.state().hand().name());
     bench.click_button(&name);
     bench.run(400);
     bench.click("Stage ticked rows");

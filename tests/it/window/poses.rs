@@ -269,6 +269,22 @@ fn an_exported_file_comes_back_and_a_bad_one_changes_nothing() {
     assert_eq!(bench.writes().len(), writes, "files move nothing");
 }
 
+#[test]
+fn the_path_of_a_file_of_poses_can_be_typed() {
+    let mut bench = with_sequence();
+    bench.click("Import");
+    bench.run(400);
+    assert!(!bench.texts_with("handscope-poses.toml").is_empty());
+    bench.click("Export");
+    bench.run(400);
+    let path = bench.folder().join("handscope-poses.toml");
+    bench.type_into("Path of the file", &format!("\"{}\"", path.display()));
+    bench.click("Open path");
+    bench.run(400);
+    assert_eq!(bench.state().poses.library.poses.len(), 4);
+    assert!(!bench.shows("Path of the file"));
+}
+
 fn pose_names(bench: &Bench) -> Vec<&str> {
     let poses = bench.state().poses.library.poses.iter();
     poses.map(|pose| pose.name.as_str()).collect()

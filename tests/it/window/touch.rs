@@ -2,6 +2,8 @@
 
 use crate::setup::window::{Bench, LARGE, Role};
 use handscope::app::action::Action;
+use handscope::app::hand::Preset;
+use handscope::app::readings::tare::Source;
 use handscope::hand::Finger;
 use handscope::sim::{Scenario, SimConfig};
 
@@ -67,8 +69,11 @@ fn taring_counts_all_tips_from_now_and_writes_nothing() {
     let mut bench = free();
     bench.click("Tare all");
     bench.run(60);
-    let rests = Finger::ALL.map(|finger| bench.state().hand().tare.rest(finger));
-    assert!(rests.iter().flatten().all(|rest| rest.chosen));
+    let is_kept = |finger| {
+        let rest = bench.state().hand().tare.rest(finger);
+        rest.is_some_and(|rest| rest.source == Source::Person)
+    };
+    assert!(Finger::ALL.into_iter().all(is_kept));
     for finger in Finger::ALL {
         let now = bench.state().hand().sample.tactile[finger].expect("it was read");
         let apart = rest(&bench, finger)[0].abs_diff(now.value.raw[0]);
@@ -121,6 +126,50 @@ fn a_hand_that_grips_when_it_is_connected_has_no_zero_until_it_lets_go() {
     bench.wait(8000);
     assert!(bench.state().hand().tare.rest(Finger::Index).is_some());
     assert!(bench.texts_with("No zero yet").is_empty());
+}
+
+#[test]
+fn a_taring_is_kept_for_its_hand_and_offered_but_never_taken_under_load() {
+    let config = || SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    };
+    let endpoint = "tcp:192.168.11.210";
+    let mut bench = Bench::kept(config(), endpoint, LARGE);
+    bench.wait(2000);
+    bench.click_first_button("Touch");
+    bench.run(60);
+    assert!(!bench.shows("Take the kept taring"));
+    bench.click("Tare all");
+    bench.run(60);
+    let tared = rest(&bench, Finger::Index);
+    assert_eq!(bench.state().settings.tares.len(), 1);
+    let mut other = "tcp:192.168.11.211".parse().unwrap();
+    bench.act(Action::Connect(other));
+    bench.wait(1000);
+    assert!(!bench.shows("Take the kept taring"), "another hand");
+    other = endpoint.parse().unwrap();
+    bench.act(Action::Connect(other));
+    bench.wait(1000);
+    assert_ne!(rest(&bench, Finger::Index), tared, "it is only offered");
+    bench.click("Take the kept taring");
+    bench.run(60);
+    assert_eq!(rest(&bench, Finger::Index), tared);
+    let zero = bench.reading("Taring of the chosen fingertip");
+    assert!(
+        zero.starts_with("Tared ") && zero.ends_with("kept"),
+        "{zero}"
+    );
+    bench.click("Undo");
+    bench.click("Arm the hand");
+    bench.run(100);
+    bench.act(Action::Preset(Preset::Close));
+    bench.wait(6000);
+    let before = rest(&bench, Finger::Index);
+    bench.click("Take the kept taring");
+    bench.run(60);
+    assert_eq!(rest(&bench, Finger::Index), before, "it is pressed");
+    assert_eq!(bench.texts_with("Not tared: ").len(), 1);
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crate::link::faults::oracle::{Seen, Witness};
 use crate::link::faults::tap::{Lie, Log};
 use crate::setup::body::{Adapter, Protocol, Quirks};
 use crate::setup::client::{Client, LinkEvent, Request};
+use crate::setup::faulty::{FaultOdds, FaultPlan, LineSpeed};
 use crate::setup::hand;
 use crate::setup::link;
 use crate::setup::time::in_virtual_time;
@@ -14,7 +15,6 @@ use handscope::link::handle::REQUESTS_MAX;
 use handscope::link::{Clock, LinkConfig, PollRates, RequestError};
 use handscope::record::LinkState;
 use handscope::sim::{Personality, Scenario, SharedHand, SimConfig};
-use handscope::transport::{FaultOdds, FaultPlan, LineSpeed};
 use std::sync::{Arc, Mutex};
 use tokio::time::{Duration, Instant, sleep_until};
 

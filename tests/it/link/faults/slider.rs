@@ -4,13 +4,13 @@ use crate::link::faults::dial::FaultyDial;
 use crate::link::faults::tap::{Lie, Log};
 use crate::setup::body::{Protocol, Quirks};
 use crate::setup::client::{Client, LinkEvent};
+use crate::setup::faulty::{FaultPlan, LineSpeed};
 use crate::setup::hand;
 use crate::setup::link;
 use handscope::hand::Setpoints;
 use handscope::hand::{Angle, Dof, Target};
 use handscope::link::{Clock, LinkConfig};
 use handscope::record::LinkState;
-use handscope::transport::{FaultPlan, LineSpeed};
 use std::sync::{Arc, Mutex};
 use tokio::time::{Duration, Instant, sleep_until};
 
