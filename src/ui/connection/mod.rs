@@ -34,8 +34,8 @@ const FIRST: [&str; 5] = [
 ];
 
 /// Kinds of links and their fields, both as endpoints spell them, the place first where there is one.
-type Kind = (&'static str, &'static [&'static str]);
-static KINDS: [Kind; 7] = [
+type EndpointKind = (&'static str, &'static [&'static str]);
+static KINDS: [EndpointKind; 7] = [
     ("sim", &["scenario", "seed"]),
     ("rs485", &["port", "baud", "id"]),
     ("tcp", &["host", "unit", "packing"]),
@@ -52,7 +52,7 @@ const RARE: [&str; 2] = ["seed", "packing"];
 /// The form's fields as they are typed.
 #[derive(Debug)]
 pub(crate) struct ConnectionForm {
-    kind: Kind,
+    kind: EndpointKind,
     /// By their keys; kinds share them.
     fields: BTreeMap<&'static str, String>,
     scan: ScanPanel,

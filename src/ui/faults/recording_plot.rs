@@ -5,7 +5,7 @@ use crate::hand::{Dof, PerDof, Status};
 use crate::ui::kit::{Label, Look};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::panels::{Panel, PlotLine};
-use crate::ui::plots::time_window::Span;
+use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::Times;
 use crate::ui::text::{faults, words};
 use crate::ui::theme;
@@ -17,7 +17,7 @@ const RECORDING_LANE: f32 = 8.0;
 /// What the plots of a recording need between frames.
 #[derive(Debug, Default)]
 pub(crate) struct RecordingCharts {
-    of: Option<(RecordingId, Span)>,
+    of: Option<(RecordingId, TimeSpan)>,
     view: ChartView,
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct RecordingPlot<'a> {
     /// Of this recording.
     pub(crate) recording: &'a Recording,
     /// From and to, in seconds.
-    pub(crate) span: Span,
+    pub(crate) span: TimeSpan,
     /// The moment that times are counted from, in seconds.
     pub(crate) fault_s: f64,
 }

@@ -10,7 +10,7 @@ use crate::ui::hand::reach::REACH;
 use crate::ui::hand::render::Sketch;
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::hand::shape::{self, Held};
-use crate::ui::hand::view::{HandView, Setting, TURN, draw};
+use crate::ui::hand::view::{DrawSettings, HandView, TURN, draw};
 use crate::ui::theme::Palette;
 use egui::{
     Context, Event, Id, Mesh, Modifiers, PointerButton, Pos2, RawInput, Rect, Sense, pos2, vec2,
@@ -19,8 +19,8 @@ use glam::Vec3;
 
 const SIDES: [Side; 2] = [Side::Right, Side::Left];
 
-fn setting(side: Side, size: f32) -> Setting {
-    Setting {
+fn setting(side: Side, size: f32) -> DrawSettings {
+    DrawSettings {
         turn: HandView::default().turn(side),
         rect: Rect::from_min_size(pos2(30.0, 50.0), vec2(size, size)),
         theme: Theme::Dark,
@@ -28,7 +28,7 @@ fn setting(side: Side, size: f32) -> Setting {
     }
 }
 
-fn camera(setting: &Setting, side: Side) -> Camera {
+fn camera(setting: &DrawSettings, side: Side) -> Camera {
     let reach = REACH.iter().map(|at| side.frame().transform_point3(*at));
     Camera::new(setting.turn, setting.rect, reach)
 }
@@ -39,7 +39,7 @@ fn posed(side: Side, [fingers, bend, swing]: [f32; 3]) -> HandPicture {
     HandPicture::of(side, &PerDof::new(shares))
 }
 
-fn drawn(picture: &HandPicture, setting: &Setting) -> (Sketch, Mesh) {
+fn drawn(picture: &HandPicture, setting: &DrawSettings) -> (Sketch, Mesh) {
     let (mut sketch, mut mesh) = (Sketch::default(), Mesh::default());
     draw(&mut sketch, picture, setting, &mut mesh);
     (sketch, mesh)
@@ -66,7 +66,7 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
             let share = f32::from(step) / 8.0;
             let mut picture = posed(side, [share, 1.0 - share, share]);
             picture.held = Some(Held::Ball);
-            let setting = Setting {
+            let setting = DrawSettings {
                 turn,
                 ..setting(side, 400.0)
             };
@@ -92,7 +92,7 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
             }
             let (_, small) = drawn(
                 &picture,
-                &Setting {
+                &DrawSettings {
                     rect: Rect::from_min_size(Pos2::ZERO, vec2(90.0, 90.0)),
                     ..setting
                 },

@@ -15,7 +15,7 @@ use egui::{Align, Id, Layout, Ui};
 const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
 
 /// A caption, a track and a number field in a row.
-struct Setting<'a> {
+struct TrackRow<'a> {
     caption: Text,
     number_name: &'a str,
     id: Id,
@@ -27,7 +27,7 @@ struct Setting<'a> {
     after: f32,
 }
 
-impl Setting<'_> {
+impl TrackRow<'_> {
     /// Draws it. What the person set in this frame.
     fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<i16> {
         let look = pane.look;
@@ -58,7 +58,7 @@ impl Row {
         let (angle, freshness) = pane.newest(self.dof, pane.state.hand().sample.angle);
         let name = self.named(pane, main::NAME_ANGLE_TARGET);
         let locked = joint.locked.then(|| look.say(main::LOCKED));
-        let setting = Setting {
+        let setting = TrackRow {
             caption: main::ANGLE,
             number_name: &self.named(pane, main::NAME_ANGLE_NUMBER),
             id: self.id("angle"),
@@ -124,7 +124,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
         track.rough_from = impact::rough_from_threshold(joint.speed).map(Force::get);
         track.peak = hand.peaks.get(row.dof).map(|(grams, _)| grams);
     }
-    let setting = Setting {
+    let setting = TrackRow {
         caption: main::FORCE,
         number_name: &named(pane, row, main::NAME_FORCE_NUMBER),
         id: id_of(row, "force"),
@@ -149,7 +149,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
     let value = value.filter(|_| runs.is_none());
     let rough = row.and_then(|row| impact::rough_from_speed(joints[row.dof].force));
     let name = named(pane, row, main::NAME_SPEED);
-    let setting = Setting {
+    let setting = TrackRow {
         caption: main::SPEED,
         number_name: &named(pane, row, main::NAME_SPEED_NUMBER),
         id: id_of(row, "speed"),

@@ -21,9 +21,9 @@ const ROW_HIGH: f32 = 62.0;
 /// Parts of the width for live, staged, saved and range; the name has the rest.
 const COLUMNS: [f32; 4] = [0.16, 0.23, 0.16, 0.16];
 /// Which rows are in a group, its title, and what they are.
-type Group = (fn(ParamId) -> bool, Text, Text);
+type ParamGroup = (fn(ParamId) -> bool, Text, Text);
 /// The groups in their order.
-const GROUPS: [Group; 3] = [
+const GROUPS: [ParamGroup; 3] = [
     (
         |id| matches!(id, ParamId::DefaultSpeed(_)),
         device::GROUP_SPEED,

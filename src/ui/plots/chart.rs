@@ -4,7 +4,7 @@ use crate::history::{History, Series, Trace};
 use crate::ui::kit::{self, Label, Look, format};
 use crate::ui::plots::bars;
 use crate::ui::plots::scales::{self, Scales};
-use crate::ui::plots::time_window::{Span, TimeWindow};
+use crate::ui::plots::time_window::{TimeSpan, TimeWindow};
 use crate::ui::plots::times::{Times, marks};
 use crate::ui::text::{Text, panels, plots};
 use crate::ui::theme;
@@ -241,7 +241,7 @@ impl<'a> Chart<'a> {
     fn fetch(
         &self,
         traces: &mut Traces,
-        (from_s, to_s): Span,
+        (from_s, to_s): TimeSpan,
         columns: f32,
     ) -> (Option<(f64, f64)>, bool) {
         #[expect(
