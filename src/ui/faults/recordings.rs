@@ -12,7 +12,7 @@ use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, format};
 use crate::ui::plots::panels::{PANELS, Panel};
 use crate::ui::text::faults;
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui, UiBuilder};
+use egui::{ScrollArea, Ui, UiBuilder};
 use std::sync::Arc;
 
 /// Seconds shown on both sides of the fault when only its surroundings are.
@@ -137,7 +137,7 @@ impl RecordingsView {
             if back.ui(ui, look).clicked() {
                 self.close();
             }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            kit::right_ui(ui, |ui| {
                 let save = Button::said(look, faults::RECORDING_SAVE).weight(Weight::Strong);
                 if save.ui(ui, look).clicked() {
                     let content = Content::Recording(recording.table());
@@ -145,7 +145,7 @@ impl RecordingsView {
                 }
                 let title = title(pane, recording);
                 let title = format!("{}: {title}", look.say(faults::RECORDING));
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                kit::left_ui(ui, |ui| {
                     let title = Label::new(&title, look.palette.text).font(theme::title());
                     title.ui(ui).on_hover_text(about(pane, recording));
                 });

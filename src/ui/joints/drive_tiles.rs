@@ -50,17 +50,16 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
     let mut ui = ui.new_child(UiBuilder::new().max_rect(inner).layout(down));
     ui.spacing_mut().item_spacing = vec2(theme::STEP, 0.0);
     ui.spacing_mut().interact_size.y = theme::TITLE_LINE;
-    let right = Layout::right_to_left(Align::Center);
     ui.horizontal(|ui| {
         Label::new(joint, palette.dof[dof]).ui(ui);
-        ui.with_layout(right, |ui| {
+        kit::right_ui(ui, |ui| {
             unseen_mark_ui(ui, pane, dof);
             figures_ui(ui, pane, dof);
         });
     });
     ui.horizontal(|ui| {
         fault_entry::lamp_ui(ui, Some(said.lamp));
-        ui.with_layout(right, |ui| {
+        kit::right_ui(ui, |ui| {
             let (status, _) = pane.newest(dof, pane.state.hand().sample.status);
             if let Some(status) = status {
                 figure_ui(ui, &status.raw().to_string(), palette.muted);
@@ -70,8 +69,7 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
                 false => said.text,
             };
             let title = Label::new(&said.title, ink).shorter(&said.short);
-            let left = Layout::left_to_right(Align::Center);
-            ui.with_layout(left, |ui| title.ui(ui));
+            kit::left_ui(ui, |ui| title.ui(ui));
         });
     });
     if let Some(words) = said.words.filter(|_| is_high) {

@@ -19,7 +19,7 @@ use crate::ui::joints::tracks::all_joints_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{layout, main};
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui};
+use egui::{ScrollArea, Ui};
 
 /// No line of a row grows higher than this.
 const LINE_MAX: f32 = 28.0;
@@ -139,8 +139,7 @@ fn presets_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.columns(presets.len(), |columns| {
         for (ui, (text, preset)) in columns.iter_mut().zip(presets) {
             let button = Button::said(look, text).large().disabled(not_armed);
-            let wide = Layout::top_down_justified(Align::Center);
-            ui.with_layout(wide, |ui| {
+            kit::wide_ui(ui, |ui| {
                 button.sends(ui, pane, Action::Preset(preset));
             });
         }

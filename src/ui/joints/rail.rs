@@ -21,8 +21,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
         if can_open {
             let name = format!("{} {title}", look.say(layout::OPEN));
             let button = Button::new(title, look.tip(layout::OPEN)).named(&name);
-            let wide = Layout::top_down_justified(Align::Center);
-            let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
+            let pressed = kit::wide_ui(ui, |ui| button.ui(ui, look));
             if pressed.clicked() {
                 let layout = toggled(&pane.state.settings.layout, Room::Joints);
                 pane.actions.push(Action::Layout(layout));

@@ -8,7 +8,7 @@ use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::drive_tiles;
 use crate::ui::joints::row::{READING, Row, cell};
 use crate::ui::joints::tracks;
-use crate::ui::kit::{self, Button, Explain, Label, Pane};
+use crate::ui::kit::{self, Button, Label, Opens, Pane};
 use crate::ui::text::{faults, main};
 use crate::ui::theme;
 use egui::{
@@ -97,7 +97,7 @@ fn line_ui(ui: &mut Ui, height: f32, add: impl FnOnce(&mut Ui)) {
 fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row, each: bool) {
     let name = cell(ui, 96.0);
     Label::new(row.name, pane.look.palette.text).put(ui, name);
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    kit::right_ui(ui, |ui| {
         lock_ui(ui, pane, row);
         if !each {
             let place = cell(ui, 104.0);
@@ -118,7 +118,7 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     kit::focus_ring(ui, pane.look, &response, rect);
     if response.clicked() {
-        *pane.explain = Some(Explain::Drive(row.dof));
+        pane.open(Opens::Drive(row.dof));
     }
     let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
     kit::lamp(ui, lamp, said.lamp);

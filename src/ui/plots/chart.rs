@@ -284,7 +284,7 @@ impl<'a> Chart<'a> {
             if let Some(at_s) = view.pointed_s() {
                 self.readings_ui(ui, at_s);
             }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            kit::left_ui(ui, |ui| {
                 ui.add_space(theme::PLOT_AXIS);
                 Label::new(look.say(self.title), look.palette.muted)
                     .small()

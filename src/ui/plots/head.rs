@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::files::export::Content;
 use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
-use crate::ui::kit::{self, Button, Look, Pane, Weight};
+use crate::ui::kit::{self, Button, Look, Opens, Pane, Weight};
 use crate::ui::plots::PlotView;
 use crate::ui::plots::panels::PANELS;
 use crate::ui::text::{Text, panels, plots, words};
@@ -34,7 +34,9 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         if !is_narrow {
             let note = Button::said(look, plots::NOTE);
             let note = note.named(look.say(plots::NOTE_NAME)).ui(ui, look);
-            view.note_asked |= note.clicked();
+            if note.clicked() {
+                pane.open(Opens::Note);
+            }
         }
         pause_ui(ui, pane, view, is_narrow);
         window_ui(ui, pane, view);
@@ -64,7 +66,10 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         shown_ui(ui, pane);
         ui.separator();
         ui.checkbox(&mut view.large, look.say(plots::ENLARGE));
-        view.note_asked |= entry_ui(ui, look, plots::NOTE_NAME);
+        if entry_ui(ui, look, plots::NOTE_NAME) {
+            pane.open(Opens::Note);
+            Popup::close_all(ui.ctx());
+        }
         ui.separator();
         keep_ui(ui, pane, view);
         ui.separator();
@@ -74,9 +79,6 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     });
     if shown.is_none() {
         view.copied = None;
-    }
-    if view.note_asked {
-        Popup::close_all(ui.ctx());
     }
 }
 

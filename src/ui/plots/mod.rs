@@ -44,8 +44,6 @@ pub(crate) struct PlotView {
     chosen: Option<PlotKind>,
     /// True while the plots fill the view.
     pub(crate) large: bool,
-    /// True if a note was asked for in this frame.
-    pub(crate) note_asked: bool,
     /// Width and height of the card in points, for a picture of it.
     size: (f32, f32),
     /// Rows that were copied last, while the menu is open.

@@ -17,7 +17,7 @@ use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, tile_ui};
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui, vec2};
+use egui::{ScrollArea, Ui, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -73,8 +73,7 @@ impl PoseView {
         let sections = (&mut self.section, poses::SECTION_TIP);
         kit::pick_ui(ui, look, sections, Section::ALL);
         if self.section != Section::InHand {
-            let right = Layout::right_to_left(Align::Center);
-            ui.with_layout(right, |ui| tools_ui(ui, pane));
+            kit::right_ui(ui, |ui| tools_ui(ui, pane));
         }
     }
 

@@ -77,7 +77,7 @@ pub(crate) fn step_ui(
     }
     numbers_ui(ui, pane, sequence, (at, step));
     if let Some(pose) = pane.state.poses.library.pose(step.pose) {
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+        kit::left_ui(ui, |ui| {
             let (_, picture) = ui.allocate_space(vec2(36.0, 36.0));
             panel::pose_ui(ui, look, picture, &shares(&pose.angles));
             handle_ui(ui, pane, sequence, (at, &pose.name));

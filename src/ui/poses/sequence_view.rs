@@ -11,9 +11,7 @@ use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
-use egui::{
-    Align, Align2, Frame, Layout, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2,
-};
+use egui::{Align, Align2, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use std::time::Duration;
 
 /// Time between two pictures of a dry run while nothing else is new.
@@ -30,15 +28,7 @@ pub(crate) struct SequenceView {
 
 /// A part of the view with a card's distance to what is at its left.
 pub(crate) fn beside(width: f32, id: &'static str) -> Panel {
-    let gap = Margin {
-        left: 12,
-        ..Margin::ZERO
-    };
-    Panel::right(id)
-        .exact_size(width)
-        .resizable(false)
-        .show_separator_line(false)
-        .frame(Frame::new().inner_margin(gap))
+    kit::bare(Panel::right(id), width, theme::GAP_LEFT)
 }
 
 impl SequenceView {
@@ -89,8 +79,7 @@ impl SequenceView {
     }
 
     fn sequence_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
-        let right = Layout::right_to_left(Align::Center);
-        ui.horizontal(|ui| ui.with_layout(right, |ui| head_ui(ui, pane, sequence)));
+        ui.horizontal(|ui| kit::right_ui(ui, |ui| head_ui(ui, pane, sequence)));
         timeline_ui(ui, pane, sequence);
         picture_ui(ui, pane, sequence);
         let foot = theme::CONTROL + theme::CONTROL_LARGE + 4.0 * theme::STEP;

@@ -5,9 +5,10 @@ use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::Pose;
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
+use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, reorder};
 use crate::ui::text::{main, panels, poses};
 use crate::ui::theme;
+use crate::ui::view::View;
 use egui::{Align2, Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
 
 /// Width and least height of a pose in the overview: a finger's breadth.
@@ -97,16 +98,16 @@ pub(crate) fn tile_ui(
     response.clicked()
 }
 
-/// The overview's strip: the person's poses first, then named gestures, then the other numbers. True if all are wanted.
-pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
+/// The overview's strip: the person's poses first, then named gestures, then the other numbers.
+pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
-        let opened = kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
-            let all = Button::said(look, poses::EVERY);
-            let opened = all.ui(ui, look).clicked();
+        kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
+            if Button::said(look, poses::EVERY).ui(ui, look).clicked() {
+                pane.open(Opens::View(View::Poses));
+            }
             let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
-            opened
         });
         let area = ScrollArea::vertical().auto_shrink(false);
         area.id_salt("strip").show(ui, |ui| {
@@ -114,8 +115,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
             ui.spacing_mut().interact_size.y = theme::CONTROL_LARGE;
             ui.horizontal_wrapped(|ui| strip_tiles_ui(ui, pane));
         });
-        opened
-    })
+    });
 }
 
 fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>) {

@@ -1,7 +1,24 @@
 //! Every length of the window in points: spacing, radii, strokes, widths and heights with a name. No colours, no fonts.
 
+use egui::Margin;
+
 /// Space between cards, and the step of the grid twice.
 pub(crate) const GAP: f32 = 8.0;
+/// A gap at one side of a panel.
+pub(crate) const GAP_LEFT: Margin = Margin {
+    left: 8,
+    ..Margin::ZERO
+};
+/// At its right.
+pub(crate) const GAP_RIGHT: Margin = Margin {
+    right: 8,
+    ..Margin::ZERO
+};
+/// At its top.
+pub(crate) const GAP_TOP: Margin = Margin {
+    top: 8,
+    ..Margin::ZERO
+};
 /// Half a gap: the step of the grid.
 pub(crate) const STEP: f32 = 4.0;
 /// Space inside a card.
@@ -56,9 +73,9 @@ pub(crate) const FIELD: f32 = 52.0;
 /// Height of the rail of a track.
 pub(crate) const TRACK_RAIL: f32 = 6.0;
 /// Room inside a number field.
-pub(crate) const NUMBER_INSET: egui::Margin = egui::Margin::symmetric(6, 0);
+pub(crate) const NUMBER_INSET: Margin = Margin::symmetric(6, 0);
 /// Room inside a text field.
-pub(crate) const FIELD_INSET: egui::Margin = egui::Margin::symmetric(8, 2);
+pub(crate) const FIELD_INSET: Margin = Margin::symmetric(8, 2);
 /// Points of the wheel that halve or double what is shown.
 pub(crate) const PLOT_WHEEL: f32 = 180.0;
 /// Room for the numbers of the vertical axis.

@@ -15,8 +15,7 @@ use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
 use crate::ui::touch::tip_detail::TipDetail;
 use egui::{
-    Align, Frame, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui,
-    WidgetInfo, vec2,
+    Align, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui, WidgetInfo, vec2,
 };
 
 /// Lines of figures under a fingertip of the overview.
@@ -108,18 +107,11 @@ impl TouchView {
         let look = pane.look;
         self.detail.follow(pane);
         let height = (ui.available_height() * UPPER_PART).round();
-        let bare = |panel: Panel, size: f32| {
-            let panel = panel.exact_size(size).resizable(false);
-            panel.show_separator_line(false).frame(Frame::NONE)
-        };
-        bare(Panel::top("touch, upper"), height).show(ui, |ui| {
+        let upper = Panel::top("touch, upper");
+        kit::bare(upper, height, Margin::ZERO).show(ui, |ui| {
             let width = (height * 0.96).min(ui.available_width() * 0.36).round();
-            let left = bare(Panel::left("touch, hand"), width);
-            let gap = Margin {
-                right: 8,
-                ..Margin::ZERO
-            };
-            left.frame(Frame::new().inner_margin(gap)).show(ui, |ui| {
+            let left = Panel::left("touch, hand");
+            kit::bare(left, width, theme::GAP_RIGHT).show(ui, |ui| {
                 kit::card_ui(ui, look, |ui| {
                     kit::head_ui(ui, look, look.say(panels::HAND), |_| {});
                     self.hand_ui(ui, pane);

@@ -133,7 +133,7 @@ fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
             let name = format!("{} {}", look.say(text::NOISE), channel + 1);
             let label = Label::new(&words, look.palette.text).font(theme::number_small());
             label.named(&name).ui(ui);
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            kit::left_ui(ui, |ui| {
                 let (_, sign) = ui.allocate_space(vec2(theme::PAD, row));
                 let stroke = Stroke::new(theme::BAR, color(look, at));
                 ui.painter().hline(sign.x_range(), sign.center().y, stroke);

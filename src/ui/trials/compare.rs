@@ -13,7 +13,7 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::Sheet;
 use crate::ui::trials::compare_table::TableView;
-use egui::{Align, Color32, Frame, Layout, Margin, Panel, ScrollArea, Ui};
+use egui::{Color32, Panel, ScrollArea, Ui};
 
 /// Characters of a note.
 const NOTE_CHARS: usize = 300;
@@ -62,21 +62,12 @@ impl CompareView {
     fn sessions_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, focus: &TrialSession) {
         let comparison = self.comparison(pane, focus.id);
         let room = ui.available_size();
-        let gap = |left, top| {
-            Frame::new().inner_margin(Margin {
-                left,
-                top,
-                ..Margin::ZERO
-            })
-        };
-        let table = Panel::bottom("trial table").exact_size(room.y * 0.48);
-        let table = table.frame(gap(0, 8)).show_separator_line(false);
-        table.resizable(false).show(ui, |ui| {
+        let table = Panel::bottom("trial table");
+        kit::bare(table, room.y * 0.48, theme::GAP_TOP).show(ui, |ui| {
             self.table.ui(ui, pane, &comparison, &mut self.strong);
         });
-        let best = Panel::right("best").exact_size((room.x * 0.36).clamp(256.0, 440.0));
-        let best = best.frame(gap(12, 0)).show_separator_line(false);
-        best.resizable(false).show(ui, |ui| {
+        let width = (room.x * 0.36).clamp(256.0, 440.0);
+        kit::bare(Panel::right("best"), width, theme::GAP_LEFT).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 self.best.ui(ui, pane, &comparison, focus);
             });
@@ -109,7 +100,7 @@ impl CompareView {
         let read = read.map(|_| look.say(tune::SAVE_READ));
         let save = id.map(|id| TrialAction::Save(id, Some(self.best.criterion())));
         let forget = id.map(TrialAction::Forget);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        kit::right_ui(ui, |ui| {
             for (text, disabled, action) in [
                 (compare::FORGET, busy, forget),
                 (tune::SAVE, busy.or(read), save),
@@ -121,8 +112,7 @@ impl CompareView {
                 }
             }
             if let Some(own) = now {
-                let row = Layout::left_to_right(Align::Center);
-                ui.with_layout(row, |ui| self.words_ui(ui, pane, own));
+                kit::left_ui(ui, |ui| self.words_ui(ui, pane, own));
             }
         });
     }

@@ -356,7 +356,7 @@ impl<'a> Sheet<'a, '_> {
 
 /// A number against the right edge of its cell.
 fn number_ui(ui: &mut Ui, label: &str, text: &str, color: Color32) {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    kit::right_ui(ui, |ui| {
         ui.add_space(theme::STEP);
         Label::new(text, color).number().named(label).ui(ui);
     });

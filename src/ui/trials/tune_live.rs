@@ -11,7 +11,7 @@ use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::plot::trial_chart_ui;
 use crate::ui::trials::{PLOT_LEAST, line_ui};
-use egui::{Align, Color32, Layout, ProgressBar, Role, Stroke, Ui, WidgetInfo};
+use egui::{Color32, ProgressBar, Role, Stroke, Ui, WidgetInfo};
 
 /// Readings of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
 const READINGS_DRAWN: usize = 2400;
@@ -23,8 +23,7 @@ pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
     };
     let look = pane.look;
     let button = Button::said(look, tune::STOP_SERIES).weight(Weight::Stop);
-    let wide = Layout::top_down_justified(Align::Center);
-    ui.with_layout(wide, |ui| {
+    kit::wide_ui(ui, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);
         let response = button.large().ui(ui, look);
         if kit::pressed(ui, &response) {

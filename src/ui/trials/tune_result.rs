@@ -4,7 +4,7 @@ use crate::app::trials::{ComparedLines, Comparison, TrialQuantity, TrialSession}
 use crate::params::rows::{ParamId, Value};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
-use crate::ui::kit::{Button, Pane, Weight};
+use crate::ui::kit::{Button, Opens, Pane, Weight};
 use crate::ui::plots::chart::{Chart, ChartView};
 use crate::ui::plots::legend::legend_ui;
 use crate::ui::text::{trials, tune};
@@ -26,13 +26,8 @@ pub(crate) struct ResultView {
 }
 
 impl ResultView {
-    /// How it ended, where it lies, the best and the next step. The view that was asked for, if one was.
-    pub(crate) fn lines_ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        session: &TrialSession,
-    ) -> Option<View> {
+    /// How it ended, where it lies, the best and the next step.
+    pub(crate) fn lines_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         let (look, palette) = (pane.look, pane.look.palette);
         let (ended, color) = match &session.head.aborted {
             None => (look.say(tune::ALL_DONE).to_owned(), palette.ok),
@@ -63,23 +58,22 @@ impl ResultView {
             let button = Button::said(look, text).named(look.tip(text));
             button.weight(weight).ui(ui, look).clicked()
         };
-        let row = ui.horizontal_wrapped(|ui| {
-            let compare = button_ui(ui, tune::SEE_COMPARE, Weight::Normal);
-            let mut asked = compare.then_some(View::Compare);
+        ui.horizontal_wrapped(|ui| {
+            if button_ui(ui, tune::SEE_COMPARE, Weight::Normal) {
+                pane.open(Opens::View(View::Compare));
+            }
             if is_staged {
                 if button_ui(ui, tune::SEE_DEVICE, Weight::Strong) {
-                    asked = Some(View::Device);
+                    pane.open(Opens::View(View::Device));
                 }
-            } else if let Some(score) = score {
-                if button_ui(ui, tune::PROMOTE, Weight::Normal) {
-                    let joints = comparison.joints.iter();
-                    let all = joints.flat_map(|dof| staging(*dof, score.setting));
-                    pane.actions.extend(all);
-                }
+            } else if let Some(score) = score
+                && button_ui(ui, tune::PROMOTE, Weight::Normal)
+            {
+                let joints = comparison.joints.iter();
+                let all = joints.flat_map(|dof| staging(*dof, score.setting));
+                pane.actions.extend(all);
             }
-            asked
         });
-        row.inner
     }
 
     /// The force of all its trials over each other, and what their colours stand for.

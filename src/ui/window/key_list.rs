@@ -1,6 +1,6 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
-use crate::ui::kit::{self, Button, Label, Look, Weight};
+use crate::ui::kit::{self, Button, Label, Look, Opens, Weight};
 use crate::ui::text::{Text, keys};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
@@ -76,12 +76,15 @@ fn columns() -> [Vec<Part>; 3] {
         matches!(wish, Wish::Joint(_) | Wish::LinkFingers | Wish::AngleUnit)
     });
     let measuring = part(keys::MEASURING, |wish| {
-        matches!(wish, Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Note)
+        matches!(
+            wish,
+            Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Opens(Opens::Note)
+        )
     });
     let mut window = part(keys::WINDOW, |wish| {
         matches!(
             wish,
-            Wish::View(_) | Wish::Language | Wish::Theme | Wish::List
+            Wish::Opens(Opens::View(_) | Opens::Keys) | Wish::Language | Wish::Theme
         )
     });
     let zoom = ZOOM.map(|(key, words)| (key.to_owned(), words));

@@ -89,7 +89,7 @@ impl MessageLog {
                     self.least = least;
                 }
             }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            kit::right_ui(ui, |ui| {
                 let text = match self.copied {
                     None => look.say(faults::COPY).to_owned(),
                     Some(lines) => format!("{} ({lines})", look.say(faults::COPIED)),

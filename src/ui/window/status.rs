@@ -9,15 +9,13 @@ use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
-use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
-use egui::{
-    Align, Color32, Frame, Key, Layout, Rect, Role, Stroke, TextEdit, Ui, WidgetInfo, vec2,
-};
+use egui::{Color32, Frame, Key, Rect, Stroke, TextEdit, Ui, vec2};
 use std::fmt::Display;
 use std::time::Duration;
 
@@ -236,8 +234,8 @@ impl StatusLine {
         }
     }
 
-    /// Draws the line. The view that was asked for.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<View> {
+    /// Draws the line.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let warnings = warnings(pane);
         let worst = warnings.first();
         let palette = pane.look.palette;
@@ -250,25 +248,18 @@ impl StatusLine {
             .stroke(Stroke::new(1.0, edge))
             .corner_radius(theme::ROUND)
             .inner_margin(vec2(theme::PAD, 0.0));
-        let row = Layout::right_to_left(Align::Center);
-        let shown = frame.show(ui, |ui| {
-            ui.with_layout(row, |ui| {
+        frame.show(ui, |ui| {
+            kit::right_ui(ui, |ui| {
                 ui.set_min_size(ui.available_size());
                 self.note_ui(ui, pane);
                 let news = news(pane).filter(|_| worst.is_none());
                 mover_ui(ui, pane, worst.is_some() || news.is_some());
-                let left = Layout::left_to_right(Align::Center);
-                let shown = ui.with_layout(left, |ui| match worst {
+                kit::left_ui(ui, |ui| match worst {
                     Some(worst) => warning_ui(ui, pane, worst, &warnings),
-                    None => {
-                        news_ui(ui, pane, news);
-                        None
-                    }
+                    None => news_ui(ui, pane, news),
                 });
-                shown.inner
-            })
+            });
         });
-        shown.inner.inner
     }
 
     fn note_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -355,8 +346,8 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     Label::new(&words, palette.text).ui(ui);
 }
 
-/// The worst of the warnings, and how many more there are. The view that was asked for.
-fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) -> Option<View> {
+/// The worst of the warnings, and how many more there are.
+fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) {
     let look = pane.look;
     let palette = look.palette;
     let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
@@ -365,9 +356,10 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
         true => kit::lamp(ui, sign.center(), worst.color),
         false => kit::warning_sign(ui, sign, worst.color),
     }
-    let row = Layout::right_to_left(Align::Center);
-    let shown = ui.with_layout(row, |ui| {
-        let asked = help_ui(ui, pane, worst.help.as_ref());
+    kit::right_ui(ui, |ui| {
+        if let Some(help) = &worst.help {
+            help_ui(ui, pane, help);
+        }
         for other in all.iter().skip(1).rev() {
             let label = Label::new(look.say(other.title), other.color).ui(ui);
             label.on_hover_text(&other.body);
@@ -375,11 +367,8 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
         if !worst.aside.is_empty() {
             Label::new(&worst.aside, palette.muted).number().ui(ui);
         }
-        let left = Layout::left_to_right(Align::Center);
-        ui.with_layout(left, |ui| words_ui(ui, pane, worst));
-        asked
+        kit::left_ui(ui, |ui| words_ui(ui, pane, worst));
     });
-    shown.inner
 }
 
 /// Title and sentence over at most two lines; the whole in the tooltip.
@@ -394,16 +383,16 @@ fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     response.on_hover_text(&warning.body);
 }
 
-fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: Option<&Help>) -> Option<View> {
-    match help? {
+fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) {
+    match help {
         Help::View(view, text) => {
-            let button = Button::said(pane.look, *text).ui(ui, pane.look);
-            button.clicked().then_some(*view)
+            if Button::said(pane.look, *text).ui(ui, pane.look).clicked() {
+                pane.open(Opens::View(*view));
+            }
         }
         Help::Dismiss(id) => {
             let button = Button::said(pane.look, layout::UNDERSTOOD);
             button.sends(ui, pane, Action::Dismiss(*id));
-            None
         }
     }
 }
