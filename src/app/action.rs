@@ -1,7 +1,7 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
 use crate::app::files::export::Content;
-use crate::app::hand::preset::Preset;
+use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
 use crate::app::layout::Layout;
 use crate::app::params::action::ParamAction;
@@ -9,13 +9,14 @@ use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::readings::fault_recorder::{PersonAct, RecordingId};
 use crate::app::readings::faults::FaultKind;
 use crate::app::scan::ScanWish;
-use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme};
+use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, Dof, Finger, Force, Gesture, GestureRoute, GestureStore, Moment, PerDof, Speed,
     UserGesture,
 };
+use crate::history::Mark;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::{Library, PoseId};
@@ -117,6 +118,8 @@ pub enum Action {
     Language(Language),
     /// Divide the window like this.
     Layout(Layout),
+    /// Draw everything so much larger than designed.
+    Zoom(Zoom),
     /// How angles are written and typed.
     AngleUnit(AngleUnit),
     /// Seconds that the plots show.
@@ -125,6 +128,8 @@ pub enum Action {
     ShowPlot(PlotKind, bool),
     /// Put a note of these words into the history at a moment; of no words, none.
     Note(Moment, String),
+    /// Take a note out of the history again.
+    RemoveMark(Mark),
     /// Count the channels of these fingertips from now: one, or all.
     Tare(Option<Finger>),
     /// What a kept row is to hold once it is applied, or nothing any more. Writes nothing.

@@ -1,7 +1,7 @@
 //! Where a person put the borders between the rooms of the window, which rooms are shut, and how large the window is.
 //! Shares and flags only: what a room shows, and how small it may become, is the window's matter.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The smallest window that shows everything, points.
 pub const WINDOW_LEAST: [f32; 2] = [1024.0, 640.0];
@@ -32,10 +32,13 @@ impl Room {
 
 /// How one room stands.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, from = "RoughRoom")]
+#[serde(default)]
 pub struct RoomLayout {
     /// Its part of what its border divides, 0.05..=0.95; none as designed.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "sane_share"
+    )]
     pub share: Option<f32>,
     /// Only its name is shown.
     pub shut: bool,
@@ -53,22 +56,9 @@ impl RoomLayout {
     }
 }
 
-/// A room as a file has it: nothing checked yet.
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct RoughRoom {
-    share: Option<f32>,
-    shut: bool,
-}
-
-impl From<RoughRoom> for RoomLayout {
-    fn from(rough: RoughRoom) -> Self {
-        let room = Self {
-            share: None,
-            shut: rough.shut,
-        };
-        rough.share.map_or(room, |share| room.with_share(share))
-    }
+fn sane_share<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f32>, D::Error> {
+    let share = Option::<f32>::deserialize(from)?;
+    Ok(share.and_then(|share| RoomLayout::default().with_share(share).share))
 }
 
 /// Width and height of the window, points, within what a screen can have.

@@ -16,7 +16,7 @@ use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
 use crate::app::state::{PortChoice, State};
 use crate::app::trials::TrialAction;
-use crate::app::trials::files::{FilesEnd, SessionFiles};
+use crate::app::trials::files::{self, FilesEnd};
 use crate::hand::Moment;
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
@@ -108,9 +108,9 @@ impl App {
             .or_else(|| self.remembered(now))
             .unwrap_or_else(Endpoint::sim);
         let State { hands, notices, .. } = &mut self.state;
-        hands
-            .shown_mut()
-            .go(Some(endpoint), &self.env, notices, now);
+        let hand = hands.shown_mut();
+        hand.now = now;
+        hand.go(Some(endpoint), &self.env, notices);
     }
 
     fn remembered(&mut self, now: Moment) -> Option<Endpoint> {
@@ -150,12 +150,12 @@ impl App {
         for hand in hands.iter_mut() {
             hand.take_news(notices, now);
             hand.tick_sequence();
-            hand.tick_requests(notices, now);
-            hand.tick_params(env, notices, now);
-            hand.tick_series(trials, notices, now);
-            hand.tick_procedure(env, settings, notices, now);
+            hand.tick_requests(notices);
+            hand.tick_params(env, notices);
+            hand.tick_series(trials, notices);
+            hand.tick_procedure(env, settings, notices);
             hand.record();
-            hand.go_on_leaving(env, notices, now);
+            hand.go_on_leaving(env, notices);
             self.quirk_notes.tick(hand, env, notices, now);
         }
         self.scanner.drain(scan);
@@ -179,7 +179,7 @@ impl App {
             && let Some(id) = self.state.trials.to_keep.pop_front()
         {
             let session = self.state.trials.session(id);
-            self.keeping = session.and_then(|session| SessionFiles::keep(session, &self.env));
+            self.keeping = session.and_then(|session| files::keep(session, &self.env));
         }
         match Job::take_from(&mut self.importing) {
             None => {}
@@ -227,8 +227,8 @@ impl App {
             Action::ImportPoses => self.import_poses(),
             Action::ExportPoses => self.export(Content::Poses(self.state.poses.library.clone())),
             Action::FindPorts => self.find_ports(),
-            Action::Connect(endpoint) => self.connect(Some(endpoint), now),
-            Action::Disconnect => self.connect(None, now),
+            Action::Connect(endpoint) => self.connect(Some(endpoint)),
+            Action::Disconnect => self.connect(None),
             Action::Scan(wish) => {
                 let held = self.state.hand().endpoint.clone();
                 self.scanner
@@ -250,9 +250,9 @@ impl App {
         } = &mut self.state;
         let (hand, env) = (hands.shown_mut(), &self.env);
         match action {
-            Action::Stop => hand.stop(notices, now),
-            Action::Arm => hand.arm(notices, now),
-            Action::Disarm => hand.disarm(now),
+            Action::Stop => hand.stop(notices),
+            Action::Arm => hand.arm(notices),
+            Action::Disarm => hand.disarm(),
             Action::Target(dof, angle) => hand.target(dof, angle),
             Action::Force(dof, force) => hand.force(dof, force),
             Action::Speed(dof, speed) => hand.speed(dof, speed),
@@ -282,8 +282,8 @@ impl App {
             Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted, env),
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
-            Action::Procedure(action) => hand.procedure_action(action, env, now),
-            Action::Tare(finger) => hand.tare(finger, notices, now),
+            Action::Procedure(action) => hand.procedure_action(action, env),
+            Action::Tare(finger) => hand.tare(finger, notices),
             Action::UndoTare => hand.tare.undo(),
             Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
             Action::SeenFaults => hand.faults.see_all(),
@@ -294,6 +294,7 @@ impl App {
                     hand.history.mark(at, note);
                 }
             }
+            Action::RemoveMark(mark) => hand.history.remove_mark(&mark),
             Action::Stage(id, value) => hand.params.stage(id, value),
             action => self.pose_action(action, now),
         }
@@ -358,6 +359,7 @@ impl App {
             Action::Theme(theme) => settings.theme = theme,
             Action::Side(side) => settings.side = side,
             Action::Layout(layout) => settings.layout = layout,
+            Action::Zoom(zoom) => settings.zoom = zoom,
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,
             Action::PlotWindow(window) => settings.plot_window = window,
@@ -367,7 +369,7 @@ impl App {
         }
     }
 
-    fn connect(&mut self, to: Option<Endpoint>, now: Moment) {
+    fn connect(&mut self, to: Option<Endpoint>) {
         if let Some(endpoint) = &to {
             // A scan may still ask further ids on the port that is wanted.
             self.scanner.cancel(&mut self.state.scan);
@@ -376,7 +378,7 @@ impl App {
         let State { hands, notices, .. } = &mut self.state;
         let hand = hands.shown_mut();
         hand.close_procedure();
-        hand.leave(to, &self.env, notices, now);
+        hand.leave(to, &self.env, notices);
     }
 
     /// What is done with files is begun here, all else with the hand.
@@ -411,10 +413,10 @@ impl App {
         match action {
             TrialAction::Start => hands.shown_mut().start_series(trials, &self.env),
             TrialAction::Open | TrialAction::Save(..) if self.sessions.is_some() => {}
-            TrialAction::Open => self.sessions = Some(SessionFiles::open(&self.env)),
+            TrialAction::Open => self.sessions = Some(files::open(&self.env)),
             TrialAction::Save(id, criterion) => {
                 let session = trials.session(id);
-                let save = |session| SessionFiles::save(session, criterion, &self.env);
+                let save = |session| files::save(session, criterion, &self.env);
                 self.sessions = session.and_then(save);
             }
             action => trials.act(action, settings),
@@ -448,7 +450,9 @@ impl App {
 
     /// Reads what the hand keeps because somebody looks at it. Called while they do; asks only when it is due. Writes nothing.
     pub fn look_at_params(&mut self, now: Moment) {
-        self.state.hands.shown_mut().look_at_params(&self.env, now);
+        let hand = self.state.hands.shown_mut();
+        hand.now = now;
+        hand.look_at_params(&self.env);
     }
 
     /// The window is about to close. A hand that is armed, or that this program set in motion, is stopped first.
@@ -459,7 +463,8 @@ impl App {
         let closing = *self.closing.get_or_insert_with(|| {
             let mut held = false;
             for hand in hands.iter_mut().filter(|hand| hand.may_move()) {
-                hand.stop(notices, now);
+                hand.now = now;
+                hand.stop(notices);
                 held = true;
             }
             Closing { since: now, held }

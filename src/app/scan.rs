@@ -3,7 +3,7 @@
 use crate::app::env::Env;
 use crate::hand::HandId;
 use crate::link::scan::{
-    Found, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanProgress,
+    FoundHand, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanPort, ScanProgress,
     ScanSummary, Speaks, start,
 };
 use crate::transport::{Endpoint, TransportError};
@@ -81,7 +81,7 @@ pub struct ScanState {
     /// Places that it looks at.
     pub places: usize,
     /// Hands, in the order in which they answered.
-    pub found: Vec<Found>,
+    pub found: Vec<FoundHand>,
     /// What else there is to say.
     pub remarks: Vec<ScanRemark>,
     /// Hands and remarks for which there was no room.
@@ -142,7 +142,7 @@ impl Scanner {
         let (local, hosts, ids) = match wish {
             ScanWish::Ports(ids) => (Local::Listed, Vec::new(), ids),
             ScanWish::Port(port, ids) => {
-                let wish = PortWish {
+                let wish = ScanPort {
                     port,
                     usb: None,
                     speaks: Speaks::Either,
@@ -190,7 +190,7 @@ impl Scanner {
     }
 }
 
-fn named(ports: Vec<PortWish>, can: Vec<String>) -> Local {
+fn named(ports: Vec<ScanPort>, can: Vec<String>) -> Local {
     Local::Named { ports, can }
 }
 
@@ -200,7 +200,7 @@ mod tests {
     use std::time::Duration;
 
     fn found(id: u8) -> ScanEvent {
-        ScanEvent::Found(Found {
+        ScanEvent::Found(FoundHand {
             endpoint: format!("rs485:/dev/x?id={id}").parse().unwrap(),
             hand_id: id,
             round_trip: Duration::from_millis(9),

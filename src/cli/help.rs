@@ -1,7 +1,7 @@
 //! `help`: the help of a command as clap writes it, or a page of the manual as plain text.
 
-use crate::cli::names;
 use crate::cli::out::{Out, WrongUsage};
+use crate::cli::parse;
 use crate::manual::{self, TOPICS, Topic};
 use clap::{Args, Command};
 
@@ -77,7 +77,7 @@ fn unknown(word: &str, path: &str, command: &Command) -> WrongUsage {
     if known.is_empty() {
         return WrongUsage(format!("{what} '{word}'; try 'handscope help{path}'"));
     }
-    let nearest = names::nearest(word, known.into_iter()).join(", ");
+    let nearest = parse::nearest(word, known.into_iter()).join(", ");
     WrongUsage(format!(
         "{what} '{word}'; the nearest are {nearest}; 'handscope help{path}' lists them all"
     ))

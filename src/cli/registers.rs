@@ -7,14 +7,14 @@ use serde_json::Value;
 
 /// A register as scripts see it, with what follows from it.
 #[derive(Serialize)]
-struct Row {
+struct RegisterRow {
     #[serde(flatten)]
     register: Register,
     count: u16,
     in_manual: bool,
 }
 
-impl From<&Register> for Row {
+impl From<&Register> for RegisterRow {
     fn from(register: &Register) -> Self {
         Self {
             register: *register,
@@ -26,7 +26,7 @@ impl From<&Register> for Row {
 
 /// Prints the register map.
 pub(crate) fn run(out: &mut Out, as_json: bool) -> anyhow::Result<()> {
-    let rows: Value = serde_json::to_value(REGISTERS.each_ref().map(Row::from).as_slice())?;
+    let rows: Value = serde_json::to_value(REGISTERS.each_ref().map(RegisterRow::from).as_slice())?;
     if as_json {
         return out.line(&serde_json::to_string_pretty(&rows)?);
     }

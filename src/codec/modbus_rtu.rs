@@ -87,7 +87,7 @@ pub struct RtuSplitter {
 }
 
 /// What the bytes at the front can be.
-enum Head {
+enum ReplyStart {
     /// A reply of so many bytes, whole and good.
     Good(usize),
     /// Looks like a reply, but its check is wrong.
@@ -152,15 +152,15 @@ impl RtuSplitter {
     pub fn next(&mut self) -> Option<RtuReply> {
         loop {
             match self.head(0) {
-                Head::Good(len) => return Some(self.take(len)),
-                Head::Open => return None,
-                Head::Echo(len) => self.take_echo(len),
-                Head::Bad | Head::None if self.take_foreign() => {}
-                Head::Bad => {
+                ReplyStart::Good(len) => return Some(self.take(len)),
+                ReplyStart::Open => return None,
+                ReplyStart::Echo(len) => self.take_echo(len),
+                ReplyStart::Bad | ReplyStart::None if self.take_foreign() => {}
+                ReplyStart::Bad => {
                     self.noise.checksum_errors += u64::from(!self.skipping);
                     self.skip(1);
                 }
-                Head::None => self.skip(1),
+                ReplyStart::None => self.skip(1),
             }
         }
     }
@@ -169,10 +169,10 @@ impl RtuSplitter {
     pub fn flush_pending(&mut self) {
         while !self.buffer.is_empty() {
             match self.head(0) {
-                Head::Good(_) => return,
-                Head::Echo(len) => self.take_echo(len),
-                Head::Bad | Head::Open | Head::None if self.take_foreign() => {}
-                Head::Bad | Head::Open | Head::None => self.skip(1),
+                ReplyStart::Good(_) => return,
+                ReplyStart::Echo(len) => self.take_echo(len),
+                ReplyStart::Bad | ReplyStart::Open | ReplyStart::None if self.take_foreign() => {}
+                ReplyStart::Bad | ReplyStart::Open | ReplyStart::None => self.skip(1),
             }
         }
     }
@@ -189,32 +189,34 @@ impl RtuSplitter {
         self.buffer.len()
     }
 
-    fn head(&self, at: usize) -> Head {
+    fn head(&self, at: usize) -> ReplyStart {
         let bytes = self.buffer.get(at..).unwrap_or_default();
         if !self.echo.is_empty() {
             if bytes.starts_with(&self.echo) {
-                return Head::Echo(self.echo.len());
+                return ReplyStart::Echo(self.echo.len());
             }
             if self.echo.starts_with(bytes) {
-                return Head::Open;
+                return ReplyStart::Open;
             }
         }
         if bytes.first().is_some_and(|unit| *unit != self.unit) {
-            return Head::None;
+            return ReplyStart::None;
         }
         let len = match bytes {
-            [] | [_] | [_, 3] => return Head::Open,
+            [] | [_] | [_, 3] => return ReplyStart::Open,
             [_, 3, count, ..] if count % 2 == 0 && (2..=READ_BYTES_MAX).contains(count) => {
                 READ_HEAD_LEN + usize::from(*count) + CHECK_LEN
             }
             [_, 6 | 16, ..] => WRITTEN_LEN,
             [_, 0x83 | 0x86 | 0x90, ..] => EXCEPTION_LEN,
-            _ => return Head::None,
+            _ => return ReplyStart::None,
         };
         match bytes.get(..len).and_then(<[u8]>::split_last_chunk) {
-            None => Head::Open,
-            Some((body, check)) if crc16(body) == u16::from_le_bytes(*check) => Head::Good(len),
-            Some(_) => Head::Bad,
+            None => ReplyStart::Open,
+            Some((body, check)) if crc16(body) == u16::from_le_bytes(*check) => {
+                ReplyStart::Good(len)
+            }
+            Some(_) => ReplyStart::Bad,
         }
     }
 

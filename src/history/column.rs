@@ -180,6 +180,7 @@ impl Column {
     }
 
     /// Bytes held.
+    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         self.values.bytes()
             + self.levels.iter().map(Ring::bytes).sum::<usize>()

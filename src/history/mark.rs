@@ -86,6 +86,10 @@ impl Marks {
         self.0.insert(place, mark);
     }
 
+    pub(crate) fn remove(&mut self, mark: &Mark) {
+        self.0.retain(|kept| kept != mark);
+    }
+
     pub(crate) fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Mark> {
         self.0
             .iter()

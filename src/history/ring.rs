@@ -68,6 +68,7 @@ impl<T: Copy> Ring<T> {
     }
 
     /// Bytes held.
+    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         let entries: usize = self.kept.iter().map(Vec::capacity).sum();
         entries * size_of::<T>()

@@ -207,6 +207,11 @@ impl History {
         self.marks.push(Mark { at, kind });
     }
 
+    /// Takes a mark away again.
+    pub fn remove_mark(&mut self, mark: &Mark) {
+        self.marks.remove(mark);
+    }
+
     /// The marks of a stretch of time, oldest first.
     pub fn marks(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Mark> {
         self.marks.between(from_s, to_s)
@@ -271,8 +276,8 @@ impl History {
     }
 
     /// Memory held by the channels of the fingertips, in bytes.
-    #[must_use]
-    pub fn channel_bytes(&self) -> usize {
+    #[cfg(test)]
+    pub(crate) fn channel_bytes(&self) -> usize {
         let channels = self.tracks.iter().skip(FIRST_CHANNELS);
         channels.map(Track::bytes).sum()
     }
@@ -318,8 +323,8 @@ impl History {
     }
 
     /// Time of the newest measurement, in seconds.
-    #[must_use]
-    pub fn last_secs(&self) -> Option<f64> {
+    #[cfg(test)]
+    pub(crate) fn last_secs(&self) -> Option<f64> {
         self.tracks
             .iter()
             .filter_map(Track::last_s)
@@ -327,8 +332,8 @@ impl History {
     }
 
     /// Memory held, in bytes.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
+    #[cfg(test)]
+    pub(crate) fn bytes(&self) -> usize {
         self.tracks.iter().map(Track::bytes).sum()
     }
 

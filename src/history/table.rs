@@ -45,12 +45,6 @@ impl Table {
         self.lines().count()
     }
 
-    /// True if nothing was measured and nothing happened.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.marks.is_empty() && self.groups.iter().all(|group| group.times.is_empty())
-    }
-
     /// Comma-separated values: `time_s` since the start of the program, then the columns with their units, then what
     /// happened. A value that was not measured at that moment or is not known is an empty cell; a line of empty cells
     /// is a break.

@@ -88,11 +88,13 @@ impl Track {
     }
 
     /// Time of the newest row.
+    #[cfg(test)]
     pub(crate) fn last_s(&self) -> Option<f64> {
         self.times.last()
     }
 
     /// Bytes held.
+    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         self.times.bytes() + self.columns.iter().map(Column::bytes).sum::<usize>()
     }

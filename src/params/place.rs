@@ -87,9 +87,7 @@ pub fn command(id: ParamId, value: Value) -> Option<HandCommand> {
             HandId::new(i64::from(number)).ok().map(HandCommand::Id)
         }
         (ParamId::ReduRatio, Value::Number(number)) => {
-            let mut speeds = SerialSpeed::ALL.into_iter();
-            let speed = speeds.find(|speed| i32::from(speed.code()) == number);
-            speed.map(HandCommand::SerialSpeed)
+            SerialSpeed::of_code(number.into()).map(HandCommand::SerialSpeed)
         }
         (ParamId::IpAddress, Value::Address(address)) => Some(HandCommand::IpAddress(address)),
         _ => None,
@@ -107,8 +105,7 @@ pub fn new_place(hand: &Endpoint, id: ParamId, wanted: Value) -> Option<Endpoint
     match (&mut place, id) {
         (Endpoint::Rs485(line) | Endpoint::Rtu(line), ParamId::HandId) => line.id = byte,
         (Endpoint::Rs485(line) | Endpoint::Rtu(line), ParamId::ReduRatio) => {
-            let mut speeds = SerialSpeed::ALL.into_iter();
-            line.baud = speeds.find(|speed| speed.code() == byte)?.baud();
+            line.baud = SerialSpeed::of_code(byte.into())?.baud();
         }
         (
             Endpoint::Can { id: at, .. }

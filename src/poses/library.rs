@@ -43,12 +43,6 @@ impl Millis {
     /// How long a step waits for arrival at first: the full way at a gentle speed takes 3 s.
     pub const LIMIT: Self = Self(5000);
 
-    /// The nearest time in range.
-    #[must_use]
-    pub fn nearest(millis: u32) -> Self {
-        Self(millis.min(Self::MAX))
-    }
-
     /// Milliseconds.
     #[must_use]
     pub const fn get(self) -> u32 {

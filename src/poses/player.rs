@@ -85,20 +85,28 @@ pub enum Pace {
     OneStep,
 }
 
+/// Where a sequence stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PlayView {
+    /// The step, 0 the first.
+    pub at: usize,
+    /// What it does.
+    pub phase: Phase,
+    /// Steps that ran into their time limit.
+    pub late: u32,
+}
+
 /// A running sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Player {
     cues: Vec<Cue>,
     looped: bool,
     pace: Pace,
-    at: usize,
-    phase: Phase,
+    view: PlayView,
     /// The current cue has not been sent yet.
     due: bool,
     /// The current pose was reached, or its time is up.
     arrived: bool,
-    /// Poses that were not reached within their time.
-    late: u32,
 }
 
 impl Player {
@@ -115,68 +123,58 @@ impl Player {
             cues,
             looped,
             pace,
-            at: 0,
-            phase,
+            view: PlayView {
+                at: 0,
+                phase,
+                late: 0,
+            },
             arrived: false,
-            late: 0,
         }
-    }
-
-    /// Which step it is at, 0 the first.
-    #[must_use]
-    pub const fn at(&self) -> usize {
-        self.at
     }
 
     /// Targets of the current step.
     #[must_use]
     pub fn targets(&self) -> PerDof<Option<Angle>> {
-        let cue = self.cues.get(self.at);
+        let cue = self.cues.get(self.view.at);
         cue.map_or(PerDof::splat(None), |cue| cue.targets)
     }
 
     /// Where it stands.
     #[must_use]
-    pub const fn phase(&self) -> Phase {
-        self.phase
-    }
-
-    /// Poses that were not reached within their time.
-    #[must_use]
-    pub const fn late(&self) -> u32 {
-        self.late
+    pub const fn view(&self) -> PlayView {
+        self.view
     }
 
     /// True once nothing is sent any more.
     #[must_use]
     pub const fn is_over(&self) -> bool {
-        matches!(self.phase, Phase::Ended(_))
+        matches!(self.view.phase, Phase::Ended(_))
     }
 
     /// True while a person can resume it.
     #[must_use]
     pub const fn is_paused(&self) -> bool {
-        matches!(self.phase, Phase::Paused)
+        matches!(self.view.phase, Phase::Paused)
     }
 
     /// Advances the time. Returns the cue to send now, if one is due.
     ///
     /// `seen`: the fresh angle of each joint that takes part. A joint that is left alone by the cue is not looked at.
     pub fn tick(&mut self, now: Moment, seen: &PerDof<Option<i16>>) -> Option<Cue> {
-        match self.phase {
+        match self.view.phase {
             Phase::Moving { since } if !self.due => self.moving(since, now, seen),
             Phase::Dwelling { since } => self.dwelling(since, now),
             _ => {}
         }
-        if !self.due || !matches!(self.phase, Phase::Moving { .. }) {
+        if !self.due || !matches!(self.view.phase, Phase::Moving { .. }) {
             return None;
         }
         self.due = false;
-        self.cues.get(self.at).cloned()
+        self.cues.get(self.view.at).cloned()
     }
 
     fn moving(&mut self, since: Moment, now: Moment, seen: &PerDof<Option<i16>>) {
-        let Some(cue) = self.cues.get(self.at) else {
+        let Some(cue) = self.cues.get(self.view.at) else {
             return;
         };
         let there = |dof: Dof| match cue.targets[dof] {
@@ -190,46 +188,49 @@ impl Player {
         if !is_there && !too_late {
             return;
         }
-        self.late += u32::from(!is_there);
+        self.view.late += u32::from(!is_there);
         self.arrived = true;
-        self.phase = Phase::Dwelling { since: now };
+        self.view.phase = Phase::Dwelling { since: now };
     }
 
     fn dwelling(&mut self, since: Moment, now: Moment) {
-        let dwell = self.cues.get(self.at).map(|cue| cue.dwell);
+        let dwell = self.cues.get(self.view.at).map(|cue| cue.dwell);
         if dwell.is_some_and(|dwell| now.since(since) < dwell) {
             return;
         }
         match self.pace {
             Pace::Through => self.advance(now),
-            Pace::OneStep => self.phase = Phase::Paused,
+            Pace::OneStep => self.view.phase = Phase::Paused,
         }
     }
 
     fn advance(&mut self, now: Moment) {
-        let next = self.at + 1;
+        let next = self.view.at + 1;
         if next < self.cues.len() {
-            self.at = next;
+            self.view.at = next;
         } else if self.looped {
-            self.at = 0;
+            self.view.at = 0;
         } else {
-            self.phase = Phase::Ended(End::Finished);
+            self.view.phase = Phase::Ended(End::Finished);
             return;
         }
         self.begin(now);
     }
 
     const fn begin(&mut self, now: Moment) {
-        self.phase = Phase::Moving { since: now };
+        self.view.phase = Phase::Moving { since: now };
         self.due = true;
         self.arrived = false;
     }
 
     /// Waits for a person. True if it ran.
     pub const fn pause(&mut self) -> bool {
-        let ran = matches!(self.phase, Phase::Moving { .. } | Phase::Dwelling { .. });
+        let ran = matches!(
+            self.view.phase,
+            Phase::Moving { .. } | Phase::Dwelling { .. }
+        );
         if ran {
-            self.phase = Phase::Paused;
+            self.view.phase = Phase::Paused;
         }
         ran
     }
@@ -250,7 +251,7 @@ impl Player {
     /// Ends it, for good. The first reason stays.
     pub const fn end(&mut self, why: End) {
         if !self.is_over() {
-            self.phase = Phase::Ended(why);
+            self.view.phase = Phase::Ended(why);
             self.due = false;
         }
     }

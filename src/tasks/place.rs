@@ -12,6 +12,7 @@ use crate::store::on_thread;
 use crate::tasks::hand::{Hand, Reach, rests};
 use crate::tasks::save::{back_up, save_noted};
 use crate::tasks::{TaskError, read};
+use futures::future::BoxFuture;
 use std::path::PathBuf;
 use std::time::Duration;
 use tokio::time::timeout;
@@ -36,12 +37,12 @@ pub struct PlaceChange {
     pub is_followed: bool,
 }
 
-/// Who decides. Neither question is asked before the hand was found again.
-pub trait Person: Send {
+/// What a person decides. Neither is waited for before the hand was found again.
+pub struct Decisions {
     /// Whether the change stays; false takes it back.
-    fn keeps(&mut self) -> impl Future<Output = bool> + Send;
+    pub keeps: BoxFuture<'static, bool>,
     /// Whether a change that stays goes into flash.
-    fn saves(&mut self) -> impl Future<Output = bool> + Send;
+    pub saves: BoxFuture<'static, bool>,
 }
 
 /// What is told on the way.
@@ -129,7 +130,7 @@ pub async fn change_place<R: Reach>(
     reach: &mut R,
     change: &PlaceChange,
     backups: &Backups,
-    person: &mut impl Person,
+    decisions: Decisions,
     mut tell: impl FnMut(PlaceStep),
 ) -> Result<PlaceReport, TaskError> {
     tell(PlaceStep::BackingUp);
@@ -144,92 +145,68 @@ pub async fn change_place<R: Reach>(
     };
     let backup = back_up(backups, &params, "before apply").await?;
     tell(PlaceStep::BackedUp(backup.clone(), params.clone()));
-    let mut run = Run {
+    let mut run = ChangeRun {
         reach,
         change,
         backups,
         tell: &mut tell,
+        seen: None,
         not_noted: None,
     };
     let moved = run.go(Place::Old, change.wanted).await;
     let end = match &moved {
         None => PlaceEnd::NotWritten,
-        Some(Went::Occupied) => PlaceEnd::Occupied,
-        Some(Went::Nowhere) => PlaceEnd::Nowhere,
-        // A third value: the hand is where it was, and would be lost once somebody saves.
-        Some(Went::Stayed { holds, .. }) if *holds != change.before => {
+        Some(Moved::Occupied) => PlaceEnd::Occupied,
+        Some(Moved::Nowhere) => PlaceEnd::Nowhere,
+        Some(Moved::Stayed | Moved::Refused { .. }) if run.seen != Some(change.before) => {
             run.bring_back(Place::Old).await
         }
-        Some(Went::Stayed { refused, .. }) => PlaceEnd::NotTaken {
-            reason: refused.clone(),
+        Some(Moved::Stayed) => PlaceEnd::NotTaken { reason: None },
+        Some(Moved::Refused { reason }) => PlaceEnd::NotTaken {
+            reason: Some(reason.clone()),
         },
-        Some(Went::There) => run.decide(Place::New, params, person).await,
-        Some(Went::Waits) => run.decide(Place::Old, params, person).await,
+        Some(Moved::There) => run.decide(Place::New, params, decisions).await,
+        Some(Moved::Waits) => run.decide(Place::Old, params, decisions).await,
     };
     Ok(PlaceReport {
         backup,
-        moved: moved.map(Went::moved),
+        moved,
         end,
         not_noted: run.not_noted,
     })
 }
 
-/// Where a hand is after a write.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Went {
-    Occupied,
-    There,
-    Waits,
-    Stayed {
-        holds: Value,
-        refused: Option<String>,
-    },
-    Nowhere,
-}
-
-impl Went {
-    fn moved(self) -> Moved {
-        match self {
-            Self::Occupied => Moved::Occupied,
-            Self::There => Moved::There,
-            Self::Waits => Moved::Waits,
-            Self::Stayed {
-                refused: Some(reason),
-                ..
-            } => Moved::Refused { reason },
-            Self::Stayed { refused: None, .. } => Moved::Stayed,
-            Self::Nowhere => Moved::Nowhere,
-        }
-    }
-}
-
-struct Run<'a, R, T> {
+struct ChangeRun<'a, R, T> {
     reach: &'a mut R,
     change: &'a PlaceChange,
     backups: &'a Backups,
     tell: &'a mut T,
+    /// What the hand held where it was looked for last, if it answered.
+    seen: Option<Value>,
     not_noted: Option<String>,
 }
 
-impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
+impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     /// What a hand that answers there holds in the row; `None` if nobody does.
     async fn holds(&mut self, at: Place) -> Option<Value> {
         (self.tell)(PlaceStep::Looking(at));
+        self.seen = None;
         let hand = self.reach.reach(self.change.places.endpoint(at)).await?;
         let span = span_of(self.change.id);
         let bytes = read::group(&hand, span).await.ok()?;
-        decoded(self.change.id, span, &bytes)
+        self.seen = decoded(self.change.id, span, &bytes);
+        self.seen
     }
 
     /// Writes a value where the hand is and looks where it answers then; `None` if nothing could be written.
-    async fn go(&mut self, from: Place, value: Value) -> Option<Went> {
+    async fn go(&mut self, from: Place, value: Value) -> Option<Moved> {
         // Back at its old place, a value is only put back.
         let is_back_there = from == Place::Old && value == self.change.before;
         let follows = self.change.is_followed && !is_back_there;
         // A new id may be another hand's; a hand of another serial speed cannot be heard here.
         let may_be_taken = follows && self.change.id == ParamId::HandId;
         if may_be_taken && self.holds(from.other()).await.is_some() {
-            return Some(Went::Occupied);
+            return Some(Moved::Occupied);
         }
         (self.tell)(PlaceStep::Writing(from));
         let hand = self.reach.reach(self.change.places.endpoint(from)).await?;
@@ -247,21 +224,24 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
         for round in 0..ROUNDS {
             let may_be_there = follows && (round > 0 || refused.is_none());
             if may_be_there && self.holds(from.other()).await.is_some() {
-                return Some(Went::There);
+                return Some(Moved::There);
             }
             match self.holds(from).await {
-                Some(holds) if holds == value => return Some(Went::Waits),
-                Some(holds) => return Some(Went::Stayed { holds, refused }),
+                Some(holds) if holds == value => return Some(Moved::Waits),
+                Some(_) => {
+                    let stayed = refused.map(|reason| Moved::Refused { reason });
+                    return Some(stayed.unwrap_or(Moved::Stayed));
+                }
                 None => {}
             }
         }
-        Some(Went::Nowhere)
+        Some(Moved::Nowhere)
     }
 
     /// The hand answers: a person keeps the change, or it is taken back.
-    async fn decide(&mut self, at: Place, params: Params, person: &mut impl Person) -> PlaceEnd {
+    async fn decide(&mut self, at: Place, params: Params, decisions: Decisions) -> PlaceEnd {
         (self.tell)(PlaceStep::Keeping(at));
-        let keeps = timeout(KEEP_WITHIN, person.keeps()).await;
+        let keeps = timeout(KEEP_WITHIN, decisions.keeps).await;
         if !keeps.unwrap_or(false) {
             (self.tell)(PlaceStep::Returning);
             return self.take_back(at).await;
@@ -270,7 +250,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
             self.adopt(Place::New, Place::Old).await;
         }
         (self.tell)(PlaceStep::Offering(at));
-        match person.saves().await {
+        match decisions.saves.await {
             true => self.save(at, params).await,
             false => PlaceEnd::Kept { at, saved: None },
         }
@@ -310,9 +290,11 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
         match self.go(from, self.change.before).await {
             None => PlaceEnd::NotWritten,
             // At a place of its own, or held where it is: both is as before.
-            Some(Went::There | Went::Waits) => PlaceEnd::Back,
-            Some(Went::Occupied | Went::Stayed { .. }) => PlaceEnd::NotBack(from),
-            Some(Went::Nowhere) => PlaceEnd::Nowhere,
+            Some(Moved::There | Moved::Waits) => PlaceEnd::Back,
+            Some(Moved::Occupied | Moved::Stayed | Moved::Refused { .. }) => {
+                PlaceEnd::NotBack(from)
+            }
+            Some(Moved::Nowhere) => PlaceEnd::Nowhere,
         }
     }
 

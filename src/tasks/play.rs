@@ -3,7 +3,7 @@
 
 use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
 use crate::link::{Clock, LinkStatus, MotionTurn};
-use crate::poses::player::{Cue, End, Pace, Phase, Player};
+use crate::poses::player::{Cue, End, Pace, Phase, PlayView, Player};
 use crate::record::{LinkState, Record};
 use crate::tasks::hand::Hand;
 use std::time::Duration;
@@ -49,17 +49,6 @@ pub enum PlayCommand {
     Lock(PerDof<bool>),
 }
 
-/// Where a sequence stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PlayView {
-    /// The step, 0 the first.
-    pub at: usize,
-    /// What it does.
-    pub phase: Phase,
-    /// Steps that ran into their time limit.
-    pub late: u32,
-}
-
 /// What is told on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlayStep {
@@ -78,7 +67,7 @@ pub async fn play<H: Hand>(
 ) -> End {
     let clock = start.clock;
     let mut records = hand.records();
-    let mut run = Run {
+    let mut run = Playing {
         turn: start.turn,
         hand,
         player: Player::start(start.cues, start.looped, start.pace, clock.now()),
@@ -90,7 +79,7 @@ pub async fn play<H: Hand>(
     let mut shown = None;
     loop {
         run.tick(&mut tell);
-        let view = run.view();
+        let view = run.player.view();
         if shown.replace(view) != Some(view) {
             tell(PlayStep::View(view));
         }
@@ -112,7 +101,7 @@ pub async fn play<H: Hand>(
     }
 }
 
-struct Run<'a, H> {
+struct Playing<'a, H> {
     hand: &'a H,
     turn: MotionTurn,
     player: Player,
@@ -122,15 +111,7 @@ struct Run<'a, H> {
     clock: Clock,
 }
 
-impl<H: Hand> Run<'_, H> {
-    const fn view(&self) -> PlayView {
-        PlayView {
-            at: self.player.at(),
-            phase: self.player.phase(),
-            late: self.player.late(),
-        }
-    }
-
+impl<H: Hand> Playing<'_, H> {
     fn obey(&mut self, command: PlayCommand, tell: &mut impl FnMut(PlayStep)) {
         match command {
             PlayCommand::Pause => {

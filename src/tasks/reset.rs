@@ -88,7 +88,11 @@ pub async fn reset<R: Reach>(
     let before = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
     let backup = back_up(backups, &before, "before reset").await?;
     tell(ResetStep::Sending);
-    let sent = once_at_rest(|| hand.reset()).await;
+    let not_sent = |reset: &Reset| match reset {
+        Reset::NotSent(why) => Some(*why),
+        _ => None,
+    };
+    let sent = once_at_rest(|| hand.reset(), not_sent).await;
     drop(hand);
     let mut report = ResetReport {
         backup,

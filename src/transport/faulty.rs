@@ -35,12 +35,12 @@ pub struct FaultOdds {
 
 /// The speed of a serial line: bytes take ten bits each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pace {
+pub struct LineSpeed {
     /// Bits a second; 0 counts as 1.
     pub baud: u32,
 }
 
-impl Pace {
+impl LineSpeed {
     fn time_of(self, bytes: usize) -> Duration {
         let bits = u64::try_from(bytes)
             .unwrap_or(u64::MAX)
@@ -63,7 +63,7 @@ pub struct FaultPlan {
     /// Most bits that are flipped in one chunk, at least 1.
     pub flips_max: u8,
     /// Speed of the line; `None` = no time at all.
-    pub pace: Option<Pace>,
+    pub pace: Option<LineSpeed>,
 }
 
 impl FaultPlan {
@@ -102,16 +102,16 @@ pub struct FaultCounts {
 
 /// Governs a faulty wire from outside.
 #[derive(Debug, Clone)]
-pub struct FaultSwitch(Arc<Shared>);
+pub struct FaultSwitch(Arc<FaultState>);
 
 #[derive(Debug)]
-struct Shared {
+struct FaultState {
     quiet: AtomicBool,
     cut: watch::Sender<bool>,
     counts: Mutex<FaultCounts>,
 }
 
-impl Shared {
+impl FaultState {
     fn counts(&self) -> MutexGuard<'_, FaultCounts> {
         self.counts.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -144,12 +144,12 @@ pub fn faulty_pair(plan: FaultPlan) -> (Pipe, Pipe, FaultSwitch) {
     let (far, far_inner) = pair();
     let (near_read, near_write) = split(near_inner);
     let (far_read, far_write) = split(far_inner);
-    let shared = Arc::new(Shared {
+    let shared = Arc::new(FaultState {
         quiet: AtomicBool::new(false),
         cut: watch::Sender::new(false),
         counts: Mutex::default(),
     });
-    let lane = |from, to, odds, seed| Lane {
+    let lane = |from, to, odds, seed| FaultyDirection {
         from,
         to,
         odds,
@@ -166,7 +166,7 @@ pub fn faulty_pair(plan: FaultPlan) -> (Pipe, Pipe, FaultSwitch) {
 }
 
 /// One direction.
-struct Lane {
+struct FaultyDirection {
     from: ReadHalf<Pipe>,
     to: WriteHalf<Pipe>,
     odds: FaultOdds,
@@ -174,18 +174,18 @@ struct Lane {
     rng: Rng,
     /// When the line has sent all that was given to it.
     free_at: Instant,
-    shared: Arc<Shared>,
+    shared: Arc<FaultState>,
 }
 
 /// What happens to one chunk.
-struct Fate {
+struct ChunkFate {
     drop: bool,
     hang_up: bool,
     copies: usize,
     delay: Duration,
 }
 
-impl Lane {
+impl FaultyDirection {
     async fn run(mut self) {
         let mut cut = self.shared.cut.subscribe();
         tokio::select! {
@@ -226,7 +226,7 @@ impl Lane {
     }
 
     /// Throws the dice, the same number for each chunk whatever comes out.
-    fn decide(&mut self, chunk: &mut Vec<u8>) -> Fate {
+    fn decide(&mut self, chunk: &mut Vec<u8>) -> ChunkFate {
         let loud = !self.shared.quiet.load(Ordering::Relaxed);
         let odds = self.odds;
         let mut roll = |chance: f64| self.rng.f64() < chance && loud;
@@ -249,7 +249,7 @@ impl Lane {
         counts.truncated += u64::from(truncate);
         counts.duplicated += u64::from(twice);
         counts.hang_ups += u64::from(hang_up);
-        Fate {
+        ChunkFate {
             drop,
             hang_up,
             copies: if twice { 2 } else { 1 },
@@ -389,7 +389,7 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn a_paced_line_takes_ten_bits_a_byte() {
-        let pace = Some(Pace { baud: 115_200 });
+        let pace = Some(LineSpeed { baud: 115_200 });
         let (mut near, mut far, _switch) = faulty_pair(FaultPlan {
             pace,
             ..FaultPlan::quiet(1)

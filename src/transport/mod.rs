@@ -24,7 +24,7 @@ pub use crate::transport::serial::sysfs::Sysfs;
 pub use crate::transport::serial::timer::Timer;
 pub use dial::SystemDial;
 pub use endpoint::{Endpoint, EndpointError, SerialLine};
-pub use faulty::{FaultCounts, FaultOdds, FaultPlan, FaultSwitch, Pace, faulty_pair};
+pub use faulty::{FaultCounts, FaultOdds, FaultPlan, FaultSwitch, LineSpeed, faulty_pair};
 pub use paced::{LinePace, paced};
 pub use pipe::{Pipe, pair};
 #[cfg(unix)]

@@ -68,12 +68,6 @@ impl Content {
         }
     }
 
-    /// True if there is nothing to save.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     fn bytes(&self) -> std::io::Result<Vec<u8>> {
         Ok(match self {
             Self::Traffic(form, frames) => frame_lines(*form, frames).into_bytes(),
@@ -120,10 +114,7 @@ pub(crate) fn save(content: Content, env: &Env) -> Job<NoticeKind> {
         };
         match on_thread(work).await {
             Ok(entries) => NoticeKind::Saved { path, entries },
-            Err(error) => NoticeKind::NotSaved {
-                message: error.to_string(),
-                path,
-            },
+            Err(error) => NoticeKind::not_saved(path, &error),
         }
     })
 }

@@ -1,7 +1,7 @@
 //! What moves the hand now, so that every view can tell it.
 
-use crate::app::hand::HandState;
 use crate::app::hand::gestures::GestureProgress;
+use crate::app::hand::{Freshness, HandState};
 use crate::app::procedures::procedure::Procedure;
 use crate::hand::Gesture;
 use crate::poses::library::SequenceId;
@@ -47,11 +47,11 @@ impl HandState {
         if let Some(run) = self.sequence.as_ref().filter(|run| run.is_running()) {
             return Some(Mover::Sequence(run.sequence, run.view.at));
         }
-        if self.link.rest != Rest::Moving {
+        if self.link.rest != Rest::Moving || self.commanded && self.came_to_rest() {
             return None;
         }
         // A gesture lets all sliders follow the hand; whatever else is sent takes its own joints from it.
-        let follows = self.following.iter().all(|(_, follows)| *follows);
+        let follows = self.steered.iter().all(|(_, steered)| !steered);
         let gesture = self.gestures.last.filter(|_| follows);
         let gesture = gesture.filter(|last| last.progress != GestureProgress::Failed);
         Some(match gesture {
@@ -59,5 +59,24 @@ impl HandState {
             Some(last) => Mover::Gesture(last.gesture),
             None => Mover::Setpoints,
         })
+    }
+    /// True if nothing moves the hand for certain, and nothing may: a hand that was never heard does not count as one.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        if !self.link.state.is_live() {
+            return self.sample.angle.is_none();
+        }
+        let armed = self.is_armed() || self.link.armed.is_some();
+        !armed && self.link.rest == Rest::Resting && self.mover().is_none()
+    }
+
+    /// True if no setpoint passes any more and each drive says that it stopped: the link tells rest a second later, as a
+    /// hand acts late.
+    fn came_to_rest(&self) -> bool {
+        let Some(status) = self.sample.status.filter(|_| self.link.armed.is_none()) else {
+            return false;
+        };
+        let is_live = self.freshness(Some(status.asked)) == Freshness::Live;
+        is_live && status.value.iter().all(|(_, status)| status.is_stopped())
     }
 }

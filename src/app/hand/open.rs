@@ -1,7 +1,9 @@
-//! An open link, and a hand that is being left.
+//! An open link, a hand that is being left, and requests whose end is awaited.
 
-use crate::hand::Moment;
-use crate::link::{LinkHandle, MotionTurn, Records};
+use crate::app::notices::Asked;
+use crate::hand::{Moment, PerDof};
+use crate::link::{LinkHandle, MotionTurn, Records, RequestError};
+use crate::store::Job;
 use crate::transport::Endpoint;
 
 /// An open link.
@@ -30,4 +32,14 @@ pub(crate) struct Leaving {
     /// Where to go then; `None` = nowhere.
     pub(crate) to: Option<Endpoint>,
     pub(crate) told: Moment,
+}
+
+/// How a request ended.
+pub(crate) type RequestEnd = Result<Option<PerDof<i16>>, RequestError>;
+
+/// A request whose end is awaited.
+#[derive(Debug)]
+pub(crate) struct Pending {
+    pub(crate) what: Asked,
+    pub(crate) end: Option<Job<RequestEnd>>,
 }

@@ -5,11 +5,11 @@ use crate::app::hand::HandState;
 use crate::app::hand::joint::Move;
 use crate::app::hand::sequence::{Play, SequenceRun};
 use crate::app::running::Running;
-use crate::hand::{Moment, PerDof, Setpoints, Target};
+use crate::hand::{PerDof, Setpoints, Target};
 use crate::history::MarkKind;
 use crate::poses::library::{Library, SequenceId};
-use crate::poses::player::{Pace, Phase, cues};
-use crate::tasks::play::{self, PlayCommand, PlayStart, PlayStep, PlayView};
+use crate::poses::player::{Pace, Phase, PlayView, cues};
+use crate::tasks::play::{self, PlayCommand, PlayStart, PlayStep};
 use tokio::sync::mpsc;
 
 /// Wishes that may wait: a person cannot press faster than a task takes them.
@@ -111,10 +111,10 @@ impl HandState {
     }
 
     /// A gesture of the hand's own was started.
-    pub(crate) fn gesture_started(&mut self, number: u8, now: Moment) {
-        self.history.mark(now, MarkKind::Gesture(number));
+    pub(crate) fn gesture_started(&mut self, number: u8) {
+        self.history.mark(self.now, MarkKind::Gesture(number));
         self.commanded = true;
-        self.following = PerDof::splat(true);
+        self.steered = PerDof::default();
     }
 }
 

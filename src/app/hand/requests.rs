@@ -3,11 +3,9 @@
 use crate::app::env::Env;
 use crate::app::hand::HandState;
 use crate::app::hand::gestures::{GestureProgress, LastGesture, StoreVerdict, Stored, Upload};
-use crate::app::hand::pending::{Pending, RequestEnd};
+use crate::app::hand::open::{Pending, RequestEnd};
 use crate::app::notices::{Asked, NoticeKind, Notices};
-use crate::hand::{
-    Angle, Gesture, GestureRoute, GestureStore, HandCommand, Moment, PerDof, UserGesture,
-};
+use crate::hand::{Angle, Gesture, GestureRoute, GestureStore, HandCommand, PerDof, UserGesture};
 use crate::link::{LinkHandle, RequestError};
 use crate::store::Job;
 use crate::tasks::gesture;
@@ -68,7 +66,7 @@ impl HandState {
         let command = HandCommand::Gesture(gesture, route);
         let write = |link: LinkHandle| async move { link.write(command).await.map(|()| None) };
         if self.ask(what, env, notices, write) {
-            self.gesture_started(gesture.get(), now);
+            self.gesture_started(gesture.get());
         }
     }
 
@@ -129,7 +127,7 @@ impl HandState {
     }
 
     /// Takes in how requests ended.
-    pub(crate) fn tick_requests(&mut self, notices: &mut Notices, now: Moment) {
+    pub(crate) fn tick_requests(&mut self, notices: &mut Notices) {
         let mut ended = Vec::new();
         self.asked.retain_mut(|asked| {
             let end = Job::take_from(&mut asked.end);
@@ -138,19 +136,13 @@ impl HandState {
         });
         for (what, end) in ended {
             match end {
-                Ok(stored) => self.acknowledged(what, stored, notices, now),
+                Ok(stored) => self.acknowledged(what, stored, notices),
                 Err(error) => self.failed(what, error, notices),
             }
         }
     }
 
-    fn acknowledged(
-        &mut self,
-        what: Asked,
-        stored: Option<PerDof<i16>>,
-        notices: &mut Notices,
-        now: Moment,
-    ) {
+    fn acknowledged(&mut self, what: Asked, stored: Option<PerDof<i16>>, notices: &mut Notices) {
         match what {
             Asked::Gesture(_) => self.gestures.progress(GestureProgress::Acknowledged),
             // The result is shown beside the pose.
@@ -162,7 +154,7 @@ impl HandState {
             }
             Asked::ClearErrors => {}
         }
-        notices.push(now, NoticeKind::Acknowledged { what });
+        notices.push(self.now, NoticeKind::Acknowledged { what });
     }
 
     /// Says that something did not work.

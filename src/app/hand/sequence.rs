@@ -2,8 +2,8 @@
 
 use crate::app::running::Running;
 use crate::poses::library::SequenceId;
-use crate::poses::player::{End, Phase};
-use crate::tasks::play::{PlayCommand, PlayStep, PlayView};
+use crate::poses::player::{End, Phase, PlayView};
+use crate::tasks::play::{PlayCommand, PlayStep};
 use tokio::sync::mpsc;
 
 /// What a person does with a sequence.
@@ -38,17 +38,6 @@ pub struct SequenceRun {
 }
 
 impl SequenceRun {
-    /// One that stands so and is run by nobody, for pictures and tests.
-    #[must_use]
-    pub const fn standing(sequence: SequenceId, view: PlayView) -> Self {
-        Self {
-            sequence,
-            view,
-            commands: None,
-            task: None,
-        }
-    }
-
     /// True while it may send something.
     #[must_use]
     pub const fn is_running(&self) -> bool {

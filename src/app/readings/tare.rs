@@ -31,13 +31,6 @@ impl Tare {
         self.rests[finger]
     }
 
-    /// When a person tared last, if one did and it was not undone.
-    #[must_use]
-    pub fn chosen_at(&self) -> Option<Moment> {
-        let chosen = self.rests.iter().filter_map(|(_, rest)| *rest);
-        chosen.filter(|rest| rest.chosen).map(|rest| rest.at).max()
-    }
-
     /// Whether there is a taring to take back.
     #[must_use]
     pub const fn can_undo(&self) -> bool {
@@ -125,10 +118,12 @@ mod tests {
         let mut tare = Tare::default();
         tare.begin(&sample(100, 1));
         tare.begin(&sample(200, 2));
-        assert_eq!((counted_from(&tare), tare.chosen_at()), (Some(100), None));
+        assert_eq!(counted_from(&tare), Some(100));
+        assert!(tare.rest(Finger::Index).is_some_and(|rest| !rest.chosen));
         tare.tare(Finger::ALL, &sample(300, 3)).unwrap();
         assert_eq!(counted_from(&tare), Some(300));
-        assert_eq!(tare.chosen_at(), Some(Moment::from_micros(3000)));
+        let rest = tare.rest(Finger::Index).expect("tared");
+        assert_eq!((rest.chosen, rest.at), (true, Moment::from_micros(3000)));
     }
 
     #[test]
@@ -158,7 +153,6 @@ mod tests {
         assert!(tare.can_undo());
         tare.undo();
         assert_eq!((counted_from(&tare), tare.can_undo()), (Some(100), false));
-        assert_eq!(tare.chosen_at(), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What is wrong with a hand or the connection to it, and what to do, in words.
 
-use crate::cli::doctor::checkup::{Checkup, Measured, Place};
+use crate::cli::doctor::checkup::{Checkup, ConnectionFacts, Measured};
 use crate::transport::{PortFacts, Route};
 use serde::Serialize;
 use std::time::Duration;
@@ -58,14 +58,14 @@ pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
         Ok(measured) => answers(measured, &mut found),
     }
     let measured = checkup.answer.as_ref().ok();
-    match &checkup.place {
-        Place::Port(facts) => port(&endpoint.place(), facts, measured, &mut found),
-        Place::Net(way) => net(way.as_ref(), measured.is_some(), &mut found),
+    match &checkup.connection {
+        ConnectionFacts::Port(facts) => port(&endpoint.place(), facts, measured, &mut found),
+        ConnectionFacts::Net(way) => net(way.as_ref(), measured.is_some(), &mut found),
         #[cfg(target_os = "linux")]
-        Place::Can(facts) => can(&endpoint.place(), facts, &mut found),
+        ConnectionFacts::Can(facts) => can(&endpoint.place(), facts, &mut found),
         #[cfg(not(target_os = "linux"))]
-        Place::NoCan => {}
-        Place::BuiltIn => {}
+        ConnectionFacts::NoCan => {}
+        ConnectionFacts::BuiltIn => {}
     }
     found.0.sort_by_key(|finding| !finding.is_wrong);
     found.0
@@ -219,13 +219,13 @@ fn can(interface: &str, facts: &crate::transport::can::facts::CanFacts, found: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::doctor::checkup::Window;
+    use crate::cli::doctor::checkup::BlockTiming;
     use crate::hand::Span;
     use crate::link::{LinkStats, LinkStatus};
     use crate::transport::{Endpoint, UsbFound};
 
     fn healthy(endpoint: &Endpoint) -> Measured {
-        let mut window = Window::new("angles", Span::new(1546, 12), endpoint);
+        let mut window = BlockTiming::new("angles", Span::new(1546, 12), endpoint);
         for _ in 0..1000 {
             window.took(Duration::from_millis(6));
         }
@@ -239,13 +239,13 @@ mod tests {
         }
     }
 
-    fn told(place: Place, change: impl Fn(&mut Measured)) -> Vec<(bool, String)> {
+    fn told(place: ConnectionFacts, change: impl Fn(&mut Measured)) -> Vec<(bool, String)> {
         let endpoint: Endpoint = "rs485:/dev/ttyT0".parse().unwrap();
         let mut measured = healthy(&endpoint);
         change(&mut measured);
         let checkup = Checkup {
             endpoint,
-            place,
+            connection: place,
             answer: Ok(measured),
         };
         let found = judge(&checkup);
@@ -260,8 +260,8 @@ mod tests {
             .collect()
     }
 
-    fn usb(latency_timer_ms: Option<u16>) -> Place {
-        Place::Port(PortFacts {
+    fn usb(latency_timer_ms: Option<u16>) -> ConnectionFacts {
+        ConnectionFacts::Port(PortFacts {
             device: Some("/dev/ttyT0".into()),
             usb: Some(UsbFound {
                 latency_timer_ms,
@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_healthy_hand_has_no_findings() {
-        assert_eq!(told(Place::BuiltIn, |_| ()), []);
+        assert_eq!(told(ConnectionFacts::BuiltIn, |_| ()), []);
         assert_eq!(told(usb(Some(1)), |_| ()), []);
         // A few of a thousand are this computer being busy.
         assert_eq!(told(usb(None), |measured| measured.stats.timeouts = 3), []);
@@ -282,7 +282,7 @@ mod tests {
     #[test]
     fn each_trouble_has_its_own_words_and_advice() {
         type Change = fn(&mut Measured);
-        let cases: [(Place, Change, bool, &str); 9] = [
+        let cases: [(ConnectionFacts, Change, bool, &str); 9] = [
             (usb(Some(16)), |_| (), true, "/ttyT0/latency_timer"),
             (
                 usb(None),
@@ -291,37 +291,37 @@ mod tests {
                 "/ttyT0/latency_timer",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.stats.timeouts = 20,
                 true,
                 "without a reply",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.stats.checksum_errors = 5,
                 true,
                 "termination",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.status.other_controller = true,
                 true,
                 "another controller",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.status.echoes = true,
                 false,
                 "echoes",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.lost = Some("gone".into()),
                 true,
                 "gone",
             ),
             (
-                Place::Port(PortFacts {
+                ConnectionFacts::Port(PortFacts {
                     holder: Some("minicom (process 7)".into()),
                     ..PortFacts::default()
                 }),
@@ -330,7 +330,7 @@ mod tests {
                 "minicom (process 7)",
             ),
             (
-                Place::Net(Some(Route {
+                ConnectionFacts::Net(Some(Route {
                     to: "192.168.11.210".parse().unwrap(),
                     from: "10.0.0.7".parse().unwrap(),
                     interface: Some("eth0".into()),
@@ -361,7 +361,7 @@ mod tests {
 
     #[test]
     fn an_unreachable_network_is_wrong_and_the_address_to_take_is_named() {
-        let place = Place::Net(Some(Route {
+        let place = ConnectionFacts::Net(Some(Route {
             to: "192.168.11.210".parse().unwrap(),
             from: "10.0.0.7".parse().unwrap(),
             interface: Some("eth0".into()),
@@ -369,7 +369,7 @@ mod tests {
         }));
         let checkup = Checkup {
             endpoint: "tcp:192.168.11.210".parse().unwrap(),
-            place,
+            connection: place,
             answer: Err("nothing came".into()),
         };
         let found = judge(&checkup);

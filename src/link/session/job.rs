@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 pub(crate) const JOB_MAX: usize = 7;
 
 /// A request that is under way.
-pub(crate) enum Job {
+pub(crate) enum SessionJob {
     /// Its writes go out one a step.
     Write {
         writes: ArrayVec<RegisterWrite, JOB_MAX>,
@@ -25,7 +25,7 @@ pub(crate) enum Job {
     Alone(Request),
 }
 
-impl Job {
+impl SessionJob {
     /// True if the hand moves because of it.
     pub(crate) const fn is_motion(&self) -> bool {
         matches!(

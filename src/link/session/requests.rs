@@ -5,8 +5,8 @@ use crate::hand::{HandCommand, RegisterWrite, Span, Writes};
 use crate::link::bus::late_replies::LATE_HORIZON;
 use crate::link::bus::{Bus, BusError};
 use crate::link::request::{Answer, Request, RequestError};
-use crate::link::session::conversation::{End, Session};
-use crate::link::session::job::{JOB_MAX, Job};
+use crate::link::session::conversation::{Session, WireEnd};
+use crate::link::session::job::{JOB_MAX, SessionJob};
 use crate::link::session::motion::hold_targets;
 use crate::record::LinkState;
 use arrayvec::ArrayVec;
@@ -32,14 +32,14 @@ impl Session {
         match request {
             Request::Read(span, answer) => {
                 let cleared = false;
-                self.job = Some(Job::Read {
+                self.job = Some(SessionJob::Read {
                     span,
                     cleared,
                     answer,
                 });
             }
             Request::Command(command, answer) => self.take_command(command, answer),
-            request => self.job = Some(Job::Alone(request)),
+            request => self.job = Some(SessionJob::Alone(request)),
         }
     }
 
@@ -56,7 +56,7 @@ impl Session {
             extend(&mut writes, hold.writes());
         }
         extend(&mut writes, command.writes());
-        self.job = Some(Job::Write {
+        self.job = Some(SessionJob::Write {
             writes,
             is_motion,
             answer,
@@ -64,26 +64,26 @@ impl Session {
     }
 
     /// Sends the next write of the request under way, or its read, and answers when all is done.
-    pub(crate) async fn work(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+    pub(crate) async fn work(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         match self.job.take() {
             None => Ok(()),
-            Some(Job::Alone(request)) => self.alone(bus, request).await,
-            Some(Job::Read {
+            Some(SessionJob::Alone(request)) => self.alone(bus, request).await,
+            Some(SessionJob::Read {
                 span,
                 cleared: false,
                 answer,
             }) if bus.choose(&[span]).is_none() => {
                 // The same question was answered just now; any other answer clears the line of doubles.
                 let cleared = true;
-                self.job = Some(Job::Read {
+                self.job = Some(SessionJob::Read {
                     span,
                     cleared,
                     answer,
                 });
                 self.poll_motion(bus).await
             }
-            Some(Job::Read { span, answer, .. }) => self.read_for(bus, span, answer).await,
-            Some(Job::Write {
+            Some(SessionJob::Read { span, answer, .. }) => self.read_for(bus, span, answer).await,
+            Some(SessionJob::Write {
                 mut writes,
                 is_motion,
                 answer,
@@ -100,7 +100,7 @@ impl Session {
                         let _told = answer.send(Ok(()));
                     }
                     Ok(()) => {
-                        self.job = Some(Job::Write {
+                        self.job = Some(SessionJob::Write {
                             writes,
                             is_motion,
                             answer,
@@ -121,7 +121,7 @@ impl Session {
         bus: &mut dyn Bus,
         span: Span,
         answer: Answer<Vec<u8>>,
-    ) -> Result<(), End> {
+    ) -> Result<(), WireEnd> {
         if bus.choose(&[span]).is_none() || self.looks_like_save(span) {
             let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
             let _told = answer.send(Err(RequestError::Ambiguous { address, wait_s }));
@@ -135,7 +135,7 @@ impl Session {
             // Asked again from its start, once the stop is through.
             Ok(None) => {
                 let cleared = false;
-                self.job = Some(Job::Read {
+                self.job = Some(SessionJob::Read {
                     span,
                     cleared,
                     answer,

@@ -11,15 +11,14 @@ use crate::hand::Moment;
 use crate::link::Clock;
 use crate::shell::Cockpit;
 use crate::shell::desktop::dialog::NativeDialog;
+use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
-use egui::{ViewportBuilder, ViewportCommand};
+use egui::{Vec2, ViewportBuilder, ViewportCommand};
 use std::cell::RefCell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Samples come faster than a display shows them: one repaint serves all that come within this time.
-const REPAINT_WITHIN: Duration = Duration::from_millis(16);
 /// Ages and countdowns move on this often when nothing comes in.
 pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
 
@@ -28,6 +27,7 @@ pub(crate) fn viewport(size: WindowSize) -> ViewportBuilder {
     ViewportBuilder::default()
         .with_title("Handscope")
         .with_app_id("handscope")
+        .with_icon(icon())
         .with_inner_size(<[f32; 2]>::from(size))
         .with_clamp_size_to_monitor_size(true)
         .with_min_inner_size(WINDOW_LEAST)
@@ -75,7 +75,11 @@ impl Beginning {
 pub(crate) struct Program {
     cockpit: Cockpit,
     clock: Clock,
+    /// How soon news are drawn, in milliseconds.
+    frame_within_ms: Arc<AtomicU64>,
     titled: Option<String>,
+    /// The window was made to fit its screen.
+    fits: bool,
     closing: bool,
 }
 
@@ -83,7 +87,12 @@ impl Program {
     fn new(ctx: &egui::Context, start: DesktopStart, services: Services) -> Self {
         let Services { runtime, clock } = services;
         let repaint = ctx.clone();
-        let wake = Arc::new(move || repaint.request_repaint_after(REPAINT_WITHIN));
+        let frame_within_ms = Arc::new(AtomicU64::new(0));
+        let within = Arc::clone(&frame_within_ms);
+        let wake = Arc::new(move || {
+            let within = Duration::from_millis(within.load(Ordering::Relaxed));
+            repaint.request_repaint_after(within);
+        });
         let env = Env {
             dial: Arc::new(SimDial::new(clock)),
             runtime,
@@ -105,7 +114,9 @@ impl Program {
         Self {
             cockpit: Cockpit::new(app).with_snap(start.snap),
             clock,
+            frame_within_ms,
             titled: None,
+            fits: false,
             closing: false,
         }
     }
@@ -114,7 +125,11 @@ impl Program {
     pub(crate) fn logic(&mut self, ctx: &egui::Context) {
         let now = self.clock.now();
         self.cockpit.logic(now);
+        let within = self.cockpit.frame_within();
+        let within_ms = u64::try_from(within.as_millis()).unwrap_or(0);
+        self.frame_within_ms.store(within_ms, Ordering::Relaxed);
         self.title(ctx);
+        self.fit(ctx);
         self.keep_size(ctx, now);
         self.close(ctx, now);
         ctx.request_repaint_after(REPAINT_AT_LEAST);
@@ -139,6 +154,22 @@ impl Program {
         }
     }
 
+    /// Once a run, a window that reaches beyond its screen with its frame is made smaller. The frame is known late.
+    fn fit(&mut self, ctx: &egui::Context) {
+        let known = ctx.input(|input| {
+            let view = input.viewport();
+            Some((view.inner_rect?, view.outer_rect?, view.monitor_size?))
+        });
+        let Some((inner, outer, screen)) = known.filter(|_| !self.fits) else {
+            return;
+        };
+        if let Some(size) = fitting(inner.size(), outer.size(), screen) {
+            self.fits = true;
+            ctx.send_viewport_cmd(ViewportCommand::InnerSize(size));
+            ctx.send_viewport_cmd(ViewportCommand::OuterPosition(egui::Pos2::ZERO));
+        }
+    }
+
     /// Keeps the size that a person gave the window; what the system made of it full screen is not kept.
     fn keep_size(&mut self, ctx: &egui::Context, now: Moment) {
         let shown = ctx.input(|input| {
@@ -147,10 +178,12 @@ impl Program {
             let own = forced.into_iter().all(|forced| forced != Some(true));
             view.inner_rect.filter(|_| own)
         });
+        // Without the zoom: the window is made before there is any.
+        let shown = shown.map(|shown| shown.size() * ctx.zoom_factor());
         let Some(shown) = shown else { return };
         let cockpit = &mut self.cockpit;
         let layout = cockpit.state().settings.layout;
-        let window = [shown.width(), shown.height()].into();
+        let window = [shown.x, shown.y].into();
         if layout.window != window {
             let layout = Layout { window, ..layout };
             cockpit.app().act(Action::Layout(layout), now);
@@ -167,7 +200,38 @@ impl Program {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         } else {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            ctx.request_repaint_after(REPAINT_WITHIN);
+            ctx.request_repaint_after(self.cockpit.frame_within());
         }
+    }
+}
+
+/// The inside of a window that is to fit on the screen with its frame; `None` if it does.
+fn fitting(inner: Vec2, outer: Vec2, screen: Vec2) -> Option<Vec2> {
+    let over = (outer - screen).max(Vec2::ZERO);
+    (over != Vec2::ZERO).then(|| inner - over)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+
+    #[test]
+    fn a_window_that_is_larger_than_its_screen_is_made_to_fit_with_its_frame() {
+        let (screen, first) = (vec2(1440.0, 900.0), vec2(1440.0, 900.0));
+        assert_eq!(fitting(first, first, screen), None, "no frame");
+        let framed = first + vec2(2.0, 37.0);
+        assert_eq!(fitting(first, framed, screen), Some(vec2(1438.0, 863.0)));
+        let small = vec2(1366.0, 768.0);
+        assert_eq!(fitting(first, framed, small), Some(vec2(1364.0, 731.0)));
+        let large = vec2(2560.0, 1440.0);
+        assert_eq!(fitting(first, framed, large), None);
+    }
+
+    #[test]
+    fn the_window_is_known_to_the_system_by_name_and_icon() {
+        let viewport = viewport(WindowSize::default());
+        assert_eq!(viewport.app_id.as_deref(), Some("handscope"));
+        assert_eq!(viewport.icon, Some(icon()));
     }
 }

@@ -1,16 +1,22 @@
 //! The window's pixels without OpenGL: what egui drew goes through the rasteriser to the display. Knows no program.
 
-use crate::shell::raster::Raster;
+use crate::shell::raster::{Changed, Raster};
 use egui::epaint::ClippedShape;
 use egui_winit::winit::window::Window;
 use softbuffer::{Context, SoftBufferError, Surface};
 use std::num::NonZeroU32;
 use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+/// A display that keeps no copy of a window loses what another window covered; nobody says so.
+const WHOLE_EVERY: Duration = Duration::from_secs(1);
 
 /// A window's surface and the picture that is shown on it.
 pub(crate) struct Screen {
     surface: Surface<Rc<Window>, Rc<Window>>,
     raster: Raster,
+    /// When all of it was shown last, changed or not.
+    whole_at: Instant,
 }
 
 impl Screen {
@@ -21,6 +27,7 @@ impl Screen {
         Ok(Self {
             surface: Surface::new(&context, Rc::clone(window))?,
             raster: Raster::new(0, 0),
+            whole_at: Instant::now(),
         })
     }
 
@@ -53,13 +60,52 @@ impl Screen {
         self.raster.free_textures();
         self.surface.resize(width, height)?;
         let mut buffer = self.surface.buffer_mut()?;
-        let pixels = self.raster.pixels().as_chunks().0;
-        for (to, [red, green, blue, _]) in buffer.iter_mut().zip(pixels) {
-            *to = u32::from_be_bytes([0, *red, *green, *blue]);
+        let all = Changed {
+            columns: 0..width.get() as usize,
+            rows: 0..height.get() as usize,
+        };
+        let is_kept = buffer.age() == 1 && self.whole_at.elapsed() < WHOLE_EVERY;
+        let changed = match is_kept {
+            true => self.raster.changed(),
+            false => {
+                self.whole_at = Instant::now();
+                std::slice::from_ref(&all)
+            }
+        };
+        for changed in changed {
+            copy(&self.raster, changed, &mut buffer);
+        }
+        if changed.is_empty() {
+            return Ok(());
         }
         window.pre_present_notify();
-        buffer.present()
+        buffer.present_with_damage(&changed.iter().filter_map(damage).collect::<Vec<_>>())
     }
+}
+
+fn copy(raster: &Raster, changed: &Changed, to: &mut [u32]) {
+    let (width, _) = raster.size();
+    let width = width as usize;
+    let pixels = raster.pixels().as_chunks().0;
+    for row in changed.rows.clone() {
+        let columns = row * width + changed.columns.start..row * width + changed.columns.end;
+        let (Some(to), Some(from)) = (to.get_mut(columns.clone()), pixels.get(columns)) else {
+            return;
+        };
+        for (to, [red, green, blue, _]) in to.iter_mut().zip(from) {
+            *to = u32::from_be_bytes([0, *red, *green, *blue]);
+        }
+    }
+}
+
+fn damage(changed: &Changed) -> Option<softbuffer::Rect> {
+    let number = |pixels: usize| u32::try_from(pixels).ok();
+    Some(softbuffer::Rect {
+        x: number(changed.columns.start)?,
+        y: number(changed.rows.start)?,
+        width: NonZeroU32::new(number(changed.columns.len())?)?,
+        height: NonZeroU32::new(number(changed.rows.len())?)?,
+    })
 }
 
 /// What egui drew in one pass.

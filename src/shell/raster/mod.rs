@@ -3,6 +3,7 @@
 pub(crate) mod number;
 pub(crate) mod surface;
 pub(crate) mod texture;
+pub(crate) mod tiles;
 pub(crate) mod triangle;
 
-pub use crate::shell::raster::surface::Raster;
+pub use crate::shell::raster::surface::{Changed, Raster};

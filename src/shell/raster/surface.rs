@@ -1,13 +1,16 @@
 //! The picture being drawn, its textures and its threads. Which pixels a triangle covers is not decided here.
 
-use std::collections::HashMap;
-
+use crate::shell::raster::number::{coordinate, floor, index};
+use crate::shell::raster::texture::Texture;
+use crate::shell::raster::tiles::{TILE, TileRows, Tiles};
+use crate::shell::raster::triangle::{Scissor, Strip, Triangle};
 use egui::epaint::{ImageDelta, Primitive, Vertex};
 use egui::{ClippedPrimitive, Mesh, Rect, TextureId, TexturesDelta};
-
-use crate::shell::raster::number::{coordinate, floor};
-use crate::shell::raster::texture::Texture;
-use crate::shell::raster::triangle::{Scissor, Strip, paint};
+use foldhash::fast::FixedState;
+use std::collections::HashMap;
+use std::hash::{BuildHasher, Hasher};
+use std::ops::Range;
+use std::panic::resume_unwind;
 
 /// Threads that share a picture. Two: the smallest machine we build and test on has two cores.
 const THREADS: usize = 2;
@@ -16,7 +19,7 @@ const THREADS: usize = 2;
 ///
 /// Meshes are drawn like a GPU would with egui's own shaders: pixels whose centre is inside, top-left rule on shared
 /// edges, premultiplied blending in gamma space with 8 bits a channel. The bytes do not depend on the machine,
-/// the build or the number of threads.
+/// the build or the number of threads, and not on what was shown before, though only what changed is drawn.
 #[derive(Debug)]
 pub struct Raster {
     width: u32,
@@ -24,7 +27,20 @@ pub struct Raster {
     pixels: Vec<[u8; 4]>,
     textures: HashMap<TextureId, Texture>,
     returned: Vec<TextureId>,
+    /// Counts the changes of textures.
+    version: u64,
+    tiles: Tiles,
+    changed: Vec<Changed>,
     threads: usize,
+}
+
+/// A part of the picture that was drawn anew, in pixels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Changed {
+    /// From left to right.
+    pub columns: Range<usize>,
+    /// From the top down.
+    pub rows: Range<usize>,
 }
 
 impl Raster {
@@ -37,6 +53,9 @@ impl Raster {
             pixels: Vec::new(),
             textures: HashMap::new(),
             returned: Vec::new(),
+            version: 0,
+            tiles: Tiles::default(),
+            changed: Vec::new(),
             threads: THREADS,
         };
         raster.resize(width, height);
@@ -46,7 +65,11 @@ impl Raster {
     /// Gives the picture another size in pixels; what it shows is undefined until it is drawn.
     pub fn resize(&mut self, width: u32, height: u32) {
         let count = length(width).saturating_mul(length(height));
+        if (self.width, self.height) != (width, height) {
+            self.tiles.forget();
+        }
         self.pixels.resize(count, [0; 4]);
+        self.tiles.resize(length(width), length(height));
         (self.width, self.height) = (width, height);
     }
 
@@ -69,34 +92,56 @@ impl Raster {
         }
     }
 
-    /// Clears to `background` (premultiplied RGBA) and draws. Paint callbacks and meshes without texture are left out.
+    /// Clears to `background` (premultiplied RGBA) and draws, both only where the picture is to change. Paint callbacks and
+    /// meshes without texture are left out.
     pub fn draw(
         &mut self,
         primitives: &[ClippedPrimitive],
         pixels_per_point: f32,
         background: [u8; 4],
     ) {
-        self.pixels.fill(background);
+        self.changed.clear();
         let width = length(self.width);
-        let rows = length(self.height).div_ceil(self.threads.max(1));
-        if width == 0 || rows == 0 {
+        let tile_rows = length(self.height)
+            .div_ceil(TILE)
+            .div_ceil(self.threads.max(1));
+        if width == 0 || tile_rows == 0 {
             return;
         }
+        let begun = u64::from(u32::from_le_bytes(background));
+        let pixels = self.pixels.chunks_mut(width * tile_rows * TILE);
+        let strips = pixels.zip(self.tiles.strips(tile_rows, begun));
         let textures = &self.textures;
-        let strips = self.pixels.chunks_mut(width * rows);
-        std::thread::scope(|scope| {
-            for (number, pixels) in strips.enumerate() {
-                let first_row = coordinate(number * rows);
+        let changed = std::thread::scope(|scope| {
+            let strips = strips.enumerate().map(|(number, (pixels, tiles))| {
+                let strip = Strip {
+                    first_row: coordinate(number * tile_rows * TILE),
+                    width,
+                    pixels,
+                };
                 scope.spawn(move || {
-                    let mut strip = Strip {
-                        first_row,
-                        width,
-                        pixels,
-                    };
-                    draw_strip(&mut strip, primitives, pixels_per_point, textures);
-                });
-            }
+                    let meshes = meshes(primitives, pixels_per_point, textures);
+                    draw_strip(strip, tiles, &meshes, background)
+                })
+            });
+            let strips: Vec<_> = strips.collect();
+            let changed = strips.into_iter().map(|strip| strip.join());
+            let changed =
+                changed.map(|changed| changed.unwrap_or_else(|panic| resume_unwind(panic)));
+            changed.collect::<Vec<_>>()
         });
+        let (right, bottom) = (length(self.width), length(self.height));
+        self.changed = changed.concat();
+        for changed in &mut self.changed {
+            changed.columns.end = changed.columns.end.min(right);
+            changed.rows.end = changed.rows.end.min(bottom);
+        }
+    }
+
+    /// What the last [`Raster::draw`] drew anew; nothing else changed.
+    #[must_use]
+    pub fn changed(&self) -> &[Changed] {
+        &self.changed
     }
 
     /// The picture: RGBA8, premultiplied (opaque where the background was), row by row from the top left.
@@ -112,13 +157,15 @@ impl Raster {
     }
 
     fn apply(&mut self, id: TextureId, change: &ImageDelta) {
+        self.version += 1;
         match change.pos {
             None => {
-                self.textures.insert(id, Texture::whole(change));
+                let texture = Texture::whole(change, self.version);
+                self.textures.insert(id, texture);
             }
             Some(position) => {
                 if let Some(texture) = self.textures.get_mut(&id) {
-                    texture.patch(position, change);
+                    texture.patch(position, change, self.version);
                 }
             }
         }
@@ -129,57 +176,97 @@ fn length(pixels: u32) -> usize {
     usize::try_from(pixels).unwrap_or(usize::MAX)
 }
 
-fn draw_strip(
-    strip: &mut Strip<'_>,
-    primitives: &[ClippedPrimitive],
+/// A mesh that can be drawn.
+struct Drawable<'a> {
+    mesh: &'a Mesh,
+    texture: &'a Texture,
+    clip: Scissor,
     pixels_per_point: f32,
-    textures: &HashMap<TextureId, Texture>,
-) {
-    for primitive in primitives {
-        let scissor = scissor(primitive.clip_rect, pixels_per_point, strip.bounds());
+}
+
+fn meshes<'a>(
+    primitives: &'a [ClippedPrimitive],
+    pixels_per_point: f32,
+    textures: &'a HashMap<TextureId, Texture>,
+) -> Vec<Drawable<'a>> {
+    let drawable = |primitive: &'a ClippedPrimitive| {
         let Primitive::Mesh(mesh) = &primitive.primitive else {
-            continue;
+            return None;
         };
-        if let Some(texture) = textures.get(&mesh.texture_id)
-            && scissor.left < scissor.right
-            && scissor.top < scissor.bottom
-        {
-            draw_mesh(strip, scissor, texture, (mesh, pixels_per_point));
-        }
-    }
-}
-
-fn draw_mesh(
-    strip: &mut Strip<'_>,
-    scissor: Scissor,
-    texture: &Texture,
-    (mesh, pixels_per_point): (&Mesh, f32),
-) {
-    let vertex = |at: &u32| -> Option<(Vertex, [f32; 2])> {
-        let vertex = *mesh.vertices.get(usize::try_from(*at).ok()?)?;
-        let position = [
-            vertex.pos.x * pixels_per_point,
-            vertex.pos.y * pixels_per_point,
-        ];
-        Some((vertex, position))
+        Some(Drawable {
+            mesh,
+            texture: textures.get(&mesh.texture_id)?,
+            clip: scissor(primitive.clip_rect, pixels_per_point),
+            pixels_per_point,
+        })
     };
-    for corners in mesh.indices.chunks_exact(3) {
-        if let [a, b, c] = corners
-            && let (Some(a), Some(b), Some(c)) = (vertex(a), vertex(b), vertex(c))
-        {
-            paint(strip, scissor, texture, [a, b, c]);
-        }
+    primitives.iter().filter_map(drawable).collect()
+}
+
+impl Drawable<'_> {
+    /// Its triangles that touch these pixels, from the lowest up.
+    fn triangles(&self, strip: Scissor) -> impl Iterator<Item = Triangle> {
+        let clip = self.clip.within(strip);
+        let corners = self.mesh.indices.chunks_exact(3);
+        clip.into_iter().flat_map(move |clip| {
+            let corners = corners.clone();
+            corners.filter_map(move |corners| {
+                let [a, b, c] = corners else { return None };
+                Triangle::new([self.vertex(*a)?, self.vertex(*b)?, self.vertex(*c)?], clip)
+            })
+        })
+    }
+
+    fn vertex(&self, at: u32) -> Option<(Vertex, [f32; 2])> {
+        let vertex = *self.mesh.vertices.get(length(at))?;
+        let position = [vertex.pos.x, vertex.pos.y].map(|points| points * self.pixels_per_point);
+        Some((vertex, position))
     }
 }
 
-/// The clip rectangle in whole pixels, nearest, inside `bounds`.
-fn scissor(clip: Rect, pixels_per_point: f32, bounds: Scissor) -> Scissor {
+/// Draws what changes of a strip; says what that is.
+fn draw_strip(
+    mut strip: Strip<'_>,
+    mut tiles: TileRows<'_>,
+    meshes: &[Drawable<'_>],
+    background: [u8; 4],
+) -> Vec<Changed> {
+    let bounds = strip.bounds();
+    let hashers = FixedState::default();
+    for mesh in meshes {
+        for triangle in mesh.triangles(bounds) {
+            let mut hasher = hashers.build_hasher();
+            hasher.write_u64(mesh.texture.version);
+            tiles.note(triangle.bounds, triangle.fingerprint(hasher));
+        }
+    }
+    let changes = tiles.changes();
+    for change in &changes {
+        strip.clear(*change, background);
+    }
+    if !changes.is_empty() {
+        for mesh in meshes {
+            for triangle in mesh.triangles(bounds) {
+                triangle.paint(&mut strip, mesh.texture, &changes);
+            }
+        }
+    }
+    let pixels = |from: i64, to: i64| index(from)..index(to);
+    let changed = |change: Scissor| Changed {
+        columns: pixels(change.left, change.right),
+        rows: pixels(change.top, change.bottom),
+    };
+    changes.into_iter().map(changed).collect()
+}
+
+/// The clip rectangle in whole pixels, nearest.
+fn scissor(clip: Rect, pixels_per_point: f32) -> Scissor {
     let pixel = |points: f32| floor((points * pixels_per_point).round());
     Scissor {
-        left: bounds.left.max(pixel(clip.min.x)),
-        top: bounds.top.max(pixel(clip.min.y)),
-        right: bounds.right.min(pixel(clip.max.x)),
-        bottom: bounds.bottom.min(pixel(clip.max.y)),
+        left: pixel(clip.min.x),
+        top: pixel(clip.min.y),
+        right: pixel(clip.max.x),
+        bottom: pixel(clip.max.y),
     }
 }
 
@@ -333,26 +420,89 @@ mod tests {
         }
     }
 
+    /// A shaded, half transparent quadrangle somewhere, the same for each number.
+    fn shaded(number: u64) -> ClippedPrimitive {
+        let mut random = fastrand::Rng::with_seed(number);
+        let mut point = || [random.f32() * 120.0 - 10.0, random.f32() * 80.0 - 10.0];
+        let corners = [point(), point(), point(), point()];
+        let half = Color32::from_rgba_unmultiplied(random.u8(..), random.u8(..), 90, random.u8(..));
+        let mut mesh = quad(corners, half);
+        mesh.vertices[1].color = Color32::TRANSPARENT;
+        clipped(mesh, CLIP)
+    }
+
+    #[test]
+    fn what_changed_is_drawn_anew_and_looks_as_if_all_had_been() {
+        let small = Rect::from_min_max(pos2(70.0, 3.0), pos2(90.0, 20.0));
+        let mut shapes: Vec<_> = (0..40).map(shaded).collect();
+        let mut kept = raster(97, 61);
+        kept.draw(&shapes, 1.0, BLACK);
+        for round in 40..80 {
+            let before = kept.pixels().to_vec();
+            match round % 4 {
+                0 => shapes.truncate(20),
+                1 => shapes.push(shaded(round)),
+                2 => shapes.swap(1, 2),
+                _ => {
+                    shapes[5] = shaded(round);
+                    shapes[5].clip_rect = small;
+                }
+            }
+            kept.draw(&shapes, 1.0, BLACK);
+            let mut fresh = raster(97, 61);
+            fresh.draw(&shapes, 1.0, BLACK);
+            assert!(kept.pixels() == fresh.pixels(), "round {round}");
+            let is_told = |at: usize| {
+                let (column, row) = (at % 97, at / 97);
+                let mut changed = kept.changed().iter();
+                changed.any(|part| part.columns.contains(&column) && part.rows.contains(&row))
+            };
+            let pixels = kept.pixels().chunks_exact(4).zip(before.chunks_exact(4));
+            for (at, (new, old)) in pixels.enumerate() {
+                assert!(new == old || is_told(at), "round {round}, pixel {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_stays_is_not_drawn_again() {
+        let mut kept = raster(320, 320);
+        let still = quad(
+            [[0.0, 0.0], [320.0, 0.0], [320.0, 320.0], [0.0, 320.0]],
+            Color32::BLUE,
+        );
+        let moving = |x: f32| {
+            let corners = [[x, 40.0], [x + 9.0, 40.0], [x + 9.0, 50.0], [x, 50.0]];
+            clipped(quad(corners, Color32::RED), CLIP)
+        };
+        let still = clipped(still, CLIP);
+        kept.draw(&[still.clone(), moving(40.0)], 1.0, BLACK);
+        assert_eq!(drawn(&kept), 320 * 320);
+        kept.draw(&[still.clone(), moving(40.0)], 1.0, BLACK);
+        assert_eq!(drawn(&kept), 0);
+        kept.draw(&[still.clone(), moving(42.0)], 1.0, BLACK);
+        assert_eq!(drawn(&kept), TILE * TILE, "the tile on which it moved");
+        kept.apply_textures(&mut white());
+        kept.draw(&[still.clone(), moving(42.0)], 1.0, BLACK);
+        assert_eq!(drawn(&kept), 320 * 320, "a texture that changed");
+        kept.draw(&[still, moving(42.0)], 1.0, [9, 9, 9, 255]);
+        assert_eq!(drawn(&kept), 320 * 320, "another background");
+    }
+
+    /// Pixels that were drawn anew.
+    fn drawn(raster: &Raster) -> usize {
+        let changed = raster.changed().iter();
+        changed
+            .map(|part| part.columns.len() * part.rows.len())
+            .sum()
+    }
+
     #[test]
     fn thread_count_does_not_change_bytes() {
         let pictures = [1, 2, 3, 7].map(|threads| {
             let mut raster = raster(97, 61);
             raster.threads = threads;
-            let mut shapes = Vec::new();
-            let mut random = fastrand::Rng::with_seed(7);
-            for _ in 0..200 {
-                let mut point = || [random.f32() * 120.0 - 10.0, random.f32() * 80.0 - 10.0];
-                let corners = [point(), point(), point(), point()];
-                let half = Color32::from_rgba_unmultiplied(
-                    random.u8(..),
-                    random.u8(..),
-                    90,
-                    random.u8(..),
-                );
-                let mut mesh = quad(corners, half);
-                mesh.vertices[1].color = Color32::TRANSPARENT;
-                shapes.push(clipped(mesh, CLIP));
-            }
+            let shapes: Vec<_> = (0..200).map(shaded).collect();
             raster.draw(&shapes, 1.0, BLACK);
             raster.pixels().to_vec()
         });

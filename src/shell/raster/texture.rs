@@ -12,24 +12,27 @@ pub(crate) struct Texture {
     height: usize,
     pixels: Vec<[u8; 4]>,
     options: TextureOptions,
+    /// No other texture, and no other content of this one, has the same.
+    pub(crate) version: u64,
 }
 
 impl Texture {
     /// A texture from a whole update.
-    pub(crate) fn whole(delta: &ImageDelta) -> Self {
+    pub(crate) fn whole(delta: &ImageDelta, version: u64) -> Self {
         let ImageData::Color(image) = &delta.image;
         Self {
             width: image.width(),
             height: image.height(),
             pixels: image.pixels.iter().map(|pixel| pixel.to_array()).collect(),
             options: delta.options,
+            version,
         }
     }
 
     /// Overwrites the region at `position` (x, y in texels). What would lie outside is left out.
-    pub(crate) fn patch(&mut self, position: [usize; 2], delta: &ImageDelta) {
+    pub(crate) fn patch(&mut self, position: [usize; 2], delta: &ImageDelta, version: u64) {
         let ImageData::Color(image) = &delta.image;
-        self.options = delta.options;
+        (self.options, self.version) = (delta.options, version);
         let [left, top] = position;
         if image.width() == 0 || left >= self.width {
             return;
@@ -112,7 +115,7 @@ mod tests {
 
     fn two_texels(options: TextureOptions) -> Texture {
         let image = ColorImage::new([2, 1], vec![Color32::BLACK, Color32::WHITE]);
-        Texture::whole(&ImageDelta::full(image, options))
+        Texture::whole(&ImageDelta::full(image, options), 1)
     }
 
     #[test]
@@ -154,11 +157,12 @@ mod tests {
     #[test]
     fn partial_update_changes_only_its_region() {
         let blank = ColorImage::filled([3, 3], Color32::BLACK);
-        let mut texture = Texture::whole(&ImageDelta::full(blank, TextureOptions::NEAREST));
+        let mut texture = Texture::whole(&ImageDelta::full(blank, TextureOptions::NEAREST), 1);
         let patch = ColorImage::filled([2, 1], Color32::WHITE);
         texture.patch(
             [1, 2],
             &ImageDelta::partial([1, 2], patch, TextureOptions::NEAREST),
+            2,
         );
         let white: Vec<usize> = (0..9)
             .filter(|&at| texture.pixels.get(at) == Some(&[255; 4]))

@@ -1,12 +1,12 @@
 //! One triangle into a strip of rows: which pixels, which colour, how it blends. No textures are kept here.
 
-use egui::Color32;
-use egui::epaint::Vertex;
-
 use crate::shell::raster::number::{
-    HALF_PIXEL, SUBPIXELS, channel, coordinate, fixed, index, narrow, real,
+    HALF_PIXEL, SUBPIXELS, channel, coordinate, fixed, index, narrow, real, texels,
 };
 use crate::shell::raster::texture::Texture;
+use egui::Color32;
+use egui::epaint::Vertex;
+use std::hash::Hasher;
 
 /// Whole pixels that may be painted: `left..right`, `top..bottom`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +15,19 @@ pub(crate) struct Scissor {
     pub(crate) top: i64,
     pub(crate) right: i64,
     pub(crate) bottom: i64,
+}
+
+impl Scissor {
+    /// What both allow; `None` for nothing.
+    pub(crate) fn within(self, other: Self) -> Option<Self> {
+        let both = Self {
+            left: self.left.max(other.left),
+            top: self.top.max(other.top),
+            right: self.right.min(other.right),
+            bottom: self.bottom.min(other.bottom),
+        };
+        (both.left < both.right && both.top < both.bottom).then_some(both)
+    }
 }
 
 /// Neighbouring rows of the picture, owned by one thread.
@@ -30,6 +43,17 @@ impl Strip<'_> {
         let start = index(row - self.first_row) * self.width;
         self.pixels
             .get_mut(start + index(left)..start + index(right))
+    }
+
+    /// Fills what lies in the strip.
+    pub(crate) fn clear(&mut self, place: Scissor, colour: [u8; 4]) {
+        if let Some(place) = place.within(self.bounds()) {
+            for row in place.top..place.bottom {
+                if let Some(span) = self.span(row, place.left, place.right) {
+                    span.fill(colour);
+                }
+            }
+        }
     }
 
     /// The strip's rows as a scissor as wide as the picture.
@@ -142,38 +166,88 @@ enum Fill {
     Both(Plane<4>, Plane<2>),
 }
 
-/// Paints one triangle where strip and scissor allow. Triangles without area or with a NaN corner paint nothing.
-pub(crate) fn paint(
-    strip: &mut Strip<'_>,
-    scissor: Scissor,
-    texture: &Texture,
-    vertices: [(Vertex, [f32; 2]); 3],
-) {
-    let Some((corners, vertices, area)) = wound(vertices) else {
-        return;
-    };
-    let Some(bounds) = bounds(corners, scissor) else {
-        return;
-    };
-    let fill = fill(corners, area, vertices, texture);
-    if matches!(fill, Fill::Flat([0.0, 0.0, 0.0, 0.0])) {
-        return;
+/// A triangle that touches pixels. Made once, painted wherever the picture changes.
+#[derive(Debug)]
+pub(crate) struct Triangle {
+    corners: [Corner; 3],
+    vertices: [Vertex; 3],
+    area: i64,
+    /// The pixels it may touch.
+    pub(crate) bounds: Scissor,
+}
+
+impl Triangle {
+    /// `None` without area, with a NaN corner, or where the scissor leaves nothing of it.
+    pub(crate) fn new(vertices: [(Vertex, [f32; 2]); 3], scissor: Scissor) -> Option<Self> {
+        let (corners, vertices, area) = wound(vertices)?;
+        let bounds = bounds(corners, scissor)?;
+        Some(Self {
+            corners,
+            vertices,
+            area,
+            bounds,
+        })
     }
-    let [p0, p1, p2] = corners;
-    let edges = [Edge::new(p0, p1), Edge::new(p1, p2), Edge::new(p2, p0)];
-    for row in bounds.top..bounds.bottom {
-        let (mut left, mut right) = (bounds.left, bounds.right);
-        for edge in &edges {
-            edge.narrow_span(row, &mut left, &mut right);
+
+    /// A number that another triangle almost never has.
+    pub(crate) fn fingerprint(&self, mut hasher: impl Hasher) -> u64 {
+        let Scissor {
+            left,
+            top,
+            right,
+            bottom,
+        } = self.bounds;
+        for side in [left, top, right, bottom] {
+            hasher.write_i64(side);
         }
-        if left < right
-            && let Some(span) = strip.span(row, left, right)
-        {
-            let column = real(left * SUBPIXELS + HALF_PIXEL - p0.x) / real(SUBPIXELS);
-            let line = real(row * SUBPIXELS + HALF_PIXEL - p0.y) / real(SUBPIXELS);
-            paint_span(span, &fill, texture, [column, line]);
+        for (corner, vertex) in self.corners.iter().zip(&self.vertices) {
+            hasher.write_i64(corner.x);
+            hasher.write_i64(corner.y);
+            hasher.write_u32(vertex.uv.x.to_bits());
+            hasher.write_u32(vertex.uv.y.to_bits());
+            hasher.write_u32(u32::from_le_bytes(vertex.color.to_array()));
+        }
+        hasher.finish()
+    }
+
+    /// Paints it where strip and scissors allow. Each pixel gets the same colour, however much of the triangle is painted.
+    pub(crate) fn paint(&self, strip: &mut Strip<'_>, texture: &Texture, scissors: &[Scissor]) {
+        let here = |scissor: &Scissor| self.bounds.within(*scissor);
+        let mut places = scissors.iter().filter_map(here).peekable();
+        if places.peek().is_none() {
+            return;
+        }
+        let fill = fill(self.corners, self.area, self.vertices, texture);
+        if matches!(fill, Fill::Flat([0.0, 0.0, 0.0, 0.0])) {
+            return;
+        }
+        let [p0, p1, p2] = self.corners;
+        let edges = [Edge::new(p0, p1), Edge::new(p1, p2), Edge::new(p2, p0)];
+        for place in places {
+            for row in place.top..place.bottom {
+                // Where the whole row of it begins: colours are counted from there.
+                let (begin, end) = span(&edges, row, self.bounds);
+                let (left, right) = (begin.max(place.left), end.min(place.right));
+                if left < right
+                    && let Some(span) = strip.span(row, left, right)
+                {
+                    let column = real(begin * SUBPIXELS + HALF_PIXEL - p0.x) / real(SUBPIXELS);
+                    let line = real(row * SUBPIXELS + HALF_PIXEL - p0.y) / real(SUBPIXELS);
+                    let skipped = texels(index(left - begin));
+                    paint_span(span, &fill, texture, ([column, line], skipped));
+                }
+            }
         }
     }
+}
+
+/// The pixels of a row, inside the bounds, whose centres are inside all edges.
+fn span(edges: &[Edge; 3], row: i64, bounds: Scissor) -> (i64, i64) {
+    let (mut left, mut right) = (bounds.left, bounds.right);
+    for edge in edges {
+        edge.narrow_span(row, &mut left, &mut right);
+    }
+    (left, right)
 }
 
 /// The corners clockwise on screen, with twice the area; egui uses both windings.
@@ -199,13 +273,13 @@ fn bounds(corners: [Corner; 3], scissor: Scissor) -> Option<Scissor> {
     let [p0, p1, p2] = corners;
     let first = |a: i64, b: i64, c: i64| a.min(b).min(c).div_euclid(SUBPIXELS);
     let last = |a: i64, b: i64, c: i64| a.max(b).max(c).div_euclid(SUBPIXELS) + 1;
-    let bounds = Scissor {
-        left: scissor.left.max(first(p0.x, p1.x, p2.x)),
-        top: scissor.top.max(first(p0.y, p1.y, p2.y)),
-        right: scissor.right.min(last(p0.x, p1.x, p2.x)),
-        bottom: scissor.bottom.min(last(p0.y, p1.y, p2.y)),
+    let touched = Scissor {
+        left: first(p0.x, p1.x, p2.x),
+        top: first(p0.y, p1.y, p2.y),
+        right: last(p0.x, p1.x, p2.x),
+        bottom: last(p0.y, p1.y, p2.y),
     };
-    (bounds.left < bounds.right && bounds.top < bounds.bottom).then_some(bounds)
+    touched.within(scissor)
 }
 
 fn fill(corners: [Corner; 3], area: i64, vertices: [Vertex; 3], texture: &Texture) -> Fill {
@@ -240,25 +314,31 @@ fn flat(colour: [f32; 4]) -> Fill {
     }
 }
 
-fn paint_span(span: &mut [[u8; 4]], fill: &Fill, texture: &Texture, [column, row]: [f64; 2]) {
+/// `skipped` columns of the row are not painted.
+fn paint_span(
+    span: &mut [[u8; 4]],
+    fill: &Fill,
+    texture: &Texture,
+    ([column, row], skipped): ([f64; 2], f32),
+) {
     match *fill {
         Fill::Opaque(colour) => span.fill(colour),
         Fill::Flat(colour) => span.iter_mut().for_each(|pixel| over(pixel, colour)),
         Fill::Shaded(gradient, texel) => {
-            let colours = walk(gradient.at(column, row), gradient.steps());
+            let colours = walk(gradient.at(column, row), gradient.steps(), skipped);
             for (pixel, colour) in span.iter_mut().zip(colours) {
                 over(pixel, product(colour, texel));
             }
         }
         Fill::Textured(colour, uv) => {
-            let places = walk(uv.at(column, row), uv.steps());
+            let places = walk(uv.at(column, row), uv.steps(), skipped);
             for (pixel, [x, y]) in span.iter_mut().zip(places) {
                 over(pixel, product(texture.sample(x, y), colour));
             }
         }
         Fill::Both(gradient, uv) => {
-            let colours = walk(gradient.at(column, row), gradient.steps());
-            let places = walk(uv.at(column, row), uv.steps());
+            let colours = walk(gradient.at(column, row), gradient.steps(), skipped);
+            let places = walk(uv.at(column, row), uv.steps(), skipped);
             for ((pixel, colour), [x, y]) in span.iter_mut().zip(colours).zip(places) {
                 over(pixel, product(colour, texture.sample(x, y).map(unit)));
             }
@@ -267,8 +347,11 @@ fn paint_span(span: &mut [[u8; 4]], fill: &Fill, texture: &Texture, [column, row
 }
 
 /// The values of a plane along a row. Each is computed from the start, so nothing adds up along a wide span.
-fn walk<const N: usize>(start: [f32; N], step: [f32; N]) -> impl Iterator<Item = [f32; N]> {
-    let mut column = 0.0_f32;
+fn walk<const N: usize>(
+    start: [f32; N],
+    step: [f32; N],
+    mut column: f32,
+) -> impl Iterator<Item = [f32; N]> {
     std::iter::repeat_with(move || {
         let mut values = start;
         for (value, step) in values.iter_mut().zip(step) {

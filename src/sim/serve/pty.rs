@@ -1,6 +1,6 @@
 //! Simulated hands behind a pseudo-terminal, where other programs open it like a serial port. Unix only.
 
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::modbus_rtu;
 use crate::sim::serve::rs485;
 use crate::sim::serve::slcan;
@@ -17,7 +17,7 @@ use std::path::Path;
 /// As [`PtyLink::create`]: something that is no link stands there, no permission, no such folder. Must be called
 /// within a tokio runtime.
 pub fn serve_rs485(
-    hands: impl Into<Hands> + Send + 'static,
+    hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
     pace: Option<LinePace>,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
@@ -35,7 +35,7 @@ pub fn serve_rs485(
 /// # Errors
 /// As [`serve_rs485`].
 pub fn serve_rtu(
-    hands: impl Into<Hands> + Send + 'static,
+    hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
     pace: Option<LinePace>,
 ) -> Result<impl Future<Output = io::Result<()>> + Send + 'static, TransportError> {
@@ -62,7 +62,7 @@ fn line(path: &Path, pace: Option<LinePace>) -> Result<PtyLink, TransportError> 
 /// # Errors
 /// As [`serve_rs485`].
 pub fn serve_slcan(
-    hands: impl Into<Hands> + Send + 'static,
+    hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
@@ -74,7 +74,7 @@ pub fn serve_slcan(
 /// # Errors
 /// As [`serve_rs485`].
 pub fn serve_usbcan(
-    hands: impl Into<Hands> + Send + 'static,
+    hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;

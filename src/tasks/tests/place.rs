@@ -6,10 +6,10 @@ use crate::params::place::{Moved, Place, Places};
 use crate::params::rows::{ParamId, Value};
 use crate::record::Saved;
 use crate::tasks::TaskError;
-use crate::tasks::fake::{Asked, FakeHand, FakeReach, Fate, place_write};
 use crate::tasks::place::{
-    KEEP_WITHIN, Person, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
+    Decisions, KEEP_WITHIN, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
 };
+use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate, place_write};
 use crate::transport::Endpoint;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -175,16 +175,15 @@ struct Someone {
     saves: bool,
 }
 
-impl Person for Someone {
-    async fn keeps(&mut self) -> bool {
-        match self.keeps {
-            Some(keeps) => keeps,
-            None => std::future::pending().await,
+impl Someone {
+    fn decides(self) -> Decisions {
+        Decisions {
+            keeps: match self.keeps {
+                Some(keeps) => Box::pin(std::future::ready(keeps)),
+                None => Box::pin(std::future::pending()),
+            },
+            saves: Box::pin(std::future::ready(self.saves)),
         }
-    }
-
-    async fn saves(&mut self) -> bool {
-        self.saves
     }
 }
 
@@ -217,7 +216,7 @@ async fn run(
         hand,
         is_there: move |place: &Endpoint| looks.lock().unwrap().look(place),
     };
-    let mut person = {
+    let person = {
         let choices = &mut world.lock().unwrap().choices;
         Someone {
             keeps: [Some(true), Some(false), None][choices.pick(3)],
@@ -225,7 +224,7 @@ async fn run(
         }
     };
     let backups = Backups::new(folder, &change.places.old);
-    change_place(&mut reach, change, &backups, &mut person, |_| ()).await
+    change_place(&mut reach, change, &backups, person.decides(), |_| ()).await
 }
 
 fn check(world: &World, end: &PlaceEnd) {
@@ -330,7 +329,7 @@ async fn told(
     change: &PlaceChange,
     hand: &FakeHand,
     is_there: impl FnMut(&Endpoint) -> bool + Send,
-    mut person: Someone,
+    person: Someone,
 ) -> (PlaceReport, Vec<(PlaceStep, Instant)>) {
     let folder = TempDir::new().unwrap();
     let backups = Backups::new(folder.path(), &change.places.old);
@@ -339,7 +338,7 @@ async fn told(
         is_there,
     };
     let mut steps = Vec::new();
-    let end = change_place(&mut reach, change, &backups, &mut person, |step| {
+    let end = change_place(&mut reach, change, &backups, person.decides(), |step| {
         steps.push((step, Instant::now()));
     });
     (end.await.unwrap(), steps)
@@ -596,11 +595,11 @@ async fn nothing_is_written_where_no_backup_can_be_made_or_no_hand_answers() {
             hand: hand.clone(),
             is_there: move |_: &_| is_there,
         };
-        let mut keeper = Someone {
+        let keeper = Someone {
             keeps: Some(true),
             saves: true,
         };
-        let end = change_place(&mut reach, &change, &backups, &mut keeper, |_| ()).await;
+        let end = change_place(&mut reach, &change, &backups, keeper.decides(), |_| ()).await;
         assert!(
             matches!(end, Err(TaskError::NoBackup { .. } | TaskError::NotReached)),
             "{end:?}"

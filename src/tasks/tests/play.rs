@@ -6,10 +6,10 @@ use crate::hand::{
 };
 use crate::link::RequestError;
 use crate::poses::library::PoseId;
-use crate::poses::player::{Cue, End, Pace, Phase};
+use crate::poses::player::{Cue, End, Pace, Phase, PlayView};
 use crate::record::LinkState;
-use crate::tasks::fake::{Asked, FakeHand, Fate, Said, WELL};
-use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, PlayView, play};
+use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
+use crate::tasks::tests::fake::{Asked, FakeHand, Fate, Said, WELL};
 use crate::tasks::{Hand, gesture};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;

@@ -9,11 +9,11 @@ use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, SPANS};
 use crate::record::{Doubt, NotSent, Saved, Verdict};
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
-use crate::tasks::fake::{Asked, FakeHand, FakeReach, Fate};
 use crate::tasks::read::{group, rows};
 use crate::tasks::reset::{ResetEnd, ResetReport, ResetStep, places, reset};
-use crate::tasks::save::{Save, SaveReport, SaveStep, save};
-use crate::tasks::{Consent, TaskError};
+use crate::tasks::save::{Save, SaveReport, save};
+use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate};
+use crate::tasks::{Consent, ParamStep, TaskError};
 use tempfile::TempDir;
 
 const INDEX: ParamId = ParamId::DefaultSpeed(Dof::Index);
@@ -253,7 +253,7 @@ fn files() -> (TempDir, Backups) {
 async fn saved(
     hand: &FakeHand,
     backups: Backups,
-) -> (Result<SaveReport, TaskError>, Vec<SaveStep>) {
+) -> (Result<SaveReport, TaskError>, Vec<ParamStep>) {
     let task = Save {
         backups,
         before: Params::default(),
@@ -280,7 +280,7 @@ async fn no_save_goes_out_without_a_backup_and_its_result_is_noted() {
     let end = end.unwrap();
     assert_eq!((end.saved, end.not_noted), (Saved::Confirmed, None));
     assert!(end.backup.exists());
-    assert_eq!(steps.last(), Some(&SaveStep::Saving));
+    assert_eq!(steps.last(), Some(&ParamStep::Saving));
     assert_eq!(hand.asked().last(), Some(&Asked::Save));
     let known = backups.known().unwrap();
     assert_eq!(known.saved.unwrap().params, end.params);

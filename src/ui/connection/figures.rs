@@ -93,7 +93,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
             bad(panels::CHECKSUMS, stats.checksum_errors),
             bad(panels::RESYNCS, stats.resyncs),
             bad(panels::FOREIGN, stats.foreign_replies),
-            bad(panels::RIVAL_REQUESTS, stats.foreign_requests),
+            bad(panels::FOREIGN_REQUESTS, stats.foreign_requests),
             bad(panels::REFUSALS, stats.refusals),
             bad(panels::DROPPED, stats.dropped_events),
         ],

@@ -1,7 +1,7 @@
 //! The drawn hand, looked at by its mesh.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
 use crate::app::settings::Theme;
-use crate::hand::kinematics::{Pose, Segment, Side, tip_pad};
+use crate::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
 use crate::hand::{Dof, Finger, PerDof};
 use crate::sim::Scenario;
 use crate::sim::object::Object;
@@ -110,7 +110,7 @@ fn fingers_close_towards_who_looks() {
         for finger in Finger::ALL {
             let near = |share: f32| {
                 let picture = posed(side, [share, share, 1.0]);
-                let pose = Pose::of_shares(side, &picture.actual.map(Option::unwrap));
+                let pose = SegmentFrames::of_shares(side, &picture.actual.map(Option::unwrap));
                 camera.hand.transform_point3(pose.tip(finger)).z
             };
             if finger != Finger::Thumb {
@@ -142,7 +142,7 @@ fn the_joint_under_the_pointer_is_the_one_drawn_there() {
         for (shares, out) in [([1.0; 3], 1.0), ([0.0, 1.0, 1.0], -16.0)] {
             let picture = posed(side, shares);
             let (sketch, mesh) = drawn(&picture, &setting);
-            let pose = Pose::of_shares(side, &picture.actual.map(Option::unwrap));
+            let pose = SegmentFrames::of_shares(side, &picture.actual.map(Option::unwrap));
             for finger in Finger::ALL {
                 let [ahead, up] = shape::pad_ways(finger);
                 let out = if finger == Finger::Thumb { 0.0 } else { out };
@@ -205,7 +205,7 @@ fn the_simulated_hand_meets_what_is_drawn_before_it() {
         let shares = Object::of(scenario)
             .contacts
             .map(|met| met.map_or(0.32, |met| met.angle as f32 / 1000.0));
-        let pose = Pose::of_shares(Side::Right, &shares);
+        let pose = SegmentFrames::of_shares(Side::Right, &shares);
         for finger in Finger::ALL {
             let segment = Segment::tip(finger);
             let corners = shape::solid(segment, false).corners.iter();

@@ -16,7 +16,8 @@ use std::fmt::Display;
 /// What pressing a button of a card means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Manner {
-    /// Nothing is changed by it. It has the keyboard first, and Esc does the same after it stopped the hand.
+    /// Nothing is changed by it. It has the keyboard first, and Esc does the same after it stopped the hand; where it is
+    /// all that a card offers and the hand rests, without a stop.
     Safe,
     /// One of several things to do.
     Plain,
@@ -192,6 +193,8 @@ impl Card {
 #[derive(Debug, Default)]
 pub(crate) struct CardView {
     typed: String,
+    /// Nothing is asked on the card that is shown: it only tells something.
+    informs: bool,
     /// The title and the buttons of the card that is shown: another one begins anew.
     shown: Option<(String, usize)>,
     /// Height of the card as it was drawn last, and of all of it but its lines.
@@ -200,13 +203,22 @@ pub(crate) struct CardView {
 }
 
 impl CardView {
+    /// True while a card is shown that only tells something.
+    pub(crate) const fn informs(&self) -> bool {
+        self.informs
+    }
+
     /// Draws the card, if there is one, over `shade`; what the person asked for in it.
     pub(crate) fn ui(&mut self, ui: &Ui, shade: Rect, card: Option<Card>) -> Vec<Action> {
         let Some(card) = card else {
             self.shown = None;
+            self.informs = false;
             return Vec::new();
         };
         let key = (card.title.clone(), card.choices.len());
+        let mut choices = card.choices.iter();
+        self.informs =
+            !card.choices.is_empty() && choices.all(|choice| choice.manner == Manner::Safe);
         let is_new = self.shown.as_ref() != Some(&key);
         if is_new {
             self.shown = Some(key);

@@ -44,7 +44,7 @@ fn frame(ui: &mut Ui, room: &mut Room) {
         window::install(ui.ctx(), Theme::Dark, room.language);
         return;
     }
-    let wishes = keys::take(ui);
+    let wishes = keys::take(ui, keys::Escape::Stops);
     room.stops += u32::from(wishes.contains(&Wish::Stop));
     let (bar, body) = ui.max_rect().split_top_bottom_at_y(theme::TOP_BAR);
     let stop = Button::new("STOP", "tip").put(ui, look, bar, Id::unique("stop"));

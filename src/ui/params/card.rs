@@ -3,7 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::app::params::state::{Question, Wanted};
+use crate::app::params::state::{WriteQuestion, WriteRequest};
 use crate::app::state::State;
 use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::params::danger::Danger;
@@ -17,17 +17,17 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     Some(card(state, look, question))
 }
 
-fn card(state: &State, look: Look, question: &Question) -> Card {
+fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
     let hurts = !question.dangers.is_empty();
     let staged = !state.hand().params.to_apply().is_empty();
     let (title, agree) = match question.what {
-        Wanted::Apply(_) => (device::DANGER_APPLY, device::AGREE_APPLY),
-        Wanted::Save if hurts => (device::DANGER_SAVE, device::AGREE_SAVE),
-        Wanted::Save if staged => (device::SAVE_TITLE, device::AGREE_APPLY_SAVE),
-        Wanted::Save => (device::SAVE_TITLE, device::AGREE),
+        WriteRequest::Apply(_) => (device::DANGER_APPLY, device::AGREE_APPLY),
+        WriteRequest::Save if hurts => (device::DANGER_SAVE, device::AGREE_SAVE),
+        WriteRequest::Save if staged => (device::SAVE_TITLE, device::AGREE_APPLY_SAVE),
+        WriteRequest::Save => (device::SAVE_TITLE, device::AGREE),
     };
     let mut card = Card::new(look, title);
-    if matches!(question.what, Wanted::Save) {
+    if matches!(question.what, WriteRequest::Save) {
         card = changes(state, look, card);
     }
     let mut manner = Manner::Main;

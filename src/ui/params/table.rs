@@ -208,9 +208,7 @@ pub(crate) fn cell_name(pane: &Pane<'_>, id: ParamId, column: Text) -> String {
 /// A value as a person says it: the serial speed in baud, not as its code.
 pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
     let speed = match (id, value) {
-        (ParamId::ReduRatio, Some(Value::Number(code))) => SerialSpeed::ALL
-            .into_iter()
-            .find(|speed| i32::from(speed.code()) == code),
+        (ParamId::ReduRatio, Some(Value::Number(code))) => SerialSpeed::of_code(code.into()),
         _ => None,
     };
     match (speed, value) {

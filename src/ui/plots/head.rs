@@ -6,6 +6,7 @@ use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Look, Opens, Pane, Weight};
 use crate::ui::plots::PlotView;
+use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
 use crate::ui::text::{Text, panels, plots, words};
 use crate::ui::theme;
@@ -71,6 +72,10 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
             Popup::close_all(ui.ctx());
         }
         ui.separator();
+        if let Some(at_s) = notes_ui(ui, pane) {
+            view.view.time.center(at_s);
+            Popup::close_all(ui.ctx());
+        }
         keep_ui(ui, pane, view);
         ui.separator();
         ui.set_max_width(250.0);
@@ -90,7 +95,7 @@ fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
 
 /// A switch for each plot. The last one that is shown stays.
 fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let shown = pane.state.settings.plots;
+    let shown = pane.state.settings.plots.clone();
     for panel in &PANELS {
         let mut on = shown.shows(panel.kind);
         let enabled = !on || shown.count() > 1;

@@ -5,6 +5,7 @@ pub(crate) mod cursors;
 pub(crate) mod head;
 pub(crate) mod legend;
 pub(crate) mod marks;
+pub(crate) mod notes;
 pub(crate) mod panels;
 pub(crate) mod scales;
 pub(crate) mod time_window;
@@ -79,7 +80,7 @@ impl PlotView {
     }
 
     fn body_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let plots = pane.state.settings.plots;
+        let plots = &pane.state.settings.plots;
         let shown = PANELS.iter().filter(|panel| plots.shows(panel.kind));
         let mut shown: Vec<&Panel> = shown.collect();
         let at = shown

@@ -77,6 +77,13 @@ impl TimeWindow {
         self.held = Some((to - width, to));
     }
 
+    /// Shows what was around a moment, as much as now.
+    pub(crate) fn center(&mut self, at_s: f64) {
+        let (from, to) = self.span();
+        let half = (to - from) / 2.0;
+        self.show((at_s - half, at_s + half));
+    }
+
     /// Shows so many seconds, up to the same moment as now.
     pub(crate) fn resize(&mut self, width_s: f64) {
         if let Some((_, to)) = self.held {
@@ -152,6 +159,15 @@ mod tests {
         assert!((width_s(time) - LONGEST_S).abs() < 1e-6);
         time.zoom(95.0, 1e-12);
         assert!((width_s(time) - SHORTEST_S).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_moment_is_shown_in_the_middle_where_there_is_room() {
+        let mut time = time();
+        time.center(500.0);
+        same(time.span(), (495.0, 505.0));
+        time.center(999.0);
+        same(time.span(), (990.0, 1000.0));
     }
 
     #[test]

@@ -25,5 +25,6 @@ texts! {
     ZOOM_OUT: "Everything smaller", "缩小";
     ZOOM_RESET: "Original size", "原始大小";
     ON_TRACKS: "On a track: arrows 10, with Shift 100; wheel; Tab to the next.", "在滑轨上：方向键每次 10，按住 Shift 每次 100；滚轮；Tab 到下一个。";
-    IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc gives the old one back and stops the hand.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值并停止手。";
+    IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc gives the old one back.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值。";
+    ESCAPE: "While the hand rests, Esc first closes what is open: a menu, a field, a note, this list. Else it stops the hand at once.", "灵巧手静止时，Esc 先关闭打开的菜单、输入框、标记或本列表；否则立即停止灵巧手。";
 }

@@ -24,7 +24,7 @@ texts! {
     DISARM: "Armed", "已使能", "Setpoints pass. Press to let none pass any more; the hand keeps what it was told.", "设置值正在生效。点击后不再发送，灵巧手保持上一次的设置。";
     ARM_NAME: "Arm the hand", "使能灵巧手";
     DISARM_NAME: "Disarm the hand", "取消使能";
-    STOP: "STOP", "停止", "Holds the pose: every joint is told to stay where it is. Space or Esc does the same.\nIt is not an emergency stop: in danger cut the 24 V supply.", "保持当前姿态：令所有自由度停在原位。空格键或 Esc 键作用相同。\n这不是急停：遇到危险请切断 24 V 电源。";
+    STOP: "STOP", "停止", "Holds the pose: every joint is told to stay where it is. Space or Esc does the same; while the hand rests Esc first closes what is open.\nIt is not an emergency stop: in danger cut the 24 V supply.", "保持当前姿态：令所有自由度停在原位。空格键或 Esc 键作用相同；灵巧手静止时，Esc 先关闭已打开的内容。\n这不是急停：遇到危险请切断 24 V 电源。";
     STOP_KEYS: "Space or Esc", "空格键或 Esc";
 
     REFUSED_OFFLINE: "There is no live hand.", "没有在线的灵巧手。";
@@ -44,7 +44,7 @@ texts! {
     LOST_TRYING: "Trying, attempt", "正在重试，第";
     UNREACHABLE_TITLE: "NO CONNECTION", "无法连接";
     ALARM_TITLE: "STOP NOT CONFIRMED", "停止未确认", "Feedback does not show rest: the hand may still move. Hold is being repeated. Cut the 24 V supply.", "反馈未显示静止：灵巧手可能仍在运动。正在重复发送保持指令。请切断 24 V 电源。";
-    RIVAL_TITLE: "ANOTHER CONTROLLER", "另有控制器", "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
+    OTHER_CONTROLLER_TITLE: "ANOTHER CONTROLLER", "另有控制器", "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
     FAULT_TITLE: "FAULT", "故障", "A drive reports a fault. Setpoints do not pass until it is cleared.", "驱动器报告故障。清除之前不会发送设置值。";
     FAULT_SHOW: "Show faults", "查看故障", "Opens the list of faults with causes and advice.", "打开故障列表，查看原因与建议。";
     LIST_END: ". ", "。";

@@ -39,7 +39,7 @@ fn disarmed(look: Look, why: Disarmed) -> &'static str {
         Disarmed::Fault => panels::DISARMED_FAULT,
         Disarmed::LinkLost => panels::DISARMED_LOST,
         Disarmed::Stale => panels::DISARMED_STALE,
-        Disarmed::OtherController => panels::DISARMED_RIVAL,
+        Disarmed::OtherController => panels::DISARMED_OTHER_CONTROLLER,
         Disarmed::Resume => panels::DISARMED_RESUME,
     })
 }

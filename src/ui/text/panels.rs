@@ -99,7 +99,7 @@ texts! {
     DISARMED_FAULT: "Not armed any more: a drive reports a fault.", "已取消使能：驱动器报告故障。";
     DISARMED_LOST: "Not armed any more: the link was lost.", "已取消使能：连接断开。";
     DISARMED_STALE: "Not armed any more: feedback grew old.", "已取消使能：反馈过时。";
-    DISARMED_RIVAL: "Not armed any more: another controller talks to this hand. Arm again if you want both.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。";
+    DISARMED_OTHER_CONTROLLER: "Not armed any more: another controller talks to this hand. Arm again if you want both.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。";
     DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
 
     GESTURE: "Gesture", "手势";
@@ -171,7 +171,7 @@ texts! {
     TIMEOUTS: "Timeouts", "超时";
     CHECKSUMS: "Checksum errors", "校验错误";
     RESYNCS: "Noise skipped", "跳过噪声";
-    RIVAL_REQUESTS: "Requests of others", "其他主站请求";
+    FOREIGN_REQUESTS: "Requests of others", "其他主站请求";
     FOREIGN: "Foreign replies", "无关应答";
     REFUSALS: "Refusals", "拒绝";
     RECONNECTS: "Reconnects", "重新连接";

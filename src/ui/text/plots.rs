@@ -40,7 +40,11 @@ texts! {
     NOTE_NAME: "Make a note", "添加标记", "Puts a line with your words into the plots, at this moment. Key: N", "在当前时刻添加一条带文字的标记线。快捷键：N";
     NOTE_AT: "Note at", "标记时刻";
     NOTE_FIELD: "Words of the note", "标记内容";
-    NOTE_HINT: "Enter keeps it. Esc stops the hand.", "按 Enter 保存。Esc 停止灵巧手。";
+    NOTE_HINT: "Enter keeps it. Esc drops it.", "按 Enter 保存。Esc 取消。";
+    NOTE_HINT_MOVING: "Enter keeps it. Esc stops the hand.", "按 Enter 保存。Esc 停止灵巧手。";
     NOTE_KEEP: "Keep", "保存", "Puts the note where its key was pressed.", "把标记放在按键时刻。";
     NOTE_CANCEL: "Cancel", "取消", "Makes no note.", "不添加标记。";
+    NOTES: "Notes", "标记列表";
+    NOTE_SHOW: "Show the note", "显示标记", "Shows this moment in the plots.", "在曲线中显示该时刻。";
+    NOTE_DELETE: "Delete the note", "删除标记", "Takes the note out of the plots.", "从曲线中删除该标记。";
 }

@@ -1,6 +1,6 @@
 //! The table of frames: only the rows in sight are drawn. Which frames they are is decided elsewhere.
 
-use crate::link::traffic::compose::{Recipe, RecipeForm};
+use crate::link::traffic::compose::{FrameSnippet, SnippetFormat};
 use crate::link::traffic::frame::{Frame, Kind};
 use crate::ui::kit::{self, Look, Pane};
 use crate::ui::text::{main, traffic};
@@ -188,12 +188,12 @@ fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
 fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
     ui.label(pane.look.say(main::FRAME_COPY));
     let endpoint = pane.state.hand().endpoint.as_ref();
-    for form in RecipeForm::ALL {
+    for form in SnippetFormat::ALL {
         let text = match form {
-            RecipeForm::Hex => Some(frame.hex()),
+            SnippetFormat::Hex => Some(frame.hex()),
             form => endpoint
-                .and_then(|endpoint| Recipe::passed(&frame.bytes, endpoint))
-                .map(|recipe| recipe.text(form)),
+                .and_then(|endpoint| FrameSnippet::passed(&frame.bytes, endpoint))
+                .map(|snippet| snippet.text(form)),
         };
         if let Some(text) = text
             && ui.button(form.name()).clicked()

@@ -21,6 +21,11 @@ impl KeyList {
         self.fresh = self.open;
     }
 
+    /// True while it is shown.
+    pub(crate) const fn is_open(&self) -> bool {
+        self.open
+    }
+
     /// Shows it no more.
     pub(crate) fn hide(&mut self) {
         self.open = false;
@@ -116,7 +121,7 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
             }
         }
     });
-    for text in [keys::ON_TRACKS, keys::IN_FIELDS] {
+    for text in [keys::ON_TRACKS, keys::IN_FIELDS, keys::ESCAPE] {
         Label::note(look, text).ui(ui);
     }
     shut

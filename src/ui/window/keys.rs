@@ -40,6 +40,15 @@ pub(crate) enum Wish {
     Opens(Opens),
 }
 
+/// What Esc does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Escape {
+    /// It stops the hand, and may close something besides.
+    Stops,
+    /// It only closes what is open.
+    Closes,
+}
+
 /// One key and what it asks for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Row {
@@ -177,10 +186,10 @@ impl Wish {
 }
 
 /// Takes the keys that act everywhere out of the input before any control sees them; what they ask for, in their order.
-/// Letters and Space belong to a text field that has the keyboard; Esc never does.
-pub(crate) fn take(ui: &Ui) -> Vec<Wish> {
+/// Letters and Space belong to a text field that has the keyboard; Esc only while the hand rests.
+pub(crate) fn take(ui: &Ui, escape: Escape) -> Vec<Wish> {
     let typing = ui.ctx().text_edit_focused();
-    ui.input_mut(|input| take_from(input, typing))
+    ui.input_mut(|input| take_from(input, typing, escape))
 }
 
 /// While a series of trials runs any key is a stop: all are taken out of the input. A key that was held down before does
@@ -211,7 +220,7 @@ fn take_any_from(input: &mut InputState) -> Vec<Wish> {
     wishes
 }
 
-fn take_from(input: &mut InputState, typing: bool) -> Vec<Wish> {
+fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> {
     let mut wishes = Vec::new();
     let mut opens_a_field = false;
     input.events.retain(|event| {
@@ -226,6 +235,7 @@ fn take_from(input: &mut InputState, typing: bool) -> Vec<Wish> {
             repeat: false,
             ..
         } = event
+            && (row.key != Key::Escape || escape == Escape::Stops)
         {
             wishes.push(row.wish);
             opens_a_field |= row.wish == Wish::Opens(Opens::Note);
@@ -269,7 +279,7 @@ mod tests {
     fn taken(events: Vec<Event>, typing: bool) -> (Vec<Wish>, usize) {
         let mut input = InputState::default();
         input.events = events;
-        let wishes = take_from(&mut input, typing);
+        let wishes = take_from(&mut input, typing, Escape::Stops);
         (wishes, input.events.len())
     }
 
@@ -299,6 +309,16 @@ mod tests {
             };
             assert_eq!(taken(vec![event(row, false)], true), (wanted, 1), "{row:?}");
         }
+    }
+
+    #[test]
+    fn escape_goes_on_alone_where_it_closes_what_is_open_and_space_stops_still() {
+        let mut input = InputState::default();
+        input.events = [Key::Escape, Key::Space]
+            .map(|key| event(row(NONE, key, Wish::Stop), false))
+            .to_vec();
+        let wishes = take_from(&mut input, false, Escape::Closes);
+        assert_eq!((wishes, input.events.len()), (vec![Wish::Stop], 1));
     }
 
     #[test]

@@ -26,7 +26,7 @@ use crate::app::hand::{Play, Preset};
 use crate::app::layout::Room;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::ProcedureAction;
-use crate::app::settings::{Language, Theme};
+use crate::app::settings::{Language, Theme, Zoom};
 use crate::app::state::State;
 use crate::app::trials::TrialAction;
 use crate::hand::Moment;
@@ -48,14 +48,14 @@ use crate::ui::trials::compare;
 use crate::ui::trials::compare::CompareView;
 use crate::ui::view::View;
 use crate::ui::window::key_list::KeyList;
-use crate::ui::window::keys::Wish;
+use crate::ui::window::keys::{Escape, Wish};
 use crate::ui::window::rooms::{RoomSize, Rooms};
 use crate::ui::window::status::StatusLine;
 
 use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
-use egui::{Frame, Margin, Panel, Rect, Stroke, Ui, UiBuilder};
+use egui::{Frame, Key, Margin, Panel, Rect, Stroke, Ui, UiBuilder};
 
 /// The least width of the joints: every number in its place.
 const JOINTS_LEAST: f32 = 384.0;
@@ -72,6 +72,8 @@ pub struct Window {
     view: View,
     installed: Option<(Theme, Language)>,
     typing: Typing,
+    /// A field had the keyboard in the last frame: Esc takes it away before anybody can ask.
+    typed: bool,
     joints: JointsView,
     plots: PlotView,
     faults: FaultsView,
@@ -118,11 +120,14 @@ impl Window {
 
     /// Draws the window over all of `ui` and returns what the person asked for, stop first.
     pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
+        // What is kept holds from the second frame on.
+        let zoomed = self.installed.and_then(|_| zoomed(ui, state));
         self.install_if_changed(ui, state);
-        let mut actions = Vec::new();
+        let mut actions = Vec::from_iter(zoomed);
+        let escape = self.escape(ui, state);
         let mut wishes = match state.hand().runs_series() {
             true => keys::take_any(ui),
-            false => keys::take(ui),
+            false => keys::take(ui, escape),
         };
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
@@ -142,6 +147,7 @@ impl Window {
         }
         self.parts_ui(ui, &mut pane);
         self.typing = typing;
+        self.typed = ui.ctx().text_edit_focused();
         if let Some(opens) = opens {
             self.open(opens, state.now);
             ui.request_repaint();
@@ -185,6 +191,24 @@ impl Window {
         pane.actions.extend(action);
     }
 
+    /// What Esc does now: it closes what is open while the hand rests for certain.
+    fn escape(&mut self, ui: &Ui, state: &State) -> Escape {
+        let is_open = self.key_list.is_open()
+            || self.status.writes_note()
+            || self.cards.informs()
+            || self.typed
+            || egui::Popup::is_any_open(ui.ctx());
+        if !is_open || !state.hand().rests() {
+            return Escape::Stops;
+        }
+        // Popups, fields and cards do so themselves.
+        if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.key_list.hide();
+            self.status.drop_note();
+        }
+        Escape::Closes
+    }
+
     fn open(&mut self, opens: Opens, now: Moment) {
         if let Opens::Faults | Opens::Drive(_) = opens {
             self.view = View::Faults;
@@ -201,7 +225,10 @@ impl Window {
     fn install_if_changed(&mut self, ui: &mut Ui, state: &State) {
         let wanted = (state.settings.theme, state.settings.language);
         match self.installed.replace(wanted) {
-            None => install(ui.ctx(), wanted.0, wanted.1),
+            None => {
+                install(ui.ctx(), wanted.0, wanted.1);
+                ui.ctx().set_zoom_factor(state.settings.zoom.into());
+            }
             Some((theme, _)) if theme != wanted.0 => restyle(ui.ctx(), wanted.0),
             Some(_) => return,
         }
@@ -385,6 +412,12 @@ fn alone_ui(ui: &mut Ui, state: &State, part: impl FnOnce(&mut Ui, Rect, &mut Pa
     ui.painter()
         .rect_filled(whole, 0.0, pane.look.palette.window);
     part(ui, whole, &mut pane);
+}
+
+/// What the keys of the zoom did in the last frame, to be kept.
+fn zoomed(ui: &Ui, state: &State) -> Option<Action> {
+    let zoom = Zoom::from(ui.ctx().zoom_factor());
+    (zoom != state.settings.zoom).then_some(Action::Zoom(zoom))
 }
 
 /// True while a card covers the body of the window.

@@ -89,7 +89,7 @@ fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
         alarm(pane),
         lost(pane),
         faults(pane),
-        rival(pane),
+        other_controller(pane),
         stale(pane),
         connecting(pane),
         empty(pane),
@@ -145,10 +145,10 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
     })
 }
 
-fn rival(pane: &Pane<'_>) -> Option<Warning> {
+fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
     let link = &pane.state.hand().link;
-    let rival = || Warning::new(pane, main::RIVAL_TITLE, pane.look.palette.warn);
-    (link.state.is_live() && link.other_controller).then(rival)
+    let other = || Warning::new(pane, main::OTHER_CONTROLLER_TITLE, pane.look.palette.warn);
+    (link.state.is_live() && link.other_controller).then(other)
 }
 
 fn stale(pane: &Pane<'_>) -> Option<Warning> {
@@ -234,6 +234,16 @@ impl StatusLine {
         }
     }
 
+    /// True while a note is written.
+    pub(crate) const fn writes_note(&self) -> bool {
+        self.note_at.is_some()
+    }
+
+    /// The note that is written is not wanted.
+    pub(crate) fn drop_note(&mut self) {
+        *self = Self::default();
+    }
+
     /// Draws the line.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let warnings = warnings(pane);
@@ -271,9 +281,13 @@ impl StatusLine {
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
         let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
+        let hint = match pane.state.hand().rests() {
+            true => plots::NOTE_HINT,
+            false => plots::NOTE_HINT_MOVING,
+        };
         let edit = TextEdit::singleline(&mut self.note)
             .char_limit(NOTE_MAX)
-            .hint_text(look.say(plots::NOTE_HINT))
+            .hint_text(look.say(hint))
             .margin(theme::FIELD_INSET)
             .desired_width((NOTE_WIDTH - words).max(theme::FIELD));
         let response = ui.add(edit);
@@ -309,10 +323,9 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     }
 }
 
-/// The newest message, while it is new. A fault has a warning and a list of its own.
+/// The newest message that nobody read and that is still so, while it is new. A fault has a warning and a list of its own.
 fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
-    let mut all = pane.state.notices.log();
-    let newest = all.find(|one| !matches!(one.what, NoticeKind::Fault { .. }))?;
+    let newest = pane.state.notices.iter().next()?;
     let moves = pane.state.hand().mover().is_some();
     let is_new = pane.state.now.since(newest.at) < NEWS_FOR;
     (is_new && (newest.level > Level::Info || !moves)).then_some(newest)

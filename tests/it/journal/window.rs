@@ -3,11 +3,11 @@
 
 use crate::journal::line::{Line, named};
 use crate::journal::page::{Case, Outcome, masked, write_file};
+use crate::setup::program::InFolder;
 use futures::FutureExt as _;
 use futures::future::{BoxFuture, ready};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::files::choose::InFolder;
 use handscope::app::hand::{Play, Preset};
 use handscope::app::params::action::ParamAction;
 use handscope::app::params::state::SaveEnd;
@@ -161,6 +161,11 @@ impl Program {
 
     async fn until(&mut self, words: &[&str]) {
         let over = Instant::now() + PATIENCE;
+        // A task takes an answer in the frame after it was given, and tells its next step in the one after that.
+        if words == ["decision"] {
+            self.frame().await;
+            self.frame().await;
+        }
         while !self.is(words) {
             assert!(Instant::now() < over, "{words:?} does not come");
             self.frame().await;
@@ -173,10 +178,18 @@ impl Program {
             ["live"] => state.hand().link.state.is_live(),
             ["lost"] => !state.hand().link.state.is_live(),
             ["armed"] => state.hand().link.state == LinkState::Armed,
-            ["idle"] => !state.hand().params.is_busy(),
-            ["decision"] => decides(state.hand().procedure.as_ref().expect("a card")),
+            // Files are listed on a thread, which knows nothing of virtual time.
+            ["idle"] => !state.hand().params.is_busy() && state.hand().params.files.is_some(),
+            ["decision"] => {
+                let decides = decides(state.hand().procedure.as_ref().expect("a card"));
+                decides && state.hand().params.files.is_some()
+            }
             ["series", "over"] => !state.hand().runs_series(),
-            ["sequence", "over"] => !state.hand().runs_sequence(),
+            ["sequence", "over"] => !state
+                .hand()
+                .sequence
+                .as_ref()
+                .is_some_and(handscope::app::hand::sequence::SequenceRun::is_running),
             [dof, "below", angle] => self.line.angle(named(dof)) <= angle.parse().unwrap(),
             [dof, "above", angle] => self.line.angle(named(dof)) >= angle.parse().unwrap(),
             other => panic!("nothing to wait for: {other:?}"),

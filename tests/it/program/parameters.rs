@@ -5,7 +5,7 @@ use crate::program::{Bench, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
 use handscope::app::hand::Freshness;
-use handscope::app::params::state::{Doing, SaveEnd, Wanted};
+use handscope::app::params::state::{Doing, SaveEnd, WriteRequest};
 use handscope::app::params::{ParamAction, Refusal};
 use handscope::app::procedures::{Procedure, ProcedureAction};
 use handscope::hand::{Dof, Span};
@@ -161,7 +161,7 @@ async fn what_could_hurt_is_asked_first_and_written_only_when_meant() {
     done(&mut bench).await;
     assert_eq!(bench.addresses(), [0_u16; 0], "nothing before the answer");
     let question = bench.hand().params.question.clone().unwrap();
-    assert!(matches!(question.what, Wanted::Apply(_)));
+    assert!(matches!(question.what, WriteRequest::Apply(_)));
     let joints: Vec<_> = question.dangers.iter().map(|danger| danger.dof).collect();
     assert_eq!(joints, [Dof::Index]);
     ask(&mut bench, ParamAction::Decline);

@@ -27,7 +27,7 @@ fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
     bench.act(Action::Library(LibraryEdit::NewSequence("S".into())));
     let own = bench.state().poses.newest_sequence.unwrap();
     for (at, pose) in ids.iter().enumerate() {
-        let dwell = Millis::nearest(50);
+        let dwell = Millis::try_from(50).unwrap();
         for edit in [SequenceEdit::Add(*pose), SequenceEdit::Dwell(at, dwell)] {
             bench.act(Action::Library(LibraryEdit::Sequence(own, edit)));
         }
@@ -131,7 +131,7 @@ async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
         let (_, own) = library(&mut bench);
         bench.act(Action::Play(Play::Start(own)));
         bench.run(200).await;
-        assert!(bench.hand().runs_sequence());
+        assert!(bench.hand().sequence.as_ref().unwrap().is_running());
         break_off(&mut bench);
         bench.run(3000).await;
         let Some(Phase::Ended(end)) = phase(&bench) else {

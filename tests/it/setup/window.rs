@@ -2,7 +2,7 @@
 
 use crate::setup::hand;
 use crate::setup::link;
-use crate::setup::program::{Program, env};
+use crate::setup::program::{InFolder, Program, env};
 use crate::setup::time::Time;
 use egui::{Key, Modifiers, Rect, Vec2, vec2};
 use egui_kittest::Harness;
@@ -10,13 +10,12 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::files::choose::InFolder;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::{Dof, Moment, SerialSpeed};
 use handscope::record::LinkState;
 use handscope::sim::serve::SharedHand;
-use handscope::sim::{Hands, SimConfig, SimHand};
+use handscope::sim::{SimConfig, SimHand, SimHands};
 use handscope::transport::{
     BoxedWire, Dial, Endpoint, FaultPlan, PortFound, Wire, faulty_pair, pair,
 };
@@ -82,7 +81,7 @@ impl Dial for Socket {
                 (ours, its)
             }
         };
-        let hands = Hands::new(self.hand.clone(), self.others.lock().unwrap().clone());
+        let hands = SimHands::new(self.hand.clone(), self.others.lock().unwrap().clone());
         let mut tasks = Vec::new();
         let its = match endpoint {
             Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
@@ -246,6 +245,17 @@ impl Bench {
             ..Settings::default()
         };
         Self::begin(Room::new(config, settings, Keeps::Records), size)
+    }
+
+    /// A start with these settings; nothing is kept on disk.
+    pub(crate) fn with(settings: Settings) -> Self {
+        let room = Room::new(SimConfig::default(), settings, Keeps::Nothing);
+        Self::begin(room, LARGE)
+    }
+
+    /// How much larger than designed everything is drawn.
+    pub(crate) fn zoom(&self) -> f32 {
+        self.harness.ctx.zoom_factor()
     }
 
     /// Asks for something as a view does that is not open.

@@ -11,6 +11,7 @@ use handscope::app::settings::{Language, PlotKind, PlotWindow};
 use handscope::app::state::State;
 use handscope::hand::{Dof, ForceReading, Group, Groups, HandSample, Moment, PerDof, Timed};
 use handscope::history::{History, MarkKind};
+use handscope::record::LinkState;
 use handscope::ui::View;
 use std::time::Duration;
 
@@ -406,8 +407,10 @@ fn a_note_stands_at_the_moment_of_its_key() {
 }
 
 #[test]
-fn escape_stops_while_a_note_is_written_and_a_letter_in_another_field_opens_none() {
-    let mut harness = open();
+fn escape_stops_an_armed_hand_while_a_note_is_written_and_a_letter_in_another_field_opens_none() {
+    let mut state = known();
+    state.hand_mut().link.state = LinkState::Armed;
+    let mut harness = view::open(state, View::Live, view::display(LARGE));
     harness.key_press(Key::N);
     harness.run_steps(3);
     harness.state_mut().actions.clear();

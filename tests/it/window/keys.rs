@@ -2,7 +2,7 @@
 
 use crate::setup::window::{Bench, Role};
 use egui::{Key, Modifiers};
-use handscope::app::settings::{AngleUnit, Language, Theme};
+use handscope::app::settings::{AngleUnit, Language, Settings, Theme};
 use handscope::hand::Dof;
 use handscope::ui::View;
 
@@ -173,6 +173,79 @@ fn the_list_of_keys_opens_and_closes_and_stop_works_over_it() {
     bench.key(Key::Space);
     bench.wait(200);
     assert!(!bench.state().hand().is_armed(), "and Space stops over it");
+}
+
+/// Opens something, and tells whether it is open.
+type Opened = (fn(&mut Bench), fn(&Bench) -> bool);
+
+/// What Esc closes: the list of keys, a note, a number that is being typed, a menu.
+const OPENED: [Opened; 4] = [
+    (|bench| bench.key(Key::F1), |bench| bench.shows("Shift+A")),
+    (
+        |bench| bench.key(Key::N),
+        |bench| bench.shows("Words of the note"),
+    ),
+    (
+        |bench| bench.type_into("Index force number", "9"),
+        |bench| bench.typed("Index force number") != "500",
+    ),
+    (
+        |bench| bench.click_button("Window menu"),
+        |bench| bench.shows("Reset layout"),
+    ),
+];
+
+#[test]
+fn escape_first_closes_what_is_open_while_the_hand_rests_and_stops_when_pressed_again() {
+    for (index, (open, is_open)) in OPENED.into_iter().enumerate() {
+        let mut bench = Bench::live();
+        bench.wait(1500);
+        open(&mut bench);
+        bench.run(200);
+        assert!(is_open(&bench), "{index}: {:?}", bench.texts());
+        bench.key(Key::Escape);
+        bench.run(300);
+        assert!(!is_open(&bench), "{index}");
+        assert_eq!(bench.writes(), [], "{index}: no stop");
+        bench.key(Key::Escape);
+        bench.run(100);
+        assert!(!bench.writes().is_empty(), "{index}: a stop");
+    }
+}
+
+#[test]
+fn escape_stops_an_armed_hand_whatever_is_open() {
+    for (index, (open, is_open)) in OPENED.into_iter().enumerate() {
+        let mut bench = Bench::armed();
+        open(&mut bench);
+        bench.run(200);
+        assert!(is_open(&bench), "{index}");
+        bench.key(Key::Escape);
+        bench.run(100);
+        assert!(!bench.state().hand().is_armed(), "{index}");
+    }
+}
+
+#[test]
+fn the_zoom_is_kept_and_comes_back() {
+    let mut bench = Bench::live();
+    let wide = bench.rect(Role::Button, "STOP").width();
+    bench.key_with(Modifiers::COMMAND, Key::Plus);
+    bench.run(100);
+    let zoom = bench.state().settings.zoom;
+    assert!(f32::from(zoom) > 1.05, "{zoom:?}");
+    let kept = Settings {
+        zoom,
+        ..Settings::default()
+    };
+    let mut again = Bench::with(kept);
+    again.wait(1000);
+    assert_eq!(again.state().settings.zoom, zoom);
+    assert!((again.zoom() - f32::from(zoom)).abs() < 0.01);
+    assert!(again.rect(Role::Button, "STOP").width() > 1.0 && wide > 1.0);
+    again.key_with(Modifiers::COMMAND, Key::Num0);
+    again.run(100);
+    assert_eq!(f32::from(again.state().settings.zoom), 1.0);
 }
 
 #[test]

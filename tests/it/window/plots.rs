@@ -1,6 +1,6 @@
 //! The plots of the running program: what is saved, and what a note leaves behind.
 
-use crate::setup::window::{Bench, LARGE};
+use crate::setup::window::{Bench, LARGE, Role};
 use handscope::app::notices::NoticeKind;
 use handscope::history::MarkKind;
 use handscope::sim::SimConfig;
@@ -63,4 +63,34 @@ fn a_note_is_kept_in_the_history() {
     let note = MarkKind::note("before the squeeze").unwrap();
     let marks = bench.state().hand().history.marks(now - 2.0, now);
     assert_eq!(marks.filter(|mark| mark.kind == note).count(), 1);
+}
+
+#[test]
+fn notes_are_listed_shown_by_a_click_and_deleted() {
+    let mut bench = Bench::live();
+    bench.key(egui::Key::N);
+    bench.run(60);
+    bench.type_into("Words of the note", "before the squeeze");
+    bench.click("Keep");
+    bench.wait(20_000);
+    let listed = |bench: &Bench| {
+        let mut all = bench.all(Role::Button).into_iter().map(|(name, _)| name);
+        all.rfind(|name| name.ends_with("  before the squeeze"))
+    };
+    assert_eq!(listed(&bench), None, "only in the menu");
+    bench.click("More for the plots");
+    bench.run(60);
+    let name = listed(&bench).unwrap();
+    bench.click_button(&name);
+    bench.run(200);
+    assert!(bench.is_on("Pause the plots"), "the plots stand there");
+    bench.click("More for the plots");
+    bench.run(60);
+    bench.click_button("Delete the note: before the squeeze");
+    bench.run(200);
+    assert_eq!(listed(&bench), None);
+    let history = &bench.state().hand().history;
+    let mut marks = history.marks(0.0, bench.now().secs());
+    assert!(!marks.any(|mark| matches!(mark.kind, MarkKind::Note(_))));
+    assert_eq!(bench.writes(), []);
 }

@@ -67,7 +67,8 @@ fn taring_counts_all_tips_from_now_and_writes_nothing() {
     let mut bench = free();
     bench.click("Tare all");
     bench.run(60);
-    assert!(bench.state().hand().tare.chosen_at().is_some());
+    let rests = Finger::ALL.map(|finger| bench.state().hand().tare.rest(finger));
+    assert!(rests.iter().flatten().all(|rest| rest.chosen));
     for finger in Finger::ALL {
         let now = bench.state().hand().sample.tactile[finger].expect("it was read");
         let apart = rest(&bench, finger)[0].abs_diff(now.value.raw[0]);

@@ -1,6 +1,8 @@
 //! Claims about what goes wrong: a pulled cable, drives with faults, values that no hand should send.
 
 use crate::setup::window::{ANGLE_SET, Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
+use handscope::app::action::Action;
+use handscope::app::notices::NoticeKind;
 use handscope::hand::{Dof, Fault};
 use handscope::record::LinkState;
 use handscope::sim::{Scenario, SimConfig};
@@ -31,6 +33,24 @@ fn an_unplugged_hand_is_said_in_words_and_cannot_be_driven() {
     }
     assert!(!bench.is_disabled(Role::Button, "STOP"));
     assert_eq!(bench.handle("Index angle target"), None);
+}
+
+#[test]
+fn what_is_no_longer_so_is_no_news() {
+    let mut bench = Bench::live();
+    bench.act(Action::Disconnect);
+    bench.wait(1000);
+    bench.unplug();
+    bench.act(Action::Connect("tcp:192.168.11.210".parse().unwrap()));
+    bench.wait(1000);
+    assert_eq!(bench.texts_with("NO CONNECTION").len(), 1);
+    let newest = bench.state().notices.log().next().map(|one| &one.what);
+    assert!(matches!(newest, Some(NoticeKind::NoLink(_))), "{newest:?}");
+    bench.plug();
+    bench.until(3000, |bench| bench.shows("Link state: Monitoring"));
+    bench.run(60);
+    assert_eq!(bench.texts_with("No hand reached"), [""; 0]);
+    assert!(bench.shows("Nothing moves the hand."));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use crate::setup::window::{Bench, Role};
 use egui::Key;
 use handscope::app::trials::TrialSession;
 use handscope::hand::{Dof, Fault};
+use handscope::record::Rest;
 use handscope::sim::{Scenario, SimConfig};
 use handscope::trials::{Abort, EarlyEnd, TrialPlan};
 use handscope::ui::View;
@@ -219,6 +220,23 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
     bench.click("Opens what was measured.");
     bench.run(60);
     assert_eq!(bench.view(), View::Compare);
+}
+
+#[test]
+fn after_a_series_nothing_is_said_to_move_a_hand_that_came_to_rest() {
+    let mut bench = on_block();
+    short(&mut bench);
+    arm(&mut bench);
+    bench.click("Start trials");
+    bench.until(60_000, |bench| !runs(bench));
+    let stands = |bench: &Bench| {
+        let status = bench.state().hand().sample.status.unwrap();
+        status.value.iter().all(|(_, status)| status.is_stopped())
+    };
+    bench.until(2000, stands);
+    assert_eq!(bench.state().hand().link.rest, Rest::Moving, "not yet");
+    bench.run(20);
+    assert_eq!(bench.texts_with("The hand moves"), [""; 0]);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use handscope::hand::Setpoints;
 use handscope::hand::{Angle, Dof, Target};
 use handscope::link::{Clock, LinkConfig};
 use handscope::record::LinkState;
-use handscope::transport::{FaultPlan, Pace};
+use handscope::transport::{FaultPlan, LineSpeed};
 use std::sync::{Arc, Mutex};
 use tokio::time::{Duration, Instant, sleep_until};
 
@@ -20,7 +20,7 @@ async fn armed_on(baud: u32, turnaround: Duration) -> (Client, Log, Clock) {
     let hand = hand::plain();
     let log = Log::new(clock, Lie::None);
     let plan = FaultPlan {
-        pace: Some(Pace { baud }),
+        pace: Some(LineSpeed { baud }),
         ..FaultPlan::quiet(1)
     };
     let dial = Arc::new(FaultyDial {

@@ -1,0 +1,54 @@
+//! The notes of a person as a list: a click shows the moment of one, and each can be taken away.
+
+use crate::app::action::Action;
+use crate::history::{Mark, MarkKind};
+use crate::ui::kit::{Button, Pane, Weight};
+use crate::ui::plots::times::clock;
+use crate::ui::text::plots;
+use crate::ui::theme;
+use egui::{ScrollArea, Ui};
+
+/// Characters of a note in the list; the rest is in the tooltip.
+const SHOWN: usize = 28;
+/// About six notes; the others are scrolled to.
+const HEIGHT: f32 = 180.0;
+
+/// Draws the list, the newest first, if there are any. The moment that is to be shown, seconds.
+pub(crate) fn notes_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
+    let history = &pane.state.hand().history;
+    let all = history.marks(f64::NEG_INFINITY, f64::INFINITY);
+    let mut notes: Vec<(&Mark, &str)> = all
+        .filter_map(|mark| match &mark.kind {
+            MarkKind::Note(words) => Some((mark, words.as_ref())),
+            _ => None,
+        })
+        .collect();
+    notes.reverse();
+    if notes.is_empty() {
+        return None;
+    }
+    let look = pane.look;
+    ui.label(look.say(plots::NOTES));
+    let mut asked = None;
+    let list = ScrollArea::vertical().id_salt("notes").max_height(HEIGHT);
+    list.show(ui, |ui| {
+        for (mark, words) in notes {
+            ui.horizontal(|ui| {
+                let name = look.pair(look.say(plots::NOTE_DELETE), words);
+                let delete = Button::said(look, plots::NOTE_DELETE);
+                let delete = delete.icon(theme::CLOSE).weight(Weight::Quiet);
+                if delete.named(&name).ui(ui, look).clicked() {
+                    pane.actions.push(Action::RemoveMark(mark.clone()));
+                }
+                let short: String = words.chars().take(SHOWN).collect();
+                let text = format!("{}  {short}", clock(mark.at.secs(), 0.01));
+                let tip = format!("{words}\n{}", look.tip(plots::NOTE_SHOW));
+                if ui.button(text).on_hover_text(tip).clicked() {
+                    asked = Some(mark.at.secs());
+                }
+            });
+        }
+    });
+    ui.separator();
+    asked
+}
