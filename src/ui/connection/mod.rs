@@ -15,7 +15,7 @@ use crate::transport::{Endpoint, Packing};
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
-use crate::ui::text::{errors, panels, quirks, scan as scan_text};
+use crate::ui::text::{errors, panels, scan as scan_text};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 use std::collections::BTreeMap;
@@ -231,8 +231,8 @@ impl ConnectionForm {
                 .map(|it| said(it.name(), panels::scenario(it)))
                 .to_vec(),
             "packing" => {
-                let all = Packing::ALL.map(|it| said(it.name(), quirks::chosen(it)));
-                [said("", quirks::AS_FOUND)]
+                let all = Packing::ALL.map(|it| said(it.name(), scan_text::chosen(it)));
+                [said("", scan_text::AS_FOUND)]
                     .into_iter()
                     .chain(all)
                     .collect()
@@ -260,7 +260,7 @@ impl ConnectionForm {
             self.ports_ui(ui, pane);
         }
         if key == "packing" {
-            let tip = Label::new(look.tip(quirks::fact(Fact::Packing)), look.palette.muted);
+            let tip = Label::new(look.tip(scan_text::fact(Fact::Packing)), look.palette.muted);
             tip.small().wrap().ui(ui);
         }
     }

@@ -12,7 +12,7 @@ use crate::ui::hand::shape::Held;
 use crate::ui::hand::tile;
 use crate::ui::hand::view::HandView;
 use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
-use crate::ui::text::{panels, touch as text, words};
+use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense as Meant, Tip};
 use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
@@ -110,7 +110,7 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
 fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
     if shown.actual.all().is_none() {
         let place = picture.with_min_y(picture.bottom() - theme::PAD);
-        kit::Label::note(look, text::UNKNOWN)
+        kit::Label::note(look, panels::UNKNOWN)
             .center()
             .put(ui, place);
     }
@@ -120,13 +120,13 @@ fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
 fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let words = look.say(match look.side {
-        Side::Right => text::RIGHT_HAND,
-        Side::Left => text::LEFT_HAND,
+        Side::Right => panels::RIGHT_HAND,
+        Side::Left => panels::LEFT_HAND,
     });
     let width = kit::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
     let corner = picture.right_bottom() - vec2(width, theme::CONTROL);
     let place = Rect::from_min_size(corner, vec2(width, theme::CONTROL));
-    let button = Button::new(words, look.say(text::SIDE_TIP)).weight(Weight::Quiet);
+    let button = Button::new(words, look.say(panels::SIDE_TIP)).weight(Weight::Quiet);
     let id = ui.next_auto_id().with("side");
     if button.put(ui, look, place, id).clicked() {
         pane.actions.push(Action::Side(look.side.other()));

@@ -7,7 +7,7 @@ use crate::ui::joints::frame_menu::frame_menu_ui;
 use crate::ui::joints::row::{READING, Row, cell};
 use crate::ui::joints::track::{Actual, Track};
 use crate::ui::kit::{Label, NumberField, Pane};
-use crate::ui::text::{Text, main, tune};
+use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, Ui};
 
@@ -191,7 +191,7 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// Each trial of a series sets its own force and speed: what a person set is not in force then.
 fn series(pane: &Pane<'_>) -> Option<&'static str> {
     let runs = pane.state.hand().runs_series();
-    runs.then(|| pane.look.say(tune::RUNS))
+    runs.then(|| pane.look.say(main::SERIES_RUNS))
 }
 
 fn named(pane: &Pane<'_>, row: Option<&Row>, what: Text) -> String {

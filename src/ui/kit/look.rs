@@ -6,7 +6,7 @@ use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Moment, PerDof, Timed};
-use crate::ui::text::{Text, main, tune};
+use crate::ui::text::{Text, main};
 use crate::ui::theme::Palette;
 use crate::ui::view::View;
 use egui::{Color32, Id};
@@ -117,7 +117,7 @@ impl Pane<'_> {
     /// Why nothing that moves the hand can be asked for now.
     pub(crate) fn unready(&self) -> Option<&'static str> {
         if self.state.hand().runs_series() {
-            return Some(self.look.say(tune::RUNS));
+            return Some(self.look.say(main::SERIES_RUNS));
         }
         (!self.state.hand().is_armed()).then(|| self.look.say(main::NOT_ARMED))
     }

@@ -6,7 +6,7 @@ use crate::app::params::refusal::Refusal;
 use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
-use crate::ui::text::{cards, device, errors, verdicts};
+use crate::ui::text::{cards, device, errors};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui};
 
@@ -60,15 +60,15 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     let (look, book) = (pane.look, &pane.state.hand().params);
     let palette = look.palette;
     let mut lines = Vec::new();
-    if let Some(doing) = verdicts::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
+    if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
         lines.push((look.say(doing).to_owned(), palette.accent));
     }
     if let Some((end, _)) = &book.save {
-        let color = match verdicts::is_saved(end) {
+        let color = match device::is_saved(end) {
             true => palette.ok,
             false => palette.bad,
         };
-        lines.push((verdicts::save_end(look, end), color));
+        lines.push((device::save_end(look, end), color));
     }
     if let Some(reason) = reason.filter(|_| !book.is_busy()) {
         lines.push((reason.to_owned(), palette.muted));
@@ -78,7 +78,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     }
     let unsaved = book.unsaved().into_iter();
     let unsaved: Vec<String> = unsaved
-        .map(|row| verdicts::whole_name(look, row.id))
+        .map(|row| device::whole_name(look, row.id))
         .collect();
     if !unsaved.is_empty() {
         let words = format!("{} {}", look.say(device::UNSAVED), unsaved.join(", "));
@@ -145,7 +145,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     let look = pane.look;
     let (words, unreadable) = match &backup.about {
-        Ok((at, why)) => (format!("{} {}", moment(at), verdicts::why(look, why)), None),
+        Ok((at, why)) => (format!("{} {}", moment(at), device::why(look, why)), None),
         Err(error) => {
             let name = backup.path.file_name().unwrap_or_default();
             (

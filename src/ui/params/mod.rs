@@ -13,7 +13,7 @@ use crate::app::params::action::ParamAction;
 use crate::app::params::refusal::Refusal;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::params::table::Shown;
-use crate::ui::text::{device, errors, verdicts};
+use crate::ui::text::{device, errors};
 use crate::ui::theme;
 use egui::{Color32, Panel, Ui};
 
@@ -104,7 +104,7 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn status(pane: &Pane<'_>) -> (String, Color32) {
     let (look, hand) = (pane.look, pane.state.hand());
     let book = &hand.params;
-    if let Some(doing) = verdicts::doing(book.doing) {
+    if let Some(doing) = device::doing(book.doing) {
         return (look.say(doing).into(), look.palette.accent);
     }
     if !hand.link.state.is_live() {

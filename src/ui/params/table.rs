@@ -7,7 +7,7 @@ use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
-use crate::ui::text::{Text, device, verdicts};
+use crate::ui::text::{Text, device};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
@@ -50,7 +50,7 @@ impl Shown {
         if self.only && !pane.state.hand().params.differs(id) {
             return false;
         }
-        let name = verdicts::whole_name(pane.look, id).to_lowercase();
+        let name = device::whole_name(pane.look, id).to_lowercase();
         let register = id.register().name.to_lowercase();
         let all = format!("{name} {} {register}", id.name());
         let mut words = self.words.split_whitespace();
@@ -201,7 +201,7 @@ fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
 
 /// What a screen reader says before a value: `Index speed live`.
 pub(crate) fn cell_name(pane: &Pane<'_>, id: ParamId, column: Text) -> String {
-    let name = verdicts::whole_name(pane.look, id);
+    let name = device::whole_name(pane.look, id);
     format!("{name} {}", pane.look.say(column).to_lowercase())
 }
 
@@ -248,7 +248,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         _ => palette.text,
     };
     let is_applied = pane.state.hand().params.outcome(id).is_some() && !has_trouble(pane, id);
-    let name = Label::new(look.say(verdicts::name(id)), color);
+    let name = Label::new(look.say(device::name(id)), color);
     if !is_applied && !id.is_place() {
         name.ui(ui);
         return;
@@ -262,7 +262,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
             label.named(&verdict).ui(ui);
         }
         if id.is_place() {
-            Label::note(look, verdicts::about(id)).wrap().ui(ui);
+            Label::note(look, device::about(id)).wrap().ui(ui);
         }
     });
 }
@@ -277,7 +277,7 @@ fn verdict_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         RowVerdict::Unverified(_) | RowVerdict::NotSent(_) => palette.warn,
         _ => palette.bad,
     };
-    let words = verdicts::row_end(pane.look, end);
+    let words = device::row_end(pane.look, end);
     let name = cell_name(pane, id, device::VERDICT);
     Label::new(&words, color).small().named(&name).ui(ui);
 }
@@ -304,7 +304,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let staged = book.staged(id);
     let live = book.live(id).map(|(value, _)| value);
     let shown = staged.or(live);
-    let whole_name = verdicts::whole_name(look, id);
+    let whole_name = device::whole_name(look, id);
     let name = cell_name(pane, id, device::STAGED);
     ui.scope(|ui| {
         let width = ui.available_width() - theme::CONTROL - theme::GAP;
@@ -372,7 +372,7 @@ fn address_ui(
 fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let hand = pane.state.hand();
-    let name = verdicts::whole_name(look, id);
+    let name = device::whole_name(look, id);
     let label = format!("{} {name}", look.say(device::CHANGE));
     let live = hand.params.live(id).map(|(value, _)| value);
     let wanted = hand.params.staged(id);

@@ -6,7 +6,7 @@ use crate::ui::plots::bars;
 use crate::ui::plots::scales::{self, Scales};
 use crate::ui::plots::time_window::{Span, TimeWindow};
 use crate::ui::plots::times::{Times, marks};
-use crate::ui::text::{Text, panels, plots};
+use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{
@@ -291,8 +291,8 @@ impl<'a> Chart<'a> {
                     .ui(ui);
                 let is_fixed = view.scales.chosen(self.title).is_some();
                 for (is_said, text, tip) in [
-                    (is_fixed, plots::RANGE_FIXED, plots::RANGE.tip()),
-                    (is_decimated, plots::DECIMATED, plots::DECIMATED.tip()),
+                    (is_fixed, panels::RANGE_FIXED, panels::RANGE.tip()),
+                    (is_decimated, panels::DECIMATED, panels::DECIMATED.tip()),
                 ] {
                     let width = kit::text_width(ui, look.say(text), theme::tiny());
                     if is_said && width <= ui.available_width() {
@@ -334,7 +334,7 @@ impl<'a> Chart<'a> {
         let name = format!(
             "{} {}",
             look.say(self.title),
-            look.say(plots::UNDER_POINTER)
+            look.say(panels::UNDER_POINTER)
         );
         ui.ctx()
             .accesskit_node_builder(response.id, |node| node.set_label(name));

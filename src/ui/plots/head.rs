@@ -8,7 +8,7 @@ use crate::ui::kit::{self, Button, Look, Opens, Pane, Weight};
 use crate::ui::plots::PlotView;
 use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
-use crate::ui::text::{Text, panels, plots, words};
+use crate::ui::text::{Text, panels, words};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Color32, Popup, PopupCloseBehavior, Role, Ui, WidgetInfo};
@@ -23,9 +23,9 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     kit::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
         ui.spacing_mut().item_spacing.x = theme::STEP;
         menu_ui(ui, pane, view);
-        let text = look.say(plots::CURSORS);
+        let text = look.say(panels::CURSORS);
         let cursors =
-            Button::new(text, look.tip(plots::CURSORS)).named(look.say(plots::CURSORS_NAME));
+            Button::new(text, look.tip(panels::CURSORS)).named(look.say(panels::CURSORS_NAME));
         if switch(cursors, view.cursors.0.is_some(), Weight::Chosen)
             .ui(ui, look)
             .clicked()
@@ -33,8 +33,8 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
             view.cursors.toggle(view.view.time.span());
         }
         if !is_narrow {
-            let note = Button::said(look, plots::NOTE);
-            let note = note.named(look.say(plots::NOTE_NAME)).ui(ui, look);
+            let note = Button::said(look, panels::NOTE);
+            let note = note.named(look.say(panels::NOTE_NAME)).ui(ui, look);
             if note.clicked() {
                 pane.open(Opens::Note);
             }
@@ -56,18 +56,18 @@ const fn switch(button: Button<'_>, on: bool, weight: Weight) -> Button<'_> {
 /// Everything that is not needed all the time.
 fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
-    let button = Button::said(look, plots::MORE);
+    let button = Button::said(look, panels::MORE);
     let button = button
-        .named(look.say(plots::MORE_NAME))
+        .named(look.say(panels::MORE_NAME))
         .icon(theme::MORE)
         .ui(ui, look);
     let menu = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let shown = menu.show(|ui| {
-        ui.label(look.say(plots::SHOWN));
+        ui.label(look.say(panels::SHOWN));
         shown_ui(ui, pane);
         ui.separator();
-        ui.checkbox(&mut view.large, look.say(plots::ENLARGE));
-        if entry_ui(ui, look, plots::NOTE_NAME) {
+        ui.checkbox(&mut view.large, look.say(panels::ENLARGE));
+        if entry_ui(ui, look, panels::NOTE_NAME) {
             pane.open(Opens::Note);
             Popup::close_all(ui.ctx());
         }
@@ -79,7 +79,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         keep_ui(ui, pane, view);
         ui.separator();
         ui.set_max_width(250.0);
-        let hint = egui::RichText::new(look.say(plots::AREA_TIP));
+        let hint = egui::RichText::new(look.say(panels::AREA_TIP));
         ui.label(hint.small().color(look.palette.muted));
     });
     if shown.is_none() {
@@ -113,10 +113,10 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let series = view.shown_series(pane);
     let history = &pane.state.hand().history;
     let fits = history.rows(&series, from_s, to_s) <= COPY_ROWS_MAX;
-    let copy = ui.add_enabled(fits, egui::Button::new(look.say(plots::COPY)));
-    let copy = copy.on_hover_text(look.tip(plots::COPY));
+    let copy = ui.add_enabled(fits, egui::Button::new(look.say(panels::COPY)));
+    let copy = copy.on_hover_text(look.tip(panels::COPY));
     if copy
-        .on_disabled_hover_text(look.say(plots::COPY_LONG))
+        .on_disabled_hover_text(look.say(panels::COPY_LONG))
         .clicked()
     {
         let table = history.table(&series, from_s, to_s);
@@ -124,13 +124,13 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         view.copied = Some(table.len());
     }
     if let Some(rows) = view.copied {
-        ui.label(format!("{} {rows}", look.say(plots::COPIED)));
+        ui.label(format!("{} {rows}", look.say(panels::COPIED)));
     }
-    let save = entry_ui(ui, look, plots::SAVE_CSV).then(|| {
+    let save = entry_ui(ui, look, panels::SAVE_CSV).then(|| {
         let table = history.table(&series, from_s, to_s);
         Action::Save(Content::Plots(table))
     });
-    let picture = entry_ui(ui, look, plots::SAVE_PNG);
+    let picture = entry_ui(ui, look, panels::SAVE_PNG);
     let picture = picture.then(|| Action::SavePicture(view.pixels()));
     if let Some(action) = save.or(picture) {
         pane.actions.push(action);

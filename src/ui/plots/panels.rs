@@ -3,7 +3,7 @@
 use crate::app::settings::PlotKind;
 use crate::hand::{Dof, Finger, PerDof, Quantity, QuantityRow, Touch};
 use crate::history::Series;
-use crate::ui::text::{Text, panels, plots};
+use crate::ui::text::{Text, panels};
 
 /// One of the stacked plots.
 #[derive(Debug)]
@@ -19,10 +19,10 @@ pub(crate) struct Panel {
 /// All, from top to bottom.
 pub(crate) const PANELS: [Panel; 6] = [
     Panel::new(PlotKind::Force, panels::PLOT_FORCE, Quantity::Force.row()),
-    Panel::new(PlotKind::Normal, plots::NORMAL, Touch::Normal.row()),
+    Panel::new(PlotKind::Normal, panels::NORMAL, Touch::Normal.row()),
     Panel::new(
         PlotKind::Tangential,
-        plots::TANGENTIAL,
+        panels::TANGENTIAL,
         Touch::Tangential.row(),
     ),
     Panel::new(

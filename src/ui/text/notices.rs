@@ -8,7 +8,7 @@ use crate::record::Disarmed;
 use crate::record::quirk_sheet::Difference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{device, errors, main, panels, poses, quirks, traffic, trials, tune, words};
+use crate::ui::text::{device, errors, main, panels, poses, scan, traffic, tune, words};
 use std::path::Path;
 
 /// Title, cause and advice of what is wrong with a drive.
@@ -107,7 +107,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::SeriesEnded { .. }
         | NoticeKind::SeriesRuns
         | NoticeKind::SessionOpened { .. }
-        | NoticeKind::SessionRefused { .. } => trials::notice(look, what),
+        | NoticeKind::SessionRefused { .. } => tune::notice(look, what),
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         NoticeKind::GestureStoreOff => said(poses::STORE_OFF.tip()),
         // The words of the graphics driver help whoever mends it.
@@ -165,7 +165,7 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotSaved { path, message } => {
             of(traffic::NOT_SAVED, path, &errors::system(look, message))
         }
-        NoticeKind::SheetNotKept { message } => system(quirks::NOT_KEPT, message),
+        NoticeKind::SheetNotKept { message } => system(scan::NOT_KEPT, message),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),
     }
@@ -174,9 +174,9 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
 fn differing(look: Look, differences: &[Difference], last_seen: &str) -> String {
     let facts = differences.iter().map(|difference| {
         let Difference { fact, before, now } = difference;
-        format!("{}: {before} -> {now}", look.say(quirks::fact(*fact)))
+        format!("{}: {before} -> {now}", look.say(scan::fact(*fact)))
     });
     let facts: Vec<String> = facts.collect();
-    let intro = look.say(quirks::OTHER_HAND);
+    let intro = look.say(scan::OTHER_HAND);
     format!("{intro} ({last_seen}) {}", facts.join("; "))
 }

@@ -10,7 +10,7 @@ use crate::app::readings::friction::Hold;
 use crate::hand::Finger;
 use crate::ui::hand::panel::HandPanel;
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{panels, touch as text, words};
+use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
 use crate::ui::touch::tip_detail::TipDetail;
@@ -145,19 +145,19 @@ impl TouchView {
         let name = look.say(words::finger(finger));
         let title = format!("{}: {name}", look.say(panels::TIP));
         kit::head_ui(ui, look, &title, |ui| {
-            let shown = (&mut self.numbers, text::NUMBERS.tip());
-            let all = [(true, text::NUMBERS), (false, text::DETAIL)];
+            let shown = (&mut self.numbers, panels::NUMBERS.tip());
+            let all = [(true, panels::NUMBERS), (false, panels::DETAIL)];
             kit::pick_ui(ui, look, shown, all);
-            let assumed = Label::note(look, text::ASSUMED).ui(ui);
-            assumed.on_hover_text(look.tip(text::ASSUMED));
+            let assumed = Label::note(look, panels::ASSUMED).ui(ui);
+            assumed.on_hover_text(look.tip(panels::ASSUMED));
             let rest = pane.state.hand().tare.rest(finger);
             let tared = match rest {
-                None => look.say(text::NO_ZERO).to_owned(),
-                Some(rest) if !rest.chosen => look.say(text::NOT_TARED).to_owned(),
-                Some(rest) => text::tared(look, pane.state.now.since(rest.at)),
+                None => look.say(panels::NO_ZERO).to_owned(),
+                Some(rest) if !rest.chosen => look.say(panels::NOT_TARED).to_owned(),
+                Some(rest) => panels::tared(look, pane.state.now.since(rest.at)),
             };
             let tared = Label::new(&tared, look.palette.muted).small();
-            tared.named(look.say(text::TARED_NAME)).ui(ui);
+            tared.named(look.say(panels::TARED_NAME)).ui(ui);
         });
         if self.numbers {
             ScrollArea::vertical()
@@ -191,9 +191,9 @@ impl TouchView {
         let block = block.map(|block| block.value);
         let sense = tip.map_or(Sense::Fine, |tip| tip.sense);
         let (below, color) = match (sense, self.detail.hold(finger)) {
-            (Sense::NoNumber, _) => (look.say(text::NO_NUMBER).to_owned(), look.palette.warn),
-            (Sense::Beyond, _) => (look.say(text::BEYOND).to_owned(), look.palette.warn),
-            (Sense::Fine, Hold::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
+            (Sense::NoNumber, _) => (look.say(panels::NO_NUMBER).to_owned(), look.palette.warn),
+            (Sense::Beyond, _) => (look.say(panels::BEYOND).to_owned(), look.palette.warn),
+            (Sense::Fine, Hold::Slips) => (look.say(panels::SLIP).to_owned(), look.palette.bad),
             (Sense::Fine, _) => {
                 let shear = format::newtons(block.map(|block| block.tangential_n));
                 // The arrow says the direction, too.
@@ -206,7 +206,7 @@ impl TouchView {
             _ => look.palette.warn,
         };
         let meaning = look.say(match sense {
-            Sense::Beyond => text::BEYOND.tip(),
+            Sense::Beyond => panels::BEYOND.tip(),
             _ => panels::TOUCH.tip(),
         });
         let freshness = pane.state.hand().tip_freshness(finger);

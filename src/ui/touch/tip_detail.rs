@@ -10,7 +10,7 @@ use crate::ui::kit::{self, Label, Look, Pane, format};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::legend::{Key, legend_ui};
 use crate::ui::plots::times::Times;
-use crate::ui::text::{Text, panels, touch as text};
+use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use crate::ui::touch::table as touch_table;
 use crate::ui::touch::tip_channels::TipChannels;
@@ -169,8 +169,8 @@ impl TipDetail {
         let check = block.map(|block| block.check_ok());
         let (check, check_color) = match check {
             None => (format::UNKNOWN, plain),
-            Some(true) => (look.say(text::CHECK_OK), plain),
-            Some(false) => (look.say(text::CHECK_DIFFERS), look.palette.warn),
+            Some(true) => (look.say(panels::CHECK_OK), plain),
+            Some(false) => (look.say(panels::CHECK_DIFFERS), look.palette.warn),
         };
         let hold = self.hold(self.finger);
         let rows: [(Text, String, egui::Color32); 6] = [
@@ -184,9 +184,9 @@ impl TipDetail {
                 newtons(block.map(|block| block.tangential_n)),
                 plain,
             ),
-            (text::DIRECTION, direction, plain),
+            (panels::DIRECTION, direction, plain),
             (panels::TIP_RATIO, ratio, plain),
-            (text::CHECK, check.to_owned(), check_color),
+            (panels::CHECK, check.to_owned(), check_color),
             (panels::TIP_MARGIN, margin, color_of(hold, look.palette)),
         ];
         let row = (rect.height() / 8.0).min(theme::CONTROL);
@@ -198,8 +198,8 @@ impl TipDetail {
                 .number()
                 .right();
             let response = label.named(look.say(*caption)).put(ui, place);
-            if *caption == text::CHECK {
-                response.on_hover_text(look.tip(text::CHECK));
+            if *caption == panels::CHECK {
+                response.on_hover_text(look.tip(panels::CHECK));
             }
         }
         let place = kit::take_top(&mut rest, row);
@@ -268,7 +268,7 @@ impl TipDetail {
             curves: lines.map(curve).to_vec(),
             least: (0.0, FORCE_END),
             times: Times::From(now, look.say(panels::NOW)),
-            ..Chart::new(look, text::FORCES, ui.available_height())
+            ..Chart::new(look, panels::FORCES, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);
     }

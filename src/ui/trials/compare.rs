@@ -5,7 +5,7 @@ use crate::app::action::Action;
 use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
 use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, TextField};
-use crate::ui::text::{compare, notices, tune};
+use crate::ui::text::{notices, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::BestView;
 use crate::ui::trials::compare_choice::{ShownSessions, TrialKey};
@@ -102,7 +102,7 @@ impl CompareView {
         let forget = id.map(TrialAction::Forget);
         kit::right_ui(ui, |ui| {
             for (text, disabled, action) in [
-                (compare::FORGET, busy, forget),
+                (tune::FORGET, busy, forget),
                 (tune::SAVE, busy.or(read), save),
                 (tune::OPEN, None, Some(TrialAction::Open)),
             ] {
@@ -160,10 +160,10 @@ pub(crate) fn told(state: &State, look: Look, now: Option<&TrialSession>) -> (St
 /// The card of a session that is about to go and lies in no file.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
-    let loses = look.fill(compare::FORGET_LOSES, &[&session.trials.len()]);
-    let back = Choice::new(compare::FORGET_NOT, Manner::Safe);
-    let forget = Choice::new(compare::FORGET_SURE, Manner::Danger);
-    let card = Card::new(look, compare::FORGET_TITLE)
+    let loses = look.fill(tune::FORGET_LOSES, &[&session.trials.len()]);
+    let back = Choice::new(tune::FORGET_NOT, Manner::Safe);
+    let forget = Choice::new(tune::FORGET_SURE, Manner::Danger);
+    let card = Card::new(look, tune::FORGET_TITLE)
         .words(compare_list::name(look, session.id))
         .warning(loses)
         .choice(back.does(Action::Trial(TrialAction::CancelForget)))

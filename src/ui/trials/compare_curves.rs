@@ -7,7 +7,7 @@ use crate::app::trials::{
 use crate::ui::kit::{Button, Label, Pane, dash};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::legend::{Key, fits, legend_ui};
-use crate::ui::text::{Text, compare, tune, words};
+use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::setting_words;
@@ -160,12 +160,7 @@ impl CurvesView {
             }
             let picture = self.picture.as_ref().map(|(_, picture)| picture);
             if let Some(few) = picture.filter(|picture| picture.lines.len() < picture.all) {
-                let text = format!(
-                    "{} {} {}",
-                    few.lines.len(),
-                    look.say(compare::OF_ALL),
-                    few.all
-                );
+                let text = format!("{} {} {}", few.lines.len(), look.say(tune::OF_ALL), few.all);
                 Label::new(&text, look.palette.warn).small().ui(ui);
             }
         });

@@ -5,7 +5,7 @@ use crate::app::trials::{ComparedRow, Comparison, RowKey, SessionId};
 use crate::trials::columns::{Better, COLUMNS, Metric};
 use crate::trials::{JointMetrics, TrialSetting};
 use crate::ui::kit::{self, Button, Label, Pane, dash};
-use crate::ui::text::{Text, compare, trials, tune, words};
+use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::{end_words, order, setting_words, shown, spread};
@@ -211,13 +211,13 @@ impl<'a> Sheet<'a, '_> {
     fn end(&self, seen: ComparedRow<'_>) -> String {
         let look = self.pane.look;
         match &seen.trial.aborted {
-            Some(why) => trials::ended(look, why),
+            Some(why) => tune::ended(look, why),
             None => end_words(look, seen.joint.end_status.as_deref()),
         }
     }
 
     fn head_ui(&self, row: &mut TableRow<'_, '_>, sorting: &mut Sorting) {
-        let session = (By::Session, compare::COLUMN_SESSION);
+        let session = (By::Session, tune::COLUMN_SESSION);
         let first = [session, (By::Trial, tune::COLUMN_TRIAL)].into_iter();
         let numbers = shown().map(|(column, title)| (By::Number(column.metric), title));
         let heads = first.skip(usize::from(!self.several())).chain(numbers);
@@ -247,8 +247,8 @@ impl<'a> Sheet<'a, '_> {
         }
         if is_own {
             let (arrow, way) = match sorting.falling {
-                true => (theme::TO_BOTTOM, compare::FALLING),
-                false => (theme::TO_TOP, compare::RISING),
+                true => (theme::TO_BOTTOM, tune::FALLING),
+                false => (theme::TO_TOP, tune::RISING),
             };
             let place = lower.with_max_x(lower.left() + theme::SIGN_SMALL);
             kit::sign(ui, place, arrow, look.palette.accent);
@@ -289,7 +289,7 @@ impl<'a> Sheet<'a, '_> {
             false => (number.to_string(), name.clone()),
         };
         if self.several() {
-            let label = format!("{short} {}", look.say(compare::COLUMN_SESSION));
+            let label = format!("{short} {}", look.say(tune::COLUMN_SESSION));
             row.col(|ui| number_ui(ui, &label, &session.0.to_string(), text));
         }
         row.col(|ui| {
@@ -331,7 +331,7 @@ impl<'a> Sheet<'a, '_> {
         let title = look.fill(tune::REPEATED, &[&count, &name]);
         if self.several() {
             name = format!("{}: {name}", id.0);
-            let label = format!("{name} {}", look.say(compare::COLUMN_SESSION));
+            let label = format!("{name} {}", look.say(tune::COLUMN_SESSION));
             row.col(|ui| number_ui(ui, &label, &id.0.to_string(), look.palette.text));
         }
         row.col(|ui| {

@@ -6,7 +6,7 @@ use crate::app::trials::{StartRefusal, TrialAction};
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::text::{tune, words};
+use crate::ui::text::{main, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::trials::tune_live;
@@ -79,7 +79,7 @@ fn refusal(pane: &Pane<'_>) -> Option<String> {
     }
     hand.start_refusal(plan).map(|why| match why {
         StartRefusal::NotArmed => look.say(tune::NEED_ARM).into(),
-        StartRefusal::Runs => look.say(tune::RUNS).into(),
+        StartRefusal::Runs => look.say(main::SERIES_RUNS).into(),
         StartRefusal::Locked(dof) => look.fill(tune::NEED_FREE, &[&look.say(words::dof(dof))]),
     })
 }

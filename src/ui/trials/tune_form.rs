@@ -6,7 +6,7 @@ use crate::app::trials::{ApproachKind, PlanField, TrialAction};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::{Approach, TrialPlan, Until};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField};
-use crate::ui::text::{Text, trials, tune, words};
+use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::line_ui;
 use egui::{Align, Layout, ScrollArea, Ui, vec2};
@@ -68,16 +68,16 @@ impl TuneForm {
         let plan = pane.state.trials.plan.clone();
         self.remember(&plan);
         let error = plan.check().err();
-        let wrong = error.map(|error| (PlanField::of(&error), trials::plan_error(look, &error)));
+        let wrong = error.map(|error| (PlanField::of(&error), tune::plan_error(look, &error)));
         let refused = self.refused;
-        let refused = refused.map(|(field, why)| (field, trials::list_error(look, why)));
+        let refused = refused.map(|(field, why)| (field, tune::list_error(look, why)));
         let runs = pane.state.hand().runs_series();
         let mut pass = Pass {
             wrong: refused.or(wrong),
             pane,
             form: self,
             plan,
-            disabled: runs.then(|| look.say(tune::RUNS)),
+            disabled: runs.then(|| look.say(main::SERIES_RUNS)),
         };
         let area = ScrollArea::vertical().id_salt("plan").auto_shrink(false);
         area.show(ui, |ui| {

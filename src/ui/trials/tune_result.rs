@@ -7,7 +7,7 @@ use crate::trials::best::{Score, best};
 use crate::ui::kit::{Button, Opens, Pane, Weight};
 use crate::ui::plots::chart::{Chart, ChartView};
 use crate::ui::plots::legend::legend_ui;
-use crate::ui::text::{trials, tune};
+use crate::ui::text::tune;
 use crate::ui::trials::compare;
 use crate::ui::trials::compare_best::staging;
 use crate::ui::trials::compare_columns::setting_words;
@@ -31,7 +31,7 @@ impl ResultView {
         let (look, palette) = (pane.look, pane.look.palette);
         let (ended, color) = match &session.head.aborted {
             None => (look.say(tune::ALL_DONE).to_owned(), palette.ok),
-            Some(why) => (trials::ended(look, why), palette.warn),
+            Some(why) => (tune::ended(look, why), palette.warn),
         };
         line_ui(ui, &look.fill(tune::LAST, &[&ended]), color);
         let (told, color) = compare::told(pane.state, look, Some(session));

@@ -11,7 +11,7 @@ use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
 use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
+use crate::ui::text::{Text, errors, layout, main, notices, panels, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
@@ -275,15 +275,15 @@ impl StatusLine {
     fn note_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let Some(at) = self.note_at else { return };
         let look = pane.look;
-        let cancel = Button::said(look, plots::NOTE_CANCEL);
+        let cancel = Button::said(look, panels::NOTE_CANCEL);
         let cancelled = cancel.ui(ui, look).clicked();
-        let keep = Button::said(look, plots::NOTE_KEEP);
+        let keep = Button::said(look, panels::NOTE_KEEP);
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
-        let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
+        let title = format!("{} {}", look.say(panels::NOTE_AT), clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
         let hint = match pane.state.hand().rests() {
-            true => plots::NOTE_HINT,
-            false => plots::NOTE_HINT_MOVING,
+            true => panels::NOTE_HINT,
+            false => panels::NOTE_HINT_MOVING,
         };
         let edit = TextEdit::singleline(&mut self.note)
             .char_limit(NOTE_MAX)
@@ -291,7 +291,7 @@ impl StatusLine {
             .margin(theme::FIELD_INSET)
             .desired_width((NOTE_WIDTH - words).max(theme::FIELD));
         let response = ui.add(edit);
-        kit::named_field(&response, look.say(plots::NOTE_FIELD), true, &self.note);
+        kit::named_field(&response, look.say(panels::NOTE_FIELD), true, &self.note);
         Label::new(&title, look.palette.text).ui(ui);
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
