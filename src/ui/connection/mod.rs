@@ -153,7 +153,7 @@ impl ConnectionForm {
             }
             ui.add_space(theme::STEP);
             self.connect_ui(ui, pane);
-            let hint = look.say(panels::kind(self.kind.0).1);
+            let hint = look.tip(panels::kind(self.kind.0));
             Label::new(hint, look.palette.muted).wrap().ui(ui);
         });
         recent_ui(ui, pane);
@@ -162,15 +162,10 @@ impl ConnectionForm {
     fn kinds_ui(&mut self, ui: &mut Ui, look: Look) {
         ui.horizontal_wrapped(|ui| {
             for kind in KINDS {
-                let (text, hint) = panels::kind(kind.0);
-                let (text, hint) = (look.say(text), look.say(hint));
-                let name = format!("{}: {text}", look.say(panels::CONNECTION_KIND));
-                let chosen = kind.0 == self.kind.0;
-                let mut button = Button::new(text, hint).named(&name);
-                button.selected = Some(chosen);
-                if chosen {
-                    button.weight = Weight::Chosen;
-                }
+                let text = panels::kind(kind.0);
+                let name = format!("{}: {}", look.say(panels::CONNECTION_KIND), look.say(text));
+                let button = Button::said(look, text).named(&name);
+                let button = button.switch(kind.0 == self.kind.0);
                 if button.ui(ui, look).clicked() {
                     self.kind = kind;
                 }

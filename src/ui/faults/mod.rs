@@ -6,7 +6,7 @@ pub(crate) mod recordings;
 
 use crate::app::action::Action;
 use crate::app::hand::Freshness;
-use crate::app::notices::{Level, Notice};
+use crate::app::notices::Notice;
 use crate::app::readings::faults::NothingToClear;
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Status, Words};
@@ -272,11 +272,7 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {
 fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
     let look = pane.look;
     let palette = look.palette;
-    let color = match notice.level {
-        Level::Info => palette.accent,
-        Level::Warn => palette.warn,
-        Level::Alarm => palette.bad,
-    };
+    let color = look.level(notice.level);
     let mut text = notices::notice(look, &notice.what);
     if notice.count > 1 {
         text = format!("{text} ({} ×)", notice.count);

@@ -38,15 +38,15 @@ impl HandPanel {
             lit: pointed::pointed(ui, Place::Row),
             ..picture(pane, tips)
         };
-        let answer = self.0.ui(ui, response, look.palette, &picture);
+        let (response, joint) = self.0.ui(ui, response, look.palette, &picture);
         unknown_note(ui, look, place, &picture);
         side_ui(ui, place, pane);
-        if let Some(dof) = answer.joint {
+        if let Some(dof) = joint {
             pointed::point(ui, Place::Hand, dof);
         }
-        let finger = answer.joint.map(crate::hand::Dof::finger);
-        let clicked = finger.filter(|_| answer.response.clicked());
-        answer.response.on_hover_text(finger.map_or_else(
+        let finger = joint.map(crate::hand::Dof::finger);
+        let clicked = finger.filter(|_| response.clicked());
+        response.on_hover_text(finger.map_or_else(
             || look.tip(panels::HAND_PICTURE).to_owned(),
             |finger| said(pane, finger),
         ));

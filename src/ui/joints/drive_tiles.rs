@@ -4,7 +4,7 @@ use crate::app::hand::Freshness;
 use crate::hand::Dof;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{faults, words};
 use crate::ui::theme;
 use egui::text::LayoutJob;
@@ -33,11 +33,8 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
     let joint = look.say(words::dof(dof));
     let said = DriveWords::of(pane, dof);
     let name = format!("{} {joint}", look.say(faults::DRIVE));
-    let mut button = Button::new(joint, look.tip(faults::DRIVE)).named(&name);
-    button.selected = Some(chosen);
-    if chosen {
-        button.weight = Weight::Chosen;
-    }
+    let button = Button::new(joint, look.tip(faults::DRIVE)).named(&name);
+    let button = button.switch(chosen);
     let is_high = ui.available_height() >= 560.0;
     let height = if is_high { 112.0 } else { 52.0 };
     let (id, rect) = ui.allocate_space(vec2(ui.available_width(), height));

@@ -11,9 +11,7 @@ use crate::ui::joints::tracks;
 use crate::ui::kit::{self, Button, Label, Opens, Pane};
 use crate::ui::text::{faults, main};
 use crate::ui::theme;
-use egui::{
-    Align, Color32, CursorIcon, Frame, Layout, Margin, Role, Sense, Ui, WidgetInfo, pos2, vec2,
-};
+use egui::{Color32, CursorIcon, Frame, Margin, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// How a row is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -88,10 +86,7 @@ pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle
 
 fn line_ui(ui: &mut Ui, height: f32, add: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), height);
-    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-        ui.set_min_size(size);
-        add(ui);
-    });
+    kit::cell_ui(ui, size, add);
 }
 
 fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row, each: bool) {

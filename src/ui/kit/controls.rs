@@ -648,17 +648,3 @@ pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
     ui.painter()
         .text(rect.center(), center, theme::WARNING, font, color);
 }
-
-/// Cuts a piece of the given width from the left, with a gap.
-pub(crate) fn take_left(rect: &mut Rect, width: f32) -> Rect {
-    let (piece, rest) = rect.split_left_right_at_x(rect.left() + width);
-    *rect = rest.with_min_x(rest.left() + theme::GAP);
-    piece
-}
-
-/// Cuts a piece of the given height from the top, with a gap.
-pub(crate) fn take_top(rect: &mut Rect, height: f32) -> Rect {
-    let (piece, rest) = rect.split_top_bottom_at_y(rect.top() + height);
-    *rect = rest.with_min_y(rest.top() + theme::GAP);
-    piece
-}

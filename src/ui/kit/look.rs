@@ -2,6 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::hand::Freshness;
+use crate::app::notices::Level;
 use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
@@ -36,6 +37,15 @@ impl Look {
     /// A text in the window's language.
     pub(crate) const fn say(self, text: Text) -> &'static str {
         text.of(self.language)
+    }
+
+    /// The colour of a message.
+    pub(crate) const fn level(self, level: Level) -> Color32 {
+        match level {
+            Level::Info => self.palette.accent,
+            Level::Warn => self.palette.warn,
+            Level::Alarm => self.palette.bad,
+        }
     }
 
     /// The name of a control and its tooltip or hint in the window's language.

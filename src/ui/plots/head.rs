@@ -23,13 +23,10 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     kit::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
         ui.spacing_mut().item_spacing.x = theme::STEP;
         menu_ui(ui, pane, view);
-        let text = look.say(panels::CURSORS);
-        let cursors =
-            Button::new(text, look.tip(panels::CURSORS)).named(look.say(panels::CURSORS_NAME));
-        if switch(cursors, view.cursors.0.is_some(), Weight::Chosen)
-            .ui(ui, look)
-            .clicked()
-        {
+        let cursors = Button::said(look, panels::CURSORS)
+            .named(look.say(panels::CURSORS_NAME))
+            .switch(view.cursors.0.is_some());
+        if cursors.ui(ui, look).clicked() {
             view.cursors.toggle(view.view.time.span());
         }
         if !is_narrow {
@@ -42,15 +39,6 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         pause_ui(ui, pane, view, is_narrow);
         window_ui(ui, pane, view);
     });
-}
-
-/// A button that is on or off.
-const fn switch(button: Button<'_>, on: bool, weight: Weight) -> Button<'_> {
-    Button {
-        selected: Some(on),
-        weight: if on { weight } else { Weight::Normal },
-        ..button
-    }
 }
 
 /// Everything that is not needed all the time.
@@ -141,16 +129,14 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
 fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bool) {
     let look = pane.look;
     let is_paused = view.view.time.is_held();
-    let (text, icon) = match is_paused {
-        true => (panels::PAUSED, theme::PLAY),
-        false => (panels::PAUSE, theme::PAUSE),
+    let (text, icon, weight) = match is_paused {
+        true => (panels::PAUSED, theme::PLAY, Weight::Armed),
+        false => (panels::PAUSE, theme::PAUSE, Weight::Normal),
     };
-    let button = Button::new(look.say(text), look.tip(panels::PAUSE));
-    let button = switch(
-        button.named(look.say(panels::PAUSE_NAME)),
-        is_paused,
-        Weight::Armed,
-    );
+    let button = Button::said(look, text)
+        .named(look.say(panels::PAUSE_NAME))
+        .selected(is_paused)
+        .weight(weight);
     let button = if is_narrow { button.icon(icon) } else { button };
     if button.ui(ui, look).clicked() {
         pane.actions

@@ -57,11 +57,9 @@ pub(crate) fn tile_ui(
 ) -> bool {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::POSE), pose.name);
-    let mut button = Button::new(&pose.name, look.say(poses::SELECT_TIP)).named(&name);
-    button.selected = Some(chosen);
-    if chosen {
-        button.weight = Weight::Chosen;
-    }
+    let button = Button::new(&pose.name, look.say(poses::SELECT_TIP))
+        .named(&name)
+        .switch(chosen);
     let builder = UiBuilder::new().id_salt(pose.id).max_rect(rect);
     let mut ui = ui.new_child(builder.layout(egui::Layout::top_down_justified(egui::Align::Min)));
     ui.spacing_mut().item_spacing.y = theme::STEP;

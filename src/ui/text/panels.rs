@@ -3,18 +3,16 @@
 use crate::app::readings::friction::Hold;
 use crate::app::settings::Language;
 use crate::link::PollGroup;
-use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
 use crate::ui::kit::{Look, format};
-use crate::ui::text::phrase::{Text, texts};
-use crate::ui::text::scan;
+use crate::ui::text::phrase::texts;
 use std::time::Duration;
 
 texts! {
     HISTORY: "History", "曲线";
     WINDOW_NAME: "Plot window", "时间窗口";
     PAUSE: "Pause", "暂停", "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
-    PAUSED: "Paused", "已暂停";
+    PAUSED: "Paused", "已暂停", "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
     PAUSE_NAME: "Pause the plots", "暂停曲线";
     SHOW_CURVE: "Show or hide this joint's curves.", "显示或隐藏该自由度的曲线。";
     THRESHOLDS: "Thresholds", "阈值", "Shows the force thresholds as dashed lines.", "以虚线显示力阈值。";
@@ -123,37 +121,15 @@ texts! {
 
     CONNECTION: "Connection", "连接";
     CONNECTION_KIND: "Kind of link", "连接方式";
-    KIND_SIM: "Simulated", "仿真";
-    KIND_RS485: "RS485", "RS485";
-    KIND_RTU: "Modbus RTU", "Modbus RTU";
-    KIND_TCP: "Modbus TCP", "Modbus TCP";
-    KIND_CAN: "CAN", "CAN";
-    KIND_SLCAN: "CAN adapter", "CAN 适配器";
-    KIND_USBCAN: "Maker's CAN", "因时 USB-CAN";
-    PORT: "Serial port", "串口";
     PORTS_NONE: "None found. Type a name, or plug the adapter in and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
     PORTS_REFRESH: "Refresh", "刷新", "Looks for serial ports again.", "重新查找串口。";
     PORT_PICK_TIP: "Takes this port.", "选用此串口。";
-    BAUD: "Baud", "波特率";
-    HAND_ID: "Hand id", "灵巧手 ID";
-    BITRATE: "Bit rate", "CAN 波特率";
-    INTERFACE: "Interface", "接口";
-    HOST: "Address", "网络地址";
-    UNIT: "Unit id", "单元标识符";
-    SEED: "Seed", "种子";
-    SCENARIO: "Scenario", "场景";
     EXPERT: "For experts", "专家选项";
     SCAN_HERE: "Scan", "扫描", "Looks for hands here and nowhere else, at all speeds and in all protocols. It only reads.", "仅在此处以各种波特率与协议查找灵巧手。只读取，不写入。";
     RECENT: "Recent hands", "最近的灵巧手";
     CONNECT: "Connect", "连接", "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
     DISCONNECT: "Disconnect", "断开", "Talks to no hand. The hand keeps what it was told.", "停止通信。灵巧手保持上一次的设置。";
     DISCONNECT_NONE: "Nothing is connected.", "当前没有连接。";
-    HINT_SIM: "The built-in hand answers on a simulated RS485 wire. Nothing real moves.", "内置仿真手通过模拟的 RS485 线路应答，不会有真实动作。";
-    HINT_SERIAL: "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
-    HINT_CAN: "Linux only. As delivered: 1000000 bit/s, id 1. The interface must be up: sudo ip link set can0 up type can bitrate 1000000.", "仅限 Linux。出厂设置：1000000 bit/s，ID 1。接口须已启用：sudo ip link set can0 up type can bitrate 1000000。";
-    HINT_SLCAN: "A serial CAN adapter that speaks slcan (Lawicel). As delivered, the hand has 1000000 bit/s and id 1.", "使用 slcan（Lawicel）协议的串口 CAN 适配器。灵巧手出厂设置：1000000 bit/s，ID 1。";
-    HINT_USBCAN: "The maker's own USB-CAN adapter, 115200 bit/s on its serial side. Its bit rate on CAN is not set from here: it must be that of the hand, as delivered 1000000 bit/s.", "因时自带的 USB-CAN 适配器，串口侧 115200 bit/s。此处不设置其 CAN 波特率：须与灵巧手一致，出厂为 1000000 bit/s。";
-    HINT_TCP: "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "通信地址";
     SINCE: ", for", "，已持续";
@@ -278,34 +254,30 @@ texts! {
         PollGroup::Tactile => "Fingertips", "指尖";
         PollGroup::Settings => "Setpoints", "设定值";
     }
-}
 
-/// What a kind of link is called, and what should be known about it, by its name in endpoints.
-pub(crate) fn kind(scheme: &str) -> (Text, Text) {
-    match scheme {
-        "rs485" => (KIND_RS485, HINT_SERIAL),
-        "tcp" => (KIND_TCP, HINT_TCP),
-        "rtu" => (KIND_RTU, HINT_SERIAL),
-        "can" => (KIND_CAN, HINT_CAN),
-        "slcan" => (KIND_SLCAN, HINT_SLCAN),
-        "usbcan" => (KIND_USBCAN, HINT_USBCAN),
-        _ => (KIND_SIM, HINT_SIM),
+    /// A way to reach a hand, by its part before the colon, and a hint to it.
+    fn kind(&str) {
+        "rs485" => "RS485", "RS485", "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
+        "tcp" => "Modbus TCP", "Modbus TCP", "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
+        "rtu" => "Modbus RTU", "Modbus RTU", "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
+        "can" => "CAN", "CAN", "Linux only. As delivered: 1000000 bit/s, id 1. The interface must be up: sudo ip link set can0 up type can bitrate 1000000.", "仅限 Linux。出厂设置：1000000 bit/s，ID 1。接口须已启用：sudo ip link set can0 up type can bitrate 1000000。";
+        "slcan" => "CAN adapter", "CAN 适配器", "A serial CAN adapter that speaks slcan (Lawicel). As delivered, the hand has 1000000 bit/s and id 1.", "使用 slcan（Lawicel）协议的串口 CAN 适配器。灵巧手出厂设置：1000000 bit/s，ID 1。";
+        "usbcan" => "Maker's CAN", "因时 USB-CAN", "The maker's own USB-CAN adapter, 115200 bit/s on its serial side. Its bit rate on CAN is not set from here: it must be that of the hand, as delivered 1000000 bit/s.", "因时自带的 USB-CAN 适配器，串口侧 115200 bit/s。此处不设置其 CAN 波特率：须与灵巧手一致，出厂为 1000000 bit/s。";
+        _ => "Simulated", "仿真", "The built-in hand answers on a simulated RS485 wire. Nothing real moves.", "内置仿真手通过模拟的 RS485 线路应答，不会有真实动作。";
     }
-}
 
-/// What a part of an endpoint is called, by its key.
-pub(crate) fn setting(key: &str) -> Text {
-    match key {
-        "port" => PORT,
-        "host" => HOST,
-        "interface" => INTERFACE,
-        "seed" => SEED,
-        "scenario" => SCENARIO,
-        "baud" => BAUD,
-        "bitrate" => BITRATE,
-        "unit" => UNIT,
-        "packing" => scan::fact(Fact::Packing),
-        _ => HAND_ID,
+    /// What a part of an endpoint is called, by its key.
+    fn setting(&str) {
+        "port" => "Serial port", "串口";
+        "host" => "Address", "网络地址";
+        "interface" => "Interface", "接口";
+        "seed" => "Seed", "种子";
+        "scenario" => "Scenario", "场景";
+        "baud" => "Baud", "波特率";
+        "bitrate" => "Bit rate", "CAN 波特率";
+        "unit" => "Unit id", "单元标识符";
+        "packing" => "Modbus bytes", "Modbus 字节";
+        _ => "Hand id", "灵巧手 ID";
     }
 }
 

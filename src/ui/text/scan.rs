@@ -153,20 +153,17 @@ fn found_words(look: Look, found: usize) -> String {
 
 /// The id where it is known, the way of speaking, and its speed.
 pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String {
-    let (kind, speed) = match endpoint {
-        Endpoint::Rs485(line) => (panels::KIND_RS485, Some(line.baud)),
-        Endpoint::Rtu(line) => (panels::KIND_RTU, Some(line.baud)),
-        Endpoint::Slcan { bitrate, .. } => (panels::KIND_SLCAN, Some(*bitrate)),
-        Endpoint::UsbCan { baud, .. } => (panels::KIND_USBCAN, Some(*baud)),
-        Endpoint::Can { .. } => (panels::KIND_CAN, None),
-        Endpoint::Tcp { .. } => (panels::KIND_TCP, None),
-        Endpoint::Sim { scenario, .. } => {
-            return format!("{}, {scenario}", look.say(panels::KIND_SIM));
-        }
+    let kind = look.say(panels::kind(endpoint.kind()));
+    let speed = match endpoint {
+        Endpoint::Sim { scenario, .. } => return format!("{kind}, {scenario}"),
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) => Some(line.baud),
+        Endpoint::Slcan { bitrate, .. } => Some(*bitrate),
+        Endpoint::UsbCan { baud, .. } => Some(*baud),
+        Endpoint::Can { .. } | Endpoint::Tcp { .. } => None,
     };
     let speed = speed.map(|speed| format!(", {speed}")).unwrap_or_default();
     let id = id.map(|id| format!("ID {id}, ")).unwrap_or_default();
-    format!("{id}{}{speed}", look.say(kind))
+    format!("{id}{kind}{speed}")
 }
 
 pub(crate) fn usb(usb: &UsbFound) -> String {

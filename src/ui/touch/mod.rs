@@ -164,8 +164,7 @@ impl TouchView {
                 .auto_shrink(false)
                 .show(ui, |ui| table::all_ui(ui, pane));
         } else {
-            let (_, place) = ui.allocate_space(ui.available_size());
-            self.detail.ui(ui, place, pane);
+            self.detail.ui(ui, pane);
         }
     }
 

@@ -7,7 +7,7 @@ use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Rect, Stroke, Ui, UiBuilder, vec2};
+use egui::{Align, Color32, Layout, Stroke, Ui, vec2};
 
 /// What can be shown, in seconds, with its name.
 const WINDOWS: [(f64, Text); 3] = [
@@ -54,19 +54,16 @@ fn color(look: Look, channel: usize) -> Color32 {
 
 impl TipChannels {
     /// Draws choice, plot and list.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, finger: Finger) {
-        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-            self.head_ui(ui, pane.look);
-            ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
-                if ui.available_width() >= 330.0 {
-                    let place = vec2(176.0, ui.available_height());
-                    let down = Layout::top_down(Align::Max);
-                    ui.allocate_ui_with_layout(place, down, |ui| list_ui(ui, pane, finger));
-                }
-                ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                    self.plot_ui(ui, pane, finger)
-                });
-            });
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
+        self.head_ui(ui, pane.look);
+        ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
+            if ui.available_width() >= 330.0 {
+                let place = vec2(176.0, ui.available_height());
+                let down = Layout::top_down(Align::Max);
+                ui.allocate_ui_with_layout(place, down, |ui| list_ui(ui, pane, finger));
+            }
+            let down = Layout::top_down(Align::Min);
+            ui.with_layout(down, |ui| self.plot_ui(ui, pane, finger));
         });
     }
 

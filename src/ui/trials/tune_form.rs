@@ -133,9 +133,7 @@ impl Pass<'_, '_> {
 
     fn caption_ui(&self, ui: &mut Ui, text: Text, width: f32) {
         let look = self.pane.look;
-        let row = Layout::left_to_right(Align::Center);
-        ui.allocate_ui_with_layout(vec2(width, theme::CONTROL), row, |ui| {
-            ui.set_min_size(vec2(width, theme::CONTROL));
+        kit::cell_ui(ui, vec2(width, theme::CONTROL), |ui| {
             Label::note(look, text).ui(ui);
         });
     }

@@ -45,12 +45,11 @@ pub(crate) struct MessageLog {
     copied: Option<usize>,
 }
 
-/// A level's word and colour.
-fn level_look(look: Look, level: Level) -> (Text, Color32) {
+const fn level_word(level: Level) -> Text {
     match level {
-        Level::Info => (faults::WORD_INFO, look.palette.accent),
-        Level::Warn => (faults::WORD_WARN, look.palette.warn),
-        Level::Alarm => (faults::WORD_ALARM, look.palette.bad),
+        Level::Info => faults::WORD_INFO,
+        Level::Warn => faults::WORD_WARN,
+        Level::Alarm => faults::WORD_ALARM,
     }
 }
 
@@ -164,7 +163,7 @@ impl MessageLog {
                 row.col(|ui| {
                     let size = vec2(LAMP, theme::TEXT_LINE);
                     let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-                    kit::lamp(ui, place.center(), level_look(look, line.level).1);
+                    kit::lamp(ui, place.center(), look.level(line.level));
                 });
                 row.col(|ui| {
                     let label = Label::new(&line.text, look.palette.text);
@@ -184,7 +183,7 @@ impl MessageLog {
     fn text(&self, look: Look) -> String {
         let mut text = String::new();
         for line in &self.lines {
-            let level = look.say(level_look(look, line.level).0);
+            let level = look.say(level_word(line.level));
             // Writing to a string cannot fail.
             let _done = writeln!(text, "{:10.3} s  {level}  {}", line.at.secs(), line.text);
         }

@@ -337,12 +337,8 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     let palette = look.palette;
     let (words, color) = match (news, mover(pane)) {
         (Some(newest), _) => {
-            let color = match newest.level {
-                Level::Info => palette.accent,
-                Level::Warn => palette.warn,
-                Level::Alarm => palette.bad,
-            };
-            (notices::notice(look, &newest.what), color)
+            let said = notices::notice(look, &newest.what);
+            (said, look.level(newest.level))
         }
         (None, Some((words, _))) => (words, palette.armed),
         (None, None) => {
