@@ -26,10 +26,7 @@ const LINE_MAX: f32 = 28.0;
 
 /// The lowest line of a row: a track fits in it, and on a display that is touched a finger presses it.
 const fn least_line(pixels_per_point: f32) -> f32 {
-    match pixels_per_point >= 1.5 {
-        true => 30.0,
-        false => 19.0,
-    }
+    if pixels_per_point >= 1.5 { 30.0 } else { 19.0 }
 }
 
 /// The column of joints.

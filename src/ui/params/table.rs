@@ -105,10 +105,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &Shown) {
                 Label::note(look, about).ui(ui);
             });
             for id in own {
-                let height = match id.is_place() {
-                    true => ROW_HIGH,
-                    false => ROW,
-                };
+                let height = if id.is_place() { ROW_HIGH } else { ROW };
                 body.row(height, |row| row_ui(row, pane, id));
                 if has_trouble(pane, id) {
                     line_ui(&mut body, theme::LIST_LINE, |ui| verdict_ui(ui, pane, id));
