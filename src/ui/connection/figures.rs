@@ -36,7 +36,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
             label.wrap().ui(ui);
         }
         if let Some(port) = &link.moved_to {
-            let text = format!("{} {port}", look.say(panels::MOVED_TO));
+            let text = look.told(panels::MOVED_TO, port);
             say(ui, &text, look.palette.warn);
         }
         if link.echoes {

@@ -70,7 +70,7 @@ pub(crate) fn entry_ui(
             if entry.is_active() || !entry.seen || depth == Depth::Chosen {
                 let said = notices::fault_kind(entry.what, look.language);
                 say_ui(ui, said.cause, palette.muted);
-                let advice = format!("{} {}", look.say(faults::TODO), said.advice);
+                let advice = look.told(faults::TODO, said.advice);
                 say_ui(ui, &advice, palette.text);
             }
             if entry.is_active() {
@@ -218,7 +218,7 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
         let age = format::age(now.since(entry.since));
         let lasted = format::age(entry.lasted(now));
         parts.push(format!("{began} {age} {ago}"));
-        parts.push(format!("{} {lasted}", look.say(faults::LASTED)));
+        parts.push(look.told(faults::LASTED, lasted));
     }
     if entry.count > 1 {
         let (came, times) = (look.say(faults::CAME), look.say(faults::TIMES));
@@ -259,9 +259,7 @@ fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
     let celsius = format::whole(celsius.map(i64::from), 0);
     let until = format!("{:.0} °C", goal.celsius);
     let more = match cooling::course(&state.hand().history, dof, state.now.secs(), goal) {
-        Course::Falling { left } if left >= cooling::LONGEST => {
-            format!("{} {until}", look.say(faults::COOL_LONG))
-        }
+        Course::Falling { left } if left >= cooling::LONGEST => look.told(faults::COOL_LONG, until),
         Course::Falling { left } => format!(
             "{} {} {} {until}",
             look.say(faults::COOL_IN),

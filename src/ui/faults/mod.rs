@@ -222,7 +222,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         .is_some_and(|group| !group.value[dof].is_empty());
     if let Some(status) = status.filter(|status| !(faulty && status.is_protective())) {
         let words = words::status(status, look.language);
-        let advice = format!("{} {}", look.say(faults::TODO), words.advice);
+        let advice = look.told(faults::TODO, words.advice);
         inset_ui(ui, |ui| {
             say_ui(ui, words.cause, palette.muted);
             say_ui(ui, &advice, palette.text);

@@ -68,7 +68,7 @@ impl RecordingsView {
         scroll_ui(ui, |ui| {
             if let Some(until) = recorder.runs_until() {
                 let left = format::age(until.since(pane.state.now));
-                let text = format!("{} {left}", look.say(faults::RECORDING_RUNS));
+                let text = look.told(faults::RECORDING_RUNS, left);
                 ui.horizontal(|ui| {
                     lamp_ui(ui, Some(look.palette.bad));
                     say_ui(ui, &text, look.palette.text);
@@ -86,7 +86,7 @@ impl RecordingsView {
             say_ui(ui, look.say(kept), look.palette.muted);
             if recorder.lost_unopened() > 0 {
                 let lost = recorder.lost_unopened();
-                let text = format!("{} {lost}", look.say(faults::RECORDINGS_LOST));
+                let text = look.told(faults::RECORDINGS_LOST, lost);
                 say_ui(ui, &text, look.palette.warn);
             }
         });
@@ -195,7 +195,7 @@ impl RecordingsView {
         say_ui(ui, look.say(faults::RECORDING_EVENTS), look.palette.muted);
         if recording.events_lost > 0 {
             let lost = recording.events_lost;
-            let text = format!("{} {lost}", look.say(faults::RECORDING_EVENTS_LOST));
+            let text = look.told(faults::RECORDING_EVENTS_LOST, lost);
             say_ui(ui, &text, look.palette.warn);
         }
         ui.spacing_mut().item_spacing.y = 0.0;

@@ -32,7 +32,7 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
     let (look, palette) = (pane.look, pane.look.palette);
     let joint = look.say(words::dof(dof));
     let said = DriveWords::of(pane, dof);
-    let name = format!("{} {joint}", look.say(faults::DRIVE));
+    let name = look.told(faults::DRIVE, joint);
     let button = Button::new(joint, look.tip(faults::DRIVE)).named(&name);
     let button = button.switch(chosen);
     let is_high = ui.available_height() >= 560.0;

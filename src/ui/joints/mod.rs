@@ -118,7 +118,7 @@ pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Freshness::Stale => {
             let age = asked.map(|asked| pane.state.now.since(asked));
             let age = format::age(age.unwrap_or_default());
-            (format!("{} {age}", look.say(main::AGE)), look.palette.warn)
+            (look.told(main::AGE, age), look.palette.warn)
         }
     };
     let label = Label::new(&text, color).small().ui(ui);

@@ -19,7 +19,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
         ui.set_min_height(ui.available_height());
         let title = look.say(main::JOINTS);
         if can_open {
-            let name = format!("{} {title}", look.say(layout::OPEN));
+            let name = look.told(layout::OPEN, title);
             let button = Button::new(title, look.tip(layout::OPEN)).named(&name);
             let pressed = kit::wide_ui(ui, |ui| button.ui(ui, look));
             if pressed.clicked() {

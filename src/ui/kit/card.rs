@@ -299,7 +299,7 @@ impl CardView {
             ui.add(bar.desired_height(6.0));
         }
         if let Some(word) = card.word {
-            let ask = format!("{} {word}", look.say(cards::TYPE));
+            let ask = look.told(cards::TYPE, word);
             ui.horizontal(|ui| {
                 Label::new(&ask, palette.text).ui(ui);
                 let field = controls::edit_ui(ui, (&ask, ""), &mut self.typed);
@@ -326,7 +326,7 @@ impl CardView {
         });
         let mut pressed = None;
         let untyped = card.word.filter(|word| self.typed.trim() != *word);
-        let untyped = untyped.map(|word| format!("{} {word}", look.say(cards::TYPE)));
+        let untyped = untyped.map(|word| look.told(cards::TYPE, word));
         for (index, choice) in card.choices.iter().enumerate().rev() {
             let is_danger = choice.manner == Manner::Danger;
             let reason = choice.disabled.map(|reason| look.say(reason).to_owned());

@@ -39,6 +39,11 @@ impl Look {
         text.of(self.language)
     }
 
+    /// The sentence with this behind it.
+    pub(crate) fn told(self, text: Text, more: impl Display) -> String {
+        format!("{} {more}", self.say(text))
+    }
+
     /// The colour of a message.
     pub(crate) const fn level(self, level: Level) -> Color32 {
         match level {

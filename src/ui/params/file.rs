@@ -42,7 +42,7 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
             }
         });
         if !unknown.is_empty() {
-            let words = format!("{} {}", look.say(device::UNKNOWN_KEYS), unknown.join(", "));
+            let words = look.told(device::UNKNOWN_KEYS, unknown.join(", "));
             Label::new(&words, palette.warn).small().wrap().ui(ui);
         }
     });
@@ -71,7 +71,7 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (P
         false => device::TICK_TIP,
     };
     let tick = ui.checkbox(&mut ticked, &words);
-    let label = format!("{} {words}", look.say(device::TAKE));
+    let label = look.told(device::TAKE, words);
     tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, ticked, &label));
     if tick.on_hover_text(look.say(tip)).changed() {
         pane.actions.push(Action::Param(ParamAction::Tick(id)));

@@ -81,11 +81,11 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
         .map(|row| device::whole_name(look, row.id))
         .collect();
     if !unsaved.is_empty() {
-        let words = format!("{} {}", look.say(device::UNSAVED), unsaved.join(", "));
+        let words = look.told(device::UNSAVED, unsaved.join(", "));
         lines.push((words, palette.text));
     }
     if let Some(file) = &book.known.doubtful {
-        let words = format!("{} {}", look.say(device::DOUBTFUL), moment(&file.at));
+        let words = look.told(device::DOUBTFUL, moment(&file.at));
         lines.push((words, palette.warn));
     }
     lines.push(match &book.known.saved {
@@ -101,7 +101,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     });
     if let Some(error) = &book.unreadable {
         let error = errors::params(look, error);
-        let words = format!("{} {error}", look.say(device::UNREADABLE));
+        let words = look.told(device::UNREADABLE, error);
         lines.push((words, palette.warn));
     }
     lines.push((look.say(device::FLASH_BODY).into(), palette.muted));

@@ -112,7 +112,7 @@ fn status(pane: &Pane<'_>) -> (String, Color32) {
     }
     if let Some(error) = &book.trouble {
         let error = errors::request(look, error);
-        let words = format!("{} {error}", look.say(device::TROUBLE));
+        let words = look.told(device::TROUBLE, error);
         return (words, look.palette.warn);
     }
     let words = match book.read_at {

@@ -192,7 +192,7 @@ fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         None => ui.scope(cell),
     };
     let section = id.register().section;
-    let section = format!("{} {section}", look.say(device::MANUAL));
+    let section = look.told(device::MANUAL, section);
     shown.response.on_hover_text(section);
 }
 
@@ -318,7 +318,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
         }
     });
     if staged.is_some() {
-        let label = format!("{} {whole_name}", look.say(device::UNSTAGE));
+        let label = look.told(device::UNSTAGE, whole_name);
         let drop = Button::new(&label, look.tip(device::UNSTAGE)).icon(theme::CLOSE);
         drop.sends(ui, pane, Action::Stage(id, None));
     }
@@ -370,7 +370,7 @@ fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let hand = pane.state.hand();
     let name = device::whole_name(look, id);
-    let label = format!("{} {name}", look.say(device::CHANGE));
+    let label = look.told(device::CHANGE, name);
     let live = hand.params.live(id).map(|(value, _)| value);
     let wanted = hand.params.staged(id);
     let wanted = wanted.filter(|wanted| Some(*wanted) != live);

@@ -90,7 +90,7 @@ impl Cursors {
             }
             let told = clock(*at_s, lowest.transform.dvalue_dpos()[0]);
             response
-                .on_hover_text(format!("{} {told}", look.say(name)))
+                .on_hover_text(look.told(name, told))
                 .on_hover_cursor(CursorIcon::ResizeHorizontal);
         }
     }

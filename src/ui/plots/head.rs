@@ -112,7 +112,7 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         view.copied = Some(table.len());
     }
     if let Some(rows) = view.copied {
-        ui.label(format!("{} {rows}", look.say(panels::COPIED)));
+        ui.label(look.told(panels::COPIED, rows));
     }
     let save = entry_ui(ui, look, panels::SAVE_CSV).then(|| {
         let table = history.table(&series, from_s, to_s);

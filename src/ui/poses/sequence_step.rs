@@ -69,7 +69,7 @@ pub(crate) fn step_ui(
         (theme::TO_BOTTOM, poses::LATER, poses::SHIFT_TIP, later),
         (theme::TO_TOP, poses::EARLIER, poses::SHIFT_TIP, earlier),
     ] {
-        let label = format!("{} {number}", look.say(caption));
+        let label = look.told(caption, &number);
         let button = Button::new(&label, look.say(tip)).icon(icon);
         if button.weight(Weight::Quiet).ui(ui, look).clicked() {
             change(pane, sequence, edit);

@@ -66,7 +66,7 @@ impl SequenceView {
             }
             ScrollArea::vertical().id_salt("sequences").show(ui, |ui| {
                 for sequence in &library.sequences {
-                    let label = format!("{} {}", look.say(poses::SEQUENCE), sequence.name);
+                    let label = look.told(poses::SEQUENCE, &sequence.name);
                     let button = Button::new(&sequence.name, look.say(poses::SECTION_TIP));
                     let button = button.named(&label).large();
                     let button = button.choice(self.chosen == Some(sequence.id));
@@ -152,7 +152,7 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
     if looped.choice(sequence.looped).ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Loop(!sequence.looped));
     }
-    let name = format!("{} {}", look.say(poses::SEQUENCE), look.say(poses::NAME));
+    let name = look.told(poses::SEQUENCE, look.say(poses::NAME));
     let field = TextField::new(&name, NAME_CHARS_MAX);
     if let Some(name) = field.ui(ui, pane, &sequence.name) {
         change(pane, sequence, SequenceEdit::Rename(name));
@@ -213,10 +213,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
     let look = pane.look;
     let palette = look.palette;
     if let Some(step) = dry {
-        return (
-            format!("{} {step}", look.say(poses::SAY_DRY)),
-            palette.simulated,
-        );
+        return (look.told(poses::SAY_DRY, step), palette.simulated);
     }
     let run = pane.state.hand().sequence.as_ref();
     let Some(run) = run.filter(|run| run.sequence == sequence.id) else {

@@ -40,7 +40,7 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
 /// A button that takes a pose.
 pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let look = pane.look;
-    let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
+    let name = look.told(poses::RECALL_NAME, &pose.name);
     let button = Button::said(look, poses::RECALL)
         .named(&name)
         .disabled(refusal(pane, pose))
@@ -56,7 +56,7 @@ pub(crate) fn tile_ui(
     (pose, chosen): (&Pose, bool),
 ) -> bool {
     let look = pane.look;
-    let name = format!("{} {}", look.say(poses::POSE), pose.name);
+    let name = look.told(poses::POSE, &pose.name);
     let button = Button::new(&pose.name, look.say(poses::SELECT_TIP))
         .named(&name)
         .switch(chosen);
@@ -148,7 +148,7 @@ pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
 
 fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let look = pane.look;
-    let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
+    let name = look.told(poses::RECALL_NAME, &pose.name);
     let button = Button::new(&pose.name, look.tip(poses::RECALL))
         .named(&name)
         .disabled(refusal(pane, pose));

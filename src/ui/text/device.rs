@@ -250,13 +250,9 @@ pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
         SaveEnd::Told(told) => saved(look, told),
         SaveEnd::NoBackup { message } => {
             let message = errors::system(look, message);
-            format!("{} {message}", look.say(SAVE_NO_BACKUP))
+            look.told(SAVE_NO_BACKUP, message)
         }
-        SaveEnd::NotAsked(error) => format!(
-            "{} {}",
-            look.say(SAVE_NOT_SENT),
-            errors::request(look, error)
-        ),
+        SaveEnd::NotAsked(error) => look.told(SAVE_NOT_SENT, errors::request(look, error)),
         SaveEnd::NotApplied => look.say(SAVE_NOT_APPLIED).into(),
         SaveEnd::NotNoted(told, message) => format!(
             "{} {} {}",

@@ -21,13 +21,9 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
 
 fn asked(look: Look, what: Asked) -> String {
     match what {
-        Asked::Gesture(gesture) => format!("{} {}", look.say(panels::GESTURE), gesture.get()),
-        Asked::StoreGesture(gesture) => {
-            format!("{} {}", look.say(poses::STORE_ASKED), gesture.get())
-        }
-        Asked::ReadGesture(gesture) => {
-            format!("{} {}", look.say(poses::READ_ASKED), gesture.get())
-        }
+        Asked::Gesture(gesture) => look.told(panels::GESTURE, gesture.get()),
+        Asked::StoreGesture(gesture) => look.told(poses::STORE_ASKED, gesture.get()),
+        Asked::ReadGesture(gesture) => look.told(poses::READ_ASKED, gesture.get()),
         Asked::ClearErrors => look.say(panels::CLEAR).into(),
     }
 }
@@ -68,7 +64,7 @@ fn place(path: Option<&Path>) -> String {
 /// A message as one or two sentences.
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
-    let told = |text: Text, more: &str| format!("{} {more}", look.say(text));
+    let told = |text: Text, more: &str| look.told(text, more);
     match what {
         NoticeKind::LinkLost(why) => told(panels::NOTICE_LOST, &errors::trouble(look, why)),
         NoticeKind::NoLink(why) => told(panels::NOTICE_NO_LINK, &errors::trouble(look, why)),
@@ -127,7 +123,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
 
 /// What became of files; empty for everything else.
 fn of_files(look: Look, what: &NoticeKind) -> String {
-    let told = |text: Text, more: &str| format!("{} {more}", look.say(text));
+    let told = |text: Text, more: &str| look.told(text, more);
     let system = |text: Text, message: &str| told(text, &errors::system(look, message));
     let of = |text: Text, path: &Path, why: &str| {
         look.pair(&told(text, &path.display().to_string()), why)

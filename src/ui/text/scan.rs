@@ -125,7 +125,7 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
         ScanStage::Cancelled if book.found.is_empty() => return Err(CANCELLED),
         ScanStage::Cancelled => {
             let found = found_words(look, book.found.len());
-            return Ok(format!("{} {found}", look.say(CANCELLED)));
+            return Ok(look.told(CANCELLED, found));
         }
         ScanStage::Done(summary) => summary,
     };

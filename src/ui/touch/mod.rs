@@ -237,7 +237,7 @@ impl TouchView {
         let offline = (!hand.link.state.is_live()).then(|| look.say(panels::TARE_OFFLINE));
         let finger = self.detail.finger;
         let name = look.say(words::finger(finger));
-        let one = format!("{} {name}", look.say(panels::TARE_ONE));
+        let one = look.told(panels::TARE_ONE, name);
         let all = look.say(panels::TARE_ALL);
         let nothing = (!hand.tare.can_undo()).then(|| look.say(panels::TARE_NOTHING));
         let undo = look.say(panels::TARE_UNDO);

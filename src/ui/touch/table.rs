@@ -80,7 +80,7 @@ fn number_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, (name, text): (&str, 
     let look = pane.look;
     let color = look.value(pane.state.hand().tip_freshness(finger), look.palette.text);
     let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
-    let name = format!("{} {name}", look.say(words::finger(finger)));
+    let name = look.told(words::finger(finger), name);
     Label::new(&text, color).number().named(&name).ui(ui);
 }
 
@@ -107,7 +107,7 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
             ui.end_row();
         }
         for channel in 0..8 {
-            let caption = format!("{} {}", look.say(panels::TOUCH_CHANNEL), channel + 1);
+            let caption = look.told(panels::TOUCH_CHANNEL, channel + 1);
             Label::new(&caption, muted).ui(ui);
             for finger in Finger::ALL {
                 let text = channel_text(pane, finger, channel);

@@ -127,7 +127,7 @@ fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
         ui.allocate_ui_with_layout(place, Layout::right_to_left(Align::Center), |ui| {
             ui.set_min_height(row);
             let words = format!("{:>7} {:>6}", signed(change), format::counts(noise));
-            let name = format!("{} {}", look.say(panels::NOISE), channel + 1);
+            let name = look.told(panels::NOISE, channel + 1);
             let label = Label::new(&words, look.palette.text).font(theme::number_small());
             label.named(&name).ui(ui);
             kit::left_ui(ui, |ui| {

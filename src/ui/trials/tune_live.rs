@@ -79,7 +79,7 @@ fn heat_ui(ui: &mut Ui, pane: &Pane<'_>) {
             Freshness::Unknown => palette.faint,
             Freshness::Live | Freshness::Stale => palette.dof[dof],
         };
-        let label = format!("{} {name}", look.say(words::dof(dof)));
+        let label = look.told(words::dof(dof), name);
         let text = Label::new(&text, color).font(theme::number_small());
         text.named(&label).ui(ui);
     }

@@ -143,7 +143,7 @@ impl MessageLog {
         let look = pane.look;
         let lost = pane.state.notices.log_dropped();
         if lost > 0 {
-            let text = format!("{} {lost}", look.say(faults::LOG_LOST));
+            let text = look.told(faults::LOG_LOST, lost);
             Label::new(&text, look.palette.muted).small().ui(ui);
         }
         ui.spacing_mut().item_spacing.y = 0.0;

@@ -65,9 +65,7 @@ impl Warning {
     fn retried(mut self, pane: &Pane<'_>) -> Self {
         self.aside = match pane.state.hand().link.dialling {
             Dialling::Idle => String::new(),
-            Dialling::Trying { attempt } => {
-                format!("{} {attempt}", pane.look.say(main::LOST_TRYING))
-            }
+            Dialling::Trying { attempt } => pane.look.told(main::LOST_TRYING, attempt),
             Dialling::Waiting { until, .. } => {
                 let left = until.since(pane.state.now).as_secs_f64();
                 format!("{} {left:.1} s", pane.look.say(main::LOST_RETRY_IN))
@@ -279,7 +277,7 @@ impl StatusLine {
         let cancelled = cancel.ui(ui, look).clicked();
         let keep = Button::said(look, panels::NOTE_KEEP);
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
-        let title = format!("{} {}", look.say(panels::NOTE_AT), clock(at.secs(), 0.01));
+        let title = look.told(panels::NOTE_AT, clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
         let hint = match pane.state.hand().rests() {
             true => panels::NOTE_HINT,
