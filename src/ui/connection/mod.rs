@@ -32,8 +32,8 @@ const FIRST: [&str; 5] = [
 ];
 
 /// Kinds of links and their fields, both as endpoints spell them, the place first where there is one.
-type Kind = (&'static str, &'static [&'static str]);
-static KINDS: [Kind; 7] = [
+type ConnectionKind = (&'static str, &'static [&'static str]);
+static KINDS: [ConnectionKind; 7] = [
     ("sim", &["scenario", "seed"]),
     ("rs485", &["port", "baud", "id"]),
     ("tcp", &["host", "unit", "packing"]),
@@ -50,7 +50,7 @@ const RARE: [&str; 2] = ["seed", "packing"];
 /// The form's fields as they are typed.
 #[derive(Debug)]
 pub(crate) struct ConnectionForm {
-    kind: Kind,
+    kind: ConnectionKind,
     /// By their keys; kinds share them.
     fields: BTreeMap<&'static str, String>,
     scan: ScanPanel,

@@ -27,14 +27,14 @@ use egui::{Align, CollapsingHeader, Layout, Ui};
 pub(crate) struct FaultsView {
     /// The joint that is asked about.
     chosen: Option<Dof>,
-    section: Section,
+    section: FaultSection,
     log: MessageLog,
     recordings: RecordingsView,
 }
 
 /// The list beside the faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Section {
+enum FaultSection {
     #[default]
     Log,
     Recordings,
@@ -138,8 +138,8 @@ impl FaultsView {
         };
         ui.horizontal(|ui| {
             for (text, section) in [
-                (look.say(faults::LOG), Section::Log),
-                (&recordings, Section::Recordings),
+                (look.say(faults::LOG), FaultSection::Log),
+                (&recordings, FaultSection::Recordings),
             ] {
                 let button = Button::new(text, look.say(faults::SECTION_TIP));
                 let button = button.choice(self.section == section);
@@ -149,8 +149,8 @@ impl FaultsView {
             }
         });
         match self.section {
-            Section::Log => self.log.ui(ui, pane),
-            Section::Recordings => self.recordings.list_ui(ui, pane),
+            FaultSection::Log => self.log.ui(ui, pane),
+            FaultSection::Recordings => self.recordings.list_ui(ui, pane),
         }
     }
 }

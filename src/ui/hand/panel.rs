@@ -6,7 +6,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{Finger, PerDof, PerFinger};
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
-use crate::ui::hand::pointed::{self, Place};
+use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::hand::scene::{HandPicture, TipLoad};
 use crate::ui::hand::shape::Held;
 use crate::ui::hand::tile;
@@ -35,14 +35,14 @@ impl HandPanel {
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
         let picture = HandPicture {
-            lit: pointed::pointed(ui, Place::Row),
+            lit: pointed::pointed(ui, PointedPlace::Row),
             ..picture(pane, tips)
         };
         let (response, joint) = self.0.ui(ui, response, look.palette, &picture);
         unknown_note(ui, look, place, &picture);
         side_ui(ui, place, pane);
         if let Some(dof) = joint {
-            pointed::point(ui, Place::Hand, dof);
+            pointed::point(ui, PointedPlace::Hand, dof);
         }
         let finger = joint.map(crate::hand::Dof::finger);
         let clicked = finger.filter(|_| response.clicked());

@@ -10,7 +10,7 @@ use crate::ui::hand::reach::REACH;
 use crate::ui::hand::render::Sketch;
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::hand::shape::{self, Held};
-use crate::ui::hand::view::{HandView, Setting, TURN, draw};
+use crate::ui::hand::view::{DrawSetting, HandView, TURN, draw};
 use crate::ui::theme::Palette;
 use egui::{
     Context, Event, Id, Mesh, Modifiers, PointerButton, Pos2, RawInput, Rect, Sense, pos2, vec2,
@@ -19,8 +19,8 @@ use glam::Vec3;
 
 const SIDES: [Side; 2] = [Side::Right, Side::Left];
 
-fn setting(side: Side, size: f32) -> Setting {
-    Setting {
+fn setting(side: Side, size: f32) -> DrawSetting {
+    DrawSetting {
         turn: HandView::default().turn(side),
         rect: Rect::from_min_size(pos2(30.0, 50.0), vec2(size, size)),
         theme: Theme::Dark,
@@ -28,7 +28,7 @@ fn setting(side: Side, size: f32) -> Setting {
     }
 }
 
-fn camera(setting: &Setting, side: Side) -> Camera {
+fn camera(setting: &DrawSetting, side: Side) -> Camera {
     let reach = REACH.iter().map(|at| side.frame().transform_point3(*at));
     Camera::new(setting.turn, setting.rect, reach)
 }
@@ -39,7 +39,7 @@ fn posed(side: Side, [fingers, bend, swing]: [f32; 3]) -> HandPicture {
     HandPicture::of(side, &PerDof::new(shares))
 }
 
-fn drawn(picture: &HandPicture, setting: &Setting) -> (Sketch, Mesh) {
+fn drawn(picture: &HandPicture, setting: &DrawSetting) -> (Sketch, Mesh) {
     let (mut sketch, mut mesh) = (Sketch::default(), Mesh::default());
     draw(&mut sketch, picture, setting, &mut mesh);
     (sketch, mesh)
@@ -66,7 +66,7 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
             let share = f32::from(step) / 8.0;
             let mut picture = posed(side, [share, 1.0 - share, share]);
             picture.held = Some(Held::Ball);
-            let setting = Setting {
+            let setting = DrawSetting {
                 turn,
                 ..setting(side, 400.0)
             };
@@ -92,7 +92,7 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
             }
             let (_, small) = drawn(
                 &picture,
-                &Setting {
+                &DrawSetting {
                     rect: Rect::from_min_size(Pos2::ZERO, vec2(90.0, 90.0)),
                     ..setting
                 },
@@ -208,7 +208,8 @@ fn the_simulated_hand_meets_what_is_drawn_before_it() {
         let pose = SegmentFrames::of_shares(Side::Right, &shares);
         for finger in Finger::ALL {
             let segment = Segment::tip(finger);
-            let corners = shape::solid(segment, false).corners.iter();
+            let solid = shape::solid(segment, false).expect("each segment has a solid");
+            let corners = solid.corners.iter();
             let gap = corners.map(|corner| {
                 let at = pose.frame(segment).transform_point3(corner.at);
                 let out = faces().map(|face| face.normal.dot(at) - face.offset);
@@ -239,9 +240,8 @@ fn a_drag_turns_the_hand_and_a_double_click_turns_it_back() {
             let rect = ui.max_rect();
             let response = ui.interact(rect, Id::unique("hand"), Sense::click_and_drag());
             let picture = posed(Side::Right, [1.0; 3]);
-            found = view
-                .ui(ui, response, Palette::of(Theme::Dark), &picture)
-                .joint;
+            let (_, joint) = view.ui(ui, response, Palette::of(Theme::Dark), &picture);
+            found = joint;
         });
         output.textures_delta.clear();
         found

@@ -34,14 +34,14 @@ const FADE_PART: f32 = 0.16;
 pub(crate) struct HandView {
     /// Nobody turned it where there is none.
     pub(crate) turn: Option<Turn>,
-    pub(crate) drawn: Option<(HandPicture, Setting)>,
+    pub(crate) drawn: Option<(HandPicture, DrawSetting)>,
     sketch: Sketch,
     mesh: Arc<Mesh>,
 }
 
 /// Where and how a picture is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Setting {
+pub(crate) struct DrawSetting {
     pub(crate) turn: Turn,
     pub(crate) rect: Rect,
     pub(crate) theme: Theme,
@@ -79,7 +79,7 @@ impl HandView {
             lit: joint.or(picture.lit),
             ..*picture
         };
-        let setting = Setting {
+        let setting = DrawSetting {
             turn: self.turn(picture.side),
             rect,
             theme: palette.theme,
@@ -108,7 +108,12 @@ impl HandView {
     }
 }
 
-pub(crate) fn draw(sketch: &mut Sketch, picture: &HandPicture, setting: &Setting, mesh: &mut Mesh) {
+pub(crate) fn draw(
+    sketch: &mut Sketch,
+    picture: &HandPicture,
+    setting: &DrawSetting,
+    mesh: &mut Mesh,
+) {
     let palette = Palette::of(setting.theme);
     let is_small = setting.rect.height() < SMALL_POINTS;
     // A small picture leaves the wrist out, for the sake of the fingers.

@@ -5,7 +5,7 @@ use crate::app::layout::Room;
 use crate::hand::{Dof, Quantity};
 use crate::ui::joints::age_ui;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::joints::row::Row;
+use crate::ui::joints::row::JointRow;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, layout, main};
 use crate::ui::theme;
@@ -48,7 +48,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
 fn joint_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
     let look = pane.look;
     let palette = look.palette;
-    let row = Row::new(dof, pane);
+    let row = JointRow::new(dof, pane);
     let shown = ui.horizontal(|ui| {
         ui.add_space(theme::BAR + theme::STEP);
         ui.vertical(|ui| {

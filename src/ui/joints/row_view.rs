@@ -3,10 +3,10 @@
 use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::hand::{Dof, impact};
-use crate::ui::hand::pointed::{self, Place};
+use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::drive_tiles;
-use crate::ui::joints::row::{READING, Row, cell};
+use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
 use crate::ui::kit::{self, Button, Label, Opens, Pane};
 use crate::ui::text::{faults, main};
@@ -32,8 +32,8 @@ pub(crate) fn height(line: f32, each: bool) -> f32 {
 
 /// Draws the row of a joint.
 pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle) {
-    let (row, palette) = (Row::new(dof, pane), pane.look.palette);
-    let is_pointed = pointed::pointed(ui, Place::Hand) == Some(dof);
+    let (row, palette) = (JointRow::new(dof, pane), pane.look.palette);
+    let is_pointed = pointed::pointed(ui, PointedPlace::Hand) == Some(dof);
     let wash = palette.wash(row.color);
     let frame = Frame::new()
         .fill(if is_pointed {
@@ -73,7 +73,7 @@ pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle
     });
     let rect = shown.response.rect;
     if ui.rect_contains_pointer(rect) {
-        pointed::point(ui, Place::Row, dof);
+        pointed::point(ui, PointedPlace::Row, dof);
     }
     let bar = rect.shrink2(vec2(0.0, theme::STEP));
     let bar = bar.with_max_x(rect.left() + theme::BAR);
@@ -89,7 +89,7 @@ fn line_ui(ui: &mut Ui, height: f32, add: impl FnOnce(&mut Ui)) {
     kit::cell_ui(ui, size, add);
 }
 
-fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row, each: bool) {
+fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     let name = cell(ui, 96.0);
     Label::new(row.name, pane.look.palette.text).put(ui, name);
     kit::right_ui(ui, |ui| {
@@ -105,7 +105,7 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row, each: bool) {
 }
 
 /// Lamp and words of the drive; a click explains them.
-fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
+fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let rect = cell(ui, ui.available_width());
     let said = DriveWords::of(pane, row.dof);
     let name = row.named(pane, faults::EXPLAIN);
@@ -129,7 +129,7 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
 }
 
 /// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
-fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &Row) {
+fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let joint = pane.state.hand().joints[row.dof];
     let rough_from = impact::rough_from_speed(joint.force);
     let is_gentle = rough_from.is_none_or(|rough| joint.speed < rough);
@@ -153,7 +153,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &Row) {
     response.on_hover_text(format!("{measured}\n{}", pane.look.say(main::IMPACT_TIP)));
 }
 
-fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
+fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let look = pane.look;
     let locked = pane.state.hand().joints[row.dof].locked;
     let (icon, tip) = match locked {

@@ -6,7 +6,7 @@ use crate::app::settings::{Language, Theme};
 use crate::ui::kit::card::{Card, CardView, Choice, Manner};
 use crate::ui::kit::controls::{Button, pressed};
 use crate::ui::kit::look::Look;
-use crate::ui::text::{Text, cards, layout};
+use crate::ui::text::{Text, cards};
 use crate::ui::theme::{self, Palette};
 use crate::ui::window;
 use crate::ui::window::keys;
@@ -44,7 +44,7 @@ fn frame(ui: &mut Ui, room: &mut Room) {
         window::install(ui.ctx(), Theme::Dark, room.language);
         return;
     }
-    let wishes = layout::take(ui, layout::Escape::Stops);
+    let wishes = keys::take(ui, keys::Escape::Stops);
     room.stops += u32::from(wishes.contains(&Wish::Stop));
     let (bar, body) = ui.max_rect().split_top_bottom_at_y(theme::TOP_BAR);
     let stop = Button::new("STOP", "tip").put(ui, look, bar, Id::unique("stop"));

@@ -12,7 +12,7 @@ use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::params::refusal::Refusal;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::params::table::Shown;
+use crate::ui::params::table::ShownRows;
 use crate::ui::text::{device, errors};
 use crate::ui::theme;
 use egui::{Color32, Panel, Ui};
@@ -20,7 +20,7 @@ use egui::{Color32, Panel, Ui};
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct DeviceView {
-    shown: Shown,
+    shown: ShownRows,
 }
 
 impl DeviceView {

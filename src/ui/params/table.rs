@@ -20,9 +20,9 @@ const ROW_HIGH: f32 = 62.0;
 /// Parts of the width for live, staged, saved and range; the name has the rest.
 const COLUMNS: [f32; 4] = [0.16, 0.23, 0.16, 0.16];
 /// Which rows are in a group, its title, and what they are.
-type Group = (fn(ParamId) -> bool, Text, Text);
+type RowGroup = (fn(ParamId) -> bool, Text, Text);
 /// The groups in their order.
-const GROUPS: [Group; 3] = [
+const GROUPS: [RowGroup; 3] = [
     (
         |id| matches!(id, ParamId::DefaultSpeed(_)),
         device::GROUP_SPEED,
@@ -38,14 +38,14 @@ const GROUPS: [Group; 3] = [
 
 /// Which rows are shown.
 #[derive(Debug, Default)]
-pub(crate) struct Shown {
+pub(crate) struct ShownRows {
     /// Only those in which something differs.
     pub(crate) only: bool,
     /// Only those with these words.
     pub(crate) words: String,
 }
 
-impl Shown {
+impl ShownRows {
     fn passes(&self, pane: &Pane<'_>, id: ParamId) -> bool {
         if self.only && !pane.state.hand().params.differs(id) {
             return false;
@@ -59,7 +59,7 @@ impl Shown {
 }
 
 /// Draws the table.
-pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &Shown) {
+pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     let look = pane.look;
     let rows = ParamId::all().into_iter();
     let rows: Vec<ParamId> = rows.filter(|id| shown.passes(pane, *id)).collect();

@@ -3,8 +3,8 @@
 use crate::history::Series;
 use crate::ui::kit::{Button, Label, Look, Pane, format};
 use crate::ui::plots::chart::ChartResponse;
-use crate::ui::plots::panels::{Panel, PlotLine};
-use crate::ui::plots::time_window::Span;
+use crate::ui::plots::panels::{Panel, PanelLine};
+use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, panels, words};
 use crate::ui::theme;
@@ -57,7 +57,7 @@ fn figures(pane: &Pane<'_>, series: Series, [a_s, b_s]: [f64; 2]) -> [Option<f64
 
 impl Cursors {
     /// On at a third and two thirds of what is shown, or off.
-    pub(crate) fn toggle(&mut self, (from, to): Span) {
+    pub(crate) fn toggle(&mut self, (from, to): TimeSpan) {
         let third = (to - from) / 3.0;
         self.0 = match self.0 {
             Some(_) => None,
@@ -101,7 +101,7 @@ impl Cursors {
         ui: &mut Ui,
         pane: &Pane<'_>,
         panel: &Panel,
-        lines: &[PlotLine],
+        lines: &[PanelLine],
     ) -> bool {
         let Some(at) = self.0 else { return false };
         let look = pane.look;

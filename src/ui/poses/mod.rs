@@ -21,14 +21,14 @@ use egui::{ScrollArea, Ui, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Section {
+enum PoseSection {
     #[default]
     Mine,
     Sequences,
     InHand,
 }
 
-impl Section {
+impl PoseSection {
     const ALL: [(Self, Text); 3] = [
         (Self::Mine, poses::MY_POSES),
         (Self::Sequences, poses::SEQUENCES),
@@ -39,7 +39,7 @@ impl Section {
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct PoseView {
-    section: Section,
+    section: PoseSection,
     chosen: Option<PoseId>,
     shown: Option<PoseId>,
     sequences: SequenceView,
@@ -60,9 +60,9 @@ impl PoseView {
             ui.set_min_height(ui.available_height());
             ui.horizontal(|ui| self.head_ui(ui, pane));
             match self.section {
-                Section::Mine => self.mine_ui(ui, pane),
-                Section::Sequences => self.sequences.ui(ui, pane),
-                Section::InHand => self.gestures.ui(ui, pane),
+                PoseSection::Mine => self.mine_ui(ui, pane),
+                PoseSection::Sequences => self.sequences.ui(ui, pane),
+                PoseSection::InHand => self.gestures.ui(ui, pane),
             }
         });
     }
@@ -71,8 +71,8 @@ impl PoseView {
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let sections = (&mut self.section, poses::SECTION_TIP);
-        kit::pick_ui(ui, look, sections, Section::ALL);
-        if self.section != Section::InHand {
+        kit::pick_ui(ui, look, sections, PoseSection::ALL);
+        if self.section != PoseSection::InHand {
             kit::right_ui(ui, |ui| tools_ui(ui, pane));
         }
     }

@@ -3,7 +3,7 @@
 use crate::hand::Finger;
 use crate::history::Series;
 use crate::ui::kit::{self, Label, Look, Pane, format};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
@@ -90,10 +90,10 @@ impl TipChannels {
         let curve = |(channel, number): (u8, usize)| {
             let rest = rest.and_then(|rest| rest.raw.get(number).copied());
             let points = Points::Measured(&hand.history, Series::Channel(channel, finger));
-            Curve {
+            ChartCurve {
                 zero: [0.0, rest.map_or(0.0, f64::from)],
                 told: Some(0),
-                ..Curve::new(points, Stroke::new(theme::LINE, color(look, number)))
+                ..ChartCurve::new(points, Stroke::new(theme::LINE, color(look, number)))
             }
         };
         let chart = Chart {

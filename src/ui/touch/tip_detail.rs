@@ -5,10 +5,10 @@ use crate::app::readings::friction::{Grip, Hold, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::history::Series;
-use crate::ui::joints::track::Track;
+use crate::ui::joints::track::SlideTrack;
 use crate::ui::kit::{self, Label, Look, Pane, format};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
-use crate::ui::plots::legend::{Key, legend_ui};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
@@ -215,12 +215,12 @@ impl TipDetail {
     fn friction_ui(&mut self, ui: &mut Ui, look: Look) {
         let caption = format!("{} {:.2}", look.say(panels::TIP_FRICTION), self.friction());
         Label::new(&caption, look.palette.muted).small().ui(ui);
-        let track = Track {
+        let track = SlideTrack {
             tip: look.tip(panels::TIP_FRICTION),
             step: 1,
             target: Some(self.friction_percent),
             tick: Some(FRICTION_PERCENT),
-            ..Track::new(
+            ..SlideTrack::new(
                 look.say(panels::TIP_FRICTION_NAME),
                 FRICTION_MAX,
                 look.palette.accent,
@@ -240,7 +240,7 @@ impl TipDetail {
             (Touch::Normal, panels::TIP_NORMAL, own),
             (Touch::Tangential, panels::TIP_SHEAR, look.palette.muted),
         ];
-        let key = |(_, words, color): (Touch, Text, Color32)| Key {
+        let key = |(_, words, color): (Touch, Text, Color32)| LegendKey {
             words: look.say(words).to_owned(),
             color,
             style: LineStyle::Solid,
@@ -251,9 +251,9 @@ impl TipDetail {
         self.chart.time.advance((first.min(now), now), SECONDS);
         let curve = |(touch, _, color): (Touch, Text, Color32)| {
             let points = Points::Measured(history, Series::Tip(touch, self.finger));
-            Curve {
+            ChartCurve {
                 told: Some(2),
-                ..Curve::new(points, Stroke::new(theme::LINE, color))
+                ..ChartCurve::new(points, Stroke::new(theme::LINE, color))
             }
         };
         let chart = Chart {

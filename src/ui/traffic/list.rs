@@ -17,12 +17,12 @@ const WIDTHS: [f32; 4] = [78.0, 20.0, 92.0, 16.0];
 
 /// The chosen frames, by number, and where the choice began.
 #[derive(Debug, Default)]
-pub(crate) struct Choice {
+pub(crate) struct ChosenFrames {
     pub(crate) numbers: BTreeSet<u64>,
     anchor: u64,
 }
 
-impl Choice {
+impl ChosenFrames {
     fn press(&mut self, number: u64, keys: Modifiers, frames: &VecDeque<Arc<Frame>>) {
         if keys.shift && self.anchor != 0 {
             let (from, to) = (self.anchor.min(number), self.anchor.max(number));
@@ -56,7 +56,7 @@ pub(crate) fn list_ui(
     ui: &mut Ui,
     pane: &Pane<'_>,
     frames: &VecDeque<Arc<Frame>>,
-    (choice, follows): (&mut Choice, bool),
+    (choice, follows): (&mut ChosenFrames, bool),
 ) -> bool {
     let look = pane.look;
     keys(ui, frames, choice);
@@ -115,7 +115,7 @@ fn scrolls(ui: &Ui, body: Rect) -> bool {
 }
 
 /// Up and down move a choice while no field and no track has the keyboard.
-fn keys(ui: &Ui, frames: &VecDeque<Arc<Frame>>, choice: &mut Choice) {
+fn keys(ui: &Ui, frames: &VecDeque<Arc<Frame>>, choice: &mut ChosenFrames) {
     if choice.numbers.is_empty() || ui.memory(|memory| memory.focused().is_some()) {
         return;
     }

@@ -11,7 +11,7 @@ use crate::ui::trials::compare_best::BestView;
 use crate::ui::trials::compare_choice::{ShownSessions, TrialKey};
 use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
-use crate::ui::trials::compare_list::Sheet;
+use crate::ui::trials::compare_list::SessionSheet;
 use crate::ui::trials::compare_table::TableView;
 use egui::{Color32, Panel, ScrollArea, Ui};
 
@@ -48,7 +48,7 @@ impl CompareView {
                 });
                 return;
             };
-            compare_list::list_ui(ui, Sheet { look, trials }, &mut self.chosen);
+            compare_list::list_ui(ui, SessionSheet { look, trials }, &mut self.chosen);
             let focus = self
                 .chosen
                 .focus

@@ -19,7 +19,7 @@ const RIGHT: [f32; 2] = [72.0, 128.0];
 
 /// What the list is drawn from.
 #[derive(Clone, Copy)]
-pub(crate) struct Sheet<'a> {
+pub(crate) struct SessionSheet<'a> {
     /// Colours and language.
     pub(crate) look: Look,
     /// The sessions.
@@ -41,7 +41,7 @@ pub(crate) fn style(shown: impl ExactSizeIterator<Item = SessionId>, id: Session
 }
 
 /// Draws the list, the newest first.
-pub(crate) fn list_ui(ui: &mut Ui, sheet: Sheet<'_>, chosen: &mut ShownSessions) {
+pub(crate) fn list_ui(ui: &mut Ui, sheet: SessionSheet<'_>, chosen: &mut ShownSessions) {
     let sessions = &sheet.trials.sessions;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -74,7 +74,7 @@ pub(crate) fn list_ui(ui: &mut Ui, sheet: Sheet<'_>, chosen: &mut ShownSessions)
 
 fn row_ui(
     row: &mut TableRow<'_, '_>,
-    sheet: Sheet<'_>,
+    sheet: SessionSheet<'_>,
     session: &TrialSession,
     chosen: &mut ShownSessions,
 ) {
@@ -109,7 +109,7 @@ fn row_ui(
     });
 }
 
-fn tick_ui(ui: &mut Ui, sheet: Sheet<'_>, id: SessionId, chosen: &mut ShownSessions) {
+fn tick_ui(ui: &mut Ui, sheet: SessionSheet<'_>, id: SessionId, chosen: &mut ShownSessions) {
     let look = sheet.look;
     let mut on = chosen.shown.contains(&id);
     let count = chosen.shown.len();
@@ -144,7 +144,7 @@ fn about(session: &TrialSession) -> String {
     parts.join("  ")
 }
 
-fn state(sheet: Sheet<'_>, session: &TrialSession) -> (String, Color32) {
+fn state(sheet: SessionSheet<'_>, session: &TrialSession) -> (String, Color32) {
     let (look, palette) = (sheet.look, sheet.look.palette);
     if session.lost > 0 {
         return (look.fill(tune::LOST, &[&session.lost]), palette.warn);

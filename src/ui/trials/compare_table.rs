@@ -64,7 +64,7 @@ struct Laid {
 }
 
 /// What every part of the table is drawn with.
-struct Sheet<'a, 'b> {
+struct TrialSheet<'a, 'b> {
     pane: &'a Pane<'b>,
     comparison: &'a Comparison,
 }
@@ -83,7 +83,7 @@ impl TableView {
         comparison: &Comparison,
         strong: &mut Option<TrialKey>,
     ) {
-        let sheet = Sheet { pane, comparison };
+        let sheet = TrialSheet { pane, comparison };
         let is_pointed = ui.rect_contains_pointer(ui.available_rect_before_wrap());
         let laid = self.laid(&sheet, is_pointed);
         let sorting = &mut self.sorting;
@@ -127,7 +127,7 @@ impl TableView {
 
     /// The rows in their order, reckoned again only when something changed; what is new comes last while the pointer is on
     /// them.
-    fn laid(&mut self, sheet: &Sheet<'_, '_>, is_pointed: bool) -> Laid {
+    fn laid(&mut self, sheet: &TrialSheet<'_, '_>, is_pointed: bool) -> Laid {
         let (sorting, language) = (self.sorting, sheet.pane.look.language);
         let former = self.laid.take();
         let former = former.filter(|own| own.sorting == sorting && own.language == language);
@@ -153,7 +153,7 @@ impl TableView {
     }
 }
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> TrialSheet<'a, '_> {
     fn several(&self) -> bool {
         self.comparison.sessions().len() > 1
     }

@@ -6,7 +6,7 @@ use crate::app::trials::SeriesRun;
 use crate::hand::Dof;
 use crate::trials::recording::{TrialRecording, seconds};
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::plot::trial_chart_ui;
@@ -100,7 +100,7 @@ fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut ChartView
     let highest = all.map(|[_, grams]| *grams).fold(0.0, f64::max);
     let curves = lines.iter().map(|(dof, points)| {
         let stroke = Stroke::new(theme::LINE, look.palette.dof[*dof]);
-        Curve::new(Points::Own(points), stroke)
+        ChartCurve::new(Points::Own(points), stroke)
     });
     let force = Chart {
         curves: curves.collect(),

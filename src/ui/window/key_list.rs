@@ -60,11 +60,11 @@ impl KeyList {
 }
 
 /// A title, and below it the names of keys with what they do.
-type Part = (Text, Vec<(String, Text)>);
+type KeyGroup = (Text, Vec<(String, Text)>);
 
 /// The columns of the list.
-fn columns() -> [Vec<Part>; 3] {
-    let part = |title: Text, wanted: fn(Wish) -> bool| -> Part {
+fn columns() -> [Vec<KeyGroup>; 3] {
+    let part = |title: Text, wanted: fn(Wish) -> bool| -> KeyGroup {
         let wishes = ROWS.iter().map(|row| row.wish);
         let mut wishes: Vec<Wish> = wishes.filter(|wish| wanted(*wish)).collect();
         wishes.dedup();

@@ -51,14 +51,14 @@ pub(crate) enum Escape {
 
 /// One key and what it asks for.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Row {
+pub(crate) struct KeyRow {
     pub(crate) modifiers: Modifiers,
     pub(crate) key: Key,
     pub(crate) wish: Wish,
 }
 
-const fn row(modifiers: Modifiers, key: Key, wish: Wish) -> Row {
-    Row {
+const fn row(modifiers: Modifiers, key: Key, wish: Wish) -> KeyRow {
+    KeyRow {
         modifiers,
         key,
         wish,
@@ -71,7 +71,7 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [Row; 31] = [
+pub(crate) static ROWS: [KeyRow; 31] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
@@ -123,7 +123,7 @@ pub(crate) const ZOOM: [(&str, Text); 3] = match cfg!(target_os = "macos") {
     ],
 };
 
-impl Row {
+impl KeyRow {
     /// As it stands on the keyboard: `Shift+A`.
     pub(crate) fn name(self) -> String {
         let key = match self.key {
@@ -252,7 +252,7 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
     wishes
 }
 
-impl Row {
+impl KeyRow {
     /// A stop is meant whatever else is held down.
     fn is_stop(self, event: &Event) -> bool {
         matches!(event, Event::Key { key, .. } if *key == self.key && self.wish == Wish::Stop)
@@ -263,7 +263,7 @@ impl Row {
 mod tests {
     use super::*;
 
-    fn event(row: Row, repeat: bool) -> Event {
+    fn event(row: KeyRow, repeat: bool) -> Event {
         Event::Key {
             key: row.key,
             physical_key: None,
@@ -351,7 +351,7 @@ mod tests {
         }
     }
 
-    impl Row {
+    impl KeyRow {
         fn pressed(self, repeat: bool) -> Event {
             event(self, repeat)
         }

@@ -16,7 +16,7 @@ const AGE: f32 = 52.0;
 
 /// What decides which lines there are and how high.
 #[derive(Debug, Clone, PartialEq)]
-struct Key {
+struct LogKey {
     newest: Option<(u64, Moment)>,
     language: Language,
     least: Option<Level>,
@@ -26,7 +26,7 @@ struct Key {
 
 /// One message, ready to draw.
 #[derive(Debug)]
-struct Line {
+struct LogLine {
     at: Moment,
     level: Level,
     text: String,
@@ -39,8 +39,8 @@ pub(crate) struct MessageLog {
     /// Messages of less weight are left out.
     least: Option<Level>,
     words: String,
-    key: Option<Key>,
-    lines: Vec<Line>,
+    key: Option<LogKey>,
+    lines: Vec<LogLine>,
     /// Lines that were copied last, until the list changes.
     copied: Option<usize>,
 }
@@ -110,7 +110,7 @@ impl MessageLog {
     /// Measures the lines anew if anything about them has changed.
     fn update(&mut self, ui: &Ui, pane: &Pane<'_>) {
         let log = &pane.state.notices;
-        let key = Key {
+        let key = LogKey {
             newest: log.log().next().map(|newest| (newest.id, newest.at)),
             language: pane.look.language,
             least: self.least,
@@ -122,7 +122,7 @@ impl MessageLog {
         }
         self.copied = None;
         let passing = log.log().filter(|notice| Some(notice.level) >= key.least);
-        let line = |notice: &Notice| Line {
+        let line = |notice: &Notice| LogLine {
             at: notice.at,
             level: notice.level,
             text: words(pane.look, notice),

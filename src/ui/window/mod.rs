@@ -35,7 +35,7 @@ use crate::ui::connection::ConnectionForm;
 use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
-use crate::ui::joints::row::Row;
+use crate::ui::joints::row::JointRow;
 use crate::ui::kit::{self, CardView, Look, Opens, Pane, Typing};
 use crate::ui::params::DeviceView;
 use crate::ui::params::card as device_card;
@@ -176,7 +176,7 @@ impl Window {
             Wish::Theme => Some(Action::Theme(state.settings.theme.other())),
             Wish::Pause => Some(Action::PausePlots(self.plots.view.time.toggle())),
             Wish::Joint(dof) => {
-                Row::new(dof, pane).focus(ui, armed && !state.hand().joints[dof].locked);
+                JointRow::new(dof, pane).focus(ui, armed && !state.hand().joints[dof].locked);
                 None
             }
             Wish::LinkFingers => {
