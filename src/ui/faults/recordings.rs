@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::files::export::Content;
 use crate::app::readings::fault_recorder::{Listed, Recording, RecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
-use crate::ui::faults::entry::{self as fault_entry, lamp_ui, say_ui, scroll_ui};
+use crate::ui::faults::entry::{self as fault_entry, lamp_ui, scroll_ui};
 use crate::ui::faults::recording_events;
 use crate::ui::faults::recording_events::EventLine;
 use crate::ui::faults::recording_plot::{RecordingCharts, RecordingPlot, panel_height};
@@ -71,7 +71,7 @@ impl RecordingsView {
                 let text = look.told(faults::RECORDING_RUNS, left);
                 ui.horizontal(|ui| {
                     lamp_ui(ui, Some(look.palette.bad));
-                    say_ui(ui, &text, look.palette.text);
+                    kit::say_ui(ui, &text, look.palette.text);
                 });
             }
             for listed in recorder.iter() {
@@ -83,11 +83,11 @@ impl RecordingsView {
                 None => faults::RECORDINGS_NONE,
                 Some(_) => faults::RECORDINGS_KEPT,
             };
-            say_ui(ui, look.say(kept), look.palette.muted);
+            kit::say_ui(ui, look.say(kept), look.palette.muted);
             if recorder.lost_unopened() > 0 {
                 let lost = recorder.lost_unopened();
                 let text = look.told(faults::RECORDINGS_LOST, lost);
-                say_ui(ui, &text, look.palette.warn);
+                kit::say_ui(ui, &text, look.palette.warn);
             }
         });
         if let Some(id) = pressed {
@@ -151,7 +151,7 @@ impl RecordingsView {
                 });
             });
         });
-        say_ui(ui, &about(pane, recording), look.palette.muted);
+        kit::say_ui(ui, &about(pane, recording), look.palette.muted);
     }
 
     /// Which plots, and how much of the time.
@@ -192,11 +192,11 @@ impl RecordingsView {
         let Some((_, lines)) = &self.lines else {
             return;
         };
-        say_ui(ui, look.say(faults::RECORDING_EVENTS), look.palette.muted);
+        kit::say_ui(ui, look.say(faults::RECORDING_EVENTS), look.palette.muted);
         if recording.events_lost > 0 {
             let lost = recording.events_lost;
             let text = look.told(faults::RECORDING_EVENTS_LOST, lost);
-            say_ui(ui, &text, look.palette.warn);
+            kit::say_ui(ui, &text, look.palette.warn);
         }
         ui.spacing_mut().item_spacing.y = 0.0;
         let scroll = ScrollArea::vertical().auto_shrink(false);
@@ -249,9 +249,9 @@ fn row_ui(ui: &mut Ui, pane: &Pane<'_>, listed: &Listed) -> bool {
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             Label::new(&title, ink).wrap().ui(ui);
-            say_ui(ui, &about(pane, recording), palette.muted);
+            kit::say_ui(ui, &about(pane, recording), palette.muted);
             if !listed.opened {
-                say_ui(ui, look.say(faults::RECORDING_NEW), palette.muted);
+                kit::say_ui(ui, look.say(faults::RECORDING_NEW), palette.muted);
             }
         });
         pressed

@@ -166,20 +166,6 @@ impl<'a> Label<'a> {
     }
 }
 
-/// Paints text inside a rectangle, for views that do not paint labels yet.
-pub(crate) fn paint_text(
-    ui: &Ui,
-    rect: Rect,
-    align: Align2,
-    text: &str,
-    font: FontId,
-    color: Color32,
-) {
-    let mut label = Label::new(text, color).font(font);
-    label.align = align;
-    label.paint(ui, rect);
-}
-
 /// Width of a text on one line.
 pub(crate) fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     ui.painter()
@@ -549,6 +535,11 @@ pub(crate) fn cell_ui<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R
         add(ui)
     });
     cell.inner
+}
+
+/// Small words that wrap.
+pub(crate) fn say_ui(ui: &mut Ui, text: &str, color: Color32) -> Response {
+    Label::new(text, color).small().wrap().ui(ui)
 }
 
 /// Tells a screen reader the name of a text field, and what stands in it.

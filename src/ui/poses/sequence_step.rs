@@ -9,7 +9,7 @@ use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Align, Align2, CursorIcon, Id, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, CursorIcon, Id, Layout, Ui, UiBuilder, vec2};
 
 /// Height of a row.
 pub(crate) const ROW: f32 = 44.0;
@@ -94,8 +94,8 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
     let (_, rect) = ui.allocate_space(ui.available_size());
     let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
     let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id(at));
-    let (words, left) = (rect.shrink2(vec2(theme::STEP, 0.0)), Align2::LEFT_CENTER);
-    kit::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
+    let words = rect.shrink2(vec2(theme::STEP, 0.0));
+    Label::new(&text, look.palette.text).paint(ui, words);
     if response.clicked() {
         response.request_focus();
     }

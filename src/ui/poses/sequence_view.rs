@@ -11,7 +11,7 @@ use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
-use egui::{Align, Align2, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
+use egui::{Align, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use std::time::Duration;
 
 /// Time between two pictures of a dry run while nothing else is new.
@@ -180,8 +180,8 @@ fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
         let pose = pane.state.poses.library.pose(step.pose);
         let name = pose.map_or("", |pose| pose.name.as_str());
         let text = format!("{} {name}", at + 1);
-        let (inner, center) = (inner.shrink2(vec2(theme::STEP, 0.0)), Align2::CENTER_CENTER);
-        kit::paint_text(ui, inner, center, &text, theme::small(), color);
+        let label = Label::new(&text, color).small().center();
+        label.paint(ui, inner.shrink2(vec2(theme::STEP, 0.0)));
         x += width;
     }
 }

@@ -9,7 +9,7 @@ use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, reorder};
 use crate::ui::text::{main, panels, poses};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{Align2, Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
+use egui::{Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
 
 /// Width and least height of a pose in the overview: a finger's breadth.
 const STRIP_TILE: egui::Vec2 = vec2(132.0, 38.0);
@@ -89,9 +89,10 @@ pub(crate) fn tile_ui(
         true => format!("{} · {} g", pose.speed.get(), pose.force.get()),
         false => pose.tags.join(" · "),
     };
-    let (center, palette) = (Align2::CENTER_CENTER, look.palette);
-    kit::paint_text(&ui, upper, center, &pose.name, theme::body(), palette.text);
-    kit::paint_text(&ui, lower, center, &about, theme::small(), palette.muted);
+    let name = Label::new(&pose.name, look.palette.text).center();
+    name.paint(&ui, upper);
+    let about = Label::new(&about, look.palette.muted).small().center();
+    about.paint(&ui, lower);
     go_ui(&mut ui, pane, pose);
     response.clicked()
 }
@@ -157,8 +158,7 @@ fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     let (picture, words) = rect.split_left_right_at_x(rect.left() + rect.height());
     panel::pose_ui(ui, look, picture.shrink(2.0), &shares(&pose.angles));
     let words = words.shrink2(vec2(theme::STEP, 0.0));
-    let (left, color) = (Align2::LEFT_CENTER, button.text_color(look));
-    kit::paint_text(ui, words, left, &pose.name, theme::body(), color);
+    Label::new(&pose.name, button.text_color(look)).paint(ui, words);
     if response.clicked() {
         pane.actions.push(Action::Recall(pose.id));
     }

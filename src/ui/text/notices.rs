@@ -100,10 +100,11 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             told(panels::NOTICE_LOCKED, look.say(words::dof(*dof)))
         }
         NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
-        NoticeKind::SeriesEnded { .. }
-        | NoticeKind::SeriesRuns
-        | NoticeKind::SessionOpened { .. }
-        | NoticeKind::SessionRefused { .. } => tune::notice(look, what),
+        NoticeKind::SeriesRuns => said(main::SERIES_RUNS),
+        NoticeKind::SeriesEnded { trials, aborted } => match aborted {
+            None => look.fill(tune::ENDED, &[trials]),
+            Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),
+        },
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         NoticeKind::GestureStoreOff => said(poses::STORE_OFF.tip()),
         // The words of the graphics driver help whoever mends it.
@@ -138,6 +139,13 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
             look.say(poses::COUNT_POSES),
             look.say(poses::COUNT_SEQUENCES)
         ),
+        NoticeKind::SessionOpened { path, trials } => {
+            look.fill(tune::OPENED, &[&path.display(), trials])
+        }
+        NoticeKind::SessionRefused { path, message } => {
+            let why = errors::system(look, message);
+            look.fill(tune::REFUSED, &[&path.display(), &why])
+        }
         NoticeKind::PosesRefused { path, error } => {
             of(poses::REFUSED, path, &errors::poses(look, error))
         }

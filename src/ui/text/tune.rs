@@ -1,6 +1,5 @@
 //! Sentences of the plan of grasp trials, its running, and what was measured.
 
-use crate::app::notices::NoticeKind;
 use crate::app::trials::SessionDifference;
 use crate::app::trials::form::ListError;
 use crate::app::trials::{ApproachKind, TrialQuantity};
@@ -9,7 +8,7 @@ use crate::trials::Stage;
 use crate::trials::{Abort, EarlyEnd, PlanError};
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::texts;
-use crate::ui::text::{errors, main, words};
+use crate::ui::text::words;
 
 texts! {
     ENDED: "Trials done: {}.", "已完成试验：{} 次。";
@@ -289,22 +288,5 @@ pub(crate) fn list_error(look: Look, error: ListError) -> String {
         ListError::NotInRange { most } => look.fill(LIST_RANGE, &[&most]),
         ListError::TooLong => look.say(LIST_LONG).into(),
         ListError::Empty => look.say(LIST_EMPTY).into(),
-    }
-}
-
-/// What became of a series or of its files; empty for everything else.
-pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
-    match what {
-        NoticeKind::SeriesEnded { trials, aborted } => match aborted {
-            None => look.fill(ENDED, &[trials]),
-            Some(why) => look.fill(ENDED_EARLY, &[trials, &abort(look, *why)]),
-        },
-        NoticeKind::SeriesRuns => look.say(main::SERIES_RUNS).into(),
-        NoticeKind::SessionOpened { path, trials } => look.fill(OPENED, &[&path.display(), trials]),
-        NoticeKind::SessionRefused { path, message } => {
-            let why = errors::system(look, message);
-            look.fill(REFUSED, &[&path.display(), &why])
-        }
-        _ => String::new(),
     }
 }

@@ -44,9 +44,6 @@ pub(crate) const BAR: f32 = 3.0;
 /// Width of a line that is to be seen.
 pub(crate) const STRONG: f32 = 2.0;
 
-/// Widest menu.
-pub(crate) const MENU_WIDTH: f32 = 220.0;
-
 /// Width of the ring around what has the keyboard.
 pub(crate) const FOCUS_LINE: f32 = 1.5;
 /// What a lamp shines beyond its edge; the dot in a handle.
@@ -57,8 +54,6 @@ pub(crate) const SIGN: f32 = 16.0;
 pub(crate) const SIGN_SMALL: f32 = 12.0;
 /// Where a lamp's middle is in its row.
 pub(crate) const LAMP_AT: f32 = 6.0;
-/// Where the words beside a lamp begin.
-pub(crate) const INDENT: f32 = 17.0;
 /// A line of a paragraph.
 pub(crate) const TEXT_LINE: f32 = 16.0;
 /// A line of a list.
@@ -70,8 +65,6 @@ pub(crate) const FIGURE_ROW: f32 = 18.0;
 pub(crate) const TITLE_LINE: f32 = 20.0;
 /// Width of a number field.
 pub(crate) const FIELD: f32 = 52.0;
-/// Height of the rail of a track.
-pub(crate) const TRACK_RAIL: f32 = 6.0;
 /// Room inside a number field.
 pub(crate) const NUMBER_INSET: Margin = Margin::symmetric(6, 0);
 /// Room inside a text field.

@@ -2,11 +2,11 @@
 
 use crate::link::traffic::compose::{FrameSnippet, SnippetFormat};
 use crate::link::traffic::frame::{Frame, Kind};
-use crate::ui::kit::{self, Look, Pane};
+use crate::ui::kit::{self, Label, Look, Pane};
 use crate::ui::text::{main, traffic};
 use crate::ui::theme;
 use egui::{
-    Align, Align2, Color32, FontId, Id, Key, Modifiers, Rect, Response, Role, Sense, Ui, WidgetInfo,
+    Align, Color32, FontId, Id, Key, Modifiers, Rect, Response, Role, Sense, Ui, WidgetInfo,
 };
 use egui_extras::{Column, TableBuilder, TableRow};
 use std::collections::{BTreeSet, VecDeque};
@@ -204,7 +204,7 @@ fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
 }
 
 fn paint(ui: &Ui, text: &str, font: FontId, color: Color32) {
-    kit::paint_text(ui, ui.max_rect(), Align2::LEFT_CENTER, text, font, color);
+    Label::new(text, color).font(font).paint(ui, ui.max_rect());
 }
 
 /// What is wrong, else what it means.

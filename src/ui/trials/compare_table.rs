@@ -11,7 +11,7 @@ use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::{end_words, order, setting_words, shown, spread};
 use crate::ui::trials::compare_curves::color;
 use crate::ui::trials::compare_list;
-use egui::{Align, Align2, Color32, Layout, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Align, Color32, Layout, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 const ROW: f32 = 20.0;
@@ -237,13 +237,12 @@ impl<'a> TrialSheet<'a, '_> {
         let (upper, lower) = words.split_top_bottom_at_fraction(0.5);
         let unit = text.split_once(", ").or_else(|| text.split_once(' '));
         let (text, unit) = unit.unwrap_or((text, ""));
-        let align = match by {
-            By::Number(_) => Align2::RIGHT_CENTER,
-            _ => Align2::LEFT_CENTER,
-        };
         for (place, text) in [(upper, text), (lower, unit)] {
-            let (font, color) = (theme::small(), look.palette.muted);
-            kit::paint_text(ui, place, align, text, font, color);
+            let label = Label::new(text, look.palette.muted).small();
+            match by {
+                By::Number(_) => label.right().paint(ui, place),
+                _ => label.paint(ui, place),
+            };
         }
         if is_own {
             let (arrow, way) = match sorting.falling {

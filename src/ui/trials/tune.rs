@@ -8,10 +8,10 @@ use crate::trials::estimate;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{main, tune, words};
 use crate::ui::theme;
+use crate::ui::trials::PLOT_LEAST;
 use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::trials::tune_live;
 use crate::ui::trials::tune_result::ResultView;
-use crate::ui::trials::{PLOT_LEAST, line_ui};
 use egui::{Margin, Panel, ScrollArea, Ui};
 
 /// What the view needs between frames.
@@ -62,7 +62,7 @@ impl TuneView {
             if last.is_none() {
                 let palette = pane.look.palette;
                 Label::said(pane.look, tune::IDLE_TITLE).ui(ui);
-                line_ui(ui, pane.look.say(tune::IDLE_BODY), palette.muted);
+                kit::say_ui(ui, pane.look.say(tune::IDLE_BODY), palette.muted);
             }
         });
     }
@@ -94,7 +94,7 @@ fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.set_max_height(theme::CONTROL_LARGE);
         button.sends(ui, pane, Action::Trial(TrialAction::Start));
     });
-    line_ui(ui, reason.as_deref().unwrap_or(" "), look.palette.warn);
+    kit::say_ui(ui, reason.as_deref().unwrap_or(" "), look.palette.warn);
 }
 
 /// What will happen, and how hard it may hit.
@@ -107,9 +107,9 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (count, time) = estimate::series(plan);
     let joints: Vec<&str> = plan.joints().map(|dof| look.say(words::dof(dof))).collect();
     let parts: [&dyn std::fmt::Display; 3] = [&look.list(&joints), &count, &format::duration(time)];
-    line_ui(ui, &look.fill(tune::WILL, &parts), palette.text);
+    kit::say_ui(ui, &look.fill(tune::WILL, &parts), palette.text);
     if count > plan.grid.settings().len() {
-        line_ui(ui, look.say(tune::WILL_PROBE), palette.muted);
+        kit::say_ui(ui, look.say(tune::WILL_PROBE), palette.muted);
     }
     if let Some((setting, peak)) = plan.expected() {
         let (peak_g, force) = (format!("{peak:.0}"), setting.force.get());
@@ -121,10 +121,10 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
         } else {
             palette.muted
         };
-        line_ui(ui, &text, color);
+        kit::say_ui(ui, &text, color);
         if is_rough {
-            line_ui(ui, look.say(tune::EXPECT_WHY), palette.muted);
+            kit::say_ui(ui, look.say(tune::EXPECT_WHY), palette.muted);
         }
     }
-    line_ui(ui, look.say(tune::ANY_KEY), palette.muted);
+    kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
 }

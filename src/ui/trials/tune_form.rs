@@ -8,7 +8,6 @@ use crate::trials::{Approach, TrialPlan, Until};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField};
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
-use crate::ui::trials::line_ui;
 use egui::{Align, Layout, ScrollArea, Ui, vec2};
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -127,7 +126,7 @@ impl Pass<'_, '_> {
     /// What is wrong here, once.
     fn trouble_ui(&mut self, ui: &mut Ui, field: PlanField) {
         if let Some((_, why)) = self.wrong.take_if(|(at, _)| *at == field) {
-            line_ui(ui, &why, self.pane.look.palette.bad);
+            kit::say_ui(ui, &why, self.pane.look.palette.bad);
         }
     }
 
@@ -190,7 +189,7 @@ impl Pass<'_, '_> {
             let response = button.disabled(self.disabled).ui(ui, look);
             let mut taken = None;
             egui::Popup::menu(&response).show(|ui| {
-                ui.set_width(theme::MENU_WIDTH);
+                ui.set_width(220.0);
                 let now = state.hand().pose_now();
                 let button = egui::Button::new(look.say(tune::TAKE_NOW));
                 if ui.add_enabled(now.is_some(), button).clicked() {

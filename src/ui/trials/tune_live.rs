@@ -9,8 +9,8 @@ use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
+use crate::ui::trials::PLOT_LEAST;
 use crate::ui::trials::plot::trial_chart_ui;
-use crate::ui::trials::{PLOT_LEAST, line_ui};
 use egui::{Color32, ProgressBar, Role, Stroke, Ui, WidgetInfo};
 
 /// Readings of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
@@ -47,7 +47,7 @@ fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     label.named(name).ui(ui);
     let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
     let share = count(number.saturating_sub(1)) / count(total.max(1));
-    let bar = ProgressBar::new(share).desired_height(theme::TRACK_RAIL);
+    let bar = ProgressBar::new(share).desired_height(6.0);
     let bar = ui.add(bar.fill(palette.accent));
     bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
     let left = format::duration(run.left(pane.state.now));
@@ -62,7 +62,7 @@ fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
             Label::new(&text, palette.muted).small().ui(ui);
         }
     });
-    line_ui(ui, look.say(tune::ANY_KEY), palette.muted);
+    kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
 }
 
 fn heat_ui(ui: &mut Ui, pane: &Pane<'_>) {

@@ -4,7 +4,7 @@ use crate::app::trials::{ComparedLines, Comparison, TrialQuantity, TrialSession}
 use crate::params::rows::{ParamId, Value};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
-use crate::ui::kit::{Button, Opens, Pane, Weight};
+use crate::ui::kit::{self, Button, Opens, Pane, Weight};
 use crate::ui::plots::chart::{Chart, ChartView};
 use crate::ui::plots::legend::legend_ui;
 use crate::ui::text::tune;
@@ -12,7 +12,6 @@ use crate::ui::trials::compare;
 use crate::ui::trials::compare_best::staging;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_curves::DrawnTrials;
-use crate::ui::trials::line_ui;
 use crate::ui::trials::plot::trial_chart_ui;
 use crate::ui::view::View;
 use egui::Ui;
@@ -33,15 +32,15 @@ impl ResultView {
             None => (look.say(tune::ALL_DONE).to_owned(), palette.ok),
             Some(why) => (tune::ended(look, why), palette.warn),
         };
-        line_ui(ui, &look.fill(tune::LAST, &[&ended]), color);
+        kit::say_ui(ui, &look.fill(tune::LAST, &[&ended]), color);
         let (told, color) = compare::told(pane.state, look, Some(session));
-        line_ui(ui, &told, color);
+        kit::say_ui(ui, &told, color);
         let (comparison, _) = self.seen(pane, session);
         let gentlest = Criterion::LeastOvershoot { steady_g: 0.0 };
         let score = best(&comparison.scores, gentlest);
         let none = || look.say(tune::BEST_NONE).to_owned();
         let words = score.map_or_else(none, |score| best_words(pane, score));
-        line_ui(ui, &words, palette.text);
+        kit::say_ui(ui, &words, palette.text);
         let device = &pane.state.hand().params;
         let is_staged = score.is_some_and(|score| {
             let number = |number: i16| Some(Value::Number(number.into()));
@@ -52,7 +51,7 @@ impl ResultView {
             })
         });
         if is_staged {
-            line_ui(ui, look.say(tune::STAGED_NEXT), palette.ok);
+            kit::say_ui(ui, look.say(tune::STAGED_NEXT), palette.ok);
         }
         let button_ui = |ui: &mut Ui, text, weight| {
             let button = Button::said(look, text).named(look.tip(text));
