@@ -1,6 +1,6 @@
 //! The views of the window.
 
-use crate::ui::text::{Text, main, tune};
+use crate::ui::text::{Text, main};
 
 /// The parts of the window that can be looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -68,8 +68,8 @@ impl View {
         match self {
             Self::Live => main::TAB_LIVE,
             Self::Touch => main::TAB_TOUCH,
-            Self::Tune => tune::TAB,
-            Self::Compare => tune::TAB_COMPARE,
+            Self::Tune => main::TAB_TUNE,
+            Self::Compare => main::TAB_COMPARE,
             Self::Faults => main::TAB_FAULTS,
             Self::Poses => main::TAB_POSES,
             Self::Device => main::TAB_DEVICE,

@@ -88,8 +88,8 @@ impl DesktopError {
     }
 }
 
-impl From<&'static libraries::Library> for DesktopError {
-    fn from(missing: &'static libraries::Library) -> Self {
+impl From<&'static libraries::SharedLibrary> for DesktopError {
+    fn from(missing: &'static libraries::SharedLibrary) -> Self {
         Self::MissingLibrary {
             library: missing.file,
             package: &missing.package,
@@ -143,17 +143,17 @@ mod tests {
                 "apt install libxcursor1'",
             ),
             (
-                "OpenError { kind: Library, detail: \"opening library failed (libXi.so.6: cannot open shared object file)\" }",
+                "OpenError { kind: SharedLibrary, detail: \"opening library failed (libXi.so.6: cannot open shared object file)\" }",
                 "libXi.so.6",
                 "apt install libxi6'",
             ),
             (
-                "Library libxkbcommon-x11.so could not be loaded.",
+                "SharedLibrary libxkbcommon-x11.so could not be loaded.",
                 "libxkbcommon-x11.so.0",
                 "apt install libxkbcommon-x11-0'",
             ),
             (
-                "Library libxkbcommon.so could not be loaded.",
+                "SharedLibrary libxkbcommon.so could not be loaded.",
                 "libxkbcommon.so.0",
                 "apt install libxkbcommon0'",
             ),

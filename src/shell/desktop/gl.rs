@@ -14,7 +14,7 @@ pub(crate) fn run(beginning: &Rc<Beginning>) -> Result<(), DesktopError> {
     let create: eframe::AppCreator<'_> = Box::new(move |cc| {
         let program = beginning.begin(&cc.egui_ctx);
         let program = program.ok_or("the window was opened twice")?;
-        Ok(Box::new(Window(program)))
+        Ok(Box::new(GlWindow(program)))
     });
     eframe::run_native("handscope", options, create).map_err(|error| failed(&error))
 }
@@ -37,9 +37,9 @@ fn no_opengl(words: &str) -> DesktopError {
     }
 }
 
-struct Window(Program);
+struct GlWindow(Program);
 
-impl eframe::App for Window {
+impl eframe::App for GlWindow {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.0.logic(ctx);
     }

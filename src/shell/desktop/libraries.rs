@@ -12,7 +12,7 @@ pub struct Package {
 
 /// A library and where it comes from.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Library {
+pub(crate) struct SharedLibrary {
     /// What it is called by those who look for it, in small letters.
     name: &'static str,
     /// Its file.
@@ -35,33 +35,33 @@ pub(crate) const ALL: Package = Package::of(
 );
 
 /// What X11 needs. The longer names first: some begin with another.
-static OF_X11: [Library; 6] = [
-    Library {
+static OF_X11: [SharedLibrary; 6] = [
+    SharedLibrary {
         name: "libxkbcommon-x11",
         file: "libxkbcommon-x11.so.0",
         package: Package::of("libxkbcommon-x11-0", "libxkbcommon-x11", "libxkbcommon-x11"),
     },
-    Library {
+    SharedLibrary {
         name: "libxkbcommon",
         file: "libxkbcommon.so.0",
         package: Package::of("libxkbcommon0", "libxkbcommon", "libxkbcommon"),
     },
-    Library {
+    SharedLibrary {
         name: "libxcursor",
         file: "libXcursor.so.1",
         package: Package::of("libxcursor1", "libXcursor", "libxcursor"),
     },
-    Library {
+    SharedLibrary {
         name: "libxi.",
         file: "libXi.so.6",
         package: Package::of("libxi6", "libXi", "libxi"),
     },
-    Library {
+    SharedLibrary {
         name: "libx11-xcb",
         file: "libX11-xcb.so.1",
         package: Package::of("libx11-xcb1", "libX11-xcb", "libx11"),
     },
-    Library {
+    SharedLibrary {
         name: "libx11.",
         file: "libX11.so.6",
         package: Package::of("libx11-6", "libX11", "libx11"),
@@ -91,16 +91,16 @@ pub(crate) fn install(package: &Package) -> String {
 }
 
 /// The library that these words, in small letters, are about.
-pub(crate) fn named_in(words: &str) -> Option<&'static Library> {
+pub(crate) fn named_in(words: &str) -> Option<&'static SharedLibrary> {
     OF_X11.iter().find(|library| words.contains(library.name))
 }
 
 /// The first library of X11 that is in none of the places where this system keeps libraries.
-pub(crate) fn missing_here() -> Option<&'static Library> {
+pub(crate) fn missing_here() -> Option<&'static SharedLibrary> {
     missing_from(&places())
 }
 
-fn missing_from(places: &[PathBuf]) -> Option<&'static Library> {
+fn missing_from(places: &[PathBuf]) -> Option<&'static SharedLibrary> {
     let is_there = |file: &str| places.iter().any(|place| place.join(file).is_file());
     let any = OF_X11.iter().any(|library| is_there(library.file));
     // A system that keeps them elsewhere is not told wrong things.

@@ -14,14 +14,14 @@ use std::rc::Rc;
 use std::time::Instant;
 
 /// What reaches the event loop from elsewhere.
-enum Wish {
+enum LoopEvent {
     /// Something changed that is to be drawn by then.
     DrawBy(Instant),
     /// A screen reader asks.
     Access(accesskit_winit::Event),
 }
 
-impl From<accesskit_winit::Event> for Wish {
+impl From<accesskit_winit::Event> for LoopEvent {
     fn from(event: accesskit_winit::Event) -> Self {
         Self::Access(event)
     }
@@ -30,7 +30,7 @@ impl From<accesskit_winit::Event> for Wish {
 /// Opens the window and runs until it is closed.
 pub(crate) fn run(beginning: &Rc<Beginning>) -> Result<(), DesktopError> {
     let refused = |error: &dyn std::error::Error| DesktopError::of(&error.to_string());
-    let events = EventLoop::<Wish>::with_user_event()
+    let events = EventLoop::<LoopEvent>::with_user_event()
         .build()
         .map_err(|error| refused(&error))?;
     let mut software = Software {
@@ -49,8 +49,8 @@ pub(crate) fn run(beginning: &Rc<Beginning>) -> Result<(), DesktopError> {
 struct Software {
     ctx: Context,
     beginning: Rc<Beginning>,
-    wishes: EventLoopProxy<Wish>,
-    open: Option<Open>,
+    wishes: EventLoopProxy<LoopEvent>,
+    open: Option<OpenWindow>,
     failed: Option<DesktopError>,
 }
 
@@ -62,7 +62,7 @@ enum Stays {
 }
 
 /// The window that stands.
-struct Open {
+struct OpenWindow {
     window: Rc<Window>,
     state: State,
     screen: Screen,
@@ -78,7 +78,7 @@ struct Open {
 }
 
 impl Software {
-    fn stand(&self, events: &ActiveEventLoop) -> Result<Open, DesktopError> {
+    fn stand(&self, events: &ActiveEventLoop) -> Result<OpenWindow, DesktopError> {
         // A screen reader has to be told of the window before it shows.
         let hidden = viewport(self.beginning.window_size()).with_visible(false);
         let window = create_window(&self.ctx, events, &hidden)
@@ -101,13 +101,13 @@ impl Software {
         let wishes = self.wishes.clone();
         self.ctx.set_request_repaint_callback(move |wanted| {
             // A loop that has ended draws no more.
-            let _sent = wishes.send_event(Wish::DrawBy(Instant::now() + wanted.delay));
+            let _sent = wishes.send_event(LoopEvent::DrawBy(Instant::now() + wanted.delay));
         });
         let program = self.beginning.begin(&self.ctx);
         let program = program.ok_or_else(|| DesktopError::of("it was opened twice"))?;
         window.set_visible(true);
         window.request_redraw();
-        Ok(Open {
+        Ok(OpenWindow {
             window,
             state,
             screen,
@@ -131,7 +131,7 @@ impl Software {
     }
 }
 
-impl ApplicationHandler<Wish> for Software {
+impl ApplicationHandler<LoopEvent> for Software {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if self.open.is_none() {
             match self.stand(events) {
@@ -141,11 +141,11 @@ impl ApplicationHandler<Wish> for Software {
         }
     }
 
-    fn user_event(&mut self, _events: &ActiveEventLoop, wish: Wish) {
+    fn user_event(&mut self, _events: &ActiveEventLoop, wish: LoopEvent) {
         let Some(open) = &mut self.open else { return };
         match wish {
-            Wish::DrawBy(at) => open.draw_by(at),
-            Wish::Access(event) => {
+            LoopEvent::DrawBy(at) => open.draw_by(at),
+            LoopEvent::Access(event) => {
                 match event.window_event {
                     AccessEvent::InitialTreeRequested => self.ctx.enable_accesskit(),
                     AccessEvent::ActionRequested(asked) => {
@@ -199,7 +199,7 @@ impl ApplicationHandler<Wish> for Software {
     }
 }
 
-impl Open {
+impl OpenWindow {
     fn draw_by(&mut self, at: Instant) {
         self.due = Some(self.due.map_or(at, |due| due.min(at)));
     }

@@ -70,7 +70,7 @@ impl Strip<'_> {
 
 /// A corner in 1/256 px.
 #[derive(Debug, Clone, Copy)]
-struct Corner {
+struct SubpixelPoint {
     x: i64,
     y: i64,
 }
@@ -84,7 +84,7 @@ struct Edge {
 }
 
 impl Edge {
-    fn new(from: Corner, to: Corner) -> Self {
+    fn new(from: SubpixelPoint, to: SubpixelPoint) -> Self {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         let top_left = dy < 0 || (dy == 0 && dx > 0);
         Self {
@@ -117,7 +117,7 @@ struct Plane<const N: usize> {
 }
 
 impl<const N: usize> Plane<N> {
-    fn new(corners: [Corner; 3], area: i64, values: [[f32; N]; 3]) -> Self {
+    fn new(corners: [SubpixelPoint; 3], area: i64, values: [[f32; N]; 3]) -> Self {
         let [p0, p1, p2] = corners;
         let [v0, v1, v2] = values.map(|corner| corner.map(f64::from));
         let unit = real(SUBPIXELS) / real(area);
@@ -169,7 +169,7 @@ enum Fill {
 /// A triangle that touches pixels. Made once, painted wherever the picture changes.
 #[derive(Debug)]
 pub(crate) struct Triangle {
-    corners: [Corner; 3],
+    corners: [SubpixelPoint; 3],
     vertices: [Vertex; 3],
     area: i64,
     /// The pixels it may touch.
@@ -251,10 +251,10 @@ fn span(edges: &[Edge; 3], row: i64, bounds: Scissor) -> (i64, i64) {
 }
 
 /// The corners clockwise on screen, with twice the area; egui uses both windings.
-fn wound(vertices: [(Vertex, [f32; 2]); 3]) -> Option<([Corner; 3], [Vertex; 3], i64)> {
+fn wound(vertices: [(Vertex, [f32; 2]); 3]) -> Option<([SubpixelPoint; 3], [Vertex; 3], i64)> {
     let [(v0, at0), (v1, at1), (v2, at2)] = vertices;
     let corner = |[x, y]: [f32; 2]| {
-        Some(Corner {
+        Some(SubpixelPoint {
             x: fixed(x)?,
             y: fixed(y)?,
         })
@@ -269,7 +269,7 @@ fn wound(vertices: [(Vertex, [f32; 2]); 3]) -> Option<([Corner; 3], [Vertex; 3],
 }
 
 /// The pixels a triangle can touch; `None` if there are none.
-fn bounds(corners: [Corner; 3], scissor: Scissor) -> Option<Scissor> {
+fn bounds(corners: [SubpixelPoint; 3], scissor: Scissor) -> Option<Scissor> {
     let [p0, p1, p2] = corners;
     let first = |a: i64, b: i64, c: i64| a.min(b).min(c).div_euclid(SUBPIXELS);
     let last = |a: i64, b: i64, c: i64| a.max(b).max(c).div_euclid(SUBPIXELS) + 1;
@@ -282,7 +282,7 @@ fn bounds(corners: [Corner; 3], scissor: Scissor) -> Option<Scissor> {
     touched.within(scissor)
 }
 
-fn fill(corners: [Corner; 3], area: i64, vertices: [Vertex; 3], texture: &Texture) -> Fill {
+fn fill(corners: [SubpixelPoint; 3], area: i64, vertices: [Vertex; 3], texture: &Texture) -> Fill {
     let [v0, v1, v2] = vertices;
     let [width, height] = texture.scale();
     let colour = |vertex: Vertex| rgba(vertex.color);

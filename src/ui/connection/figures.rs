@@ -36,7 +36,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
             label.wrap().ui(ui);
         }
         if let Some(port) = &link.moved_to {
-            let text = format!("{} {port}", look.say(panels::MOVED_TO));
+            let text = look.told(panels::MOVED_TO, port);
             say(ui, &text, look.palette.warn);
         }
         if link.echoes {
@@ -148,7 +148,7 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, caption: &str, add: impl FnOnce(&mut 
         ui.spacing_mut().item_spacing.x = theme::STEP;
         ui.horizontal(|ui| {
             Label::new(caption, pane.look.palette.muted).ui(ui);
-            ui.with_layout(Layout::right_to_left(Align::Center), add);
+            kit::right_ui(ui, add);
         });
     });
 }

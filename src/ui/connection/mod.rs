@@ -16,7 +16,7 @@ use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, refused_ui};
-use crate::ui::text::{errors, panels, quirks, scan as scan_text};
+use crate::ui::text::{errors, panels, scan as scan_text};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 use std::collections::BTreeMap;
@@ -155,7 +155,7 @@ impl ConnectionForm {
             }
             ui.add_space(theme::STEP);
             self.connect_ui(ui, pane);
-            let hint = look.say(panels::kind(self.kind.0).1);
+            let hint = look.tip(panels::kind(self.kind.0));
             Label::new(hint, look.palette.muted).wrap().ui(ui);
         });
         recent_ui(ui, pane);
@@ -164,15 +164,10 @@ impl ConnectionForm {
     fn kinds_ui(&mut self, ui: &mut Ui, look: Look) {
         ui.horizontal_wrapped(|ui| {
             for kind in KINDS {
-                let (text, hint) = panels::kind(kind.0);
-                let (text, hint) = (look.say(text), look.say(hint));
-                let name = format!("{}: {text}", look.say(panels::CONNECTION_KIND));
-                let chosen = kind.0 == self.kind.0;
-                let mut button = Button::new(text, hint).named(&name);
-                button.selected = Some(chosen);
-                if chosen {
-                    button.weight = Weight::Chosen;
-                }
+                let text = panels::kind(kind.0);
+                let name = format!("{}: {}", look.say(panels::CONNECTION_KIND), look.say(text));
+                let button = Button::said(look, text).named(&name);
+                let button = button.switch(kind.0 == self.kind.0);
                 if button.ui(ui, look).clicked() {
                     self.kind = kind;
                 }
@@ -233,8 +228,8 @@ impl ConnectionForm {
                 .map(|it| said(it.name(), panels::scenario(it)))
                 .to_vec(),
             "packing" => {
-                let all = BytePacking::ALL.map(|it| said(it.key(), quirks::packing(it)));
-                [said("", quirks::AS_FOUND)]
+                let all = BytePacking::ALL.map(|it| said(it.key(), scan_text::packing(it)));
+                [said("", scan_text::AS_FOUND)]
                     .into_iter()
                     .chain(all)
                     .collect()
@@ -266,7 +261,7 @@ impl ConnectionForm {
             self.ports_ui(ui, pane);
         }
         if key == "packing" {
-            let tip = Label::new(look.tip(quirks::fact(Fact::Packing)), look.palette.muted);
+            let tip = Label::new(look.tip(scan_text::fact(Fact::Packing)), look.palette.muted);
             tip.small().wrap().ui(ui);
         }
     }

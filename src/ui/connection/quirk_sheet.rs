@@ -6,7 +6,7 @@ use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{Text, quirks as text};
+use crate::ui::text::{Text, scan};
 use egui::Ui;
 
 /// The edition of the manual by which a code is read; others number differently.
@@ -29,30 +29,30 @@ pub(crate) fn sheet_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let said = |text: Text| look.say(text).to_owned();
     let quirks = &pane.state.hand().link.quirks;
     kit::card_ui(ui, look, |ui| {
-        kit::head_ui(ui, look, look.say(text::SHEET), |ui| copy_ui(ui, pane));
+        kit::head_ui(ui, look, look.say(scan::SHEET), |ui| copy_ui(ui, pane));
         line(
             ui,
-            text::fact(Fact::HandId),
+            scan::fact(Fact::HandId),
             quirks.hand_id.map(|id| id.to_string()),
         );
         if let Some(packing) = packing(pane) {
-            line(ui, text::fact(Fact::Packing), Some(packing));
+            line(ui, scan::fact(Fact::Packing), Some(packing));
         }
-        let touch = quirks.touch.map(|touch| said(text::touch(touch)));
-        line(ui, text::fact(Fact::Touch), touch);
+        let touch = quirks.touch.map(|touch| said(scan::touch(touch)));
+        line(ui, scan::fact(Fact::Touch), touch);
         if let Some(sheet) = &pane.state.hand().sheet {
             let seen = format!("{} .. {}", sheet.first_seen, sheet.last_seen);
-            line(ui, text::SEEN, Some(seen));
+            line(ui, scan::SEEN, Some(seen));
         }
         expert_ui(ui, look, |ui| {
             let code = quirks.baud_code.map(|code| baud(pane, code));
-            line(ui, text::fact(Fact::BaudCode), code);
+            line(ui, scan::fact(Fact::BaudCode), code);
             // On CAN nobody asks for it.
             if !is_can(pane) {
                 line(
                     ui,
-                    text::fact(Fact::Gap),
-                    quirks.gap.map(|gap| said(text::gap(gap))),
+                    scan::fact(Fact::Gap),
+                    quirks.gap.map(|gap| said(scan::gap(gap))),
                 );
             }
         });
@@ -71,7 +71,7 @@ fn is_can(pane: &Pane<'_>) -> bool {
 fn baud(pane: &Pane<'_>, code: u8) -> String {
     match baud_of_code(code, is_can(pane)) {
         Some(baud) => format!("{code} = {baud} ({EDITION})"),
-        None => format!("{code} = {} ({EDITION})", pane.look.say(text::BAUD_NONE)),
+        None => format!("{code} = {} ({EDITION})", pane.look.say(scan::BAUD_NONE)),
     }
 }
 
@@ -84,8 +84,8 @@ fn packing(pane: &Pane<'_>) -> Option<String> {
         _ => return None,
     };
     let found = match pane.state.hand().link.quirks.packing {
-        Some(packing) => text::packing(packing),
-        None => text::PACKING_UNKNOWN,
+        Some(packing) => scan::packing(packing),
+        None => scan::PACKING_UNKNOWN,
     };
     Some(match chosen {
         None => look.say(found).to_owned(),
@@ -93,7 +93,7 @@ fn packing(pane: &Pane<'_>) -> Option<String> {
             "{} ({}: {})",
             look.say(found),
             chosen.key(),
-            look.say(text::CHOSEN)
+            look.say(scan::CHOSEN)
         ),
     })
 }
@@ -103,7 +103,7 @@ fn copy_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let hand = pane.state.hand();
     let endpoint = hand.endpoint.as_ref().filter(|_| hand.link.state.is_live());
     let button =
-        Button::said(look, text::COPY).disabled_if(endpoint.is_none(), look.say(text::COPY_OFF));
+        Button::said(look, scan::COPY).disabled_if(endpoint.is_none(), look.say(scan::COPY_OFF));
     if button.ui(ui, look).clicked()
         && let Some(endpoint) = endpoint
     {

@@ -1,9 +1,9 @@
 //! A caption and what stands beside it, and the drawer for experts.
 
-use crate::ui::kit::{Label, Look};
+use crate::ui::kit::{self, Label, Look};
 use crate::ui::text::panels;
 use crate::ui::theme;
-use egui::{Align, CollapsingHeader, Layout, Ui, vec2};
+use egui::{CollapsingHeader, Ui, vec2};
 
 /// Width of the captions.
 const CAPTION: f32 = 104.0;
@@ -21,9 +21,7 @@ pub(crate) fn row_ui<R>(
     add: impl FnOnce(&mut Ui) -> R,
 ) -> R {
     ui.horizontal(|ui| {
-        let left = Layout::left_to_right(Align::Center);
-        ui.allocate_ui_with_layout(vec2(CAPTION, theme::CONTROL), left, |ui| {
-            ui.set_min_size(vec2(CAPTION, theme::CONTROL));
+        kit::cell_ui(ui, vec2(CAPTION, theme::CONTROL), |ui| {
             Label::new(caption, look.palette.muted).ui(ui);
         });
         add(ui)

@@ -86,8 +86,7 @@ impl ScanPanel {
         ui.horizontal_wrapped(|ui| {
             for (address, about) in PRESETS {
                 let tip = format!("{}\n{}", look.say(about), look.say(scan::PRESET_TIP));
-                let mut button = Button::new(address, &tip);
-                button.selected = Some(self.address == address);
+                let button = Button::new(address, &tip).selected(self.address == address);
                 if button.ui(ui, look).clicked() {
                     address.clone_into(&mut self.address);
                 }

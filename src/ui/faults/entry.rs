@@ -69,9 +69,9 @@ pub(crate) fn entry_ui(
         inset_ui(ui, |ui| {
             if entry.is_active() || !entry.seen || depth == Depth::Chosen {
                 let said = notices::fault_kind(entry.what, look.language);
-                say_ui(ui, said.cause, palette.muted);
-                let advice = format!("{} {}", look.say(faults::TODO), said.advice);
-                say_ui(ui, &advice, palette.text);
+                kit::say_ui(ui, said.cause, palette.muted);
+                let advice = look.told(faults::TODO, said.advice);
+                kit::say_ui(ui, &advice, palette.text);
             }
             if entry.is_active() {
                 clear_words_ui(ui, pane, entry);
@@ -107,11 +107,6 @@ pub(crate) fn scroll_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
         ui.set_max_width(ui.available_width() - theme::GAP);
         add(ui);
     });
-}
-
-/// Small words over as many lines as they need.
-pub(crate) fn say_ui(ui: &mut Ui, text: &str, color: Color32) -> egui::Response {
-    Label::new(text, color).small().wrap().ui(ui)
 }
 
 /// A lamp, or the room of one.
@@ -167,7 +162,7 @@ fn foot_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) -> Option<Recording
     }
     let pressed = ui.horizontal_wrapped(|ui| {
         if !text.is_empty() {
-            say_ui(ui, &text, look.palette.muted);
+            kit::say_ui(ui, &text, look.palette.muted);
         }
         recording.filter(|_| {
             let words = look.say(faults::RECORDING);
@@ -218,7 +213,7 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
         let age = format::age(now.since(entry.since));
         let lasted = format::age(entry.lasted(now));
         parts.push(format!("{began} {age} {ago}"));
-        parts.push(format!("{} {lasted}", look.say(faults::LASTED)));
+        parts.push(look.told(faults::LASTED, lasted));
     }
     if entry.count > 1 {
         let (came, times) = (look.say(faults::CAME), look.say(faults::TIMES));
@@ -236,11 +231,11 @@ fn clear_words_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) {
         (None, FaultKind::Status(_)) => (faults::CLEAR_FOLLOWS, look.palette.muted),
         (None, FaultKind::Fault(_)) => (faults::CLEAR_UNSAID, look.palette.warn),
     };
-    say_ui(ui, look.say(text), color);
+    kit::say_ui(ui, look.say(text), color);
     if entry.what == FaultKind::Fault(Fault::OverTemperature) {
         let (text, rests_on) = cooling_words(pane, entry.dof);
-        say_ui(ui, &text, look.palette.text);
-        say_ui(ui, rests_on, look.palette.muted);
+        kit::say_ui(ui, &text, look.palette.text);
+        kit::say_ui(ui, rests_on, look.palette.muted);
     }
 }
 
@@ -259,9 +254,7 @@ fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
     let celsius = format::whole(celsius.map(i64::from), 0);
     let until = format!("{:.0} °C", goal.celsius);
     let more = match cooling::course(&state.hand().history, dof, state.now.secs(), goal) {
-        Course::Falling { left } if left >= cooling::LONGEST => {
-            format!("{} {until}", look.say(faults::COOL_LONG))
-        }
+        Course::Falling { left } if left >= cooling::LONGEST => look.told(faults::COOL_LONG, until),
         Course::Falling { left } => format!(
             "{} {} {} {until}",
             look.say(faults::COOL_IN),
@@ -305,8 +298,8 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
     let width = (kit::text_width(ui, &count, theme::tiny()) + theme::GAP).max(FAULT_BADGE);
     let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, FAULT_BADGE));
     ui.painter().rect_filled(place, FAULT_BADGE / 2.0, color);
-    let (font, ink) = (theme::tiny(), pane.look.palette.window);
-    kit::paint_text(ui, place, egui::Align2::CENTER_CENTER, &count, font, ink);
+    let count = Label::new(&count, pane.look.palette.window).font(theme::tiny());
+    count.center().paint(ui, place);
 }
 
 /// The colour of what nobody has seen: loud while it lasts. `None` if all was seen.

@@ -6,13 +6,11 @@ pub(crate) mod recordings;
 
 use crate::app::action::Action;
 use crate::app::hand::Freshness;
-use crate::app::notices::{Level, Notice};
+use crate::app::notices::Notice;
 use crate::app::readings::faults::NothingToClear;
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Status, Words};
-use crate::ui::faults::entry::{
-    Depth, entry_ui, inset_ui, lamp_ui, say_ui, scroll_ui, seen_all_ui,
-};
+use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, lamp_ui, scroll_ui, seen_all_ui};
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::drive_tiles;
@@ -27,14 +25,14 @@ use egui::{Align, CollapsingHeader, Layout, Ui};
 pub(crate) struct FaultsView {
     /// The joint that is asked about.
     chosen: Option<Dof>,
-    section: Section,
+    section: FaultSection,
     log: MessageLog,
     recordings: RecordingsView,
 }
 
 /// The list beside the faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Section {
+enum FaultSection {
     #[default]
     Log,
     Recordings,
@@ -56,7 +54,7 @@ pub(crate) fn faults_card_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
             ui.separator();
             if pane.state.notices.is_empty() {
-                say_ui(ui, look.say(panels::MESSAGES_NONE), look.palette.faint);
+                kit::say_ui(ui, look.say(panels::MESSAGES_NONE), look.palette.faint);
             }
             for notice in pane.state.notices.iter() {
                 notice_ui(ui, pane, notice);
@@ -138,8 +136,8 @@ impl FaultsView {
         };
         ui.horizontal(|ui| {
             for (text, section) in [
-                (look.say(faults::LOG), Section::Log),
-                (&recordings, Section::Recordings),
+                (look.say(faults::LOG), FaultSection::Log),
+                (&recordings, FaultSection::Recordings),
             ] {
                 let button = Button::new(text, look.say(faults::SECTION_TIP));
                 let button = button.choice(self.section == section);
@@ -149,8 +147,8 @@ impl FaultsView {
             }
         });
         match self.section {
-            Section::Log => self.log.ui(ui, pane),
-            Section::Recordings => self.recordings.list_ui(ui, pane),
+            FaultSection::Log => self.log.ui(ui, pane),
+            FaultSection::Recordings => self.recordings.list_ui(ui, pane),
         }
     }
 }
@@ -193,7 +191,7 @@ fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Label::muted(look, text).ui(ui);
     });
     let hint = look.say(panels::FAULTS_NONE_HINT);
-    inset_ui(ui, |ui| say_ui(ui, hint, look.palette.muted));
+    inset_ui(ui, |ui| kit::say_ui(ui, hint, look.palette.muted));
 }
 
 /// What the chosen drive says, explained. True if it was enough of it.
@@ -222,10 +220,10 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         .is_some_and(|group| !group.value[dof].is_empty());
     if let Some(status) = status.filter(|status| !(faulty && status.is_protective())) {
         let words = words::status(status, look.language);
-        let advice = format!("{} {}", look.say(faults::TODO), words.advice);
+        let advice = look.told(faults::TODO, words.advice);
         inset_ui(ui, |ui| {
-            say_ui(ui, words.cause, palette.muted);
-            say_ui(ui, &advice, palette.text);
+            kit::say_ui(ui, words.cause, palette.muted);
+            kit::say_ui(ui, &advice, palette.text);
         });
     }
     closed.inner
@@ -236,11 +234,11 @@ fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.separator();
     kit::head_ui(ui, look, look.say(faults::MEANINGS), |_| ());
-    say_ui(ui, look.say(faults::MEANINGS_FAULT), look.palette.muted);
+    kit::say_ui(ui, look.say(faults::MEANINGS_FAULT), look.palette.muted);
     for bit in 0..5 {
         meaning_ui(ui, pane, words::fault(Fault::from_bit(bit), look.language));
     }
-    say_ui(ui, look.say(faults::MEANINGS_STATUS), look.palette.muted);
+    kit::say_ui(ui, look.say(faults::MEANINGS_STATUS), look.palette.muted);
     for code in [0, 1, 2, 3, 5, 6, 7] {
         meaning_ui(
             ui,
@@ -264,19 +262,15 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {
     };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
-        say_ui(ui, &title, palette.text);
-        say_ui(ui, &body, palette.muted);
+        kit::say_ui(ui, &title, palette.text);
+        kit::say_ui(ui, &body, palette.muted);
     });
 }
 
 fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
     let look = pane.look;
     let palette = look.palette;
-    let color = match notice.level {
-        Level::Info => palette.accent,
-        Level::Warn => palette.warn,
-        Level::Alarm => palette.bad,
-    };
+    let color = look.level(notice.level);
     let mut text = notices::notice(look, &notice.what);
     if notice.count > 1 {
         text = format!("{text} ({} ×)", notice.count);
@@ -291,7 +285,7 @@ fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
             Label::new(&age, palette.muted).small().ui(ui);
             ui.with_layout(Layout::left_to_right(Align::TOP), |ui| {
                 lamp_ui(ui, Some(color));
-                say_ui(ui, &text, palette.text);
+                kit::say_ui(ui, &text, palette.text);
             });
         });
     });

@@ -5,6 +5,7 @@ use crate::app::readings::fault_recorder::{EventKind, PersonAct, Recording};
 use crate::hand::Faults;
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::Look;
+use crate::ui::plots::marks;
 use crate::ui::text::{faults, main, panels, poses, words};
 use egui::Color32;
 
@@ -40,36 +41,20 @@ pub(crate) fn lines(look: Look, recording: &Recording) -> Vec<EventLine> {
 
 /// A mark of the history; a fault's is told better by the drive's own words.
 fn mark_line(look: Look, mark: &Mark) -> Option<EventLine> {
-    let palette = look.palette;
-    let (text, color) = match &mark.kind {
-        MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
-        MarkKind::Stop => (panels::MARK_STOP, palette.bad),
-        MarkKind::StopNotSent => (panels::MARK_STOP_NOT_SENT, palette.bad),
-        MarkKind::HoldConfirmed => (panels::MARK_HELD, palette.ok),
-        MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
-        MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
-        MarkKind::Gesture(_) => (panels::MARK_GESTURE, palette.accent),
-        MarkKind::Note(_) => (panels::MARK_NOTE, palette.text),
-        MarkKind::Fault => return None,
-    };
-    let text = look.say(text);
-    let text = match &mark.kind {
-        MarkKind::Gesture(number) => format!("{text} {number}"),
-        MarkKind::Note(words) => words.to_string(),
-        _ => text.to_owned(),
-    };
-    Some(EventLine {
-        at_s: mark.at.secs(),
-        text,
-        color,
-    })
+    // Faults are told by the drives.
+    if mark.kind == MarkKind::Fault {
+        return None;
+    }
+    let (text, color) = marks::told(look, &mark.kind);
+    let at_s = mark.at.secs();
+    Some(EventLine { at_s, text, color })
 }
 
 fn event_words(look: Look, what: &EventKind) -> (String, Color32) {
     let palette = look.palette;
     let of = |dof, said: &str| look.pair(look.say(words::dof(dof)), said);
     match what {
-        EventKind::PersonAct(deed) => (deed_words(look, deed), palette.accent),
+        EventKind::PersonAct(act) => (act_words(look, act), palette.accent),
         EventKind::Status(dof, status) => {
             let color = match status.is_protective() {
                 true => palette.bad,
@@ -98,25 +83,25 @@ fn fault_words(look: Look, bits: Faults) -> String {
     titles.collect::<Vec<_>>().join(" + ")
 }
 
-fn deed_words(look: Look, deed: &PersonAct) -> String {
+fn act_words(look: Look, act: &PersonAct) -> String {
     let say = |text| look.say(text).to_owned();
     let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.say(what));
     let joint = |dof| look.say(words::dof(dof));
-    let all = look.say(faults::DEED_ALL);
-    match deed {
-        PersonAct::Disarm => say(faults::DEED_DISARM),
-        PersonAct::Target(dof, angle) => set(joint(*dof), faults::DEED_TARGET, angle.get()),
-        PersonAct::Force(dof, force) => set(joint(*dof), faults::DEED_FORCE, force.get()),
-        PersonAct::Speed(dof, speed) => set(joint(*dof), faults::DEED_SPEED, speed.get()),
-        PersonAct::ForceOfAll(force) => set(all, faults::DEED_FORCE, force.get()),
-        PersonAct::SpeedOfAll(speed) => set(all, faults::DEED_SPEED, speed.get()),
-        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(faults::DEED_LOCK)),
-        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(faults::DEED_UNLOCK)),
+    let all = look.say(faults::ACT_ALL);
+    match act {
+        PersonAct::Disarm => say(faults::ACT_DISARM),
+        PersonAct::Target(dof, angle) => set(joint(*dof), faults::ACT_TARGET, angle.get()),
+        PersonAct::Force(dof, force) => set(joint(*dof), faults::ACT_FORCE, force.get()),
+        PersonAct::Speed(dof, speed) => set(joint(*dof), faults::ACT_SPEED, speed.get()),
+        PersonAct::ForceOfAll(force) => set(all, faults::ACT_FORCE, force.get()),
+        PersonAct::SpeedOfAll(speed) => set(all, faults::ACT_SPEED, speed.get()),
+        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(faults::ACT_LOCK)),
+        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(faults::ACT_UNLOCK)),
         PersonAct::Preset(Preset::Open) => say(main::OPEN),
         PersonAct::Preset(Preset::Half) => say(main::HALF),
         PersonAct::Preset(Preset::Close) => say(main::CLOSE),
         PersonAct::Pose(name) => format!("{} {name}", say(poses::RECALL_NAME)),
-        PersonAct::Angles => say(faults::DEED_ANGLES),
+        PersonAct::Angles => say(faults::ACT_ANGLES),
         PersonAct::Play(play) => {
             let verb = match play {
                 Play::Start(_) => poses::START,
@@ -125,7 +110,7 @@ fn deed_words(look: Look, deed: &PersonAct) -> String {
                 Play::Resume => poses::RESUME,
                 Play::End | Play::Dry(_) | Play::EndDry => poses::END,
             };
-            look.pair(look.say(faults::DEED_SEQUENCE), look.say(verb))
+            look.pair(look.say(faults::ACT_SEQUENCE), look.say(verb))
         }
         PersonAct::ClearErrors => say(panels::CLEAR),
     }

@@ -3,8 +3,8 @@
 use crate::app::readings::fault_recorder::{DriveState, Recording, RecordingId};
 use crate::hand::{Dof, PerDof, Status};
 use crate::ui::kit::{Label, Look};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
-use crate::ui::plots::panels::{Panel, PlotLine};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::panels::{Panel, PanelLine};
 use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::Times;
 use crate::ui::text::{faults, words};
@@ -156,7 +156,7 @@ impl RecordingPlot<'_> {
         let mut lines = panel.lines(&PerDof::splat(false));
         // The joints with the fault come last, over the others.
         lines.sort_by_key(|line| self.is_of_fault(line.dof));
-        let curve = |line: PlotLine| {
+        let curve = |line: PanelLine| {
             let is_of_fault = self.is_of_fault(line.dof);
             let (width, share) = match (is_of_fault, line.wished) {
                 (true, false) => (theme::STRONG, 1.0),
@@ -166,10 +166,10 @@ impl RecordingPlot<'_> {
             };
             let color = self.look.palette.dof[line.dof].gamma_multiply(share);
             let points = Points::Measured(&self.recording.history, line.series);
-            Curve {
+            ChartCurve {
                 steps: line.wished,
                 told: (is_of_fault && !line.wished).then_some(panel.row.decimals),
-                ..Curve::new(points, Stroke::new(width, color))
+                ..ChartCurve::new(points, Stroke::new(width, color))
             }
         };
         let bad = self.look.palette.bad;

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::files::export::Export;
 use crate::app::readings::fault_recorder::{Listed, Recording, RecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
-use crate::ui::faults::entry::{self as fault_entry, lamp_ui, say_ui, scroll_ui};
+use crate::ui::faults::entry::{self as fault_entry, lamp_ui, scroll_ui};
 use crate::ui::faults::recording_events;
 use crate::ui::faults::recording_events::EventLine;
 use crate::ui::faults::recording_plot::{RecordingCharts, RecordingPlot, panel_height};
@@ -12,7 +12,7 @@ use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, format};
 use crate::ui::plots::panels::{PANELS, Panel};
 use crate::ui::text::faults;
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui, UiBuilder};
+use egui::{ScrollArea, Ui, UiBuilder};
 use std::sync::Arc;
 
 /// Seconds shown on both sides of the fault when only its surroundings are.
@@ -68,10 +68,10 @@ impl RecordingsView {
         scroll_ui(ui, |ui| {
             if let Some(until) = recorder.runs_until() {
                 let left = format::age(until.since(pane.state.now));
-                let text = format!("{} {left}", look.say(faults::RECORDING_RUNS));
+                let text = look.told(faults::RECORDING_RUNS, left);
                 ui.horizontal(|ui| {
                     lamp_ui(ui, Some(look.palette.bad));
-                    say_ui(ui, &text, look.palette.text);
+                    kit::say_ui(ui, &text, look.palette.text);
                 });
             }
             for listed in recorder.iter() {
@@ -83,11 +83,11 @@ impl RecordingsView {
                 None => faults::RECORDINGS_NONE,
                 Some(_) => faults::RECORDINGS_KEPT,
             };
-            say_ui(ui, look.say(kept), look.palette.muted);
+            kit::say_ui(ui, look.say(kept), look.palette.muted);
             if recorder.lost_unopened() > 0 {
                 let lost = recorder.lost_unopened();
-                let text = format!("{} {lost}", look.say(faults::RECORDINGS_LOST));
-                say_ui(ui, &text, look.palette.warn);
+                let text = look.told(faults::RECORDINGS_LOST, lost);
+                kit::say_ui(ui, &text, look.palette.warn);
             }
         });
         if let Some(id) = pressed {
@@ -137,7 +137,7 @@ impl RecordingsView {
             if back.ui(ui, look).clicked() {
                 self.close();
             }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            kit::right_ui(ui, |ui| {
                 let save = Button::said(look, faults::RECORDING_SAVE).weight(Weight::Strong);
                 if save.ui(ui, look).clicked() {
                     let content = Export::Recording(recording.table());
@@ -145,13 +145,13 @@ impl RecordingsView {
                 }
                 let title = title(pane, recording);
                 let title = format!("{}: {title}", look.say(faults::RECORDING));
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                kit::left_ui(ui, |ui| {
                     let title = Label::new(&title, look.palette.text).font(theme::title());
                     title.ui(ui).on_hover_text(about(pane, recording));
                 });
             });
         });
-        say_ui(ui, &about(pane, recording), look.palette.muted);
+        kit::say_ui(ui, &about(pane, recording), look.palette.muted);
     }
 
     /// Which plots, and how much of the time.
@@ -192,11 +192,11 @@ impl RecordingsView {
         let Some((_, lines)) = &self.lines else {
             return;
         };
-        say_ui(ui, look.say(faults::RECORDING_EVENTS), look.palette.muted);
+        kit::say_ui(ui, look.say(faults::RECORDING_EVENTS), look.palette.muted);
         if recording.events_lost > 0 {
             let lost = recording.events_lost;
-            let text = format!("{} {lost}", look.say(faults::RECORDING_EVENTS_LOST));
-            say_ui(ui, &text, look.palette.warn);
+            let text = look.told(faults::RECORDING_EVENTS_LOST, lost);
+            kit::say_ui(ui, &text, look.palette.warn);
         }
         ui.spacing_mut().item_spacing.y = 0.0;
         let scroll = ScrollArea::vertical().auto_shrink(false);
@@ -249,9 +249,9 @@ fn row_ui(ui: &mut Ui, pane: &Pane<'_>, listed: &Listed) -> bool {
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             Label::new(&title, ink).wrap().ui(ui);
-            say_ui(ui, &about(pane, recording), palette.muted);
+            kit::say_ui(ui, &about(pane, recording), palette.muted);
             if !listed.opened {
-                say_ui(ui, look.say(faults::RECORDING_NEW), palette.muted);
+                kit::say_ui(ui, look.say(faults::RECORDING_NEW), palette.muted);
             }
         });
         pressed

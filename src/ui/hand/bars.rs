@@ -36,7 +36,7 @@ const BARS: [(Segment, [f32; 3], [f32; 3], f32); 11] = [
 
 /// One bar as the eye sees it.
 #[derive(Debug, Clone, Copy)]
-struct Bar {
+struct RoundBar {
     segment: Segment,
     from: Vec3,
     along: Vec3,
@@ -46,7 +46,7 @@ struct Bar {
 /// All bars of a hand, and the way to the key light.
 #[derive(Debug)]
 pub(crate) struct Bars {
-    bars: ArrayVec<Bar, 11>,
+    bars: ArrayVec<RoundBar, 11>,
     key: Vec3,
 }
 
@@ -86,7 +86,7 @@ impl Bars {
             let frame = camera.hand * pose.frame(segment);
             let from = frame.transform_point3(from.into());
             let along = frame.transform_point3(to.into()) - from;
-            Bar {
+            RoundBar {
                 segment,
                 from,
                 along,
@@ -102,7 +102,7 @@ impl Bars {
     /// Those that can darken anything of a ball around a segment, or around what is none.
     pub(crate) fn near(&self, segment: Option<Segment>, middle: Vec3, radius: f32) -> Near {
         let others = self.bars.iter().filter(|bar| Some(bar.segment) != segment);
-        let near: ArrayVec<Bar, 11> = others
+        let near: ArrayVec<RoundBar, 11> = others
             .filter(|bar| bar.matters(middle, radius, self.key))
             .copied()
             .collect();
@@ -116,7 +116,7 @@ impl Bars {
     }
 }
 
-impl Bar {
+impl RoundBar {
     /// Whether it can darken anything of a ball.
     fn matters(&self, middle: Vec3, radius: f32, key: Vec3) -> bool {
         let four = Four::new(std::slice::from_ref(self), key, None);
@@ -145,16 +145,16 @@ impl Near {
 }
 
 impl Four {
-    fn new(bars: &[Bar], key: Vec3, segment: Option<Segment>) -> Self {
+    fn new(bars: &[RoundBar], key: Vec3, segment: Option<Segment>) -> Self {
         let bar = |lane: usize| bars.get(lane);
-        let lanes = |part: &dyn Fn(&Bar) -> f32, none: f32| {
+        let lanes = |part: &dyn Fn(&RoundBar) -> f32, none: f32| {
             Vec4::from_array(std::array::from_fn(|lane| bar(lane).map_or(none, part)))
         };
         let from = Vec3x4::from_lanes(|lane| bar(lane).map_or(Vec3::ZERO, |bar| bar.from));
         let along = Vec3x4::from_lanes(|lane| bar(lane).map_or(Vec3::ZERO, |bar| bar.along));
         let (length_sq, to_key) = (along.dot(&along), along.dot_all(key));
         let finger = segment.and_then(Segment::finger);
-        let own = |bar: &Bar| f32::from(u8::from(finger == bar.segment.finger()));
+        let own = |bar: &RoundBar| f32::from(u8::from(finger == bar.segment.finger()));
         Self {
             from,
             along,

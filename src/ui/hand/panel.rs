@@ -6,13 +6,13 @@ use crate::hand::kinematics::Side;
 use crate::hand::{Finger, PerDof, PerFinger};
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
-use crate::ui::hand::pointed::{self, Place};
+use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::hand::scene::{HandPicture, TipLoad};
 use crate::ui::hand::shape::Held;
 use crate::ui::hand::tile;
 use crate::ui::hand::view::HandView;
 use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
-use crate::ui::text::{panels, touch as text, words};
+use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense as Meant, Tip};
 use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
@@ -35,18 +35,18 @@ impl HandPanel {
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
         let picture = HandPicture {
-            lit: pointed::pointed(ui, Place::Row),
+            lit: pointed::pointed(ui, PointedPlace::Row),
             ..picture(pane, tips)
         };
-        let answer = self.0.ui(ui, response, look.palette, &picture);
+        let (response, joint) = self.0.ui(ui, response, look.palette, &picture);
         unknown_note(ui, look, place, &picture);
         side_ui(ui, place, pane);
-        if let Some(dof) = answer.joint {
-            pointed::point(ui, Place::Hand, dof);
+        if let Some(dof) = joint {
+            pointed::point(ui, PointedPlace::Hand, dof);
         }
-        let finger = answer.joint.map(crate::hand::Dof::finger);
-        let clicked = finger.filter(|_| answer.response.clicked());
-        answer.response.on_hover_text(finger.map_or_else(
+        let finger = joint.map(crate::hand::Dof::finger);
+        let clicked = finger.filter(|_| response.clicked());
+        response.on_hover_text(finger.map_or_else(
             || look.tip(panels::HAND_PICTURE).to_owned(),
             |finger| said(pane, finger),
         ));
@@ -110,7 +110,7 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
 fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
     if shown.actual.all().is_none() {
         let place = picture.with_min_y(picture.bottom() - theme::PAD);
-        kit::Label::note(look, text::UNKNOWN)
+        kit::Label::note(look, panels::UNKNOWN)
             .center()
             .put(ui, place);
     }
@@ -120,13 +120,13 @@ fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
 fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>) {
     let look = pane.look;
     let words = look.say(match look.side {
-        Side::Right => text::RIGHT_HAND,
-        Side::Left => text::LEFT_HAND,
+        Side::Right => panels::RIGHT_HAND,
+        Side::Left => panels::LEFT_HAND,
     });
     let width = kit::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
     let corner = picture.right_bottom() - vec2(width, theme::CONTROL);
     let place = Rect::from_min_size(corner, vec2(width, theme::CONTROL));
-    let button = Button::new(words, look.say(text::SIDE_TIP)).weight(Weight::Quiet);
+    let button = Button::new(words, look.say(panels::SIDE_TIP)).weight(Weight::Quiet);
     let id = ui.next_auto_id().with("side");
     if button.put(ui, look, place, id).clicked() {
         pane.actions.push(Action::Side(look.side.other()));

@@ -5,7 +5,7 @@ use egui::{Id, Ui};
 
 /// Where a joint is pointed at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Place {
+pub(crate) enum PointedPlace {
     /// In the rows of the joints.
     Row,
     /// In the drawn hand.
@@ -13,7 +13,7 @@ pub(crate) enum Place {
 }
 
 /// Says that a joint is under the pointer there.
-pub(crate) fn point(ui: &Ui, place: Place, dof: Dof) {
+pub(crate) fn point(ui: &Ui, place: PointedPlace, dof: Dof) {
     let now = ui.ctx().cumulative_pass_nr();
     let id = Id::unique(("pointed", place));
     let before = ui.data_mut(|data| {
@@ -28,7 +28,7 @@ pub(crate) fn point(ui: &Ui, place: Place, dof: Dof) {
 }
 
 /// The joint that is under the pointer there, in this frame or in the one before.
-pub(crate) fn pointed(ui: &Ui, place: Place) -> Option<Dof> {
+pub(crate) fn pointed(ui: &Ui, place: PointedPlace) -> Option<Dof> {
     let now = ui.ctx().cumulative_pass_nr();
     let last = ui.data(|data| data.get_temp::<(Dof, u64)>(Id::unique(("pointed", place))));
     last.filter(|(_, at)| at + 1 >= now).map(|(dof, _)| dof)

@@ -86,12 +86,15 @@ impl HandPicture {
         let pose =
             SegmentFrames::of_shares(self.side, &self.actual.map(|share| share.unwrap_or(1.0)));
         let mut parts = ArrayVec::new();
-        parts.extend(Segment::ALL.into_iter().map(|segment| Part {
-            solid: shape::solid(segment, is_small),
-            segment: Some(segment),
-            frame: pose.frame(segment),
-            coat: self.coat(segment, palette),
-        }));
+        let part = |segment| {
+            Some(Part {
+                solid: shape::solid(segment, is_small)?,
+                segment: Some(segment),
+                frame: pose.frame(segment),
+                coat: self.coat(segment, palette),
+            })
+        };
+        parts.extend(Segment::ALL.into_iter().filter_map(part));
         let wanted = PerDof::from_fn(|dof| self.target[dof].or(self.actual[dof]).unwrap_or(1.0));
         let wanted = SegmentFrames::of_shares(self.side, &wanted);
         let ghosts = Segment::ALL.into_iter().filter(|segment| {
@@ -99,12 +102,16 @@ impl HandPicture {
             let known = segment.finger().is_some_and(|finger| self.is_known(finger));
             known && Dof::ALL.into_iter().any(off)
         });
-        parts.extend(ghosts.map(|segment| Part {
-            solid: shape::solid(segment, true),
-            segment: None,
-            frame: wanted.frame(segment),
-            coat: shell(segment.dof().map_or(palette.accent, |dof| palette.dof[dof])),
-        }));
+        let ghost = |segment: Segment| {
+            let color = segment.dof().map_or(palette.accent, |dof| palette.dof[dof]);
+            Some(Part {
+                solid: shape::solid(segment, true)?,
+                segment: None,
+                frame: wanted.frame(segment),
+                coat: shell(color),
+            })
+        };
+        parts.extend(ghosts.filter_map(ghost));
         let known = Finger::ALL
             .into_iter()
             .filter(|finger| self.is_known(*finger));

@@ -23,7 +23,7 @@ pub(crate) enum Skin {
 
 /// One ring of a loft: where its middle is along the path and in front of it, how far it reaches to the front, to the
 /// back and to each side, and how square it is (2 = an ellipse).
-pub(crate) type Ring = [f32; 6];
+pub(crate) type LoftRing = [f32; 6];
 
 /// A corner of a finished shape.
 #[derive(Debug, Clone, Copy)]
@@ -94,7 +94,7 @@ impl Soup {
         &mut self,
         base: &Affine3,
         around: u8,
-        bands: &[(Skin, &[Ring])],
+        bands: &[(Skin, &[LoftRing])],
     ) -> &mut [Shard] {
         let (around, each) = if self.is_small {
             (around - around / 3, 2)
@@ -102,20 +102,20 @@ impl Soup {
             (around, 1)
         };
         // Both ends of a band stay, whatever is left out between them.
-        let left = |(skin, rings): &(Skin, &[Ring])| -> Vec<(Skin, Ring)> {
+        let left = |(skin, rings): &(Skin, &[LoftRing])| -> Vec<(Skin, LoftRing)> {
             let kept = rings
                 .iter()
                 .enumerate()
                 .filter(|(at, _)| at % each == 0 || at + 1 == rings.len());
             kept.map(|(_, ring)| (*skin, *ring)).collect()
         };
-        let rings: Vec<(Skin, Ring)> = bands.iter().flat_map(left).collect();
-        let row = |(skin, ring): &(Skin, Ring)| {
+        let rings: Vec<(Skin, LoftRing)> = bands.iter().flat_map(left).collect();
+        let row = |(skin, ring): &(Skin, LoftRing)| {
             let turn = |step: u8| (f32::from(step) + 0.5) / f32::from(around);
             let places = (0..=around).map(|step| base.transform_point3(point(ring, turn(step))));
             (*skin, places.collect::<Vec<_>>())
         };
-        let end = |ring: Option<&(Skin, Ring)>| {
+        let end = |ring: Option<&(Skin, LoftRing)>| {
             ring.map(|(skin, [along, rise, ..])| {
                 let middle = base.transform_point3(Vec3::new(0.0, *along, *rise));
                 (*skin, vec![middle; usize::from(around) + 1])
@@ -169,7 +169,7 @@ impl Soup {
             .iter()
             .filter(|shard| shard.area().length() > 1e-3)
             .collect();
-        let mut places: HashMap<Key, Vec<(Vec3, Vec3)>> = HashMap::new();
+        let mut places: HashMap<PlaceKey, Vec<(Vec3, Vec3)>> = HashMap::new();
         let mut edges = HashMap::new();
         for (shard, number) in shards.iter().zip(0u16..) {
             for (from, to) in shard.sides() {
@@ -236,14 +236,14 @@ impl Shard {
         (b - a).cross(c - a)
     }
 
-    fn sides(&self) -> [(Key, Key); 3] {
+    fn sides(&self) -> [(PlaceKey, PlaceKey); 3] {
         let [a, b, c] = self.at.map(key);
         [(a, b), (b, c), (c, a)]
     }
 }
 
 /// A place on a ring; `turn` goes from 0 to 1, from one side over the front (0.25).
-pub(crate) fn point(ring: &Ring, turn: f32) -> Vec3 {
+pub(crate) fn point(ring: &LoftRing, turn: f32) -> Vec3 {
     let [along, rise, front, back, side, square] = *ring;
     let (sin, cos) = (turn * TAU).sin_cos();
     let out = (sin.abs().powf(square) + cos.abs().powf(square)).powf(-1.0 / square);
@@ -252,10 +252,10 @@ pub(crate) fn point(ring: &Ring, turn: f32) -> Vec3 {
 }
 
 /// A place that is told from others.
-type Key = [i32; 3];
+type PlaceKey = [i32; 3];
 
 /// Places nearer than a hundredth of a millimetre are one.
-fn key(at: Vec3) -> Key {
+fn key(at: Vec3) -> PlaceKey {
     #[expect(
         clippy::cast_possible_truncation,
         reason = "a hand is smaller than 21 km"

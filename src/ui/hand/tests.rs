@@ -208,7 +208,8 @@ fn the_simulated_hand_meets_what_is_drawn_before_it() {
         let pose = SegmentFrames::of_shares(Side::Right, &shares);
         for finger in Finger::ALL {
             let segment = Segment::tip(finger);
-            let corners = shape::solid(segment, false).corners.iter();
+            let solid = shape::solid(segment, false).expect("each segment has a solid");
+            let corners = solid.corners.iter();
             let gap = corners.map(|corner| {
                 let at = pose.frame(segment).transform_point3(corner.at);
                 let out = faces().map(|face| face.normal.dot(at) - face.offset);
@@ -239,9 +240,8 @@ fn a_drag_turns_the_hand_and_a_double_click_turns_it_back() {
             let rect = ui.max_rect();
             let response = ui.interact(rect, Id::unique("hand"), Sense::click_and_drag());
             let picture = posed(Side::Right, [1.0; 3]);
-            found = view
-                .ui(ui, response, Palette::of(Theme::Dark), &picture)
-                .joint;
+            let (_, joint) = view.ui(ui, response, Palette::of(Theme::Dark), &picture);
+            found = joint;
         });
         output.textures_delta.clear();
         found

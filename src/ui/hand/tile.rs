@@ -21,7 +21,7 @@ pub(crate) fn pose_ui(ui: &Ui, palette: &Palette, rect: Rect, picture: &HandPict
         theme: palette.theme,
         feather: (1.0 / ui.pixels_per_point()).ord(),
     };
-    type Kept = FrameCache<Arc<Mesh>, Tiles>;
+    type Kept = FrameCache<Arc<Mesh>, PoseTiles>;
     let mesh = ui.memory_mut(|memory| Arc::clone(memory.caches.cache::<Kept>().get(tile)));
     let mut mesh = Mesh::clone(&mesh);
     mesh.translate(rect.min.to_vec2());
@@ -39,9 +39,9 @@ struct Tile {
 }
 
 #[derive(Default)]
-struct Tiles(Sketch);
+struct PoseTiles(Sketch);
 
-impl ComputerMut<Tile, Arc<Mesh>> for Tiles {
+impl ComputerMut<Tile, Arc<Mesh>> for PoseTiles {
     fn compute(&mut self, tile: Tile) -> Arc<Mesh> {
         let real = OrderedFloat::into_inner;
         let picture = HandPicture::of(tile.side, &tile.shares.map(|share| share.map(real)));

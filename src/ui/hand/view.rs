@@ -29,15 +29,6 @@ const SMALL_POINTS: f32 = 110.0;
 const CUT_MM: f32 = 42.0;
 /// The part of its height over which it fades there.
 const FADE_PART: f32 = 0.16;
-
-/// What the picture answers.
-pub(crate) struct HandResponse {
-    /// Of the picture as a whole.
-    pub(crate) response: Response,
-    /// The joint under the pointer.
-    pub(crate) joint: Option<Dof>,
-}
-
 /// From where a hand is looked at, and what was drawn last.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HandView {
@@ -66,7 +57,7 @@ impl HandView {
         response: Response,
         palette: &Palette,
         picture: &HandPicture,
-    ) -> HandResponse {
+    ) -> (Response, Option<Dof>) {
         let rect = response.rect;
         if response.dragged() {
             let by = response.drag_delta() * TURN_RAD;
@@ -102,7 +93,7 @@ impl HandView {
         ui.painter()
             .with_clip_rect(rect)
             .add(Shape::Mesh(Arc::clone(&self.mesh)));
-        HandResponse { response, joint }
+        (response, joint)
     }
 
     pub(crate) fn turn(&self, side: Side) -> Turn {

@@ -4,7 +4,7 @@ use crate::app::hand::Freshness;
 use crate::hand::Dof;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{faults, words};
 use crate::ui::theme;
 use egui::text::LayoutJob;
@@ -32,12 +32,9 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
     let (look, palette) = (pane.look, pane.look.palette);
     let joint = look.say(words::dof(dof));
     let said = DriveWords::of(pane, dof);
-    let name = format!("{} {joint}", look.say(faults::DRIVE));
-    let mut button = Button::new(joint, look.tip(faults::DRIVE)).named(&name);
-    button.selected = Some(chosen);
-    if chosen {
-        button.weight = Weight::Chosen;
-    }
+    let name = look.told(faults::DRIVE, joint);
+    let button = Button::new(joint, look.tip(faults::DRIVE)).named(&name);
+    let button = button.switch(chosen);
     let is_high = ui.available_height() >= 560.0;
     let height = if is_high { 112.0 } else { 52.0 };
     let (id, rect) = ui.allocate_space(vec2(ui.available_width(), height));
@@ -50,17 +47,16 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
     let mut ui = ui.new_child(UiBuilder::new().max_rect(inner).layout(down));
     ui.spacing_mut().item_spacing = vec2(theme::STEP, 0.0);
     ui.spacing_mut().interact_size.y = theme::TITLE_LINE;
-    let right = Layout::right_to_left(Align::Center);
     ui.horizontal(|ui| {
         Label::new(joint, palette.dof[dof]).ui(ui);
-        ui.with_layout(right, |ui| {
+        kit::right_ui(ui, |ui| {
             unseen_mark_ui(ui, pane, dof);
             figures_ui(ui, pane, dof);
         });
     });
     ui.horizontal(|ui| {
         fault_entry::lamp_ui(ui, Some(said.lamp));
-        ui.with_layout(right, |ui| {
+        kit::right_ui(ui, |ui| {
             let (status, _) = pane.newest(dof, pane.state.hand().sample.status);
             if let Some(status) = status {
                 figure_ui(ui, &status.raw().to_string(), palette.muted);
@@ -70,8 +66,7 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
                 false => said.text,
             };
             let title = Label::new(&said.title, ink).shorter(&said.short);
-            let left = Layout::left_to_right(Align::Center);
-            ui.with_layout(left, |ui| title.ui(ui));
+            kit::left_ui(ui, |ui| title.ui(ui));
         });
     });
     if let Some(words) = said.words.filter(|_| is_high) {

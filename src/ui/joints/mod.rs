@@ -19,17 +19,14 @@ use crate::ui::joints::tracks::all_joints_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{layout, main};
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui};
+use egui::{ScrollArea, Ui};
 
 /// No line of a row grows higher than this.
 const LINE_MAX: f32 = 28.0;
 
 /// The lowest line of a row: a track fits in it, and on a display that is touched a finger presses it.
 const fn least_line(pixels_per_point: f32) -> f32 {
-    match pixels_per_point >= 1.5 {
-        true => 30.0,
-        false => 19.0,
-    }
+    if pixels_per_point >= 1.5 { 30.0 } else { 19.0 }
 }
 
 /// The column of joints.
@@ -121,7 +118,7 @@ pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Freshness::Stale => {
             let age = asked.map(|asked| pane.state.now.since(asked));
             let age = format::age(age.unwrap_or_default());
-            (format!("{} {age}", look.say(main::AGE)), look.palette.warn)
+            (look.told(main::AGE, age), look.palette.warn)
         }
     };
     let label = Label::new(&text, color).small().ui(ui);
@@ -139,8 +136,7 @@ fn presets_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.columns(presets.len(), |columns| {
         for (ui, (text, preset)) in columns.iter_mut().zip(presets) {
             let button = Button::said(look, text).large().disabled(not_armed);
-            let wide = Layout::top_down_justified(Align::Center);
-            ui.with_layout(wide, |ui| {
+            kit::wide_ui(ui, |ui| {
                 button.sends(ui, pane, Action::Preset(preset));
             });
         }

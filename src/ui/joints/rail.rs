@@ -5,7 +5,7 @@ use crate::app::layout::WindowRoom;
 use crate::hand::{Dof, Quantity};
 use crate::ui::joints::age_ui;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::joints::row::Row;
+use crate::ui::joints::row::JointRow;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, layout, main};
 use crate::ui::theme;
@@ -19,10 +19,9 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
         ui.set_min_height(ui.available_height());
         let title = look.say(main::JOINTS);
         if can_open {
-            let name = format!("{} {title}", look.say(layout::OPEN));
+            let name = look.told(layout::OPEN, title);
             let button = Button::new(title, look.tip(layout::OPEN)).named(&name);
-            let wide = Layout::top_down_justified(Align::Center);
-            let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
+            let pressed = kit::wide_ui(ui, |ui| button.ui(ui, look));
             if pressed.clicked() {
                 let layout = toggled(&pane.state.settings.layout, WindowRoom::Joints);
                 pane.actions.push(Action::Layout(layout));
@@ -49,7 +48,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
 fn joint_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
     let look = pane.look;
     let palette = look.palette;
-    let row = Row::new(dof, pane);
+    let row = JointRow::new(dof, pane);
     let shown = ui.horizontal(|ui| {
         ui.add_space(theme::BAR + theme::STEP);
         ui.vertical(|ui| {

@@ -3,7 +3,7 @@
 use crate::app::hand::Freshness;
 use crate::app::settings::AngleUnit;
 use crate::hand::Quantity;
-use crate::ui::joints::row::{READING, Row};
+use crate::ui::joints::row::{JointRow, READING};
 use crate::ui::kit::{Label, Pane, format};
 use crate::ui::text::main;
 use crate::ui::theme;
@@ -18,7 +18,7 @@ const WARM: u8 = 60;
 /// From here a drive is hot; see [`WARM`].
 const HOT: u8 = 70;
 
-impl Row {
+impl JointRow {
     /// The angle as the hand says it and in degrees, or in percent.
     pub(crate) fn angle_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (left, right) = rect.split_left_right_at_x(rect.right() - theme::FIELD);

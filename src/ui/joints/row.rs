@@ -9,7 +9,7 @@ use egui::{Color32, Id, Rect, Ui, vec2};
 pub(crate) const READING: f32 = 112.0;
 
 /// One joint, with its names made once.
-pub(crate) struct Row {
+pub(crate) struct JointRow {
     /// The joint.
     pub(crate) dof: Dof,
     /// What it is called.
@@ -18,7 +18,7 @@ pub(crate) struct Row {
     pub(crate) color: Color32,
 }
 
-impl Row {
+impl JointRow {
     /// The row of a joint.
     pub(crate) fn new(dof: Dof, pane: &Pane<'_>) -> Self {
         Self {

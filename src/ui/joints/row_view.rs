@@ -3,17 +3,15 @@
 use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::hand::{Dof, impact};
-use crate::ui::hand::pointed::{self, Place};
+use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::drive_tiles;
-use crate::ui::joints::row::{READING, Row, cell};
+use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
-use crate::ui::kit::{self, Button, Explain, Label, Pane};
+use crate::ui::kit::{self, Button, Label, Opens, Pane};
 use crate::ui::text::{faults, main};
 use crate::ui::theme;
-use egui::{
-    Align, Color32, CursorIcon, Frame, Layout, Margin, Role, Sense, Ui, WidgetInfo, pos2, vec2,
-};
+use egui::{Color32, CursorIcon, Frame, Margin, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// How a row is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -34,8 +32,8 @@ pub(crate) fn height(line: f32, each: bool) -> f32 {
 
 /// Draws the row of a joint.
 pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle) {
-    let (row, palette) = (Row::new(dof, pane), pane.look.palette);
-    let is_pointed = pointed::pointed(ui, Place::Hand) == Some(dof);
+    let (row, palette) = (JointRow::new(dof, pane), pane.look.palette);
+    let is_pointed = pointed::pointed(ui, PointedPlace::Hand) == Some(dof);
     let wash = palette.wash(row.color);
     let frame = Frame::new()
         .fill(if is_pointed {
@@ -75,7 +73,7 @@ pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle
     });
     let rect = shown.response.rect;
     if ui.rect_contains_pointer(rect) {
-        pointed::point(ui, Place::Row, dof);
+        pointed::point(ui, PointedPlace::Row, dof);
     }
     let bar = rect.shrink2(vec2(0.0, theme::STEP));
     let bar = bar.with_max_x(rect.left() + theme::BAR);
@@ -88,16 +86,13 @@ pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle
 
 fn line_ui(ui: &mut Ui, height: f32, add: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), height);
-    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-        ui.set_min_size(size);
-        add(ui);
-    });
+    kit::cell_ui(ui, size, add);
 }
 
-fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row, each: bool) {
+fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     let name = cell(ui, 96.0);
     Label::new(row.name, pane.look.palette.text).put(ui, name);
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    kit::right_ui(ui, |ui| {
         lock_ui(ui, pane, row);
         if !each {
             let place = cell(ui, 104.0);
@@ -110,7 +105,7 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row, each: bool) {
 }
 
 /// Lamp and words of the drive; a click explains them.
-fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
+fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let rect = cell(ui, ui.available_width());
     let said = DriveWords::of(pane, row.dof);
     let name = row.named(pane, faults::EXPLAIN);
@@ -118,13 +113,13 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     kit::focus_ring(ui, pane.look, &response, rect);
     if response.clicked() {
-        *pane.explain = Some(Explain::Drive(row.dof));
+        pane.open(Opens::Drive(row.dof));
     }
     let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
     kit::lamp(ui, lamp, said.lamp);
     let name = row.named(pane, main::STATUS);
     let label = Label::new(&said.title, said.text).small().named(&name);
-    let place = rect.with_min_x(rect.left() + theme::INDENT);
+    let place = rect.with_min_x(rect.left() + 17.0);
     label.shorter(&said.short).put(ui, place);
     let tip = pane.look.tip(faults::EXPLAIN);
     let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
@@ -134,7 +129,7 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
 }
 
 /// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
-fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &Row) {
+fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let joint = pane.state.hand().joints[row.dof];
     let rough_from = impact::rough_from_speed(joint.force);
     let is_gentle = rough_from.is_none_or(|rough| joint.speed < rough);
@@ -158,7 +153,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &Row) {
     response.on_hover_text(format!("{measured}\n{}", pane.look.say(main::IMPACT_TIP)));
 }
 
-fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
+fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let look = pane.look;
     let locked = pane.state.hand().joints[row.dof].locked;
     let (icon, tip) = match locked {

@@ -25,7 +25,7 @@ pub(crate) enum Actual {
 
 /// A track at a place.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Track<'a> {
+pub(crate) struct SlideTrack<'a> {
     /// What a screen reader says.
     pub(crate) name: &'a str,
     /// What it does, in a sentence.
@@ -52,7 +52,7 @@ pub(crate) struct Track<'a> {
     pub(crate) peak: Option<i16>,
 }
 
-impl<'a> Track<'a> {
+impl<'a> SlideTrack<'a> {
     /// A track that can be moved and shows nothing yet.
     pub(crate) const fn new(name: &'a str, max: i16, color: Color32) -> Self {
         Self {

@@ -4,10 +4,10 @@ use crate::app::action::Action;
 use crate::app::settings::AngleUnit;
 use crate::hand::{Angle, Dof, Force, HandCommand, PerDof, Speed, Target, impact};
 use crate::ui::joints::frame_menu::frame_menu_ui;
-use crate::ui::joints::row::{READING, Row, cell};
-use crate::ui::joints::track::{Actual, Track};
+use crate::ui::joints::row::{JointRow, READING, cell};
+use crate::ui::joints::track::{Actual, SlideTrack};
 use crate::ui::kit::{Label, NumberField, Pane};
-use crate::ui::text::{Text, main, tune};
+use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, Ui};
 
@@ -19,8 +19,8 @@ struct TrackRow<'a> {
     caption: Text,
     number_name: &'a str,
     id: Id,
-    track: Track<'a>,
-    scale: Scale,
+    track: SlideTrack<'a>,
+    scale: NumberScale,
     /// What the control sends as it stands.
     command: Option<HandCommand>,
     /// What stands after it in the row.
@@ -50,7 +50,7 @@ impl TrackRow<'_> {
     }
 }
 
-impl Row {
+impl JointRow {
     /// Target over actual.
     pub(crate) fn angle_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, linked: bool) {
         let look = pane.look;
@@ -62,15 +62,15 @@ impl Row {
             caption: main::ANGLE,
             number_name: &self.named(pane, main::NAME_ANGLE_NUMBER),
             id: self.id("angle"),
-            track: Track {
+            track: SlideTrack {
                 tip: look.tip(main::ANGLE),
                 disabled: pane.unready().or(locked),
                 target: joint.target.map(Angle::get),
                 actual: angle.and_then(|angle| angle.hold()).map(Angle::get),
                 draws: Actual::Marker,
-                ..Track::new(&name, Angle::MAX.get(), look.value(freshness, self.color))
+                ..SlideTrack::new(&name, Angle::MAX.get(), look.value(freshness, self.color))
             },
-            scale: Scale::of_angle(pane.state.settings.angle_unit, self.dof),
+            scale: NumberScale::of_angle(pane.state.settings.angle_unit, self.dof),
             command: joint.target.map(|target| {
                 let mut targets = PerDof::splat(Target::Leave);
                 targets[self.dof] = Target::Go(target);
@@ -101,18 +101,18 @@ impl Row {
 }
 
 /// The threshold over the live force of one joint; without a row the threshold of all.
-pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
+pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
     let (look, hand) = (pane.look, pane.state.hand());
     let joints = hand.joints;
     let name = named(pane, row, main::NAME_FORCE_THRESHOLD);
     let runs = series(pane);
     let value = value_of(row, joints.map(|joint| joint.force.get()));
-    let mut track = Track {
+    let mut track = SlideTrack {
         tip: &staged(pane, main::FORCE.tip()),
         disabled: runs,
         target: value.filter(|_| runs.is_none()),
         tick: Some(Force::RATED.get()),
-        ..Track::new(&name, Force::MAX.get(), look.palette.faint)
+        ..SlideTrack::new(&name, Force::MAX.get(), look.palette.faint)
     };
     if let Some(row) = row {
         let joint = joints[row.dof];
@@ -128,7 +128,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
         caption: main::FORCE,
         number_name: &named(pane, row, main::NAME_FORCE_NUMBER),
         id: id_of(row, "force"),
-        scale: Scale::whole(track.max),
+        scale: NumberScale::whole(track.max),
         track,
         command: Some(HandCommand::Forces(only(row, joints.map(|it| it.force)))),
         after: after(row),
@@ -142,7 +142,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
 }
 
 /// The speed of one joint; without a row that of all.
-pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
+pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
     let joints = pane.state.hand().joints;
     let runs = series(pane);
     let value = value_of(row, joints.map(|joint| joint.speed.get()));
@@ -153,15 +153,15 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
         caption: main::SPEED,
         number_name: &named(pane, row, main::NAME_SPEED_NUMBER),
         id: id_of(row, "speed"),
-        track: Track {
+        track: SlideTrack {
             tip: &staged(pane, main::SPEED.tip()),
             disabled: runs,
             target: value,
             actual: value,
             rough_from: rough.map(Speed::get),
-            ..Track::new(&name, Speed::MAX.get(), pane.look.palette.faint)
+            ..SlideTrack::new(&name, Speed::MAX.get(), pane.look.palette.faint)
         },
-        scale: Scale::whole(Speed::MAX.get()),
+        scale: NumberScale::whole(Speed::MAX.get()),
         command: Some(HandCommand::Speeds(only(row, joints.map(|it| it.speed)))),
         after: after(row),
     };
@@ -191,30 +191,30 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// Each trial of a series sets its own force and speed: what a person set is not in force then.
 fn series(pane: &Pane<'_>) -> Option<&'static str> {
     let runs = pane.state.hand().runs_series();
-    runs.then(|| pane.look.say(tune::RUNS))
+    runs.then(|| pane.look.say(main::SERIES_RUNS))
 }
 
-fn named(pane: &Pane<'_>, row: Option<&Row>, what: Text) -> String {
+fn named(pane: &Pane<'_>, row: Option<&JointRow>, what: Text) -> String {
     let all = pane.look.say(main::ALL_JOINTS);
     let name = row.map_or(all, |row| row.name);
     format!("{name} {}", pane.look.say(what))
 }
 
-fn id_of(row: Option<&Row>, part: &'static str) -> Id {
+fn id_of(row: Option<&JointRow>, part: &'static str) -> Id {
     row.map_or_else(|| Id::unique(("all joints", part)), |row| row.id(part))
 }
 
-fn after(row: Option<&Row>) -> f32 {
+fn after(row: Option<&JointRow>) -> f32 {
     row.map_or(0.0, |_| READING + theme::GAP)
 }
 
 /// The values of one joint alone, or of all.
-fn only<T: Copy>(row: Option<&Row>, values: PerDof<T>) -> PerDof<Option<T>> {
+fn only<T: Copy>(row: Option<&JointRow>, values: PerDof<T>) -> PerDof<Option<T>> {
     PerDof::from_fn(|dof| row.is_none_or(|row| row.dof == dof).then_some(values[dof]))
 }
 
 /// The value of one joint, or the one that all joints share, if they do.
-fn value_of(row: Option<&Row>, values: PerDof<i16>) -> Option<i16> {
+fn value_of(row: Option<&JointRow>, values: PerDof<i16>) -> Option<i16> {
     let value = values[row.map_or(Dof::Little, |row| row.dof)];
     let is_shared = values.iter().all(|(_, other)| *other == value);
     (row.is_some() || is_shared).then_some(value)
@@ -230,14 +230,14 @@ fn staged(pane: &Pane<'_>, tip: Text) -> String {
 
 /// What is shown of the values 0..=max of a register.
 #[derive(Debug, Clone, Copy)]
-struct Scale {
+struct NumberScale {
     low: f64,
     high: f64,
     max: f64,
     decimals: usize,
 }
 
-impl Scale {
+impl NumberScale {
     /// As the hand says it.
     fn whole(max: i16) -> Self {
         let max = f64::from(max);
@@ -288,13 +288,13 @@ mod tests {
     fn every_unit_gives_back_the_angle_it_showed() {
         for unit in [AngleUnit::Raw, AngleUnit::Degrees, AngleUnit::Percent] {
             for dof in Dof::ALL {
-                let scale = Scale::of_angle(unit, dof);
+                let scale = NumberScale::of_angle(unit, dof);
                 for raw in 0..=1000 {
                     assert_eq!(scale.raw(scale.shown(raw)), raw, "{unit:?} {dof:?}");
                 }
             }
         }
-        let bend = Scale::of_angle(AngleUnit::Degrees, Dof::ThumbBend);
+        let bend = NumberScale::of_angle(AngleUnit::Degrees, Dof::ThumbBend);
         assert_eq!((bend.low, bend.high), (-13.0, 70.0));
     }
 

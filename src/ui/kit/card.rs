@@ -78,24 +78,24 @@ enum CardLine {
 }
 
 /// What can be said in a card: a sentence of the window, or words put together.
-pub(crate) trait Said {
+pub(crate) trait Sayable {
     /// In the window's language.
     fn said(self, look: Look) -> String;
 }
 
-impl Said for Text {
+impl Sayable for Text {
     fn said(self, look: Look) -> String {
         look.say(self).to_owned()
     }
 }
 
-impl Said for String {
+impl Sayable for String {
     fn said(self, _look: Look) -> String {
         self
     }
 }
 
-impl<D: Display> Said for (Text, D) {
+impl<D: Display> Sayable for (Text, D) {
     fn said(self, look: Look) -> String {
         format!("{} {}", look.say(self.0), self.1)
     }
@@ -117,7 +117,7 @@ pub(crate) struct Card {
 
 impl Card {
     /// A card that says nothing yet.
-    pub(crate) fn new(look: Look, title: impl Said) -> Self {
+    pub(crate) fn new(look: Look, title: impl Sayable) -> Self {
         Self {
             look,
             title: title.said(look),
@@ -129,19 +129,19 @@ impl Card {
     }
 
     /// Says this.
-    pub(crate) fn words(self, said: impl Said) -> Self {
+    pub(crate) fn words(self, said: impl Sayable) -> Self {
         let said = CardLine::Words(said.said(self.look));
         self.line(said)
     }
 
     /// Says what matters less.
-    pub(crate) fn note(self, said: impl Said) -> Self {
+    pub(crate) fn note(self, said: impl Sayable) -> Self {
         let said = CardLine::Note(said.said(self.look));
         self.line(said)
     }
 
     /// Says what matters more.
-    pub(crate) fn warning(self, said: impl Said) -> Self {
+    pub(crate) fn warning(self, said: impl Sayable) -> Self {
         let said = CardLine::Warning(said.said(self.look));
         self.line(said)
     }
@@ -160,7 +160,7 @@ impl Card {
     }
 
     /// Says a row of a table: what it is of, then its cells.
-    pub(crate) fn row(self, of: impl Said, cells: impl IntoIterator<Item = String>) -> Self {
+    pub(crate) fn row(self, of: impl Sayable, cells: impl IntoIterator<Item = String>) -> Self {
         let of = [of.said(self.look)].into_iter();
         self.line(CardLine::Cells(of.chain(cells).collect()))
     }
@@ -171,7 +171,7 @@ impl Card {
     }
 
     /// Tells how far it is, from 0 to 1, and what is going on or what is left.
-    pub(crate) fn progress(mut self, part: f32, said: impl Said) -> Self {
+    pub(crate) fn progress(mut self, part: f32, said: impl Sayable) -> Self {
         self.progress = Some((part, said.said(self.look)));
         self
     }
@@ -299,7 +299,7 @@ impl CardView {
             ui.add(bar.desired_height(6.0));
         }
         if let Some(word) = card.word {
-            let ask = format!("{} {word}", look.say(cards::TYPE));
+            let ask = look.told(cards::TYPE, word);
             ui.horizontal(|ui| {
                 Label::new(&ask, palette.text).ui(ui);
                 let field = controls::edit_ui(ui, (&ask, ""), &mut self.typed);
@@ -326,7 +326,7 @@ impl CardView {
         });
         let mut pressed = None;
         let untyped = card.word.filter(|word| self.typed.trim() != *word);
-        let untyped = untyped.map(|word| format!("{} {word}", look.say(cards::TYPE)));
+        let untyped = untyped.map(|word| look.told(cards::TYPE, word));
         for (index, choice) in card.choices.iter().enumerate().rev() {
             let is_danger = choice.manner == Manner::Danger;
             let reason = choice.disabled.map(|reason| look.say(reason).to_owned());

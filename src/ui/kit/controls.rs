@@ -6,8 +6,9 @@ use crate::ui::text::Text;
 use crate::ui::theme::{self, Icon};
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
-    Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, PointerButton, Pos2,
-    Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2,
+    Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, Margin, Panel,
+    PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2,
+    WidgetInfo, vec2,
 };
 
 /// Seconds for which a press on what cannot be pressed is answered.
@@ -163,20 +164,6 @@ impl<'a> Label<'a> {
         ui.painter().galley(at, galley, self.color);
         elided
     }
-}
-
-/// Paints text inside a rectangle, for views that do not paint labels yet.
-pub(crate) fn paint_text(
-    ui: &Ui,
-    rect: Rect,
-    align: Align2,
-    text: &str,
-    font: FontId,
-    color: Color32,
-) {
-    let mut label = Label::new(text, color).font(font);
-    label.align = align;
-    label.paint(ui, rect);
 }
 
 /// Width of a text on one line.
@@ -514,6 +501,47 @@ pub(crate) fn edit_ui(ui: &mut Ui, (name, hint): (&str, &str), text: &mut String
     response
 }
 
+/// A panel of one size without a border, with this room left free around what is in it.
+pub(crate) fn bare(panel: Panel, size: f32, gap: Margin) -> Panel {
+    let panel = panel.exact_size(size).resizable(false);
+    panel
+        .show_separator_line(false)
+        .frame(Frame::new().inner_margin(gap))
+}
+
+/// Places what is added from the left to the right.
+pub(crate) fn left_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let row = Layout::left_to_right(Align::Center);
+    ui.with_layout(row, add).inner
+}
+
+/// Places what is added from the right to the left.
+pub(crate) fn right_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let row = Layout::right_to_left(Align::Center);
+    ui.with_layout(row, add).inner
+}
+
+/// Makes what is added as wide as there is room.
+pub(crate) fn wide_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let wide = Layout::top_down_justified(Align::Center);
+    ui.with_layout(wide, add).inner
+}
+
+/// Gives what is added a place of this size in a row, whatever it needs.
+pub(crate) fn cell_ui<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let row = Layout::left_to_right(Align::Center);
+    let cell = ui.allocate_ui_with_layout(size, row, |ui| {
+        ui.set_min_size(size);
+        add(ui)
+    });
+    cell.inner
+}
+
+/// Small words that wrap.
+pub(crate) fn say_ui(ui: &mut Ui, text: &str, color: Color32) -> Response {
+    Label::new(text, color).small().wrap().ui(ui)
+}
+
 /// Tells a screen reader the name of a text field, and what stands in it.
 pub(crate) fn named_field(response: &Response, name: &str, enabled: bool, text: &str) {
     response.widget_info(|| {
@@ -610,18 +638,4 @@ pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
     let center = Align2::CENTER_CENTER;
     ui.painter()
         .text(rect.center(), center, theme::WARNING, font, color);
-}
-
-/// Cuts a piece of the given width from the left, with a gap.
-pub(crate) fn take_left(rect: &mut Rect, width: f32) -> Rect {
-    let (piece, rest) = rect.split_left_right_at_x(rect.left() + width);
-    *rect = rest.with_min_x(rest.left() + theme::GAP);
-    piece
-}
-
-/// Cuts a piece of the given height from the top, with a gap.
-pub(crate) fn take_top(rect: &mut Rect, height: f32) -> Rect {
-    let (piece, rest) = rect.split_top_bottom_at_y(rect.top() + height);
-    *rect = rest.with_min_y(rest.top() + theme::GAP);
-    piece
 }

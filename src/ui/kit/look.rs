@@ -2,12 +2,14 @@
 
 use crate::app::action::Action;
 use crate::app::hand::Freshness;
+use crate::app::notices::Level;
 use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Moment, PerDof, Timed};
-use crate::ui::text::{Text, main, tune};
+use crate::ui::text::{Text, main};
 use crate::ui::theme::Palette;
+use crate::ui::view::View;
 use egui::{Color32, Id};
 use std::fmt::Display;
 
@@ -35,6 +37,20 @@ impl Look {
     /// A text in the window's language.
     pub(crate) const fn say(self, text: Text) -> &'static str {
         text.of(self.language)
+    }
+
+    /// The sentence with this behind it.
+    pub(crate) fn told(self, text: Text, more: impl Display) -> String {
+        format!("{} {more}", self.say(text))
+    }
+
+    /// The colour of a message.
+    pub(crate) const fn level(self, level: Level) -> Color32 {
+        match level {
+            Level::Info => self.palette.accent,
+            Level::Warn => self.palette.warn,
+            Level::Alarm => self.palette.bad,
+        }
     }
 
     /// The name of a control and its tooltip or hint in the window's language.
@@ -88,24 +104,35 @@ pub(crate) struct Pane<'a> {
     pub(crate) actions: &'a mut Vec<Action>,
     /// The field being typed into.
     pub(crate) typing: &'a mut Typing,
-    /// Set where an explanation was asked for: it is shown from the next frame on.
-    pub(crate) explain: &'a mut Option<Explain>,
+    /// What is to be opened after this frame.
+    pub(crate) opens: &'a mut Option<Opens>,
 }
 
-/// What is to be explained.
+/// What a person opens from another part of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Explain {
+pub(crate) enum Opens {
+    /// A view.
+    View(View),
     /// What is and was wrong.
     Faults,
-    /// What this joint's drive says.
+    /// What a drive says, with its faults.
     Drive(Dof),
+    /// A note of this moment.
+    Note,
+    /// The list of keys, or away with it.
+    Keys,
 }
 
 impl Pane<'_> {
+    /// Opens this after the frame.
+    pub(crate) const fn open(&mut self, opens: Opens) {
+        *self.opens = Some(opens);
+    }
+
     /// Why nothing that moves the hand can be asked for now.
     pub(crate) fn unready(&self) -> Option<&'static str> {
         if self.state.hand().runs_series() {
-            return Some(self.look.say(tune::RUNS));
+            return Some(self.look.say(main::SERIES_RUNS));
         }
         (!self.state.hand().is_armed()).then(|| self.look.say(main::NOT_ARMED))
     }

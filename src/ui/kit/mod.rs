@@ -14,9 +14,10 @@ mod text_field;
 
 pub(crate) use card::{Card, CardView, Choice, Manner};
 pub(crate) use controls::{
-    Button, Label, Weight, card_ui, choose_ui, edit_ui, focus_ring, full_card_ui, head_ui, lamp,
-    named_field, paint_text, pick_ui, pressed, sign, take_left, take_top, text_width, warning_sign,
+    Button, Label, Weight, bare, card_ui, cell_ui, choose_ui, edit_ui, focus_ring, full_card_ui,
+    head_ui, lamp, left_ui, named_field, pick_ui, pressed, right_ui, say_ui, sign, text_width,
+    warning_sign, wide_ui,
 };
-pub(crate) use look::{Explain, Look, Pane, Typing};
+pub(crate) use look::{Look, Opens, Pane, Typing};
 pub(crate) use number::NumberField;
 pub(crate) use text_field::{TextField, refused_ui};

@@ -9,7 +9,7 @@ use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::params::danger::Danger;
 use crate::ui::kit::{Card, Choice, Look, Manner};
 use crate::ui::params::table::value_text;
-use crate::ui::text::{cards, device, verdicts, words};
+use crate::ui::text::{cards, device, words};
 
 /// The card of what waits for a yes, if something does.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
@@ -55,7 +55,7 @@ fn changes(state: &State, look: Look, card: Card) -> Card {
         let live = book.live(row.id).map(|(value, _)| value);
         let values = [row.ours, live, Some(row.theirs)];
         let values = values.map(|value| value_text(row.id, value));
-        card.row(verdicts::whole_name(look, row.id), values)
+        card.row(device::whole_name(look, row.id), values)
     });
     match book.to_apply().is_empty() {
         true => card,

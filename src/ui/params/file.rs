@@ -7,7 +7,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::ui::kit::{Button, Label, Pane, Weight};
 use crate::ui::params::flash::moment;
 use crate::ui::params::table::{cell_name, cell_ui, value_text};
-use crate::ui::text::{device, verdicts};
+use crate::ui::text::device;
 use crate::ui::theme;
 use egui::{Grid, Role, ScrollArea, Ui, WidgetInfo};
 
@@ -22,7 +22,7 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
     let parts = [
         file.hand.clone(),
         moment(&file.at),
-        verdicts::why(look, &file.why),
+        device::why(look, &file.why),
     ];
     let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     Label::new(&parts.join(", "), palette.muted).small().ui(ui);
@@ -42,7 +42,7 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
             }
         });
         if !unknown.is_empty() {
-            let words = format!("{} {}", look.say(device::UNKNOWN_KEYS), unknown.join(", "));
+            let words = look.told(device::UNKNOWN_KEYS, unknown.join(", "));
             Label::new(&words, palette.warn).small().wrap().ui(ui);
         }
     });
@@ -64,14 +64,14 @@ fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
 fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (ParamId, Value)) {
     let look = pane.look;
     let palette = look.palette;
-    let words = verdicts::whole_name(look, id);
+    let words = device::whole_name(look, id);
     let mut ticked = compared.is_ticked(id);
     let tip = match id.is_place() {
         true => device::TICK_PLACE_TIP,
         false => device::TICK_TIP,
     };
     let tick = ui.checkbox(&mut ticked, &words);
-    let label = format!("{} {words}", look.say(device::TAKE));
+    let label = look.told(device::TAKE, words);
     tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, ticked, &label));
     if tick.on_hover_text(look.say(tip)).changed() {
         pane.actions.push(Action::Param(ParamAction::Tick(id)));

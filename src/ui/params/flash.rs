@@ -7,7 +7,7 @@ use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
 use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
-use crate::ui::text::{cards, device, errors, notices, verdicts};
+use crate::ui::text::{cards, device, errors, notices};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui};
 
@@ -61,15 +61,15 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     let (look, book) = (pane.look, &pane.state.hand().params);
     let palette = look.palette;
     let mut lines = Vec::new();
-    if let Some(doing) = verdicts::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
+    if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
         lines.push((look.say(doing).to_owned(), palette.accent));
     }
     if let Some((end, _)) = &book.save {
-        let color = match verdicts::is_saved(end) {
+        let color = match device::is_saved(end) {
             true => palette.ok,
             false => palette.bad,
         };
-        lines.push((verdicts::save_end(look, end), color));
+        lines.push((device::save_end(look, end), color));
     }
     if let Some(reason) = reason.filter(|_| !book.is_busy()) {
         lines.push((reason.to_owned(), palette.muted));
@@ -79,14 +79,14 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     }
     let unsaved = book.unsaved().into_iter();
     let unsaved: Vec<String> = unsaved
-        .map(|row| verdicts::whole_name(look, row.id))
+        .map(|row| device::whole_name(look, row.id))
         .collect();
     if !unsaved.is_empty() {
-        let words = format!("{} {}", look.say(device::UNSAVED), unsaved.join(", "));
+        let words = look.told(device::UNSAVED, unsaved.join(", "));
         lines.push((words, palette.text));
     }
     if let Some(file) = &book.known.doubtful {
-        let words = format!("{} {}", look.say(device::DOUBTFUL), moment(&file.at));
+        let words = look.told(device::DOUBTFUL, moment(&file.at));
         lines.push((words, palette.warn));
     }
     lines.push(match &book.known.saved {
@@ -102,7 +102,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     });
     if let Some(error) = &book.unreadable {
         let error = errors::params(look, error);
-        let words = format!("{} {error}", look.say(device::UNREADABLE));
+        let words = look.told(device::UNREADABLE, error);
         lines.push((words, palette.warn));
     }
     lines.push((look.say(device::FLASH_BODY).into(), palette.muted));
@@ -155,7 +155,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     let look = pane.look;
     let (words, unreadable) = match &backup.file {
         Ok(file) => {
-            let why = verdicts::why(look, &file.why);
+            let why = device::why(look, &file.why);
             (format!("{} {why}", moment(&file.at)), None)
         }
         Err(error) => {

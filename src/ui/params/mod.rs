@@ -12,35 +12,25 @@ use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::params::refusal::ParamRefusal;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::params::table::Shown;
-use crate::ui::text::{device, errors, verdicts};
-use egui::{Align, Color32, Frame, Layout, Margin, Panel, Ui};
+use crate::ui::params::table::ShownRows;
+use crate::ui::text::{device, errors};
+use crate::ui::theme;
+use egui::{Color32, Panel, Ui};
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct DeviceView {
-    shown: Shown,
+    shown: ShownRows,
 }
 
 impl DeviceView {
     /// Draws the view: flash beside the table, or below it where the window is narrow.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let gap = Margin::same(0);
-        let (flash, gap) = match ui.available_width() >= 860.0 {
-            true => (
-                Panel::right("flash").exact_size(280.0),
-                Margin { left: 8, ..gap },
-            ),
-            false => (
-                Panel::bottom("flash").exact_size(172.0),
-                Margin { top: 8, ..gap },
-            ),
+        let flash = match ui.available_width() >= 860.0 {
+            true => kit::bare(Panel::right("flash"), 280.0, theme::GAP_LEFT),
+            false => kit::bare(Panel::bottom("flash"), 172.0, theme::GAP_TOP),
         };
-        let frame = Frame::new().inner_margin(gap);
-        let flash = flash.frame(frame).show_separator_line(false);
-        flash
-            .resizable(false)
-            .show(ui, |ui| flash::flash_ui(ui, pane));
+        flash.show(ui, |ui| flash::flash_ui(ui, pane));
         kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             if let Some(compared) = &pane.state.hand().params.compared {
@@ -61,7 +51,7 @@ impl DeviceView {
             ui.set_max_width(200.0);
             kit::edit_ui(ui, look.both(device::FIND), &mut self.shown.words);
         });
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        kit::right_ui(ui, |ui| {
             let refusal = pane.state.hand().read_refusal();
             let refusal = refusal.map(|why| look.say(device::refusal(why)));
             let read = Button::said(look, device::READ);
@@ -114,7 +104,7 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn status(pane: &Pane<'_>) -> (String, Color32) {
     let (look, hand) = (pane.look, pane.state.hand());
     let book = &hand.params;
-    if let Some(doing) = verdicts::doing(book.doing) {
+    if let Some(doing) = device::doing(book.doing) {
         return (look.say(doing).into(), look.palette.accent);
     }
     if !hand.link.state.is_live() {
@@ -122,7 +112,7 @@ fn status(pane: &Pane<'_>) -> (String, Color32) {
     }
     if let Some(error) = &book.trouble {
         let error = errors::request(look, error);
-        let words = format!("{} {error}", look.say(device::TROUBLE));
+        let words = look.told(device::TROUBLE, error);
         return (words, look.palette.warn);
     }
     let words = match book.read_at {

@@ -7,7 +7,7 @@ use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
-use crate::ui::text::{Text, device, panels, verdicts};
+use crate::ui::text::{Text, device, panels};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
@@ -39,19 +39,19 @@ const GROUPS: [ParamGroup; 3] = [
 
 /// Which rows are shown.
 #[derive(Debug, Default)]
-pub(crate) struct Shown {
+pub(crate) struct ShownRows {
     /// Only those in which something differs.
     pub(crate) only: bool,
     /// Only those with these words.
     pub(crate) words: String,
 }
 
-impl Shown {
+impl ShownRows {
     fn passes(&self, pane: &Pane<'_>, id: ParamId) -> bool {
         if self.only && !pane.state.hand().params.differs(id) {
             return false;
         }
-        let name = verdicts::whole_name(pane.look, id).to_lowercase();
+        let name = device::whole_name(pane.look, id).to_lowercase();
         let register = id.register().name.to_lowercase();
         let all = format!("{name} {} {register}", id.name());
         let mut words = self.words.split_whitespace();
@@ -60,7 +60,7 @@ impl Shown {
 }
 
 /// Draws the table.
-pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &Shown) {
+pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     let look = pane.look;
     let rows = ParamId::all().into_iter();
     let rows: Vec<ParamId> = rows.filter(|id| shown.passes(pane, *id)).collect();
@@ -106,10 +106,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &Shown) {
                 Label::note(look, about).ui(ui);
             });
             for id in own {
-                let height = match id.is_place() {
-                    true => ROW_HIGH,
-                    false => ROW,
-                };
+                let height = if id.is_place() { ROW_HIGH } else { ROW };
                 body.row(height, |row| row_ui(row, pane, id));
                 if has_trouble(pane, id) {
                     line_ui(&mut body, theme::LIST_LINE, |ui| verdict_ui(ui, pane, id));
@@ -196,13 +193,13 @@ fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         None => ui.scope(cell),
     };
     let section = id.register().section;
-    let section = format!("{} {section}", look.say(device::MANUAL));
+    let section = look.told(device::MANUAL, section);
     shown.response.on_hover_text(section);
 }
 
 /// What a screen reader says before a value: `Index speed live`.
 pub(crate) fn cell_name(pane: &Pane<'_>, id: ParamId, column: Text) -> String {
-    let name = verdicts::whole_name(pane.look, id);
+    let name = device::whole_name(pane.look, id);
     format!("{name} {}", pane.look.say(column).to_lowercase())
 }
 
@@ -249,7 +246,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         _ => palette.text,
     };
     let is_applied = pane.state.hand().params.outcome(id).is_some() && !has_trouble(pane, id);
-    let name = Label::new(look.say(verdicts::name(id)), color);
+    let name = Label::new(look.say(device::name(id)), color);
     if !is_applied && !id.is_place() {
         name.ui(ui);
         return;
@@ -263,7 +260,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
             label.named(&verdict).ui(ui);
         }
         if id.is_place() {
-            Label::note(look, verdicts::about(id)).wrap().ui(ui);
+            Label::note(look, device::about(id)).wrap().ui(ui);
         }
     });
 }
@@ -278,7 +275,7 @@ fn verdict_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         RowVerdict::Unverified(_) | RowVerdict::NotSent(_) => palette.warn,
         _ => palette.bad,
     };
-    let words = verdicts::row_end(pane.look, end);
+    let words = device::row_end(pane.look, end);
     let name = cell_name(pane, id, device::VERDICT);
     Label::new(&words, color).small().named(&name).ui(ui);
 }
@@ -305,7 +302,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let staged = book.staged(id);
     let live = book.live(id).map(|(value, _)| value);
     let shown = staged.or(live);
-    let whole_name = verdicts::whole_name(look, id);
+    let whole_name = device::whole_name(look, id);
     let name = cell_name(pane, id, device::STAGED);
     ui.scope(|ui| {
         let width = ui.available_width() - theme::CONTROL - theme::GAP;
@@ -322,7 +319,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
         }
     });
     if staged.is_some() {
-        let label = format!("{} {whole_name}", look.say(device::UNSTAGE));
+        let label = look.told(device::UNSTAGE, whole_name);
         let drop = Button::new(&label, look.tip(device::UNSTAGE)).icon(theme::CLOSE);
         drop.sends(ui, pane, Action::Stage(id, None));
     }
@@ -376,8 +373,8 @@ fn address_ui(
 fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let hand = pane.state.hand();
-    let name = verdicts::whole_name(look, id);
-    let label = format!("{} {name}", look.say(device::CHANGE));
+    let name = device::whole_name(look, id);
+    let label = look.told(device::CHANGE, name);
     let live = hand.params.live(id).map(|(value, _)| value);
     let wanted = hand.params.staged(id);
     let wanted = wanted.filter(|wanted| Some(*wanted) != live);

@@ -16,7 +16,7 @@ const STEEP_MOST_RATIO: f32 = 4.0;
 
 /// What a line covers in some columns of pixels.
 #[derive(Debug, Clone, Copy)]
-struct Bar {
+struct PixelBar {
     /// From here.
     x: f32,
     /// To here.
@@ -25,7 +25,7 @@ struct Bar {
     bottom: f32,
 }
 
-impl Bar {
+impl PixelBar {
     fn alike(self, other: Self) -> bool {
         self.end == other.x
             && (self.top - other.top).abs() < SAME_PX
@@ -35,8 +35,8 @@ impl Bar {
 
 /// Adds a line of many points to a mesh; a bar is one pixel wide, in points.
 pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, pixel: f32, points: impl Iterator<Item = Pos2>) {
-    let mut wide: Option<Bar> = None;
-    let mut bar: Option<Bar> = None;
+    let mut wide: Option<PixelBar> = None;
+    let mut bar: Option<PixelBar> = None;
     let mut before: Option<Pos2> = None;
     for point in points {
         let x = (point.x / pixel).floor() * pixel;
@@ -54,7 +54,7 @@ pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, pixel: f32, points: impl Iter
         // A bar begins where the one before it ended, so that the line has no holes.
         let near = before.filter(|_| far.is_none());
         let from_y = near.map_or(point.y, |before| before.y);
-        bar = Some(Bar {
+        bar = Some(PixelBar {
             // Where a column of pixels is left out, this one is as wide as both.
             x: bar
                 .filter(|_| near.is_some())
@@ -72,7 +72,7 @@ pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, pixel: f32, points: impl Iter
 }
 
 /// Joins a bar to the ones before that are like it, and draws those if it is not.
-fn finish(mesh: &mut Mesh, stroke: Stroke, wide: &mut Option<Bar>, bar: Option<Bar>) {
+fn finish(mesh: &mut Mesh, stroke: Stroke, wide: &mut Option<PixelBar>, bar: Option<PixelBar>) {
     let Some(bar) = bar else { return };
     match wide {
         Some(wide) if wide.alike(bar) => wide.end = bar.end,
@@ -84,7 +84,7 @@ fn finish(mesh: &mut Mesh, stroke: Stroke, wide: &mut Option<Bar>, bar: Option<B
     }
 }
 
-fn paint(mesh: &mut Mesh, stroke: Stroke, bar: Bar) {
+fn paint(mesh: &mut Mesh, stroke: Stroke, bar: PixelBar) {
     let out = (stroke.width + FADE_PX) / 2.0;
     let core = (stroke.width - FADE_PX).max(0.0) / 2.0;
     let (top, bottom) = (bar.top - core, bar.bottom + core);

@@ -6,7 +6,7 @@ use crate::ui::plots::bars;
 use crate::ui::plots::scales::{self, Scales};
 use crate::ui::plots::time_window::{TimeSpan, TimeWindow};
 use crate::ui::plots::times::{Times, marks};
-use crate::ui::text::{Text, panels, plots};
+use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{
@@ -35,7 +35,7 @@ pub(crate) enum Points<'a> {
 
 /// One line.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Curve<'a> {
+pub(crate) struct ChartCurve<'a> {
     /// Where it leads.
     pub(crate) points: Points<'a>,
     /// What is taken from each point.
@@ -50,7 +50,7 @@ pub(crate) struct Curve<'a> {
     pub(crate) told: Option<usize>,
 }
 
-impl<'a> Curve<'a> {
+impl<'a> ChartCurve<'a> {
     /// A plain line.
     pub(crate) const fn new(points: Points<'a>, stroke: Stroke) -> Self {
         Self {
@@ -125,7 +125,7 @@ pub(crate) struct Chart<'a> {
     /// What it shows, with its unit. Different for each of the charts that share a view.
     pub(crate) title: Text,
     /// The lines, the foremost last.
-    pub(crate) curves: Vec<Curve<'a>>,
+    pub(crate) curves: Vec<ChartCurve<'a>>,
     /// Values to compare with, dashed.
     pub(crate) levels: Vec<(f64, Color32)>,
     /// Moments in seconds, as lines across.
@@ -284,15 +284,15 @@ impl<'a> Chart<'a> {
             if let Some(at_s) = view.pointed_s() {
                 self.readings_ui(ui, at_s);
             }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            kit::left_ui(ui, |ui| {
                 ui.add_space(theme::PLOT_AXIS);
                 Label::new(look.say(self.title), look.palette.muted)
                     .small()
                     .ui(ui);
                 let is_fixed = view.scales.chosen(self.title).is_some();
                 for (is_said, text, tip) in [
-                    (is_fixed, plots::RANGE_FIXED, plots::RANGE.tip()),
-                    (is_decimated, plots::DECIMATED, plots::DECIMATED.tip()),
+                    (is_fixed, panels::RANGE_FIXED, panels::RANGE.tip()),
+                    (is_decimated, panels::DECIMATED, panels::DECIMATED.tip()),
                 ] {
                     let width = kit::text_width(ui, look.say(text), theme::tiny());
                     if is_said && width <= ui.available_width() {
@@ -334,7 +334,7 @@ impl<'a> Chart<'a> {
         let name = format!(
             "{} {}",
             look.say(self.title),
-            look.say(plots::UNDER_POINTER)
+            look.say(panels::UNDER_POINTER)
         );
         ui.ctx()
             .accesskit_node_builder(response.id, |node| node.set_label(name));
@@ -408,7 +408,7 @@ impl<'a> Chart<'a> {
     /// The line that passes next to the pointer, by its place in the list; of several the foremost.
     pub(crate) fn nearest(&self, shown: &ChartResponse) -> Option<usize> {
         let at = shown.response.hover_pos()?;
-        let apart = |curve: &Curve<'_>| {
+        let apart = |curve: &ChartCurve<'_>| {
             let Points::Own(points) = curve.points else {
                 return None;
             };
@@ -427,7 +427,7 @@ impl<'a> Chart<'a> {
 }
 
 /// True if a column of pixels holds more than one point.
-fn is_dense((curve, piece): (&Curve<'_>, &[[f64; 2]]), per_s: f64) -> bool {
+fn is_dense((curve, piece): (&ChartCurve<'_>, &[[f64; 2]]), per_s: f64) -> bool {
     let ends = piece.first().zip(piece.last());
     let columns = ends.map_or(0.0, |(first, last)| (last[0] - first[0]) * per_s);
     let count = f64::from(u32::try_from(piece.len()).unwrap_or(u32::MAX));
@@ -489,7 +489,7 @@ mod tests {
     #[test]
     fn a_value_that_was_asked_for_stands_until_the_next() {
         let points = [[0.0, 1.0], [2.0, 5.0]];
-        let mut curve = Curve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
+        let mut curve = ChartCurve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
         curve.steps = true;
         let line = curve.line(&points);
         let PlotGeometry::Points(drawn) = line.geometry() else {
@@ -502,7 +502,7 @@ mod tests {
     #[test]
     fn only_more_points_than_columns_are_a_band() {
         let points: Vec<[f64; 2]> = (0..100_u8).map(|n| [f64::from(n), 1.0]).collect();
-        let curve = Curve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
+        let curve = ChartCurve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
         assert!(is_dense((&curve, &points), 0.5));
         assert!(!is_dense((&curve, &points), 2.0));
         let alone = points.get(..1).unwrap_or_default();

@@ -3,10 +3,10 @@
 use crate::history::Series;
 use crate::ui::kit::{Button, Label, Look, Pane, format};
 use crate::ui::plots::chart::ChartResponse;
-use crate::ui::plots::panels::{Panel, PlotLine};
+use crate::ui::plots::panels::{Panel, PanelLine};
 use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, plots, words};
+use crate::ui::text::{Text, panels, words};
 use crate::ui::theme;
 use egui::{Align, CursorIcon, Grid, Id, Layout, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
@@ -16,16 +16,16 @@ const CURSOR_FLAG: f32 = 16.0;
 const CURSOR_NAMES: f32 = 84.0;
 
 /// Names of the cursors.
-const NAMES: [(&str, Text); 2] = [("A", plots::CURSOR_A), ("B", plots::CURSOR_B)];
+const NAMES: [(&str, Text); 2] = [("A", panels::CURSOR_A), ("B", panels::CURSOR_B)];
 /// The columns of the table.
 const COLUMNS: [Text; 7] = [
-    plots::AT_A,
-    plots::AT_B,
-    plots::DIFFERENCE,
-    plots::SLOPE,
-    plots::SMALLEST,
-    plots::LARGEST,
-    plots::MEAN,
+    panels::AT_A,
+    panels::AT_B,
+    panels::DIFFERENCE,
+    panels::SLOPE,
+    panels::SMALLEST,
+    panels::LARGEST,
+    panels::MEAN,
 ];
 
 /// Where the cursors stand, in seconds of A and B, if they are on.
@@ -90,7 +90,7 @@ impl Cursors {
             }
             let told = clock(*at_s, lowest.transform.dvalue_dpos()[0]);
             response
-                .on_hover_text(format!("{} {told}", look.say(name)))
+                .on_hover_text(look.told(name, told))
                 .on_hover_cursor(CursorIcon::ResizeHorizontal);
         }
     }
@@ -101,20 +101,20 @@ impl Cursors {
         ui: &mut Ui,
         pane: &Pane<'_>,
         panel: &Panel,
-        lines: &[PlotLine],
+        lines: &[PanelLine],
     ) -> bool {
         let Some(at) = self.0 else { return false };
         let look = pane.look;
         let title = look.say(panel.title);
         let head = ui.horizontal(|ui| {
-            let button = Button::new(title, look.tip(plots::FIGURES));
+            let button = Button::new(title, look.tip(panels::FIGURES));
             let pressed = button
-                .named(look.say(plots::FIGURES))
+                .named(look.say(panels::FIGURES))
                 .ui(ui, look)
                 .clicked();
             let apart = format!("B - A = {:.3} s", at[1] - at[0]);
             let label = Label::new(&apart, look.palette.muted).font(theme::number_small());
-            label.named(look.say(plots::APART)).ui(ui);
+            label.named(look.say(panels::APART)).ui(ui);
             pressed
         });
         let width = (ui.available_width() - CURSOR_NAMES) / 7.0 - theme::STEP;

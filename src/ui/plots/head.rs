@@ -4,11 +4,11 @@ use crate::app::action::Action;
 use crate::app::files::export::Export;
 use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
-use crate::ui::kit::{self, Button, Look, Pane, Weight};
+use crate::ui::kit::{self, Button, Look, Opens, Pane, Weight};
 use crate::ui::plots::PlotView;
 use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
-use crate::ui::text::{Text, panels, plots, words};
+use crate::ui::text::{Text, panels, words};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Color32, Popup, PopupCloseBehavior, Role, Ui, WidgetInfo};
@@ -23,49 +23,42 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     kit::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
         ui.spacing_mut().item_spacing.x = theme::STEP;
         menu_ui(ui, pane, view);
-        let text = look.say(plots::CURSORS);
-        let cursors =
-            Button::new(text, look.tip(plots::CURSORS)).named(look.say(plots::CURSORS_NAME));
-        if switch(cursors, view.cursors.0.is_some(), Weight::Chosen)
-            .ui(ui, look)
-            .clicked()
-        {
+        let cursors = Button::said(look, panels::CURSORS)
+            .named(look.say(panels::CURSORS_NAME))
+            .switch(view.cursors.0.is_some());
+        if cursors.ui(ui, look).clicked() {
             view.cursors.toggle(view.view.time.span());
         }
         if !is_narrow {
-            let note = Button::said(look, plots::NOTE);
-            let note = note.named(look.say(plots::NOTE_NAME)).ui(ui, look);
-            view.note_asked |= note.clicked();
+            let note = Button::said(look, panels::NOTE);
+            let note = note.named(look.say(panels::NOTE_NAME)).ui(ui, look);
+            if note.clicked() {
+                pane.open(Opens::Note);
+            }
         }
         pause_ui(ui, pane, view, is_narrow);
         window_ui(ui, pane, view);
     });
 }
 
-/// A button that is on or off.
-const fn switch(button: Button<'_>, on: bool, weight: Weight) -> Button<'_> {
-    Button {
-        selected: Some(on),
-        weight: if on { weight } else { Weight::Normal },
-        ..button
-    }
-}
-
 /// Everything that is not needed all the time.
 fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
-    let button = Button::said(look, plots::MORE);
+    let button = Button::said(look, panels::MORE);
     let button = button
-        .named(look.say(plots::MORE_NAME))
+        .named(look.say(panels::MORE_NAME))
         .icon(theme::MORE)
         .ui(ui, look);
     let menu = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let shown = menu.show(|ui| {
-        ui.label(look.say(plots::SHOWN));
+        ui.label(look.say(panels::SHOWN));
         shown_ui(ui, pane);
         ui.separator();
-        ui.checkbox(&mut view.large, look.say(plots::ENLARGE));
-        view.note_asked |= entry_ui(ui, look, plots::NOTE_NAME);
+        ui.checkbox(&mut view.large, look.say(panels::ENLARGE));
+        if entry_ui(ui, look, panels::NOTE_NAME) {
+            pane.open(Opens::Note);
+            Popup::close_all(ui.ctx());
+        }
         ui.separator();
         if let Some(at_s) = notes_ui(ui, pane) {
             view.view.time.center(at_s);
@@ -74,14 +67,11 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         keep_ui(ui, pane, view);
         ui.separator();
         ui.set_max_width(250.0);
-        let hint = egui::RichText::new(look.say(plots::AREA_TIP));
+        let hint = egui::RichText::new(look.say(panels::AREA_TIP));
         ui.label(hint.small().color(look.palette.muted));
     });
     if shown.is_none() {
         view.copied = None;
-    }
-    if view.note_asked {
-        Popup::close_all(ui.ctx());
     }
 }
 
@@ -111,10 +101,10 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let series = view.shown_series(pane);
     let history = &pane.state.hand().history;
     let fits = history.rows(&series, from_s, to_s) <= COPY_ROWS_MAX;
-    let copy = ui.add_enabled(fits, egui::Button::new(look.say(plots::COPY)));
-    let copy = copy.on_hover_text(look.tip(plots::COPY));
+    let copy = ui.add_enabled(fits, egui::Button::new(look.say(panels::COPY)));
+    let copy = copy.on_hover_text(look.tip(panels::COPY));
     if copy
-        .on_disabled_hover_text(look.say(plots::COPY_LONG))
+        .on_disabled_hover_text(look.say(panels::COPY_LONG))
         .clicked()
     {
         let table = history.table(&series, from_s, to_s);
@@ -122,13 +112,13 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         view.copied = Some(table.rows());
     }
     if let Some(rows) = view.copied {
-        ui.label(format!("{} {rows}", look.say(plots::COPIED)));
+        ui.label(look.told(panels::COPIED, rows));
     }
-    let save = entry_ui(ui, look, plots::SAVE_CSV).then(|| {
+    let save = entry_ui(ui, look, panels::SAVE_CSV).then(|| {
         let table = history.table(&series, from_s, to_s);
         Action::Save(Export::Plots(table))
     });
-    let picture = entry_ui(ui, look, plots::SAVE_PNG);
+    let picture = entry_ui(ui, look, panels::SAVE_PNG);
     let picture = picture.then(|| Action::SavePicture(view.pixels()));
     if let Some(action) = save.or(picture) {
         pane.actions.push(action);
@@ -139,16 +129,14 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
 fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bool) {
     let look = pane.look;
     let is_paused = view.view.time.is_held();
-    let (text, icon) = match is_paused {
-        true => (panels::PAUSED, theme::PLAY),
-        false => (panels::PAUSE, theme::PAUSE),
+    let (text, icon, weight) = match is_paused {
+        true => (panels::PAUSED, theme::PLAY, Weight::Armed),
+        false => (panels::PAUSE, theme::PAUSE, Weight::Normal),
     };
-    let button = Button::new(look.say(text), look.tip(panels::PAUSE));
-    let button = switch(
-        button.named(look.say(panels::PAUSE_NAME)),
-        is_paused,
-        Weight::Armed,
-    );
+    let button = Button::said(look, text)
+        .named(look.say(panels::PAUSE_NAME))
+        .selected(is_paused)
+        .weight(weight);
     let button = if is_narrow { button.icon(icon) } else { button };
     if button.ui(ui, look).clicked() {
         pane.actions

@@ -6,7 +6,7 @@ use egui::{Color32, Stroke, Ui, vec2};
 use egui_plot::LineStyle;
 
 /// What a colour and a kind of stroke stand for.
-pub(crate) struct Key {
+pub(crate) struct LegendKey {
     /// In words.
     pub(crate) words: String,
     /// The colour.
@@ -16,7 +16,7 @@ pub(crate) struct Key {
 }
 
 /// True if all of them have room in one row.
-pub(crate) fn fits(ui: &Ui, keys: &[Key]) -> bool {
+pub(crate) fn fits(ui: &Ui, keys: &[LegendKey]) -> bool {
     let widths = keys.iter().map(|key| {
         let words = kit::text_width(ui, &key.words, theme::small());
         words + theme::KEY_SIGN + 2.0 * theme::GAP
@@ -25,7 +25,7 @@ pub(crate) fn fits(ui: &Ui, keys: &[Key]) -> bool {
 }
 
 /// Keys in one row, as many as it has room for, and how many more there are.
-pub(crate) fn legend_ui(ui: &mut Ui, look: Look, keys: &[Key]) {
+pub(crate) fn legend_ui(ui: &mut Ui, look: Look, keys: &[LegendKey]) {
     ui.horizontal(|ui| {
         ui.set_height(theme::LIST_LINE);
         for (at, key) in keys.iter().enumerate() {

@@ -1,10 +1,10 @@
 //! What happened, as lines across the plots with their words. Knows no curve.
 
 use crate::history::{Mark, MarkKind};
-use crate::ui::kit::{self, Label, Pane};
+use crate::ui::kit::{self, Label, Look, Pane};
 use crate::ui::plots::chart::{ChartResponse, pointed_s};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, panels};
+use crate::ui::text::panels;
 use crate::ui::theme;
 use egui::{Color32, Rect, Ui, pos2, vec2};
 
@@ -14,7 +14,7 @@ const NOTE_SHOWN: usize = 24;
 /// The lines.
 pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): (f64, f64)) -> Vec<(f64, Color32)> {
     let marks = pane.state.hand().history.marks(from_s, to_s);
-    let moment = |mark: &Mark| (mark.at.secs(), mark_look(pane, &mark.kind).1);
+    let moment = |mark: &Mark| (mark.at.secs(), told(pane.look, &mark.kind).1);
     marks.map(moment).collect()
 }
 
@@ -28,8 +28,8 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
         if x < free_from {
             continue;
         }
-        let (_, color) = mark_look(pane, &mark.kind);
-        let text: String = mark_text(pane, mark).chars().take(NOTE_SHOWN).collect();
+        let (text, color) = told(pane.look, &mark.kind);
+        let text: String = text.chars().take(NOTE_SHOWN).collect();
         let size = vec2(
             kit::text_width(ui, &text, theme::small()) + 1.0,
             theme::TEXT_LINE,
@@ -52,9 +52,10 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     }
 }
 
-fn mark_look(pane: &Pane<'_>, kind: &MarkKind) -> (Text, Color32) {
-    let palette = pane.look.palette;
-    match kind {
+/// What a mark says, and its colour.
+pub(crate) fn told(look: Look, kind: &MarkKind) -> (String, Color32) {
+    let palette = look.palette;
+    let (text, color) = match kind {
         MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
         MarkKind::Stop => (panels::MARK_STOP, palette.bad),
         MarkKind::StopNotSent => (panels::MARK_STOP_NOT_SENT, palette.bad),
@@ -62,18 +63,13 @@ fn mark_look(pane: &Pane<'_>, kind: &MarkKind) -> (Text, Color32) {
         MarkKind::Fault => (panels::MARK_FAULT, palette.warn),
         MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
         MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
-        MarkKind::Gesture(_) => (panels::MARK_GESTURE, palette.accent),
-        MarkKind::Note(_) => (panels::MARK_NOTE, palette.text),
-    }
-}
-
-fn mark_text(pane: &Pane<'_>, mark: &Mark) -> String {
-    let text = pane.look.say(mark_look(pane, &mark.kind).0);
-    match &mark.kind {
-        MarkKind::Gesture(number) => format!("{text} {number}"),
-        MarkKind::Note(words) => words.to_string(),
-        _ => text.to_owned(),
-    }
+        MarkKind::Gesture(number) => {
+            let text = look.told(panels::MARK_GESTURE, number);
+            return (text, palette.accent);
+        }
+        MarkKind::Note(words) => return (words.to_string(), palette.text),
+    };
+    (look.say(text).to_owned(), color)
 }
 
 /// What happened where the pointer is, a line each.
@@ -85,7 +81,7 @@ pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
     let marks = pane.state.hand().history.marks(at_s - by_s, at_s + by_s);
     let lines = marks.map(|mark| {
         let at = clock(mark.at.secs(), per_point);
-        format!("{at}  {}", mark_text(pane, mark))
+        format!("{at}  {}", told(pane.look, &mark.kind).0)
     });
     let lines: Vec<String> = lines.collect();
     (!lines.is_empty()).then(|| lines.join("\n"))

@@ -16,9 +16,9 @@ use crate::hand::{Dof, PerDof};
 use crate::history::Series;
 use crate::transport::Endpoint;
 use crate::ui::kit::{self, Look, Pane};
-use crate::ui::plots::chart::{Chart, ChartResponse, ChartView, Curve, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartResponse, ChartView, Points};
 use crate::ui::plots::cursors::Cursors;
-use crate::ui::plots::panels::{PANELS, Panel, PlotLine};
+use crate::ui::plots::panels::{PANELS, Panel, PanelLine};
 use crate::ui::plots::times::Times;
 use crate::ui::text::panels as text;
 use crate::ui::theme;
@@ -45,8 +45,6 @@ pub(crate) struct PlotView {
     chosen: Option<PlotKind>,
     /// True while the plots fill the view.
     pub(crate) large: bool,
-    /// True if a note was asked for in this frame.
-    pub(crate) note_asked: bool,
     /// Width and height of the card in points, for a picture of it.
     size: (f32, f32),
     /// Rows that were copied last, while the menu is open.
@@ -150,10 +148,10 @@ impl PlotView {
     ) -> ChartResponse {
         let look = pane.look;
         let hand = pane.state.hand();
-        let curve = |line: &PlotLine| Curve {
+        let curve = |line: &PanelLine| ChartCurve {
             steps: line.wished,
             told: (!line.wished).then_some(panel.row.decimals),
-            ..Curve::new(
+            ..ChartCurve::new(
                 Points::Measured(&hand.history, line.series),
                 self.stroke(look, line),
             )
@@ -187,7 +185,7 @@ impl PlotView {
         shown
     }
 
-    fn stroke(&self, look: Look, line: &PlotLine) -> Stroke {
+    fn stroke(&self, look: Look, line: &PanelLine) -> Stroke {
         let color = look.palette.dof[line.dof];
         let color = match self.pointed {
             Some(dof) if dof != line.dof => color.gamma_multiply(BEHIND_PART),

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::{Button, Pane, Weight};
 use crate::ui::plots::times::clock;
-use crate::ui::text::plots;
+use crate::ui::text::panels;
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 
@@ -28,21 +28,21 @@ pub(crate) fn notes_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
         return None;
     }
     let look = pane.look;
-    ui.label(look.say(plots::NOTES));
+    ui.label(look.say(panels::NOTES));
     let mut asked = None;
     let list = ScrollArea::vertical().id_salt("notes").max_height(HEIGHT);
     list.show(ui, |ui| {
         for (mark, words) in notes {
             ui.horizontal(|ui| {
-                let name = look.pair(look.say(plots::NOTE_DELETE), words);
-                let delete = Button::said(look, plots::NOTE_DELETE);
+                let name = look.pair(look.say(panels::NOTE_DELETE), words);
+                let delete = Button::said(look, panels::NOTE_DELETE);
                 let delete = delete.icon(theme::CLOSE).weight(Weight::Quiet);
                 if delete.named(&name).ui(ui, look).clicked() {
                     pane.actions.push(Action::RemoveMark(mark.clone()));
                 }
                 let short: String = words.chars().take(SHOWN).collect();
                 let text = format!("{}  {short}", clock(mark.at.secs(), 0.01));
-                let tip = format!("{words}\n{}", look.tip(plots::NOTE_SHOW));
+                let tip = format!("{words}\n{}", look.tip(panels::NOTE_SHOW));
                 if ui.button(text).on_hover_text(tip).clicked() {
                     asked = Some(mark.at.secs());
                 }

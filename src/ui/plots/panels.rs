@@ -3,7 +3,7 @@
 use crate::app::settings::PlotKind;
 use crate::hand::{Dof, Finger, PerDof, Quantity, QuantityRow, Touch};
 use crate::history::Series;
-use crate::ui::text::{Text, panels, plots};
+use crate::ui::text::{Text, panels};
 
 /// One of the stacked plots.
 #[derive(Debug)]
@@ -19,10 +19,10 @@ pub(crate) struct Panel {
 /// All, from top to bottom.
 pub(crate) const PANELS: [Panel; 6] = [
     Panel::new(PlotKind::Force, panels::PLOT_FORCE, Quantity::Force.row()),
-    Panel::new(PlotKind::Normal, plots::NORMAL, Touch::Normal.row()),
+    Panel::new(PlotKind::Normal, panels::NORMAL, Touch::Normal.row()),
     Panel::new(
         PlotKind::Tangential,
-        plots::TANGENTIAL,
+        panels::TANGENTIAL,
         Touch::Tangential.row(),
     ),
     Panel::new(
@@ -40,7 +40,7 @@ pub(crate) const PANELS: [Panel; 6] = [
 
 /// One line of a plot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct PlotLine {
+pub(crate) struct PanelLine {
     /// Where its points come from.
     pub(crate) series: Series,
     /// Whose colour it has.
@@ -55,22 +55,22 @@ impl Panel {
     }
 
     /// The lines of all parts that are not hidden; those that were asked for come first, under the measured ones.
-    pub(crate) fn lines(&self, hidden: &PerDof<bool>) -> Vec<PlotLine> {
+    pub(crate) fn lines(&self, hidden: &PerDof<bool>) -> Vec<PanelLine> {
         let joint = |quantity| {
-            Dof::ALL.into_iter().map(move |dof| PlotLine {
+            Dof::ALL.into_iter().map(move |dof| PanelLine {
                 series: Series::Joint(quantity, dof),
                 dof,
                 wished: quantity == Quantity::TargetAngle,
             })
         };
         let tip = |touch| {
-            Finger::ALL.into_iter().map(move |finger| PlotLine {
+            Finger::ALL.into_iter().map(move |finger| PanelLine {
                 series: Series::Tip(touch, finger),
                 dof: finger.bend(),
                 wished: false,
             })
         };
-        let all: Vec<PlotLine> = match self.kind {
+        let all: Vec<PanelLine> = match self.kind {
             PlotKind::Force => joint(Quantity::Force).collect(),
             PlotKind::Normal => tip(Touch::Normal).collect(),
             PlotKind::Tangential => tip(Touch::Tangential).collect(),
@@ -84,7 +84,7 @@ impl Panel {
     }
 
     /// The measured ones only: those that figures are told of.
-    pub(crate) fn measured(&self, hidden: &PerDof<bool>) -> Vec<PlotLine> {
+    pub(crate) fn measured(&self, hidden: &PerDof<bool>) -> Vec<PanelLine> {
         let lines = self.lines(hidden).into_iter();
         lines.filter(|line| !line.wished).collect()
     }

@@ -1,7 +1,7 @@
 //! Value scales: round by themselves, or as a person set them by dragging, by the wheel or by typing the ends.
 
 use crate::ui::kit::{NumberField, Pane};
-use crate::ui::text::{Text, plots};
+use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use egui::{CursorIcon, Popup, PopupCloseBehavior, Response, Role, Sense, Ui, WidgetInfo};
 use std::collections::BTreeMap;
@@ -133,14 +133,14 @@ impl Scales {
     ) {
         let look = pane.look;
         let axis = axis.interact(Sense::click());
-        let name = format!("{}: {}", look.say(plots::RANGE), look.say(title));
+        let name = format!("{}: {}", look.say(panels::RANGE), look.say(title));
         axis.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
         let popup = Popup::from_toggle_button_response(&axis);
         popup
             .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
             .show(|ui| {
                 ui.label(look.say(title));
-                if let Some(typed) = end_ui(ui, pane, (title, plots::RANGE_HIGH), high) {
+                if let Some(typed) = end_ui(ui, pane, (title, panels::RANGE_HIGH), high) {
                     // An end that passes the other one takes it along.
                     let low = if typed > low {
                         low
@@ -149,7 +149,7 @@ impl Scales {
                     };
                     self.choose(title, low, typed);
                 }
-                if let Some(typed) = end_ui(ui, pane, (title, plots::RANGE_LOW), low) {
+                if let Some(typed) = end_ui(ui, pane, (title, panels::RANGE_LOW), low) {
                     let high = if typed < high {
                         high
                     } else {
@@ -157,9 +157,9 @@ impl Scales {
                     };
                     self.choose(title, typed, high);
                 }
-                let automatic = ui.button(look.say(plots::RANGE_AUTO));
+                let automatic = ui.button(look.say(panels::RANGE_AUTO));
                 if automatic
-                    .on_hover_text(look.tip(plots::RANGE_AUTO))
+                    .on_hover_text(look.tip(panels::RANGE_AUTO))
                     .clicked()
                 {
                     self.forget(title);
@@ -170,7 +170,7 @@ impl Scales {
             self.forget(title);
             Popup::close_all(&axis.ctx);
         }
-        axis.on_hover_text(look.tip(plots::RANGE));
+        axis.on_hover_text(look.tip(panels::RANGE));
     }
 }
 
@@ -178,7 +178,7 @@ fn end_ui(ui: &mut Ui, pane: &mut Pane<'_>, (title, end): (Text, Text), value: f
     let look = pane.look;
     let name = format!("{}: {}", look.say(end), look.say(title));
     let row = ui.horizontal(|ui| {
-        let tip = look.say(plots::RANGE_END_TIP);
+        let tip = look.say(panels::RANGE_END_TIP);
         let field = NumberField::new(&name, tip, -MOST..=MOST).decimals(2);
         let typed = ui.scope(|ui| field.ui(ui, pane, Some(value))).inner;
         ui.label(look.say(end));
@@ -227,14 +227,14 @@ mod tests {
     fn a_chosen_scale_stays_as_it_is_and_within_bounds() {
         let mut scales = Scales::default();
         for (low, high) in [(17.0, 23.5), (-4000.0, 4000.0), (-0.02, 0.02), (5.0, 5.0)] {
-            scales.choose(plots::NORMAL, low, high);
-            let (chosen, above) = scales.chosen(plots::NORMAL).unwrap_or_default();
+            scales.choose(panels::NORMAL, low, high);
+            let (chosen, above) = scales.chosen(panels::NORMAL).unwrap_or_default();
             assert!((chosen - low).abs() < 1e-9 && above >= high && above > chosen);
         }
-        scales.choose(plots::NORMAL, 1e12, -1e12);
-        let (low, high) = scales.chosen(plots::NORMAL).unwrap_or_default();
+        scales.choose(panels::NORMAL, 1e12, -1e12);
+        let (low, high) = scales.chosen(panels::NORMAL).unwrap_or_default();
         assert!(high <= MOST && low < high);
-        assert_eq!(scales.chosen(plots::TANGENTIAL), None);
+        assert_eq!(scales.chosen(panels::TANGENTIAL), None);
     }
 
     #[test]

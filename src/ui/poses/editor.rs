@@ -69,7 +69,7 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
     }
     let text = look.say(poses::LEAVE);
-    let label = format!("{} {text}", look.say(words::dof(dof)));
+    let label = look.told(words::dof(dof), text);
     let leave = pose.leave[dof];
     let button = Button::new(text, look.tip(poses::LEAVE)).named(&label);
     if button.choice(leave).ui(ui, look).clicked() {
@@ -98,7 +98,7 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let mut number = |pane: &mut Pane<'_>, caption: Text, value: i16, max: f64| {
         let text = look.say(caption);
         Label::new(text, look.palette.muted).ui(ui);
-        let label = format!("{} {text}", look.say(poses::POSE));
+        let label = look.told(poses::POSE, text);
         let field = NumberField::new(&label, look.tip(caption), 0.0..=max);
         field.whole_ui(ui, pane, Some(value))
     };

@@ -77,7 +77,7 @@ impl GestureView {
         Grid::new("gesture names").show(ui, |ui| {
             for (index, gesture) in Gesture::all().enumerate() {
                 let number = gesture.get().to_string();
-                let name = format!("{} {number}", look.say(panels::GESTURE_NAME));
+                let name = look.told(panels::GESTURE_NAME, &number);
                 let known = pane.state.settings.gesture_name(gesture);
                 let field = TextField::new(&name, NAME_MAX).hint(&number);
                 ui.scope(|ui| {

@@ -18,18 +18,18 @@ use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, tile_ui};
 use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui, vec2};
+use egui::{ScrollArea, Ui, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Section {
+enum PoseSection {
     #[default]
     Mine,
     Sequences,
     InHand,
 }
 
-impl Section {
+impl PoseSection {
     const ALL: [(Self, Text); 3] = [
         (Self::Mine, poses::MY_POSES),
         (Self::Sequences, poses::SEQUENCES),
@@ -40,7 +40,7 @@ impl Section {
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct PoseView {
-    section: Section,
+    section: PoseSection,
     chosen: Option<PoseId>,
     shown: Option<PoseId>,
     sequences: SequenceView,
@@ -62,9 +62,9 @@ impl PoseView {
             ui.horizontal(|ui| self.head_ui(ui, pane));
             refused_ui(ui, pane);
             match self.section {
-                Section::Mine => self.mine_ui(ui, pane),
-                Section::Sequences => self.sequences.ui(ui, pane),
-                Section::InHand => self.gestures.ui(ui, pane),
+                PoseSection::Mine => self.mine_ui(ui, pane),
+                PoseSection::Sequences => self.sequences.ui(ui, pane),
+                PoseSection::InHand => self.gestures.ui(ui, pane),
             }
         });
     }
@@ -73,10 +73,9 @@ impl PoseView {
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let sections = (&mut self.section, poses::SECTION_TIP);
-        kit::pick_ui(ui, look, sections, Section::ALL);
-        if self.section != Section::InHand {
-            let right = Layout::right_to_left(Align::Center);
-            ui.with_layout(right, |ui| tools_ui(ui, pane));
+        kit::pick_ui(ui, look, sections, PoseSection::ALL);
+        if self.section != PoseSection::InHand {
+            kit::right_ui(ui, |ui| tools_ui(ui, pane));
         }
     }
 

@@ -9,7 +9,7 @@ use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Align, Align2, CursorIcon, Id, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, CursorIcon, Id, Layout, Ui, UiBuilder, vec2};
 
 /// Height of a row.
 pub(crate) const ROW: f32 = 44.0;
@@ -69,7 +69,7 @@ pub(crate) fn step_ui(
         (theme::TO_BOTTOM, poses::LATER, poses::SHIFT_TIP, later),
         (theme::TO_TOP, poses::EARLIER, poses::SHIFT_TIP, earlier),
     ] {
-        let label = format!("{} {number}", look.say(caption));
+        let label = look.told(caption, &number);
         let button = Button::new(&label, look.say(tip)).icon(icon);
         if button.weight(Weight::Quiet).ui(ui, look).clicked() {
             change(pane, sequence, edit);
@@ -77,7 +77,7 @@ pub(crate) fn step_ui(
     }
     numbers_ui(ui, pane, sequence, (at, step));
     if let Some(pose) = pane.state.poses.library.pose(step.pose) {
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+        kit::left_ui(ui, |ui| {
             let (_, picture) = ui.allocate_space(vec2(36.0, 36.0));
             panel::pose_ui(ui, look, picture, &shares(&pose.angles));
             handle_ui(ui, pane, sequence, (at, &pose.name));
@@ -94,8 +94,8 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
     let (_, rect) = ui.allocate_space(ui.available_size());
     let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
     let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id(at));
-    let (words, left) = (rect.shrink2(vec2(theme::STEP, 0.0)), Align2::LEFT_CENTER);
-    kit::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
+    let words = rect.shrink2(vec2(theme::STEP, 0.0));
+    Label::new(&text, look.palette.text).paint(ui, words);
     if response.clicked() {
         response.request_focus();
     }

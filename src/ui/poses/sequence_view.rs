@@ -11,9 +11,7 @@ use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
-use egui::{
-    Align, Align2, Frame, Layout, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2,
-};
+use egui::{Align, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use std::time::Duration;
 
 /// Time between two pictures of a dry run while nothing else is new.
@@ -30,15 +28,7 @@ pub(crate) struct SequenceView {
 
 /// A part of the view with a card's distance to what is at its left.
 pub(crate) fn beside(width: f32, id: &'static str) -> Panel {
-    let gap = Margin {
-        left: 12,
-        ..Margin::ZERO
-    };
-    Panel::right(id)
-        .exact_size(width)
-        .resizable(false)
-        .show_separator_line(false)
-        .frame(Frame::new().inner_margin(gap))
+    kit::bare(Panel::right(id), width, theme::GAP_LEFT)
 }
 
 impl SequenceView {
@@ -76,7 +66,7 @@ impl SequenceView {
             }
             ScrollArea::vertical().id_salt("sequences").show(ui, |ui| {
                 for sequence in &library.sequences {
-                    let label = format!("{} {}", look.say(poses::SEQUENCE), sequence.name);
+                    let label = look.told(poses::SEQUENCE, &sequence.name);
                     let button = Button::new(&sequence.name, look.say(poses::SECTION_TIP));
                     let button = button.named(&label).large();
                     let button = button.choice(self.chosen == Some(sequence.id));
@@ -89,8 +79,7 @@ impl SequenceView {
     }
 
     fn sequence_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
-        let right = Layout::right_to_left(Align::Center);
-        ui.horizontal(|ui| ui.with_layout(right, |ui| head_ui(ui, pane, sequence)));
+        ui.horizontal(|ui| kit::right_ui(ui, |ui| head_ui(ui, pane, sequence)));
         timeline_ui(ui, pane, sequence);
         picture_ui(ui, pane, sequence);
         let foot = theme::CONTROL + theme::CONTROL_LARGE + 4.0 * theme::STEP;
@@ -163,7 +152,7 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
     if looped.choice(sequence.looped).ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Loop(!sequence.looped));
     }
-    let name = format!("{} {}", look.say(poses::SEQUENCE), look.say(poses::NAME));
+    let name = look.told(poses::SEQUENCE, look.say(poses::NAME));
     let field = TextField::new(&name, NAME_CHARS_MAX);
     if let Some(name) = field.ui(ui, pane, &sequence.name) {
         change(pane, sequence, SequenceEdit::Rename(name));
@@ -191,8 +180,8 @@ fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
         let pose = pane.state.poses.library.pose(step.pose);
         let name = pose.map_or("", |pose| pose.name.as_str());
         let text = format!("{} {name}", at + 1);
-        let (inner, center) = (inner.shrink2(vec2(theme::STEP, 0.0)), Align2::CENTER_CENTER);
-        kit::paint_text(ui, inner, center, &text, theme::small(), color);
+        let label = Label::new(&text, color).small().center();
+        label.paint(ui, inner.shrink2(vec2(theme::STEP, 0.0)));
         x += width;
     }
 }
@@ -224,10 +213,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
     let look = pane.look;
     let palette = look.palette;
     if let Some(step) = dry {
-        return (
-            format!("{} {step}", look.say(poses::SAY_DRY)),
-            palette.simulated,
-        );
+        return (look.told(poses::SAY_DRY, step), palette.simulated);
     }
     let run = pane.state.hand().sequence.as_ref();
     let Some(run) = run.filter(|run| run.sequence == sequence.id) else {

@@ -5,10 +5,11 @@ use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::LibraryPose;
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
+use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, reorder};
 use crate::ui::text::{main, panels, poses};
 use crate::ui::theme;
-use egui::{Align2, Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
+use crate::ui::view::View;
+use egui::{Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
 
 /// Width and least height of a pose in the overview: a finger's breadth.
 const STRIP_TILE: egui::Vec2 = vec2(132.0, 38.0);
@@ -39,7 +40,7 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
 /// A button that takes a pose.
 pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
-    let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
+    let name = look.told(poses::RECALL_NAME, &pose.name);
     let button = Button::said(look, poses::RECALL)
         .named(&name)
         .disabled(refusal(pane, pose))
@@ -55,12 +56,10 @@ pub(crate) fn tile_ui(
     (pose, chosen): (&LibraryPose, bool),
 ) -> bool {
     let look = pane.look;
-    let name = format!("{} {}", look.say(poses::POSE), pose.name);
-    let mut button = Button::new(&pose.name, look.say(poses::SELECT_TIP)).named(&name);
-    button.selected = Some(chosen);
-    if chosen {
-        button.weight = Weight::Chosen;
-    }
+    let name = look.told(poses::POSE, &pose.name);
+    let button = Button::new(&pose.name, look.say(poses::SELECT_TIP))
+        .named(&name)
+        .switch(chosen);
     let builder = UiBuilder::new().id_salt(pose.id).max_rect(rect);
     let mut ui = ui.new_child(builder.layout(egui::Layout::top_down_justified(egui::Align::Min)));
     ui.spacing_mut().item_spacing.y = theme::STEP;
@@ -90,23 +89,24 @@ pub(crate) fn tile_ui(
         true => format!("{} · {} g", pose.speed.get(), pose.force.get()),
         false => pose.tags.join(" · "),
     };
-    let (center, palette) = (Align2::CENTER_CENTER, look.palette);
-    kit::paint_text(&ui, upper, center, &pose.name, theme::body(), palette.text);
-    kit::paint_text(&ui, lower, center, &about, theme::small(), palette.muted);
+    let name = Label::new(&pose.name, look.palette.text).center();
+    name.paint(&ui, upper);
+    let about = Label::new(&about, look.palette.muted).small().center();
+    about.paint(&ui, lower);
     go_ui(&mut ui, pane, pose);
     response.clicked()
 }
 
-/// The overview's strip: the person's poses first, then named gestures, then the other numbers. True if all are wanted.
-pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
+/// The overview's strip: the person's poses first, then named gestures, then the other numbers.
+pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
-        let opened = kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
-            let all = Button::said(look, poses::EVERY);
-            let opened = all.ui(ui, look).clicked();
+        kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
+            if Button::said(look, poses::EVERY).ui(ui, look).clicked() {
+                pane.open(Opens::View(View::Poses));
+            }
             let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
-            opened
         });
         let area = ScrollArea::vertical().auto_shrink(false);
         area.id_salt("strip").show(ui, |ui| {
@@ -114,8 +114,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
             ui.spacing_mut().interact_size.y = theme::CONTROL_LARGE;
             ui.horizontal_wrapped(|ui| strip_tiles_ui(ui, pane));
         });
-        opened
-    })
+    });
 }
 
 fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -150,7 +149,7 @@ pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
 
 fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
-    let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
+    let name = look.told(poses::RECALL_NAME, &pose.name);
     let button = Button::new(&pose.name, look.tip(poses::RECALL))
         .named(&name)
         .disabled(refusal(pane, pose));
@@ -159,8 +158,7 @@ fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let (picture, words) = rect.split_left_right_at_x(rect.left() + rect.height());
     panel::pose_ui(ui, look, picture.shrink(2.0), &shares(&pose.angles));
     let words = words.shrink2(vec2(theme::STEP, 0.0));
-    let (left, color) = (Align2::LEFT_CENTER, button.text_color(look));
-    kit::paint_text(ui, words, left, &pose.name, theme::body(), color);
+    Label::new(&pose.name, button.text_color(look)).paint(ui, words);
     if response.clicked() {
         pane.actions.push(Action::Recall(pose.id));
     }

@@ -1,7 +1,13 @@
 //! Sentences of what the hand keeps: rows, verdicts, SAVE, files.
 
 use crate::app::params::refusal::ParamRefusal;
-use crate::ui::text::phrase::texts;
+use crate::app::params::state::{Doing, SaveEnd};
+use crate::params::changes::{RowOutcome, RowVerdict};
+use crate::params::rows::ParamId;
+use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
+use crate::ui::kit::Look;
+use crate::ui::text::phrase::{Text, texts};
+use crate::ui::text::{errors, words};
 
 texts! {
     REFUSED: "Nothing of the file was taken.", "文件未被采用。";
@@ -152,5 +158,193 @@ texts! {
         ParamRefusal::NothingToUndo => "No apply of this session changed anything.", "本次没有可撤销的应用。";
         ParamRefusal::NoFolder => "There is no place for the backup.", "没有存放备份的位置。";
         ParamRefusal::NothingRead => "No row was read yet.", "尚未读取任何行。";
+    }
+}
+
+/// What is going on; none where nothing is.
+pub(crate) const fn doing(doing: Doing) -> Option<Text> {
+    match doing {
+        Doing::Nothing => None,
+        Doing::Reading => Some(READING),
+        Doing::Applying => Some(APPLYING),
+        Doing::BackingUp => Some(BACKING_UP),
+        Doing::Saving => Some(SAVING),
+    }
+}
+
+/// A row's own name, in its group.
+pub(crate) const fn name(id: ParamId) -> Text {
+    match id {
+        ParamId::HandId => HAND_ID,
+        ParamId::ReduRatio => REDU_RATIO,
+        ParamId::IpAddress => IP_ADDRESS,
+        ParamId::DefaultSpeed(dof) | ParamId::DefaultForce(dof) => words::dof(dof),
+    }
+}
+
+/// A row's name alone: `Index speed`.
+pub(crate) fn whole_name(look: Look, id: ParamId) -> String {
+    let own = look.say(name(id));
+    match id {
+        ParamId::DefaultSpeed(_) => format!("{own} {}", look.say(SPEED)),
+        ParamId::DefaultForce(_) => format!("{own} {}", look.say(FORCE)),
+        _ => own.to_owned(),
+    }
+}
+
+/// What a row does.
+pub(crate) const fn about(id: ParamId) -> Text {
+    match id {
+        ParamId::HandId => ABOUT_HAND_ID,
+        ParamId::ReduRatio => ABOUT_REDU_RATIO,
+        ParamId::IpAddress => ABOUT_IP,
+        ParamId::DefaultSpeed(_) => ABOUT_SPEED,
+        ParamId::DefaultForce(_) => ABOUT_FORCE,
+    }
+}
+
+/// What came of a row.
+pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
+    let say = |text| look.say(text);
+    match &end.verdict {
+        RowVerdict::Applied => say(APPLIED).into(),
+        RowVerdict::Refused { reason } => format!(
+            "{}: {} ({} {})",
+            say(NOT_TAKEN),
+            errors::reason(look, reason),
+            say(WANTED),
+            end.wanted
+        ),
+        RowVerdict::Dropped => format!("{} ({} {})", say(DROPPED), say(WANTED), end.wanted),
+        RowVerdict::Altered => format!("{} {}", say(ALTERED), end.wanted),
+        RowVerdict::Unverified(doubt) => {
+            let why = match doubt {
+                Doubt::NotReadBack => DOUBT_NOT_READ,
+                Doubt::Ambiguous => DOUBT_AMBIGUOUS,
+                Doubt::LinkLost => DOUBT_LINK,
+            };
+            format!("{}: {}", say(UNVERIFIED), say(why))
+        }
+        RowVerdict::NotSent(why) => {
+            format!("{}: {}", say(NOT_WRITTEN), not_sent(look, *why))
+        }
+    }
+}
+
+fn not_sent(look: Look, why: NotSent) -> String {
+    let text = match why {
+        NotSent::Armed => refusal(ParamRefusal::Armed),
+        NotSent::Holding => refusal(ParamRefusal::Holding),
+        NotSent::Moving => refusal(ParamRefusal::Moving),
+        NotSent::RestUnknown => refusal(ParamRefusal::RestUnknown),
+        NotSent::TooSoon { wait } => {
+            let wait = wait.as_secs_f64().ceil();
+            return format!("{} {wait} s", look.say(TOO_SOON));
+        }
+    };
+    look.say(text).into()
+}
+
+/// How a SAVE ended.
+pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
+    match end {
+        SaveEnd::Told(told) => saved(look, told),
+        SaveEnd::NoBackup { message } => {
+            let message = errors::system(look, message);
+            look.told(SAVE_NO_BACKUP, message)
+        }
+        SaveEnd::NotAsked(error) => look.told(SAVE_NOT_SENT, errors::request(look, error)),
+        SaveEnd::NotApplied => look.say(SAVE_NOT_APPLIED).into(),
+        SaveEnd::NotNoted(told, message) => format!(
+            "{} {} {}",
+            saved(look, told),
+            look.say(SAVE_NOT_NOTED),
+            errors::system(look, message)
+        ),
+    }
+}
+
+/// True if what was to be saved is saved, as far as the wire can tell.
+pub(crate) const fn is_saved(end: &SaveEnd) -> bool {
+    matches!(end, SaveEnd::Told(Saved::Confirmed | Saved::ReadBack))
+}
+
+fn saved(look: Look, saved: &Saved) -> String {
+    let say = |text| look.say(text);
+    match saved {
+        Saved::Confirmed => say(SAVE_CONFIRMED).into(),
+        Saved::ReadBack => say(SAVE_READ_BACK).into(),
+        Saved::Failed { code } => format!("{} ({code})", say(SAVE_FAILED)),
+        Saved::Unknown { why } => {
+            let why = match why {
+                SaveDoubt::NoResult => SAVE_NO_RESULT,
+                SaveDoubt::Unanswered => SAVE_UNANSWERED,
+                SaveDoubt::NotReadBack => SAVE_NOT_READ,
+                SaveDoubt::LinkLost => SAVE_LINK,
+            };
+            format!(
+                "{} {} {}",
+                say(SAVE_UNKNOWN),
+                say(why),
+                say(SAVE_UNKNOWN_ADVICE)
+            )
+        }
+        Saved::Refused { reason } => {
+            format!("{} {}", say(SAVE_REFUSED), errors::reason(look, reason))
+        }
+        Saved::NotSent(why) => {
+            format!("{} {}", say(SAVE_NOT_SENT), not_sent(look, *why))
+        }
+    }
+}
+
+/// Why a file was written; unknown words as they stand there.
+pub(crate) fn why(look: Look, why: &str) -> String {
+    let known = [
+        WHY_DUMP,
+        WHY_BEFORE_SAVE,
+        WHY_BEFORE_APPLY,
+        WHY_BEFORE_RESET,
+    ];
+    let known = known.into_iter().find(|text| text.en == why);
+    known.map_or_else(|| why.to_owned(), |text| look.say(text).to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::settings::{Language, Theme};
+    use crate::ui::theme::Palette;
+    use std::time::Duration;
+
+    #[test]
+    fn only_what_the_wire_can_tell_is_said_of_a_save() {
+        let look = Look {
+            palette: Palette::of(Theme::Dark),
+            language: Language::En,
+            side: crate::hand::kinematics::Side::Right,
+        };
+        let why = SaveDoubt::NoResult;
+        let wait = Duration::from_millis(2100);
+        for (saved, words, is_ok) in [
+            (
+                Saved::Confirmed,
+                "the hand says that its parameters are in flash",
+                true,
+            ),
+            (Saved::ReadBack, "Only the next power-up shows", true),
+            (Saved::Failed { code: 255 }, "Not saved", false),
+            (
+                Saved::Unknown { why },
+                "no result within 3 s. Switch the hand off",
+                false,
+            ),
+            (Saved::NotSent(NotSent::TooSoon { wait }), "wait 3 s", false),
+        ] {
+            let end = SaveEnd::Told(saved);
+            let told = save_end(look, &end);
+            assert!(told.contains(words), "{told}");
+            assert_eq!(is_saved(&end), is_ok, "{told}");
+        }
     }
 }

@@ -30,303 +30,204 @@ fn place(place: &str) -> &str {
     }
 }
 
+/// Writes a table of errors as the function that says each in Chinese.
+macro_rules! chinese {
+    ($(fn $name:ident($error:ty) { $($case:pat $(if $guard:expr)? => $words:literal $(, $part:expr)*;)* })*) => {$(
+        fn $name(error: $error) -> String {
+            match error {
+                $($case $(if $guard)? => format!($words $(, $part)*),)*
+            }
+        }
+    )*};
+}
+
+chinese! {
+    fn transport_zh(&TransportError) {
+        TransportError::Missing { place } => "{place} 不存在：请插入适配器，或选择其他端口。";
+        TransportError::NotAPort { place } => "{place} 不是串口：请选择适配器的设备，例如 /dev/ttyUSB0。";
+        TransportError::Permission { place, remedy } => "没有打开 {place} 的权限：{}。", remedy_zh(remedy);
+        TransportError::Away { place, alike } if alike.is_empty() => "{place} 的 USB 适配器已拔出：请重新插入。";
+        TransportError::Away { place, alike } => "{place} 的 USB 适配器已拔出：请重新插入；如果要用的是 {}，请连接它。", alike.join("、");
+        TransportError::Busy { place, holder } => "{place} 正被 {} 使用：请关闭该程序后再连接。", holder.as_deref().unwrap_or("其他程序");
+        TransportError::Refused { place } => "{place} 拒绝连接：主机存在，但该端口没有服务；灵巧手自身的端口为 6000。";
+        TransportError::Silent { place, after_ms } => "{place} 在 {after_ms} ms 内没有应答：请检查电源、线缆与地址，并确认本机有同一网段的地址。";
+        TransportError::Name { place } => "无法解析名称 {place}：请检查拼写，或使用数字地址。";
+        TransportError::HungUp { place } => "{place} 已断开：适配器被拔出，或对方关闭了连接。";
+        TransportError::Unsupported { kind } => "{kind}: 不经过本机的线路：请指定端口、地址或接口。";
+        TransportError::LinuxOnly => "can: 连接需要 Linux：请在此使用 slcan: 适配器。";
+        TransportError::BitrateRefused { place, bitrate } => "{place} 上的 CAN 适配器不支持 {bitrate} bit/s：请选择其他波特率。";
+        TransportError::Io { place: at, message } => "{} 出错：{}。", place(at), system_zh(message);
+        TransportError::NoInterface { place } => "没有 CAN 接口 {place}：请插入适配器；可用 'ip link show type can' 查看现有接口。";
+        TransportError::NotCan { place } => "{place} 不是 CAN 接口：请从 'ip link show type can' 列出的接口中选择，例如 can0。";
+        TransportError::InterfaceDown { place } => "CAN 接口 {place} 未启用：请运行 'sudo ip link set {place} up type can bitrate 1000000'。";
+        TransportError::NoCan { place } => "无法打开 {place}：本系统的内核不支持 CAN；请改用 slcan: 适配器。";
+        TransportError::QueueFull { place } => "{place} 无法发送，数据仍在队列中：CAN 总线上没有设备应答；请检查线缆、终端电阻、波特率与灵巧手电源。";
+        TransportError::BusOff { place } => "{place} 因错误过多已离开 CAN 总线：请检查波特率、线缆与终端电阻，然后运行 'sudo ip link set {place} down' 并重新启用。";
+        TransportError::ErrorPassive { place } => "{place} 错误较多且没有应答：波特率可能不对，或 CAN 总线上没有其他设备；请检查波特率、线缆、终端电阻与灵巧手电源。";
+    }
+
+    fn remedy_zh(&Remedy) {
+        Remedy::JoinGroup(group) => "请运行 'sudo usermod -aG {group} $USER'，然后注销并重新登录";
+        Remedy::LogInAgain(group) => "您已在 {group} 组中，但登录之后才加入：请注销并重新登录";
+        Remedy::GiveRight(port) => "请运行 'sudo chmod a+rw {port}'（拔出后失效），或为它添加 udev 规则";
+        Remedy::Unknown => "请以有权限的用户启动本程序";
+    }
+
+    fn trouble_zh(&LinkTrouble) {
+        LinkTrouble::Transport(error) => "{}", transport_zh(error);
+        LinkTrouble::Garbled { place: at, id } => "{} 上有应答，但不符合 ID {id}、此速度或此协议：请用“连接”中的“扫描”查找。", place(at);
+        LinkTrouble::Mute { place: at, unit } => "{} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。", place(at);
+        LinkTrouble::NoAnswer { id } => "ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议，或用“连接”中的“扫描”逐一尝试。";
+        LinkTrouble::Silent { silent } => "灵巧手停止应答：连续 {silent} 次请求没有应答。";
+        LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。";
+        LinkTrouble::Suspended { slept_s } => "本机休眠了 {slept_s} 秒：之前显示的数据已过时。";
+    }
+
+    fn request_zh(&RequestError) {
+        RequestError::NotConnected => "没有连接：未发送任何内容。";
+        RequestError::NotArmed => "未使能：未发送任何内容。";
+        RequestError::Full { limit } => "已有 {limit} 个请求在等待：未发送。";
+        RequestError::TooLong { address, len } => "此线路无法一次读写地址 {address} 起的 {len} 字节。";
+        RequestError::Timeout { address, after_ms } => "地址 {address} 在 {after_ms} ms 内没有应答：不确定灵巧手是否已执行。";
+        RequestError::Refused { address, reason } => "灵巧手拒绝了地址 {address}：{}。", reason_zh(reason);
+        RequestError::WrongLength { address, got, want } => "地址 {address} 应答了 {got} 字节，应为 {want} 字节。";
+        RequestError::Ambiguous { address, wait_s } => "地址 {address} 可能还有迟到的应答：请在 {wait_s} 秒后重试。";
+        RequestError::LinkLost => "连接断开：不确定灵巧手是否已执行。";
+        RequestError::OutOfRange(OutOfRange { what, got, min, max }) => "{what} 的值 {got} 超出手册范围：{min} 至 {max}。";
+    }
+
+    fn endpoint_zh(&EndpointError) {
+        EndpointError::Place { example, .. } => "缺少端口或地址：例如 {}。", bare(example);
+        EndpointError::Kind { text } => "{text} 没有说明连接方式。";
+        EndpointError::Key { key, kind, .. } => "{kind}: 没有 {key} 这一项。";
+        EndpointError::Value { key, value, want } => "{key}={value} 无效：应为{}。", want_zh(want);
+    }
+
+    fn want_zh(&Want) {
+        Want::Whole => "整数";
+        Want::Between(from, to) => " {from} 至 {to} 的整数";
+        Want::Speed(from, to) => " {from} 至 {to} 的波特率";
+        Want::OneOf(all) => " {}", all.replace(", ", "、").replace(" or ", " 或 ");
+    }
+
+    fn hosts_zh(&HostsError) {
+        HostsError::Host { text } => "{text} 不是主机：请输入地址，例如 192.168.11.210；端口不是 6000 时在后面加上冒号与端口。";
+        HostsError::Port { port } => "{port} 不是端口：请输入 1 至 65535 的数字。";
+        HostsError::Range { text } => "{text} 不是网段：请输入例如 192.168.11.0/24。";
+        HostsError::TooWide { prefix } => "/{prefix} 网段超过 {HOSTS_MAX} 个地址：请输入 /22 至 /32 的网段。";
+        HostsError::Impossible { address } => "灵巧手不可能使用地址 {address}：请输入灵巧手的地址。";
+    }
+
+    fn hint_zh(&ScanHint) {
+        ScanHint::OtherId { endpoint, hand_id } => "{endpoint} 有应答，但 HAND_ID 为 {hand_id}：可能不是灵巧手。";
+        ScanHint::Refuses { endpoint, reason } => "{endpoint} 有应答，但不给出 HAND_ID（{}）：可能不是灵巧手。", reason_zh(reason);
+        ScanHint::OtherTalk { endpoint } => "{} 上收到给其他主机的应答：另一程序正在使用此线路。请先结束它，或扫描全部 ID。", endpoint.place();
+        ScanHint::Garbled { place, bauds, bytes } => "{place} 上有数据，但波特率 {} 下无法识别（{bytes} 字节）：可能波特率不同、是其他设备，或接线接反。", numbers(bauds);
+    }
+
+    fn task_zh(&TaskError) {
+        TaskError::NotRead { id, why } => "无法读取 {}：{}", id.name(), request_zh(why);
+        TaskError::NotReached => "灵巧手没有应答。";
+        TaskError::NotMeant(_) => "没有确认要这样做。";
+        TaskError::NoBackup { message } => "无法备份，未向灵巧手写入任何内容：{}。", system_zh(message);
+        TaskError::NotAsked(error) => "{}", request_zh(error);
+    }
+
+    fn pose_cause_zh(&PoseFileCause) {
+        PoseFileCause::Toml(_) => "格式不对";
+        PoseFileCause::Format { got } => "这不是姿态文件，其格式为 {got}";
+        PoseFileCause::Version { got } => "无法读取版本 {got}";
+        PoseFileCause::Name { name } => "名称“{name}”无效：请用一行 1 至 32 个字符";
+        PoseFileCause::Twice { name } => "名称“{name}”使用了两次";
+        PoseFileCause::NoSuchPose { name } => "文件中没有姿态“{name}”";
+        PoseFileCause::TooMany { got, limit } => "{got} 个过多：最多 {limit} 个";
+        PoseFileCause::Unreadable(message) => "{}", system_zh(message);
+    }
+
+    fn params_zh(&ParamsFileError) {
+        ParamsFileError::Toml(message) => "{}。", system_zh(message);
+        ParamsFileError::Missing { field } => "缺少 {field}。";
+        ParamsFileError::Format { got } => "这不是参数文件，其格式为 {got}。";
+        ParamsFileError::Version { got } => "无法读取版本 {got}。";
+        ParamsFileError::Value { field, got, .. } => "{field} 的值 {got} 不允许。";
+        ParamsFileError::Empty => "文件中没有参数。";
+        ParamsFileError::Unreadable(message) => "{}。", system_zh(message);
+    }
+}
+
+/// An example of an endpoint without its kind.
+fn bare(example: &str) -> &str {
+    example.split_once(':').map_or(example, |(_, rest)| rest)
+}
+
+fn numbers(all: &[u32]) -> String {
+    let all: Vec<String> = all.iter().map(u32::to_string).collect();
+    all.join("、")
+}
+
 /// Why a wire could not be opened, or broke.
 pub(crate) fn transport(look: Look, error: &TransportError) -> String {
     told(look, error, transport_zh)
 }
 
-fn transport_zh(error: &TransportError) -> String {
-    match error {
-        TransportError::Missing { place } => {
-            format!("{place} 不存在：请插入适配器，或选择其他端口。")
-        }
-        TransportError::NotAPort { place } => {
-            format!("{place} 不是串口：请选择适配器的设备，例如 /dev/ttyUSB0。")
-        }
-        TransportError::Permission { place, remedy } => {
-            format!("没有打开 {place} 的权限：{}。", remedy_zh(remedy))
-        }
-        TransportError::Away { place, alike } if alike.is_empty() => {
-            format!("{place} 的 USB 适配器已拔出：请重新插入。")
-        }
-        TransportError::Away { place, alike } => format!(
-            "{place} 的 USB 适配器已拔出：请重新插入；如果要用的是 {}，请连接它。",
-            alike.join("、")
-        ),
-        TransportError::Busy { place, holder } => {
-            let holder = holder.as_deref().unwrap_or("其他程序");
-            format!("{place} 正被 {holder} 使用：请关闭该程序后再连接。")
-        }
-        TransportError::Refused { place } => {
-            format!("{place} 拒绝连接：主机存在，但该端口没有服务；灵巧手自身的端口为 6000。")
-        }
-        TransportError::Silent { place, after_ms } => format!(
-            "{place} 在 {after_ms} ms 内没有应答：请检查电源、线缆与地址，并确认本机有同一网段的地址。"
-        ),
-        TransportError::Name { place } => {
-            format!("无法解析名称 {place}：请检查拼写，或使用数字地址。")
-        }
-        TransportError::HungUp { place } => {
-            format!("{place} 已断开：适配器被拔出，或对方关闭了连接。")
-        }
-        TransportError::Unsupported { kind } => {
-            format!("{kind}: 不经过本机的线路：请指定端口、地址或接口。")
-        }
-        TransportError::LinuxOnly => "can: 连接需要 Linux：请在此使用 slcan: 适配器。".into(),
-        TransportError::BitrateRefused { place, bitrate } => {
-            format!("{place} 上的 CAN 适配器不支持 {bitrate} bit/s：请选择其他波特率。")
-        }
-        TransportError::Io { place: at, message } => {
-            format!("{} 出错：{}。", place(at), system_zh(message))
-        }
-        error => can_zh(error),
-    }
-}
-
-fn can_zh(error: &TransportError) -> String {
-    match error {
-        TransportError::NoInterface { place } => format!(
-            "没有 CAN 接口 {place}：请插入适配器；可用 'ip link show type can' 查看现有接口。"
-        ),
-        TransportError::NotCan { place } => format!(
-            "{place} 不是 CAN 接口：请从 'ip link show type can' 列出的接口中选择，例如 can0。"
-        ),
-        TransportError::InterfaceDown { place } => format!(
-            "CAN 接口 {place} 未启用：请运行 'sudo ip link set {place} up type can bitrate 1000000'。"
-        ),
-        TransportError::NoCan { place } => {
-            format!("无法打开 {place}：本系统的内核不支持 CAN；请改用 slcan: 适配器。")
-        }
-        TransportError::QueueFull { place } => format!(
-            "{place} 无法发送，数据仍在队列中：CAN 总线上没有设备应答；请检查线缆、终端电阻、波特率与灵巧手电源。"
-        ),
-        TransportError::BusOff { place } => format!(
-            "{place} 因错误过多已离开 CAN 总线：请检查波特率、线缆与终端电阻，然后运行 'sudo ip link set {place} down' 并重新启用。"
-        ),
-        TransportError::ErrorPassive { place } => format!(
-            "{place} 错误较多且没有应答：波特率可能不对，或 CAN 总线上没有其他设备；请检查波特率、线缆、终端电阻与灵巧手电源。"
-        ),
-        _ => String::new(),
-    }
-}
-
-fn remedy_zh(remedy: &Remedy) -> String {
-    match remedy {
-        Remedy::JoinGroup(group) => {
-            format!("请运行 'sudo usermod -aG {group} $USER'，然后注销并重新登录")
-        }
-        Remedy::LogInAgain(group) => {
-            format!("您已在 {group} 组中，但登录之后才加入：请注销并重新登录")
-        }
-        Remedy::GiveRight(port) => {
-            format!("请运行 'sudo chmod a+rw {port}'（拔出后失效），或为它添加 udev 规则")
-        }
-        Remedy::Unknown => "请以有权限的用户启动本程序".into(),
-    }
-}
-
-/// Why there is no live hand.
+/// What is wrong with the link.
 pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
     match (look.language, trouble) {
         (_, LinkTrouble::Transport(error)) => transport(look, error),
-        // Its own words send to the command line; this window scans itself.
         (Language::En, LinkTrouble::Garbled { place, id }) => format!(
             "Something answers on {place}, but not as id {id} at this speed and in this protocol: 'Scan' in Connection finds out what it is."
         ),
         (Language::En, LinkTrouble::NoAnswer { id }) => format!(
             "No answer from id {id}: check power, id, baud and protocol of the hand, or let 'Scan' in Connection try them all."
         ),
-        (Language::En, trouble) => format::sentence(&trouble.to_string()),
-        (Language::Zh, trouble) => trouble_zh(trouble),
+        (_, trouble) => told(look, trouble, trouble_zh),
     }
 }
 
-fn trouble_zh(trouble: &LinkTrouble) -> String {
-    match trouble {
-        LinkTrouble::Transport(error) => transport_zh(error),
-        LinkTrouble::Garbled { place: at, id } => format!(
-            "{} 上有应答，但不符合 ID {id}、此速度或此协议：请用“连接”中的“扫描”查找。",
-            place(at)
-        ),
-        LinkTrouble::Mute { place: at, unit } => format!(
-            "{} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。",
-            place(at)
-        ),
-        LinkTrouble::NoAnswer { id } => format!(
-            "ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议，或用“连接”中的“扫描”逐一尝试。"
-        ),
-        LinkTrouble::Silent { silent } => {
-            format!("灵巧手停止应答：连续 {silent} 次请求没有应答。")
-        }
-        LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。".into(),
-        LinkTrouble::Suspended { slept_s } => {
-            format!("本机休眠了 {slept_s} 秒：之前显示的数据已过时。")
-        }
-    }
-}
-
-/// How a request failed.
+/// Why a request to the hand was not carried out.
 pub(crate) fn request(look: Look, error: &RequestError) -> String {
     told(look, error, request_zh)
 }
 
-fn request_zh(error: &RequestError) -> String {
-    match error {
-        RequestError::NotConnected => "没有连接：未发送任何内容。".into(),
-        RequestError::NotArmed => "未使能：未发送任何内容。".into(),
-        RequestError::Full { limit } => format!("已有 {limit} 个请求在等待：未发送。"),
-        RequestError::TooLong { address, len } => {
-            format!("此线路无法一次读写地址 {address} 起的 {len} 字节。")
-        }
-        RequestError::Timeout { address, after_ms } => {
-            format!("地址 {address} 在 {after_ms} ms 内没有应答：不确定灵巧手是否已执行。")
-        }
-        RequestError::Refused { address, reason } => {
-            format!("灵巧手拒绝了地址 {address}：{}。", reason_zh(reason))
-        }
-        RequestError::WrongLength { address, got, want } => {
-            format!("地址 {address} 应答了 {got} 字节，应为 {want} 字节。")
-        }
-        RequestError::Ambiguous { address, wait_s } => {
-            format!("地址 {address} 可能还有迟到的应答：请在 {wait_s} 秒后重试。")
-        }
-        RequestError::LinkLost => "连接断开：不确定灵巧手是否已执行。".into(),
-        RequestError::OutOfRange(OutOfRange {
-            what,
-            got,
-            min,
-            max,
-        }) => {
-            format!("{what} 的值 {got} 超出手册范围：{min} 至 {max}。")
-        }
-    }
-}
-
-/// Why what was typed is no endpoint.
+/// What is wrong with an endpoint that was put together in the form.
 pub(crate) fn endpoint(look: Look, error: &EndpointError) -> String {
-    // The form has the kind of link as buttons: an example without it.
-    let bare = |example: &'static str| example.split_once(':').map_or(example, |(_, rest)| rest);
     match (look.language, error) {
         (Language::En, EndpointError::Place { example, .. }) => {
-            format!(
-                "The port or address is missing: type for example {}.",
-                bare(example)
-            )
+            let example = bare(example);
+            format!("The port or address is missing: type for example {example}.")
         }
-        (Language::Zh, EndpointError::Place { example, .. }) => {
-            format!("缺少端口或地址：例如 {}。", bare(example))
-        }
-        (Language::En, error) => format::sentence(&error.to_string()),
-        (Language::Zh, EndpointError::Kind { text }) => format!("{text} 没有说明连接方式。"),
-        (Language::Zh, EndpointError::Key { key, kind, .. }) => {
-            format!("{kind}: 没有 {key} 这一项。")
-        }
-        (Language::Zh, EndpointError::Value { key, value, want }) => {
-            format!("{key}={value} 无效：应为{}。", want_zh(*want))
-        }
+        (_, error) => told(look, error, endpoint_zh),
     }
 }
 
-fn want_zh(want: Want) -> String {
-    match want {
-        Want::Whole => "整数".into(),
-        Want::Between(from, to) => format!(" {from} 至 {to} 的整数"),
-        Want::Speed(from, to) => format!(" {from} 至 {to} 的波特率"),
-        Want::OneOf(all) => format!(" {}", all.replace(", ", "、").replace(" or ", " 或 ")),
-    }
-}
-
-/// Why a text names no hosts.
+/// What is wrong with addresses to scan.
 pub(crate) fn hosts(look: Look, error: &HostsError) -> String {
-    told(look, error, |error| match error {
-        HostsError::Host { text } => format!(
-            "{text} 不是主机：请输入地址，例如 192.168.11.210；端口不是 6000 时在后面加上冒号与端口。"
-        ),
-        HostsError::Port { port } => format!("{port} 不是端口：请输入 1 至 65535 的数字。"),
-        HostsError::Range { text } => format!("{text} 不是网段：请输入例如 192.168.11.0/24。"),
-        HostsError::TooWide { prefix } => {
-            format!("/{prefix} 网段超过 {HOSTS_MAX} 个地址：请输入 /22 至 /32 的网段。")
-        }
-        HostsError::Impossible { address } => {
-            format!("灵巧手不可能使用地址 {address}：请输入灵巧手的地址。")
-        }
-    })
+    told(look, error, hosts_zh)
 }
 
-/// Why there may be a hand although none answered.
+/// What a scan heard that is no hand, or none it can name.
 pub(crate) fn hint(look: Look, hint: &ScanHint) -> String {
-    told(look, hint, |hint| match hint {
-        ScanHint::OtherId { endpoint, hand_id } => {
-            format!("{endpoint} 有应答，但 HAND_ID 为 {hand_id}：可能不是灵巧手。")
-        }
-        ScanHint::Refuses { endpoint, reason } => format!(
-            "{endpoint} 有应答，但不给出 HAND_ID（{}）：可能不是灵巧手。",
-            reason_zh(reason)
-        ),
-        ScanHint::OtherTalk { endpoint } => format!(
-            "{} 上收到给其他主机的应答：另一程序正在使用此线路。请先结束它，或扫描全部 ID。",
-            endpoint.place()
-        ),
-        ScanHint::Garbled {
-            place,
-            bauds,
-            bytes,
-        } => {
-            let bauds: Vec<String> = bauds.iter().map(u32::to_string).collect();
-            format!(
-                "{place} 上有数据，但波特率 {} 下无法识别（{bytes} 字节）：可能波特率不同、是其他设备，或接线接反。",
-                bauds.join("、")
-            )
-        }
-    })
+    told(look, hint, hint_zh)
 }
 
-/// Why something guarded was not begun.
+/// Why a task could not go on.
 pub(crate) fn task(look: Look, error: &TaskError) -> String {
-    told(look, error, |error| match error {
-        TaskError::NotRead { id, why } => format!("无法读取 {}：{}", id.name(), request_zh(why)),
-        TaskError::NotReached => "灵巧手没有应答。".into(),
-        TaskError::NotMeant(_) => "没有确认要这样做。".into(),
-        TaskError::NoBackup { message } => {
-            format!("无法备份，未向灵巧手写入任何内容：{}。", system_zh(message))
-        }
-        TaskError::NotAsked(error) => request_zh(error),
-    })
+    told(look, error, task_zh)
 }
 
 /// Why a file of poses was not taken.
 pub(crate) fn poses(look: Look, error: &PoseFileError) -> String {
     told(look, error, |error| {
-        let line = error
-            .line
-            .map(|line| format!("第 {line} 行，"))
-            .unwrap_or_default();
+        let line = error.line.map(|line| format!("第 {line} 行，"));
         let field = error.field.as_ref().map(|field| format!("{field}："));
-        let cause = match &error.cause {
-            PoseFileCause::Toml(_) => "格式不对".into(),
-            PoseFileCause::Format { got } => format!("这不是姿态文件，其格式为 {got}"),
-            PoseFileCause::Version { got } => format!("无法读取版本 {got}"),
-            PoseFileCause::Name { name } => format!("名称“{name}”无效：请用一行 1 至 32 个字符"),
-            PoseFileCause::Twice { name } => format!("名称“{name}”使用了两次"),
-            PoseFileCause::NoSuchPose { name } => format!("文件中没有姿态“{name}”"),
-            PoseFileCause::TooMany { got, limit } => format!("{got} 个过多：最多 {limit} 个"),
-            PoseFileCause::Unreadable(message) => system_zh(message),
-        };
-        format!("{line}{}{cause}。", field.unwrap_or_default())
+        let (line, field) = (line.unwrap_or_default(), field.unwrap_or_default());
+        format!("{line}{field}{}。", pose_cause_zh(&error.cause))
     })
 }
 
 /// Why a file of parameters was not taken.
 pub(crate) fn params(look: Look, error: &ParamsFileError) -> String {
-    told(look, error, |error| match error {
-        ParamsFileError::Toml(message) => format!("{}。", system_zh(message)),
-        ParamsFileError::Missing { field } => format!("缺少 {field}。"),
-        ParamsFileError::Format { got } => format!("这不是参数文件，其格式为 {got}。"),
-        ParamsFileError::Version { got } => format!("无法读取版本 {got}。"),
-        ParamsFileError::Value { field, got, .. } => format!("{field} 的值 {got} 不允许。"),
-        ParamsFileError::Empty => "文件中没有参数。".into(),
-        ParamsFileError::Unreadable(message) => format!("{}。", system_zh(message)),
-    })
+    told(look, error, params_zh)
 }
 
 /// What the system said of a file or a device.

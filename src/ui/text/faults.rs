@@ -86,14 +86,14 @@ texts! {
     RECORDING_FAULT: "fault", "故障";
     LANES: "Status of the drives", "驱动器状态";
 
-    DEED_DISARM: "Disarmed", "取消使能";
-    DEED_TARGET: "target", "目标";
-    DEED_FORCE: "threshold, g", "力阈值 g";
-    DEED_SPEED: "speed", "速度";
-    DEED_ALL: "All", "全部";
-    DEED_LOCK: "locked", "已锁定";
-    DEED_UNLOCK: "unlocked", "已解锁";
-    DEED_ANGLES: "Edited angles", "测试编辑的角度";
-    DEED_SEQUENCE: "Sequence", "序列";
+    ACT_DISARM: "Disarmed", "取消使能";
+    ACT_TARGET: "target", "目标";
+    ACT_FORCE: "threshold, g", "力阈值 g";
+    ACT_SPEED: "speed", "速度";
+    ACT_ALL: "All", "全部";
+    ACT_LOCK: "locked", "已锁定";
+    ACT_UNLOCK: "unlocked", "已解锁";
+    ACT_ANGLES: "Edited angles", "测试编辑的角度";
+    ACT_SEQUENCE: "Sequence", "序列";
     NO_FAULT_BITS: "no fault", "无故障";
 }

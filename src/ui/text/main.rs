@@ -4,6 +4,9 @@ use crate::record::LinkState;
 use crate::ui::text::phrase::texts;
 
 texts! {
+    TAB_COMPARE: "Compare", "对比";
+    TAB_TUNE: "Tune", "整定";
+    SERIES_RUNS: "A series of trials runs: stop it first.", "正在运行抓取试验：请先停止。";
     SIMULATED: "SIMULATED", "仿真", "This is the built-in hand. No real hand is connected.", "这是内置的仿真手，没有连接真实的灵巧手。";
     ONLY_FROM_TO: "Only a number within", "只接受此范围内的数字：";
     REAL_HAND: "HAND", "真机";

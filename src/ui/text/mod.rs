@@ -1,25 +1,18 @@
 //! Every sentence of the window, in English and Chinese. No layout, no numbers.
 
 pub(crate) mod cards;
-pub(crate) mod compare;
 pub(crate) mod device;
 pub(crate) mod errors;
 pub(crate) mod faults;
-pub(crate) mod keys;
 pub(crate) mod layout;
 pub(crate) mod main;
 pub(crate) mod notices;
 pub(crate) mod panels;
 mod phrase;
-pub(crate) mod plots;
 pub(crate) mod poses;
-pub(crate) mod quirks;
 pub(crate) mod scan;
-pub(crate) mod touch;
 pub(crate) mod traffic;
-pub(crate) mod trials;
 pub(crate) mod tune;
-pub(crate) mod verdicts;
 pub(crate) mod words;
 
 pub(crate) use phrase::Text;

@@ -8,7 +8,7 @@ use crate::record::Disarmed;
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{device, errors, main, panels, poses, quirks, traffic, trials, tune, words};
+use crate::ui::text::{device, errors, main, panels, poses, scan, traffic, tune, words};
 use std::path::Path;
 
 /// Title, cause and advice of what is wrong with a drive.
@@ -21,13 +21,9 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
 
 fn asked(look: Look, what: RequestKind) -> String {
     match what {
-        RequestKind::Gesture(gesture) => format!("{} {}", look.say(panels::GESTURE), gesture.get()),
-        RequestKind::StoreGesture(gesture) => {
-            format!("{} {}", look.say(poses::STORE_ASKED), gesture.get())
-        }
-        RequestKind::ReadGesture(gesture) => {
-            format!("{} {}", look.say(poses::READ_ASKED), gesture.get())
-        }
+        RequestKind::Gesture(gesture) => look.told(panels::GESTURE, gesture.get()),
+        RequestKind::StoreGesture(gesture) => look.told(poses::STORE_ASKED, gesture.get()),
+        RequestKind::ReadGesture(gesture) => look.told(poses::READ_ASKED, gesture.get()),
         RequestKind::ClearErrors => look.say(panels::CLEAR).into(),
     }
 }
@@ -68,7 +64,7 @@ fn place(path: Option<&Path>) -> String {
 /// A message as one or two sentences.
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
-    let told = |text: Text, more: &str| format!("{} {more}", look.say(text));
+    let told = |text: Text, more: &str| look.told(text, more);
     match what {
         NoticeKind::LinkLost(why) => told(panels::NOTICE_LOST, &errors::trouble(look, why)),
         NoticeKind::NoLink(why) => told(panels::NOTICE_NO_LINK, &errors::trouble(look, why)),
@@ -104,10 +100,11 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             told(panels::NOTICE_LOCKED, look.say(words::dof(*dof)))
         }
         NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
-        NoticeKind::SeriesEnded { .. }
-        | NoticeKind::SeriesRuns
-        | NoticeKind::SessionOpened { .. }
-        | NoticeKind::SessionRefused { .. } => trials::notice(look, what),
+        NoticeKind::SeriesRuns => said(main::SERIES_RUNS),
+        NoticeKind::SeriesEnded { trials, aborted } => match aborted {
+            None => look.fill(tune::ENDED, &[trials]),
+            Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),
+        },
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         NoticeKind::GestureStoreOff => said(poses::STORE_OFF.tip()),
         // The words of the graphics driver help whoever mends it.
@@ -127,7 +124,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
 
 /// What became of files; empty for everything else.
 fn of_files(look: Look, what: &NoticeKind) -> String {
-    let told = |text: Text, more: &str| format!("{} {more}", look.say(text));
+    let told = |text: Text, more: &str| look.told(text, more);
     let system = |text: Text, message: &str| told(text, &errors::system(look, message));
     let of = |text: Text, path: &Path, why: &str| {
         look.pair(&told(text, &path.display().to_string()), why)
@@ -142,6 +139,13 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
             look.say(poses::COUNT_POSES),
             look.say(poses::COUNT_SEQUENCES)
         ),
+        NoticeKind::SessionOpened { path, trials } => {
+            look.fill(tune::OPENED, &[&path.display(), trials])
+        }
+        NoticeKind::SessionRefused { path, message } => {
+            let why = errors::system(look, message);
+            look.fill(tune::REFUSED, &[&path.display(), &why])
+        }
         NoticeKind::PosesRefused { path, error } => {
             of(poses::REFUSED, path, &errors::poses(look, error))
         }
@@ -165,7 +169,7 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotSaved { path, message } => {
             of(traffic::NOT_SAVED, path, &errors::system(look, message))
         }
-        NoticeKind::SheetNotKept { message } => system(quirks::NOT_KEPT, message),
+        NoticeKind::SheetNotKept { message } => system(scan::NOT_KEPT, message),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),
     }
@@ -174,9 +178,9 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
 fn differing(look: Look, differences: &[FactDifference], last_seen: &str) -> String {
     let facts = differences.iter().map(|difference| {
         let FactDifference { fact, before, now } = difference;
-        format!("{}: {before} -> {now}", look.say(quirks::fact(*fact)))
+        format!("{}: {before} -> {now}", look.say(scan::fact(*fact)))
     });
     let facts: Vec<String> = facts.collect();
-    let intro = look.say(quirks::OTHER_HAND);
+    let intro = look.say(scan::OTHER_HAND);
     format!("{intro} ({last_seen}) {}", facts.join("; "))
 }

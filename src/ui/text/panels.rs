@@ -1,17 +1,20 @@
 //! Sentences of the plots, the fingertips, the fault list, the gestures and the connection.
 
 use crate::app::readings::friction::GripState;
+use crate::app::readings::tare::{Source, TareZero};
+use crate::app::settings::Language;
+use crate::hand::Moment;
 use crate::link::PollGroup;
-use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
-use crate::ui::text::phrase::{Text, texts};
-use crate::ui::text::quirks;
+use crate::ui::kit::{Look, format};
+use crate::ui::text::phrase::texts;
+use std::time::Duration;
 
 texts! {
     HISTORY: "History", "曲线";
     WINDOW_NAME: "Plot window", "时间窗口";
     PAUSE: "Pause", "暂停", "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
-    PAUSED: "Paused", "已暂停";
+    PAUSED: "Paused", "已暂停", "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
     PAUSE_NAME: "Pause the plots", "暂停曲线";
     SHOW_CURVE: "Show or hide this joint's curves.", "显示或隐藏该自由度的曲线。";
     THRESHOLDS: "Thresholds", "阈值", "Shows the force thresholds as dashed lines.", "以虚线显示力阈值。";
@@ -28,7 +31,6 @@ texts! {
     MARK_GESTURE: "Gesture", "手势";
     MARK_LOST: "Link lost", "断开";
     MARK_ARMED: "Armed", "使能";
-    MARK_NOTE: "Note", "标记";
     MARK_HELD: "At rest", "静止";
 
     TOUCH: "Fingertips", "指尖触觉", "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
@@ -121,38 +123,16 @@ texts! {
 
     CONNECTION: "Connection", "连接";
     CONNECTION_KIND: "Kind of link", "连接方式";
-    KIND_SIM: "Simulated", "仿真";
-    KIND_RS485: "RS485", "RS485";
-    KIND_RTU: "Modbus RTU", "Modbus RTU";
-    KIND_TCP: "Modbus TCP", "Modbus TCP";
-    KIND_CAN: "CAN", "CAN";
-    KIND_SLCAN: "CAN adapter", "CAN 适配器";
-    KIND_USBCAN: "Maker's CAN", "因时 USB-CAN";
-    PORT: "Serial port", "串口";
     PORTS_NONE: "None found. Type a name, or plug the adapter in and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
     PORTS_REFRESH: "Refresh", "刷新", "Looks for serial ports again.", "重新查找串口。";
     PORT_PICK_TIP: "Takes this port.", "选用此串口。";
-    BAUD: "Baud", "波特率";
-    HAND_ID: "Hand id", "灵巧手 ID";
-    BITRATE: "Bit rate", "CAN 波特率";
-    INTERFACE: "Interface", "接口";
-    HOST: "Address", "网络地址";
-    UNIT: "Unit id", "单元标识符";
-    SEED: "Seed", "种子";
-    SCENARIO: "Scenario", "场景";
     EXPERT: "For experts", "专家选项";
     SCAN_HERE: "Scan", "扫描", "Looks for hands here and nowhere else, at all speeds and in all protocols. It only reads.", "仅在此处以各种波特率与协议查找灵巧手。只读取，不写入。";
     RECENT: "Recent hands", "最近的灵巧手";
     CONNECT: "Connect", "连接", "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
     DISCONNECT: "Disconnect", "断开", "Talks to no hand. The hand keeps what it was told.", "停止通信。灵巧手保持上一次的设置。";
     DISCONNECT_NONE: "Nothing is connected.", "当前没有连接。";
-    HINT_SIM: "The built-in hand answers on a simulated RS485 wire. Nothing real moves.", "内置仿真手通过模拟的 RS485 线路应答，不会有真实动作。";
     ADDRESS_WRONG: "No IP address: four numbers from 0 to 255, as 192.168.11.210", "不是 IP 地址：应为四个 0 至 255 的数字，例如 192.168.11.210";
-    HINT_SERIAL: "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
-    HINT_CAN: "Linux only. As delivered: 1000000 bit/s, id 1. The interface must be up: sudo ip link set can0 up type can bitrate 1000000.", "仅限 Linux。出厂设置：1000000 bit/s，ID 1。接口须已启用：sudo ip link set can0 up type can bitrate 1000000。";
-    HINT_SLCAN: "A serial CAN adapter that speaks slcan (Lawicel). As delivered, the hand has 1000000 bit/s and id 1.", "使用 slcan（Lawicel）协议的串口 CAN 适配器。灵巧手出厂设置：1000000 bit/s，ID 1。";
-    HINT_USBCAN: "The maker's own USB-CAN adapter, 115200 bit/s on its serial side. Its bit rate on CAN is not set from here: it must be that of the hand, as delivered 1000000 bit/s.", "因时自带的 USB-CAN 适配器，串口侧 115200 bit/s。此处不设置其 CAN 波特率：须与灵巧手一致，出厂为 1000000 bit/s。";
-    HINT_TCP: "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "通信地址";
     SINCE: ", for", "，已持续";
@@ -177,6 +157,78 @@ texts! {
     REFUSALS: "Refusals", "拒绝";
     RECONNECTS: "Reconnects", "重新连接";
     DROPPED: "Samples dropped", "丢弃样本";
+    UNKNOWN: "Grey: angle not known", "灰色：角度未知";
+    RIGHT_HAND: "Right hand", "右手";
+    LEFT_HAND: "Left hand", "左手";
+    SIDE_TIP: "Which hand is drawn; the hand does not say which one it is. A click draws the other one. Nothing moves.", "图中所画的手；灵巧手不会报告自己是左手还是右手。点击可切换，灵巧手不会动作。";
+    ASSUMED: "Pads: assumed places", "分区位置为假定", "Which channel belongs to which pad is not documented: channels 1 to 7 are drawn as pads 1 to 7 of the sensor maker's model. Channel 8 belongs to no pad and stands beside them.", "手册没有说明通道与分区的对应关系：这里假定通道 1 至 7 对应传感器厂家模型的分区 1 至 7。通道 8 不属于任何分区，画在旁边。";
+    DETAIL: "Detail", "详情", "The chosen fingertip: slip, forces, channels over time.", "所选指尖：打滑、受力、各通道曲线。";
+    NUMBERS: "All numbers", "全部数值", "Every value of all five fingertips as a number.", "五个指尖的全部数值。";
+    FORCES: "Force, N", "力 N";
+    CHANNELS: "Channels, counts", "通道，计数";
+    RAW: "Raw", "原始", "Channels as the hand sends them.", "按原始值显示各通道。";
+    TARED: "Tared", "去皮后", "Channels from their rest: the last taring, or the first reading.", "相对静止值显示：最近一次去皮，或首次读数。";
+    LAST_10_S: "10 s", "10 秒";
+    LAST_MINUTE: "1 min", "1 分钟";
+    LAST_10_MIN: "10 min", "10 分钟";
+    LAST_TIP: "How much time the channels show.", "通道曲线显示的时间长度。";
+    NOISE_HEAD: "change  noise, 1 s", "变化  噪声（1 秒）";
+    NOISE: "Change and noise of channel", "通道变化与噪声", "Over the last second: the mean, counted from the rest, and the standard deviation, in counts.", "最近 1 秒内：相对静止值的平均变化，以及标准差，单位为计数。";
+    CHECK: "Check word", "校验字", "The two check bytes against the sum of the first 54 bytes. What they cover is not documented for this hand: data is shown either way.", "两个校验字节与前 54 字节之和的比较。手册没有说明其范围，因此数据照常显示。";
+    CHECK_OK: "right", "正确";
+    CHECK_DIFFERS: "differs", "不符";
+    DIRECTION: "Direction", "方向";
+    NO_NUMBER: "not a number", "非数值";
+    BEYOND: "out of range", "超出范围", "The manual ends at 20 N. The number is shown as the hand sent it.", "手册上限为 20 N。数值按灵巧手发送的原样显示。";
+    SLIP: "Slip", "打滑";
+    TARED_NAME: "Taring of the chosen fingertip", "所选指尖的去皮状态";
+    NOT_TARED: "Zero: first reading", "零点：首次读数";
+    KEPT_TARE: "Take the kept taring", "采用已保存的去皮", "Counts from what was tared at this hand in an earlier session. Refused while a fingertip is touched.", "采用此前对同一灵巧手保存的去皮零点。指尖受力时拒绝。";
+    NO_ZERO: "No zero yet: it is touched", "尚无零点：正在受力";
+    AREA_TIP: "Wheel: zoom in time. Drag: move. Shift and drag: zoom to what is marked. Double-click: follow the newest again.", "滚轮：时间缩放。拖动：平移。按住 Shift 拖动：放大所选范围。双击：重新跟随最新数据。";
+    NORMAL: "Normal force at the tips, N", "指尖法向力 N";
+    TANGENTIAL: "Tangential force at the tips, N", "指尖切向力 N";
+    DECIMATED: "min and max", "最小最大值", "Decimated: there are more measurements than pixels, so each column of pixels shows the smallest and the largest of several. No extreme is lost. The figures of the cursors come from all measurements.", "已抽取：数据点多于像素，每列像素显示其中的最小值和最大值，不会丢失极值。游标数值由全部数据计算。";
+    RANGE: "Value scale", "数值范围", "Drag: move. Wheel: zoom. Click: type the ends. Double-click: automatic again.", "拖动：平移。滚轮：缩放。单击：输入上下限。双击：恢复自动。";
+    RANGE_FIXED: "fixed scale", "固定范围";
+    RANGE_HIGH: "Upper end", "上限";
+    RANGE_LOW: "Lower end", "下限";
+    RANGE_END_TIP: "Enter takes it. From and to:", "按 Enter 生效。可输入范围：";
+    RANGE_AUTO: "Automatic", "自动", "The scale fits the values again.", "重新根据数据自动调整范围。";
+    UNDER_POINTER: "under the pointer", "指针处数值";
+    MORE: "More", "更多", "Which plots are shown, copying and saving.", "选择显示的曲线、复制和保存。";
+    MORE_NAME: "More for the plots", "曲线更多选项";
+    SHOWN: "Plots shown", "显示的曲线";
+    ENLARGE: "Fill the view", "放大显示";
+    COPY: "Copy as CSV", "复制为 CSV", "All measurements of the shown time, plots and joints, as they were received.", "复制当前时间范围内所示曲线的全部原始数据。";
+    COPY_LONG: "Too much for the clipboard: zoom in, or save it as a file.", "数据过多：请缩小范围，或保存为文件。";
+    SAVE_CSV: "Save as CSV", "保存为 CSV", "The same into a file, however long the time is. The window goes on meanwhile.", "保存到文件，时间长度不限。保存期间窗口照常工作。";
+    SAVE_PNG: "Save as PNG", "保存为 PNG", "A picture of these plots as they stand, twice as fine as on the screen.", "将当前曲线保存为图片，分辨率为屏幕的两倍。";
+    COPIED: "Copied, rows:", "已复制行数：";
+    CURSORS: "A|B", "A|B", "Two cursors with values, difference, slope, and smallest, largest and mean value between them.", "两个游标：数值、差值、斜率，以及区间最小、最大和平均值。";
+    CURSORS_NAME: "Cursors", "游标";
+    CURSOR_A: "Cursor A", "游标 A";
+    CURSOR_B: "Cursor B", "游标 B";
+    AT_A: "A", "A";
+    AT_B: "B", "B";
+    DIFFERENCE: "B - A", "B - A";
+    SLOPE: "per s", "每秒";
+    SMALLEST: "min", "最小";
+    LARGEST: "max", "最大";
+    MEAN: "mean", "平均";
+    APART: "Time between the cursors", "游标间隔";
+    FIGURES: "Figures of the next plot", "下一曲线的数值", "The figures below are of this plot. Press for the next one, or click into a plot.", "下方为该曲线的数值。按下切换到下一条，或点击曲线区。";
+    NOTE: "Note", "标记", "Puts a line with your words into the plots, at this moment. Key: N", "在当前时刻添加一条带文字的标记线。快捷键：N";
+    NOTE_NAME: "Make a note", "添加标记", "Puts a line with your words into the plots, at this moment. Key: N", "在当前时刻添加一条带文字的标记线。快捷键：N";
+    NOTE_AT: "Note at", "标记时刻";
+    NOTE_FIELD: "Words of the note", "标记内容";
+    NOTE_HINT: "Enter keeps it. Esc drops it.", "按 Enter 保存。Esc 取消。";
+    NOTE_HINT_MOVING: "Enter keeps it. Esc stops the hand.", "按 Enter 保存。Esc 停止灵巧手。";
+    NOTE_KEEP: "Keep", "保存", "Puts the note where its key was pressed.", "把标记放在按键时刻。";
+    NOTE_CANCEL: "Cancel", "取消", "Makes no note.", "不添加标记。";
+    NOTES: "Notes", "标记列表";
+    NOTE_SHOW: "Show the note", "显示标记", "Shows this moment in the plots.", "在曲线中显示该时刻。";
+    NOTE_DELETE: "Delete the note", "删除标记", "Takes the note out of the plots.", "从曲线中删除该标记。";
 
     /// What the built-in hand does, with the name that endpoints have for it.
     fn scenario(Scenario) {
@@ -206,33 +258,55 @@ texts! {
         PollGroup::Tactile => "Fingertips", "指尖";
         PollGroup::Settings => "Setpoints", "设定值";
     }
-}
 
-/// What a kind of link is called, and what should be known about it, by its name in endpoints.
-pub(crate) fn kind(scheme: &str) -> (Text, Text) {
-    match scheme {
-        "rs485" => (KIND_RS485, HINT_SERIAL),
-        "tcp" => (KIND_TCP, HINT_TCP),
-        "rtu" => (KIND_RTU, HINT_SERIAL),
-        "can" => (KIND_CAN, HINT_CAN),
-        "slcan" => (KIND_SLCAN, HINT_SLCAN),
-        "usbcan" => (KIND_USBCAN, HINT_USBCAN),
-        _ => (KIND_SIM, HINT_SIM),
+    /// A way to reach a hand, by its part before the colon, and a hint to it.
+    fn kind(&str) {
+        "rs485" => "RS485", "RS485", "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
+        "tcp" => "Modbus TCP", "Modbus TCP", "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
+        "rtu" => "Modbus RTU", "Modbus RTU", "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
+        "can" => "CAN", "CAN", "Linux only. As delivered: 1000000 bit/s, id 1. The interface must be up: sudo ip link set can0 up type can bitrate 1000000.", "仅限 Linux。出厂设置：1000000 bit/s，ID 1。接口须已启用：sudo ip link set can0 up type can bitrate 1000000。";
+        "slcan" => "CAN adapter", "CAN 适配器", "A serial CAN adapter that speaks slcan (Lawicel). As delivered, the hand has 1000000 bit/s and id 1.", "使用 slcan（Lawicel）协议的串口 CAN 适配器。灵巧手出厂设置：1000000 bit/s，ID 1。";
+        "usbcan" => "Maker's CAN", "因时 USB-CAN", "The maker's own USB-CAN adapter, 115200 bit/s on its serial side. Its bit rate on CAN is not set from here: it must be that of the hand, as delivered 1000000 bit/s.", "因时自带的 USB-CAN 适配器，串口侧 115200 bit/s。此处不设置其 CAN 波特率：须与灵巧手一致，出厂为 1000000 bit/s。";
+        _ => "Simulated", "仿真", "The built-in hand answers on a simulated RS485 wire. Nothing real moves.", "内置仿真手通过模拟的 RS485 线路应答，不会有真实动作。";
+    }
+
+    /// What a part of an endpoint is called, by its key.
+    fn setting(&str) {
+        "port" => "Serial port", "串口";
+        "host" => "Address", "网络地址";
+        "interface" => "Interface", "接口";
+        "seed" => "Seed", "种子";
+        "scenario" => "Scenario", "场景";
+        "baud" => "Baud", "波特率";
+        "bitrate" => "Bit rate", "CAN 波特率";
+        "unit" => "Unit id", "单元标识符";
+        "packing" => "Modbus bytes", "Modbus 字节";
+        _ => "Hand id", "灵巧手 ID";
     }
 }
 
-/// What a part of an endpoint is called, by its key.
-pub(crate) fn setting(key: &str) -> Text {
-    match key {
-        "port" => PORT,
-        "host" => HOST,
-        "interface" => INTERFACE,
-        "seed" => SEED,
-        "scenario" => SCENARIO,
-        "baud" => BAUD,
-        "bitrate" => BITRATE,
-        "unit" => UNIT,
-        "packing" => quirks::fact(Fact::Packing),
-        _ => HAND_ID,
+/// Where the zero of a fingertip comes from, and how old it is.
+pub(crate) fn zero(look: Look, rest: TareZero, now: Moment) -> String {
+    let since = now.since(rest.at);
+    let (ago, kept) = match rest.source {
+        Source::First => return look.say(NOT_TARED).to_owned(),
+        Source::Person => (since, false),
+        Source::Kept(age) => (age + since, true),
+    };
+    let ago = format::age(ago);
+    match (look.language, kept) {
+        (Language::En, false) => format!("Tared {ago} ago"),
+        (Language::En, true) => format!("Tared {ago} ago, kept"),
+        (Language::Zh, false) => format!("{ago}前去皮"),
+        (Language::Zh, true) => format!("{ago}前去皮（已保存）"),
+    }
+}
+
+/// A taring that was kept.
+pub(crate) fn kept_tare(look: Look, age: Duration) -> String {
+    let age = format::age(age);
+    match look.language {
+        Language::En => format!("Taring of {age} ago"),
+        Language::Zh => format!("{age}前的去皮"),
     }
 }

@@ -82,25 +82,24 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        cards, compare, device, faults, keys, layout, main, panels, plots, poses, quirks, scan,
-        touch, traffic, tune,
+        cards, device, faults, layout, main, panels, poses, scan, traffic, tune,
     };
 
     fn all() -> impl Iterator<Item = Text> {
         let lists = [
             cards::ALL,
-            compare::ALL,
+            tune::ALL,
             device::ALL,
             faults::ALL,
-            keys::ALL,
+            layout::ALL,
             layout::ALL,
             main::ALL,
             panels::ALL,
-            plots::ALL,
+            panels::ALL,
             poses::ALL,
-            quirks::ALL,
             scan::ALL,
-            touch::ALL,
+            scan::ALL,
+            panels::ALL,
             traffic::ALL,
             tune::ALL,
         ];

@@ -1,6 +1,9 @@
 //! Sentences of looking for hands. Decides nothing.
 
 use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanTarget};
+use crate::hand::register::BytePacking;
+use crate::link::{GapRead, TouchDoubt, TouchVariant};
+use crate::record::quirk_sheet::Fact;
 use crate::transport::{Endpoint, UsbFound};
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::{Text, texts};
@@ -37,6 +40,49 @@ texts! {
     CONNECTED: "Connected", "已连接", "This is the hand of now.", "当前连接的灵巧手。";
     HELD: "left alone, the connection of now uses it. Disconnect first to scan it.", "已跳过，当前连接正在使用。请先断开再扫描。";
     MORE: "more", "更多";
+    SHEET: "About this hand", "此手的特性";
+    SEEN: "Seen", "连接日期";
+    AS_FOUND: "as the hand shows", "自动识别";
+    PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
+    CHOSEN: "as you chose", "手动";
+    BAUD_NONE: "unknown", "未知";
+    COPY: "Copy", "复制", "Copies this sheet as text, for a report or another computer.", "复制为文本。";
+    COPY_OFF: "No hand has answered yet.", "灵巧手尚未应答。";
+    OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
+    NOT_KEPT: "What was found out about this hand could not be kept:", "本手识别结果无法写入：";
+
+    /// What two sheets disagree about.
+    fn fact(Fact) {
+        Fact::HandId => "HAND_ID", "HAND_ID";
+        Fact::BaudCode => "REDU_RATIO", "REDU_RATIO";
+        Fact::Packing => "Modbus bytes", "Modbus 字节", "How this hand puts single bytes (SAVE, faults) into Modbus words. Choose only if it cannot be found out and its papers say so: a wrong choice writes to the wrong address.", "本手将单字节（SAVE、故障）放入 Modbus 字的方式。仅当无法识别且资料有说明时才手动选择：选错会写到错误的地址。";
+        Fact::Gap => "Gap 1558..1581", "地址 1558..1581";
+        Fact::Touch => "Fingertips", "指尖";
+    }
+
+    /// Its words.
+    fn gap(GapRead) {
+        GapRead::Through => "read through", "可读";
+        GapRead::Split => "refused", "拒绝";
+    }
+
+    /// Its words.
+    fn touch(TouchVariant) {
+        TouchVariant::Capacitive => "capacitive", "电容式";
+        TouchVariant::Resistive => "resistive: not decoded", "电阻式：本程序不支持";
+        TouchVariant::Unknown(TouchDoubt::Empty) => "unknown: all zero", "未知：全为零";
+        TouchVariant::Unknown(TouchDoubt::Force) => "unknown: impossible force", "未知：力值无效";
+        TouchVariant::Unknown(TouchDoubt::Direction) => "unknown: impossible direction", "未知：方向无效";
+        TouchVariant::Unknown(TouchDoubt::Check) => "unknown: check sum differs", "未知：校验不一致";
+        TouchVariant::Unknown(TouchDoubt::Refused) => "unknown: not readable", "未知：无法读取";
+    }
+
+    /// Its words.
+    fn packing(BytePacking) {
+        BytePacking::LowFirst => "low first", "低字节在前";
+        BytePacking::HighFirst => "high first", "高字节在前";
+        BytePacking::OnePerWord => "one a word", "每字一字节";
+    }
 }
 
 /// What else a scan has to say, as a sentence.
@@ -71,7 +117,7 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
         ScanStage::Cancelled if book.found.is_empty() => return Err(CANCELLED),
         ScanStage::Cancelled => {
             let found = found_words(look, book.found.len());
-            return Ok(format!("{} {found}", look.say(CANCELLED)));
+            return Ok(look.told(CANCELLED, found));
         }
         ScanStage::Done(summary) => summary,
     };
@@ -99,20 +145,17 @@ fn found_words(look: Look, found: usize) -> String {
 
 /// The id where it is known, the way of speaking, and its speed.
 pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String {
-    let (kind, speed) = match endpoint {
-        Endpoint::Rs485(line) => (panels::KIND_RS485, Some(line.baud)),
-        Endpoint::Rtu(line) => (panels::KIND_RTU, Some(line.baud)),
-        Endpoint::Slcan { bitrate, .. } => (panels::KIND_SLCAN, Some(*bitrate)),
-        Endpoint::UsbCan { baud, .. } => (panels::KIND_USBCAN, Some(*baud)),
-        Endpoint::Can { .. } => (panels::KIND_CAN, None),
-        Endpoint::Tcp { .. } => (panels::KIND_TCP, None),
-        Endpoint::Sim { scenario, .. } => {
-            return format!("{}, {scenario}", look.say(panels::KIND_SIM));
-        }
+    let kind = look.say(panels::kind(endpoint.kind()));
+    let speed = match endpoint {
+        Endpoint::Sim { scenario, .. } => return format!("{kind}, {scenario}"),
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) => Some(line.baud),
+        Endpoint::Slcan { bitrate, .. } => Some(*bitrate),
+        Endpoint::UsbCan { baud, .. } => Some(*baud),
+        Endpoint::Can { .. } | Endpoint::Tcp { .. } => None,
     };
     let speed = speed.map(|speed| format!(", {speed}")).unwrap_or_default();
     let id = id.map(|id| format!("ID {id}, ")).unwrap_or_default();
-    format!("{id}{}{speed}", look.say(kind))
+    format!("{id}{kind}{speed}")
 }
 
 pub(crate) fn usb(usb: &UsbFound) -> String {

@@ -1,13 +1,16 @@
 //! Sentences of the plan of grasp trials, its running, and what was measured.
 
+use crate::app::trials::SessionDifference;
+use crate::app::trials::form::ListError;
 use crate::app::trials::{ApproachKind, TrialQuantity};
+use crate::hand::{Dof, Fault};
 use crate::trials::Stage;
+use crate::trials::{Abort, EarlyEnd, PlanError};
+use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::texts;
+use crate::ui::text::words;
 
 texts! {
-    TAB: "Tune", "整定";
-    TAB_COMPARE: "Compare", "对比";
-    RUNS: "A series of trials runs: stop it first.", "正在运行抓取试验：请先停止。";
     ENDED: "Trials done: {}.", "已完成试验：{} 次。";
     ENDED_EARLY: "Trials ended early: {}. {}", "试验提前结束，共 {} 次。{}";
     OPENED: "Opened: {} ({} trials)", "已打开：{}（{} 次试验）";
@@ -144,6 +147,28 @@ texts! {
     SAVED_IN: "Saved in {}", "已保存到 {}";
     READ_FROM: "Read from {}", "读取自 {}";
     NOT_SAVED: "Not saved yet", "尚未保存";
+    SHOW: "Show {}", "显示{}", "Shows this session together with the others. At most four.", "与其他轮次叠加显示，最多四轮。";
+    SHOWN_ALL: "At most four sessions. Hide one first.", "最多显示四轮：请先取消一轮。";
+    SHOWN_LAST: "The only session shown.", "只显示了这一轮。";
+    SESSION_RUNS: "runs", "正在运行";
+    SESSION_NOT_SAVED: "not saved", "未保存";
+    SAVED: "saved", "已保存";
+    READ: "from files", "来自文件";
+    TRIALS: "{} trials", "{} 次";
+    LOST: "{} without samples", "{} 次无数据";
+    LOST_WHY: "Memory is full: the samples of the oldest trials that were not saved are gone. Figures and curves stay. Save each session when it is done.", "内存已满：最早的未保存试验的原始数据已丢弃，指标与曲线仍在。请在每轮完成后及时保存。";
+    FORGET: "Forget", "移除", "Takes this session out of the list. Its files, if any, stay.", "把该轮次从列表移除，已有文件不受影响。";
+    FORGET_TITLE: "Forget this session?", "移除该轮次？";
+    FORGET_LOSES: "It is in no file: what was measured and recorded is gone then. Trials: {}", "尚未保存到文件：移除后测量结果与数据将丢失。试验次数：{}";
+    FORGET_NOT: "Leave it", "保留", "Closes this card. The session stays.", "关闭此卡片，保留该轮次。";
+    FORGET_SURE: "Forget it", "确定移除", "Takes this session out of the list. Its files, if any, stay.", "把该轮次从列表移除，已有文件不受影响。";
+    COLUMN_SESSION: "Session", "轮次";
+    RISING: "rising", "升序";
+    FALLING: "falling", "降序";
+    OF_ALL: "curves of", "条曲线，共";
+    ALONE: "{} alone: the sessions differ in {}", "仅统计{}，各轮差异：{}", "Figures of such sessions cannot be compared, so map and best setting are of the selected session.", "存在差异的试验不能合并统计，超出量图与最佳设置只针对所选的轮次。";
+    TOGETHER: "Over all sessions shown", "统计所有显示的轮次";
+    STATE: "{}: saved", "{}的保存状态";
 
     /// What the hand does in a series.
     fn stage(Stage) {
@@ -179,5 +204,89 @@ texts! {
         TrialQuantity::Angle => "Angle", "角度";
         TrialQuantity::Current => "Current, mA", "电流 mA";
         TrialQuantity::Touch => "Touch, N", "触觉 N";
+    }
+
+    /// What keeps sessions from being compared.
+    fn difference(SessionDifference) {
+        SessionDifference::Hand => "hand", "灵巧手";
+        SessionDifference::Joints => "joints", "自由度";
+        SessionDifference::Way => "start or target", "起点或终点";
+        SessionDifference::Approach => "approach", "接近方式";
+        SessionDifference::Dwell => "time held", "保持时间";
+    }
+}
+
+/// Why something ended early. A file tells it in its own words.
+pub(crate) fn ended(look: Look, why: &EarlyEnd) -> String {
+    match why {
+        EarlyEnd::Here(why) => abort(look, *why),
+        EarlyEnd::FromFile(words) => format::sentence(words),
+    }
+}
+
+/// Why a trial ended early.
+pub(crate) fn abort(look: Look, why: Abort) -> String {
+    let joint = |dof: Dof| look.say(words::dof(dof));
+    match why {
+        Abort::Person => look.say(BY_PERSON).into(),
+        Abort::Disarmed => look.say(DISARMED).into(),
+        Abort::LinkLost => look.say(LINK_LOST).into(),
+        Abort::NotKept => look.say(NOT_KEPT).into(),
+        Abort::Fault { dof, faults } => {
+            let name = |fault: Fault| words::fault(fault, look.language).title;
+            let names: Vec<&str> = faults.iter().map(name).collect();
+            look.fill(FAULT, &[&joint(dof), &look.list(&names)])
+        }
+        Abort::Heat {
+            dof,
+            celsius,
+            limit,
+        } => look.fill(HEAT, &[&joint(dof), &celsius, &limit]),
+        Abort::Ceiling {
+            dof,
+            grams,
+            ceiling,
+        } => look.fill(CEILING, &[&joint(dof), &grams, &ceiling]),
+        Abort::Unreached { dof, target } => look.fill(UNREACHED, &[&joint(dof), &target]),
+        Abort::LimitsRefused { dof } => look.fill(LIMITS_REFUSED, &[&joint(dof)]),
+        Abort::Blind { what, dof } => look.fill(BLIND, &[&joint(dof), &look.say(group(what))]),
+        Abort::TooWarm {
+            dof,
+            celsius,
+            limit,
+        } => look.fill(COOLING, &[&joint(dof), &celsius, &limit]),
+        Abort::NoContact { dof } => look.fill(NO_CONTACT, &[&joint(dof)]),
+    }
+}
+
+/// Why a plan cannot be run.
+pub(crate) fn plan_error(look: Look, error: &PlanError) -> String {
+    let joint = |dof: Dof| look.say(words::dof(dof));
+    match *error {
+        PlanError::NoJoint => look.say(NO_JOINT).into(),
+        PlanError::NoWay { dof, .. } => look.fill(NO_WAY, &[&joint(dof)]),
+        PlanError::NoStart { dof } => look.fill(NO_START, &[&joint(dof)]),
+        PlanError::Stage {
+            dof, start, close, ..
+        } => look.fill(BAD_STAGE, &[&joint(dof), &start, &close]),
+        PlanError::SlowApproach { speed, .. } => look.fill(SLOW_APPROACH, &[&speed]),
+        PlanError::Until { most, .. } => look.fill(BAD_UNTIL, &[&most]),
+        PlanError::NoTouch => look.say(NO_TOUCH).into(),
+        PlanError::Empty => look.say(NOTHING_TO_TRY).into(),
+        PlanError::NoSpeed => look.say(SPEED_ZERO).into(),
+        PlanError::TooMany { got } => look.fill(TOO_MANY, &[&got]),
+        PlanError::Dwell { .. } => look.say(BAD_DWELL).into(),
+        PlanError::Rest { .. } => look.say(BAD_REST).into(),
+        PlanError::Ceiling { least, .. } => look.fill(BAD_CEILING, &[&least]),
+        PlanError::Temperature { .. } => look.say(BAD_HEAT).into(),
+    }
+}
+
+/// Why a list of numbers is not taken.
+pub(crate) fn list_error(look: Look, error: ListError) -> String {
+    match error {
+        ListError::NotInRange { most } => look.fill(LIST_RANGE, &[&most]),
+        ListError::TooLong => look.say(LIST_LONG).into(),
+        ListError::Empty => look.say(LIST_EMPTY).into(),
     }
 }

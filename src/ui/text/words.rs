@@ -22,11 +22,8 @@ pub(crate) const fn dof(dof: Dof) -> Text {
 /// The name of a finger.
 pub(crate) const fn finger(finger: Finger) -> Text {
     match finger {
-        Finger::Little => main::LITTLE,
-        Finger::Ring => main::RING,
-        Finger::Middle => main::MIDDLE,
-        Finger::Index => main::INDEX,
         Finger::Thumb => main::THUMB,
+        finger => dof(finger.bend()),
     }
 }
 
@@ -39,7 +36,7 @@ pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
         ArmRefusal::HandBusy => look.say(main::REFUSED_BUSY).into(),
         ArmRefusal::NoAnswer => look.say(main::REFUSED_NO_ANSWER).into(),
         ArmRefusal::UnknownPose { dof: joint } => {
-            format!("{} {}", look.say(main::REFUSED_POSE), look.say(dof(joint)))
+            look.told(main::REFUSED_POSE, look.say(dof(joint)))
         }
     }
 }
@@ -72,78 +69,39 @@ pub(crate) const fn fault_short(fault: Fault, language: Language) -> &'static st
     }
 }
 
-const fn status_zh(status: Status) -> Words {
-    match status {
-        Status::Releasing => Words::new("正在松开", "该自由度正向张开方向运动。", "无需处理。"),
-        Status::Grasping => Words::new("正在抓取", "该自由度正向弯曲方向运动。", "无需处理。"),
-        Status::PositionReached => Words::new("位置到位", "该自由度已到达目标角度。", "无需处理。"),
-        Status::ForceReached => Words::new(
-            "力控到位",
-            "受力到达阈值，驱动器已停止。",
-            "无需处理。若抓握太弱，可提高阈值。",
-        ),
-        Status::CurrentProtection => Words::new(
-            "电流保护",
-            "驱动器电流过大，已停止。",
-            "移除负载或张开该自由度，再以较慢速度重新控制。",
-        ),
-        Status::Stalled => Words::new(
-            "堵转停止",
-            "驱动器用力但没有移动。",
-            "张开该自由度或移除阻挡物，然后清除错误。",
-        ),
-        Status::DriveFault => {
-            Words::new("故障停止", "驱动器因故障停止。", "请查看故障列表中的原因。")
+/// Writes a table of titles, causes and advice as the function that says them in Chinese.
+macro_rules! chinese {
+    ($(fn $name:ident($of:ty) { $($case:pat => $title:literal, $cause:literal, $advice:literal;)* })*) => {$(
+        const fn $name(of: $of) -> Words {
+            match of {
+                $($case => Words::new($title, $cause, $advice),)*
+            }
         }
-        Status::Unknown(255) => Words::new(
-            "未报告",
-            "代码 255，手册没有说明。常见于上电后尚未控制过的自由度。",
-            "让该自由度运动一次。若仍然如此，请记录代码并联系厂家。",
-        ),
-        Status::Unknown(_) => Words::new(
-            "未知代码",
-            "手册没有列出此代码。",
-            "请当作该自由度未就绪，并记录代码联系厂家。",
-        ),
-    }
+    )*};
 }
 
-const fn fault_zh(fault: Fault) -> Words {
-    match fault {
-        Fault::Stall => Words::new(
-            "堵转故障",
-            "驱动器用力但无法移动。",
-            "松开手指或移除阻挡物，然后清除错误。",
-        ),
-        Fault::OverTemperature => Words::new(
-            "过温故障",
-            "驱动器温度过高。",
-            "请等待冷却：此故障不可清除，温度回落后自动清除。",
-        ),
-        Fault::OverCurrent => Words::new(
-            "过流故障",
-            "驱动器电流过大。",
-            "减小负载、速度或力阈值，然后清除错误。",
-        ),
-        Fault::Motor => Words::new(
-            "电机异常",
-            "驱动器报告电机异常。",
-            "清除错误。若再次出现，请断电重启，仍无效则联系厂家。",
-        ),
-        Fault::Communication => Words::new(
-            "通讯故障",
-            "主控板与驱动器失去通讯。",
-            "清除错误。若再次出现，请检查电源与线缆，仍无效则联系厂家。",
-        ),
-        Fault::Unknown(bit) => Words::new(
-            match bit {
-                5 => "未知故障，第 5 位",
-                6 => "未知故障，第 6 位",
-                _ => "未知故障，第 7 位",
-            },
-            "手册没有列出此故障位。",
-            "请停止使用，并记录代码联系厂家。",
-        ),
+chinese! {
+    fn status_zh(Status) {
+        Status::Releasing => "正在松开", "该自由度正向张开方向运动。", "无需处理。";
+        Status::Grasping => "正在抓取", "该自由度正向弯曲方向运动。", "无需处理。";
+        Status::PositionReached => "位置到位", "该自由度已到达目标角度。", "无需处理。";
+        Status::ForceReached => "力控到位", "受力到达阈值，驱动器已停止。", "无需处理。若抓握太弱，可提高阈值。";
+        Status::CurrentProtection => "电流保护", "驱动器电流过大，已停止。", "移除负载或张开该自由度，再以较慢速度重新控制。";
+        Status::Stalled => "堵转停止", "驱动器用力但没有移动。", "张开该自由度或移除阻挡物，然后清除错误。";
+        Status::DriveFault => "故障停止", "驱动器因故障停止。", "请查看故障列表中的原因。";
+        Status::Unknown(255) => "未报告", "代码 255，手册没有说明。常见于上电后尚未控制过的自由度。", "让该自由度运动一次。若仍然如此，请记录代码并联系厂家。";
+        Status::Unknown(_) => "未知代码", "手册没有列出此代码。", "请当作该自由度未就绪，并记录代码联系厂家。";
+    }
+
+    fn fault_zh(Fault) {
+        Fault::Stall => "堵转故障", "驱动器用力但无法移动。", "松开手指或移除阻挡物，然后清除错误。";
+        Fault::OverTemperature => "过温故障", "驱动器温度过高。", "请等待冷却：此故障不可清除，温度回落后自动清除。";
+        Fault::OverCurrent => "过流故障", "驱动器电流过大。", "减小负载、速度或力阈值，然后清除错误。";
+        Fault::Motor => "电机异常", "驱动器报告电机异常。", "清除错误。若再次出现，请断电重启，仍无效则联系厂家。";
+        Fault::Communication => "通讯故障", "主控板与驱动器失去通讯。", "清除错误。若再次出现，请检查电源与线缆，仍无效则联系厂家。";
+        Fault::Unknown(5) => "未知故障，第 5 位", "手册没有列出此故障位。", "请停止使用，并记录代码联系厂家。";
+        Fault::Unknown(6) => "未知故障，第 6 位", "手册没有列出此故障位。", "请停止使用，并记录代码联系厂家。";
+        Fault::Unknown(_) => "未知故障，第 7 位", "手册没有列出此故障位。", "请停止使用，并记录代码联系厂家。";
     }
 }
 

@@ -1,7 +1,24 @@
 //! Every length of the window in points: spacing, radii, strokes, widths and heights with a name. No colours, no fonts.
 
+use egui::Margin;
+
 /// Space between cards, and the step of the grid twice.
 pub(crate) const GAP: f32 = 8.0;
+/// A gap at one side of a panel.
+pub(crate) const GAP_LEFT: Margin = Margin {
+    left: 8,
+    ..Margin::ZERO
+};
+/// At its right.
+pub(crate) const GAP_RIGHT: Margin = Margin {
+    right: 8,
+    ..Margin::ZERO
+};
+/// At its top.
+pub(crate) const GAP_TOP: Margin = Margin {
+    top: 8,
+    ..Margin::ZERO
+};
 /// Half a gap: the step of the grid.
 pub(crate) const STEP: f32 = 4.0;
 /// Space inside a card.
@@ -27,9 +44,6 @@ pub(crate) const BAR: f32 = 3.0;
 /// Width of a line that is to be seen.
 pub(crate) const STRONG: f32 = 2.0;
 
-/// Widest menu.
-pub(crate) const MENU_WIDTH: f32 = 220.0;
-
 /// Width of the ring around what has the keyboard.
 pub(crate) const FOCUS_LINE: f32 = 1.5;
 /// What a lamp shines beyond its edge; the dot in a handle.
@@ -40,8 +54,6 @@ pub(crate) const SIGN: f32 = 16.0;
 pub(crate) const SIGN_SMALL: f32 = 12.0;
 /// Where a lamp's middle is in its row.
 pub(crate) const LAMP_AT: f32 = 6.0;
-/// Where the words beside a lamp begin.
-pub(crate) const INDENT: f32 = 17.0;
 /// A line of a paragraph.
 pub(crate) const TEXT_LINE: f32 = 16.0;
 /// A line of a list.
@@ -53,12 +65,10 @@ pub(crate) const FIGURE_ROW: f32 = 18.0;
 pub(crate) const TITLE_LINE: f32 = 20.0;
 /// Width of a number field.
 pub(crate) const FIELD: f32 = 52.0;
-/// Height of the rail of a track.
-pub(crate) const TRACK_RAIL: f32 = 6.0;
 /// Room inside a number field.
-pub(crate) const NUMBER_INSET: egui::Margin = egui::Margin::symmetric(6, 0);
+pub(crate) const NUMBER_INSET: Margin = Margin::symmetric(6, 0);
 /// Room inside a text field.
-pub(crate) const FIELD_INSET: egui::Margin = egui::Margin::symmetric(8, 2);
+pub(crate) const FIELD_INSET: Margin = Margin::symmetric(8, 2);
 /// Points of the wheel that halve or double what is shown.
 pub(crate) const PLOT_WHEEL: f32 = 180.0;
 /// Room for the numbers of the vertical axis.

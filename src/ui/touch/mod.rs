@@ -10,13 +10,12 @@ use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
 use crate::ui::hand::panel::HandPanel;
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{panels, touch as text, words};
+use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
 use crate::ui::touch::tip_detail::TipDetail;
 use egui::{
-    Align, Frame, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui,
-    WidgetInfo, vec2,
+    Align, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui, WidgetInfo, vec2,
 };
 
 /// Lines of figures under a fingertip of the overview.
@@ -108,18 +107,11 @@ impl TouchView {
         let look = pane.look;
         self.detail.follow(pane);
         let height = (ui.available_height() * UPPER_PART).round();
-        let bare = |panel: Panel, size: f32| {
-            let panel = panel.exact_size(size).resizable(false);
-            panel.show_separator_line(false).frame(Frame::NONE)
-        };
-        bare(Panel::top("touch, upper"), height).show(ui, |ui| {
+        let upper = Panel::top("touch, upper");
+        kit::bare(upper, height, Margin::ZERO).show(ui, |ui| {
             let width = (height * 0.96).min(ui.available_width() * 0.36).round();
-            let left = bare(Panel::left("touch, hand"), width);
-            let gap = Margin {
-                right: 8,
-                ..Margin::ZERO
-            };
-            left.frame(Frame::new().inner_margin(gap)).show(ui, |ui| {
+            let left = Panel::left("touch, hand");
+            kit::bare(left, width, theme::GAP_RIGHT).show(ui, |ui| {
                 kit::card_ui(ui, look, |ui| {
                     kit::head_ui(ui, look, look.say(panels::HAND), |_| {});
                     self.hand_ui(ui, pane);
@@ -153,26 +145,25 @@ impl TouchView {
         let name = look.say(words::finger(finger));
         let title = format!("{}: {name}", look.say(panels::TIP));
         kit::head_ui(ui, look, &title, |ui| {
-            let shown = (&mut self.numbers, text::NUMBERS.tip());
-            let all = [(true, text::NUMBERS), (false, text::DETAIL)];
+            let shown = (&mut self.numbers, panels::NUMBERS.tip());
+            let all = [(true, panels::NUMBERS), (false, panels::DETAIL)];
             kit::pick_ui(ui, look, shown, all);
-            let assumed = Label::note(look, text::ASSUMED).ui(ui);
-            assumed.on_hover_text(look.tip(text::ASSUMED));
+            let assumed = Label::note(look, panels::ASSUMED).ui(ui);
+            assumed.on_hover_text(look.tip(panels::ASSUMED));
             let rest = pane.state.hand().tare.rest(finger);
             let tared = match rest {
-                None => look.say(text::NO_ZERO).to_owned(),
-                Some(rest) => text::zero(look, rest, pane.state.now),
+                None => look.say(panels::NO_ZERO).to_owned(),
+                Some(rest) => panels::zero(look, rest, pane.state.now),
             };
             let tared = Label::new(&tared, look.palette.muted).small();
-            tared.named(look.say(text::TARED_NAME)).ui(ui);
+            tared.named(look.say(panels::TARED_NAME)).ui(ui);
         });
         if self.numbers {
             ScrollArea::vertical()
                 .auto_shrink(false)
                 .show(ui, |ui| table::all_ui(ui, pane));
         } else {
-            let (_, place) = ui.allocate_space(ui.available_size());
-            self.detail.ui(ui, place, pane);
+            self.detail.ui(ui, pane);
         }
     }
 
@@ -198,9 +189,11 @@ impl TouchView {
         let block = block.map(|block| block.value);
         let sense = tip.map_or(Sense::Fine, |tip| tip.sense);
         let (below, color) = match (sense, self.detail.hold(finger)) {
-            (Sense::NoNumber, _) => (look.say(text::NO_NUMBER).to_owned(), look.palette.warn),
-            (Sense::Beyond, _) => (look.say(text::BEYOND).to_owned(), look.palette.warn),
-            (Sense::Fine, GripState::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
+            (Sense::NoNumber, _) => (look.say(panels::NO_NUMBER).to_owned(), look.palette.warn),
+            (Sense::Beyond, _) => (look.say(panels::BEYOND).to_owned(), look.palette.warn),
+            (Sense::Fine, GripState::Slips) => {
+                (look.say(panels::SLIP).to_owned(), look.palette.bad)
+            }
             (Sense::Fine, _) => {
                 let shear = format::newtons(block.map(|block| block.tangential_n));
                 // The arrow says the direction, too.
@@ -213,7 +206,7 @@ impl TouchView {
             _ => look.palette.warn,
         };
         let meaning = look.say(match sense {
-            Sense::Beyond => text::BEYOND.tip(),
+            Sense::Beyond => panels::BEYOND.tip(),
             _ => panels::TOUCH.tip(),
         });
         let freshness = pane.state.hand().tip_freshness(finger);
@@ -245,7 +238,7 @@ impl TouchView {
         let offline = (!hand.link.state.is_live()).then(|| look.say(panels::TARE_OFFLINE));
         let finger = self.detail.finger;
         let name = look.say(words::finger(finger));
-        let one = format!("{} {name}", look.say(panels::TARE_ONE));
+        let one = look.told(panels::TARE_ONE, name);
         let all = look.say(panels::TARE_ALL);
         let nothing = (!hand.tare.can_undo()).then(|| look.say(panels::TARE_NOTHING));
         let undo = look.say(panels::TARE_UNDO);
@@ -265,12 +258,10 @@ impl TouchView {
                 button.sends(ui, pane, action);
             }
             if let Some(age) = offered {
-                let words = text::kept(look, age);
-                let kept = Button::new(&words, look.say(text::KEPT_TIP));
-                let kept = kept.named(look.say(text::KEPT_NAME)).disabled(offline);
-                if kept.ui(ui, look).clicked() {
-                    pane.actions.push(Action::TakeKeptTare);
-                }
+                let words = panels::kept_tare(look, age);
+                let kept = Button::new(&words, look.tip(panels::KEPT_TARE));
+                let kept = kept.named(look.say(panels::KEPT_TARE)).disabled(offline);
+                kept.sends(ui, pane, Action::TakeKeptTare);
             }
         });
     }

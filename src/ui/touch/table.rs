@@ -7,35 +7,35 @@ use crate::ui::touch::tip_channels::signed;
 use egui::{Grid, Ui};
 
 /// One row of numbers.
-pub(crate) struct Line {
+pub(crate) struct TouchRow {
     caption: Text,
     name: Text,
     value: fn(&TactileBlock, Look) -> String,
 }
 
 /// The rows; the first two are the forces.
-pub(crate) const LINES: [Line; 7] = [
-    Line {
+pub(crate) const LINES: [TouchRow; 7] = [
+    TouchRow {
         caption: panels::TOUCH_NORMAL,
         name: panels::TOUCH_NORMAL_NAME,
         value: |block, _| format!("{} N", format::newtons(Some(block.normal_n))),
     },
-    Line {
+    TouchRow {
         caption: panels::TOUCH_SHEAR,
         name: panels::TOUCH_SHEAR_NAME,
         value: |block, _| format!("{} N", format::newtons(Some(block.tangential_n))),
     },
-    Line {
+    TouchRow {
         caption: panels::TOUCH_DIRECTION,
         name: panels::TOUCH_DIRECTION_NAME,
         value: direction,
     },
-    Line {
+    TouchRow {
         caption: panels::TOUCH_PROXIMITY,
         name: panels::TOUCH_PROXIMITY_NAME,
         value: |block, _| format::counts(Some(block.proximity.into())),
     },
-    Line {
+    TouchRow {
         caption: panels::TOUCH_CHECK,
         name: panels::TOUCH_CHECK_NAME,
         value: |block, look| {
@@ -46,12 +46,12 @@ pub(crate) const LINES: [Line; 7] = [
             look.say(word).into()
         },
     },
-    Line {
+    TouchRow {
         caption: panels::TOUCH_DELTA_N,
         name: panels::TOUCH_DELTA_N,
         value: |block, _| format::counts(Some(block.normal_delta.into())),
     },
-    Line {
+    TouchRow {
         caption: panels::TOUCH_DELTA_T,
         name: panels::TOUCH_DELTA_T,
         value: |block, _| format::counts(Some(block.tangential_delta.into())),
@@ -68,7 +68,7 @@ pub(crate) fn direction(block: &TactileBlock, look: Look) -> String {
 }
 
 /// One number of one fingertip.
-pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &Line) {
+pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &TouchRow) {
     let look = pane.look;
     let block = pane.state.hand().sample.tactile[finger];
     let text = block.map(|block| (line.value)(&block.value, look));
@@ -80,7 +80,7 @@ fn number_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, (name, text): (&str, 
     let look = pane.look;
     let color = look.value(pane.state.hand().tip_freshness(finger), look.palette.text);
     let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
-    let name = format!("{} {name}", look.say(words::finger(finger)));
+    let name = look.told(words::finger(finger), name);
     Label::new(&text, color).number().named(&name).ui(ui);
 }
 
@@ -107,7 +107,7 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
             ui.end_row();
         }
         for channel in 0..8 {
-            let caption = format!("{} {}", look.say(panels::TOUCH_CHANNEL), channel + 1);
+            let caption = look.told(panels::TOUCH_CHANNEL, channel + 1);
             Label::new(&caption, muted).ui(ui);
             for finger in Finger::ALL {
                 let text = channel_text(pane, finger, channel);

@@ -3,17 +3,17 @@
 use crate::hand::Finger;
 use crate::history::Series;
 use crate::ui::kit::{self, Label, Look, Pane, format};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::plots::times::Times;
-use crate::ui::text::{Text, panels, touch as text};
+use crate::ui::text::{Text, panels};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Rect, Stroke, Ui, UiBuilder, vec2};
+use egui::{Align, Color32, Layout, Stroke, Ui, vec2};
 
 /// What can be shown, in seconds, with its name.
 const WINDOWS: [(f64, Text); 3] = [
-    (10.0, text::LAST_10_S),
-    (60.0, text::LAST_MINUTE),
-    (600.0, text::LAST_10_MIN),
+    (10.0, panels::LAST_10_S),
+    (60.0, panels::LAST_MINUTE),
+    (600.0, panels::LAST_10_MIN),
 ];
 /// Over this time mean and noise are taken, in seconds.
 const NOISE_S: f64 = 1.0;
@@ -54,28 +54,25 @@ fn color(look: Look, channel: usize) -> Color32 {
 
 impl TipChannels {
     /// Draws choice, plot and list.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, finger: Finger) {
-        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-            self.head_ui(ui, pane.look);
-            ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
-                if ui.available_width() >= 330.0 {
-                    let place = vec2(176.0, ui.available_height());
-                    let down = Layout::top_down(Align::Max);
-                    ui.allocate_ui_with_layout(place, down, |ui| list_ui(ui, pane, finger));
-                }
-                ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                    self.plot_ui(ui, pane, finger)
-                });
-            });
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
+        self.head_ui(ui, pane.look);
+        ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
+            if ui.available_width() >= 330.0 {
+                let place = vec2(176.0, ui.available_height());
+                let down = Layout::top_down(Align::Max);
+                ui.allocate_ui_with_layout(place, down, |ui| list_ui(ui, pane, finger));
+            }
+            let down = Layout::top_down(Align::Min);
+            ui.with_layout(down, |ui| self.plot_ui(ui, pane, finger));
         });
     }
 
     fn head_ui(&mut self, ui: &mut Ui, look: Look) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let zeros = [(false, text::RAW), (true, text::TARED)];
-            kit::pick_ui(ui, look, (&mut self.tared, text::TARED.tip()), zeros);
-            if kit::pick_ui(ui, look, (&mut self.window_s, text::LAST_TIP), WINDOWS) {
+            let zeros = [(false, panels::RAW), (true, panels::TARED)];
+            kit::pick_ui(ui, look, (&mut self.tared, panels::TARED.tip()), zeros);
+            if kit::pick_ui(ui, look, (&mut self.window_s, panels::LAST_TIP), WINDOWS) {
                 self.chart.time.follow();
             }
         });
@@ -93,17 +90,17 @@ impl TipChannels {
         let curve = |(channel, number): (u8, usize)| {
             let rest = rest.and_then(|rest| rest.raw.get(number).copied());
             let points = Points::Measured(&hand.history, Series::Channel(channel, finger));
-            Curve {
+            ChartCurve {
                 zero: [0.0, rest.map_or(0.0, f64::from)],
                 told: Some(0),
-                ..Curve::new(points, Stroke::new(theme::LINE, color(look, number)))
+                ..ChartCurve::new(points, Stroke::new(theme::LINE, color(look, number)))
             }
         };
         let chart = Chart {
             curves: (0..8).zip(0..).map(curve).collect(),
             least: LEAST,
             times: Times::From(now, look.say(panels::NOW)),
-            ..Chart::new(look, text::CHANNELS, ui.available_height())
+            ..Chart::new(look, panels::CHANNELS, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);
     }
@@ -114,8 +111,8 @@ fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
     let look = pane.look;
     let hand = pane.state.hand();
     ui.spacing_mut().item_spacing.y = 0.0;
-    let head = Label::note(look, text::NOISE_HEAD);
-    head.ui(ui).on_hover_text(look.tip(text::NOISE));
+    let head = Label::note(look, panels::NOISE_HEAD);
+    head.ui(ui).on_hover_text(look.tip(panels::NOISE));
     let now = pane.state.now.secs();
     let rest = hand.tare.rest(finger);
     let row = (ui.available_height() / 8.0).min(20.0);
@@ -130,10 +127,10 @@ fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
         ui.allocate_ui_with_layout(place, Layout::right_to_left(Align::Center), |ui| {
             ui.set_min_height(row);
             let words = format!("{:>7} {:>6}", signed(change), format::counts(noise));
-            let name = format!("{} {}", look.say(text::NOISE), channel + 1);
+            let name = look.told(panels::NOISE, channel + 1);
             let label = Label::new(&words, look.palette.text).font(theme::number_small());
             label.named(&name).ui(ui);
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            kit::left_ui(ui, |ui| {
                 let (_, sign) = ui.allocate_space(vec2(theme::PAD, row));
                 let stroke = Stroke::new(theme::BAR, color(look, at));
                 ui.painter().hline(sign.x_range(), sign.center().y, stroke);

@@ -5,16 +5,16 @@ use crate::app::readings::friction::{Grip, GripState, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::history::Series;
-use crate::ui::joints::track::Track;
+use crate::ui::joints::track::SlideTrack;
 use crate::ui::kit::{self, Label, Look, Pane, format};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
-use crate::ui::plots::legend::{Key, legend_ui};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::plots::times::Times;
-use crate::ui::text::{Text, panels, touch as text};
+use crate::ui::text::{Text, panels};
 use crate::ui::theme;
 use crate::ui::touch::table as touch_table;
 use crate::ui::touch::tip_channels::TipChannels;
-use egui::{Color32, Id, Painter, Pos2, Rect, Stroke, Ui, UiBuilder, Vec2, vec2};
+use egui::{Color32, Id, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use egui_plot::LineStyle;
 
 /// Friction that is taken until a person chooses one, in percent: rubber on smooth plastic is about this.
@@ -72,25 +72,31 @@ impl TipDetail {
     }
 
     /// Compass, readings, forces and channels over time: as many as find room.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-        let mut body = rect;
-        if rect.width() >= 700.0 {
-            let size = rect.height().min(rect.width() * 0.22);
-            let mut left = kit::take_left(&mut body, size);
-            let compass = kit::take_top(&mut left, size);
-            self.compass_ui(ui, compass, pane);
-        }
-        let width = (body.width() * 0.28).clamp(150.0, 230.0);
-        let readings = kit::take_left(&mut body, width);
-        self.readings_ui(ui, readings, pane);
-        body.min.x += theme::GAP;
-        if body.height() >= 270.0 {
-            let forces = body.height() * 0.36;
-            let forces = kit::take_top(&mut body, forces);
-            let place = UiBuilder::new().max_rect(forces);
-            ui.scope_builder(place, |ui| self.forces_ui(ui, pane));
-        }
-        self.channels.ui(ui, body, pane, self.finger);
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
+        let room = ui.available_size();
+        ui.horizontal_top(|ui| {
+            if room.x >= 700.0 {
+                let size = room.y.min(room.x * 0.22);
+                let (_, compass) = ui.allocate_space(Vec2::splat(size));
+                self.compass_ui(ui, compass, pane);
+            }
+            let width = (ui.available_width() * 0.28).clamp(150.0, 230.0);
+            ui.allocate_ui(vec2(width, room.y), |ui| {
+                ui.vertical(|ui| {
+                    ui.set_width(width);
+                    self.readings_ui(ui, pane);
+                });
+            });
+            ui.add_space(theme::GAP);
+            ui.vertical(|ui| {
+                if room.y >= 270.0 {
+                    let forces = vec2(ui.available_width(), room.y * 0.36);
+                    ui.allocate_ui(forces, |ui| self.forces_ui(ui, pane));
+                    ui.add_space(theme::GAP);
+                }
+                self.channels.ui(ui, pane, self.finger);
+            });
+        });
     }
 
     fn block<'a>(&self, pane: &Pane<'a>) -> (Option<&'a TactileBlock>, Freshness) {
@@ -146,69 +152,55 @@ impl TipDetail {
         needle(painter, center, vec2(sin, -cos) * (ring * part), color);
     }
 
-    fn readings_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
+    fn readings_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        let mut rest = rect;
         let (block, freshness) = self.block(pane);
         let grip = Grip::of(block);
-        let friction = self.friction();
+        let unknown = || format::UNKNOWN.to_owned();
         let newtons = |value: Option<f32>| format!("{} N", format::newtons(value));
         let ratio = match grip {
             Grip::Ratio(ratio) => format!("{ratio:.2}"),
-            Grip::Unknown | Grip::Loose => format::UNKNOWN.into(),
+            Grip::Unknown | Grip::Loose => unknown(),
         };
-        let margin = grip.margin(friction).map_or_else(
-            || format::UNKNOWN.to_owned(),
-            |margin| format!("{:.0} %", margin * 100.0),
-        );
+        let margin = grip.margin(self.friction());
+        let margin = margin.map_or_else(unknown, |margin| format!("{:.0} %", margin * 100.0));
+        let direction = block.map_or_else(unknown, |block| touch_table::direction(block, look));
         let plain = look.palette.text;
-        let direction = block.map_or_else(
-            || format::UNKNOWN.to_owned(),
-            |block| touch_table::direction(block, look),
-        );
-        let check = block.map(|block| block.check_ok());
-        let (check, check_color) = match check {
+        let (check, check_color) = match block.map(TactileBlock::check_ok) {
             None => (format::UNKNOWN, plain),
-            Some(true) => (look.say(text::CHECK_OK), plain),
-            Some(false) => (look.say(text::CHECK_DIFFERS), look.palette.warn),
+            Some(true) => (look.say(panels::CHECK_OK), plain),
+            Some(false) => (look.say(panels::CHECK_DIFFERS), look.palette.warn),
         };
         let hold = self.hold(self.finger);
-        let rows: [(Text, String, egui::Color32); 6] = [
-            (
-                panels::TIP_NORMAL,
-                newtons(block.map(|block| block.normal_n)),
-                plain,
-            ),
-            (
-                panels::TIP_SHEAR,
-                newtons(block.map(|block| block.tangential_n)),
-                plain,
-            ),
-            (text::DIRECTION, direction, plain),
+        let normal = newtons(block.map(|block| block.normal_n));
+        let shear = newtons(block.map(|block| block.tangential_n));
+        let row = (ui.available_height() / 8.0).min(theme::CONTROL);
+        let size = vec2(ui.available_width(), row);
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for (caption, value, color) in [
+            (panels::TIP_NORMAL, normal, plain),
+            (panels::TIP_SHEAR, shear, plain),
+            (panels::DIRECTION, direction, plain),
             (panels::TIP_RATIO, ratio, plain),
-            (text::CHECK, check.to_owned(), check_color),
+            (panels::CHECK, check.to_owned(), check_color),
             (panels::TIP_MARGIN, margin, color_of(hold, look.palette)),
-        ];
-        let row = (rect.height() / 8.0).min(theme::CONTROL);
-        for (caption, value, color) in &rows {
-            let place = kit::take_top(&mut rest, row);
-            rest.min.y -= theme::GAP;
-            Label::note(look, *caption).put(ui, place);
-            let label = Label::new(value, look.value(freshness, *color))
-                .number()
-                .right();
-            let response = label.named(look.say(*caption)).put(ui, place);
-            if *caption == text::CHECK {
-                response.on_hover_text(look.tip(text::CHECK));
-            }
+        ] {
+            kit::cell_ui(ui, size, |ui| {
+                Label::note(look, caption).ui(ui);
+                kit::right_ui(ui, |ui| {
+                    let label = Label::new(&value, look.value(freshness, color)).number();
+                    let response = label.named(look.say(caption)).ui(ui);
+                    if caption == panels::CHECK {
+                        response.on_hover_text(look.tip(panels::CHECK));
+                    }
+                });
+            });
         }
-        let place = kit::take_top(&mut rest, row);
-        rest.min.y -= theme::GAP;
+        let place = ui.allocate_space(size).1;
         self.verdict_ui(ui, place, look);
-        self.friction_ui(ui, rest.with_max_y(rest.top() + row), look);
+        kit::cell_ui(ui, size, |ui| self.friction_ui(ui, look));
     }
 
-    /// How the grip stands, in words; the alarm on a ground of its own.
     fn verdict_ui(&self, ui: &mut Ui, place: Rect, look: Look) {
         let hold = self.hold(self.finger);
         let color = color_of(hold, look.palette);
@@ -220,22 +212,22 @@ impl TipDetail {
         Label::new(look.say(panels::hold(hold)), color).put(ui, place);
     }
 
-    fn friction_ui(&mut self, ui: &mut Ui, rect: Rect, look: Look) {
+    fn friction_ui(&mut self, ui: &mut Ui, look: Look) {
         let caption = format!("{} {:.2}", look.say(panels::TIP_FRICTION), self.friction());
-        let width = kit::text_width(ui, &caption, theme::small()) + theme::GAP;
-        let (left, right) = rect.split_left_right_at_x(rect.left() + width);
-        Label::new(&caption, look.palette.muted)
-            .small()
-            .put(ui, left);
-        let name = look.say(panels::TIP_FRICTION_NAME);
-        let track = Track {
+        Label::new(&caption, look.palette.muted).small().ui(ui);
+        let track = SlideTrack {
             tip: look.tip(panels::TIP_FRICTION),
             step: 1,
             target: Some(self.friction_percent),
             tick: Some(FRICTION_PERCENT),
-            ..Track::new(name, FRICTION_MAX, look.palette.accent)
+            ..SlideTrack::new(
+                look.say(panels::TIP_FRICTION_NAME),
+                FRICTION_MAX,
+                look.palette.accent,
+            )
         };
-        if let Some(percent) = track.put(ui, look, right, Id::unique("tip friction")) {
+        let place = ui.allocate_space(ui.available_size()).1;
+        if let Some(percent) = track.put(ui, look, place, Id::unique("tip friction")) {
             self.friction_percent = percent.max(1);
         }
     }
@@ -248,7 +240,7 @@ impl TipDetail {
             (Touch::Normal, panels::TIP_NORMAL, own),
             (Touch::Tangential, panels::TIP_SHEAR, look.palette.muted),
         ];
-        let key = |(_, words, color): (Touch, Text, Color32)| Key {
+        let key = |(_, words, color): (Touch, Text, Color32)| LegendKey {
             words: look.say(words).to_owned(),
             color,
             style: LineStyle::Solid,
@@ -259,16 +251,16 @@ impl TipDetail {
         self.chart.time.advance((first.min(now), now), SECONDS);
         let curve = |(touch, _, color): (Touch, Text, Color32)| {
             let points = Points::Measured(history, Series::Tip(touch, self.finger));
-            Curve {
+            ChartCurve {
                 told: Some(2),
-                ..Curve::new(points, Stroke::new(theme::LINE, color))
+                ..ChartCurve::new(points, Stroke::new(theme::LINE, color))
             }
         };
         let chart = Chart {
             curves: lines.map(curve).to_vec(),
             least: (0.0, FORCE_END),
             times: Times::From(now, look.say(panels::NOW)),
-            ..Chart::new(look, text::FORCES, ui.available_height())
+            ..Chart::new(look, panels::FORCES, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);
     }

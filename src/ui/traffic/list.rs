@@ -2,11 +2,11 @@
 
 use crate::link::traffic::compose::{FrameSnippet, SnippetFormat};
 use crate::link::traffic::frame::{Frame, Kind};
-use crate::ui::kit::{self, Look, Pane};
+use crate::ui::kit::{self, Label, Look, Pane};
 use crate::ui::text::{main, traffic};
 use crate::ui::theme;
 use egui::{
-    Align, Align2, Color32, FontId, Id, Key, Modifiers, Rect, Response, Role, Sense, Ui, WidgetInfo,
+    Align, Color32, FontId, Id, Key, Modifiers, Rect, Response, Role, Sense, Ui, WidgetInfo,
 };
 use egui_extras::{Column, TableBuilder, TableRow};
 use std::collections::{BTreeSet, VecDeque};
@@ -17,12 +17,12 @@ const WIDTHS: [f32; 4] = [78.0, 20.0, 92.0, 16.0];
 
 /// The chosen frames, by number, and where the choice began.
 #[derive(Debug, Default)]
-pub(crate) struct Choice {
+pub(crate) struct ChosenFrames {
     pub(crate) numbers: BTreeSet<u64>,
     anchor: u64,
 }
 
-impl Choice {
+impl ChosenFrames {
     fn press(&mut self, number: u64, keys: Modifiers, frames: &VecDeque<Arc<Frame>>) {
         if keys.shift && self.anchor != 0 {
             let (from, to) = (self.anchor.min(number), self.anchor.max(number));
@@ -56,7 +56,7 @@ pub(crate) fn list_ui(
     ui: &mut Ui,
     pane: &Pane<'_>,
     frames: &VecDeque<Arc<Frame>>,
-    (choice, follows): (&mut Choice, bool),
+    (choice, follows): (&mut ChosenFrames, bool),
 ) -> bool {
     let look = pane.look;
     keys(ui, frames, choice);
@@ -115,7 +115,7 @@ fn scrolls(ui: &Ui, body: Rect) -> bool {
 }
 
 /// Up and down move a choice while no field and no track has the keyboard.
-fn keys(ui: &Ui, frames: &VecDeque<Arc<Frame>>, choice: &mut Choice) {
+fn keys(ui: &Ui, frames: &VecDeque<Arc<Frame>>, choice: &mut ChosenFrames) {
     if choice.numbers.is_empty() || ui.memory(|memory| memory.focused().is_some()) {
         return;
     }
@@ -204,7 +204,7 @@ fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
 }
 
 fn paint(ui: &Ui, text: &str, font: FontId, color: Color32) {
-    kit::paint_text(ui, ui.max_rect(), Align2::LEFT_CENTER, text, font, color);
+    Label::new(text, color).font(font).paint(ui, ui.max_rect());
 }
 
 /// What is wrong, else what it means.

@@ -11,7 +11,7 @@ use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{Text, traffic};
 use crate::ui::theme;
 use crate::ui::traffic::filter::{Filter, Passed};
-use crate::ui::traffic::list::Choice;
+use crate::ui::traffic::list::ChosenFrames;
 use egui::{Event, Ui, vec2};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ struct Paused {
 pub(crate) struct TrafficView {
     filter: Filter,
     passed: Passed,
-    choice: Choice,
+    choice: ChosenFrames,
     paused: Option<Paused>,
     scrolls: bool,
 }
@@ -159,7 +159,7 @@ impl TrafficView {
         if clear.ui(ui, look).clicked() {
             let newest = pane.state.hand().traffic.newest();
             self.filter.cleared = self.paused.as_ref().map_or(newest, |paused| paused.newest);
-            self.choice = Choice::default();
+            self.choice = ChosenFrames::default();
         }
         let none = self.choice.numbers.is_empty();
         let copy = Button::said(look, traffic::COPY);

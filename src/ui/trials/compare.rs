@@ -6,15 +6,15 @@ use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
 use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, TextField};
-use crate::ui::text::{compare, notices, tune};
+use crate::ui::text::{notices, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::BestView;
 use crate::ui::trials::compare_choice::{ShownSessions, TrialKey};
 use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
-use crate::ui::trials::compare_list::Sheet;
+use crate::ui::trials::compare_list::SessionSheet;
 use crate::ui::trials::compare_table::TableView;
-use egui::{Align, Color32, Frame, Layout, Margin, Panel, ScrollArea, Ui};
+use egui::{Color32, Panel, ScrollArea, Ui};
 
 /// Characters of a note.
 const NOTE_CHARS: usize = 300;
@@ -55,7 +55,7 @@ impl CompareView {
                 });
                 return;
             };
-            compare_list::list_ui(ui, Sheet { look, trials }, &mut self.chosen);
+            compare_list::list_ui(ui, SessionSheet { look, trials }, &mut self.chosen);
             let focus = self
                 .chosen
                 .focus
@@ -69,21 +69,12 @@ impl CompareView {
     fn sessions_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, focus: &TrialSession) {
         let comparison = self.comparison(pane, focus.id);
         let room = ui.available_size();
-        let gap = |left, top| {
-            Frame::new().inner_margin(Margin {
-                left,
-                top,
-                ..Margin::ZERO
-            })
-        };
-        let table = Panel::bottom("trial table").exact_size(room.y * 0.48);
-        let table = table.frame(gap(0, 8)).show_separator_line(false);
-        table.resizable(false).show(ui, |ui| {
+        let table = Panel::bottom("trial table");
+        kit::bare(table, room.y * 0.48, theme::GAP_TOP).show(ui, |ui| {
             self.table.ui(ui, pane, &comparison, &mut self.strong);
         });
-        let best = Panel::right("best").exact_size((room.x * 0.36).clamp(256.0, 440.0));
-        let best = best.frame(gap(12, 0)).show_separator_line(false);
-        best.resizable(false).show(ui, |ui| {
+        let width = (room.x * 0.36).clamp(256.0, 440.0);
+        kit::bare(Panel::right("best"), width, theme::GAP_LEFT).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 self.best.ui(ui, pane, &comparison, focus);
             });
@@ -116,9 +107,9 @@ impl CompareView {
         let read = read.map(|_| look.say(tune::SAVE_READ));
         let save = id.map(|id| TrialAction::Save(id, Some(self.best.criterion())));
         let forget = id.map(TrialAction::Forget);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        kit::right_ui(ui, |ui| {
             for (text, disabled, action) in [
-                (compare::FORGET, busy, forget),
+                (tune::FORGET, busy, forget),
                 (tune::SAVE, busy.or(read), save),
                 (tune::OPEN, None, Some(TrialAction::Open(None))),
             ] {
@@ -128,8 +119,7 @@ impl CompareView {
                 }
             }
             if let Some(own) = now {
-                let row = Layout::left_to_right(Align::Center);
-                ui.with_layout(row, |ui| self.words_ui(ui, pane, own));
+                kit::left_ui(ui, |ui| self.words_ui(ui, pane, own));
             }
         });
     }
@@ -177,10 +167,10 @@ pub(crate) fn told(state: &State, look: Look, now: Option<&TrialSession>) -> (St
 /// The card of a session that is about to go and lies in no file.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
-    let loses = look.fill(compare::FORGET_LOSES, &[&session.trials.len()]);
-    let back = Choice::new(compare::FORGET_NOT, Manner::Safe);
-    let forget = Choice::new(compare::FORGET_SURE, Manner::Danger);
-    let card = Card::new(look, compare::FORGET_TITLE)
+    let loses = look.fill(tune::FORGET_LOSES, &[&session.trials.len()]);
+    let back = Choice::new(tune::FORGET_NOT, Manner::Safe);
+    let forget = Choice::new(tune::FORGET_SURE, Manner::Danger);
+    let card = Card::new(look, tune::FORGET_TITLE)
         .words(compare_list::name(look, session.id))
         .warning(loses)
         .choice(back.does(Action::Trial(TrialAction::CancelForget)))

@@ -7,7 +7,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::trials::best::{Score, best};
 use crate::trials::{Criterion, TrialSetting};
 use crate::ui::kit::{Button, Label, NumberField, Pane};
-use crate::ui::text::{compare, tune};
+use crate::ui::text::tune;
 use crate::ui::theme;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
@@ -130,16 +130,16 @@ fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSes
     let look = pane.look;
     let differences = comparison.differences.iter();
     let words: Vec<&str> = differences
-        .map(|difference| look.say(compare::difference(*difference)))
+        .map(|difference| look.say(tune::difference(*difference)))
         .collect();
     if words.is_empty() {
-        Label::note(look, compare::TOGETHER).ui(ui);
+        Label::note(look, tune::TOGETHER).ui(ui);
         return;
     }
     let own = compare_list::name(look, focus.id);
-    let text = look.fill(compare::ALONE, &[&own, &look.list(&words)]);
+    let text = look.fill(tune::ALONE, &[&own, &look.list(&words)]);
     let label = Label::new(&text, look.palette.warn).small().wrap();
-    label.ui(ui).on_hover_text(look.tip(compare::ALONE));
+    label.ui(ui).on_hover_text(look.tip(tune::ALONE));
 }
 
 /// Overshoot as colours with numbers: speeds below each other, thresholds side by side.

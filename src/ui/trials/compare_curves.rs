@@ -5,9 +5,9 @@ use crate::app::trials::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, TrialQuantity,
 };
 use crate::ui::kit::{Button, Label, Pane, dash};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
-use crate::ui::plots::legend::{Key, fits, legend_ui};
-use crate::ui::text::{Text, compare, tune, words};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::legend::{LegendKey, fits, legend_ui};
+use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::setting_words;
@@ -111,7 +111,7 @@ impl CurvesView {
         &self,
         all: DrawnTrials<'a>,
         strong: DrawnTrials<'a>,
-    ) -> Vec<(RowKey, Curve<'a>)> {
+    ) -> Vec<(RowKey, ChartCurve<'a>)> {
         let is_strong = |key: RowKey| strong.picture.lines.iter().any(|own| own.key == key);
         let back = all.curves().filter(|(own, _)| !is_strong(own.key));
         let styled = back.chain(strong.curves()).filter_map(|(own, mut curve)| {
@@ -160,12 +160,7 @@ impl CurvesView {
             }
             let picture = self.picture.as_ref().map(|(_, picture)| picture);
             if let Some(few) = picture.filter(|picture| picture.lines.len() < picture.all) {
-                let text = format!(
-                    "{} {} {}",
-                    few.lines.len(),
-                    look.say(compare::OF_ALL),
-                    few.all
-                );
+                let text = format!("{} {} {}", few.lines.len(), look.say(tune::OF_ALL), few.all);
                 Label::new(&text, look.palette.warn).small().ui(ui);
             }
         });
@@ -187,11 +182,12 @@ impl<'a> DrawnTrials<'a> {
     }
 
     /// The lines with the colours of their settings, joints or sessions.
-    pub(crate) fn curves(self) -> impl Iterator<Item = (&'a ComparedLine, Curve<'a>)> {
+    pub(crate) fn curves(self) -> impl Iterator<Item = (&'a ComparedLine, ChartCurve<'a>)> {
         self.picture.lines.iter().filter_map(move |own| {
             let seen = self.row(own.key)?;
             let color = color(self.pane, self.comparison, own.key, seen);
-            let mut curve = Curve::new(Points::Own(&own.points), Stroke::new(theme::LINE, color));
+            let mut curve =
+                ChartCurve::new(Points::Own(&own.points), Stroke::new(theme::LINE, color));
             curve.style = self.style(seen);
             Some((own, curve))
         })
@@ -224,7 +220,7 @@ impl<'a> DrawnTrials<'a> {
     }
 
     /// The trial that is meant, or every line if few are drawn, or what colours and strokes stand for.
-    fn legend(&self, ui: &Ui, pointed: Option<RowKey>, strong: Option<TrialKey>) -> Vec<Key> {
+    fn legend(&self, ui: &Ui, pointed: Option<RowKey>, strong: Option<TrialKey>) -> Vec<LegendKey> {
         let mut drawn = self.picture.lines.iter().map(|line| line.key);
         let meant = pointed.or_else(|| drawn.find(|key| self.is_of(*key, strong)));
         let look = self.pane.look;
@@ -244,7 +240,7 @@ impl<'a> DrawnTrials<'a> {
             } else {
                 format!("{number}  {setting}")
             };
-            Some(Key {
+            Some(LegendKey {
                 words,
                 color: color(self.pane, self.comparison, key, seen),
                 style: self.style(seen),
@@ -254,7 +250,7 @@ impl<'a> DrawnTrials<'a> {
             return vec![meant];
         }
         let few = self.picture.lines.iter().take(LINES_NAMED + 1);
-        let every: Vec<Key> = few.filter_map(|line| key(line.key, false)).collect();
+        let every: Vec<LegendKey> = few.filter_map(|line| key(line.key, false)).collect();
         match every.len() <= LINES_NAMED && !every.is_empty() && fits(ui, &every) {
             true => every,
             false => self.keys(),
@@ -262,11 +258,11 @@ impl<'a> DrawnTrials<'a> {
     }
 
     /// A key for each stroke, then for each colour.
-    pub(crate) fn keys(&self) -> Vec<Key> {
+    pub(crate) fn keys(&self) -> Vec<LegendKey> {
         let look = self.pane.look;
         let mut keys = Vec::new();
         if self.comparison.sessions().len() > 1 {
-            keys.extend(self.comparison.sessions().rev().map(|id| Key {
+            keys.extend(self.comparison.sessions().rev().map(|id| LegendKey {
                 words: compare_list::name(look, id),
                 color: look.palette.text,
                 style: compare_list::style(self.comparison.sessions(), id),
@@ -288,7 +284,7 @@ impl<'a> DrawnTrials<'a> {
                 }
                 LineGroup::Session(_) => continue,
             };
-            keys.push(Key {
+            keys.push(LegendKey {
                 words,
                 color: group_color(self.pane, self.comparison, group),
                 style: LineStyle::Solid,

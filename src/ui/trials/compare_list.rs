@@ -3,7 +3,7 @@
 use crate::app::trials::comparison::SHOWN_MAX;
 use crate::app::trials::{SessionId, SessionOrigin, TrialSession, TrialsState};
 use crate::ui::kit::{Label, Look, dash};
-use crate::ui::text::{compare, tune};
+use crate::ui::text::tune;
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::ShownSessions;
 use egui::{Align, Color32, Layout, Role, Stroke, Ui, WidgetInfo};
@@ -19,7 +19,7 @@ const RIGHT: [f32; 2] = [72.0, 128.0];
 
 /// What the list is drawn from.
 #[derive(Clone, Copy)]
-pub(crate) struct Sheet<'a> {
+pub(crate) struct SessionSheet<'a> {
     /// Colours and language.
     pub(crate) look: Look,
     /// The sessions.
@@ -41,7 +41,7 @@ pub(crate) fn style(shown: impl ExactSizeIterator<Item = SessionId>, id: Session
 }
 
 /// Draws the list, the newest first.
-pub(crate) fn list_ui(ui: &mut Ui, sheet: Sheet<'_>, chosen: &mut ShownSessions) {
+pub(crate) fn list_ui(ui: &mut Ui, sheet: SessionSheet<'_>, chosen: &mut ShownSessions) {
     let sessions = &sheet.trials.sessions;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -67,14 +67,14 @@ pub(crate) fn list_ui(ui: &mut Ui, sheet: Sheet<'_>, chosen: &mut ShownSessions)
     });
     if sessions.iter().any(|session| session.lost > 0) {
         let look = sheet.look;
-        let why = Label::new(look.say(compare::LOST_WHY), look.palette.warn);
+        let why = Label::new(look.say(tune::LOST_WHY), look.palette.warn);
         why.small().wrap().ui(ui);
     }
 }
 
 fn row_ui(
     row: &mut TableRow<'_, '_>,
-    sheet: Sheet<'_>,
+    sheet: SessionSheet<'_>,
     session: &TrialSession,
     chosen: &mut ShownSessions,
 ) {
@@ -98,26 +98,26 @@ fn row_ui(
         let about = about(session);
         Label::new(&about, palette.muted).small().ui(ui);
     });
-    let trials = look.fill(compare::TRIALS, &[&session.trials.len()]);
+    let trials = look.fill(tune::TRIALS, &[&session.trials.len()]);
     row.col(|ui| {
         Label::new(&trials, palette.muted).small().ui(ui);
     });
     row.col(|ui| {
         let (state, color) = state(sheet, session);
-        let label = look.fill(compare::STATE, &[&name]);
+        let label = look.fill(tune::STATE, &[&name]);
         Label::new(&state, color).small().named(&label).ui(ui);
     });
 }
 
-fn tick_ui(ui: &mut Ui, sheet: Sheet<'_>, id: SessionId, chosen: &mut ShownSessions) {
+fn tick_ui(ui: &mut Ui, sheet: SessionSheet<'_>, id: SessionId, chosen: &mut ShownSessions) {
     let look = sheet.look;
     let mut on = chosen.shown.contains(&id);
     let count = chosen.shown.len();
     let reason = match on {
-        true => (count == 1).then_some(compare::SHOWN_LAST),
-        false => (count >= SHOWN_MAX).then_some(compare::SHOWN_ALL),
+        true => (count == 1).then_some(tune::SHOWN_LAST),
+        false => (count >= SHOWN_MAX).then_some(tune::SHOWN_ALL),
     };
-    let label = look.fill(compare::SHOW, &[&name(look, id)]);
+    let label = look.fill(tune::SHOW, &[&name(look, id)]);
     let tick = egui::Checkbox::without_text(&mut on);
     let tick = ui.add_enabled(reason.is_none(), tick);
     tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, reason.is_none(), on, &label));
@@ -125,7 +125,7 @@ fn tick_ui(ui: &mut Ui, sheet: Sheet<'_>, id: SessionId, chosen: &mut ShownSessi
         chosen.toggle(id);
     }
     match reason {
-        None => tick.on_hover_text(look.tip(compare::SHOW)),
+        None => tick.on_hover_text(look.tip(tune::SHOW)),
         Some(reason) => tick.on_disabled_hover_text(look.say(reason)),
     };
 }
@@ -144,16 +144,16 @@ fn about(session: &TrialSession) -> String {
     parts.join("  ")
 }
 
-fn state(sheet: Sheet<'_>, session: &TrialSession) -> (String, Color32) {
+fn state(sheet: SessionSheet<'_>, session: &TrialSession) -> (String, Color32) {
     let (look, palette) = (sheet.look, sheet.look.palette);
     if session.lost > 0 {
-        return (look.fill(compare::LOST, &[&session.lost]), palette.warn);
+        return (look.fill(tune::LOST, &[&session.lost]), palette.warn);
     }
     let (text, color) = match &session.origin {
-        _ if sheet.trials.running == Some(session.id) => (compare::RUNS, palette.accent),
-        SessionOrigin::Unsaved => (compare::NOT_SAVED, palette.muted),
-        SessionOrigin::Saved(_) => (compare::SAVED, palette.ok),
-        SessionOrigin::Folder(_) => (compare::READ, palette.muted),
+        _ if sheet.trials.running == Some(session.id) => (tune::SESSION_RUNS, palette.accent),
+        SessionOrigin::Unsaved => (tune::SESSION_NOT_SAVED, palette.muted),
+        SessionOrigin::Saved(_) => (tune::SAVED, palette.ok),
+        SessionOrigin::Folder(_) => (tune::READ, palette.muted),
     };
     (look.say(text).into(), color)
 }

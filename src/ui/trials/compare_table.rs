@@ -5,13 +5,13 @@ use crate::app::trials::{ComparedRow, Comparison, RowKey, SessionId};
 use crate::trials::columns::{Better, COLUMNS, Metric};
 use crate::trials::{JointMetrics, TrialSetting};
 use crate::ui::kit::{self, Button, Label, Pane, dash};
-use crate::ui::text::{Text, compare, trials, tune, words};
+use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::{end_words, order, setting_words, shown, spread};
 use crate::ui::trials::compare_curves::color;
 use crate::ui::trials::compare_list;
-use egui::{Align, Align2, Color32, Layout, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Align, Color32, Layout, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 const ROW: f32 = 20.0;
@@ -64,7 +64,7 @@ struct Laid {
 }
 
 /// What every part of the table is drawn with.
-struct Sheet<'a, 'b> {
+struct TrialSheet<'a, 'b> {
     pane: &'a Pane<'b>,
     comparison: &'a Comparison,
 }
@@ -83,7 +83,7 @@ impl TableView {
         comparison: &Comparison,
         strong: &mut Option<TrialKey>,
     ) {
-        let sheet = Sheet { pane, comparison };
+        let sheet = TrialSheet { pane, comparison };
         let is_pointed = ui.rect_contains_pointer(ui.available_rect_before_wrap());
         let laid = self.laid(&sheet, is_pointed);
         let sorting = &mut self.sorting;
@@ -127,7 +127,7 @@ impl TableView {
 
     /// The rows in their order, reckoned again only when something changed; what is new comes last while the pointer is on
     /// them.
-    fn laid(&mut self, sheet: &Sheet<'_, '_>, is_pointed: bool) -> Laid {
+    fn laid(&mut self, sheet: &TrialSheet<'_, '_>, is_pointed: bool) -> Laid {
         let (sorting, language) = (self.sorting, sheet.pane.look.language);
         let former = self.laid.take();
         let former = former.filter(|own| own.sorting == sorting && own.language == language);
@@ -153,7 +153,7 @@ impl TableView {
     }
 }
 
-impl<'a> Sheet<'a, '_> {
+impl<'a> TrialSheet<'a, '_> {
     fn several(&self) -> bool {
         self.comparison.sessions().len() > 1
     }
@@ -211,13 +211,13 @@ impl<'a> Sheet<'a, '_> {
     fn end(&self, seen: ComparedRow<'_>) -> String {
         let look = self.pane.look;
         match &seen.trial.aborted {
-            Some(why) => trials::ended(look, why),
+            Some(why) => tune::ended(look, why),
             None => end_words(look, seen.joint.end_status.as_deref()),
         }
     }
 
     fn head_ui(&self, row: &mut TableRow<'_, '_>, sorting: &mut Sorting) {
-        let session = (By::Session, compare::COLUMN_SESSION);
+        let session = (By::Session, tune::COLUMN_SESSION);
         let first = [session, (By::Trial, tune::COLUMN_TRIAL)].into_iter();
         let numbers = shown().map(|(column, title)| (By::Number(column.metric), title));
         let heads = first.skip(usize::from(!self.several())).chain(numbers);
@@ -237,18 +237,17 @@ impl<'a> Sheet<'a, '_> {
         let (upper, lower) = words.split_top_bottom_at_fraction(0.5);
         let unit = text.split_once(", ").or_else(|| text.split_once(' '));
         let (text, unit) = unit.unwrap_or((text, ""));
-        let align = match by {
-            By::Number(_) => Align2::RIGHT_CENTER,
-            _ => Align2::LEFT_CENTER,
-        };
         for (place, text) in [(upper, text), (lower, unit)] {
-            let (font, color) = (theme::small(), look.palette.muted);
-            kit::paint_text(ui, place, align, text, font, color);
+            let label = Label::new(text, look.palette.muted).small();
+            match by {
+                By::Number(_) => label.right().paint(ui, place),
+                _ => label.paint(ui, place),
+            };
         }
         if is_own {
             let (arrow, way) = match sorting.falling {
-                true => (theme::TO_BOTTOM, compare::FALLING),
-                false => (theme::TO_TOP, compare::RISING),
+                true => (theme::TO_BOTTOM, tune::FALLING),
+                false => (theme::TO_TOP, tune::RISING),
             };
             let place = lower.with_max_x(lower.left() + theme::SIGN_SMALL);
             kit::sign(ui, place, arrow, look.palette.accent);
@@ -289,7 +288,7 @@ impl<'a> Sheet<'a, '_> {
             false => (number.to_string(), name.clone()),
         };
         if self.several() {
-            let label = format!("{short} {}", look.say(compare::COLUMN_SESSION));
+            let label = format!("{short} {}", look.say(tune::COLUMN_SESSION));
             row.col(|ui| number_ui(ui, &label, &session.0.to_string(), text));
         }
         row.col(|ui| {
@@ -331,7 +330,7 @@ impl<'a> Sheet<'a, '_> {
         let title = look.fill(tune::REPEATED, &[&count, &name]);
         if self.several() {
             name = format!("{}: {name}", id.0);
-            let label = format!("{name} {}", look.say(compare::COLUMN_SESSION));
+            let label = format!("{name} {}", look.say(tune::COLUMN_SESSION));
             row.col(|ui| number_ui(ui, &label, &id.0.to_string(), look.palette.text));
         }
         row.col(|ui| {
@@ -356,7 +355,7 @@ impl<'a> Sheet<'a, '_> {
 
 /// A number against the right edge of its cell.
 fn number_ui(ui: &mut Ui, label: &str, text: &str, color: Color32) {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    kit::right_ui(ui, |ui| {
         ui.add_space(theme::STEP);
         Label::new(text, color).number().named(label).ui(ui);
     });

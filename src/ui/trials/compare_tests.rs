@@ -7,7 +7,7 @@ use crate::ui::kit::Look;
 use crate::ui::theme::Palette;
 use crate::ui::trials::compare_choice::ShownSessions;
 use crate::ui::trials::compare_list;
-use crate::ui::trials::compare_list::Sheet;
+use crate::ui::trials::compare_list::SessionSheet;
 use crate::ui::window;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -29,7 +29,7 @@ fn list(trials: TrialsState, shown: &[u64]) -> Harness<'static, ShownSessions> {
             window::install(ui.ctx(), Theme::Dark, Language::En);
             return;
         }
-        let sheet = Sheet {
+        let sheet = SessionSheet {
             look: Look {
                 palette: Palette::of(Theme::Dark),
                 language: Language::En,

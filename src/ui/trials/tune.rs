@@ -6,14 +6,13 @@ use crate::app::trials::{StartRefusal, TrialAction};
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::text::{tune, words};
+use crate::ui::text::{main, tune, words};
 use crate::ui::theme;
+use crate::ui::trials::PLOT_LEAST;
 use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::trials::tune_live;
 use crate::ui::trials::tune_result::ResultView;
-use crate::ui::trials::{PLOT_LEAST, line_ui};
-use crate::ui::view::View;
-use egui::{Align, Frame, Layout, Margin, Panel, ScrollArea, Ui};
+use egui::{Margin, Panel, ScrollArea, Ui};
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
@@ -23,18 +22,11 @@ pub(crate) struct TuneView {
 }
 
 impl TuneView {
-    /// Draws the view. The view that was asked for, if one was.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<View> {
+    /// Draws the view.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let runs = pane.state.hand().runs_series();
-        let frame = Frame::new().inner_margin(Margin {
-            right: 8,
-            ..Margin::ZERO
-        });
         let width = (ui.available_width() * 0.44).clamp(326.0, 428.0);
-        let plan = Panel::left("plan").exact_size(width).frame(frame);
-        let plan = plan.resizable(false).show_separator_line(false);
-        plan.show(ui, |ui| {
+        kit::bare(Panel::left("plan"), width, theme::GAP_RIGHT).show(ui, |ui| {
             kit::card_ui(ui, look, |ui| {
                 kit::head_ui(ui, look, look.say(tune::PLAN), |_| ());
                 self.form.ui(ui, pane);
@@ -43,40 +35,36 @@ impl TuneView {
         kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             kit::head_ui(ui, look, look.say(tune::SERIES), |_| ());
-            if runs {
-                tune_live::live_ui(ui, pane, &mut self.result.chart);
-                return None;
+            match pane.state.hand().runs_series() {
+                true => tune_live::live_ui(ui, pane, &mut self.result.chart),
+                false => self.rest_ui(ui, pane),
             }
-            self.rest_ui(ui, pane)
-        })
+        });
     }
 
-    /// No series runs: what can begin, and what the last one came to, over its curves.
-    fn rest_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<View> {
+    /// What a series would mean, over what came out of the last one.
+    fn rest_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let trials = &pane.state.trials;
         let last = trials.last.and_then(|id| trials.session(id));
         start_ui(ui, pane);
         let height = ui.available_height();
         let curves = (height - 260.0).max(height * 0.45);
         if let Some(session) = last.filter(|_| curves >= PLOT_LEAST) {
-            let panel = Panel::bottom("last series").exact_size(curves);
-            let panel = panel.frame(Frame::new()).resizable(false);
-            panel.show_separator_line(false).show(ui, |ui| {
-                self.result.curves_ui(ui, pane, session);
-            });
+            let panel = kit::bare(Panel::bottom("last series"), curves, Margin::ZERO);
+            panel.show(ui, |ui| self.result.curves_ui(ui, pane, session));
         }
         let lines = ScrollArea::vertical().id_salt("series").auto_shrink(false);
-        let shown = lines.show(ui, |ui| {
-            let asked = last.and_then(|session| self.result.lines_ui(ui, pane, session));
+        lines.show(ui, |ui| {
+            if let Some(session) = last {
+                self.result.lines_ui(ui, pane, session);
+            }
             meaning_ui(ui, pane);
             if last.is_none() {
                 let palette = pane.look.palette;
                 Label::said(pane.look, tune::IDLE_TITLE).ui(ui);
-                line_ui(ui, pane.look.say(tune::IDLE_BODY), palette.muted);
+                kit::say_ui(ui, pane.look.say(tune::IDLE_BODY), palette.muted);
             }
-            asked
         });
-        shown.inner
     }
 }
 
@@ -91,7 +79,7 @@ fn refusal(pane: &Pane<'_>) -> Option<String> {
     }
     hand.start_refusal(plan).map(|why| match why {
         StartRefusal::NotArmed => look.say(tune::NEED_ARM).into(),
-        StartRefusal::Runs => look.say(tune::RUNS).into(),
+        StartRefusal::Runs => look.say(main::SERIES_RUNS).into(),
         StartRefusal::Locked(dof) => look.fill(tune::NEED_FREE, &[&look.say(words::dof(dof))]),
     })
 }
@@ -102,12 +90,11 @@ fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let reason = refusal(pane);
     let button = Button::said(look, tune::START_BUTTON).large();
     let button = button.disabled(reason.as_deref()).weight(Weight::Strong);
-    let wide = Layout::top_down_justified(Align::Center);
-    ui.with_layout(wide, |ui| {
+    kit::wide_ui(ui, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);
         button.sends(ui, pane, Action::Trial(TrialAction::Start));
     });
-    line_ui(ui, reason.as_deref().unwrap_or(" "), look.palette.warn);
+    kit::say_ui(ui, reason.as_deref().unwrap_or(" "), look.palette.warn);
 }
 
 /// What will happen, and how hard it may hit.
@@ -120,9 +107,9 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (count, time) = estimate::series(plan);
     let joints: Vec<&str> = plan.joints().map(|dof| look.say(words::dof(dof))).collect();
     let parts: [&dyn std::fmt::Display; 3] = [&look.list(&joints), &count, &format::duration(time)];
-    line_ui(ui, &look.fill(tune::WILL, &parts), palette.text);
+    kit::say_ui(ui, &look.fill(tune::WILL, &parts), palette.text);
     if count > plan.grid.settings().len() {
-        line_ui(ui, look.say(tune::WILL_PROBE), palette.muted);
+        kit::say_ui(ui, look.say(tune::WILL_PROBE), palette.muted);
     }
     if let Some((setting, peak)) = plan.expected() {
         let (peak_g, force) = (format!("{peak:.0}"), setting.force.get());
@@ -134,10 +121,10 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
         } else {
             palette.muted
         };
-        line_ui(ui, &text, color);
+        kit::say_ui(ui, &text, color);
         if is_rough {
-            line_ui(ui, look.say(tune::EXPECT_WHY), palette.muted);
+            kit::say_ui(ui, look.say(tune::EXPECT_WHY), palette.muted);
         }
     }
-    line_ui(ui, look.say(tune::ANY_KEY), palette.muted);
+    kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
 }

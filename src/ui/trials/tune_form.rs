@@ -6,9 +6,8 @@ use crate::app::trials::{ApproachKind, PlanField, TrialAction};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::{Approach, TrialPlan, Until};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField};
-use crate::ui::text::{Text, trials, tune, words};
+use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
-use crate::ui::trials::line_ui;
 use egui::{Align, Layout, ScrollArea, Ui, vec2};
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -68,16 +67,16 @@ impl TuneForm {
         let plan = pane.state.trials.plan.clone();
         self.remember(&plan);
         let error = plan.check().err();
-        let wrong = error.map(|error| (PlanField::of(&error), trials::plan_error(look, &error)));
+        let wrong = error.map(|error| (PlanField::of(&error), tune::plan_error(look, &error)));
         let refused = self.refused;
-        let refused = refused.map(|(field, why)| (field, trials::list_error(look, why)));
+        let refused = refused.map(|(field, why)| (field, tune::list_error(look, why)));
         let runs = pane.state.hand().runs_series();
         let mut pass = Pass {
             wrong: refused.or(wrong),
             pane,
             form: self,
             plan,
-            disabled: runs.then(|| look.say(tune::RUNS)),
+            disabled: runs.then(|| look.say(main::SERIES_RUNS)),
         };
         let area = ScrollArea::vertical().id_salt("plan").auto_shrink(false);
         area.show(ui, |ui| {
@@ -127,15 +126,13 @@ impl Pass<'_, '_> {
     /// What is wrong here, once.
     fn trouble_ui(&mut self, ui: &mut Ui, field: PlanField) {
         if let Some((_, why)) = self.wrong.take_if(|(at, _)| *at == field) {
-            line_ui(ui, &why, self.pane.look.palette.bad);
+            kit::say_ui(ui, &why, self.pane.look.palette.bad);
         }
     }
 
     fn caption_ui(&self, ui: &mut Ui, text: Text, width: f32) {
         let look = self.pane.look;
-        let row = Layout::left_to_right(Align::Center);
-        ui.allocate_ui_with_layout(vec2(width, theme::CONTROL), row, |ui| {
-            ui.set_min_size(vec2(width, theme::CONTROL));
+        kit::cell_ui(ui, vec2(width, theme::CONTROL), |ui| {
             Label::note(look, text).ui(ui);
         });
     }
@@ -192,7 +189,7 @@ impl Pass<'_, '_> {
             let response = button.disabled(self.disabled).ui(ui, look);
             let mut taken = None;
             egui::Popup::menu(&response).show(|ui| {
-                ui.set_width(theme::MENU_WIDTH);
+                ui.set_width(220.0);
                 let now = state.hand().pose_now();
                 let button = egui::Button::new(look.say(tune::TAKE_NOW));
                 if ui.add_enabled(now.is_some(), button).clicked() {

@@ -6,12 +6,12 @@ use crate::app::trials::SeriesRun;
 use crate::hand::Dof;
 use crate::trials::recording::{TrialRecording, seconds};
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
+use crate::ui::trials::PLOT_LEAST;
 use crate::ui::trials::plot::trial_chart_ui;
-use crate::ui::trials::{PLOT_LEAST, line_ui};
-use egui::{Align, Color32, Layout, ProgressBar, Role, Stroke, Ui, WidgetInfo};
+use egui::{Color32, ProgressBar, Role, Stroke, Ui, WidgetInfo};
 
 /// Readings of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
 const READINGS_DRAWN: usize = 2400;
@@ -23,8 +23,7 @@ pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
     };
     let look = pane.look;
     let button = Button::said(look, tune::STOP_SERIES).weight(Weight::Stop);
-    let wide = Layout::top_down_justified(Align::Center);
-    ui.with_layout(wide, |ui| {
+    kit::wide_ui(ui, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);
         let response = button.large().ui(ui, look);
         if kit::pressed(ui, &response) {
@@ -48,7 +47,7 @@ fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     label.named(name).ui(ui);
     let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
     let share = count(number.saturating_sub(1)) / count(total.max(1));
-    let bar = ProgressBar::new(share).desired_height(theme::TRACK_RAIL);
+    let bar = ProgressBar::new(share).desired_height(6.0);
     let bar = ui.add(bar.fill(palette.accent));
     bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
     let left = format::duration(run.left(pane.state.now));
@@ -63,7 +62,7 @@ fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
             Label::new(&text, palette.muted).small().ui(ui);
         }
     });
-    line_ui(ui, look.say(tune::ANY_KEY), palette.muted);
+    kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
 }
 
 fn heat_ui(ui: &mut Ui, pane: &Pane<'_>) {
@@ -80,7 +79,7 @@ fn heat_ui(ui: &mut Ui, pane: &Pane<'_>) {
             Freshness::Unknown => palette.faint,
             Freshness::Live | Freshness::Stale => palette.dof[dof],
         };
-        let label = format!("{} {name}", look.say(words::dof(dof)));
+        let label = look.told(words::dof(dof), name);
         let text = Label::new(&text, color).font(theme::number_small());
         text.named(&label).ui(ui);
     }
@@ -101,7 +100,7 @@ fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut ChartView
     let highest = all.map(|[_, grams]| *grams).fold(0.0, f64::max);
     let curves = lines.iter().map(|(dof, points)| {
         let stroke = Stroke::new(theme::LINE, look.palette.dof[*dof]);
-        Curve::new(Points::Own(points), stroke)
+        ChartCurve::new(Points::Own(points), stroke)
     });
     let force = Chart {
         curves: curves.collect(),

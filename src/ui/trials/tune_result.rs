@@ -4,15 +4,14 @@ use crate::app::trials::{ComparedLines, Comparison, TrialQuantity, TrialSession}
 use crate::params::rows::{ParamId, Value};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
-use crate::ui::kit::{Button, Pane, Weight};
+use crate::ui::kit::{self, Button, Opens, Pane, Weight};
 use crate::ui::plots::chart::{Chart, ChartView};
 use crate::ui::plots::legend::legend_ui;
-use crate::ui::text::{trials, tune};
+use crate::ui::text::tune;
 use crate::ui::trials::compare;
 use crate::ui::trials::compare_best::staging;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_curves::DrawnTrials;
-use crate::ui::trials::line_ui;
 use crate::ui::trials::plot::trial_chart_ui;
 use crate::ui::view::View;
 use egui::Ui;
@@ -26,27 +25,22 @@ pub(crate) struct ResultView {
 }
 
 impl ResultView {
-    /// How it ended, where it lies, the best and the next step. The view that was asked for, if one was.
-    pub(crate) fn lines_ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        session: &TrialSession,
-    ) -> Option<View> {
+    /// How it ended, where it lies, the best and the next step.
+    pub(crate) fn lines_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         let (look, palette) = (pane.look, pane.look.palette);
         let (ended, color) = match &session.head.aborted {
             None => (look.say(tune::ALL_DONE).to_owned(), palette.ok),
-            Some(why) => (trials::ended(look, why), palette.warn),
+            Some(why) => (tune::ended(look, why), palette.warn),
         };
-        line_ui(ui, &look.fill(tune::LAST, &[&ended]), color);
+        kit::say_ui(ui, &look.fill(tune::LAST, &[&ended]), color);
         let (told, color) = compare::told(pane.state, look, Some(session));
-        line_ui(ui, &told, color);
+        kit::say_ui(ui, &told, color);
         let (comparison, _) = self.seen(pane, session);
         let gentlest = Criterion::LeastOvershoot { steady_g: 0.0 };
         let score = best(&comparison.scores, gentlest);
         let none = || look.say(tune::BEST_NONE).to_owned();
         let words = score.map_or_else(none, |score| best_words(pane, score));
-        line_ui(ui, &words, palette.text);
+        kit::say_ui(ui, &words, palette.text);
         let device = &pane.state.hand().params;
         let is_staged = score.is_some_and(|score| {
             let number = |number: i16| Some(Value::Number(number.into()));
@@ -57,29 +51,28 @@ impl ResultView {
             })
         });
         if is_staged {
-            line_ui(ui, look.say(tune::STAGED_NEXT), palette.ok);
+            kit::say_ui(ui, look.say(tune::STAGED_NEXT), palette.ok);
         }
         let button_ui = |ui: &mut Ui, text, weight| {
             let button = Button::said(look, text).named(look.tip(text));
             button.weight(weight).ui(ui, look).clicked()
         };
-        let row = ui.horizontal_wrapped(|ui| {
-            let compare = button_ui(ui, tune::SEE_COMPARE, Weight::Normal);
-            let mut asked = compare.then_some(View::Compare);
+        ui.horizontal_wrapped(|ui| {
+            if button_ui(ui, tune::SEE_COMPARE, Weight::Normal) {
+                pane.open(Opens::View(View::Compare));
+            }
             if is_staged {
                 if button_ui(ui, tune::SEE_DEVICE, Weight::Strong) {
-                    asked = Some(View::Device);
+                    pane.open(Opens::View(View::Device));
                 }
-            } else if let Some(score) = score {
-                if button_ui(ui, tune::PROMOTE, Weight::Normal) {
-                    let joints = comparison.joints.iter();
-                    let all = joints.flat_map(|dof| staging(*dof, score.setting));
-                    pane.actions.extend(all);
-                }
+            } else if let Some(score) = score
+                && button_ui(ui, tune::PROMOTE, Weight::Normal)
+            {
+                let joints = comparison.joints.iter();
+                let all = joints.flat_map(|dof| staging(*dof, score.setting));
+                pane.actions.extend(all);
             }
-            asked
         });
-        row.inner
     }
 
     /// The force of all its trials over each other, and what their colours stand for.

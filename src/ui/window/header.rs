@@ -4,17 +4,16 @@ use crate::app::action::Action;
 use crate::app::settings::{Language, Theme};
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
-use crate::ui::kit::{self, Button, Explain, Label, Look, Pane, Weight, format};
-use crate::ui::text::{Text, faults, keys, main, words};
+use crate::ui::kit::{self, Button, Label, Look, Opens, Pane, Weight, format};
+use crate::ui::text::{Text, faults, layout, main, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use crate::ui::window::rooms;
 use egui::{Align, Color32, CornerRadius, Layout, Rect, Response, Ui, pos2, vec2};
 
 /// Draws the bar. STOP can be pressed whatever card is open, the rest only if `is_free`. True if the connection was asked for.
-pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) -> bool {
-    let row = Layout::right_to_left(Align::Center);
-    let shown = ui.with_layout(row, |ui| {
+pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {
+    kit::right_ui(ui, |ui| {
         stop_ui(ui, pane);
         if !is_free {
             ui.disable();
@@ -22,16 +21,12 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) -> bool
         ui.add_space(theme::STEP);
         arm_ui(ui, pane);
         unseen_ui(ui, pane);
-        let left = Layout::left_to_right(Align::Center);
-        let shown = ui.with_layout(left, |ui| {
+        kit::left_ui(ui, |ui| {
             badge_ui(ui, pane);
-            let asked = link_ui(ui, pane);
+            link_ui(ui, pane);
             figures_ui(ui, pane);
-            asked
         });
-        shown.inner
     });
-    shown.inner
 }
 
 fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -55,16 +50,15 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let armed = pane.state.hand().is_armed();
     let refusal = pane.state.hand().arm_refusal();
     let refusal = refusal.map(|reason| words::refusal(look, reason));
-    let (text, name, tip) = if armed {
-        (main::DISARM, main::DISARM_NAME, main::DISARM.tip())
-    } else {
-        (main::ARM, main::ARM_NAME, main::ARM.tip())
+    let (text, name, weight) = match armed {
+        true => (main::DISARM, main::DISARM_NAME, Weight::Armed),
+        false => (main::ARM, main::ARM_NAME, Weight::Strong),
     };
-    let mut button = Button::new(look.say(text), look.say(tip))
+    let button = Button::said(look, text)
         .named(look.say(name))
         .disabled(refusal.as_deref())
-        .weight(if armed { Weight::Armed } else { Weight::Strong });
-    button.selected = Some(armed);
+        .selected(armed)
+        .weight(weight);
     let (id, rect) = ui.allocate_space(vec2(96.0, theme::CONTROL_LARGE));
     if button.put(ui, look, rect, id).clicked() {
         let action = if armed { Action::Disarm } else { Action::Arm };
@@ -96,7 +90,7 @@ fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let text = format!("{before} {count} {after}");
     let button = Button::new(text.trim(), look.tip(faults::UNSEEN));
     if lamp_button_ui(ui, look, button, color).clicked() {
-        *pane.explain = Some(Explain::Faults);
+        pane.open(Opens::Faults);
     }
 }
 
@@ -133,7 +127,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
 }
 
-fn link_ui(ui: &mut Ui, pane: &Pane<'_>) -> bool {
+fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let (word, color) = link_words(pane);
     let word = look.say(word);
@@ -141,7 +135,9 @@ fn link_ui(ui: &mut Ui, pane: &Pane<'_>) -> bool {
     let button = Button::new(word, look.say(main::LINK_TIP))
         .named(&name)
         .weight(Weight::Quiet);
-    lamp_button_ui(ui, look, button, color).clicked()
+    if lamp_button_ui(ui, look, button, color).clicked() {
+        pane.open(Opens::View(View::Connection));
+    }
 }
 
 /// How often is read, and what went wrong: each a small caption over a number, as many as there is room for.
@@ -189,10 +185,9 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
 const FIGURE: f32 = 64.0;
 
 /// Draws the row of tabs, and the switches for theme and language. True if the list of keys was asked for.
-pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut View) -> bool {
+pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View) {
     let look = pane.look;
-    let row = Layout::right_to_left(Align::Center);
-    let shown = ui.with_layout(row, |ui| {
+    kit::right_ui(ui, |ui| {
         rooms::menu_ui(ui, pane);
         let (theme, language) = (pane.state.settings.theme, pane.state.settings.language);
         let text = match language {
@@ -211,27 +206,25 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut View) -> bool
             .icon(icon)
             .weight(Weight::Quiet);
         button.sends(ui, pane, Action::Theme(theme.other()));
-        let list = Button::new("?", look.tip(keys::BUTTON))
-            .named(look.say(keys::BUTTON))
+        let list = Button::new("?", look.tip(layout::BUTTON))
+            .named(look.say(layout::BUTTON))
             .weight(Weight::Quiet);
-        let list = list.ui(ui, look).clicked();
-        let left = Layout::left_to_right(Align::Center);
-        ui.with_layout(left, |ui| {
+        if list.ui(ui, look).clicked() {
+            pane.open(Opens::Keys);
+        }
+        kit::left_ui(ui, |ui| {
             ui.spacing_mut().item_spacing.x = theme::STEP;
             for tab in View::ALL {
-                tab_ui(ui, pane, tab, view);
+                tab_ui(ui, pane, tab, tab == view);
             }
         });
-        list
     });
-    shown.inner
 }
 
-fn tab_ui(ui: &mut Ui, pane: &Pane<'_>, tab: View, view: &mut View) {
+fn tab_ui(ui: &mut Ui, pane: &mut Pane<'_>, tab: View, is_open: bool) {
     let look = pane.look;
-    let is_open = tab == *view;
-    let mut button = Button::new(look.say(tab.title()), "").weight(Weight::Quiet);
-    button.selected = Some(is_open);
+    let button = Button::said(look, tab.title()).weight(Weight::Quiet);
+    let button = button.selected(is_open);
     let response = button.ui(ui, look);
     let place = response.rect;
     if is_open {
@@ -246,6 +239,6 @@ fn tab_ui(ui: &mut Ui, pane: &Pane<'_>, tab: View, view: &mut View) {
         fault_entry::badge_ui(ui, place.right_top() + vec2(2.0, -2.0), pane);
     }
     if response.clicked() {
-        *view = tab;
+        pane.open(Opens::View(tab));
     }
 }

@@ -1,7 +1,7 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
-use crate::ui::kit::{self, Button, Label, Look, Weight};
-use crate::ui::text::{Text, keys};
+use crate::ui::kit::{self, Button, Label, Look, Opens, Weight};
+use crate::ui::text::{Text, layout};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
 use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
@@ -38,7 +38,7 @@ impl KeyList {
         }
         let edge = Stroke::new(theme::LINE, look.palette.accent);
         let frame = Frame::window(ui.style()).stroke(edge);
-        let window = Window::new(look.say(keys::TITLE))
+        let window = Window::new(look.say(layout::TITLE))
             .id(Id::unique("key list"))
             .title_bar(false)
             .resizable(false)
@@ -60,33 +60,36 @@ impl KeyList {
 }
 
 /// A title, and below it the names of keys with what they do.
-type Part = (Text, Vec<(String, Text)>);
+type KeyGroup = (Text, Vec<(String, Text)>);
 
 /// The columns of the list.
-fn columns() -> [Vec<Part>; 3] {
-    let part = |title: Text, wanted: fn(Wish) -> bool| -> Part {
+fn columns() -> [Vec<KeyGroup>; 3] {
+    let part = |title: Text, wanted: fn(Wish) -> bool| -> KeyGroup {
         let wishes = ROWS.iter().map(|row| row.wish);
         let mut wishes: Vec<Wish> = wishes.filter(|wish| wanted(*wish)).collect();
         wishes.dedup();
         let named = |wish: Wish| (wish.keys(), wish.words());
         (title, wishes.into_iter().map(named).collect())
     };
-    let motion = part(keys::MOTION, |wish| {
+    let motion = part(layout::MOTION, |wish| {
         matches!(
             wish,
             Wish::Stop | Wish::ArmOrNot | Wish::Open | Wish::Half | Wish::Close
         )
     });
-    let joints = part(keys::JOINTS, |wish| {
+    let joints = part(layout::JOINTS, |wish| {
         matches!(wish, Wish::Joint(_) | Wish::LinkFingers | Wish::AngleUnit)
     });
-    let measuring = part(keys::MEASURING, |wish| {
-        matches!(wish, Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Note)
-    });
-    let mut window = part(keys::WINDOW, |wish| {
+    let measuring = part(layout::MEASURING, |wish| {
         matches!(
             wish,
-            Wish::View(_) | Wish::Language | Wish::Theme | Wish::List
+            Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Opens(Opens::Note)
+        )
+    });
+    let mut window = part(layout::WINDOW, |wish| {
+        matches!(
+            wish,
+            Wish::Opens(Opens::View(_) | Opens::Keys) | Wish::Language | Wish::Theme
         )
     });
     let zoom = ZOOM.map(|(key, words)| (key.to_owned(), words));
@@ -97,9 +100,9 @@ fn columns() -> [Vec<Part>; 3] {
 /// True if it is to be hidden.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    let shut = kit::head_ui(ui, look, look.say(keys::TITLE), |ui| {
-        let shut = Button::new(look.say(keys::SHUT), "").weight(Weight::Quiet);
-        shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
+    let shut = kit::head_ui(ui, look, look.say(layout::TITLE), |ui| {
+        let shut = Button::new(look.say(layout::SHUT), "").weight(Weight::Quiet);
+        shut.named(look.say(layout::CLOSE)).ui(ui, look).clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {
         for (ui, parts) in all.iter_mut().zip(columns()) {
@@ -118,7 +121,7 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
             }
         }
     });
-    for text in [keys::ON_TRACKS, keys::IN_FIELDS, keys::ESCAPE] {
+    for text in [layout::ON_TRACKS, layout::IN_FIELDS, layout::ESCAPE] {
         Label::note(look, text).ui(ui);
     }
     shut

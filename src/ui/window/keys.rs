@@ -2,7 +2,8 @@
 //! one control, such as the arrows of a track, are that control's own. Carries nothing out.
 
 use crate::hand::Dof;
-use crate::ui::text::{Text, keys, main, panels, words};
+use crate::ui::kit::Opens;
+use crate::ui::text::{Text, layout, main, panels, words};
 use crate::ui::view::View;
 use egui::{Event, InputState, Key, Modifiers, Ui};
 
@@ -29,18 +30,14 @@ pub(crate) enum Wish {
     Tare,
     /// Take the last taring back.
     UndoTare,
-    /// Write a note.
-    Note,
     /// Let the plots stand, or follow.
     Pause,
-    /// Open a view.
-    View(View),
     /// The other language.
     Language,
     /// The other colours.
     Theme,
-    /// Show the list of keys, or hide it.
-    List,
+    /// Opens something.
+    Opens(Opens),
 }
 
 /// What Esc does.
@@ -54,14 +51,14 @@ pub(crate) enum Escape {
 
 /// One key and what it asks for.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Row {
+pub(crate) struct KeyRow {
     pub(crate) modifiers: Modifiers,
     pub(crate) key: Key,
     pub(crate) wish: Wish,
 }
 
-const fn row(modifiers: Modifiers, key: Key, wish: Wish) -> Row {
-    Row {
+const fn row(modifiers: Modifiers, key: Key, wish: Wish) -> KeyRow {
+    KeyRow {
         modifiers,
         key,
         wish,
@@ -74,22 +71,26 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [Row; 31] = [
+pub(crate) static ROWS: [KeyRow; 31] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
     row(SHIFT, Key::O, Wish::Open),
     row(SHIFT, Key::H, Wish::Half),
     row(SHIFT, Key::C, Wish::Close),
-    row(COMMAND, Key::Num1, Wish::View(View::Live)),
-    row(COMMAND, Key::Num2, Wish::View(View::Touch)),
-    row(COMMAND, Key::Num3, Wish::View(View::Tune)),
-    row(COMMAND, Key::Num4, Wish::View(View::Compare)),
-    row(COMMAND, Key::Num5, Wish::View(View::Faults)),
-    row(COMMAND, Key::Num6, Wish::View(View::Poses)),
-    row(COMMAND, Key::Num7, Wish::View(View::Device)),
-    row(COMMAND, Key::Num8, Wish::View(View::Connection)),
-    row(COMMAND, Key::Num9, Wish::View(View::Traffic)),
+    row(COMMAND, Key::Num1, Wish::Opens(Opens::View(View::Live))),
+    row(COMMAND, Key::Num2, Wish::Opens(Opens::View(View::Touch))),
+    row(COMMAND, Key::Num3, Wish::Opens(Opens::View(View::Tune))),
+    row(COMMAND, Key::Num4, Wish::Opens(Opens::View(View::Compare))),
+    row(COMMAND, Key::Num5, Wish::Opens(Opens::View(View::Faults))),
+    row(COMMAND, Key::Num6, Wish::Opens(Opens::View(View::Poses))),
+    row(COMMAND, Key::Num7, Wish::Opens(Opens::View(View::Device))),
+    row(
+        COMMAND,
+        Key::Num8,
+        Wish::Opens(Opens::View(View::Connection)),
+    ),
+    row(COMMAND, Key::Num9, Wish::Opens(Opens::View(View::Traffic))),
     row(NONE, Key::Num1, Wish::Joint(Dof::Little)),
     row(NONE, Key::Num2, Wish::Joint(Dof::Ring)),
     row(NONE, Key::Num3, Wish::Joint(Dof::Middle)),
@@ -101,28 +102,28 @@ pub(crate) static ROWS: [Row; 31] = [
     row(SHIFT, Key::T, Wish::UndoTare),
     row(NONE, Key::T, Wish::Tare),
     row(NONE, Key::P, Wish::Pause),
-    row(NONE, Key::N, Wish::Note),
+    row(NONE, Key::N, Wish::Opens(Opens::Note)),
     row(COMMAND, Key::L, Wish::Language),
     row(COMMAND, Key::D, Wish::Theme),
-    row(NONE, Key::F1, Wish::List),
-    row(NONE, Key::Questionmark, Wish::List),
+    row(NONE, Key::F1, Wish::Opens(Opens::Keys)),
+    row(NONE, Key::Questionmark, Wish::Opens(Opens::Keys)),
 ];
 
 /// The keys with which egui itself makes everything larger and smaller.
 pub(crate) const ZOOM: [(&str, Text); 3] = match cfg!(target_os = "macos") {
     true => [
-        ("Cmd++", keys::ZOOM_IN),
-        ("Cmd+-", keys::ZOOM_OUT),
-        ("Cmd+0", keys::ZOOM_RESET),
+        ("Cmd++", layout::ZOOM_IN),
+        ("Cmd+-", layout::ZOOM_OUT),
+        ("Cmd+0", layout::ZOOM_RESET),
     ],
     false => [
-        ("Ctrl++", keys::ZOOM_IN),
-        ("Ctrl+-", keys::ZOOM_OUT),
-        ("Ctrl+0", keys::ZOOM_RESET),
+        ("Ctrl++", layout::ZOOM_IN),
+        ("Ctrl+-", layout::ZOOM_OUT),
+        ("Ctrl+0", layout::ZOOM_RESET),
     ],
 };
 
-impl Row {
+impl KeyRow {
     /// As it stands on the keyboard: `Shift+A`.
     pub(crate) fn name(self) -> String {
         let key = match self.key {
@@ -155,22 +156,24 @@ impl Wish {
     /// What it does, in words.
     pub(crate) const fn words(self) -> Text {
         match self {
-            Self::Stop => keys::STOP,
-            Self::ArmOrNot => keys::ARM,
+            Self::Stop => layout::STOP,
+            Self::ArmOrNot => layout::ARM,
             Self::Open => main::OPEN,
             Self::Half => main::HALF,
             Self::Close => main::CLOSE,
             Self::Joint(dof) => words::dof(dof),
-            Self::LinkFingers => keys::LINK,
-            Self::AngleUnit => keys::UNIT,
+            Self::LinkFingers => layout::LINK,
+            Self::AngleUnit => layout::UNIT,
             Self::Tare => panels::TARE_ALL,
-            Self::UndoTare => keys::UNDO_TARE,
-            Self::Note => keys::NOTE,
-            Self::Pause => keys::PAUSE,
-            Self::View(view) => view.title(),
-            Self::Language => keys::LANGUAGE,
-            Self::Theme => keys::THEME,
-            Self::List => keys::LIST,
+            Self::UndoTare => layout::UNDO_TARE,
+            Self::Pause => layout::PAUSE,
+            Self::Language => layout::LANGUAGE,
+            Self::Theme => layout::THEME,
+            Self::Opens(Opens::View(view)) => view.title(),
+            Self::Opens(Opens::Note) => layout::NOTE,
+            Self::Opens(Opens::Keys) => layout::LIST,
+            Self::Opens(Opens::Drive(dof)) => words::dof(dof),
+            Self::Opens(Opens::Faults) => View::Faults.title(),
         }
     }
 
@@ -235,7 +238,7 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
             && (row.key != Key::Escape || escape == Escape::Stops)
         {
             wishes.push(row.wish);
-            opens_a_field |= row.wish == Wish::Note;
+            opens_a_field |= row.wish == Wish::Opens(Opens::Note);
         }
         // Esc goes on: it also closes menus and dialogs.
         row.key == Key::Escape
@@ -249,7 +252,7 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
     wishes
 }
 
-impl Row {
+impl KeyRow {
     /// A stop is meant whatever else is held down.
     fn is_stop(self, event: &Event) -> bool {
         matches!(event, Event::Key { key, .. } if *key == self.key && self.wish == Wish::Stop)
@@ -260,7 +263,7 @@ impl Row {
 mod tests {
     use super::*;
 
-    fn event(row: Row, repeat: bool) -> Event {
+    fn event(row: KeyRow, repeat: bool) -> Event {
         Event::Key {
             key: row.key,
             physical_key: None,
@@ -335,7 +338,7 @@ mod tests {
 
     #[test]
     fn while_trials_run_any_key_is_a_stop_and_a_held_one_is_not() {
-        let press = |repeat| row(NONE, Key::F7, Wish::List).pressed(repeat);
+        let press = |repeat| row(NONE, Key::F7, Wish::Opens(Opens::Keys)).pressed(repeat);
         for (events, wishes) in [
             (vec![press(false)], vec![Wish::Stop]),
             (vec![press(true)], vec![]),
@@ -348,7 +351,7 @@ mod tests {
         }
     }
 
-    impl Row {
+    impl KeyRow {
         fn pressed(self, repeat: bool) -> Event {
             event(self, repeat)
         }
@@ -366,11 +369,13 @@ mod tests {
 
     #[test]
     fn a_note_does_not_begin_with_its_own_key() {
-        let note = ROWS.into_iter().find(|row| row.wish == Wish::Note);
+        let note = ROWS
+            .into_iter()
+            .find(|row| row.wish == Wish::Opens(Opens::Note));
         let events = note.map(|row| vec![event(row, false), Event::Text("n".into())]);
         assert_eq!(
             taken(events.unwrap_or_default(), false),
-            (vec![Wish::Note], 0)
+            (vec![Wish::Opens(Opens::Note)], 0)
         );
     }
 
@@ -378,7 +383,7 @@ mod tests {
     fn keys_have_the_names_that_stand_on_them() {
         assert_eq!(Wish::Stop.keys(), "Space, Esc");
         assert_eq!(Wish::ArmOrNot.keys(), "Shift+A");
-        assert_eq!(Wish::List.keys(), "F1, ?");
+        assert_eq!(Wish::Opens(Opens::Keys).keys(), "F1, ?");
         assert_eq!(Wish::Joint(Dof::Index).keys(), "4");
     }
 }

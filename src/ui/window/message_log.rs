@@ -16,7 +16,7 @@ const AGE: f32 = 52.0;
 
 /// What decides which lines there are and how high.
 #[derive(Debug, Clone, PartialEq)]
-struct Key {
+struct LogKey {
     newest: Option<(u64, Moment)>,
     language: Language,
     least: Option<Level>,
@@ -26,7 +26,7 @@ struct Key {
 
 /// One message, ready to draw.
 #[derive(Debug)]
-struct Line {
+struct LogLine {
     at: Moment,
     level: Level,
     text: String,
@@ -39,18 +39,17 @@ pub(crate) struct MessageLog {
     /// Messages of less weight are left out.
     least: Option<Level>,
     words: String,
-    key: Option<Key>,
-    lines: Vec<Line>,
+    key: Option<LogKey>,
+    lines: Vec<LogLine>,
     /// Lines that were copied last, until the list changes.
     copied: Option<usize>,
 }
 
-/// A level's word and colour.
-fn level_look(look: Look, level: Level) -> (Text, Color32) {
+const fn level_word(level: Level) -> Text {
     match level {
-        Level::Info => (faults::WORD_INFO, look.palette.accent),
-        Level::Warn => (faults::WORD_WARN, look.palette.warn),
-        Level::Alarm => (faults::WORD_ALARM, look.palette.bad),
+        Level::Info => faults::WORD_INFO,
+        Level::Warn => faults::WORD_WARN,
+        Level::Alarm => faults::WORD_ALARM,
     }
 }
 
@@ -89,7 +88,7 @@ impl MessageLog {
                     self.least = least;
                 }
             }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            kit::right_ui(ui, |ui| {
                 let text = match self.copied {
                     None => look.say(faults::COPY).to_owned(),
                     Some(lines) => format!("{} ({lines})", look.say(faults::COPIED)),
@@ -111,7 +110,7 @@ impl MessageLog {
     /// Measures the lines anew if anything about them has changed.
     fn update(&mut self, ui: &Ui, pane: &Pane<'_>) {
         let log = &pane.state.notices;
-        let key = Key {
+        let key = LogKey {
             newest: log.log().next().map(|newest| (newest.id, newest.at)),
             language: pane.look.language,
             least: self.least,
@@ -123,7 +122,7 @@ impl MessageLog {
         }
         self.copied = None;
         let passing = log.log().filter(|notice| Some(notice.level) >= key.least);
-        let line = |notice: &Notice| Line {
+        let line = |notice: &Notice| LogLine {
             at: notice.at,
             level: notice.level,
             text: words(pane.look, notice),
@@ -144,7 +143,7 @@ impl MessageLog {
         let look = pane.look;
         let lost = pane.state.notices.log_dropped();
         if lost > 0 {
-            let text = format!("{} {lost}", look.say(faults::LOG_LOST));
+            let text = look.told(faults::LOG_LOST, lost);
             Label::new(&text, look.palette.muted).small().ui(ui);
         }
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -164,7 +163,7 @@ impl MessageLog {
                 row.col(|ui| {
                     let size = vec2(LAMP, theme::TEXT_LINE);
                     let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-                    kit::lamp(ui, place.center(), level_look(look, line.level).1);
+                    kit::lamp(ui, place.center(), look.level(line.level));
                 });
                 row.col(|ui| {
                     let label = Label::new(&line.text, look.palette.text);
@@ -184,7 +183,7 @@ impl MessageLog {
     fn text(&self, look: Look) -> String {
         let mut text = String::new();
         for line in &self.lines {
-            let level = look.say(level_look(look, line.level).0);
+            let level = look.say(level_word(line.level));
             // Writing to a string cannot fail.
             let _done = writeln!(text, "{:10.3} s  {level}  {}", line.at.secs(), line.text);
         }

@@ -29,13 +29,14 @@ use crate::app::procedures::ProcedureAction;
 use crate::app::settings::{Language, Theme, Zoom};
 use crate::app::state::State;
 use crate::app::trials::TrialAction;
+use crate::hand::Moment;
 
 use crate::ui::connection::ConnectionForm;
 use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
-use crate::ui::joints::row::Row;
-use crate::ui::kit::{CardView, Explain, Look, Pane, Typing};
+use crate::ui::joints::row::JointRow;
+use crate::ui::kit::{self, CardView, Look, Opens, Pane, Typing};
 use crate::ui::params::DeviceView;
 use crate::ui::params::card as device_card;
 use crate::ui::params::procedures as guard;
@@ -124,23 +125,22 @@ impl Window {
         self.install_if_changed(ui, state);
         let mut actions = Vec::from_iter(zoomed);
         let escape = self.escape(ui, state);
-        let mut wishes = if state.hand().runs_series() {
-            keys::take_any(ui)
-        } else {
-            keys::take(ui, escape)
+        let mut wishes = match state.hand().runs_series() {
+            true => keys::take_any(ui),
+            false => keys::take(ui, escape),
         };
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
         }
         let stopped = wishes.contains(&Wish::Stop);
         let mut typing = std::mem::take(&mut self.typing);
-        let mut explain = None;
+        let mut opens = None;
         let mut pane = Pane {
             state,
             look: Look::of(state),
             actions: &mut actions,
             typing: &mut typing,
-            explain: &mut explain,
+            opens: &mut opens,
         };
         for wish in wishes {
             self.obey(ui, &mut pane, wish);
@@ -148,7 +148,10 @@ impl Window {
         self.parts_ui(ui, &mut pane);
         self.typing = typing;
         self.typed = ui.ctx().text_edit_focused();
-        self.explain(explain);
+        if let Some(opens) = opens {
+            self.open(opens, state.now);
+            ui.request_repaint();
+        }
         stop_first(actions, stopped)
     }
 
@@ -166,34 +169,22 @@ impl Window {
             Wish::Half => preset(Preset::Half),
             Wish::Close => preset(Preset::Close),
             Wish::AngleUnit => Some(Action::AngleUnit(state.settings.angle_unit.next())),
-            Wish::Tare => state
-                .hand()
-                .link
-                .state
-                .is_live()
-                .then_some(Action::Tare(None)),
+            Wish::Tare if !state.hand().link.state.is_live() => None,
+            Wish::Tare => Some(Action::Tare(None)),
             Wish::UndoTare => state.hand().tare.can_undo().then_some(Action::UndoTare),
             Wish::Language => Some(Action::Language(state.settings.language.other())),
             Wish::Theme => Some(Action::Theme(state.settings.theme.other())),
             Wish::Pause => Some(Action::PausePlots(self.plots.view.time.toggle())),
             Wish::Joint(dof) => {
-                Row::new(dof, pane).focus(ui, armed && !state.hand().joints[dof].locked);
+                JointRow::new(dof, pane).focus(ui, armed && !state.hand().joints[dof].locked);
                 None
             }
             Wish::LinkFingers => {
                 self.joints.toggle_link();
                 None
             }
-            Wish::Note => {
-                self.status.open_note(state.now);
-                None
-            }
-            Wish::View(view) => {
-                self.view = view;
-                None
-            }
-            Wish::List => {
-                self.key_list.toggle();
+            Wish::Opens(opens) => {
+                self.open(opens, state.now);
                 None
             }
         };
@@ -218,13 +209,17 @@ impl Window {
         Escape::Closes
     }
 
-    fn explain(&mut self, explain: Option<Explain>) {
-        let Some(explain) = explain else { return };
-        self.view = View::Faults;
-        self.faults.choose(match explain {
-            Explain::Drive(dof) => Some(dof),
-            Explain::Faults => None,
-        });
+    fn open(&mut self, opens: Opens, now: Moment) {
+        if let Opens::Faults | Opens::Drive(_) = opens {
+            self.view = View::Faults;
+        }
+        match opens {
+            Opens::View(view) => self.view = view,
+            Opens::Faults => self.faults.choose(None),
+            Opens::Drive(dof) => self.faults.choose(Some(dof)),
+            Opens::Note => self.status.open_note(now),
+            Opens::Keys => self.key_list.toggle(),
+        }
     }
 
     fn install_if_changed(&mut self, ui: &mut Ui, state: &State) {
@@ -254,24 +249,20 @@ impl Window {
             .fill(palette.card)
             .stroke(Stroke::new(1.0, palette.edge))
             .inner_margin(Margin::symmetric(12, 8));
-        let asked = bar_ui(ui, ("header", theme::TOP_BAR), header, |ui| {
-            header::header_ui(ui, pane, is_free)
+        bar_ui(ui, ("header", theme::TOP_BAR), header, |ui| {
+            header::header_ui(ui, pane, is_free);
         });
-        if asked {
-            self.view = View::Connection;
-        }
         let status = Frame::new().inner_margin(Margin {
             bottom: 0,
             ..MARGIN
         });
         let height = 40.0 + theme::GAP;
-        let asked = bar_ui(ui, ("status", height), status, |ui| {
+        bar_ui(ui, ("status", height), status, |ui| {
             if !is_free {
                 ui.disable();
             }
-            self.status.ui(ui, pane)
+            self.status.ui(ui, pane);
         });
-        self.view = asked.unwrap_or(self.view);
         // What is below is covered by a card; what is above stays bright.
         let covered = ui.available_rect_before_wrap();
         if !is_free {
@@ -279,12 +270,9 @@ impl Window {
             ui.disable();
         }
         let tabs = Frame::new().inner_margin(Margin::symmetric(8, 2));
-        let keys_asked = bar_ui(ui, ("tabs", 36.0), tabs, |ui| {
-            header::tabs_ui(ui, pane, &mut self.view)
+        bar_ui(ui, ("tabs", 36.0), tabs, |ui| {
+            header::tabs_ui(ui, pane, self.view);
         });
-        if keys_asked {
-            self.key_list.toggle();
-        }
         let below = ui.available_rect_before_wrap();
         let body = Frame::new().inner_margin(Margin { top: 2, ..MARGIN });
         egui::CentralPanel::no_frame().frame(body).show(ui, |ui| {
@@ -307,15 +295,9 @@ impl Window {
             View::Live | View::Touch | View::Poses | View::Tune
         );
         if pane.state.settings.layout.joints.shut || !sets_joints {
-            let frame = Frame::new().inner_margin(Margin {
-                right: 8,
-                ..Margin::ZERO
-            });
-            let rail = Panel::left("rail").frame(frame).resizable(false);
-            let rail = rail.exact_size(144.0 + theme::GAP);
-            rail.show_separator_line(false).show(ui, |ui| {
-                joint_rail::rail_ui(ui, pane, sets_joints);
-            });
+            let rail = Panel::left("rail");
+            let rail = kit::bare(rail, 144.0 + theme::GAP, theme::GAP_RIGHT);
+            rail.show(ui, |ui| joint_rail::rail_ui(ui, pane, sets_joints));
             return;
         }
         let designed = ui.ctx().content_rect().width() * 0.29;
@@ -334,7 +316,7 @@ impl Window {
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
             View::Touch => self.touch.large_ui(ui, pane),
-            View::Tune => self.view = self.tune.ui(ui, pane).unwrap_or(View::Tune),
+            View::Tune => self.tune.ui(ui, pane),
             View::Compare => self.compare.ui(ui, pane),
             View::Faults => self.faults.ui(ui, pane),
             View::Poses => self.poses.ui(ui, pane),
@@ -360,10 +342,7 @@ impl Window {
             least: STRIP_LEAST + theme::GAP,
             rest: 300.0,
         };
-        let mut poses_asked = false;
-        rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), |ui, pane| {
-            poses_asked = pose_tiles::strip_ui(ui, pane);
-        });
+        rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
         let side = (rect.width() * 0.4).clamp(SIDE_LEAST, 560.0);
         let side = RoomSize {
             designed: side + theme::GAP,
@@ -386,9 +365,6 @@ impl Window {
         });
         let rect = ui.available_rect_before_wrap();
         self.plots_ui(ui, rect, pane);
-        if poses_asked {
-            self.view = View::Poses;
-        }
     }
 
     /// Draws the plots and nothing else, over all of `ui`, into a context of their own: for a picture.
@@ -409,24 +385,20 @@ impl Window {
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             self.plots.ui(ui, pane)
         });
-        if std::mem::take(&mut self.plots.note_asked) {
-            self.status.open_note(pane.state.now);
-        }
     }
 }
 
 const MARGIN: Margin = Margin::same(8);
 
 /// A row of the window of this name and height, over its whole width.
-fn bar_ui<R>(
+fn bar_ui(
     ui: &mut Ui,
     (name, height): (&'static str, f32),
     frame: Frame,
-    add: impl FnOnce(&mut Ui) -> R,
-) -> R {
-    let bar = Panel::top(name).frame(frame).resizable(false);
-    let bar = bar.exact_size(height).show_separator_line(false);
-    bar.show(ui, add).inner
+    add: impl FnOnce(&mut Ui),
+) {
+    let bar = kit::bare(Panel::top(name), height, Margin::ZERO);
+    bar.frame(frame).show(ui, add);
 }
 
 /// Gives one part of the window the whole place. What it asks for goes nowhere.
@@ -439,7 +411,7 @@ fn alone_ui(ui: &mut Ui, state: &State, part: impl FnOnce(&mut Ui, Rect, &mut Pa
         look: Look::of(state),
         actions: &mut actions,
         typing: &mut typing,
-        explain: &mut None,
+        opens: &mut None,
     };
     let whole = ui.max_rect();
     ui.painter()

@@ -9,13 +9,13 @@ use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
-use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
+use crate::ui::text::{Text, errors, layout, main, notices, panels, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
-use egui::{Align, Color32, Frame, Key, Layout, Rect, Stroke, TextEdit, Ui, vec2};
+use egui::{Color32, Frame, Key, Rect, Stroke, TextEdit, Ui, vec2};
 use std::fmt::Display;
 use std::time::Duration;
 
@@ -65,9 +65,7 @@ impl Warning {
     fn retried(mut self, pane: &Pane<'_>) -> Self {
         self.aside = match pane.state.hand().link.dialling {
             Dialling::Idle => String::new(),
-            Dialling::Trying { attempt } => {
-                format!("{} {attempt}", pane.look.say(main::LOST_TRYING))
-            }
+            Dialling::Trying { attempt } => pane.look.told(main::LOST_TRYING, attempt),
             Dialling::Waiting { until, .. } => {
                 let left = until.since(pane.state.now).as_secs_f64();
                 format!("{} {left:.1} s", pane.look.say(main::LOST_RETRY_IN))
@@ -147,11 +145,8 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
 
 fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
     let link = &pane.state.hand().link;
-    let warn = || {
-        let color = pane.look.palette.warn;
-        Warning::new(pane, main::OTHER_CONTROLLER_TITLE, color)
-    };
-    (link.state.is_live() && link.other_controller).then(warn)
+    let other = || Warning::new(pane, main::OTHER_CONTROLLER_TITLE, pane.look.palette.warn);
+    (link.state.is_live() && link.other_controller).then(other)
 }
 
 fn stale(pane: &Pane<'_>) -> Option<Warning> {
@@ -247,8 +242,8 @@ impl StatusLine {
         *self = Self::default();
     }
 
-    /// Draws the line. The view that was asked for.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<View> {
+    /// Draws the line.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let warnings = warnings(pane);
         let worst = warnings.first();
         let palette = pane.look.palette;
@@ -261,39 +256,32 @@ impl StatusLine {
             .stroke(Stroke::new(1.0, edge))
             .corner_radius(theme::ROUND)
             .inner_margin(vec2(theme::PAD, 0.0));
-        let row = Layout::right_to_left(Align::Center);
-        let shown = frame.show(ui, |ui| {
-            ui.with_layout(row, |ui| {
+        frame.show(ui, |ui| {
+            kit::right_ui(ui, |ui| {
                 ui.set_min_size(ui.available_size());
                 self.note_ui(ui, pane);
                 let news = news(pane).filter(|_| worst.is_none());
                 mover_ui(ui, pane, worst.is_some() || news.is_some());
-                let left = Layout::left_to_right(Align::Center);
-                let shown = ui.with_layout(left, |ui| match worst {
+                kit::left_ui(ui, |ui| match worst {
                     Some(worst) => warning_ui(ui, pane, worst, &warnings),
-                    None => {
-                        news_ui(ui, pane, news);
-                        None
-                    }
+                    None => news_ui(ui, pane, news),
                 });
-                shown.inner
-            })
+            });
         });
-        shown.inner.inner
     }
 
     fn note_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let Some(at) = self.note_at else { return };
         let look = pane.look;
-        let cancel = Button::said(look, plots::NOTE_CANCEL);
+        let cancel = Button::said(look, panels::NOTE_CANCEL);
         let cancelled = cancel.ui(ui, look).clicked();
-        let keep = Button::said(look, plots::NOTE_KEEP);
+        let keep = Button::said(look, panels::NOTE_KEEP);
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
-        let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
+        let title = look.told(panels::NOTE_AT, clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
         let hint = match pane.state.hand().rests() {
-            true => plots::NOTE_HINT,
-            false => plots::NOTE_HINT_MOVING,
+            true => panels::NOTE_HINT,
+            false => panels::NOTE_HINT_MOVING,
         };
         let edit = TextEdit::singleline(&mut self.note)
             .char_limit(NOTE_MAX)
@@ -301,7 +289,7 @@ impl StatusLine {
             .margin(theme::FIELD_INSET)
             .desired_width((NOTE_WIDTH - words).max(theme::FIELD));
         let response = ui.add(edit);
-        kit::named_field(&response, look.say(plots::NOTE_FIELD), true, &self.note);
+        kit::named_field(&response, look.say(panels::NOTE_FIELD), true, &self.note);
         Label::new(&title, look.palette.text).ui(ui);
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
@@ -347,12 +335,8 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     let palette = look.palette;
     let (words, color) = match (news, mover(pane)) {
         (Some(newest), _) => {
-            let color = match newest.level {
-                Level::Info => palette.accent,
-                Level::Warn => palette.warn,
-                Level::Alarm => palette.bad,
-            };
-            (notices::notice(look, &newest.what), color)
+            let said = notices::notice(look, &newest.what);
+            (said, look.level(newest.level))
         }
         (None, Some((words, _))) => (words, palette.armed),
         (None, None) => {
@@ -369,8 +353,8 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     Label::new(&words, palette.text).ui(ui);
 }
 
-/// The worst of the warnings, and how many more there are. The view that was asked for.
-fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) -> Option<View> {
+/// The worst of the warnings, and how many more there are.
+fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) {
     let look = pane.look;
     let palette = look.palette;
     let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
@@ -379,9 +363,10 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
         true => kit::lamp(ui, sign.center(), worst.color),
         false => kit::warning_sign(ui, sign, worst.color),
     }
-    let row = Layout::right_to_left(Align::Center);
-    let shown = ui.with_layout(row, |ui| {
-        let asked = help_ui(ui, pane, worst.help.as_ref());
+    kit::right_ui(ui, |ui| {
+        if let Some(help) = &worst.help {
+            help_ui(ui, pane, help);
+        }
         for other in all.iter().skip(1).rev() {
             let label = Label::new(look.say(other.title), other.color).ui(ui);
             label.on_hover_text(&other.body);
@@ -389,11 +374,8 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
         if !worst.aside.is_empty() {
             Label::new(&worst.aside, palette.muted).number().ui(ui);
         }
-        let left = Layout::left_to_right(Align::Center);
-        ui.with_layout(left, |ui| words_ui(ui, pane, worst));
-        asked
+        kit::left_ui(ui, |ui| words_ui(ui, pane, worst));
     });
-    shown.inner
 }
 
 /// Title and sentence over at most two lines; the whole in the tooltip.
@@ -408,16 +390,16 @@ fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     response.on_hover_text(&warning.body);
 }
 
-fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: Option<&Help>) -> Option<View> {
-    match help? {
+fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) {
+    match help {
         Help::View(view, text) => {
-            let button = Button::said(pane.look, *text).ui(ui, pane.look);
-            button.clicked().then_some(*view)
+            if Button::said(pane.look, *text).ui(ui, pane.look).clicked() {
+                pane.open(Opens::View(*view));
+            }
         }
         Help::Dismiss(id) => {
             let button = Button::said(pane.look, layout::UNDERSTOOD);
             button.sends(ui, pane, Action::Dismiss(*id));
-            None
         }
     }
 }

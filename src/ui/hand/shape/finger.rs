@@ -1,7 +1,7 @@
 //! The four fingers, and the parts that they share with the thumb: joints between forks, pads.
 
 use crate::ui::hand::shape::rings::{disc, dome, frame, ring_at, rounded};
-use crate::ui::hand::solid::{Ring, Skin, Soup, point};
+use crate::ui::hand::solid::{LoftRing, Skin, Soup, point};
 use glam::{Affine3, Vec3};
 
 /// Points around a finger.
@@ -10,7 +10,7 @@ const AROUND: u8 = 12;
 const FIRST_MIDDLE_MM: f32 = -6.65;
 const SECOND_MIDDLE_MM: f32 = -6.10;
 
-const FIRST: [Ring; 5] = [
+const FIRST: [LoftRing; 5] = [
     [7.0, 0.9, 8.6, 8.4, 8.7, 3.4],
     [12.0, 1.5, 9.4, 9.0, 8.8, 3.4],
     [18.0, 2.0, 9.8, 9.1, 8.7, 3.4],
@@ -18,7 +18,7 @@ const FIRST: [Ring; 5] = [
     [23.8, 2.6, 7.8, 7.8, 7.8, 3.4],
 ];
 
-const SECOND: [Ring; 9] = [
+const SECOND: [LoftRing; 9] = [
     [8.8, 0.0, 7.8, 7.8, 7.8, 3.2],
     [12.0, 0.0, 8.5, 8.4, 8.6, 3.0],
     [24.0, 0.0, 8.6, 8.0, 8.7, 3.0],
@@ -60,7 +60,7 @@ pub(crate) fn bone(
     soup: &mut Soup,
     base: &Affine3,
     [radius, side]: [f32; 2],
-    rest: (Skin, &[Ring]),
+    rest: (Skin, &[LoftRing]),
 ) {
     let knuckle = [
         (-0.99, 0.14),
@@ -126,7 +126,7 @@ pub(crate) fn pin(soup: &mut Soup, base: &Affine3, at: f32) {
 }
 
 /// A sensor on the front of a fingertip, from one place along it to another.
-pub(crate) fn pad(soup: &mut Soup, base: &Affine3, rings: &[Ring], [from, to]: [f32; 2]) {
+pub(crate) fn pad(soup: &mut Soup, base: &Affine3, rings: &[LoftRing], [from, to]: [f32; 2]) {
     let place = |u: f32, v: f32| {
         let [row, column] = rounded(u, v, 2.6);
         let ring = ring_at(rings, from + (to - from) * (row + 1.0) / 2.0);

@@ -1,7 +1,7 @@
 //! What is not the hand: what it holds, and the arrow of a force.
 
 use crate::ui::hand::shape::rings::{disc, frame};
-use crate::ui::hand::solid::{Ring, Skin, Solid, Soup};
+use crate::ui::hand::solid::{LoftRing, Skin, Solid, Soup};
 use glam::{Affine3, Vec3};
 use std::f32::consts::PI;
 use std::sync::LazyLock;
@@ -21,7 +21,7 @@ pub(crate) enum Held {
 pub(crate) fn held(held: Held) -> &'static Solid {
     static SHAPES: LazyLock<[Solid; 3]> = LazyLock::new(|| {
         let ball = |step: u8| (f32::from(step) / 12.0 * PI).sin_cos();
-        let ball: [Ring; 13] = std::array::from_fn(|step| {
+        let ball: [LoftRing; 13] = std::array::from_fn(|step| {
             let (sin, cos) = ball(u8::try_from(step).unwrap_or(0));
             disc(-cos * BALL_MM, (sin * BALL_MM).max(0.1))
         });
@@ -30,7 +30,7 @@ pub(crate) fn held(held: Held) -> &'static Solid {
         let block = [-44.0, -42.5, -21.0, 0.0, 21.0, 42.5, 44.0];
         let block = block.map(|at: f32| slab([at, (at.abs() - 42.5).max(0.0)]));
         let cup = CUP.map(|[along, radius]| disc(along, radius));
-        let tube = |rings: &[Ring], middle: [f32; 3], around: u8| {
+        let tube = |rings: &[LoftRing], middle: [f32; 3], around: u8| {
             let mut soup = Soup::new(false);
             soup.loft(
                 &frame(middle.into(), Vec3::X, Vec3::Y),

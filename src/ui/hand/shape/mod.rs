@@ -16,17 +16,15 @@ pub(crate) use held::{Held, arrow, held};
 
 use Segment::{Index1, Index2, Little2, Middle2, Palm, Thumb1, Thumb2, Thumb3, Thumb4};
 
-/// The shapes of the hand, each once: neighbouring fingers share theirs. The second set is for small pictures.
-static SHAPES: [LazyLock<[Solid; 9]>; 2] = [
+/// The shapes of the hand, each made once; the second set is for small pictures.
+static SHAPES: [LazyLock<Vec<(Segment, Solid)>>; 2] = [
     LazyLock::new(|| models(false)),
     LazyLock::new(|| models(true)),
 ];
 
-fn models(is_small: bool) -> [Solid; 9] {
-    [
-        Palm, Index1, Little2, Middle2, Index2, Thumb1, Thumb2, Thumb3, Thumb4,
-    ]
-    .map(|segment| model(segment, is_small))
+fn models(is_small: bool) -> Vec<(Segment, Solid)> {
+    let model = |segment| (segment, model(segment, is_small));
+    Segment::ALL.into_iter().map(model).collect()
 }
 
 fn model(segment: Segment, is_small: bool) -> Solid {
@@ -46,30 +44,10 @@ fn model(segment: Segment, is_small: bool) -> Solid {
 }
 
 /// The shape of a segment.
-pub(crate) fn solid(segment: Segment, is_small: bool) -> &'static Solid {
+pub(crate) fn solid(segment: Segment, is_small: bool) -> Option<&'static Solid> {
     let [large, small] = &SHAPES;
-    let [
-        palm,
-        first,
-        little,
-        middle,
-        index,
-        turret,
-        second,
-        third,
-        fourth,
-    ] = &**if is_small { small } else { large };
-    match segment {
-        Palm => palm,
-        Segment::Little1 | Segment::Ring1 | Segment::Middle1 | Index1 => first,
-        Little2 => little,
-        Middle2 => middle,
-        Segment::Ring2 | Index2 => index,
-        Thumb1 => turret,
-        Thumb2 => second,
-        Thumb3 => third,
-        Thumb4 => fourth,
-    }
+    let mut all = if is_small { small } else { large }.iter();
+    all.find(|(own, _)| *own == segment).map(|(_, solid)| solid)
 }
 
 /// Out of a fingertip's pad, and along it to the tip: in the frame of [`Segment::tip`].

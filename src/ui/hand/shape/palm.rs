@@ -1,24 +1,24 @@
 //! The palm: a lower shell with the motor of the thumb, a seam, an upper shell with a plate, and the wrist.
 
 use crate::ui::hand::shape::rings::{dome, frame, ring_at, rounded, step};
-use crate::ui::hand::solid::{Ring, Skin, Soup};
+use crate::ui::hand::solid::{LoftRing, Skin, Soup};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
-const WRIST: [Ring; 3] = [
+const WRIST: [LoftRing; 3] = [
     [-13.0, -2.0, 20.4, 20.4, 24.0, 2.2],
     [-12.0, -2.0, 21.4, 21.4, 25.0, 2.2],
     [-4.6, -2.0, 21.4, 21.4, 25.0, 2.2],
 ];
 
-const WRIST_RING: [Ring; 3] = [
+const WRIST_RING: [LoftRing; 3] = [
     [-4.6, -2.0, 22.4, 22.4, 26.0, 2.2],
     [-1.6, -2.0, 22.4, 22.4, 26.0, 2.2],
     [-0.8, -2.0, 21.4, 21.4, 25.0, 2.2],
 ];
 
 /// Up to the deck on which the thumb turns.
-const LOWER: [Ring; 10] = [
+const LOWER: [LoftRing; 10] = [
     [1.4, -2.0, 16.5, 18.0, 24.0, 2.3],
     [3.0, -2.0, 17.5, 19.0, 26.0, 2.4],
     [9.0, -2.0, 17.2, 19.2, 30.0, 2.7],
@@ -32,12 +32,12 @@ const LOWER: [Ring; 10] = [
 ];
 
 /// The groove between the shells.
-const SEAM: [Ring; 2] = [
+const SEAM: [LoftRing; 2] = [
     [DECK_MM + 0.2, -2.0, 14.6, 17.0, 41.3, 3.7],
     [DECK_MM + 2.2, -2.0, 14.6, 17.0, 41.3, 3.7],
 ];
 
-const UPPER: [Ring; 8] = [
+const UPPER: [LoftRing; 8] = [
     [DECK_MM + 2.4, -2.0, 15.6, 17.9, 42.4, 3.7],
     [DECK_MM + 3.6, -2.0, 16.0, 18.3, 43.0, 3.7],
     [78.0, -2.0, 15.5, 17.6, 43.7, 3.8],
@@ -49,7 +49,7 @@ const UPPER: [Ring; 8] = [
 ];
 
 /// Under the knuckles.
-const TOP: [Ring; 1] = [[145.2, -0.8, 7.8, 7.8, 40.2, 3.6]];
+const TOP: [LoftRing; 1] = [[145.2, -0.8, 7.8, 7.8, 40.2, 3.6]];
 
 /// Where the lower shell ends, and the thumb's foot stands.
 const DECK_MM: f32 = 57.2;
@@ -65,7 +65,7 @@ fn ball(at: Vec3) -> f32 {
 
 /// The surface of the palm at a place across and along it.
 fn surface(x: f32, z: f32) -> Vec3 {
-    let rings: &[Ring] = if z < DECK_MM { &LOWER } else { &UPPER };
+    let rings: &[LoftRing] = if z < DECK_MM { &LOWER } else { &UPPER };
     let [_, rise, front, _, side, square] = ring_at(rings, z);
     let front = front * (1.0 - (x / side).abs().powf(square)).powf(1.0 / square);
     let at = Vec3::new(x, rise + front, z);
@@ -87,7 +87,7 @@ pub(crate) fn palm(soup: &mut Soup) {
     );
     // The little finger's knuckle is the lowest.
     let low = |at: Vec3| 2.8 * step(4.0, 44.0, at.x) * step(110.0, 145.0, at.z);
-    let shells: [(Skin, &[Ring]); 4] = [
+    let shells: [(Skin, &[LoftRing]); 4] = [
         (Skin::Metal, &LOWER),
         (Skin::Hinge, &SEAM),
         (Skin::Metal, &UPPER),

@@ -1,6 +1,6 @@
 //! Rings and frames of lofts, and how patches lie on them.
 
-use crate::ui::hand::solid::Ring;
+use crate::ui::hand::solid::LoftRing;
 use glam::{Affine3, Vec3};
 
 /// A square as a round one: shares from -1 to 1 stay inside a ring that is so square.
@@ -16,7 +16,7 @@ pub(crate) fn dome(u: f32, v: f32, high: f32) -> f32 {
 }
 
 /// The ring of a loft at a place along it.
-pub(crate) fn ring_at(rings: &[Ring], along: f32) -> Ring {
+pub(crate) fn ring_at(rings: &[LoftRing], along: f32) -> LoftRing {
     let pair = rings
         .windows(2)
         .rev()
@@ -38,7 +38,7 @@ pub(crate) fn frame(origin: Vec3, along: Vec3, front: Vec3) -> Affine3 {
 }
 
 /// A round ring.
-pub(crate) const fn disc(along: f32, radius: f32) -> Ring {
+pub(crate) const fn disc(along: f32, radius: f32) -> LoftRing {
     [along, 0.0, radius, radius, radius, 2.0]
 }
 

@@ -2,13 +2,13 @@
 
 use crate::ui::hand::shape::finger::{bone, fork, pad, pin, plate};
 use crate::ui::hand::shape::rings::{disc, frame};
-use crate::ui::hand::solid::{Ring, Skin, Soup};
+use crate::ui::hand::solid::{LoftRing, Skin, Soup};
 use glam::{Affine3, Vec3};
 
 /// Middle plane of the thumb.
 const MIDDLE_MM: f32 = -7.2;
 
-const SECOND: [Ring; 6] = [
+const SECOND: [LoftRing; 6] = [
     [8.6, 1.0, 9.2, 9.2, 9.6, 3.2],
     [12.0, 1.6, 12.0, 10.6, 10.4, 3.0],
     [17.0, 2.0, 13.6, 11.0, 10.8, 3.0],
@@ -17,14 +17,14 @@ const SECOND: [Ring; 6] = [
     [28.2, 0.6, 8.6, 8.2, 9.0, 3.0],
 ];
 
-const THIRD: [Ring; 4] = [
+const THIRD: [LoftRing; 4] = [
     [8.0, 0.0, 8.8, 8.8, 9.0, 3.2],
     [11.0, 0.2, 9.4, 9.2, 9.6, 3.2],
     [14.6, 0.2, 9.2, 9.0, 9.4, 3.2],
     [16.4, 0.0, 7.8, 7.8, 8.4, 3.2],
 ];
 
-const FOURTH: [Ring; 9] = [
+const FOURTH: [LoftRing; 9] = [
     [8.4, 0.4, 8.2, 8.2, 8.4, 3.0],
     [11.0, 0.6, 8.9, 8.8, 9.2, 2.9],
     [17.0, 0.6, 9.0, 8.6, 9.3, 2.8],
