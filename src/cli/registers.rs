@@ -24,8 +24,10 @@ impl From<&Register> for RegisterRow {
     }
 }
 
-/// The columns: title, key of the JSON object, and how a cell is filled up.
-const COLUMNS: [(&str, &str, fn(&str) -> String); 11] = [
+/// Title, key of the JSON object, and how a cell is filled up.
+type RegisterColumn = (&'static str, &'static str, fn(&str) -> String);
+
+const COLUMNS: [RegisterColumn; 11] = [
     ("name", "name", left::<20>),
     ("address", "address", right::<7>),
     ("bytes", "bytes", right::<5>),
