@@ -12,11 +12,11 @@ pub(crate) struct TextField<'a> {
     pub(crate) name: &'a str,
     hint: &'a str,
     max: usize,
-    check: Check<'a>,
+    check: FieldCheck<'a>,
 }
 
 /// What passes, and the words beside what does not.
-type Check<'a> = (fn(&str) -> bool, &'a str);
+type FieldCheck<'a> = (fn(&str) -> bool, &'a str);
 
 impl<'a> TextField<'a> {
     /// A field of at most so many characters.
