@@ -11,7 +11,7 @@ use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
 use crate::hand::{HandSample, Moment, PerDof, PerFinger};
 use crate::history::History;
-use crate::link::{self, LinkConfig, LinkStats, LinkStatus, PollRates, Traffic};
+use crate::link::{self, First, LinkConfig, LinkStats, LinkStatus, PollRates, Traffic};
 use crate::record::{Hold, LinkState};
 use crate::transport::Endpoint;
 use std::sync::Arc;
@@ -124,6 +124,13 @@ impl HandState {
         self.seen_from = Some(now);
         self.was_live = false;
         self.follow();
+    }
+
+    /// Reads this first while something moves.
+    pub(crate) fn read_first(&self, first: First) {
+        if let Some(open) = &self.open {
+            open.link.read_first(first);
+        }
     }
 
     /// True if closing or leaving now could leave a hand in motion that this program set in motion.
