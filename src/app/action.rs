@@ -1,14 +1,14 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
-use crate::app::files::export::Content;
-use crate::app::hand::preset::Preset;
+use crate::app::files::export::Export;
+use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
 use crate::app::layout::Layout;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::readings::fault_recorder::{PersonAct, RecordingId};
 use crate::app::readings::faults::FaultKind;
-use crate::app::scan::ScanWish;
+use crate::app::scan::ScanTarget;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
@@ -20,7 +20,7 @@ use crate::history::Mark;
 use crate::link::First;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
-use crate::poses::library::{Library, PoseId};
+use crate::poses::library::{PoseId, PoseLibrary};
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
@@ -94,7 +94,7 @@ pub enum Action {
     /// Look for serial ports again.
     FindPorts,
     /// Look for hands. Reads only.
-    Scan(ScanWish),
+    Scan(ScanTarget),
     /// Look no further; what was found stays.
     CancelScan,
     /// This fault was seen by a person.
@@ -106,7 +106,7 @@ pub enum Action {
     /// Forget faults that are over and seen.
     ForgetFaults,
     /// Ask where a file should go, and write it.
-    Save(Content),
+    Save(Export),
     /// Make a picture of the plots in this size (width, height in points), and save it. Carried out by the shell, as
     /// the program itself draws nothing.
     SavePicture((u32, u32)),
@@ -179,7 +179,7 @@ impl Action {
     /// What this does to the hand, for the record of what happened; `None` if it does nothing to it. Arming, stopping,
     /// gestures and notes are in the history already.
     #[must_use]
-    pub fn person_act(&self, is_armed: bool, library: &Library) -> Option<PersonAct> {
+    pub fn person_act(&self, is_armed: bool, library: &PoseLibrary) -> Option<PersonAct> {
         match self {
             Self::Disarm => return Some(PersonAct::Disarm),
             Self::ClearErrors => return Some(PersonAct::ClearErrors),

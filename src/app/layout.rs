@@ -1,7 +1,7 @@
 //! Where a person put the borders between the rooms of the window, which rooms are shut, and how large the window is.
 //! Shares and flags only: what a room shows, and how small it may become, is the window's matter.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The smallest window that shows everything, points.
 pub const WINDOW_LEAST: [f32; 2] = [1024.0, 640.0];
@@ -14,7 +14,7 @@ const SHARES: std::ops::RangeInclusive<f32> = 0.05..=0.95;
 
 /// A room of the window that has a border of its own or can be shut. The room in the middle has neither.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Room {
+pub enum WindowRoom {
     /// The column of joints; its border is at its right.
     Joints,
     /// Fingertips over faults; its border is at its left.
@@ -25,17 +25,20 @@ pub enum Room {
     Strip,
 }
 
-impl Room {
+impl WindowRoom {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Joints, Self::Side, Self::Faults, Self::Strip];
 }
 
 /// How one room stands.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, from = "RoughRoom")]
+#[serde(default)]
 pub struct RoomLayout {
     /// Its part of what its border divides, 0.05..=0.95; none as designed.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "sane_share"
+    )]
     pub share: Option<f32>,
     /// Only its name is shown.
     pub shut: bool,
@@ -53,22 +56,9 @@ impl RoomLayout {
     }
 }
 
-/// A room as a file has it: nothing checked yet.
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct RoughRoom {
-    share: Option<f32>,
-    shut: bool,
-}
-
-impl From<RoughRoom> for RoomLayout {
-    fn from(rough: RoughRoom) -> Self {
-        let room = Self {
-            share: None,
-            shut: rough.shut,
-        };
-        rough.share.map_or(room, |share| room.with_share(share))
-    }
+fn sane_share<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f32>, D::Error> {
+    let share = Option::<f32>::deserialize(from)?;
+    Ok(share.and_then(|share| RoomLayout::default().with_share(share).share))
 }
 
 /// Width and height of the window, points, within what a screen can have.
@@ -107,36 +97,36 @@ impl Default for WindowSize {
 pub struct Layout {
     /// Size of the window.
     pub window: WindowSize,
-    /// See [`Room::Joints`].
+    /// See [`WindowRoom::Joints`].
     pub joints: RoomLayout,
-    /// See [`Room::Side`].
+    /// See [`WindowRoom::Side`].
     pub side: RoomLayout,
-    /// See [`Room::Faults`].
+    /// See [`WindowRoom::Faults`].
     pub faults: RoomLayout,
-    /// See [`Room::Strip`].
+    /// See [`WindowRoom::Strip`].
     pub strip: RoomLayout,
 }
 
 impl Layout {
     /// How a room stands.
     #[must_use]
-    pub const fn room(&self, room: Room) -> RoomLayout {
+    pub const fn room(&self, room: WindowRoom) -> RoomLayout {
         match room {
-            Room::Joints => self.joints,
-            Room::Side => self.side,
-            Room::Faults => self.faults,
-            Room::Strip => self.strip,
+            WindowRoom::Joints => self.joints,
+            WindowRoom::Side => self.side,
+            WindowRoom::Faults => self.faults,
+            WindowRoom::Strip => self.strip,
         }
     }
 
     /// With another standing of one room.
     #[must_use]
-    pub const fn with(mut self, room: Room, standing: RoomLayout) -> Self {
+    pub const fn with(mut self, room: WindowRoom, standing: RoomLayout) -> Self {
         match room {
-            Room::Joints => self.joints = standing,
-            Room::Side => self.side = standing,
-            Room::Faults => self.faults = standing,
-            Room::Strip => self.strip = standing,
+            WindowRoom::Joints => self.joints = standing,
+            WindowRoom::Side => self.side = standing,
+            WindowRoom::Faults => self.faults = standing,
+            WindowRoom::Strip => self.strip = standing,
         }
         self
     }
@@ -176,8 +166,8 @@ mod tests {
             shut: true,
         };
         let layout = Layout::default()
-            .with(Room::Side, RoomLayout::default().with_share(0.25))
-            .with(Room::Strip, shut);
+            .with(WindowRoom::Side, RoomLayout::default().with_share(0.25))
+            .with(WindowRoom::Strip, shut);
         let text = toml::to_string(&layout).unwrap();
         assert_eq!(toml::from_str::<Layout>(&text).unwrap(), layout);
     }
@@ -188,7 +178,12 @@ mod tests {
             window: [1920.0, 1080.0].into(),
             ..Layout::default()
         };
-        for room in [Room::Joints, Room::Side, Room::Faults, Room::Strip] {
+        for room in [
+            WindowRoom::Joints,
+            WindowRoom::Side,
+            WindowRoom::Faults,
+            WindowRoom::Strip,
+        ] {
             let standing = RoomLayout {
                 shut: true,
                 ..RoomLayout::default()

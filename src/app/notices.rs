@@ -5,7 +5,7 @@ use crate::hand::{Dof, Finger, Gesture, Moment, UserGesture};
 use crate::link::{LinkTrouble, RequestError};
 use crate::params::file::ParamsFileError;
 use crate::poses::file::PoseFileError;
-use crate::record::quirk_sheet::Difference;
+use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed};
 use crate::trials::Abort;
 use std::collections::VecDeque;
@@ -30,7 +30,7 @@ pub enum Level {
 
 /// What was asked of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Asked {
+pub enum RequestKind {
     /// A stored pose.
     Gesture(Gesture),
     /// To store a pose in the hand.
@@ -87,14 +87,14 @@ pub enum NoticeKind {
     /// Something was asked and did not work.
     RequestFailed {
         /// What was asked.
-        what: Asked,
+        what: RequestKind,
         /// Why.
         error: RequestError,
     },
     /// Something was asked and the hand acknowledged it. It does not say that it is done.
     Acknowledged {
         /// What was asked.
-        what: Asked,
+        what: RequestKind,
     },
     /// A gesture moves all joints, and this one is locked. Nothing was sent.
     GestureWouldMoveLocked {
@@ -199,7 +199,7 @@ pub enum NoticeKind {
     /// The hand at this address answers otherwise than the one of last time: it may be another.
     HandDiffers {
         /// In what.
-        differences: Vec<Difference>,
+        differences: Vec<FactDifference>,
         /// Day of last time.
         last_seen: String,
     },
@@ -221,6 +221,12 @@ pub enum NoticeKind {
 }
 
 impl NoticeKind {
+    /// A file could not be written there.
+    pub(crate) fn not_saved(path: PathBuf, error: &std::io::Error) -> Self {
+        let message = error.to_string();
+        Self::NotSaved { path, message }
+    }
+
     /// How much it matters.
     #[must_use]
     pub const fn level(&self) -> Level {
@@ -235,31 +241,7 @@ impl NoticeKind {
             | Self::SessionOpened { .. }
             | Self::DrawnWithoutOpenGl { .. }
             | Self::NoFileChosen => Level::Info,
-            Self::NoLink(_)
-            | Self::Disarmed(_)
-            | Self::LatencyTimer { .. }
-            | Self::ArmRefused(_)
-            | Self::Fault { .. }
-            | Self::RequestFailed { .. }
-            | Self::GestureWouldMoveLocked { .. }
-            | Self::GesturesOff
-            | Self::GestureStoreOff
-            | Self::PoseUnknown
-            | Self::PosesRefused { .. }
-            | Self::ParamsRefused { .. }
-            | Self::PosesIgnored { .. }
-            | Self::PosesNotSaved { .. }
-            | Self::SeriesEnded { .. }
-            | Self::SeriesRuns
-            | Self::SessionRefused { .. }
-            | Self::NotSaved { .. }
-            | Self::SettingsNotSaved { .. }
-            | Self::SettingsIgnored { .. }
-            | Self::HandDiffers { .. }
-            | Self::SheetNotKept { .. }
-            | Self::PlanIgnored { .. }
-            | Self::TareUnderLoad { .. }
-            | Self::EndpointIgnored { .. } => Level::Warn,
+            _ => Level::Warn,
         }
     }
 
@@ -285,14 +267,29 @@ pub struct Notice {
     pub count: u32,
 }
 
+impl Notice {
+    fn new(id: u64, at: Moment, what: NoticeKind) -> Self {
+        Self {
+            id,
+            at,
+            level: what.level(),
+            what,
+            count: 1,
+        }
+    }
+
+    fn again(&mut self, at: Moment, what: NoticeKind) {
+        (self.at, self.what) = (at, what);
+        self.count = self.count.saturating_add(1);
+    }
+}
+
 /// What a person should read, and the log of all that was to be read; both bounded.
 #[derive(Debug, Clone, Default)]
 pub struct Notices {
     kept: VecDeque<Notice>,
     log: VecDeque<Notice>,
-    next: u64,
-    logged: u64,
-    dropped: u64,
+    pushed: u64,
     log_dropped: u64,
 }
 
@@ -300,55 +297,40 @@ impl Notices {
     /// Adds one. The same cause again is counted, not added, and counts as the newest. A fault is only logged: the list
     /// of faults asks for attention until it was seen.
     pub fn push(&mut self, at: Moment, what: NoticeKind) {
+        self.pushed += 1;
         self.note(at, &what);
         if matches!(what, NoticeKind::Fault { .. }) {
             return;
         }
-        let known = self
-            .kept
-            .iter()
-            .position(|notice| notice.what.is_same(&what));
-        if let Some(mut notice) = known.and_then(|index| self.kept.remove(index)) {
-            notice.at = at;
-            notice.count = notice.count.saturating_add(1);
-            notice.what = what;
-            self.kept.push_back(notice);
-            return;
+        let known = self.kept.iter().position(|own| own.what.is_same(&what));
+        let known = known.and_then(|index| self.kept.remove(index));
+        if let Some(mut notice) = known {
+            notice.again(at, what);
+            return self.kept.push_back(notice);
         }
         if self.kept.len() >= NOTICES_MAX {
             self.kept.pop_front();
-            self.dropped += 1;
         }
-        self.kept.push_back(Notice {
-            id: self.next,
-            at,
-            level: what.level(),
-            what,
-            count: 1,
-        });
-        self.next += 1;
+        self.kept.push_back(Notice::new(self.pushed, at, what));
     }
 
     /// Writes it into the log. The same cause right again is counted; after something else it is a line of its own.
     fn note(&mut self, at: Moment, what: &NoticeKind) {
         if let Some(newest) = self.log.back_mut().filter(|last| last.what.is_same(what)) {
-            newest.at = at;
-            newest.count = newest.count.saturating_add(1);
-            newest.what = what.clone();
-            return;
+            return newest.again(at, what.clone());
         }
         if self.log.len() >= LOG_MAX {
             self.log.pop_front();
             self.log_dropped += 1;
         }
-        self.log.push_back(Notice {
-            id: self.logged,
-            at,
-            level: what.level(),
-            what: what.clone(),
-            count: 1,
-        });
-        self.logged += 1;
+        self.log
+            .push_back(Notice::new(self.pushed, at, what.clone()));
+    }
+
+    /// True if there is nothing to read.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.kept.is_empty()
     }
 
     /// It was read. The log keeps it.
@@ -375,24 +357,6 @@ impl Notices {
     #[must_use]
     pub const fn log_dropped(&self) -> u64 {
         self.log_dropped
-    }
-
-    /// How many there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.kept.len()
-    }
-
-    /// True if there is nothing to read.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.kept.is_empty()
-    }
-
-    /// Notices that went unread because there were too many.
-    #[must_use]
-    pub const fn dropped(&self) -> u64 {
-        self.dropped
     }
 }
 
@@ -421,7 +385,7 @@ mod tests {
     }
 
     #[test]
-    fn notices_are_bounded_and_the_loss_is_counted() {
+    fn notices_are_bounded() {
         let mut notices = Notices::default();
         for number in 0..100 {
             notices.push(
@@ -431,14 +395,14 @@ mod tests {
                 },
             );
         }
-        assert_eq!((notices.len(), notices.dropped()), (NOTICES_MAX, 36));
+        assert_eq!(notices.iter().count(), NOTICES_MAX);
         let newest = notices
             .iter()
             .next()
             .map(|notice| notice.id)
             .unwrap_or_default();
         notices.dismiss(newest);
-        assert_eq!(notices.len(), NOTICES_MAX - 1);
+        assert_eq!(notices.iter().count(), NOTICES_MAX - 1);
         assert!(notices.iter().all(|notice| notice.id != newest));
     }
 
@@ -456,7 +420,7 @@ mod tests {
         }
         notices.push(Moment::from_micros(9), NoticeKind::HoldAlarm);
         notices.withdraw(|_| true);
-        assert!(notices.is_empty());
+        assert_eq!(notices.iter().count(), 0);
         let log: Vec<_> = notices
             .log()
             .map(|entry| (entry.level, entry.count))

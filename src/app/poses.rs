@@ -2,14 +2,14 @@
 
 use crate::app::notices::NoticeKind;
 use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
-use crate::poses::library::{Library, PoseId, SequenceId};
+use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
 use crate::poses::preview::Preview;
 
 /// The poses of a person, and what goes on with them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PoseState {
     /// Poses and sequences.
-    pub library: Library,
+    pub library: PoseLibrary,
     /// The dry run, if there is one.
     pub preview: Option<Preview>,
     /// The pose that was recalled last.
@@ -20,13 +20,13 @@ pub struct PoseState {
     pub refused: Option<NoticeKind>,
     /// The sequence that was made last, for the view to show.
     pub newest_sequence: Option<SequenceId>,
-    before: Option<Library>,
+    before: Option<PoseLibrary>,
 }
 
 impl PoseState {
     /// With the library that was kept.
     #[must_use]
-    pub fn new(library: Library) -> Self {
+    pub fn new(library: PoseLibrary) -> Self {
         Self {
             library,
             ..Self::default()
@@ -63,7 +63,7 @@ impl PoseState {
     }
 
     /// Adds what a file holds; that can be taken back.
-    pub(crate) fn import(&mut self, library: Library) {
+    pub(crate) fn import(&mut self, library: PoseLibrary) {
         self.before = Some(self.library.clone());
         self.library.merge(library);
     }

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::env::Env;
-use crate::app::files::export::{self, Content};
+use crate::app::files::export::{self, Export};
 use crate::app::files::pose_file;
 use crate::app::files::quirk_notes::QuirkNotes;
 use crate::app::files::settings_file;
@@ -16,14 +16,14 @@ use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
 use crate::app::state::{PortChoice, State};
 use crate::app::trials::TrialAction;
-use crate::app::trials::files::{FilesEnd, SessionFiles};
+use crate::app::trials::files::{self, FilesEnd};
 use crate::hand::Moment;
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
-use crate::poses::library::{Library, Pose};
+use crate::poses::library::{LibraryPose, PoseLibrary};
 use crate::poses::preview::Preview;
 use crate::store::calendar::{since_1970, stamp};
-use crate::store::{Job, Saver, on_thread};
+use crate::store::{BackgroundJob, Saver, on_thread};
 use crate::transport::{Endpoint, PortFound, ports};
 use crate::trials::plan_settings::{from_settings, in_place_of};
 use std::path::PathBuf;
@@ -45,15 +45,15 @@ pub struct App {
     env: Env,
     state: State,
     settings_saver: Saver<Settings>,
-    pose_saver: Saver<Library>,
+    pose_saver: Saver<PoseLibrary>,
     quirk_notes: QuirkNotes,
     scanner: Scanner,
     closing: Option<Closing>,
-    finding_ports: Option<Job<Vec<PortFound>>>,
-    exporting: Option<Job<NoticeKind>>,
-    importing: Option<Job<Result<Library, NoticeKind>>>,
-    sessions: Option<Job<FilesEnd>>,
-    keeping: Option<Job<FilesEnd>>,
+    finding_ports: Option<BackgroundJob<Vec<PortFound>>>,
+    exporting: Option<BackgroundJob<NoticeKind>>,
+    importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
+    sessions: Option<BackgroundJob<FilesEnd>>,
+    keeping: Option<BackgroundJob<FilesEnd>>,
 }
 
 impl App {
@@ -109,9 +109,9 @@ impl App {
             .or_else(|| self.remembered(now))
             .unwrap_or_else(Endpoint::sim);
         let State { hands, notices, .. } = &mut self.state;
-        hands
-            .shown_mut()
-            .go(Some(endpoint), &self.env, notices, now);
+        let hand = hands.shown_mut();
+        hand.now = now;
+        hand.go(Some(endpoint), &self.env, notices);
     }
 
     fn remembered(&mut self, now: Moment) -> Option<Endpoint> {
@@ -151,14 +151,14 @@ impl App {
         for hand in hands.iter_mut() {
             hand.take_news(notices, now);
             hand.tick_sequence();
-            hand.tick_requests(notices, now);
-            hand.tick_params(env, notices, now);
-            hand.tick_series(trials, notices, now);
-            hand.tick_procedure(env, settings, notices, now);
+            hand.tick_requests(notices);
+            hand.tick_params(env, notices);
+            hand.tick_series(trials, notices);
+            hand.tick_procedure(env, settings, notices);
             hand.read_first(settings.first);
             hand.offer_tare(settings, now);
             hand.record();
-            hand.go_on_leaving(env, notices, now);
+            hand.go_on_leaving(env, notices);
             self.quirk_notes.tick(hand, env, notices, now);
         }
         self.scanner.drain(scan);
@@ -167,14 +167,19 @@ impl App {
     }
 
     fn take_jobs(&mut self, now: Moment) {
-        if let Some(found) = Job::take_from(&mut self.finding_ports) {
+        if let Some(found) = BackgroundJob::take_from(&mut self.finding_ports) {
             self.state.ports = found.into_iter().map(choice).collect();
         }
-        if let Some(end) = Job::take_from(&mut self.exporting) {
+        if let Some(end) = BackgroundJob::take_from(&mut self.exporting) {
             self.tell(end, now);
         }
-        let kept = Job::take_from(&mut self.keeping);
-        for end in Job::take_from(&mut self.sessions).into_iter().chain(kept) {
+        let asked = BackgroundJob::take_from(&mut self.sessions);
+        if let Some(end) = &asked {
+            let trials = &mut self.state.trials;
+            trials.asks_path = std::mem::take(&mut trials.is_opening) && end.is_err();
+        }
+        let kept = BackgroundJob::take_from(&mut self.keeping);
+        for end in asked.into_iter().chain(kept) {
             let told = self.state.trials.take(end);
             self.tell(told, now);
         }
@@ -182,9 +187,9 @@ impl App {
             && let Some(id) = self.state.trials.to_keep.pop_front()
         {
             let session = self.state.trials.session(id);
-            self.keeping = session.and_then(|session| SessionFiles::keep(session, &self.env));
+            self.keeping = session.and_then(|session| files::keep(session, &self.env));
         }
-        match Job::take_from(&mut self.importing) {
+        match BackgroundJob::take_from(&mut self.importing) {
             None => {}
             // All of it is added, or nothing.
             Some(Ok(library)) => {
@@ -231,10 +236,10 @@ impl App {
             Action::Trial(action) => self.trial_action(action),
             Action::Save(content) => self.export(content),
             Action::ImportPoses(typed) => self.import_poses(typed),
-            Action::ExportPoses => self.export(Content::Poses(self.state.poses.library.clone())),
+            Action::ExportPoses => self.export(Export::Poses(self.state.poses.library.clone())),
             Action::FindPorts => self.find_ports(),
-            Action::Connect(endpoint) => self.connect(Some(endpoint), now),
-            Action::Disconnect => self.connect(None, now),
+            Action::Connect(endpoint) => self.connect(Some(endpoint)),
+            Action::Disconnect => self.connect(None),
             Action::Scan(wish) => {
                 let held = self.state.hand().endpoint.clone();
                 self.scanner
@@ -256,9 +261,9 @@ impl App {
         } = &mut self.state;
         let (hand, env) = (hands.shown_mut(), &self.env);
         match action {
-            Action::Stop => hand.stop(notices, now),
-            Action::Arm => hand.arm(notices, now),
-            Action::Disarm => hand.disarm(now),
+            Action::Stop => hand.stop(notices),
+            Action::Arm => hand.arm(notices),
+            Action::Disarm => hand.disarm(),
             Action::Target(dof, angle) => hand.target(dof, angle),
             Action::Force(dof, force) => hand.force(dof, force),
             Action::Speed(dof, speed) => hand.speed(dof, speed),
@@ -288,7 +293,7 @@ impl App {
             Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted, env),
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
-            Action::Procedure(action) => hand.procedure_action(action, env, now),
+            Action::Procedure(action) => hand.procedure_action(action, env),
             Action::Tare(finger) => {
                 hand.tare(finger, notices, now);
                 hand.keep_tare(settings);
@@ -324,7 +329,9 @@ impl App {
         let hand = hands.shown_mut();
         match action {
             Action::Capture(name) => match hand.pose_now() {
-                Some(angles) => poses.newest = poses.library.add_pose(&name, Pose::at(angles)),
+                Some(angles) => {
+                    poses.newest = poses.library.add_pose(&name, LibraryPose::at(angles))
+                }
                 None => notices.push(now, NoticeKind::PoseUnknown),
             },
             Action::Recapture(id) => match hand.pose_now() {
@@ -383,7 +390,7 @@ impl App {
         }
     }
 
-    fn connect(&mut self, to: Option<Endpoint>, now: Moment) {
+    fn connect(&mut self, to: Option<Endpoint>) {
         if let Some(endpoint) = &to {
             // A scan may still ask further ids on the port that is wanted.
             self.scanner.cancel(&mut self.state.scan);
@@ -392,7 +399,7 @@ impl App {
         let State { hands, notices, .. } = &mut self.state;
         let hand = hands.shown_mut();
         hand.close_procedure();
-        hand.leave(to, &self.env, notices, now);
+        hand.leave(to, &self.env, notices);
     }
 
     /// What is done with files is begun here, all else with the hand.
@@ -411,7 +418,7 @@ impl App {
                     params,
                     ..ParamsFile::default()
                 };
-                self.export(Content::Params(Box::new(file)));
+                self.export(Export::Params(Box::new(file)));
             }
             action => self.state.hands.shown_mut().param_action(action, &self.env),
         }
@@ -428,11 +435,12 @@ impl App {
             TrialAction::Start => hands.shown_mut().start_series(trials, &self.env),
             TrialAction::Open(_) | TrialAction::Save(..) if self.sessions.is_some() => {}
             TrialAction::Open(typed) => {
-                self.sessions = Some(SessionFiles::open(typed, &self.env));
+                trials.is_opening = true;
+                self.sessions = Some(files::open(typed, &self.env));
             }
             TrialAction::Save(id, criterion) => {
                 let session = trials.session(id);
-                let save = |session| SessionFiles::save(session, criterion, &self.env);
+                let save = |session| files::save(session, criterion, &self.env);
                 self.sessions = session.and_then(save);
             }
             action => trials.act(action, settings),
@@ -440,7 +448,7 @@ impl App {
     }
 
     /// One file at a time: while a dialog is open, another is not opened.
-    fn export(&mut self, content: Content) {
+    fn export(&mut self, content: Export) {
         if self.exporting.is_none() {
             self.exporting = Some(export::save(content, &self.env));
         }
@@ -456,7 +464,11 @@ impl App {
     fn find_ports(&mut self) {
         if self.finding_ports.is_none() {
             let find = async { on_thread(|| Ok(ports())).await.unwrap_or_default() };
-            self.finding_ports = Some(Job::start(&self.env.runtime, &self.env.wake, find));
+            self.finding_ports = Some(BackgroundJob::start(
+                &self.env.runtime,
+                &self.env.wake,
+                find,
+            ));
         }
     }
 
@@ -467,7 +479,9 @@ impl App {
 
     /// Reads what the hand keeps because somebody looks at it. Called while they do; asks only when it is due. Writes nothing.
     pub fn look_at_params(&mut self, now: Moment) {
-        self.state.hands.shown_mut().look_at_params(&self.env, now);
+        let hand = self.state.hands.shown_mut();
+        hand.now = now;
+        hand.look_at_params(&self.env);
     }
 
     /// The window is about to close. A hand that is armed, or that this program set in motion, is stopped first.
@@ -478,7 +492,8 @@ impl App {
         let closing = *self.closing.get_or_insert_with(|| {
             let mut held = false;
             for hand in hands.iter_mut().filter(|hand| hand.may_move()) {
-                hand.stop(notices, now);
+                hand.now = now;
+                hand.stop(notices);
                 held = true;
             }
             Closing { since: now, held }

@@ -2,7 +2,7 @@
 
 use crate::app::env::Env;
 use crate::hand::Moment;
-use crate::store::Job;
+use crate::store::BackgroundJob;
 use tokio::sync::mpsc;
 use tokio::task::AbortHandle;
 
@@ -11,7 +11,7 @@ use tokio::task::AbortHandle;
 pub(crate) struct Running<S, E> {
     // As many as a task tells: some ten for each thing it does.
     steps: mpsc::UnboundedReceiver<(Moment, S)>,
-    end: Option<Job<E>>,
+    end: Option<BackgroundJob<E>>,
     abort: AbortHandle,
 }
 
@@ -43,7 +43,8 @@ impl<S: Send + 'static, E: Send + 'static> Running<S, E> {
         });
         let task = env.runtime.spawn(work);
         let abort = task.abort_handle();
-        let end = Job::start_fallible(&env.runtime, &env.wake, async move { task.await.ok() });
+        let end =
+            BackgroundJob::start_fallible(&env.runtime, &env.wake, async move { task.await.ok() });
         Self {
             steps,
             end: Some(end),
@@ -53,7 +54,7 @@ impl<S: Send + 'static, E: Send + 'static> Running<S, E> {
 
     /// What was told since the last call, and the end once it is there. All steps come before the end.
     pub(crate) fn news(&mut self) -> (Vec<(Moment, S)>, Option<E>) {
-        let end = Job::take_from(&mut self.end);
+        let end = BackgroundJob::take_from(&mut self.end);
         let steps = std::iter::from_fn(|| self.steps.try_recv().ok()).collect();
         (steps, end)
     }

@@ -3,7 +3,7 @@
 use crate::app::env::Env;
 use crate::hand::HandId;
 use crate::link::scan::{
-    Found, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanProgress,
+    FoundHand, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanPort, ScanProgress,
     ScanSummary, Speaks, start,
 };
 use crate::transport::{Endpoint, TransportError};
@@ -30,7 +30,7 @@ pub enum IdRange {
 
 /// What a person wants to be looked through.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ScanWish {
+pub enum ScanTarget {
     /// All serial ports and CAN interfaces of this computer.
     Ports(IdRange),
     /// This serial port, as a line or as a CAN adapter.
@@ -75,13 +75,13 @@ pub struct ScanState {
     /// Where it stands.
     pub stage: ScanStage,
     /// What was asked for.
-    pub wish: Option<ScanWish>,
+    pub wish: Option<ScanTarget>,
     /// How far it is.
     pub progress: ScanProgress,
     /// Places that it looks at.
     pub places: usize,
     /// Hands, in the order in which they answered.
-    pub found: Vec<Found>,
+    pub found: Vec<FoundHand>,
     /// What else there is to say.
     pub remarks: Vec<ScanRemark>,
     /// Hands and remarks for which there was no room.
@@ -126,7 +126,7 @@ impl Scanner {
     /// Begins a scan; one that runs goes on instead. `held` is the hand that is connected now.
     pub(crate) fn begin(
         &mut self,
-        wish: ScanWish,
+        wish: ScanTarget,
         held: Option<Endpoint>,
         env: &Env,
         book: &mut ScanState,
@@ -140,17 +140,17 @@ impl Scanner {
             ..ScanState::default()
         };
         let (local, hosts, ids) = match wish {
-            ScanWish::Ports(ids) => (Local::Listed, Vec::new(), ids),
-            ScanWish::Port(port, ids) => {
-                let wish = PortWish {
+            ScanTarget::Ports(ids) => (Local::Listed, Vec::new(), ids),
+            ScanTarget::Port(port, ids) => {
+                let wish = ScanPort {
                     port,
                     usb: None,
                     speaks: Speaks::Either,
                 };
                 (named(vec![wish], Vec::new()), Vec::new(), ids)
             }
-            ScanWish::Interface(can, ids) => (named(Vec::new(), vec![can]), Vec::new(), ids),
-            ScanWish::Hosts(hosts) => (named(Vec::new(), Vec::new()), vec![hosts], IdRange::Few),
+            ScanTarget::Interface(can, ids) => (named(Vec::new(), vec![can]), Vec::new(), ids),
+            ScanTarget::Hosts(hosts) => (named(Vec::new(), Vec::new()), vec![hosts], IdRange::Few),
         };
         let ids = match ids {
             IdRange::Few => FEW,
@@ -190,7 +190,7 @@ impl Scanner {
     }
 }
 
-fn named(ports: Vec<PortWish>, can: Vec<String>) -> Local {
+fn named(ports: Vec<ScanPort>, can: Vec<String>) -> Local {
     Local::Named { ports, can }
 }
 
@@ -200,7 +200,7 @@ mod tests {
     use std::time::Duration;
 
     fn found(id: u8) -> ScanEvent {
-        ScanEvent::Found(Found {
+        ScanEvent::Found(FoundHand {
             endpoint: format!("rs485:/dev/x?id={id}").parse().unwrap(),
             hand_id: id,
             round_trip: Duration::from_millis(9),

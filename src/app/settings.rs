@@ -5,9 +5,10 @@ use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute, GestureStore};
 use crate::link::First;
+use crate::poses::library::clean;
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Dark or light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -149,9 +150,9 @@ pub enum PlotKind {
 }
 
 /// The plots that are shown, always at least one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(from = "Vec<PlotKind>", into = "Vec<PlotKind>")]
-pub struct ShownPlots([bool; 6]);
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "BTreeSet<PlotKind>")]
+pub struct ShownPlots(BTreeSet<PlotKind>);
 
 impl PlotKind {
     /// All, from top to bottom.
@@ -168,48 +169,38 @@ impl PlotKind {
 impl Default for ShownPlots {
     fn default() -> Self {
         use PlotKind::{Angle, Current, Force, Temperature};
-        vec![Force, Current, Temperature, Angle].into()
+        Self([Force, Current, Temperature, Angle].into())
     }
 }
 
-impl From<Vec<PlotKind>> for ShownPlots {
-    fn from(kinds: Vec<PlotKind>) -> Self {
-        if kinds.is_empty() {
-            return Self::default();
+impl From<BTreeSet<PlotKind>> for ShownPlots {
+    fn from(kinds: BTreeSet<PlotKind>) -> Self {
+        match kinds.is_empty() {
+            true => Self::default(),
+            false => Self(kinds),
         }
-        Self(PlotKind::ALL.map(|kind| kinds.contains(&kind)))
-    }
-}
-
-impl From<ShownPlots> for Vec<PlotKind> {
-    fn from(shown: ShownPlots) -> Self {
-        let all = PlotKind::ALL.into_iter();
-        all.filter(|kind| shown.shows(*kind)).collect()
     }
 }
 
 impl ShownPlots {
-    /// Whether a plot is shown.
+    /// True if this plot is drawn.
     #[must_use]
-    pub fn shows(self, kind: PlotKind) -> bool {
-        let pairs = PlotKind::ALL.into_iter().zip(self.0);
-        pairs.into_iter().any(|(one, on)| on && one == kind)
+    pub fn shows(&self, kind: PlotKind) -> bool {
+        self.0.contains(&kind)
     }
 
-    /// How many are shown.
+    /// How many are drawn.
     #[must_use]
-    pub fn count(self) -> usize {
-        self.0.into_iter().filter(|on| *on).count()
+    pub fn count(&self) -> usize {
+        self.0.len()
     }
 
-    /// Shows or hides a plot. The last one stays.
+    /// Draws a plot or not. The last one stays.
     pub fn set(&mut self, kind: PlotKind, on: bool) {
-        let mut changed = *self;
-        for (one, shown) in PlotKind::ALL.into_iter().zip(&mut changed.0) {
-            *shown = if one == kind { on } else { *shown };
-        }
-        if changed.count() > 0 {
-            *self = changed;
+        if on {
+            self.0.insert(kind);
+        } else if self.0.len() > 1 {
+            self.0.remove(&kind);
         }
     }
 }
@@ -242,9 +233,6 @@ impl Default for Zoom {
 pub const RECENT_MAX: usize = 5;
 /// Hands whose taring is kept; the oldest goes first.
 pub const TARES_MAX: usize = 20;
-/// Characters in the name of a gesture: what fits a button.
-pub const NAME_CHARS_MAX: usize = 32;
-
 /// What is kept from one start to the next. Unknown keys of the file survive in [`Self::others`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -319,9 +307,7 @@ impl Settings {
 
     /// Gives a gesture a name of one line; empty takes it away.
     pub fn name_gesture(&mut self, gesture: Gesture, name: &str) {
-        let plain = |c: char| if c.is_control() { ' ' } else { c };
-        let line: String = name.chars().map(plain).collect();
-        let line: String = line.trim().chars().take(NAME_CHARS_MAX).collect();
+        let line = clean(name);
         let number = gesture.get().to_string();
         if line.is_empty() {
             self.gesture_names.remove(&number);
@@ -374,7 +360,7 @@ mod tests {
         let chars = settings
             .gesture_name(gesture)
             .map(|name| name.chars().count());
-        assert_eq!(chars, Some(NAME_CHARS_MAX));
+        assert_eq!(chars, Some(crate::poses::library::NAME_CHARS_MAX));
         settings.name_gesture(gesture, "  ");
         assert_eq!(
             (settings.gesture_name(gesture), settings.gesture_names.len()),

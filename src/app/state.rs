@@ -14,7 +14,7 @@ pub struct State {
     /// The time of this frame.
     pub now: Moment,
     /// The hands. There is always one, connected or not.
-    pub hands: Hands,
+    pub hands: HandList,
     /// What a person should read.
     pub notices: Notices,
     /// The person's own poses and sequences.
@@ -31,13 +31,13 @@ pub struct State {
 
 /// The hands of the program, and which of them is shown.
 #[derive(Debug, Default)]
-pub struct Hands {
+pub struct HandList {
     first: HandState,
     more: Vec<HandState>,
     shown: usize,
 }
 
-impl Hands {
+impl HandList {
     /// The hand that is shown.
     #[must_use]
     pub fn shown(&self) -> &HandState {

@@ -33,9 +33,13 @@ pub(crate) struct WindowArgs {
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Option<Endpoint>,
 
-    /// Draw the window without OpenGL; chosen automatically where OpenGL does not start
-    #[arg(long)]
+    /// Draw the window without OpenGL; chosen automatically where OpenGL does not start or is only software
+    #[arg(long, conflicts_with = "opengl")]
     pub(crate) software: bool,
+
+    /// Draw the window with OpenGL even where no graphics card is found
+    #[arg(long)]
+    pub(crate) opengl: bool,
 
     /// The same, with the reason for the window to show
     #[arg(long, value_name = "REASON", hide = true)]

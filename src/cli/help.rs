@@ -1,7 +1,7 @@
 //! `help`: the help of a command as clap writes it, or a page of the manual as plain text.
 
-use crate::cli::names;
 use crate::cli::out::{Out, WrongUsage};
+use crate::cli::parse;
 use crate::manual::{self, TOPICS, Topic};
 use clap::{Args, Command};
 
@@ -61,23 +61,18 @@ fn check_command(words: &[String], mut command: Command) -> Result<(), WrongUsag
 }
 
 fn unknown(word: &str, path: &str, command: &Command) -> WrongUsage {
-    let commands = command.get_subcommands().map(Command::get_name);
-    let (what, known): (String, Vec<&str>) = if path.is_empty() {
-        let topics = TOPICS.iter().map(|topic| topic.name);
-        (
-            "there is no command or topic".into(),
-            commands.chain(topics).collect(),
-        )
-    } else {
-        (
-            format!("'handscope{path}' has no command"),
-            commands.collect(),
-        )
+    let mut known: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+    let what = match path {
+        "" => {
+            known.extend(TOPICS.iter().map(|topic| topic.name));
+            "there is no command or topic".to_owned()
+        }
+        path => format!("'handscope{path}' has no command"),
     };
     if known.is_empty() {
         return WrongUsage(format!("{what} '{word}'; try 'handscope help{path}'"));
     }
-    let nearest = names::nearest(word, known.into_iter()).join(", ");
+    let nearest = parse::nearest(word, known.into_iter()).join(", ");
     WrongUsage(format!(
         "{what} '{word}'; the nearest are {nearest}; 'handscope help{path}' lists them all"
     ))

@@ -1,92 +1,67 @@
 //! Signals: Ctrl-C, and on Unix SIGTERM and SIGHUP, ask the program to end; SIGUSR1 cuts the power of the simulated hand. Ends
 //! nothing itself.
 
+#[cfg(unix)]
 use anyhow::Context as _;
+#[cfg(unix)]
+use futures::future::{FutureExt as _, select_all};
 #[cfg(unix)]
 use tokio::signal::unix::{Signal, SignalKind, signal};
 
-/// Listens from its creation on, so that no signal is missed.
+/// Signals of one meaning. Listens from its creation on, so that no signal is missed.
 pub(crate) struct Interrupt {
     #[cfg(unix)]
-    signals: [Signal; 3],
+    signals: Vec<Signal>,
+    #[cfg(not(unix))]
+    is_ctrl_c: bool,
 }
 
 #[cfg(unix)]
 impl Interrupt {
-    /// Starts listening. Must be called within a tokio runtime.
+    /// Listens for the wish to end the program. Must be called within a tokio runtime.
     pub(crate) fn listen() -> anyhow::Result<Self> {
-        let on = |kind| signal(kind).context("cannot listen for Ctrl-C");
-        Ok(Self {
-            signals: [
-                on(SignalKind::interrupt())?,
-                on(SignalKind::terminate())?,
-                on(SignalKind::hangup())?,
-            ],
-        })
+        Self::on(&[
+            SignalKind::interrupt(),
+            SignalKind::terminate(),
+            SignalKind::hangup(),
+        ])
+        .context("cannot listen for Ctrl-C")
     }
 
-    /// Resolves at the first signal. May be dropped and called again.
-    pub(crate) async fn wished(&mut self) {
-        let [interrupt, terminate, hangup] = &mut self.signals;
-        tokio::select! {
-            biased;
-            _ = interrupt.recv() => {}
-            _ = terminate.recv() => {}
-            _ = hangup.recv() => {}
-        }
-    }
-}
-
-#[cfg(not(unix))]
-impl Interrupt {
-    /// Starts listening. Must be called within a tokio runtime.
-    pub(crate) fn listen() -> anyhow::Result<Self> {
-        Ok(Self {})
+    /// Listens for a request to cut the simulated hand's power for a moment: SIGUSR1. Must be called within a tokio runtime.
+    pub(crate) fn power_cut() -> anyhow::Result<Self> {
+        Self::on(&[SignalKind::user_defined1()]).context("cannot listen for SIGUSR1")
     }
 
-    /// Resolves at the first signal. May be dropped and called again.
-    pub(crate) async fn wished(&mut self) {
-        if tokio::signal::ctrl_c()
-            .await
-            .context("cannot listen")
-            .is_err()
-        {
-            std::future::pending::<()>().await;
-        }
-    }
-}
-
-/// A request to cut the simulated hand's power for a moment: SIGUSR1, where there are signals.
-pub(crate) struct PowerCut {
-    #[cfg(unix)]
-    signal: Signal,
-}
-
-#[cfg(unix)]
-impl PowerCut {
-    /// Starts listening. Must be called within a tokio runtime.
-    pub(crate) fn listen() -> anyhow::Result<Self> {
-        let signal = signal(SignalKind::user_defined1()).context("cannot listen for SIGUSR1")?;
-        Ok(Self { signal })
+    fn on(kinds: &[SignalKind]) -> std::io::Result<Self> {
+        let signals = kinds.iter().map(|kind| signal(*kind));
+        signals
+            .collect::<Result<_, _>>()
+            .map(|signals| Self { signals })
     }
 
     /// Resolves at the next signal. May be dropped and called again.
     pub(crate) async fn wished(&mut self) {
-        if self.signal.recv().await.is_none() {
-            std::future::pending::<()>().await;
-        }
+        select_all(self.signals.iter_mut().map(|signal| signal.recv().boxed())).await;
     }
 }
 
 #[cfg(not(unix))]
-impl PowerCut {
-    /// Nothing to listen for here.
+impl Interrupt {
+    /// Listens for the wish to end the program. Must be called within a tokio runtime.
     pub(crate) fn listen() -> anyhow::Result<Self> {
-        Ok(Self {})
+        Ok(Self { is_ctrl_c: true })
     }
 
-    /// Never resolves.
+    /// Nothing to listen for here.
+    pub(crate) fn power_cut() -> anyhow::Result<Self> {
+        Ok(Self { is_ctrl_c: false })
+    }
+
+    /// Resolves at the next signal. May be dropped and called again.
     pub(crate) async fn wished(&mut self) {
-        std::future::pending::<()>().await;
+        if !self.is_ctrl_c || tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
     }
 }

@@ -3,9 +3,7 @@
 mod args;
 mod doctor;
 mod help;
-mod ids;
 mod interrupt;
-mod names;
 mod out;
 mod params;
 mod parse;
@@ -21,10 +19,12 @@ mod value;
 mod watch;
 mod window;
 
+use anyhow::Context as _;
 use args::{Cli, Command};
 use clap::{CommandFactory as _, Parser as _};
-use out::{Out, ReaderGone, Told, WrongUsage};
+use out::{AlreadyReported, Out, ReaderGone, WrongUsage};
 use std::process::ExitCode;
+use tokio::runtime::Builder;
 
 /// The exit status of wrong usage, as clap gives it.
 const WRONG_USAGE: u8 = 2;
@@ -42,7 +42,7 @@ pub fn run() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if error.is::<ReaderGone>() => ExitCode::SUCCESS,
-        Err(error) if error.is::<Told>() => ExitCode::FAILURE,
+        Err(error) if error.is::<AlreadyReported>() => ExitCode::FAILURE,
         Err(error) if error.is::<WrongUsage>() => {
             out::say(&error.to_string());
             ExitCode::from(WRONG_USAGE)
@@ -58,18 +58,28 @@ fn obey(command: Command) -> anyhow::Result<()> {
     let mut out = Out::stdout();
     let done = match command {
         Command::Snapshot(args) => snapshot::run(&mut out, &args),
-        Command::Watch(args) => watch::run(&mut out, &args),
-        Command::Read(args) => read::run(&mut out, &args),
-        Command::Scan(args) => scan::run(&mut out, &args),
-        Command::Doctor(args) => doctor::run(&mut out, &args),
-        Command::Quirks(args) => quirks::run(&mut out, &args),
-        Command::Params(args) => params::run(&mut out, &args),
-        Command::Trial(args) => trial::run(&mut out, &args),
-        Command::Sim(args) => sim::run(&mut out, &args),
+        Command::Watch(args) => wait_for(watch::run(&mut out, &args)),
+        Command::Read(args) => wait_for(read::run(&mut out, &args)),
+        Command::Scan(args) => wait_for(scan::run(&mut out, &args)),
+        Command::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
+        Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
+        Command::Params(args) => wait_for(params::run(&mut out, &args)),
+        Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
+        Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),
     };
     // Output from before a failure is shown as well.
     let shown = out.flush();
     done.and(shown)
+}
+
+/// Carries out a command on a runtime of one thread: a slow reader of our output slows the polling down, and no sample is lost.
+fn wait_for(command: impl Future<Output = anyhow::Result<()>>) -> anyhow::Result<()> {
+    let runtime = Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.context("cannot start the runtime")?;
+    let done = runtime.block_on(command);
+    // A name that is being resolved cannot be called back, and must not hold up the end.
+    runtime.shutdown_background();
+    done
 }

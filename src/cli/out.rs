@@ -20,7 +20,7 @@ pub(crate) struct ReaderGone;
 /// The command failed, and has already said why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("already reported")]
-pub(crate) struct Told;
+pub(crate) struct AlreadyReported;
 
 /// Wrong usage that clap cannot see. Nothing was done.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -66,6 +66,19 @@ impl Out {
         self.line(&serde_json::to_value(object)?.to_string())
     }
 
+    /// Writes a result, as one JSON object or as lines.
+    pub(crate) fn result(
+        &mut self,
+        as_json: bool,
+        object: &impl Serialize,
+        lines: impl IntoIterator<Item = impl AsRef<str>>,
+    ) -> anyhow::Result<()> {
+        match as_json {
+            true => self.object(object),
+            false => self.lines(lines),
+        }
+    }
+
     /// Shows everything written so far.
     pub(crate) fn flush(&mut self) -> anyhow::Result<()> {
         checked(self.to.flush())
@@ -84,7 +97,7 @@ fn checked(written: io::Result<()>) -> anyhow::Result<()> {
 pub(crate) fn end(is_done: bool) -> anyhow::Result<()> {
     match is_done {
         true => Ok(()),
-        false => Err(Told.into()),
+        false => Err(AlreadyReported.into()),
     }
 }
 

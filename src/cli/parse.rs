@@ -1,8 +1,13 @@
 //! Values as a person types them on the command line. The error is the sentence that clap shows.
 
-use crate::hand::{Angle, Dof, Force, Speed};
+use crate::hand::register::{self, REGISTERS, Register};
+use crate::hand::{Angle, Dof, Force, HandId, Speed};
+use std::ops::RangeInclusive;
+use std::str::FromStr;
 use std::time::Duration;
 
+/// How many known names are suggested for a wrong one.
+const SUGGESTED: usize = 3;
 /// The longest time an option takes, s: a day.
 const SECONDS_MAX: f64 = 86_400.0;
 
@@ -14,6 +19,16 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
         return Err(format!("{text} is not between 0 and {SECONDS_MAX} seconds"));
     }
     Ok(Duration::from_secs_f64(seconds))
+}
+
+/// A number within bounds; `what` says what it should be.
+pub(crate) fn number<T: FromStr + PartialOrd>(
+    text: &str,
+    range: RangeInclusive<T>,
+    what: &str,
+) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("'{text}' is not {what}"))
 }
 
 pub(crate) fn dof(text: &str) -> Result<Dof, String> {
@@ -39,4 +54,135 @@ pub(crate) fn speed(text: &str) -> Result<Speed, String> {
 
 pub(crate) fn force(text: &str) -> Result<Force, String> {
     Force::new(whole(text)?).map_err(|error| error.to_string())
+}
+
+/// Hand ids in the order they were named, each once.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct HandIds(pub(crate) Vec<HandId>);
+
+/// A list of hand ids: `3`, `1,2,3`, `1-10`, or a mixture.
+pub(crate) fn hand_ids(text: &str) -> Result<HandIds, String> {
+    let mut ids: Vec<u8> = Vec::new();
+    for part in text.split(',').map(str::trim) {
+        let (first, last) = part.split_once('-').unwrap_or((part, part));
+        let (first, last) = (hand_id(first, text)?, hand_id(last, text)?);
+        if first > last {
+            return Err(format!("'{part}' goes backwards: write {last}-{first}"));
+        }
+        if let Some(id) = (first..=last).find(|id| ids.contains(id)) {
+            return Err(format!(
+                "id {id} is named twice: two hands of one id would both answer"
+            ));
+        }
+        ids.extend(first..=last);
+    }
+    Ok(HandIds(ids.into_iter().map(HandId::nearest).collect()))
+}
+
+fn hand_id(text: &str, list: &str) -> Result<u8, String> {
+    let id = text.trim().parse().ok();
+    let id = id.and_then(|number: i64| HandId::new(number).ok());
+    id.map(HandId::get).ok_or_else(|| {
+        format!("'{list}' is not a list of ids: write numbers from 1 to 254, such as 1,2,3 or 1-10")
+    })
+}
+
+/// The register of this name, in any letter case. The error names those that look most like it.
+pub(crate) fn register(name: &str) -> Result<&'static Register, String> {
+    let known = || REGISTERS.iter().map(|row| row.name);
+    register::by_name(name).ok_or_else(|| {
+        format!(
+            "the hand has no register of this name; nearest are {}; 'handscope registers' lists all",
+            nearest(name, known()).join(", ")
+        )
+    })
+}
+
+/// The known names that look most like this one, best first.
+pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let name = name.to_uppercase();
+    let mut ranked: Vec<(usize, &str)> = known
+        .map(|one| (unlikeness(&name, &one.to_uppercase()), one))
+        .collect();
+    ranked.sort_by_key(|(unlike, _)| *unlike);
+    ranked
+        .into_iter()
+        .take(SUGGESTED)
+        .map(|(_, one)| one)
+        .collect()
+}
+
+/// Letters to change, with a bonus for names that hold each other.
+fn unlikeness(name: &str, known: &str) -> usize {
+    let holds = name.len() > 2 && (known.contains(name) || name.contains(known));
+    if holds {
+        1
+    } else {
+        2 + strsim::levenshtein(name, known)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ids(text: &str) -> Result<Vec<u8>, String> {
+        hand_ids(text).map(|ids| ids.0.into_iter().map(HandId::get).collect())
+    }
+
+    #[test]
+    fn lists_and_ranges_keep_their_order() {
+        for (text, wanted) in [
+            ("1", &[1][..]),
+            ("254", &[254]),
+            ("3,1,2", &[3, 1, 2]),
+            ("1-4", &[1, 2, 3, 4]),
+            (" 7 , 1-2 ", &[7, 1, 2]),
+        ] {
+            assert_eq!(ids(text).unwrap(), wanted, "{text}");
+        }
+    }
+
+    #[test]
+    fn bad_lists_get_one_clear_sentence() {
+        for (text, words) in [
+            ("", "not a list of ids"),
+            ("0", "1 to 254"),
+            ("255", "1 to 254"),
+            ("1,,2", "not a list of ids"),
+            ("1;2", "not a list of ids"),
+            ("one", "not a list of ids"),
+            ("-3", "not a list of ids"),
+            ("1-2-3", "not a list of ids"),
+            ("1-300", "1 to 254"),
+            ("9-3", "write 3-9"),
+            ("1,2,1", "id 1 is named twice"),
+            ("1-5,3", "id 3 is named twice"),
+        ] {
+            let error = ids(text).unwrap_err();
+            assert!(error.contains(words), "{text}: {error}");
+            assert_eq!(error.lines().count(), 1);
+        }
+    }
+
+    #[test]
+    fn a_mistyped_register_is_met_with_the_right_one() {
+        for (wrong, right) in [
+            ("ANGLE_ATC", "ANGLE_ACT"),
+            ("angle_act(m)", "ANGLE_ACT"),
+            ("TEMPERATURE", "TEMP"),
+            ("hand_ide", "HAND_ID"),
+            ("SPEED", "SPEED_SET"),
+        ] {
+            let words = register(wrong).unwrap_err();
+            assert!(words.contains(right), "{wrong}: {words}");
+        }
+    }
+
+    #[test]
+    fn every_register_is_found_in_any_letter_case() {
+        for row in &REGISTERS {
+            assert_eq!(register(&row.name.to_lowercase()).unwrap(), row);
+        }
+    }
 }

@@ -25,26 +25,23 @@ pub(crate) struct QuirksArgs {
 }
 
 /// Identifies the hand and prints what was found.
-pub(crate) fn run(out: &mut Out, args: &QuirksArgs) -> anyhow::Result<()> {
-    let reached = session::reach(&args.hand, ONLY_WHAT_IS_ASKED);
-    let quirks =
-        session::runtime()?.block_on(async { reached.await.map(|link| link.status().quirks) })?;
+pub(crate) async fn run(out: &mut Out, args: &QuirksArgs) -> anyhow::Result<()> {
+    let link = session::reach(&args.hand, ONLY_WHAT_IS_ASKED).await?;
+    let quirks = link.status().quirks;
     let sheet = book::sheet(&args.hand, &quirks, "");
     if let Some(path) = &args.out {
         std::fs::write(path, QuirkBook::of(sheet.clone()).to_toml())
             .with_context(|| format!("cannot write {}", path.display()))?;
     }
-    if args.json {
-        return out.object(&json!({
-            "hand": args.hand.to_string(),
-            "hand_id": sheet.hand_id,
-            "baud_code": sheet.baud_code,
-            "packing": sheet.packing,
-            "gap": sheet.gap,
-            "touch": sheet.touch,
-        }));
-    }
-    out.lines(lines(&args.hand, sheet))
+    let object = json!({
+        "hand": args.hand.to_string(),
+        "hand_id": sheet.hand_id,
+        "baud_code": sheet.baud_code,
+        "packing": sheet.packing,
+        "gap": sheet.gap,
+        "touch": sheet.touch,
+    });
+    out.result(args.json, &object, lines(&args.hand, sheet))
 }
 
 fn lines(hand: &Endpoint, sheet: QuirkSheet) -> Vec<String> {

@@ -1,7 +1,7 @@
 //! `read`: registers by the manual's names, read one by one and decoded. Writes nothing to the hand.
 
-use crate::cli::names;
 use crate::cli::out::{Out, say};
+use crate::cli::parse;
 use crate::cli::session::{self, ANSWER_WITHIN, ONLY_WHAT_IS_ASKED};
 use crate::cli::value::{value_json, value_text};
 use crate::hand::{Register, Span};
@@ -17,7 +17,7 @@ const PIECE: u16 = 108;
 #[derive(Debug, clap::Args)]
 pub(crate) struct ReadArgs {
     /// Registers by name, in any letter case
-    #[arg(required = true, value_name = "NAME", value_parser = names::register)]
+    #[arg(required = true, value_name = "NAME", value_parser = parse::register)]
     names: Vec<&'static Register>,
     /// The hand to read
     #[arg(long, value_name = "URL")]
@@ -28,11 +28,7 @@ pub(crate) struct ReadArgs {
 }
 
 /// Reads the registers and prints them. Fails if any could not be read.
-pub(crate) fn run(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
-    session::runtime()?.block_on(read(out, args))
-}
-
-async fn read(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
     let link = session::reach(&args.hand, ONLY_WHAT_IS_ASKED).await?;
     let mut values = Map::new();
     let mut failed = 0;

@@ -7,14 +7,14 @@ use serde_json::Value;
 
 /// A register as scripts see it, with what follows from it.
 #[derive(Serialize)]
-struct Row {
+struct RegisterRow {
     #[serde(flatten)]
     register: Register,
     count: u16,
     in_manual: bool,
 }
 
-impl From<&Register> for Row {
+impl From<&Register> for RegisterRow {
     fn from(register: &Register) -> Self {
         Self {
             register: *register,
@@ -24,69 +24,59 @@ impl From<&Register> for Row {
     }
 }
 
+/// The columns: title, key of the JSON object, and how a cell is filled up.
+const COLUMNS: [(&str, &str, fn(&str) -> String); 11] = [
+    ("name", "name", left::<20>),
+    ("address", "address", right::<7>),
+    ("bytes", "bytes", right::<5>),
+    ("element", "element", |cell| format!(" {cell:<7}")),
+    ("rw", "access", left::<3>),
+    ("range", "range", left::<13>),
+    ("default", "default", right::<7>),
+    ("unit", "unit", left::<4>),
+    ("kept", "kept", left::<8>),
+    ("manual", "section", left::<7>),
+    ("meaning", "meaning", str::to_owned),
+];
+
+fn left<const WIDTH: usize>(cell: &str) -> String {
+    format!("{cell:<WIDTH$}")
+}
+
+fn right<const WIDTH: usize>(cell: &str) -> String {
+    format!("{cell:>WIDTH$}")
+}
+
 /// Prints the register map.
 pub(crate) fn run(out: &mut Out, as_json: bool) -> anyhow::Result<()> {
-    let rows: Value = serde_json::to_value(REGISTERS.each_ref().map(Row::from).as_slice())?;
+    let rows: Value = serde_json::to_value(REGISTERS.each_ref().map(RegisterRow::from).as_slice())?;
     if as_json {
         return out.line(&serde_json::to_string_pretty(&rows)?);
     }
-    out.line(&line([
-        "name", "address", "bytes", "element", "rw", "range", "default", "unit", "kept", "manual",
-        "meaning",
-    ]))?;
+    out.line(&COLUMNS.map(|(title, _, fill)| fill(title)).join(" "))?;
     for row in rows.as_array().into_iter().flatten() {
-        out.line(&text(row))?;
+        out.line(
+            &COLUMNS
+                .map(|(_, key, fill)| fill(&cell(row, key)))
+                .join(" "),
+        )?;
     }
     out.line("\n* not in the manual's register table: known from other programs for this family of hands")
 }
 
-fn text(row: &Value) -> String {
-    let word = |key: &str| match row.get(key) {
-        None | Some(Value::Null) => "-".to_owned(),
-        Some(Value::String(word)) => word.clone(),
-        Some(other) => other.to_string(),
-    };
-    let mark = if word("in_manual") == "true" { "" } else { "*" };
-    let range = match row
-        .get("range")
-        .and_then(Value::as_array)
-        .map(Vec::as_slice)
-    {
-        Some([min, max]) if word("also") == "-" => format!("{min}..{max}"),
-        Some([min, max]) => format!("{}, {min}..{max}", word("also")),
-        _ => "-".into(),
-    };
-    line([
-        &(word("name") + mark),
-        &word("address"),
-        &word("bytes"),
-        &word("element"),
-        &word("access"),
-        &range,
-        &word("default"),
-        &word("unit"),
-        &word("kept"),
-        &word("section"),
-        &word("meaning"),
-    ])
-}
-
-/// The columns of the table.
-fn line(cells: [&str; 11]) -> String {
-    let [
-        name,
-        address,
-        bytes,
-        element,
-        access,
-        range,
-        default,
-        unit,
-        kept,
-        section,
-        meaning,
-    ] = cells;
-    format!(
-        "{name:<20} {address:>7} {bytes:>5}  {element:<7} {access:<3} {range:<13} {default:>7} {unit:<4} {kept:<8} {section:<7} {meaning}"
-    )
+fn cell(row: &Value, key: &str) -> String {
+    let also = row.get("also").filter(|also| !also.is_null());
+    match (key, row.get(key)) {
+        (_, None | Some(Value::Null)) => "-".to_owned(),
+        ("name", Some(Value::String(name))) if row.get("in_manual") != Some(&true.into()) => {
+            format!("{name}*")
+        }
+        ("range", Some(range)) => {
+            let also = also.map(|also| format!("{also}, ")).unwrap_or_default();
+            let end = |at: usize| range.get(at).map(Value::to_string).unwrap_or_default();
+            format!("{also}{}..{}", end(0), end(1))
+        }
+        (_, Some(Value::String(word))) => word.clone(),
+        (_, Some(other)) => other.to_string(),
+    }
 }

@@ -2,14 +2,13 @@
 //! addresses. Writes nothing to any hand.
 
 use crate::app::connect::SimDial;
-use crate::cli::ids::HandIds;
 use crate::cli::interrupt::Interrupt;
-use crate::cli::out::{Out, Told, say};
-use crate::cli::session;
+use crate::cli::out::{AlreadyReported, Out, say};
+use crate::cli::parse::{HandIds, hand_ids};
 use crate::hand::HandId;
 use crate::link::Clock;
 use crate::link::scan::{
-    Found, HOSTS_MAX, Hosts, Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanProgress,
+    FoundHand, HOSTS_MAX, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanPort, ScanProgress,
     ScanSummary, Speaks, start,
 };
 use crate::transport::UsbFound;
@@ -49,7 +48,7 @@ pub(crate) struct ScanArgs {
     #[arg(long, value_name = "PORT", value_parser = NonEmptyStringValueParser::new())]
     usbcan: Vec<String>,
     /// Ids to ask on every bus, for example 1-10 or 1,2,7 [default: 1-10]
-    #[arg(long, value_name = "IDS", conflicts_with = "all_ids")]
+    #[arg(long, value_name = "IDS", value_parser = hand_ids, conflicts_with = "all_ids")]
     ids: Option<HandIds>,
     /// Ask all ids, 1 to 254
     #[arg(long)]
@@ -65,18 +64,22 @@ impl ScanArgs {
         if self.tcp.is_empty() && named.iter().all(|list| list.is_empty()) {
             return Local::Listed;
         }
-        let wish = |port: &String, speaks| PortWish {
+        let wish = |port: &String, speaks| ScanPort {
             port: port.clone(),
             usb: None,
             speaks,
         };
-        let serial = self
-            .serial
-            .iter()
-            .map(|port| match self.slcan.contains(port) {
-                true => wish(port, Speaks::Either),
-                false => wish(port, Speaks::Hand),
-            });
+        let serial = self.serial.iter().map(|port| {
+            let has_both = self.slcan.contains(port);
+            wish(
+                port,
+                if has_both {
+                    Speaks::Either
+                } else {
+                    Speaks::Hand
+                },
+            )
+        });
         let slcan = self.slcan.iter().map(|port| wish(port, Speaks::CanAdapter));
         let usbcan = self
             .usbcan
@@ -90,7 +93,7 @@ impl ScanArgs {
 
     fn ids(&self) -> Vec<HandId> {
         match &self.ids {
-            Some(ids) => ids.iter().collect(),
+            Some(ids) => ids.0.clone(),
             None if self.all_ids => HandId::all().collect(),
             None => HandId::all().take(usize::from(IDS_UP_TO)).collect(),
         }
@@ -108,48 +111,40 @@ impl ScanArgs {
 }
 
 /// Scans. Fails if nothing was found and a place could not be checked.
-pub(crate) fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
     args.refuse_too_many_hosts();
-    let runtime = session::runtime()?;
-    let done = runtime.block_on(async {
-        let interrupt = Interrupt::listen()?;
-        let clock = Clock::start();
-        let config = ScanConfig {
-            local: args.local(),
-            hosts: args.tcp.clone(),
-            ids: args.ids(),
-            held: None,
-            clock,
-            dial: Arc::new(SimDial::new(clock)),
-            wake: Arc::new(|| ()),
-        };
-        let scan = Scan {
-            out,
-            json: args.json,
-            all_ids: args.all_ids,
-            handle: start(config, &Handle::current()),
-            screen: Screen::new(),
-            found: 0,
-        };
-        scan.run(interrupt).await
-    });
-    // A name that is being resolved cannot be called back, and must not hold up the end.
-    runtime.shutdown_background();
-    done
+    let interrupt = Interrupt::listen()?;
+    let clock = Clock::start();
+    let config = ScanConfig {
+        local: args.local(),
+        hosts: args.tcp.clone(),
+        ids: args.ids(),
+        held: None,
+        clock,
+        dial: Arc::new(SimDial::new(clock)),
+        wake: Arc::new(|| ()),
+    };
+    let printer = ScanPrinter {
+        out,
+        args,
+        handle: start(config, &Handle::current()),
+        progress: ProgressLine::new(),
+        found: 0,
+    };
+    printer.run(interrupt).await
 }
 
-struct Scan<'a> {
+struct ScanPrinter<'a> {
     out: &'a mut Out,
-    json: bool,
-    all_ids: bool,
+    args: &'a ScanArgs,
     handle: ScanHandle,
-    screen: Screen,
+    progress: ProgressLine,
     found: usize,
 }
 
-impl Scan<'_> {
+impl ScanPrinter<'_> {
     async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
-        let mut tick = interval(self.screen.each());
+        let mut tick = interval(self.progress.each());
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
         // The first tick comes at once, when nothing is known yet.
         tick.tick().await;
@@ -159,7 +154,7 @@ impl Scan<'_> {
                 () = interrupt.wished() => break None,
                 event = self.handle.event() => event,
                 _ = tick.tick() => {
-                    self.screen.progress(&self.handle, self.found);
+                    self.progress.show(&self.handle, self.found);
                     continue;
                 }
             };
@@ -169,19 +164,17 @@ impl Scan<'_> {
                 None => break None,
             }
         };
-        self.screen.clear();
+        self.progress.clear();
         self.end(summary)
     }
 
     fn take(&mut self, event: ScanEvent) -> anyhow::Result<()> {
-        self.screen.clear();
+        self.progress.clear();
         match event {
             ScanEvent::Found(found) => {
                 self.found += 1;
-                match self.json {
-                    true => self.out.object(&found_json(&found))?,
-                    false => self.out.line(&found_text(&found))?,
-                }
+                let (object, line) = (found_json(&found), found_text(&found));
+                self.out.result(self.args.json, &object, [line])?;
             }
             ScanEvent::Trouble { place, error } => self.told("trouble", &place, &error)?,
             ScanEvent::Hint(hint) => self.told("hint", &hint.place(), &hint)?,
@@ -194,31 +187,30 @@ impl Scan<'_> {
     fn told(&mut self, what: &str, place: &str, words: &impl Display) -> anyhow::Result<()> {
         let words = words.to_string();
         say(&words);
-        match self.json {
-            true => self
-                .out
-                .object(&json!({ what: { "place": place, "words": words } })),
-            false => Ok(()),
+        if !self.args.json {
+            return Ok(());
         }
+        let trouble = json!({ "place": place, "words": words });
+        self.out.object(&json!({ what: trouble }))
     }
 
     /// Reports the outcome; without a summary, a person ended the scan.
     fn end(self, summary: Option<ScanSummary>) -> anyhow::Result<()> {
         let found = self.found;
-        if self.json {
+        if self.args.json {
             self.out.object(&summary_json(found, summary))?;
         }
         self.out.flush()?;
         match summary {
             _ if found > 0 => Ok(()),
             None => bail!("the scan was ended before it found a hand"),
-            Some(summary) if summary.failed > 0 => Err(Told.into()),
+            Some(summary) if summary.failed > 0 => Err(AlreadyReported.into()),
             Some(summary) if summary.places == 0 => bail!(
                 "there is nothing to scan: the system lists no serial port and no CAN interface; plug the adapter in, or name what to scan with --serial, --can, --slcan, --usbcan or --tcp"
             ),
             Some(summary) => {
                 let (asked, took_s) = (summary.asked, summary.took.as_secs_f64());
-                let more = match self.all_ids {
+                let more = match self.args.all_ids {
                     true => "",
                     false => "; --all-ids asks all ids",
                 };
@@ -232,12 +224,12 @@ impl Scan<'_> {
 }
 
 /// The progress line on standard error.
-struct Screen {
+struct ProgressLine {
     is_terminal: bool,
     shown: bool,
 }
 
-impl Screen {
+impl ProgressLine {
     fn new() -> Self {
         Self {
             is_terminal: io::stderr().is_terminal(),
@@ -253,7 +245,7 @@ impl Screen {
         }
     }
 
-    fn progress(&mut self, handle: &ScanHandle, found: usize) {
+    fn show(&mut self, handle: &ScanHandle, found: usize) {
         let words = progress_text(handle.progress(), found);
         if self.is_terminal {
             self.shown = true;
@@ -288,7 +280,7 @@ fn progress_text(progress: ScanProgress, found: usize) -> String {
     )
 }
 
-fn found_text(found: &Found) -> String {
+fn found_text(found: &FoundHand) -> String {
     let about = found.usb.as_ref().map(usb_text).unwrap_or_default();
     format!(
         "{}  HAND_ID {}  {:.1} ms  {about}",
@@ -316,7 +308,7 @@ fn usb_text(usb: &UsbFound) -> String {
     text.trim_start().to_owned()
 }
 
-fn found_json(found: &Found) -> Value {
+fn found_json(found: &FoundHand) -> Value {
     json!({ "hand": {
         "url": found.endpoint.to_string(),
         "kind": found.endpoint.kind(),
@@ -348,8 +340,8 @@ fn summary_json(found: usize, summary: Option<ScanSummary>) -> Value {
 mod tests {
     use super::*;
 
-    fn found(usb: Option<UsbFound>) -> Found {
-        Found {
+    fn found(usb: Option<UsbFound>) -> FoundHand {
+        FoundHand {
             endpoint: "rs485:/dev/ttyUSB0?id=3".parse().unwrap(),
             hand_id: 3,
             round_trip: Duration::from_micros(9_870),

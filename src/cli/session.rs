@@ -1,28 +1,19 @@
-//! A link for a terminal command: its runtime, its clock, and the wait for a hand that answers. Prints nothing.
+//! A link for a terminal command: its clock, and the wait for a hand that answers. Prints nothing.
 
 use crate::app::connect::SimDial;
 use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates, Records,
 };
 use crate::transport::Endpoint;
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::runtime::{Builder, Runtime};
 use tokio::time::{Instant, sleep};
 
 /// A hand that is there answers long before; after this the person is told why nothing comes.
 pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
 /// How often the wait checks.
 const LOOK_EACH: Duration = Duration::from_millis(10);
-
-/// A runtime of one thread: a slow reader of our output slows the polling down, and no sample is lost.
-pub(crate) fn runtime() -> anyhow::Result<Runtime> {
-    Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .context("cannot start the link")
-}
 
 /// A link that asks for nothing by itself: the line belongs to what a command asks.
 pub(crate) const ONLY_WHAT_IS_ASKED: PollRates = PollRates {

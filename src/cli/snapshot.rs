@@ -2,7 +2,7 @@
 
 use crate::app::settings::{Language, Theme};
 use crate::cli::out::{Out, WrongUsage, say};
-use crate::cli::parse::seconds;
+use crate::cli::parse::{number, seconds};
 use crate::shell::headless::canvas::Picture;
 use crate::shell::headless::cards::SceneCard;
 use crate::shell::headless::driver::{Driver, Scene};
@@ -177,11 +177,8 @@ fn progress(whole: Duration) -> impl FnMut(Duration) {
     move |done| {
         if told.elapsed() >= TELL_EACH {
             told = Instant::now();
-            say(&format!(
-                "{:.0} of {:.0} s",
-                done.as_secs_f64(),
-                whole.as_secs_f64()
-            ));
+            let (done_s, whole_s) = (done.as_secs_f64(), whole.as_secs_f64());
+            say(&format!("{done_s:.0} of {whole_s:.0} s"));
         }
     }
 }
@@ -191,8 +188,12 @@ fn save_labels(path: &Path, picture: &Picture) -> anyhow::Result<()> {
     fs::write(path, list + "\n").with_context(|| format!("cannot write {}", path.display()))
 }
 
+fn known_views() -> String {
+    View::ALL.map(View::name).join(", ")
+}
+
 fn views_help() -> String {
-    let known = View::ALL.map(View::name).join(", ");
+    let known = known_views();
     format!("A view ({known}), 'window' for the window as it opens, or 'all'")
 }
 
@@ -201,30 +202,21 @@ fn views(text: &str) -> Result<Views, String> {
         "window" => Ok(Views::Window),
         "all" => Ok(Views::All),
         name => View::by_name(name).map(Views::One).ok_or_else(|| {
-            let known = View::ALL.map(View::name).join(", ");
+            let known = known_views();
             format!("there is no such view: choose {known}, window or all")
         }),
     }
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {
-    let wrong = || format!("'{text}' is not a size: write WIDTHxHEIGHT, from 640x400 to 7680x4320");
-    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
-    let (width, height) = (
-        width.parse().map_err(|_not_one| wrong())?,
-        height.parse().map_err(|_not_one| wrong())?,
-    );
-    if (640..=7680).contains(&width) && (400..=4320).contains(&height) {
-        return Ok((width, height));
-    }
-    Err(wrong())
+    let size = text.split_once(['x', 'X']);
+    let size = size.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    size.filter(|(width, height)| (640..=7680).contains(width) && (400..=4320).contains(height))
+        .ok_or_else(|| {
+            format!("'{text}' is not a size: write WIDTHxHEIGHT, from 640x400 to 7680x4320")
+        })
 }
 
 fn scale(text: &str) -> Result<f32, String> {
-    match text.parse() {
-        Ok(scale) if (0.5..=4.0).contains(&scale) => Ok(scale),
-        _ => Err(format!(
-            "'{text}' is not a scale: write a number from 0.5 to 4"
-        )),
-    }
+    number(text, 0.5..=4.0, "a scale: write a number from 0.5 to 4")
 }

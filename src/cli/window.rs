@@ -13,7 +13,8 @@ pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     let drawing = match args.software_because {
         Some(reason) => Drawing::InPlaceOfOpenGl(reason),
         None if args.software => Drawing::Software,
-        None => Drawing::OpenGl,
+        None if args.opengl || desktop::may_draw_with_a_card() => Drawing::OpenGl,
+        None => Drawing::Software,
     };
     let hand = args.hand.as_ref().map(ToString::to_string);
     let ended = desktop::run(DesktopStart {

@@ -29,13 +29,13 @@ const PASSIVE: u8 = 0x30;
 const ACTIVE: u8 = 0x40;
 
 /// The data bytes of one frame.
-pub type Payload = ArrayVec<u8, 8>;
+pub type CanData = ArrayVec<u8, 8>;
 /// A run of memory cut into what single frames carry.
-pub type Pieces = ArrayVec<Span, PIECES_MAX>;
+pub type ReadPieces = ArrayVec<Span, PIECES_MAX>;
 
 /// What a frame is about: bits 26 to 28 of the identifier. The wrist's flags (4, 5) are not this hand's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub enum CanFunction {
     /// Flag 0.
     Read,
     /// Flag 1.
@@ -48,14 +48,14 @@ pub struct CanFrame {
     /// 0..=0x1FFF_FFFF.
     pub id: u32,
     /// 0 to 8 bytes.
-    pub data: Payload,
+    pub data: CanData,
 }
 
 /// The parts of an identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CanId {
     /// Read or write.
-    pub way: Way,
+    pub way: CanFunction,
     /// First byte's address, 0..=4095.
     pub address: u16,
     /// The hand, 0..=16383.
@@ -70,8 +70,8 @@ impl CanId {
             return None;
         }
         let way = match self.way {
-            Way::Read => 0,
-            Way::Write => 1,
+            CanFunction::Read => 0,
+            CanFunction::Write => 1,
         };
         Some((way << 26) | (u32::from(self.address) << 14) | u32::from(self.hand))
     }
@@ -80,8 +80,8 @@ impl CanId {
     #[must_use]
     pub fn from_raw(id: u32) -> Option<Self> {
         let way = match id >> 26 {
-            0 => Way::Read,
-            1 => Way::Write,
+            0 => CanFunction::Read,
+            1 => CanFunction::Write,
             _ => return None,
         };
         Some(Self {
@@ -99,14 +99,14 @@ pub fn read_request(hand: u16, span: Span) -> Option<CanFrame> {
         return None;
     }
     let len = u8::try_from(span.len).ok()?;
-    frame(Way::Read, hand, span.address, &[len])
+    frame(CanFunction::Read, hand, span.address, &[len])
 }
 
 /// A frame about this address: the reply to a read, a write (manual 2.3.2) or its reply; `None` for more than 8 bytes.
 #[must_use]
-pub fn frame(way: Way, hand: u16, address: u16, data: &[u8]) -> Option<CanFrame> {
+pub fn frame(way: CanFunction, hand: u16, address: u16, data: &[u8]) -> Option<CanFrame> {
     let id = CanId { way, address, hand }.raw()?;
-    let data = Payload::try_from(data).ok()?;
+    let data = CanData::try_from(data).ok()?;
     Some(CanFrame { id, data })
 }
 
@@ -118,7 +118,7 @@ pub fn write_requests(hand: u16, write: &RegisterWrite) -> Option<ArrayVec<CanFr
         .into_iter()
         .map(|piece| {
             frame(
-                Way::Write,
+                CanFunction::Write,
                 hand,
                 piece.address,
                 span.slice(write.bytes(), piece)?,
@@ -131,12 +131,12 @@ pub fn write_requests(hand: u16, write: &RegisterWrite) -> Option<ArrayVec<CanFr
 /// `None` for an empty run, one past address 4095, or one of more than [`PIECES_MAX`] pieces.
 // Manual: 2.3 says nothing of more than 8 bytes; others cut by address too.
 #[must_use]
-pub fn split(span: Span) -> Option<Pieces> {
+pub fn split(span: Span) -> Option<ReadPieces> {
     let end = u16::try_from(span.end()).ok()?;
     if span.len == 0 || end > ADDRESS_MAX + 1 {
         return None;
     }
-    let mut pieces = Pieces::new();
+    let mut pieces = ReadPieces::new();
     let mut from = span.address;
     while from < end {
         let last = end.min(from + PIECE_MAX);
@@ -165,7 +165,7 @@ pub fn may_cut(at: u16) -> bool {
 
 /// What a CAN interface says.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Record {
+pub enum CanRecord {
     /// A frame of the kind that the hand knows.
     Frame(CanFrame),
     /// The controller gave the bus up: it sends no more until it is restarted.
@@ -196,31 +196,31 @@ pub fn to_record(frame: &CanFrame) -> [u8; RECORD_LEN] {
 
 /// What a `struct can_frame` says.
 #[must_use]
-pub fn from_record(record: &[u8; RECORD_LEN]) -> Record {
+pub fn from_record(record: &[u8; RECORD_LEN]) -> CanRecord {
     let [a, b, c, d, len, _, _, _, data @ ..] = record;
     let id = u32::from_ne_bytes([*a, *b, *c, *d]);
     if id & ERROR != 0 {
         return trouble(id, data);
     }
-    match data.get(..usize::from(*len)).map(Payload::try_from) {
-        Some(Ok(data)) if id & EXTENDED != 0 && id & REMOTE == 0 => Record::Frame(CanFrame {
+    match data.get(..usize::from(*len)).map(CanData::try_from) {
+        Some(Ok(data)) if id & EXTENDED != 0 && id & REMOTE == 0 => CanRecord::Frame(CanFrame {
             id: id & ID_MASK,
             data,
         }),
-        _ => Record::Other,
+        _ => CanRecord::Other,
     }
 }
 
-fn trouble(id: u32, data: &[u8]) -> Record {
+fn trouble(id: u32, data: &[u8]) -> CanRecord {
     let state = data.get(1).copied().unwrap_or_default();
     if id & ERROR_BUS_OFF != 0 {
-        Record::BusOff
+        CanRecord::BusOff
     } else if id & ERROR_CONTROLLER != 0 && state & PASSIVE != 0 {
-        Record::ErrorPassive
+        CanRecord::ErrorPassive
     } else if id & ERROR_CONTROLLER != 0 && state & ACTIVE != 0 {
-        Record::ErrorActive
+        CanRecord::ErrorActive
     } else {
-        Record::Other
+        CanRecord::Other
     }
 }
 
@@ -240,13 +240,13 @@ mod tests {
         // 2.3.1: ANGLE_ACT(3) of hand 1, and its answer 500.
         let ask = read_request(1, Span::new(1552, 2)).unwrap();
         assert_eq!((ask.id, &ask.data[..]), (0x0184_0001, &[0x02][..]));
-        let answer = frame(Way::Read, 1, 1552, &[0xF4, 0x01]).unwrap();
+        let answer = frame(CanFunction::Read, 1, 1552, &[0xF4, 0x01]).unwrap();
         assert_eq!(
             (answer.id, &answer.data[..]),
             (0x0184_0001, &[0xF4, 0x01][..])
         );
         // 2.3.2: ANGLE_SET(3) of hand 1 = 600.
-        let write = frame(Way::Write, 1, 1492, &[0x58, 0x02]).unwrap();
+        let write = frame(CanFunction::Write, 1, 1492, &[0x58, 0x02]).unwrap();
         assert_eq!(
             (write.id, &write.data[..]),
             (0x0575_0001, &[0x58, 0x02][..])
@@ -254,7 +254,7 @@ mod tests {
         assert_eq!(
             CanId::from_raw(0x0575_0001),
             Some(CanId {
-                way: Way::Write,
+                way: CanFunction::Write,
                 address: 1492,
                 hand: 1
             })
@@ -315,12 +315,12 @@ mod tests {
             record[9] = state;
             from_record(&record)
         };
-        assert_eq!(of(0x40, 0), Record::BusOff);
-        assert_eq!(of(0x04, 0x20), Record::ErrorPassive);
-        assert_eq!(of(0x04, 0x10), Record::ErrorPassive);
-        assert_eq!(of(0x04, 0x40), Record::ErrorActive);
-        assert_eq!(of(0x04, 0x08), Record::Other);
-        assert_eq!(of(0x20, 0), Record::Other);
+        assert_eq!(of(0x40, 0), CanRecord::BusOff);
+        assert_eq!(of(0x04, 0x20), CanRecord::ErrorPassive);
+        assert_eq!(of(0x04, 0x10), CanRecord::ErrorPassive);
+        assert_eq!(of(0x04, 0x40), CanRecord::ErrorActive);
+        assert_eq!(of(0x04, 0x08), CanRecord::Other);
+        assert_eq!(of(0x20, 0), CanRecord::Other);
     }
 
     proptest! {
@@ -343,17 +343,17 @@ mod tests {
 
         #[test]
         fn identifiers_read_back(address in 0_u16..4096, hand in 0_u16..16384, write: bool) {
-            let way = if write { Way::Write } else { Way::Read };
+            let way = if write { CanFunction::Write } else { CanFunction::Read };
             let id = CanId { way, address, hand };
             prop_assert_eq!(CanId::from_raw(id.raw().unwrap()), Some(id));
         }
 
         #[test]
         fn records_read_back_and_no_record_panics(id in 0_u32..=0x1FFF_FFFF, data in prop::collection::vec(any::<u8>(), 0..9), any: [u8; 16]) {
-            let frame = CanFrame { id, data: Payload::try_from(&data[..]).unwrap() };
-            prop_assert_eq!(from_record(&to_record(&frame)), Record::Frame(frame));
-            if let Record::Frame(frame) = from_record(&any) {
-                prop_assert_eq!(from_record(&to_record(&frame)), Record::Frame(frame));
+            let frame = CanFrame { id, data: CanData::try_from(&data[..]).unwrap() };
+            prop_assert_eq!(from_record(&to_record(&frame)), CanRecord::Frame(frame));
+            if let CanRecord::Frame(frame) = from_record(&any) {
+                prop_assert_eq!(from_record(&to_record(&frame)), CanRecord::Frame(frame));
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Between bytes in the hand's memory and Modbus' 16-bit words (manual 2.5). No framing, no sending.
 
-use crate::hand::register::{Element, by_address};
+use crate::hand::register::{BytePacking, Element, by_address};
 use crate::hand::{RegisterWrite, Span};
 use arrayvec::ArrayVec;
 
@@ -94,19 +94,6 @@ pub fn words_from_write(write: &RegisterWrite) -> ModbusWrite {
             }
         }
     }
-}
-
-/// How a hand puts its one-byte groups (ERROR, STATUS, TEMP) into words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum BytePacking {
-    /// Two a word, the low byte is the lower address.
-    // Manual: silent; most drivers of real hands read it so.
-    #[default]
-    LowFirst,
-    /// Two a word, the high byte is the lower address.
-    HighFirst,
-    /// One a word, in six words.
-    OnePerWord,
 }
 
 impl BytePacking {

@@ -1,5 +1,6 @@
 //! Whole Modbus RTU replies out of a stream that may hold noise (manual 2.4). What the registers mean is not known here.
 
+use crate::codec::NoiseCounts;
 use arrayvec::ArrayVec;
 
 /// The longest frame: unit, 253 bytes of function and data, check.
@@ -37,8 +38,6 @@ pub fn crc16(bytes: &[u8]) -> u16 {
 /// One whole reply whose check is right.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RtuReply {
-    /// Function code; the top bit marks an exception.
-    pub function: u8,
     /// All bytes, unit and check included.
     pub bytes: ArrayVec<u8, FRAME_LEN_MAX>,
 }
@@ -52,15 +51,6 @@ impl RtuReply {
             _ => None,
         }
     }
-}
-
-/// What was on the line beside good replies.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct RtuNoise {
-    /// Heads of a possible reply whose check was wrong.
-    pub checksum_errors: u64,
-    /// Runs of bytes that had to be skipped to find the next reply.
-    pub resyncs: u64,
 }
 
 /// Requests that were on the line: ours, given back by an adapter, or another controller's.
@@ -78,7 +68,7 @@ pub struct RtuRequests {
 pub struct RtuSplitter {
     unit: u8,
     buffer: ArrayVec<u8, BUFFER_LEN>,
-    noise: RtuNoise,
+    noise: NoiseCounts,
     /// Within a run of skipped bytes, which counts once.
     skipping: bool,
     /// The request whose echo may come; empty if none may.
@@ -87,7 +77,7 @@ pub struct RtuSplitter {
 }
 
 /// What the bytes at the front can be.
-enum Head {
+enum ReplyStart {
     /// A reply of so many bytes, whole and good.
     Good(usize),
     /// Looks like a reply, but its check is wrong.
@@ -107,9 +97,10 @@ impl RtuSplitter {
         Self {
             unit,
             buffer: ArrayVec::new_const(),
-            noise: RtuNoise {
+            noise: NoiseCounts {
                 checksum_errors: 0,
                 resyncs: 0,
+                skipped_bytes: 0,
             },
             skipping: false,
             echo: ArrayVec::new_const(),
@@ -151,16 +142,16 @@ impl RtuSplitter {
     )]
     pub fn next(&mut self) -> Option<RtuReply> {
         loop {
-            match self.head(0) {
-                Head::Good(len) => return Some(self.take(len)),
-                Head::Open => return None,
-                Head::Echo(len) => self.take_echo(len),
-                Head::Bad | Head::None if self.take_foreign() => {}
-                Head::Bad => {
+            match self.start() {
+                ReplyStart::Good(len) => return Some(self.take(len)),
+                ReplyStart::Open => return None,
+                ReplyStart::Echo(len) => self.take_echo(len),
+                ReplyStart::Bad | ReplyStart::None if self.take_foreign() => {}
+                ReplyStart::Bad => {
                     self.noise.checksum_errors += u64::from(!self.skipping);
-                    self.skip(1);
+                    self.skip();
                 }
-                Head::None => self.skip(1),
+                ReplyStart::None => self.skip(),
             }
         }
     }
@@ -168,18 +159,18 @@ impl RtuSplitter {
     /// The line is silent, so nothing unfinished will be finished: skips to the next whole reply, or everything.
     pub fn flush_pending(&mut self) {
         while !self.buffer.is_empty() {
-            match self.head(0) {
-                Head::Good(_) => return,
-                Head::Echo(len) => self.take_echo(len),
-                Head::Bad | Head::Open | Head::None if self.take_foreign() => {}
-                Head::Bad | Head::Open | Head::None => self.skip(1),
+            match self.start() {
+                ReplyStart::Good(_) => return,
+                ReplyStart::Echo(len) => self.take_echo(len),
+                ReplyStart::Bad | ReplyStart::Open | ReplyStart::None if self.take_foreign() => {}
+                ReplyStart::Bad | ReplyStart::Open | ReplyStart::None => self.skip(),
             }
         }
     }
 
     /// What was skipped so far.
     #[must_use]
-    pub const fn noise(&self) -> RtuNoise {
+    pub const fn noise(&self) -> NoiseCounts {
         self.noise
     }
 
@@ -189,32 +180,34 @@ impl RtuSplitter {
         self.buffer.len()
     }
 
-    fn head(&self, at: usize) -> Head {
-        let bytes = self.buffer.get(at..).unwrap_or_default();
+    fn start(&self) -> ReplyStart {
+        let bytes = self.buffer.as_slice();
         if !self.echo.is_empty() {
             if bytes.starts_with(&self.echo) {
-                return Head::Echo(self.echo.len());
+                return ReplyStart::Echo(self.echo.len());
             }
             if self.echo.starts_with(bytes) {
-                return Head::Open;
+                return ReplyStart::Open;
             }
         }
         if bytes.first().is_some_and(|unit| *unit != self.unit) {
-            return Head::None;
+            return ReplyStart::None;
         }
         let len = match bytes {
-            [] | [_] | [_, 3] => return Head::Open,
+            [] | [_] | [_, 3] => return ReplyStart::Open,
             [_, 3, count, ..] if count % 2 == 0 && (2..=READ_BYTES_MAX).contains(count) => {
                 READ_HEAD_LEN + usize::from(*count) + CHECK_LEN
             }
             [_, 6 | 16, ..] => WRITTEN_LEN,
             [_, 0x83 | 0x86 | 0x90, ..] => EXCEPTION_LEN,
-            _ => return Head::None,
+            _ => return ReplyStart::None,
         };
         match bytes.get(..len).and_then(<[u8]>::split_last_chunk) {
-            None => Head::Open,
-            Some((body, check)) if crc16(body) == u16::from_le_bytes(*check) => Head::Good(len),
-            Some(_) => Head::Bad,
+            None => ReplyStart::Open,
+            Some((body, check)) if crc16(body) == u16::from_le_bytes(*check) => {
+                ReplyStart::Good(len)
+            }
+            Some(_) => ReplyStart::Bad,
         }
     }
 
@@ -247,20 +240,16 @@ impl RtuSplitter {
 
     fn take(&mut self, len: usize) -> RtuReply {
         self.skipping = false;
-        let bytes: ArrayVec<u8, FRAME_LEN_MAX> = self.buffer.drain(..len).collect();
         RtuReply {
-            function: bytes.get(1).copied().unwrap_or_default(),
-            bytes,
+            bytes: self.buffer.drain(..len).collect(),
         }
     }
 
-    fn skip(&mut self, count: usize) {
-        if count == 0 {
-            return;
-        }
+    fn skip(&mut self) {
         self.noise.resyncs += u64::from(!self.skipping);
+        self.noise.skipped_bytes += 1;
         self.skipping = true;
-        self.buffer.drain(..count);
+        self.buffer.remove(0);
     }
 }
 
@@ -275,7 +264,7 @@ mod tests {
     const ZEROS: [u8; 8] = [1, 6, 0, 0, 0, 0, 0x89, 0xCA];
     const WRITTEN: [u8; 8] = [1, 16, 0, 1, 0, 2, 0x10, 0x08];
 
-    fn split(stream: &[u8], piece: usize) -> (Vec<Vec<u8>>, RtuNoise) {
+    fn split(stream: &[u8], piece: usize) -> (Vec<Vec<u8>>, NoiseCounts) {
         let mut splitter = RtuSplitter::new(1);
         let mut out = Vec::new();
         for mut chunk in stream.chunks(piece) {
@@ -312,7 +301,10 @@ mod tests {
         let stream = [READ.as_slice(), &ZEROS, &WRITTEN].concat();
         let want = vec![READ.to_vec(), ZEROS.to_vec(), WRITTEN.to_vec()];
         for piece in 1..=stream.len() {
-            assert_eq!(split(&stream, piece), (want.clone(), RtuNoise::default()));
+            assert_eq!(
+                split(&stream, piece),
+                (want.clone(), NoiseCounts::default())
+            );
         }
     }
 
@@ -352,7 +344,7 @@ mod tests {
                 out.push(reply.bytes.to_vec());
             }
         }
-        assert_eq!(splitter.noise(), RtuNoise::default());
+        assert_eq!(splitter.noise(), NoiseCounts::default());
         (out, splitter.requests())
     }
 
@@ -412,7 +404,7 @@ mod tests {
                     checked(&[1, 3, words * 2].into_iter().chain(data).collect::<Vec<u8>>())
                 })
                 .collect();
-            prop_assert_eq!(split(&replies.concat(), piece), (replies, RtuNoise::default()));
+            prop_assert_eq!(split(&replies.concat(), piece), (replies, NoiseCounts::default()));
         }
     }
 }

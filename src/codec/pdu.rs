@@ -8,7 +8,7 @@ const WRITTEN_MAX: u8 = 246;
 
 /// Which side says it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum ModbusRole {
     /// Who asks.
     Client,
     /// The hand.
@@ -77,20 +77,20 @@ pub enum Len {
 
 /// The length of the message that begins here.
 #[must_use]
-pub fn len(side: Side, pdu: &[u8]) -> Len {
+pub fn len(side: ModbusRole, pdu: &[u8]) -> Len {
     match (side, pdu) {
         (_, []) => Len::Open,
-        (Side::Client, [3 | 6, ..]) | (Side::Server, [6 | 16, ..]) => Len::Known(5),
-        (Side::Client, [16, rest @ ..]) => match rest.get(4) {
+        (ModbusRole::Client, [3 | 6, ..]) | (ModbusRole::Server, [6 | 16, ..]) => Len::Known(5),
+        (ModbusRole::Client, [16, rest @ ..]) => match rest.get(4) {
             None => Len::Open,
             Some(bytes) if is_words(*bytes, WRITTEN_MAX) => Len::Known(6 + usize::from(*bytes)),
             Some(_) => Len::None,
         },
-        (Side::Server, [3]) => Len::Open,
-        (Side::Server, [3, bytes, ..]) if is_words(*bytes, BYTES_MAX) => {
+        (ModbusRole::Server, [3]) => Len::Open,
+        (ModbusRole::Server, [3, bytes, ..]) if is_words(*bytes, BYTES_MAX) => {
             Len::Known(2 + usize::from(*bytes))
         }
-        (Side::Server, [0x83 | 0x86 | 0x90, ..]) => Len::Known(2),
+        (ModbusRole::Server, [0x83 | 0x86 | 0x90, ..]) => Len::Known(2),
         _ => Len::None,
     }
 }
@@ -101,32 +101,34 @@ const fn is_words(bytes: u8, max: u8) -> bool {
 
 /// What a whole message says.
 #[must_use]
-pub fn parse(side: Side, pdu: &[u8]) -> Pdu<'_> {
+pub fn parse(side: ModbusRole, pdu: &[u8]) -> Pdu<'_> {
     let word = |high: &u8, low: &u8| u16::from_be_bytes([*high, *low]);
     match (side, pdu) {
-        (Side::Client, [3, a, b, c, d]) => Pdu::Read {
+        (ModbusRole::Client, [3, a, b, c, d]) => Pdu::Read {
             address: word(a, b),
             count: word(c, d),
         },
-        (Side::Server, [3, len, words @ ..]) if usize::from(*len) == words.len() => {
+        (ModbusRole::Server, [3, len, words @ ..]) if usize::from(*len) == words.len() => {
             Pdu::Words(words)
         }
         (_, [6, a, b, c, d]) => Pdu::WriteOne {
             address: word(a, b),
             value: word(c, d),
         },
-        (Side::Client, [16, a, b, c, d, len, words @ ..]) if usize::from(*len) == words.len() => {
+        (ModbusRole::Client, [16, a, b, c, d, len, words @ ..])
+            if usize::from(*len) == words.len() =>
+        {
             Pdu::Write {
                 address: word(a, b),
                 count: word(c, d),
                 words,
             }
         }
-        (Side::Server, [16, a, b, c, d]) => Pdu::Written {
+        (ModbusRole::Server, [16, a, b, c, d]) => Pdu::Written {
             address: word(a, b),
             count: word(c, d),
         },
-        (Side::Server, [function @ 0x80..=0xFF, code]) => Pdu::Exception {
+        (ModbusRole::Server, [function @ 0x80..=0xFF, code]) => Pdu::Exception {
             function: function & 0x7F,
             code: *code,
         },
@@ -146,7 +148,7 @@ mod tests {
         // Manual 2.5.1 to 2.5.3 without header.
         for (side, bytes, said) in [
             (
-                Side::Client,
+                ModbusRole::Client,
                 &[3, 0x06, 0x0A, 0, 3][..],
                 Pdu::Read {
                     address: 1546,
@@ -154,12 +156,12 @@ mod tests {
                 },
             ),
             (
-                Side::Server,
+                ModbusRole::Server,
                 &[3, 6, 2, 0x2B, 0, 0, 0, 0x64],
                 Pdu::Words(&[2, 0x2B, 0, 0, 0, 0x64]),
             ),
             (
-                Side::Client,
+                ModbusRole::Client,
                 &[6, 0x03, 0xED, 0, 1],
                 Pdu::WriteOne {
                     address: 1005,
@@ -167,7 +169,7 @@ mod tests {
                 },
             ),
             (
-                Side::Client,
+                ModbusRole::Client,
                 &[16, 5, 0xCE, 0, 1, 2, 3, 0xE8],
                 Pdu::Write {
                     address: 1486,
@@ -176,7 +178,7 @@ mod tests {
                 },
             ),
             (
-                Side::Server,
+                ModbusRole::Server,
                 &[16, 5, 0xCE, 0, 1],
                 Pdu::Written {
                     address: 1486,
@@ -184,7 +186,7 @@ mod tests {
                 },
             ),
             (
-                Side::Server,
+                ModbusRole::Server,
                 &[0x83, 2],
                 Pdu::Exception {
                     function: 3,
@@ -199,12 +201,12 @@ mod tests {
 
     #[test]
     fn what_no_side_says_has_no_length() {
-        assert_eq!(len(Side::Server, &[3, 7]), Len::None);
-        assert_eq!(len(Side::Server, &[43]), Len::None);
-        assert_eq!(len(Side::Client, &[0x83, 2]), Len::None);
-        assert_eq!(len(Side::Client, &[16, 0, 0, 0, 1]), Len::Open);
+        assert_eq!(len(ModbusRole::Server, &[3, 7]), Len::None);
+        assert_eq!(len(ModbusRole::Server, &[43]), Len::None);
+        assert_eq!(len(ModbusRole::Client, &[0x83, 2]), Len::None);
+        assert_eq!(len(ModbusRole::Client, &[16, 0, 0, 0, 1]), Len::Open);
         assert_eq!(
-            parse(Side::Server, &[3, 4, 1, 2]),
+            parse(ModbusRole::Server, &[3, 4, 1, 2]),
             Pdu::Other { function: 3 }
         );
     }

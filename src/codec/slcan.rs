@@ -1,6 +1,7 @@
 //! The text protocol of serial CAN adapters (Lawicel: `O`, `C`, `S0`..`S8`, `T`, CR and BEL), both sides. No port, no clock.
 
-use crate::codec::can::{CanFrame, Payload};
+use crate::codec::NoiseCounts;
+use crate::codec::can::{CanData, CanFrame};
 use arrayvec::ArrayVec;
 
 /// The longest line without its CR: `T`, 8 digits, length, 16 digits, 4 of time stamp.
@@ -16,11 +17,11 @@ const CR: u8 = b'\r';
 const BEL: u8 = 0x07;
 
 /// A line to send, with its CR.
-pub type Line = ArrayVec<u8, { LINE_MAX + 1 }>;
+pub type SlcanLine = ArrayVec<u8, { LINE_MAX + 1 }>;
 
 /// What an adapter is told.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Command {
+pub enum SlcanCommand {
     /// `O`: take part in the bus.
     Open,
     /// `C`: leave the bus.
@@ -41,7 +42,7 @@ pub enum Command {
 
 /// What an adapter says.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Answer {
+pub enum SlcanAnswer {
     /// CR alone.
     Done,
     /// BEL.
@@ -54,15 +55,6 @@ pub enum Answer {
     Other(u8),
 }
 
-/// What a decoder met apart from good lines. Counts only grow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct NoiseCounts {
-    /// Lines that were no such thing, or had noise in front.
-    pub bad_lines: u64,
-    /// Bytes thrown away with them.
-    pub skipped_bytes: u64,
-}
-
 /// The code of a bit rate, if it has one.
 #[must_use]
 pub fn bitrate_code(bitrate: u32) -> Option<u8> {
@@ -72,44 +64,46 @@ pub fn bitrate_code(bitrate: u32) -> Option<u8> {
 
 /// The line that says this to an adapter; `None` for codes past 8, and for what is told by its letter alone.
 #[must_use]
-pub fn encode_command(command: &Command) -> Option<Line> {
-    let mut line = Line::new();
+pub fn encode_command(command: &SlcanCommand) -> Option<SlcanLine> {
+    let mut line = SlcanLine::new();
     match command {
-        Command::Open => line.push(b'O'),
-        Command::Close => line.push(b'C'),
-        Command::Bitrate(code @ 0..=8) => line.extend([b'S', b'0' + code]),
-        Command::Send(frame) => line = frame_line(frame),
-        Command::Listen => line.push(b'L'),
-        Command::Timing(registers) => {
+        SlcanCommand::Open => line.push(b'O'),
+        SlcanCommand::Close => line.push(b'C'),
+        SlcanCommand::Bitrate(code @ 0..=8) => line.extend([b'S', b'0' + code]),
+        SlcanCommand::Send(frame) => line = frame_line(frame),
+        SlcanCommand::Listen => line.push(b'L'),
+        SlcanCommand::Timing(registers) => {
             line.push(b's');
             line.extend(registers.to_be_bytes().into_iter().flat_map(digits));
         }
-        Command::Bitrate(_) | Command::SendOther(_) | Command::Other(_) => return None,
+        SlcanCommand::Bitrate(_) | SlcanCommand::SendOther(_) | SlcanCommand::Other(_) => {
+            return None;
+        }
     }
     line.push(CR);
     Some(line)
 }
 
-/// What an adapter sends for this; `None` for [`Answer::Other`].
+/// What an adapter sends for this; `None` for [`SlcanAnswer::Other`].
 #[must_use]
-pub fn encode_answer(answer: &Answer) -> Option<Line> {
-    let mut line = Line::new();
+pub fn encode_answer(answer: &SlcanAnswer) -> Option<SlcanLine> {
+    let mut line = SlcanLine::new();
     match answer {
-        Answer::Done => {}
-        Answer::Failed => {
+        SlcanAnswer::Done => {}
+        SlcanAnswer::Failed => {
             line.push(BEL);
             return Some(line);
         }
-        Answer::Sent => line.push(b'Z'),
-        Answer::Frame(frame) => line = frame_line(frame),
-        Answer::Other(_) => return None,
+        SlcanAnswer::Sent => line.push(b'Z'),
+        SlcanAnswer::Frame(frame) => line = frame_line(frame),
+        SlcanAnswer::Other(_) => return None,
     }
     line.push(CR);
     Some(line)
 }
 
-fn frame_line(frame: &CanFrame) -> Line {
-    let mut line = Line::from_iter([b'T']);
+fn frame_line(frame: &CanFrame) -> SlcanLine {
+    let mut line = SlcanLine::from_iter([b'T']);
     let id = frame.id.to_be_bytes();
     line.extend(id.into_iter().flat_map(digits));
     let len = u8::try_from(frame.data.len()).unwrap_or_default();
@@ -152,7 +146,7 @@ impl Collector {
         if whole.is_some() {
             return whole;
         }
-        self.counts.bad_lines += 1;
+        self.counts.resyncs += 1;
         // Noise in front of a frame: `T` is no digit, so the last one begins it.
         let from = line.iter().rposition(|byte| *byte == b'T');
         let found = from.and_then(|from| Some((from, parse(line.get(from..)?)?)));
@@ -168,14 +162,14 @@ pub struct AnswerDecoder(Collector);
 
 impl AnswerDecoder {
     /// Takes the next byte; gives what it completes.
-    pub fn push(&mut self, byte: u8) -> Option<Answer> {
+    pub fn push(&mut self, byte: u8) -> Option<SlcanAnswer> {
         match byte {
             CR => self.0.end(parse_answer),
             BEL => {
                 if !self.0.line.is_empty() {
-                    self.0.end(|_| None::<Answer>);
+                    self.0.end(|_| None::<SlcanAnswer>);
                 }
-                Some(Answer::Failed)
+                Some(SlcanAnswer::Failed)
             }
             _ => {
                 self.0.keep(byte);
@@ -197,7 +191,7 @@ pub struct CommandDecoder(Collector);
 
 impl CommandDecoder {
     /// Takes the next byte; gives what it completes. An unreadable line is an error, which an adapter answers with BEL.
-    pub fn push(&mut self, byte: u8) -> Option<Result<Command, Unreadable>> {
+    pub fn push(&mut self, byte: u8) -> Option<Result<SlcanCommand, Unreadable>> {
         match byte {
             // Clients clear the line with empty commands, and some end lines with both characters.
             CR if self.0.line.is_empty() => None,
@@ -222,36 +216,36 @@ impl CommandDecoder {
 #[error("the line is no command of a serial CAN adapter")]
 pub struct Unreadable;
 
-fn parse_answer(line: &[u8]) -> Option<Answer> {
+fn parse_answer(line: &[u8]) -> Option<SlcanAnswer> {
     match line {
-        [] => Some(Answer::Done),
-        b"z" | b"Z" => Some(Answer::Sent),
-        [b'T', rest @ ..] => parse_frame(rest, Shape::LONG).map(Answer::Frame),
+        [] => Some(SlcanAnswer::Done),
+        b"z" | b"Z" => Some(SlcanAnswer::Sent),
+        [b'T', rest @ ..] => parse_frame(rest, Shape::LONG).map(SlcanAnswer::Frame),
         [
             letter @ (b't' | b'r' | b'R' | b'V' | b'v' | b'N' | b'F'),
             rest @ ..,
-        ] if rest.iter().all(u8::is_ascii_alphanumeric) => Some(Answer::Other(*letter)),
+        ] if rest.iter().all(u8::is_ascii_alphanumeric) => Some(SlcanAnswer::Other(*letter)),
         _ => None,
     }
 }
 
-fn parse_command(line: &[u8]) -> Option<Command> {
+fn parse_command(line: &[u8]) -> Option<SlcanCommand> {
     match line {
-        b"O" => Some(Command::Open),
-        b"C" => Some(Command::Close),
-        [b'S', code @ b'0'..=b'8'] => Some(Command::Bitrate(code - b'0')),
-        [b'T', rest @ ..] => parse_frame(rest, Shape::LONG).map(Command::Send),
+        b"O" => Some(SlcanCommand::Open),
+        b"C" => Some(SlcanCommand::Close),
+        [b'S', code @ b'0'..=b'8'] => Some(SlcanCommand::Bitrate(code - b'0')),
+        [b'T', rest @ ..] => parse_frame(rest, Shape::LONG).map(SlcanCommand::Send),
         [b't', rest @ ..] => other_frame(b't', rest, Shape::SHORT),
         [b'r', rest @ ..] => other_frame(b'r', rest, Shape::SHORT.remote()),
         [b'R', rest @ ..] => other_frame(b'R', rest, Shape::LONG.remote()),
-        b"L" => Some(Command::Listen),
+        b"L" => Some(SlcanCommand::Listen),
         [b's', digits @ ..] if digits.len() == 4 => number(digits)
             .and_then(|registers| u16::try_from(registers).ok())
-            .map(Command::Timing),
+            .map(SlcanCommand::Timing),
         [letter, rest @ ..]
             if b"VvNFZMmXWQPA".contains(letter) && rest.iter().all(u8::is_ascii_alphanumeric) =>
         {
-            Some(Command::Other(*letter))
+            Some(SlcanCommand::Other(*letter))
         }
         _ => None,
     }
@@ -285,8 +279,8 @@ impl Shape {
     }
 }
 
-fn other_frame(letter: u8, text: &[u8], shape: Shape) -> Option<Command> {
-    parse_frame(text, shape).map(|_| Command::SendOther(letter))
+fn other_frame(letter: u8, text: &[u8], shape: Shape) -> Option<SlcanCommand> {
+    parse_frame(text, shape).map(|_| SlcanCommand::SendOther(letter))
 }
 
 /// Identifier, length, data and perhaps a time stamp.
@@ -303,7 +297,7 @@ fn parse_frame(text: &[u8], shape: Shape) -> Option<CanFrame> {
         return None;
     }
     let (pairs, _) = data.as_chunks::<2>();
-    let data: Option<Payload> = pairs
+    let data: Option<CanData> = pairs
         .iter()
         .map(|[high, low]| Some((nibble(*high)? << 4) | nibble(*low)?))
         .collect();
@@ -332,13 +326,13 @@ mod tests {
     use crate::hand::Span;
     use proptest::prelude::*;
 
-    fn answers(text: &[u8]) -> (Vec<Answer>, NoiseCounts) {
+    fn answers(text: &[u8]) -> (Vec<SlcanAnswer>, NoiseCounts) {
         let mut decoder = AnswerDecoder::default();
         let found = text.iter().filter_map(|byte| decoder.push(*byte)).collect();
         (found, decoder.counts())
     }
 
-    fn commands(text: &[u8]) -> Vec<Result<Command, Unreadable>> {
+    fn commands(text: &[u8]) -> Vec<Result<SlcanCommand, Unreadable>> {
         let mut decoder = CommandDecoder::default();
         text.iter().filter_map(|byte| decoder.push(*byte)).collect()
     }
@@ -346,21 +340,21 @@ mod tests {
     fn frame(id: u32, data: &[u8]) -> CanFrame {
         CanFrame {
             id,
-            data: Payload::try_from(data).unwrap(),
+            data: CanData::try_from(data).unwrap(),
         }
     }
 
     #[test]
     fn the_manuals_frames_have_these_lines() {
         let ask = can::read_request(1, Span::new(1552, 2)).unwrap();
-        let line = encode_command(&Command::Send(ask.clone())).unwrap();
+        let line = encode_command(&SlcanCommand::Send(ask.clone())).unwrap();
         assert_eq!(&line[..], b"T01840001102\r");
-        assert_eq!(commands(b"T01840001102\r"), [Ok(Command::Send(ask))]);
+        assert_eq!(commands(b"T01840001102\r"), [Ok(SlcanCommand::Send(ask))]);
         let write = frame(0x0575_0001, &[0x58, 0x02]);
-        let line = encode_command(&Command::Send(write)).unwrap();
+        let line = encode_command(&SlcanCommand::Send(write)).unwrap();
         assert_eq!(&line[..], b"T0575000125802\r");
         let (found, _) = answers(b"T018400012F401\r");
-        assert_eq!(found, [Answer::Frame(frame(0x0184_0001, &[0xF4, 1]))]);
+        assert_eq!(found, [SlcanAnswer::Frame(frame(0x0184_0001, &[0xF4, 1]))]);
     }
 
     #[test]
@@ -369,26 +363,26 @@ mod tests {
         assert_eq!(bitrate_code(500_000), Some(6));
         assert_eq!(bitrate_code(10_000), Some(0));
         assert_eq!(bitrate_code(83_333), None);
-        let line = encode_command(&Command::Bitrate(8)).unwrap();
+        let line = encode_command(&SlcanCommand::Bitrate(8)).unwrap();
         assert_eq!(&line[..], b"S8\r");
-        assert_eq!(encode_command(&Command::Bitrate(9)), None);
+        assert_eq!(encode_command(&SlcanCommand::Bitrate(9)), None);
     }
 
     #[test]
     fn acknowledgements_stamps_and_other_frames_are_understood() {
-        let got = Answer::Frame(frame(0x0184_0001, &[0xF4, 1]));
+        let got = SlcanAnswer::Frame(frame(0x0184_0001, &[0xF4, 1]));
         for (text, wanted) in [
-            (&b"\r"[..], vec![Answer::Done]),
-            (b"\x07", vec![Answer::Failed]),
-            (b"z\rZ\r", vec![Answer::Sent, Answer::Sent]),
+            (&b"\r"[..], vec![SlcanAnswer::Done]),
+            (b"\x07", vec![SlcanAnswer::Failed]),
+            (b"z\rZ\r", vec![SlcanAnswer::Sent, SlcanAnswer::Sent]),
             (b"T018400012F401ABCD\r", vec![got.clone()]),
             (b"T018400012f401\r", vec![got.clone()]),
-            (b"t1232F401\r", vec![Answer::Other(b't')]),
+            (b"t1232F401\r", vec![SlcanAnswer::Other(b't')]),
             (
                 b"V1013\rNA123\r",
-                vec![Answer::Other(b'V'), Answer::Other(b'N')],
+                vec![SlcanAnswer::Other(b'V'), SlcanAnswer::Other(b'N')],
             ),
-            (b"Z\rT018400012F401\r", vec![Answer::Sent, got.clone()]),
+            (b"Z\rT018400012F401\r", vec![SlcanAnswer::Sent, got.clone()]),
         ] {
             let (found, noise) = answers(text);
             assert_eq!(found, wanted, "{text:?}");
@@ -398,7 +392,7 @@ mod tests {
 
     #[test]
     fn noise_is_skipped_and_counted_and_the_next_line_is_whole() {
-        let good = Answer::Frame(frame(0x0184_0001, &[0xF4, 1]));
+        let good = SlcanAnswer::Frame(frame(0x0184_0001, &[0xF4, 1]));
         for noise in [
             &b"\xFF\x00"[..],
             b"T0184",
@@ -410,7 +404,7 @@ mod tests {
         ] {
             let (found, counts) = answers(&[noise, b"T018400012F401\r"].concat());
             assert_eq!(found, std::slice::from_ref(&good), "{noise:?}");
-            assert_eq!(counts.bad_lines, 1, "{noise:?}");
+            assert_eq!(counts.resyncs, 1, "{noise:?}");
             let want = noise.len() - usize::from(noise.ends_with(b"\r"));
             assert_eq!(counts.skipped_bytes, want as u64, "{noise:?}");
         }
@@ -425,22 +419,22 @@ mod tests {
         assert_eq!(
             commands(b"C\rS8\rO\r"),
             [
-                Ok(Command::Close),
-                Ok(Command::Bitrate(8)),
-                Ok(Command::Open)
+                Ok(SlcanCommand::Close),
+                Ok(SlcanCommand::Bitrate(8)),
+                Ok(SlcanCommand::Open)
             ]
         );
-        assert_eq!(commands(b"V\r"), [Ok(Command::Other(b'V'))]);
+        assert_eq!(commands(b"V\r"), [Ok(SlcanCommand::Other(b'V'))]);
     }
 
     proptest! {
         #[test]
         fn frames_read_back_on_both_sides(id in 0_u32..=0x1FFF_FFFF, data in prop::collection::vec(any::<u8>(), 0..9)) {
             let frame = frame(id, &data);
-            let line = encode_answer(&Answer::Frame(frame.clone())).unwrap();
-            prop_assert_eq!(answers(&line).0, [Answer::Frame(frame.clone())]);
-            let line = encode_command(&Command::Send(frame.clone())).unwrap();
-            prop_assert_eq!(commands(&line), [Ok(Command::Send(frame))]);
+            let line = encode_answer(&SlcanAnswer::Frame(frame.clone())).unwrap();
+            prop_assert_eq!(answers(&line).0, [SlcanAnswer::Frame(frame.clone())]);
+            let line = encode_command(&SlcanCommand::Send(frame.clone())).unwrap();
+            prop_assert_eq!(commands(&line), [Ok(SlcanCommand::Send(frame))]);
         }
 
         #[test]

@@ -9,7 +9,8 @@
 //! Not known: whether the maker's adapter takes settings at all, such as a bit rate; what it says when the bus does not
 //! take a frame; and whether it wants A5 put in: the demos put none, and so both are read here. Settings are never sent.
 
-use crate::codec::can::{CanFrame, Payload};
+use crate::codec::NoiseCounts;
+use crate::codec::can::{CanData, CanFrame};
 use arrayvec::ArrayVec;
 
 /// The longest packet: each byte between head and tail with A5 before it.
@@ -36,7 +37,7 @@ pub type Packet = ArrayVec<u8, PACKET_MAX>;
 
 /// What a packet brings.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Content {
+pub enum PacketContent {
     /// A data frame with a 29-bit identifier.
     Frame(CanFrame),
     /// Anything else that is well-formed: 11-bit and remote frames, the adapter's settings.
@@ -45,9 +46,9 @@ pub enum Content {
 
 /// What stands at the beginning of some bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Found {
+pub enum PacketStart {
     /// A packet of so many bytes.
-    Packet(usize, Content),
+    Packet(usize, PacketContent),
     /// One of so many bytes whose sum is wrong.
     BadSum {
         /// Its bytes.
@@ -61,17 +62,6 @@ pub enum Found {
     Open,
     /// No packet begins here.
     Nothing,
-}
-
-/// What a decoder met apart from good packets. Counts only grow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct NoiseCounts {
-    /// Packets whose sum was wrong.
-    pub checksum_errors: u64,
-    /// Runs of bytes that had to be skipped to find the next packet.
-    pub resyncs: u64,
-    /// Bytes skipped.
-    pub skipped_bytes: u64,
 }
 
 /// The packet that carries a frame.
@@ -95,22 +85,22 @@ pub fn encode(frame: &CanFrame) -> Packet {
 
 /// Looks at the beginning of some bytes: for a packet with A5 put in, and for one without.
 #[must_use]
-pub fn inspect(bytes: &[u8]) -> Found {
+pub fn inspect(bytes: &[u8]) -> PacketStart {
     let rest = match bytes {
-        [] | [HEAD] => return Found::Open,
+        [] | [HEAD] => return PacketStart::Open,
         [HEAD, HEAD, rest @ ..] => rest,
-        _ => return Found::Nothing,
+        _ => return PacketStart::Nothing,
     };
     if let Some((body, [TAIL, TAIL, ..])) = rest.split_first_chunk::<BODY>()
-        && let Found::Packet(_, content) = judged(PACKET_MIN, body)
+        && let PacketStart::Packet(_, content) = judged(PACKET_MIN, body)
     {
-        return Found::Packet(PACKET_MIN, content);
+        return PacketStart::Packet(PACKET_MIN, content);
     }
     match unescaped(rest) {
         Ok(Some((body, len))) => judged(len + 2 * AROUND, &body),
-        Ok(None) => Found::Open,
-        Err(NoBody) if rest.len() < BODY + AROUND => Found::Open,
-        Err(NoBody) => Found::Nothing,
+        Ok(None) => PacketStart::Open,
+        Err(NoBody) if rest.len() < BODY + AROUND => PacketStart::Open,
+        Err(NoBody) => PacketStart::Nothing,
     }
 }
 
@@ -148,25 +138,25 @@ pub fn split_escapes(mut bytes: &[u8]) -> impl Iterator<Item = (usize, u8)> {
     })
 }
 
-fn judged(len: usize, body: &[u8; BODY]) -> Found {
+fn judged(len: usize, body: &[u8; BODY]) -> PacketStart {
     let [a, b, c, d, data @ .., count, channel, bits, kind, got] = body;
     let want = sum(body.split_last().map_or(&[], |(_, summed)| summed));
     if *got != want {
-        return Found::BadSum {
+        return PacketStart::BadSum {
             len,
             got: *got,
             want,
         };
     }
     let id = u32::from_le_bytes([*a, *b, *c, *d]);
-    let data = data.get(..usize::from(*count)).map(Payload::try_from);
-    Found::Packet(
+    let data = data.get(..usize::from(*count)).map(CanData::try_from);
+    PacketStart::Packet(
         len,
         match (data, *channel != SETTINGS, *bits, *kind) {
             (Some(Ok(data)), true, LONG_ID, DATA) if id <= 0x1FFF_FFFF => {
-                Content::Frame(CanFrame { id, data })
+                PacketContent::Frame(CanFrame { id, data })
             }
-            _ => Content::Other,
+            _ => PacketContent::Other,
         },
     )
 }
@@ -191,24 +181,24 @@ pub struct PacketDecoder {
 
 impl PacketDecoder {
     /// Takes the next byte; gives what it completes.
-    pub fn push(&mut self, byte: u8) -> Option<Content> {
+    pub fn push(&mut self, byte: u8) -> Option<PacketContent> {
         if self.buffer.is_full() {
             self.skip();
         }
         self.buffer.push(byte);
         loop {
             match inspect(&self.buffer) {
-                Found::Packet(len, content) => {
+                PacketStart::Packet(len, content) => {
                     self.buffer.drain(..len);
                     self.skipping = false;
                     return Some(content);
                 }
-                Found::Open => return None,
-                Found::BadSum { .. } => {
+                PacketStart::Open => return None,
+                PacketStart::BadSum { .. } => {
                     self.counts.checksum_errors += 1;
                     self.skip();
                 }
-                Found::Nothing => self.skip(),
+                PacketStart::Nothing => self.skip(),
             }
         }
     }
@@ -243,14 +233,14 @@ mod tests {
             .collect()
     }
 
-    fn frame(id: u32, data: &[u8]) -> Content {
-        Content::Frame(CanFrame {
+    fn frame(id: u32, data: &[u8]) -> PacketContent {
+        PacketContent::Frame(CanFrame {
             id,
-            data: Payload::try_from(data).unwrap(),
+            data: CanData::try_from(data).unwrap(),
         })
     }
 
-    fn read(bytes: &[u8]) -> (Vec<Content>, NoiseCounts) {
+    fn read(bytes: &[u8]) -> (Vec<PacketContent>, NoiseCounts) {
         let mut decoder = PacketDecoder::default();
         let found = bytes
             .iter()
@@ -289,19 +279,19 @@ mod tests {
             // 11 bits, a remote frame, a setting (1 Mbit/s, as Robotell's adapters take it), a length of 9.
             (
                 "AA AA 23 01 00 00 00 00 00 00 00 00 00 00 01 00 00 00 25 55 55",
-                Content::Other,
+                PacketContent::Other,
             ),
             (
                 "AA AA 01 00 84 01 00 00 00 00 00 00 00 00 01 00 01 01 89 55 55",
-                Content::Other,
+                PacketContent::Other,
             ),
             (
                 "AA AA D0 FE FF 01 40 42 0F 00 00 00 00 00 04 FF 01 00 63 55 55",
-                Content::Other,
+                PacketContent::Other,
             ),
             (
                 "AA AA 01 00 84 01 00 00 00 00 00 00 00 00 09 00 01 00 90 55 55",
-                Content::Other,
+                PacketContent::Other,
             ),
         ] {
             let (found, noise) = read(&hex(text));
@@ -317,9 +307,9 @@ mod tests {
     fn what_is_sent_are_the_bytes_that_worked() {
         let ask = can::read_request(1, Span::new(1552, 2)).unwrap();
         assert_eq!(encode(&ask)[..], hex(ASKED)[..]);
-        let answer = can::frame(can::Way::Read, 1, 1552, &[0xC9, 3]).unwrap();
+        let answer = can::frame(can::CanFunction::Read, 1, 1552, &[0xC9, 3]).unwrap();
         assert_eq!(encode(&answer)[..], hex(ANSWERED)[..]);
-        let all = can::frame(can::Way::Write, 0xAA, 1492, &[0x55; 8]).unwrap();
+        let all = can::frame(can::CanFunction::Write, 0xAA, 1492, &[0x55; 8]).unwrap();
         assert!(encode(&all).len() <= PACKET_MAX);
     }
 
@@ -360,9 +350,9 @@ mod tests {
     proptest! {
         #[test]
         fn frames_read_back(id in 0_u32..=0x1FFF_FFFF, data in prop::collection::vec(prop_oneof![Just(0xA5), Just(0x55), Just(0xAA), any::<u8>()], 0..9)) {
-            let frame = CanFrame { id, data: Payload::try_from(&data[..]).unwrap() };
+            let frame = CanFrame { id, data: CanData::try_from(&data[..]).unwrap() };
             let (found, noise) = read(&encode(&frame));
-            prop_assert_eq!((found, noise), (vec![Content::Frame(frame)], NoiseCounts::default()));
+            prop_assert_eq!((found, noise), (vec![PacketContent::Frame(frame)], NoiseCounts::default()));
         }
 
         #[test]

@@ -105,15 +105,15 @@ impl Segment {
 pub const RANGE: PerDof<f32> = PerDof::new([1.4381, 1.4381, 1.4381, 1.4381, 0.5864, 1.1641]);
 
 /// Where a segment hangs and how it stands there (roll, pitch, yaw), and how it follows its drive, about z.
-struct Joint {
+struct SegmentJoint {
     parent: Segment,
     at: [f32; 3],
     turned: [f32; 3],
     ratio: f32,
 }
 
-const fn joint(parent: Segment, at: [f32; 3], turned: [f32; 3], ratio: f32) -> Joint {
-    Joint {
+const fn joint(parent: Segment, at: [f32; 3], turned: [f32; 3], ratio: f32) -> SegmentJoint {
+    SegmentJoint {
         parent,
         at,
         turned,
@@ -123,7 +123,7 @@ const fn joint(parent: Segment, at: [f32; 3], turned: [f32; 3], ratio: f32) -> J
 
 /// The joints of all segments but the palm, in the order of [`Segment::ALL`].
 #[rustfmt::skip]
-const JOINTS: [Joint; 12] = [
+const JOINTS: [SegmentJoint; 12] = [
     joint(Palm, [25.916, 0.565, 153.65], [1.4661, 0.0, -FRAC_PI_2], 1.0),
     joint(Little1, SECOND, [0.0; 3], 1.0843),
     joint(Palm, [4.530, 0.565, 156.83], [1.5184, 0.0, -FRAC_PI_2], 1.0),
@@ -154,9 +154,9 @@ pub const fn tip_pad(finger: Finger) -> Vec3 {
 
 /// Where all segments are: frames as the palm sees them, y along a straight finger, with the joint at the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pose([Affine3; 13]);
+pub struct SegmentFrames([Affine3; 13]);
 
-impl Pose {
+impl SegmentFrames {
     /// From the angles of the six drives in radians, 0 = open. Beyond [`RANGE`] the drives do not go.
     #[must_use]
     pub fn of_radians(side: Side, angles: &PerDof<f32>) -> Self {
@@ -218,7 +218,7 @@ mod tests {
     }
 
     /// The places of a line of the table.
-    fn places(pose: &Pose) -> Vec<Vec3> {
+    fn places(pose: &SegmentFrames) -> Vec<Vec3> {
         let joints = FINGERS
             .map(Segment::tip)
             .into_iter()
@@ -229,7 +229,7 @@ mod tests {
     }
 
     /// Radians between the segments of one joint.
-    fn between(pose: &Pose, one: Segment, two: Segment) -> f32 {
+    fn between(pose: &SegmentFrames, one: Segment, two: Segment) -> f32 {
         pose.frame(one)
             .matrix3
             .y_axis
@@ -240,8 +240,8 @@ mod tests {
     fn joints_and_tips_are_where_the_model_has_them() {
         let mut count = 0;
         for (angles, wanted) in poses() {
-            let right = places(&Pose::of_radians(Side::Right, &angles));
-            let left = places(&Pose::of_radians(Side::Left, &angles));
+            let right = places(&SegmentFrames::of_radians(Side::Right, &angles));
+            let left = places(&SegmentFrames::of_radians(Side::Left, &angles));
             assert_eq!(right.len(), wanted.len());
             for ((right, left), wanted) in right.iter().zip(&left).zip(&wanted) {
                 assert!(
@@ -259,7 +259,7 @@ mod tests {
     #[test]
     fn lengths_and_couplings_are_those_of_the_table() {
         for (angles, _) in poses() {
-            let pose = Pose::of_radians(Side::Right, &angles);
+            let pose = SegmentFrames::of_radians(Side::Right, &angles);
             for ((finger, first), tip) in FINGERS
                 .into_iter()
                 .zip(KNUCKLES)
@@ -287,10 +287,13 @@ mod tests {
 
     #[test]
     fn open_is_1000_and_what_lies_beyond_the_ends_is_drawn_at_them() {
-        let pose = |share| Pose::of_shares(Side::Right, &PerDof::splat(share));
+        let pose = |share| SegmentFrames::of_shares(Side::Right, &PerDof::splat(share));
         assert_eq!((pose(1.7), pose(-0.2)), (pose(1.0), pose(0.0)));
         let (open, fist) = (pose(1.0), pose(0.0));
-        assert_eq!(open, Pose::of_radians(Side::Right, &PerDof::splat(0.0)));
+        assert_eq!(
+            open,
+            SegmentFrames::of_radians(Side::Right, &PerDof::splat(0.0))
+        );
         for finger in FINGERS {
             assert!(open.tip(finger).z > 220.0 && fist.tip(finger).z < 115.0);
         }

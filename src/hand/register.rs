@@ -478,6 +478,40 @@ pub fn by_address(address: u16) -> Option<&'static Register> {
         .find(|row| row.span().covers(Span::new(address, 1)))
 }
 
+/// How a hand puts its one-byte groups (ERROR, STATUS, TEMP) into Modbus' words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum BytePacking {
+    /// Two a word, the low byte is the lower address.
+    // Manual: silent; most drivers of real hands read it so.
+    #[default]
+    LowFirst,
+    /// Two a word, the high byte is the lower address.
+    HighFirst,
+    /// One a word, in six words.
+    OnePerWord,
+}
+
+impl BytePacking {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::LowFirst, Self::HighFirst, Self::OnePerWord];
+
+    /// As a person writes it in an endpoint.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::LowFirst => "low",
+            Self::HighFirst => "high",
+            Self::OnePerWord => "one",
+        }
+    }
+
+    /// The packing that is written so.
+    #[must_use]
+    pub fn by_key(key: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|packing| packing.key() == key)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

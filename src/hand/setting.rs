@@ -58,15 +58,6 @@ impl Setting {
             .iter()
             .all(|write| whole.slice(bytes, write.span()) == Some(write.bytes()))
     }
-
-    /// True if the hand may be found at another place once it acts: id, serial speed, IP address.
-    #[must_use]
-    pub const fn moves_the_hand_elsewhere(&self) -> bool {
-        matches!(
-            self,
-            Self::Id(_) | Self::SerialSpeed(_) | Self::IpAddress(_)
-        )
-    }
 }
 
 #[cfg(test)]

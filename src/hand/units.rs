@@ -210,6 +210,14 @@ impl SerialSpeed {
         self as u8
     }
 
+    /// The speed of this number in REDU_RATIO, if it is one of the four.
+    #[must_use]
+    pub fn of_code(code: i64) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|own| i64::from(own.code()) == code)
+    }
+
     /// Bits a second.
     #[must_use]
     pub const fn baud(self) -> u32 {

@@ -1,6 +1,6 @@
 //! One measured quantity with its smallest and largest values over ever longer stretches. No times.
 
-use crate::history::ring::Ring;
+use crate::history::ring::RowRing;
 use std::ops::Range;
 
 /// Each level spans this many times what the one below spans, as a shift.
@@ -56,14 +56,14 @@ impl Extremes {
 
 /// How many values are known in a stretch, and their sum.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Sum {
+pub(crate) struct ColumnSum {
     /// Of the known values.
     pub(crate) sum: f64,
     /// Known values.
     pub(crate) count: u32,
 }
 
-impl Sum {
+impl ColumnSum {
     fn take(&mut self, value: f32) {
         if !value.is_nan() {
             self.sum += f64::from(value);
@@ -80,9 +80,9 @@ impl Sum {
 /// One measured quantity, newest rows only. NaN stands for not known.
 #[derive(Debug, Clone)]
 pub(crate) struct Column {
-    values: Ring<f32>,
-    levels: Vec<Ring<Extremes>>,
-    sums: Vec<Ring<Sum>>,
+    values: RowRing<f32>,
+    levels: Vec<RowRing<Extremes>>,
+    sums: Vec<RowRing<ColumnSum>>,
 }
 
 impl Column {
@@ -90,12 +90,12 @@ impl Column {
     pub(crate) fn new(room: usize) -> Self {
         let stretches = |level| (room >> (FACTOR_SHIFT * level)) + 2;
         Self {
-            values: Ring::new(room),
+            values: RowRing::new(room),
             levels: (1..=LEVELS)
-                .map(|level| Ring::new(stretches(level)))
+                .map(|level| RowRing::new(stretches(level)))
                 .collect(),
             sums: (SUMS_FROM..=LEVELS)
-                .map(|level| Ring::new(stretches(level)))
+                .map(|level| RowRing::new(stretches(level)))
                 .collect(),
         }
     }
@@ -113,7 +113,7 @@ impl Column {
         }
         for (level, ring) in (SUMS_FROM..).zip(&mut self.sums) {
             if row.is_multiple_of(span(level)) {
-                ring.push(Sum::default());
+                ring.push(ColumnSum::default());
             }
             if let Some(newest) = ring.last_mut() {
                 newest.take(value);
@@ -142,8 +142,8 @@ impl Column {
     }
 
     /// The sum of these rows; work grows with the logarithm of their number.
-    pub(crate) fn sum(&self, rows: Range<usize>) -> Sum {
-        let mut all = Sum::default();
+    pub(crate) fn sum(&self, rows: Range<usize>) -> ColumnSum {
+        let mut all = ColumnSum::default();
         let mut row = rows.start;
         while row < rows.end {
             let level = self.level_at(row, rows.end);
@@ -180,10 +180,11 @@ impl Column {
     }
 
     /// Bytes held.
+    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         self.values.bytes()
-            + self.levels.iter().map(Ring::bytes).sum::<usize>()
-            + self.sums.iter().map(Ring::bytes).sum::<usize>()
+            + self.levels.iter().map(RowRing::bytes).sum::<usize>()
+            + self.sums.iter().map(RowRing::bytes).sum::<usize>()
     }
 }
 
@@ -219,7 +220,7 @@ mod tests {
             for (one, two) in asked {
                 let rows = row(one.min(two))..row(one.max(two));
                 let seen = values.get(rows.clone()).unwrap_or_default();
-                let (mut extremes, mut sum) = (Extremes::NONE, Sum::default());
+                let (mut extremes, mut sum) = (Extremes::NONE, ColumnSum::default());
                 for raw in seen {
                     extremes.take(value(raw));
                     sum.take(value(raw));

@@ -1,7 +1,7 @@
 //! Lines of kept columns against those of a fresh computation, whatever was pushed and shown before.
 
 use crate::history::trace::Trace;
-use crate::history::track::{Slice, Track};
+use crate::history::track::{HistoryTrack, Slice};
 use proptest::prelude::*;
 
 /// Rows held: few, so that they run out.
@@ -37,7 +37,7 @@ fn step() -> impl Strategy<Value = Step> {
     ]
 }
 
-fn push(track: &mut Track, tick: &mut u32, at_s: &mut f64, step: &Step) {
+fn push(track: &mut HistoryTrack, tick: &mut u32, at_s: &mut f64, step: &Step) {
     if let Step::Push {
         rows,
         apart_ms,
@@ -57,7 +57,7 @@ fn push(track: &mut Track, tick: &mut u32, at_s: &mut f64, step: &Step) {
 proptest! {
     #[test]
     fn kept_columns_draw_what_fresh_ones_draw(steps in prop::collection::vec(step(), 1..60)) {
-        let mut track = Track::new(0, 2, ROOM, 0.5);
+        let mut track = HistoryTrack::new(0, 2, ROOM, 0.5);
         let (mut tick, mut at_s) = (0, 0.0);
         let mut view = (10.0, 60, 0.0);
         let mut kept = [Trace::default(), Trace::default()];
@@ -81,8 +81,8 @@ proptest! {
 }
 
 /// A ramp with one row that stands out, over a thousand seconds.
-fn ramp(spike: usize) -> Track {
-    let mut track = Track::new(0, 1, 100_000, 0.5);
+fn ramp(spike: usize) -> HistoryTrack {
+    let mut track = HistoryTrack::new(0, 1, 100_000, 0.5);
     for row in 0..100_000_usize {
         let value = if row == spike { 5000.0 } else { 1.0 };
         track.push(
@@ -113,7 +113,7 @@ fn one_measurement_that_stands_out_stays_until_it_leaves_the_window() {
 
 #[test]
 fn columns_of_another_history_are_not_taken_for_ones_own() {
-    let (one, mut two) = (ramp(10), Track::new(0, 1, 100_000, 0.5));
+    let (one, mut two) = (ramp(10), HistoryTrack::new(0, 1, 100_000, 0.5));
     for row in 0..100_000_u32 {
         two.push(f64::from(row) * 0.01 + 0.001, [Some(7.0)]);
     }

@@ -5,13 +5,13 @@ const PIECE: usize = 4096;
 
 /// The newest `room` entries of an endless row. Numbers run from 0 and never start again.
 #[derive(Debug, Clone)]
-pub(crate) struct Ring<T> {
+pub(crate) struct RowRing<T> {
     room: usize,
     kept: Vec<Vec<T>>,
     end: usize,
 }
 
-impl<T: Copy> Ring<T> {
+impl<T: Copy> RowRing<T> {
     /// Keeps at most this many, at least one. Takes memory only as it fills.
     pub(crate) const fn new(room: usize) -> Self {
         let room = if room == 0 { 1 } else { room };
@@ -68,6 +68,7 @@ impl<T: Copy> Ring<T> {
     }
 
     /// Bytes held.
+    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         let entries: usize = self.kept.iter().map(Vec::capacity).sum();
         entries * size_of::<T>()
@@ -97,7 +98,7 @@ mod tests {
 
     #[test]
     fn the_oldest_goes_and_numbers_stay() {
-        let mut ring = Ring::new(3);
+        let mut ring = RowRing::new(3);
         for value in 0..10 {
             ring.push(value * 10);
         }
@@ -110,7 +111,7 @@ mod tests {
 
     #[test]
     fn memory_ends_at_the_room() {
-        let mut ring = Ring::new(5000);
+        let mut ring = RowRing::new(5000);
         for value in 0..20_000u32 {
             ring.push(value);
         }
@@ -120,7 +121,7 @@ mod tests {
 
     #[test]
     fn what_is_held_never_moves_in_memory() {
-        let mut ring = Ring::new(100_000);
+        let mut ring = RowRing::new(100_000);
         (0..=PIECE).for_each(|value| ring.push(value));
         let place = ring.kept.first().map(Vec::as_ptr);
         (0..90_000).for_each(|value| ring.push(value));

@@ -9,7 +9,7 @@ use crate::history::mark::{Mark, MarkKind, Marks};
 use crate::history::reading::{Reading, Spread, Summary};
 use crate::history::table::{Table, TableGroup};
 use crate::history::trace::Trace;
-use crate::history::track::{Slice, Track};
+use crate::history::track::{HistoryTrack, Slice};
 use std::collections::BTreeSet;
 
 /// The longest window of the plots.
@@ -80,7 +80,7 @@ impl Series {
 #[derive(Debug, Clone)]
 pub struct History {
     /// As [`Series::track`] counts them.
-    tracks: Vec<Track>,
+    tracks: Vec<HistoryTrack>,
     /// The newest targets, as sent or as read back.
     targets: PerDof<Option<f32>>,
     sent_at: Option<Moment>,
@@ -94,7 +94,7 @@ impl Default for History {
 }
 
 /// A row of times without a row.
-fn empty_track(number: usize) -> Track {
+fn empty_track(number: usize) -> HistoryTrack {
     let of_targets = Quantity::TargetAngle as usize;
     let gap_after_s = if number == of_targets {
         TARGET_GAP_AFTER_S
@@ -106,7 +106,7 @@ fn empty_track(number: usize) -> Track {
         FIRST_TIP..FIRST_CHANNELS => (Touch::ALL.len(), HISTORY_ROWS),
         _ => (CHANNELS, CHANNEL_ROWS),
     };
-    Track::new(number, quantities, rows, gap_after_s)
+    HistoryTrack::new(number, quantities, rows, gap_after_s)
 }
 
 impl History {
@@ -276,10 +276,10 @@ impl History {
     }
 
     /// Memory held by the channels of the fingertips, in bytes.
-    #[must_use]
-    pub fn channel_bytes(&self) -> usize {
+    #[cfg(test)]
+    pub(crate) fn channel_bytes(&self) -> usize {
         let channels = self.tracks.iter().skip(FIRST_CHANNELS);
-        channels.map(Track::bytes).sum()
+        channels.map(HistoryTrack::bytes).sum()
     }
 
     /// A copy of a stretch of time that stays as it is: all measurements but the channels, and marks. The work grows with their number.
@@ -318,26 +318,26 @@ impl History {
     pub fn first_secs(&self) -> Option<f64> {
         self.tracks
             .iter()
-            .filter_map(Track::first_s)
+            .filter_map(HistoryTrack::first_s)
             .reduce(f64::min)
     }
 
     /// Time of the newest measurement, in seconds.
-    #[must_use]
-    pub fn last_secs(&self) -> Option<f64> {
+    #[cfg(test)]
+    pub(crate) fn last_secs(&self) -> Option<f64> {
         self.tracks
             .iter()
-            .filter_map(Track::last_s)
+            .filter_map(HistoryTrack::last_s)
             .reduce(f64::max)
     }
 
     /// Memory held, in bytes.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        self.tracks.iter().map(Track::bytes).sum()
+    #[cfg(test)]
+    pub(crate) fn bytes(&self) -> usize {
+        self.tracks.iter().map(HistoryTrack::bytes).sum()
     }
 
-    fn track(&self, series: Series) -> Option<&Track> {
+    fn track(&self, series: Series) -> Option<&HistoryTrack> {
         self.tracks.get(series.track())
     }
 }

@@ -19,7 +19,7 @@ pub struct Table {
 }
 
 /// What was received or happened at one moment.
-struct Line<'a> {
+struct TableLine<'a> {
     time_s: f64,
     /// The row of each group, if it has one at this moment.
     rows: Vec<Option<usize>>,
@@ -41,14 +41,8 @@ impl Table {
 
     /// Lines of the text after its head. The work grows with the measurements.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.lines().count()
-    }
-
-    /// True if nothing was measured and nothing happened.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.marks.is_empty() && self.groups.iter().all(|group| group.times.is_empty())
     }
 
     /// Comma-separated values: `time_s` since the start of the program, then the columns with their units, then what
@@ -82,7 +76,7 @@ impl Table {
     }
 
     /// One line for each moment, in the order of time.
-    fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+    fn lines(&self) -> impl Iterator<Item = TableLine<'_>> {
         let mut next = vec![0; self.groups.len()];
         let mut marks = self.marks.iter().peekable();
         std::iter::from_fn(move || {
@@ -97,7 +91,7 @@ impl Table {
                 *next += usize::from(is_here);
                 is_here.then_some(row)
             });
-            Some(Line {
+            Some(TableLine {
                 time_s,
                 rows: rows.collect(),
                 event: marks
@@ -151,7 +145,7 @@ mod tests {
             "",
         ];
         assert_eq!(table.csv(), lines.join("\n"));
-        assert_eq!(table.len(), 5);
+        assert_eq!(table.rows(), 5);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::history::column::{Column, Extremes};
 use crate::history::grid::{Cell, Grid, GridKey};
 use crate::history::reading::{Reading, Summary};
-use crate::history::ring::Ring;
+use crate::history::ring::RowRing;
 use crate::history::trace::Trace;
 use std::ops::Range;
 
@@ -36,19 +36,19 @@ struct Walk {
 
 /// Quantities that are read together.
 #[derive(Debug, Clone)]
-pub(crate) struct Track {
+pub(crate) struct HistoryTrack {
     number: usize,
-    times: Ring<f64>,
+    times: RowRing<f64>,
     columns: Vec<Column>,
     gap_after_s: f64,
 }
 
-impl Track {
+impl HistoryTrack {
     /// So many quantities and rows; a longer silence than `gap_after_s` breaks the lines. `number` tells tracks apart.
     pub(crate) fn new(number: usize, quantities: usize, rows: usize, gap_after_s: f64) -> Self {
         Self {
             number,
-            times: Ring::new(rows),
+            times: RowRing::new(rows),
             columns: (0..quantities).map(|_| Column::new(rows)).collect(),
             gap_after_s,
         }
@@ -88,11 +88,13 @@ impl Track {
     }
 
     /// Time of the newest row.
+    #[cfg(test)]
     pub(crate) fn last_s(&self) -> Option<f64> {
         self.times.last()
     }
 
     /// Bytes held.
+    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         self.times.bytes() + self.columns.iter().map(Column::bytes).sum::<usize>()
     }
@@ -372,7 +374,7 @@ pub fn decimated(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     if points.len() <= most {
         return points.to_vec();
     }
-    let mut track = Track::new(0, 1, points.len(), f64::INFINITY);
+    let mut track = HistoryTrack::new(0, 1, points.len(), f64::INFINITY);
     for [at_s, value] in points {
         #[expect(
             clippy::cast_possible_truncation,

@@ -8,7 +8,7 @@ use crate::link::session::conversation::Session;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::tap::WireTap;
-use crate::link::wanted::{Ends, Wanted};
+use crate::link::wanted::{Ends, PendingControl};
 use crate::record::{Calibrated, Record, Reset, Saved, Written};
 use std::sync::Arc;
 use tokio::sync::broadcast::error::{RecvError, TryRecvError};
@@ -26,11 +26,11 @@ pub struct MotionTurn(pub(crate) u64);
 /// One open link, for as many as want to use it. The wire closes with the last of its handles; the hand keeps what it was
 /// told last.
 #[derive(Debug, Clone)]
-pub struct LinkHandle(Arc<Shared>);
+pub struct LinkHandle(Arc<LinkShared>);
 
 #[derive(Debug)]
-struct Shared {
-    wanted: Arc<watch::Sender<Wanted>>,
+struct LinkShared {
+    wanted: Arc<watch::Sender<PendingControl>>,
     requests: mpsc::Sender<Request>,
     records: broadcast::WeakSender<Record>,
     status: watch::Receiver<LinkStatus>,
@@ -38,7 +38,7 @@ struct Shared {
     tap: WireTap,
 }
 
-impl Drop for Shared {
+impl Drop for LinkShared {
     fn drop(&mut self) {
         self.wanted.send_modify(|wanted| wanted.closed = true);
     }
@@ -48,13 +48,13 @@ impl Drop for Shared {
 /// Writes nothing by itself.
 #[must_use]
 pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle, Records) {
-    let wanted = Arc::new(watch::Sender::new(Wanted::default()));
+    let wanted = Arc::new(watch::Sender::new(PendingControl::default()));
     let (requests, asked) = mpsc::channel(REQUESTS_MAX);
     let (told, records) = broadcast::channel(RECORDS_MAX);
     let (status_in, status) = watch::channel(LinkStatus::default());
     let (stats_in, stats) = watch::channel(LinkStats::default());
     let tap = WireTap::default();
-    let shared = Shared {
+    let shared = LinkShared {
         wanted: Arc::clone(&wanted),
         requests,
         records: told.downgrade(),

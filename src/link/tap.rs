@@ -65,22 +65,22 @@ pub struct Pieces {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Head {
+struct PieceHead {
     at: Moment,
     kind: PieceKind,
     len: usize,
 }
 
 #[derive(Debug, Default)]
-struct Ring {
-    heads: VecDeque<Head>,
+struct PieceRing {
+    heads: VecDeque<PieceHead>,
     bytes: VecDeque<u8>,
     /// Number of the oldest piece that is kept.
     first: u64,
 }
 
-impl Ring {
-    fn push(&mut self, head: Head, bytes: &[u8]) {
+impl PieceRing {
+    fn push(&mut self, head: PieceHead, bytes: &[u8]) {
         self.heads.push_back(head);
         self.bytes.extend(bytes);
         while self.heads.len() > PIECES_MAX || self.bytes.len() > BYTES_MAX {
@@ -118,7 +118,7 @@ impl Ring {
 
 /// The ring of one link. Copies share it; it outlives the wires that are recorded in it.
 #[derive(Debug, Clone, Default)]
-pub struct WireTap(Arc<Mutex<Ring>>);
+pub struct WireTap(Arc<Mutex<PieceRing>>);
 
 impl WireTap {
     /// What was recorded after `from`; 0 is the beginning.
@@ -130,10 +130,10 @@ impl WireTap {
     /// Notes bytes, or a change of the wire.
     pub fn record(&self, at: Moment, kind: PieceKind, bytes: &[u8]) {
         let len = bytes.len();
-        self.ring().push(Head { at, kind, len }, bytes);
+        self.ring().push(PieceHead { at, kind, len }, bytes);
     }
 
-    fn ring(&self) -> MutexGuard<'_, Ring> {
+    fn ring(&self) -> MutexGuard<'_, PieceRing> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -13,7 +13,7 @@ use tokio::sync::{broadcast, mpsc, watch};
 /// What is wanted and the session has not taken yet. One slot, so that nothing queues up, and a stop empties it in the
 /// same step.
 #[derive(Debug, Default)]
-pub(crate) struct Wanted {
+pub(crate) struct PendingControl {
     pub(crate) stop: bool,
     pub(crate) disarm: bool,
     pub(crate) arm: Option<ArmRequest>,
@@ -26,7 +26,7 @@ pub(crate) struct Wanted {
     pub(crate) first: First,
 }
 
-impl Wanted {
+impl PendingControl {
     /// True if anything is wanted at all.
     pub(crate) const fn is_any(&self) -> bool {
         let moves = self.arm.is_some() || self.setpoints.is_some();
@@ -47,7 +47,7 @@ impl Wanted {
 
 /// The session's ends of what the handle holds.
 pub(crate) struct Ends {
-    pub(crate) wanted: Arc<watch::Sender<Wanted>>,
+    pub(crate) wanted: Arc<watch::Sender<PendingControl>>,
     pub(crate) requests: mpsc::Receiver<Request>,
     pub(crate) records: broadcast::Sender<Record>,
     pub(crate) status: watch::Sender<LinkStatus>,

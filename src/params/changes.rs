@@ -91,10 +91,7 @@ pub fn plan_writes(wanted: &Params, live: &Params) -> WritePlan {
     if let Some(Value::Address(address)) = rows.get(ParamId::IpAddress) {
         settings.push(Setting::IpAddress(address));
     }
-    let code = number(ParamId::ReduRatio);
-    let speed = SerialSpeed::ALL
-        .into_iter()
-        .find(|speed| Some(i64::from(speed.code())) == code);
+    let speed = number(ParamId::ReduRatio).and_then(SerialSpeed::of_code);
     settings.extend(speed.map(Setting::SerialSpeed));
     let id = number(ParamId::HandId).and_then(|id| HandId::new(id).ok());
     settings.extend(id.map(Setting::Id));

@@ -6,14 +6,14 @@ use crate::transport::Endpoint;
 
 /// Where the hand is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Place {
+pub enum WhichPlace {
     /// Where it was.
     Old,
     /// Where it will be, if the change acts at once.
     New,
 }
 
-impl Place {
+impl WhichPlace {
     /// The other one.
     #[must_use]
     pub const fn other(self) -> Self {
@@ -61,20 +61,20 @@ impl Moved {
 
 /// Both places of a hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Places {
+pub struct PlacePair {
     /// Where it was.
     pub old: Endpoint,
     /// Where it will be; as old where this wire finds it by something else.
     pub new: Endpoint,
 }
 
-impl Places {
+impl PlacePair {
     /// The endpoint of a place.
     #[must_use]
-    pub const fn endpoint(&self, place: Place) -> &Endpoint {
+    pub const fn endpoint(&self, place: WhichPlace) -> &Endpoint {
         match place {
-            Place::Old => &self.old,
-            Place::New => &self.new,
+            WhichPlace::Old => &self.old,
+            WhichPlace::New => &self.new,
         }
     }
 }
@@ -87,9 +87,7 @@ pub fn command(id: ParamId, value: Value) -> Option<HandCommand> {
             HandId::new(i64::from(number)).ok().map(HandCommand::Id)
         }
         (ParamId::ReduRatio, Value::Number(number)) => {
-            let mut speeds = SerialSpeed::ALL.into_iter();
-            let speed = speeds.find(|speed| i32::from(speed.code()) == number);
-            speed.map(HandCommand::SerialSpeed)
+            SerialSpeed::of_code(number.into()).map(HandCommand::SerialSpeed)
         }
         (ParamId::IpAddress, Value::Address(address)) => Some(HandCommand::IpAddress(address)),
         _ => None,
@@ -107,8 +105,7 @@ pub fn new_place(hand: &Endpoint, id: ParamId, wanted: Value) -> Option<Endpoint
     match (&mut place, id) {
         (Endpoint::Rs485(line) | Endpoint::Rtu(line), ParamId::HandId) => line.id = byte,
         (Endpoint::Rs485(line) | Endpoint::Rtu(line), ParamId::ReduRatio) => {
-            let mut speeds = SerialSpeed::ALL.into_iter();
-            line.baud = speeds.find(|speed| speed.code() == byte)?.baud();
+            line.baud = SerialSpeed::of_code(byte.into())?.baud();
         }
         (
             Endpoint::Can { id: at, .. }

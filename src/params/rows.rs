@@ -144,10 +144,7 @@ impl ParamId {
     pub fn allows(self, value: Value) -> bool {
         match (self, value) {
             (Self::IpAddress, Value::Address(address)) => is_host(address),
-            (Self::ReduRatio, Value::Number(code)) => {
-                let known = SerialSpeed::ALL.map(|speed| i32::from(speed.code()));
-                known.contains(&code)
-            }
+            (Self::ReduRatio, Value::Number(code)) => SerialSpeed::of_code(code.into()).is_some(),
             (Self::IpAddress, _) | (_, Value::Address(_)) => false,
             (_, Value::Number(number)) => self
                 .range()

@@ -24,7 +24,7 @@ pub struct Params(BTreeMap<ParamId, Value>);
 
 /// One row in which two sets differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Difference {
+pub struct ParamDifference {
     /// The row.
     pub id: ParamId,
     /// Here.
@@ -93,8 +93,8 @@ impl Params {
 
     /// Rows that `wanted` knows and this set holds otherwise or does not know.
     #[must_use]
-    pub fn differences(&self, wanted: &Self) -> Vec<Difference> {
-        let rows = wanted.iter().map(|(id, theirs)| Difference {
+    pub fn differences(&self, wanted: &Self) -> Vec<ParamDifference> {
+        let rows = wanted.iter().map(|(id, theirs)| ParamDifference {
             id,
             ours: self.get(id),
             theirs,

@@ -2,13 +2,13 @@
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
-    ENTRIES_MAX, Library, Millis, Pose, PoseId, STEPS_MAX, Sequence, SequenceId, Step, TAGS_MAX,
-    clean, free_name,
+    ENTRIES_MAX, LibraryPose, Millis, PoseId, PoseLibrary, STEPS_MAX, Sequence, SequenceId,
+    SequenceStep, TAGS_MAX, clean, free_name,
 };
 
 /// To which side something moves in its row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Way {
+pub enum ShiftDirection {
     /// Towards the first.
     Earlier,
     /// Towards the last.
@@ -31,7 +31,7 @@ pub enum PoseEdit {
     /// Force threshold of recalling.
     Force(Force),
     /// Another place in the order.
-    Shift(Way),
+    Shift(ShiftDirection),
     /// To this place in the order, 0 for the first; those between make room.
     Move(usize),
     /// A copy behind it.
@@ -52,7 +52,7 @@ pub enum SequenceEdit {
     /// A step away.
     Remove(usize),
     /// Another place for a step.
-    Shift(usize, Way),
+    Shift(usize, ShiftDirection),
     /// A step from one place to another; those between make room.
     Move(usize, usize),
     /// Speed of a step.
@@ -78,9 +78,9 @@ pub enum LibraryEdit {
     Undo,
 }
 
-impl Library {
+impl PoseLibrary {
     /// Adds a pose behind the others; `None` if the library is full.
-    pub fn add_pose(&mut self, name: &str, mut pose: Pose) -> Option<PoseId> {
+    pub fn add_pose(&mut self, name: &str, mut pose: LibraryPose) -> Option<PoseId> {
         if self.poses.len() >= ENTRIES_MAX {
             return None;
         }
@@ -145,7 +145,15 @@ impl Library {
         let Some(at) = self.poses.iter().position(|pose| pose.id == id) else {
             return;
         };
+        let Some(pose) = self.poses.get_mut(at) else {
+            return;
+        };
         match edit {
+            PoseEdit::Tags(text) => pose.tags = tags(&text),
+            PoseEdit::Angle(dof, angle) => pose.angles[dof] = angle,
+            PoseEdit::Leave(dof, leave) => pose.leave[dof] = leave,
+            PoseEdit::Speed(speed) => pose.speed = speed,
+            PoseEdit::Force(force) => pose.force = force,
             PoseEdit::Shift(way) => shift(&mut self.poses, at, way),
             PoseEdit::Move(to) => put(&mut self.poses, at, to),
             PoseEdit::Duplicate => self.duplicate(at),
@@ -161,11 +169,6 @@ impl Library {
                 let name = free_name(&clean(&name), taken);
                 if let Some(pose) = self.poses.get_mut(at).filter(|_| !name.is_empty()) {
                     pose.name = name;
-                }
-            }
-            value => {
-                if let Some(pose) = self.poses.get_mut(at) {
-                    set(pose, value);
                 }
             }
         }
@@ -205,7 +208,7 @@ impl Library {
             SequenceEdit::Loop(looped) => sequence.looped = looped,
             SequenceEdit::Add(pose) => {
                 if let Some(speed) = speed.filter(|_| sequence.steps.len() < STEPS_MAX) {
-                    sequence.steps.push(Step::new(pose, speed));
+                    sequence.steps.push(SequenceStep::new(pose, speed));
                 }
             }
             SequenceEdit::Remove(at) if at < sequence.steps.len() => {
@@ -221,7 +224,7 @@ impl Library {
     }
 }
 
-impl Step {
+impl SequenceStep {
     /// A step with the waiting times that a person starts from.
     #[must_use]
     pub fn new(pose: PoseId, speed: Speed) -> Self {
@@ -235,7 +238,7 @@ impl Step {
     }
 }
 
-impl Pose {
+impl LibraryPose {
     /// A pose with gentle limits, moving every joint. Its name and id are given when it is added.
     #[must_use]
     pub fn at(angles: PerDof<Angle>) -> Self {
@@ -252,21 +255,6 @@ impl Pose {
     }
 }
 
-fn set(pose: &mut Pose, edit: PoseEdit) {
-    match edit {
-        PoseEdit::Tags(text) => pose.tags = tags(&text),
-        PoseEdit::Angle(dof, angle) => pose.angles[dof] = angle,
-        PoseEdit::Leave(dof, leave) => pose.leave[dof] = leave,
-        PoseEdit::Speed(speed) => pose.speed = speed,
-        PoseEdit::Force(force) => pose.force = force,
-        PoseEdit::Rename(_)
-        | PoseEdit::Shift(_)
-        | PoseEdit::Move(_)
-        | PoseEdit::Duplicate
-        | PoseEdit::Delete => {}
-    }
-}
-
 /// Tags of a list with commas, each once.
 pub(crate) fn tags(text: &str) -> Vec<String> {
     let mut tags: Vec<String> = Vec::new();
@@ -278,10 +266,10 @@ pub(crate) fn tags(text: &str) -> Vec<String> {
     tags
 }
 
-fn shift<T>(row: &mut [T], at: usize, way: Way) {
+fn shift<T>(row: &mut [T], at: usize, way: ShiftDirection) {
     let other = match way {
-        Way::Earlier => at.checked_sub(1),
-        Way::Later => Some(at + 1),
+        ShiftDirection::Earlier => at.checked_sub(1),
+        ShiftDirection::Later => Some(at + 1),
     };
     if let Some(other) = other.filter(|other| (*other).max(at) < row.len()) {
         row.swap(at, other);
@@ -300,7 +288,7 @@ fn put<T>(row: &mut [T], from: usize, to: usize) {
     }
 }
 
-fn change(sequence: &mut Sequence, at: usize, change: impl FnOnce(&mut Step)) {
+fn change(sequence: &mut Sequence, at: usize, change: impl FnOnce(&mut SequenceStep)) {
     if let Some(step) = sequence.steps.get_mut(at) {
         change(step);
     }

@@ -2,8 +2,8 @@
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
-    ENTRIES_MAX, Library, Millis, Pose, PoseId, STEPS_MAX, Sequence, SequenceId, Step, TAGS_MAX,
-    clean,
+    ENTRIES_MAX, LibraryPose, Millis, PoseId, PoseLibrary, STEPS_MAX, Sequence, SequenceId,
+    SequenceStep, TAGS_MAX, clean,
 };
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -93,7 +93,7 @@ impl From<PoseFileCause> for PoseFileError {
 }
 
 #[derive(Deserialize)]
-struct Head {
+struct FileHead {
     format: Spanned<String>,
     version: Spanned<i64>,
 }
@@ -161,7 +161,7 @@ struct StepRow {
 ///
 /// # Errors
 /// What the TOML writer says; a library that was built by this program has no such value.
-pub fn write(library: &Library) -> Result<String, toml::ser::Error> {
+pub fn write(library: &PoseLibrary) -> Result<String, toml::ser::Error> {
     let poses = library.poses.iter().map(pose_row).collect();
     let sequences = library.sequences.iter();
     let sequences = sequences.map(|sequence| sequence_row(library, sequence));
@@ -174,7 +174,7 @@ pub fn write(library: &Library) -> Result<String, toml::ser::Error> {
     })
 }
 
-fn pose_row(pose: &Pose) -> PoseRow {
+fn pose_row(pose: &LibraryPose) -> PoseRow {
     let angles = &pose.angles;
     let left = Dof::ALL.into_iter().filter(|dof| pose.leave[*dof]);
     PoseRow {
@@ -195,7 +195,7 @@ fn pose_row(pose: &Pose) -> PoseRow {
     }
 }
 
-fn sequence_row(library: &Library, sequence: &Sequence) -> SequenceRow {
+fn sequence_row(library: &PoseLibrary, sequence: &Sequence) -> SequenceRow {
     let steps = sequence.steps.iter().filter_map(|step| {
         Some(StepRow {
             pose: unplaced(&library.pose(step.pose)?.name),
@@ -221,9 +221,9 @@ fn unplaced(text: &str) -> Spanned<String> {
 ///
 /// # Errors
 /// [`PoseFileError`] with line and field; nothing is taken of such a text.
-pub fn read(text: &str) -> Result<Library, PoseFileError> {
-    let source = Source(text);
-    let head: Head = source.parse()?;
+pub fn read(text: &str) -> Result<PoseLibrary, PoseFileError> {
+    let source = FileText(text);
+    let head: FileHead = source.parse()?;
     if head.format.get_ref() != FORMAT {
         let got = head.format.get_ref().chars().take(40).collect();
         return Err(source.blame(head.format.span(), "format", PoseFileCause::Format { got }));
@@ -238,9 +238,9 @@ pub fn read(text: &str) -> Result<Library, PoseFileError> {
 
 /// The text that is being read, to say where in it something is wrong.
 #[derive(Clone, Copy)]
-struct Source<'a>(&'a str);
+struct FileText<'a>(&'a str);
 
-impl Source<'_> {
+impl FileText<'_> {
     fn parse<T: serde::de::DeserializeOwned>(self) -> Result<T, PoseFileError> {
         toml::from_str(self.0).map_err(|error| self.toml_error(&error))
     }
@@ -281,10 +281,10 @@ impl Source<'_> {
         (!key.is_empty() && key.len() <= 40).then(|| key.to_owned())
     }
 
-    fn library(self, file: FileRow) -> Result<Library, PoseFileError> {
+    fn library(self, file: FileRow) -> Result<PoseLibrary, PoseFileError> {
         few(file.poses.len(), ENTRIES_MAX)?;
         few(file.sequences.len(), ENTRIES_MAX)?;
-        let mut library = Library::default();
+        let mut library = PoseLibrary::default();
         library.others = file.others;
         for row in file.poses {
             self.pose(&mut library, row)?;
@@ -309,7 +309,7 @@ impl Source<'_> {
         Ok(text)
     }
 
-    fn pose(self, library: &mut Library, row: PoseRow) -> Result<(), PoseFileError> {
+    fn pose(self, library: &mut PoseLibrary, row: PoseRow) -> Result<(), PoseFileError> {
         let name = self.name(&row.name, library.pose_named(row.name.get_ref()).is_some())?;
         few(row.tags.len(), TAGS_MAX)?;
         if let Some(bad) = row
@@ -330,7 +330,7 @@ impl Source<'_> {
             angles.thumb_rotate,
         ]);
         let id = PoseId(library.fresh());
-        library.poses.push(Pose {
+        library.poses.push(LibraryPose {
             id,
             name,
             tags: row.tags,
@@ -343,13 +343,13 @@ impl Source<'_> {
         Ok(())
     }
 
-    fn sequence(self, library: &mut Library, row: SequenceRow) -> Result<(), PoseFileError> {
+    fn sequence(self, library: &mut PoseLibrary, row: SequenceRow) -> Result<(), PoseFileError> {
         let mut known = library.sequences.iter();
         let taken = known.any(|sequence| sequence.name == *row.name.get_ref());
         let name = self.name(&row.name, taken)?;
         few(row.steps.len(), STEPS_MAX)?;
         let steps = row.steps.into_iter().map(|step| self.step(library, step));
-        let steps = steps.collect::<Result<Vec<Step>, PoseFileError>>()?;
+        let steps = steps.collect::<Result<Vec<SequenceStep>, PoseFileError>>()?;
         let id = SequenceId(library.fresh());
         library.sequences.push(Sequence {
             id,
@@ -361,13 +361,13 @@ impl Source<'_> {
         Ok(())
     }
 
-    fn step(self, library: &Library, row: StepRow) -> Result<Step, PoseFileError> {
+    fn step(self, library: &PoseLibrary, row: StepRow) -> Result<SequenceStep, PoseFileError> {
         let Some(pose) = library.pose_named(row.pose.get_ref()) else {
             let name = row.pose.get_ref().chars().take(40).collect();
             let cause = PoseFileCause::NoSuchPose { name };
             return Err(self.blame(row.pose.span(), "pose", cause));
         };
-        Ok(Step {
+        Ok(SequenceStep {
             pose: pose.id,
             speed: row.speed,
             dwell: row.dwell_ms,

@@ -43,12 +43,6 @@ impl Millis {
     /// How long a step waits for arrival at first: the full way at a gentle speed takes 3 s.
     pub const LIMIT: Self = Self(5000);
 
-    /// The nearest time in range.
-    #[must_use]
-    pub fn nearest(millis: u32) -> Self {
-        Self(millis.min(Self::MAX))
-    }
-
     /// Milliseconds.
     #[must_use]
     pub const fn get(self) -> u32 {
@@ -80,7 +74,7 @@ impl From<Millis> for i64 {
 
 /// Six angles under a name, and how to go there.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pose {
+pub struct LibraryPose {
     /// To find it.
     pub id: PoseId,
     /// No two poses of a library have the same.
@@ -99,7 +93,7 @@ pub struct Pose {
     pub others: toml::Table,
 }
 
-impl Pose {
+impl LibraryPose {
     /// True if these words, in lower case, stand in its name or in one of its tags. No words stand everywhere.
     #[must_use]
     pub fn has(&self, words: &str) -> bool {
@@ -118,7 +112,7 @@ impl Pose {
 
 /// One pose on a timeline.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct SequenceStep {
     /// The pose.
     pub pose: PoseId,
     /// Speed on the way there; the pose's own is for recalling it alone.
@@ -141,16 +135,16 @@ pub struct Sequence {
     /// Whether the first step follows the last.
     pub looped: bool,
     /// In order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<SequenceStep>,
     /// Keys of a newer version, kept as they are.
     pub others: toml::Table,
 }
 
 /// All poses and sequences, in the person's order.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Library {
+pub struct PoseLibrary {
     /// The poses.
-    pub poses: Vec<Pose>,
+    pub poses: Vec<LibraryPose>,
     /// The sequences. Their steps name poses of this library only.
     pub sequences: Vec<Sequence>,
     /// Keys of a newer version, kept as they are.
@@ -158,16 +152,16 @@ pub struct Library {
     next: u64,
 }
 
-impl Library {
+impl PoseLibrary {
     /// The pose with this id.
     #[must_use]
-    pub fn pose(&self, id: PoseId) -> Option<&Pose> {
+    pub fn pose(&self, id: PoseId) -> Option<&LibraryPose> {
         self.poses.iter().find(|pose| pose.id == id)
     }
 
     /// The pose with this name.
     #[must_use]
-    pub fn pose_named(&self, name: &str) -> Option<&Pose> {
+    pub fn pose_named(&self, name: &str) -> Option<&LibraryPose> {
         self.poses.iter().find(|pose| pose.name == name)
     }
 

@@ -1,7 +1,7 @@
 //! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
 
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
-use crate::poses::library::{Library, PoseId, SequenceId};
+use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
 use std::time::Duration;
 
 /// One step, with all that it needs: a pose that is edited meanwhile does not change what runs.
@@ -23,7 +23,7 @@ pub struct Cue {
 
 /// The steps of a sequence as they are now.
 #[must_use]
-pub fn cues(library: &Library, sequence: SequenceId) -> Vec<Cue> {
+pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
     let steps = library.sequence(sequence).into_iter();
     let steps = steps.flat_map(|own| &own.steps);
     let cues = steps.filter_map(|step| {
@@ -42,7 +42,7 @@ pub fn cues(library: &Library, sequence: SequenceId) -> Vec<Cue> {
 
 /// Why a sequence is over. Nothing starts it again but a person.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum End {
+pub enum PlayEnd {
     /// Every step was played.
     Finished,
     /// A person ended it.
@@ -59,7 +59,7 @@ pub enum End {
 
 /// Where a sequence stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Phase {
+pub enum PlayPhase {
     /// On the way to a pose.
     Moving {
         /// Since when.
@@ -73,16 +73,27 @@ pub enum Phase {
     /// A person paused it, or the one step that was asked for is done.
     Paused,
     /// Over.
-    Ended(End),
+    Ended(PlayEnd),
 }
 
 /// Whether a sequence goes on by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pace {
+pub enum PlayMode {
     /// Step after step.
     Through,
     /// One step, then a pause.
     OneStep,
+}
+
+/// Where a sequence stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PlayView {
+    /// The step, 0 the first.
+    pub at: usize,
+    /// What it does.
+    pub phase: PlayPhase,
+    /// Steps that ran into their time limit.
+    pub late: u32,
 }
 
 /// A running sequence.
@@ -90,93 +101,80 @@ pub enum Pace {
 pub struct Player {
     cues: Vec<Cue>,
     looped: bool,
-    pace: Pace,
-    at: usize,
-    phase: Phase,
+    pace: PlayMode,
+    view: PlayView,
     /// The current cue has not been sent yet.
     due: bool,
     /// The current pose was reached, or its time is up.
     arrived: bool,
-    /// Poses that were not reached within their time.
-    late: u32,
 }
 
 impl Player {
     /// Begins with the first step. Without steps it is over at once.
     #[must_use]
-    pub const fn start(cues: Vec<Cue>, looped: bool, pace: Pace, now: Moment) -> Self {
+    pub const fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
         let phase = if cues.is_empty() {
-            Phase::Ended(End::Finished)
+            PlayPhase::Ended(PlayEnd::Finished)
         } else {
-            Phase::Moving { since: now }
+            PlayPhase::Moving { since: now }
         };
         Self {
             due: !cues.is_empty(),
             cues,
             looped,
             pace,
-            at: 0,
-            phase,
+            view: PlayView {
+                at: 0,
+                phase,
+                late: 0,
+            },
             arrived: false,
-            late: 0,
         }
-    }
-
-    /// Which step it is at, 0 the first.
-    #[must_use]
-    pub const fn at(&self) -> usize {
-        self.at
     }
 
     /// Targets of the current step.
     #[must_use]
     pub fn targets(&self) -> PerDof<Option<Angle>> {
-        let cue = self.cues.get(self.at);
+        let cue = self.cues.get(self.view.at);
         cue.map_or(PerDof::splat(None), |cue| cue.targets)
     }
 
     /// Where it stands.
     #[must_use]
-    pub const fn phase(&self) -> Phase {
-        self.phase
-    }
-
-    /// Poses that were not reached within their time.
-    #[must_use]
-    pub const fn late(&self) -> u32 {
-        self.late
+    pub const fn view(&self) -> PlayView {
+        self.view
     }
 
     /// True once nothing is sent any more.
     #[must_use]
     pub const fn is_over(&self) -> bool {
-        matches!(self.phase, Phase::Ended(_))
+        matches!(self.view.phase, PlayPhase::Ended(_))
     }
 
     /// True while a person can resume it.
     #[must_use]
     pub const fn is_paused(&self) -> bool {
-        matches!(self.phase, Phase::Paused)
+        matches!(self.view.phase, PlayPhase::Paused)
     }
 
     /// Advances the time. Returns the cue to send now, if one is due.
     ///
     /// `seen`: the fresh angle of each joint that takes part. A joint that is left alone by the cue is not looked at.
     pub fn tick(&mut self, now: Moment, seen: &PerDof<Option<i16>>) -> Option<Cue> {
-        match self.phase {
-            Phase::Moving { since } if !self.due => self.moving(since, now, seen),
-            Phase::Dwelling { since } => self.dwelling(since, now),
+        match self.view.phase {
+            PlayPhase::Moving { since } if !self.due => self.moving(since, now, seen),
+            PlayPhase::Dwelling { since } => self.dwelling(since, now),
             _ => {}
         }
-        if !self.due || !matches!(self.phase, Phase::Moving { .. }) {
+        if !self.due || !matches!(self.view.phase, PlayPhase::Moving { .. }) {
             return None;
         }
         self.due = false;
-        self.cues.get(self.at).cloned()
+        self.cues.get(self.view.at).cloned()
     }
 
     fn moving(&mut self, since: Moment, now: Moment, seen: &PerDof<Option<i16>>) {
-        let Some(cue) = self.cues.get(self.at) else {
+        let Some(cue) = self.cues.get(self.view.at) else {
             return;
         };
         let there = |dof: Dof| match cue.targets[dof] {
@@ -190,52 +188,55 @@ impl Player {
         if !is_there && !too_late {
             return;
         }
-        self.late += u32::from(!is_there);
+        self.view.late += u32::from(!is_there);
         self.arrived = true;
-        self.phase = Phase::Dwelling { since: now };
+        self.view.phase = PlayPhase::Dwelling { since: now };
     }
 
     fn dwelling(&mut self, since: Moment, now: Moment) {
-        let dwell = self.cues.get(self.at).map(|cue| cue.dwell);
+        let dwell = self.cues.get(self.view.at).map(|cue| cue.dwell);
         if dwell.is_some_and(|dwell| now.since(since) < dwell) {
             return;
         }
         match self.pace {
-            Pace::Through => self.advance(now),
-            Pace::OneStep => self.phase = Phase::Paused,
+            PlayMode::Through => self.advance(now),
+            PlayMode::OneStep => self.view.phase = PlayPhase::Paused,
         }
     }
 
     fn advance(&mut self, now: Moment) {
-        let next = self.at + 1;
+        let next = self.view.at + 1;
         if next < self.cues.len() {
-            self.at = next;
+            self.view.at = next;
         } else if self.looped {
-            self.at = 0;
+            self.view.at = 0;
         } else {
-            self.phase = Phase::Ended(End::Finished);
+            self.view.phase = PlayPhase::Ended(PlayEnd::Finished);
             return;
         }
         self.begin(now);
     }
 
     const fn begin(&mut self, now: Moment) {
-        self.phase = Phase::Moving { since: now };
+        self.view.phase = PlayPhase::Moving { since: now };
         self.due = true;
         self.arrived = false;
     }
 
     /// Waits for a person. True if it ran.
     pub const fn pause(&mut self) -> bool {
-        let ran = matches!(self.phase, Phase::Moving { .. } | Phase::Dwelling { .. });
+        let ran = matches!(
+            self.view.phase,
+            PlayPhase::Moving { .. } | PlayPhase::Dwelling { .. }
+        );
         if ran {
-            self.phase = Phase::Paused;
+            self.view.phase = PlayPhase::Paused;
         }
         ran
     }
 
     /// Goes on where it was paused: to the same pose if it was not reached, else to the next one.
-    pub fn resume(&mut self, pace: Pace, now: Moment) {
+    pub fn resume(&mut self, pace: PlayMode, now: Moment) {
         if !self.is_paused() {
             return;
         }
@@ -248,9 +249,9 @@ impl Player {
     }
 
     /// Ends it, for good. The first reason stays.
-    pub const fn end(&mut self, why: End) {
+    pub const fn end(&mut self, why: PlayEnd) {
         if !self.is_over() {
-            self.phase = Phase::Ended(why);
+            self.view.phase = PlayPhase::Ended(why);
             self.due = false;
         }
     }

@@ -1,7 +1,7 @@
 //! A sequence played on the drawn hand only: where the joints would be. Nothing here can reach a hand.
 
 use crate::hand::{Dof, Moment, PerDof};
-use crate::poses::library::{Library, SequenceId};
+use crate::poses::library::{PoseLibrary, SequenceId};
 use crate::poses::player::{Cue, cues};
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ pub struct Preview {
 
 /// What a dry run shows at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct PreviewFrame {
     /// Shares of the way from bent to open.
     pub shares: PerDof<Option<f32>>,
     /// Which step, 0 the first.
@@ -36,7 +36,7 @@ impl Preview {
     /// it is begins where the first pose has it.
     #[must_use]
     pub fn of(
-        library: &Library,
+        library: &PoseLibrary,
         sequence: SequenceId,
         from: PerDof<Option<i16>>,
         now: Moment,
@@ -57,7 +57,7 @@ impl Preview {
 
     /// What is shown at this moment.
     #[must_use]
-    pub fn at(&self, now: Moment) -> Shown {
+    pub fn at(&self, now: Moment) -> PreviewFrame {
         let mut left = now.since(self.since).as_secs_f64();
         let mut angles = self.from;
         let (round, after) = self.round(angles);
@@ -129,8 +129,8 @@ fn moved(cue: &Cue, dof: Dof, from: f64, seconds: f64) -> f64 {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a share between 0 and 1")]
-fn shown(angles: PerDof<f64>, step: usize, over: bool) -> Shown {
-    Shown {
+fn shown(angles: PerDof<f64>, step: usize, over: bool) -> PreviewFrame {
+    PreviewFrame {
         shares: angles.map(|angle| Some((angle / 1000.0) as f32)),
         step,
         over,

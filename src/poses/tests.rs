@@ -3,8 +3,8 @@
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
 use crate::poses::edit::{PoseEdit, SequenceEdit};
 use crate::poses::file::{read, write};
-use crate::poses::library::{Library, Millis, Pose, PoseId};
-use crate::poses::player::{Cue, End, Pace, Phase, Player};
+use crate::poses::library::{LibraryPose, Millis, PoseId, PoseLibrary};
+use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, Player};
 use crate::poses::preview::Preview;
 use proptest::prelude::*;
 use std::time::Duration;
@@ -52,7 +52,7 @@ fn a_file_is_read_as_documented_and_unknown_keys_survive() {
     let sequence = &library.sequences[0];
     assert!(sequence.looped);
     assert_eq!(sequence.steps[0].pose, pose.id);
-    assert_eq!(sequence.steps[0].dwell, Millis::nearest(400));
+    assert_eq!(sequence.steps[0].dwell, Millis::try_from(400).unwrap());
     let again = write(&library).unwrap();
     for kept in ["mood = \"calm\"", "colour = \"red\"", "note = \"slow\""] {
         assert!(again.contains(kept), "{kept}\n{again}");
@@ -125,9 +125,9 @@ proptest! {
         steps in prop::collection::vec((0..6_usize, any::<u32>(), any::<i16>()), 0..8),
         looped: bool,
     ) {
-        let mut library = Library::default();
+        let mut library = PoseLibrary::default();
         for (name, angles, leave, speed, force, tags) in poses {
-            let mut pose = Pose::at(PerDof::new(angles.map(Angle::nearest)));
+            let mut pose = LibraryPose::at(PerDof::new(angles.map(Angle::nearest)));
             pose.leave = PerDof::new(leave);
             (pose.speed, pose.force) = (Speed::nearest(speed), Force::nearest(force));
             let name = if name.trim().is_empty() { "x" } else { &name };
@@ -139,7 +139,7 @@ proptest! {
         library.edit_sequence(own, SequenceEdit::Loop(looped));
         for (at, (pose, dwell, speed)) in steps.into_iter().filter(|(pose, ..)| *pose < ids.len()).enumerate() {
             library.edit_sequence(own, SequenceEdit::Add(ids[pose]));
-            library.edit_sequence(own, SequenceEdit::Dwell(at, Millis::nearest(dwell)));
+            library.edit_sequence(own, SequenceEdit::Dwell(at, Millis::try_from(i64::from(dwell.min(Millis::MAX))).unwrap()));
             library.edit_sequence(own, SequenceEdit::Speed(at, Speed::nearest(speed)));
         }
         let text = write(&library).unwrap();
@@ -174,7 +174,7 @@ fn at(angle: i16) -> PerDof<Option<i16>> {
 
 #[test]
 fn a_player_waits_for_arrival_then_for_the_dwell_and_loops() {
-    let mut player = Player::start(vec![cue(0), cue(1000)], true, Pace::Through, ms(0));
+    let mut player = Player::start(vec![cue(0), cue(1000)], true, PlayMode::Through, ms(0));
     let mut sent = |now, angle| {
         player
             .tick(ms(now), &at(angle))
@@ -192,12 +192,12 @@ fn a_player_waits_for_arrival_then_for_the_dwell_and_loops() {
         Some(Angle::new(0).ok()),
         "from the start again"
     );
-    assert_eq!(player.late(), 1);
+    assert_eq!(player.view().late, 1);
 }
 
 #[test]
 fn one_step_pauses_and_only_a_person_goes_on() {
-    let mut player = Player::start(vec![cue(0), cue(1000)], false, Pace::OneStep, ms(0));
+    let mut player = Player::start(vec![cue(0), cue(1000)], false, PlayMode::OneStep, ms(0));
     assert!(player.tick(ms(0), &at(0)).is_some());
     player.tick(ms(10), &at(0));
     player.tick(ms(300), &at(0));
@@ -205,21 +205,21 @@ fn one_step_pauses_and_only_a_person_goes_on() {
     for later in [1000, 100_000] {
         assert_eq!(player.tick(ms(later), &at(0)), None);
     }
-    player.resume(Pace::Through, ms(100_000));
+    player.resume(PlayMode::Through, ms(100_000));
     assert!(player.tick(ms(100_000), &at(0)).is_some(), "the next pose");
     assert!(player.pause());
-    player.resume(Pace::Through, ms(100_500));
-    assert_eq!(player.at(), 1);
+    player.resume(PlayMode::Through, ms(100_500));
+    assert_eq!(player.view().at, 1);
     assert!(
         player.tick(ms(100_500), &at(0)).is_some(),
         "the same pose again"
     );
-    player.end(End::Fault);
-    player.resume(Pace::Through, ms(100_600));
-    player.end(End::Person);
+    player.end(PlayEnd::Fault);
+    player.resume(PlayMode::Through, ms(100_600));
+    player.end(PlayEnd::Person);
     assert_eq!(
-        player.phase(),
-        Phase::Ended(End::Fault),
+        player.view().phase,
+        PlayPhase::Ended(PlayEnd::Fault),
         "the first reason stays"
     );
     assert_eq!(player.tick(ms(100_700), &at(1000)), None);

@@ -39,7 +39,7 @@ pub struct QuirkSheet {
 impl QuirkSheet {
     /// What this sheet says otherwise than a later one. What either does not know is no difference.
     #[must_use]
-    pub fn differences(&self, now: &Self) -> Vec<Difference> {
+    pub fn differences(&self, now: &Self) -> Vec<FactDifference> {
         let number = |value: Option<u8>| value.map(|value| value.to_string());
         let touch = |sheet: &Self| {
             let known = |touch: &String| !touch.starts_with("unknown");
@@ -59,7 +59,7 @@ impl QuirkSheet {
         .into_iter()
         .filter_map(|(fact, before, now)| {
             let (before, now) = (before?, now?);
-            (before != now).then_some(Difference { fact, before, now })
+            (before != now).then_some(FactDifference { fact, before, now })
         })
         .collect()
     }
@@ -92,7 +92,7 @@ pub enum Fact {
 
 /// One thing that a hand answered otherwise before.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Difference {
+pub struct FactDifference {
     /// What.
     pub fact: Fact,
     /// Then.

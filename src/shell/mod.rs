@@ -6,11 +6,18 @@ pub mod headless;
 pub mod raster;
 
 use crate::app::action::Action;
-use crate::app::files::export::Content;
+use crate::app::files::export::Export;
 use crate::app::program::App;
 use crate::app::state::State;
 use crate::hand::Moment;
+use crate::record::Rest;
 use crate::ui::{View, Window};
+use std::time::Duration;
+
+/// News come faster than a display shows them: one frame serves all that come within this time.
+const FRAME_WITHIN: Duration = Duration::from_millis(16);
+/// The same while no hand moves: only curves go on then, a pixel or two.
+const FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(40);
 
 /// Draws what `ui` draws at a time in seconds, in a size in points, into the bytes of a PNG file; `None` if it cannot.
 pub type Snap =
@@ -70,7 +77,17 @@ impl Cockpit {
         let mut draw = |ui: &mut egui::Ui| window.plots_alone_ui(ui, state);
         let drawn = self.snap.and_then(|snap| snap(size, now.secs(), &mut draw));
         if let Some(bytes) = drawn {
-            self.app.act(Action::Save(Content::Picture(bytes)), now);
+            self.app.act(Action::Save(Export::Picture(bytes)), now);
+        }
+    }
+
+    /// How soon news of the hands are to be drawn.
+    #[must_use]
+    pub fn frame_within(&self) -> Duration {
+        let mut hands = self.app.state().hands.iter();
+        match hands.any(|hand| hand.link.rest == Rest::Moving || hand.mover().is_some()) {
+            true => FRAME_WITHIN,
+            false => FRAME_AT_REST_WITHIN,
         }
     }
 

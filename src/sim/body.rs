@@ -1,7 +1,7 @@
 //! Six drives around an object, and the force sensors' errors. Knows no registers.
 
 use crate::hand::{Dof, Finger, PerDof};
-use crate::sim::drive::{Drive, Setting};
+use crate::sim::drive::{Drive, DriveSettings};
 use crate::sim::object::Object;
 
 /// How often the sensors' noise is drawn anew, ms.
@@ -49,7 +49,7 @@ impl Body {
     }
 
     /// One millisecond for all drives.
-    pub fn step(&mut self, now_ms: u64, settings: &PerDof<Setting>, rng: &mut fastrand::Rng) {
+    pub fn step(&mut self, now_ms: u64, settings: &PerDof<DriveSettings>, rng: &mut fastrand::Rng) {
         for (dof, drive) in self.drives.iter_mut() {
             drive.step(now_ms, settings[dof]);
         }

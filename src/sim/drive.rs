@@ -56,7 +56,7 @@ const OPEN_WITHIN: f64 = 20.0;
 
 /// What a joint is told.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Goal {
+pub enum DriveGoal {
     /// Go to this position, counts.
     Position(f64),
     /// Stop where it is.
@@ -65,7 +65,7 @@ pub enum Goal {
 
 /// The settings that act at once.
 #[derive(Debug, Clone, Copy)]
-pub struct Setting {
+pub struct DriveSettings {
     /// Units of SPEED_SET.
     pub speed: f64,
     /// Force threshold, g.
@@ -73,7 +73,7 @@ pub struct Setting {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Phase {
+enum DrivePhase {
     Rest,
     Moving { to: f64 },
     Coasting { to: f64, relax_to: f64 },
@@ -86,8 +86,8 @@ enum Phase {
 pub struct Drive {
     position: f64,
     velocity: f64,
-    phase: Phase,
-    pending: ArrayVec<(u64, Goal), PENDING_MAX>,
+    phase: DrivePhase,
+    pending: ArrayVec<(u64, DriveGoal), PENDING_MAX>,
     status: Status,
     faults: Faults,
     current_ma: f64,
@@ -117,7 +117,7 @@ impl Drive {
         Self {
             position: 0.0,
             velocity: 0.0,
-            phase: Phase::Rest,
+            phase: DrivePhase::Rest,
             pending: ArrayVec::new(),
             status: Status::PositionReached,
             faults: Faults::default(),
@@ -257,7 +257,7 @@ impl Drive {
     }
 
     /// Takes a command that acts after the dead time.
-    pub fn command(&mut self, goal: Goal, now_ms: u64) {
+    pub fn command(&mut self, goal: DriveGoal, now_ms: u64) {
         let due = now_ms + DEAD_TIME_MS;
         if self.pending.is_full() {
             self.pending.pop();
@@ -266,7 +266,7 @@ impl Drive {
     }
 
     /// One millisecond.
-    pub fn step(&mut self, now_ms: u64, setting: Setting) {
+    pub fn step(&mut self, now_ms: u64, setting: DriveSettings) {
         while let Some((due, goal)) = self.pending.first().copied() {
             if due > now_ms {
                 break;
@@ -277,22 +277,22 @@ impl Drive {
         self.current_ma = 0.0;
         self.watch_rest();
         match self.phase {
-            Phase::Rest => {}
-            Phase::Moving { to } => self.move_on(to, setting),
-            Phase::Coasting { to, relax_to } => self.coast(to, relax_to),
-            Phase::Peak { left_ms, relax_to } => {
+            DrivePhase::Rest => {}
+            DrivePhase::Moving { to } => self.move_on(to, setting),
+            DrivePhase::Coasting { to, relax_to } => self.coast(to, relax_to),
+            DrivePhase::Peak { left_ms, relax_to } => {
                 self.phase = match left_ms {
-                    0 => Phase::Relaxing { to: relax_to },
-                    _ => Phase::Peak {
+                    0 => DrivePhase::Relaxing { to: relax_to },
+                    _ => DrivePhase::Peak {
                         left_ms: left_ms - 1,
                         relax_to,
                     },
                 };
             }
-            Phase::Relaxing { to } => {
+            DrivePhase::Relaxing { to } => {
                 self.position += (to - self.position) * STEP_S / RELAX_S;
                 if (self.position - to).abs() < 0.02 {
-                    self.phase = Phase::Rest;
+                    self.phase = DrivePhase::Rest;
                 }
             }
         }
@@ -302,7 +302,7 @@ impl Drive {
 
     fn watch_rest(&mut self) {
         self.rested_ms = match self.phase {
-            Phase::Rest => self.rested_ms.saturating_add(1),
+            DrivePhase::Rest => self.rested_ms.saturating_add(1),
             _ => 0,
         };
         if self.rested_ms >= BEGINS_ANEW_MS {
@@ -319,14 +319,14 @@ impl Drive {
         self.broken |= most.is_some_and(|most| self.load_g() > most);
     }
 
-    fn begin(&mut self, goal: Goal, setting: Setting) {
+    fn begin(&mut self, goal: DriveGoal, setting: DriveSettings) {
         match goal {
-            Goal::Freeze => {
-                if matches!(self.phase, Phase::Moving { .. }) {
+            DriveGoal::Freeze => {
+                if matches!(self.phase, DrivePhase::Moving { .. }) {
                     self.stop_moving(Status::PositionReached);
                 }
             }
-            Goal::Position(to) => {
+            DriveGoal::Position(to) => {
                 let to = to.clamp(0.0, STROKE);
                 if self.is_there(to) {
                     self.stop_moving(Status::PositionReached);
@@ -336,7 +336,7 @@ impl Drive {
                     if to < self.position {
                         self.fastest = 0.0;
                     }
-                    self.phase = Phase::Moving { to };
+                    self.phase = DrivePhase::Moving { to };
                 }
             }
         }
@@ -345,11 +345,11 @@ impl Drive {
     /// True if it rests where it is told to go, as far as ANGLE_ACT tells.
     fn is_there(&self, to: f64) -> bool {
         let is_near = (to - self.position).abs() < SAME_ANGLE;
-        is_near && self.phase == Phase::Rest && self.faults.is_empty()
+        is_near && self.phase == DrivePhase::Rest && self.faults.is_empty()
     }
 
     /// True if its threshold stopped it and the grip is still there: told to close again, it does not push (manual 2.6.12).
-    fn holds(&self, to: f64, setting: Setting) -> bool {
+    fn holds(&self, to: f64, setting: DriveSettings) -> bool {
         let closes = self.status == Status::ForceReached && to > self.position;
         closes && self.load_g() >= HELD_PART * setting.threshold_g.max(1.0)
     }
@@ -365,7 +365,7 @@ impl Drive {
         !dead && (!only_opens || to < self.position)
     }
 
-    fn move_on(&mut self, to: f64, setting: Setting) {
+    fn move_on(&mut self, to: f64, setting: DriveSettings) {
         let way = to - self.position;
         let top = setting.speed * COUNTS_PER_SPEED;
         // The last counts are taken slowly enough to end on the target.
@@ -442,7 +442,7 @@ impl Drive {
         let met = position_of(contact.angle) + threshold_g / stiffness;
         let rest_g = RELAXED_PART * threshold_g + 0.05 * over * stiffness / RIGID_G_PER_COUNT;
         self.status = Status::ForceReached;
-        self.phase = Phase::Coasting {
+        self.phase = DrivePhase::Coasting {
             to: (met + over / RIGID_G_PER_COUNT).min(STROKE),
             relax_to: (position_of(contact.angle) + rest_g / stiffness).min(STROKE),
         };
@@ -457,7 +457,7 @@ impl Drive {
                 self.position = to;
             }
             self.velocity = 0.0;
-            self.phase = Phase::Peak {
+            self.phase = DrivePhase::Peak {
                 left_ms: PEAK_MS,
                 relax_to,
             };
@@ -488,7 +488,7 @@ impl Drive {
 
     fn stop_moving(&mut self, status: Status) {
         self.velocity = 0.0;
-        self.phase = Phase::Rest;
+        self.phase = DrivePhase::Rest;
         self.status = status;
     }
 

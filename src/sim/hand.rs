@@ -4,10 +4,10 @@ use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET,
 use crate::hand::sample::touch_span;
 use crate::hand::{Dof, Fault, Finger, Moment, PerDof};
 use crate::sim::body::Body;
-use crate::sim::drive::{Goal, Setting, position_of};
+use crate::sim::drive::{DriveGoal, DriveSettings, position_of};
 use crate::sim::extremes;
 use crate::sim::live::{self, element};
-use crate::sim::memory::{GAP, Memory, Refusal};
+use crate::sim::memory::{AccessError, GAP, Memory};
 use crate::sim::number;
 use crate::sim::object::Object;
 use crate::sim::personality::{
@@ -15,7 +15,7 @@ use crate::sim::personality::{
 };
 use crate::sim::scenario::{self, Ailment, Order, Scenario};
 use crate::sim::supply::Supply;
-use crate::sim::touch::{SENSOR_MS, Touch};
+use crate::sim::touch::{SENSOR_MS, TouchSensors};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -72,7 +72,7 @@ pub struct WriteEffect {
 
 /// How an answer is sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Manner {
+pub struct ReplyTiming {
     /// From the end of the request.
     pub after: Duration,
     /// How often it comes, 1 or 2.
@@ -106,7 +106,7 @@ pub struct SimHand {
     pub(crate) memory: Memory,
     pub(crate) body: Body,
     supply: Supply,
-    touch: Touch,
+    touch: TouchSensors,
     rng: fastrand::Rng,
     pub(crate) now_ms: u64,
     published_ms: Option<u64>,
@@ -133,7 +133,7 @@ impl SimHand {
     pub fn new(config: SimConfig) -> Self {
         let mut rng = fastrand::Rng::with_seed(config.seed);
         let body = Body::new(&Object::of(config.scenario), &mut rng);
-        let mut touch = Touch::new(&mut rng);
+        let mut touch = TouchSensors::new(&mut rng);
         touch.measure(&mut rng);
         let mut hand = Self {
             supply: Supply::new(config.personality.power),
@@ -171,14 +171,14 @@ impl SimHand {
     /// The bytes of a run as they are at `now`.
     ///
     /// # Errors
-    /// [`Refusal`] for runs that leave the memory, or cross the gap on a hand that does not answer there.
-    pub fn read(&mut self, span: Span, now: Moment) -> Result<Vec<u8>, Refusal> {
+    /// [`AccessError`] for runs that leave the memory, or cross the gap on a hand that does not answer there.
+    pub fn read(&mut self, span: Span, now: Moment) -> Result<Vec<u8>, AccessError> {
         self.advance_to(now);
         if self.supply.is_off(self.now_ms) {
-            return Err(Refusal::Silent);
+            return Err(AccessError::Silent);
         }
         if self.config.personality.gap == GapAnswer::Refused && overlaps(span, GAP) {
-            return Err(Refusal::Gap);
+            return Err(AccessError::Gap);
         }
         self.publish();
         if self.config.personality.stamp_gap {
@@ -193,16 +193,16 @@ impl SimHand {
     /// A write from outside, over a serial line with the maker's framing, where late frames follow.
     ///
     /// # Errors
-    /// [`Refusal`] for runs that leave the memory. A value that the hand does not take is no error: it is dropped.
+    /// [`AccessError`] for runs that leave the memory. A value that the hand does not take is no error: it is dropped.
     pub fn write(
         &mut self,
         address: u16,
         bytes: &[u8],
         now: Moment,
-    ) -> Result<WriteEffect, Refusal> {
+    ) -> Result<WriteEffect, AccessError> {
         self.advance_to(now);
         if self.supply.is_off(self.now_ms) {
-            return Err(Refusal::Silent);
+            return Err(AccessError::Silent);
         }
         self.record(now, address, bytes);
         self.refuse_read_only(address)?;
@@ -231,7 +231,7 @@ impl SimHand {
     }
 
     /// How the next answer is sent.
-    pub fn manner(&mut self) -> Manner {
+    pub fn manner(&mut self) -> ReplyTiming {
         let personality = self.config.personality;
         let usual = Duration::from_micros(self.chance.u64(3_000..=15_000));
         let rare = self.chance.u32(..RARE_ONE_IN) == 0;
@@ -241,7 +241,7 @@ impl SimHand {
             Turnaround::Rarely if rare => RARE_TURNAROUND,
             Turnaround::Usual | Turnaround::Rarely => usual,
         };
-        Manner {
+        ReplyTiming {
             after: personality.turnaround + thinks,
             copies: 1 + usize::from(double && personality.doubles == Doubles::Some),
         }
@@ -384,15 +384,15 @@ impl SimHand {
         }
     }
 
-    fn setting(&self, dof: Dof) -> Setting {
+    fn setting(&self, dof: Dof) -> DriveSettings {
         if let Some(order) = &self.order {
-            return Setting {
+            return DriveSettings {
                 speed: f64::from(order.speeds[dof]),
                 threshold_g: f64::from(order.forces[dof]),
             };
         }
         let speed = f64::from(self.memory.short(&SPEED_SET, element(dof)));
-        Setting {
+        DriveSettings {
             speed: match self.config.personality.speed_zero {
                 SpeedZero::Slowest => speed.max(CREEP),
                 SpeedZero::Freeze | SpeedZero::Ignored => speed,
@@ -442,7 +442,7 @@ impl SimHand {
     }
 
     pub(crate) fn go_to_angle(&mut self, dof: Dof, angle: i16) {
-        let goal = Goal::Position(position_of(f64::from(angle)));
+        let goal = DriveGoal::Position(position_of(f64::from(angle)));
         self.body.drive_mut(dof).command(goal, self.now_ms);
     }
 

@@ -17,7 +17,7 @@ const DEFAULT_SETTING: i16 = 1000;
 
 /// Why the hand does not answer a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum Refusal {
+pub enum AccessError {
     /// The run leaves the memory.
     #[error("addresses {address} to {last} leave the memory")]
     Unmapped {
@@ -116,13 +116,13 @@ impl Memory {
     /// The bytes of a run, which must lie in the memory.
     ///
     /// # Errors
-    /// [`Refusal::Unmapped`] beyond 4095, [`Refusal::Empty`] without a byte.
-    pub fn read(&self, span: Span) -> Result<&[u8], Refusal> {
+    /// [`AccessError::Unmapped`] beyond 4095, [`AccessError::Empty`] without a byte.
+    pub fn read(&self, span: Span) -> Result<&[u8], AccessError> {
         check(span, MEMORY_LEN)?;
         let from = usize::from(span.address);
         self.ram
             .get(from..from + usize::from(span.len))
-            .ok_or(Refusal::Unmapped {
+            .ok_or(AccessError::Unmapped {
                 address: span.address,
                 last: span.end() - 1,
             })
@@ -131,8 +131,8 @@ impl Memory {
     /// As [`Self::read`], with zeros for what lies beyond the memory, up to address 65535.
     ///
     /// # Errors
-    /// [`Refusal::Unmapped`] beyond 65535, [`Refusal::Empty`] without a byte.
-    pub fn read_on(&self, span: Span) -> Result<Vec<u8>, Refusal> {
+    /// [`AccessError::Unmapped`] beyond 65535, [`AccessError::Empty`] without a byte.
+    pub fn read_on(&self, span: Span) -> Result<Vec<u8>, AccessError> {
         check(span, usize::from(u16::MAX) + 1)?;
         let inside = self.ram.iter().skip(usize::from(span.address)).copied();
         let all = inside.chain(std::iter::repeat(0));
@@ -179,19 +179,19 @@ impl Memory {
     /// Manual: it has no answer that says no. A refused element is acknowledged and has no effect.
     ///
     /// # Errors
-    /// [`Refusal::Unmapped`] beyond 4095, [`Refusal::Empty`] without a byte.
+    /// [`AccessError::Unmapped`] beyond 4095, [`AccessError::Empty`] without a byte.
     pub fn write(
         &mut self,
         address: u16,
         bytes: &[u8],
         out_of_range: OutOfRangeWrite,
-    ) -> Result<Vec<Change>, Refusal> {
+    ) -> Result<Vec<Change>, AccessError> {
         let len = u16::try_from(bytes.len()).unwrap_or(u16::MAX);
         check(Span::new(address, len), MEMORY_LEN)?;
         let elements = elements(address, bytes);
         let fits = |(_, row, value): &(u16, &Register, i32)| row.allows(*value);
         if out_of_range == OutOfRangeWrite::Exception && !elements.iter().all(fits) {
-            return Err(Refusal::OutOfRange { address });
+            return Err(AccessError::OutOfRange { address });
         }
         let kept = |(at, row, value)| self.keep(row, at, value, out_of_range);
         Ok(elements.into_iter().filter_map(kept).collect())
@@ -302,16 +302,16 @@ fn copy_saved(from: &[u8], to: &mut [u8]) {
     }
 }
 
-fn check(span: Span, memory_len: usize) -> Result<(), Refusal> {
+fn check(span: Span, memory_len: usize) -> Result<(), AccessError> {
     if span.len == 0 {
-        return Err(Refusal::Empty {
+        return Err(AccessError::Empty {
             address: span.address,
         });
     }
     if usize::try_from(span.end()).is_ok_and(|end| end <= memory_len) {
         return Ok(());
     }
-    Err(Refusal::Unmapped {
+    Err(AccessError::Unmapped {
         address: span.address,
         last: span.end() - 1,
     })

@@ -17,8 +17,8 @@ mod supply;
 pub mod touch;
 
 pub use body::Body;
-pub use hand::{JournalEntry, Manner, SaveFrame, SimConfig, SimHand, WriteEffect};
-pub use memory::Refusal;
+pub use hand::{JournalEntry, ReplyTiming, SaveFrame, SimConfig, SimHand, WriteEffect};
+pub use memory::AccessError;
 pub use object::{Contact, Object};
 pub use personality::{
     AnyId, BaudEffect, Beyond, ByteWords, Calibration, ChangeAck, ClearError, DefaultsWrite,
@@ -27,4 +27,4 @@ pub use personality::{
     SaveAnswer, SingleReply, SpeedZero, Switch, TactileCheck, TcpClients, Turnaround,
 };
 pub use scenario::{Scenario, UnknownScenario};
-pub use serve::{Hands, SharedHand};
+pub use serve::{SharedHand, SimHands};

@@ -6,11 +6,11 @@ use crate::hand::register::{
     SAVE, SPEED_SET, USER_DEF_ANGLE, by_address,
 };
 use crate::hand::{Dof, Moment, PerDof, UserGesture};
-use crate::sim::drive::{Goal, position_of};
+use crate::sim::drive::{DriveGoal, position_of};
 use crate::sim::gesture;
 use crate::sim::hand::{SaveFrame, SimHand, WriteEffect};
 use crate::sim::live::element;
-use crate::sim::memory::{Change, Refusal};
+use crate::sim::memory::{AccessError, Change};
 use crate::sim::personality::{
     BaudEffect, Calibration, ClearError, DefaultsWrite, Effect, FlashWrite, MinusOne,
     ReadOnlyWrite, SaveAnswer, SpeedZero,
@@ -40,18 +40,18 @@ impl SimHand {
         address: u16,
         bytes: &[u8],
         now: Moment,
-    ) -> Result<WriteEffect, Refusal> {
+    ) -> Result<WriteEffect, AccessError> {
         self.sends_late_frames = false;
         let effect = self.write(address, bytes, now);
         self.sends_late_frames = true;
         effect
     }
 
-    pub(crate) fn refuse_read_only(&self, address: u16) -> Result<(), Refusal> {
+    pub(crate) fn refuse_read_only(&self, address: u16) -> Result<(), AccessError> {
         let readable = by_address(address).is_some_and(|row| row.access == Access::Read);
         match self.config.personality.read_only {
-            ReadOnlyWrite::Nak if readable => Err(Refusal::ReadOnly { address }),
-            ReadOnlyWrite::Nothing if readable => Err(Refusal::Silent),
+            ReadOnlyWrite::Nak if readable => Err(AccessError::ReadOnly { address }),
+            ReadOnlyWrite::Nothing if readable => Err(AccessError::Silent),
             _ => Ok(()),
         }
     }
@@ -136,7 +136,7 @@ impl SimHand {
         };
         let goal = match (change.value, self.config.personality.minus_one_mid_move) {
             (-1, MinusOne::Ignore) => return,
-            (-1, MinusOne::Freeze) => Goal::Freeze,
+            (-1, MinusOne::Freeze) => DriveGoal::Freeze,
             (-1, MinusOne::Clamp) => {
                 let most = change.register.range.map_or(0, |(_, max)| max);
                 let most = i16::try_from(most).unwrap_or_default();
@@ -148,9 +148,9 @@ impl SimHand {
                 return;
             }
             (value, _) if change.register.address == ANGLE_SET.address => {
-                Goal::Position(position_of(f64::from(value)))
+                DriveGoal::Position(position_of(f64::from(value)))
             }
-            (value, _) => Goal::Position(f64::from(value)),
+            (value, _) => DriveGoal::Position(f64::from(value)),
         };
         self.body.drive_mut(dof).command(goal, self.now_ms);
     }
@@ -180,13 +180,13 @@ impl SimHand {
     }
 
     /// The bytes of a write as this hand takes them; none if it drops them.
-    pub(crate) fn as_taken(&self, address: u16, bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
+    pub(crate) fn as_taken(&self, address: u16, bytes: &[u8]) -> Result<Vec<u8>, AccessError> {
         let is_default = (DEFAULT_SPEED_SET.address
             ..DEFAULT_FORCE_SET.address + DEFAULT_FORCE_SET.len)
             .contains(&address);
         let (pairs, rest) = bytes.as_chunks::<2>();
         match self.config.personality.defaults {
-            DefaultsWrite::Exception if is_default => Err(Refusal::OutOfRange { address }),
+            DefaultsWrite::Exception if is_default => Err(AccessError::OutOfRange { address }),
             // -1 is outside every range there, and what is outside is dropped.
             DefaultsWrite::Drop if is_default => Ok(vec![u8::MAX; bytes.len()]),
             DefaultsWrite::Clamp if is_default => {

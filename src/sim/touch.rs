@@ -44,7 +44,7 @@ pub struct Press {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Tip {
+struct TipModel {
     rest: [f64; 8],
     noise: [f64; 8],
     proximity_noise: f64,
@@ -55,17 +55,17 @@ struct Tip {
 
 /// The five fingertip sensors.
 #[derive(Debug, Clone)]
-pub struct Touch {
-    tips: PerFinger<Tip>,
+pub struct TouchSensors {
+    tips: PerFinger<TipModel>,
 }
 
-impl Touch {
+impl TouchSensors {
     /// Sensors with their own rest counts, drawn from `rng`.
     #[must_use]
     pub fn new(rng: &mut fastrand::Rng) -> Self {
         let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
         Self {
-            tips: PerFinger::from_fn(|_| Tip {
+            tips: PerFinger::from_fn(|_| TipModel {
                 rest: [(); 8].map(|()| between(2_800_000.0, 3_000_000.0)),
                 noise: [0.0; 8],
                 proximity_noise: 0.0,
@@ -121,7 +121,7 @@ impl Touch {
     }
 }
 
-impl Tip {
+impl TipModel {
     /// Where the object presses, mm: it wanders a little, and slides in a slip.
     fn spot(&self, slip: Slip, t_s: f64) -> (f64, f64) {
         let x = 1.6 * (0.31 * t_s + self.phase).sin();
@@ -155,7 +155,7 @@ mod tests {
 
     fn block(force_g: f64, gap: Option<f64>) -> TactileBlock {
         let mut rng = fastrand::Rng::with_seed(3);
-        let mut touch = Touch::new(&mut rng);
+        let mut touch = TouchSensors::new(&mut rng);
         touch.measure(&mut rng);
         let block = touch.block(Finger::Index, Press { force_g, gap }, Slip::default(), 1.0);
         TactileBlock::decode(&block.encode()).unwrap()

@@ -20,9 +20,9 @@ pub async fn on_thread<T: Send + 'static>(
 
 /// Something that goes on elsewhere and comes to one result.
 #[derive(Debug)]
-pub struct Job<T>(oneshot::Receiver<T>);
+pub struct BackgroundJob<T>(oneshot::Receiver<T>);
 
-impl<T: Send + 'static> Job<T> {
+impl<T: Send + 'static> BackgroundJob<T> {
     /// Begins it. `wake` is called once the result is there.
     pub fn start(
         runtime: &Handle,

@@ -7,5 +7,5 @@ pub mod job;
 pub mod saver;
 
 pub use crate::store::file::{last_of, read_text, replace, replace_keeping_last, set_aside};
-pub use crate::store::job::{Job, on_thread};
+pub use crate::store::job::{BackgroundJob, on_thread};
 pub use crate::store::saver::Saver;

@@ -1,7 +1,7 @@
 //! Writes what is kept when it changed, at most once a second and one write at a time.
 
 use crate::store::file::replace_keeping_last;
-use crate::store::job::{Job, on_thread};
+use crate::store::job::{BackgroundJob, on_thread};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ pub struct Saver<K> {
     text: fn(&K) -> io::Result<String>,
     kept: K,
     begun: Option<Duration>,
-    under_way: Option<Job<io::Result<()>>>,
+    under_way: Option<BackgroundJob<io::Result<()>>>,
 }
 
 impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
@@ -73,12 +73,12 @@ impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
         let (kept, text) = (newest.clone(), self.text);
         let write = on_thread(move || replace_keeping_last(&path, &text(&kept)?));
         let nobody: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
-        self.under_way = Some(Job::start(&self.runtime, &nobody, write));
+        self.under_way = Some(BackgroundJob::start(&self.runtime, &nobody, write));
         self.begun = Some(now);
     }
 
     fn ended(&mut self) -> io::Result<()> {
-        Job::take_from(&mut self.under_way).unwrap_or(Ok(()))
+        BackgroundJob::take_from(&mut self.under_way).unwrap_or(Ok(()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Writing rows that a hand keeps: read first, then each group written at rest and read back.
 
-use crate::hand::{Setting, Span};
+use crate::hand::Setting;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::changes::{self, RowOutcome, RowVerdict, WritePlan};
@@ -8,10 +8,9 @@ use crate::params::danger::worse;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::record::{NotSent, Verdict, Written};
-use crate::store::calendar::since_1970;
-use crate::store::on_thread;
 use crate::tasks::hand::{Hand, REACHED_WITHIN, answers, once_at_rest};
-use crate::tasks::{Consent, Risks, TaskError, read};
+use crate::tasks::save::back_up;
+use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
 use std::path::PathBuf;
 
 /// What is to be written, and how.
@@ -34,17 +33,6 @@ pub enum Otherwise {
     Stay,
     /// The hand gets back what it held.
     Undo,
-}
-
-/// What is told on the way.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ApplyStep {
-    /// A group was read.
-    Read(Span, Vec<u8>),
-    /// What a person agreed to.
-    Meant(Risks),
-    /// A row was written, or was not.
-    Row(RowOutcome),
 }
 
 /// The result.
@@ -78,23 +66,19 @@ impl Applied {
 pub async fn apply<H: Hand>(
     hand: &H,
     task: &Apply,
-    mut tell: impl FnMut(ApplyStep),
+    mut tell: impl FnMut(ParamStep),
 ) -> Result<Applied, TaskError> {
-    let took = |span, bytes: &[u8]| tell(ApplyStep::Read(span, bytes.to_vec()));
+    let took = |span, bytes: &[u8]| tell(ParamStep::Read(span, bytes.to_vec()));
     let rows = read::rows(hand, took).await;
     let is_needed = |id| task.backups.is_some() || task.wanted.get(id).is_some();
     let before = rows.with(is_needed)?;
     let plan = changes::plan_writes(&task.wanted, &before);
-    let mut after = before.clone();
-    plan.rows
-        .iter()
-        .for_each(|(id, value)| after.put(id, value));
     let risks = Risks {
-        dangers: worse(&before, &after),
+        dangers: worse(&before, &before.with(&plan.rows)),
         places: plan.rows.only(ParamId::is_place),
     };
     task.consent.check(&risks)?;
-    tell(ApplyStep::Meant(risks));
+    tell(ParamStep::Meant(risks));
     let mut applied = Applied {
         backup: None,
         rows: changes::held_already(&task.wanted, &plan, &before),
@@ -105,17 +89,12 @@ pub async fn apply<H: Hand>(
     if plan.settings.is_empty() {
         return Ok(applied);
     }
-    if let Some(backups) = task.backups.clone() {
-        let params = applied.before.clone();
-        let backup = on_thread(move || backups.back_up(&params, "before apply", since_1970()));
-        let no_backup = |error: std::io::Error| TaskError::NoBackup {
-            message: error.to_string(),
-        };
-        applied.backup = Some(backup.await.map_err(no_backup)?);
+    if let Some(backups) = &task.backups {
+        applied.backup = Some(back_up(backups, &applied.before, "before apply").await?);
     }
     let (written, broken_off) = write(hand, &plan, &applied.before).await;
     for row in &written {
-        tell(ApplyStep::Row(row.clone()));
+        tell(ParamStep::Row(row.clone()));
     }
     applied.rows.extend(written);
     applied.broken_off = broken_off;
@@ -148,7 +127,11 @@ async fn write<H: Hand>(
 
 /// Writes one group. If it is not known what the hand holds then, it is read once more, on a link that came back.
 async fn write_one<H: Hand>(hand: &H, setting: Setting) -> Result<Written, RequestError> {
-    let written = once_at_rest(|| hand.set_kept(setting)).await?;
+    let not_sent = |written: &Written| match written.verdict {
+        Verdict::NotSent(why) => Some(why),
+        _ => None,
+    };
+    let written = once_at_rest(|| hand.set_kept(setting), not_sent).await?;
     if !matches!(written.verdict, Verdict::Unverified { .. }) {
         return Ok(written);
     }

@@ -1,10 +1,8 @@
 //! A hand as tasks see it, how one is reached, and the waits that tasks share.
 
 use crate::hand::{HandCommand, Setpoints, Setting, Span};
-use crate::link::{
-    ArmRequest, LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError,
-};
-use crate::record::{Calibrated, LinkState, NotSent, Reset, Rest, Saved, Verdict, Written};
+use crate::link::{LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError};
+use crate::record::{Calibrated, LinkState, NotSent, Reset, Rest, Saved, Written};
 use crate::transport::Endpoint;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
@@ -41,12 +39,8 @@ pub trait Hand: Clone + Send + Sync + 'static {
     fn calibrate(&self) -> impl Future<Output = Result<Calibrated, RequestError>> + Send;
     /// Holds before anything else, and disarms.
     fn stop(&self);
-    /// Asks to arm.
-    fn arm(&self, request: ArmRequest);
     /// Lets no setpoint pass any more.
     fn disarm(&self);
-    /// Takes the turn at moving the hand.
-    fn take_turn(&self) -> MotionTurn;
     /// Sets targets and limits; false if the turn is over.
     fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool;
     /// Reads at other rates.
@@ -81,14 +75,8 @@ impl Hand for LinkHandle {
     fn stop(&self) {
         Self::stop(self);
     }
-    fn arm(&self, request: ArmRequest) {
-        Self::arm(self, request);
-    }
     fn disarm(&self) {
         Self::disarm(self);
-    }
-    fn take_turn(&self) -> MotionTurn {
-        Self::take_turn(self)
     }
     fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
         Self::set(self, turn, setpoints)
@@ -101,9 +89,9 @@ impl Hand for LinkHandle {
 /// Goes where a hand may be. A port has room for one link, so the one of before is given up.
 pub trait Reach: Send {
     /// What it reaches.
-    type Hand: Hand;
+    type Link: Hand;
     /// The hand that answers at a place; `None` if none does within [`REACHED_WITHIN`].
-    fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<Self::Hand>> + Send;
+    fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<Self::Link>> + Send;
 }
 
 /// Waits until the hand answers; false if it does not in time.
@@ -134,50 +122,18 @@ pub(crate) async fn rests<H: Hand>(hand: &H) -> bool {
     }
 }
 
-/// Whether a request was held back because of what the hand does at the moment.
-pub trait Attempt {
-    /// Why nothing was sent, if nothing was.
-    fn not_sent(&self) -> Option<NotSent>;
-}
-
-impl Attempt for Written {
-    fn not_sent(&self) -> Option<NotSent> {
-        match self.verdict {
-            Verdict::NotSent(why) => Some(why),
-            _ => None,
-        }
-    }
-}
-
-impl Attempt for Saved {
-    fn not_sent(&self) -> Option<NotSent> {
-        match self {
-            Self::NotSent(why) => Some(*why),
-            _ => None,
-        }
-    }
-}
-
-impl Attempt for Reset {
-    fn not_sent(&self) -> Option<NotSent> {
-        match self {
-            Self::NotSent(why) => Some(*why),
-            _ => None,
-        }
-    }
-}
-
 /// Asks, and asks again for a while where the hand still moves or an earlier SAVE is too near.
 ///
 /// # Errors
 /// As the link says.
-pub async fn once_at_rest<T: Attempt, F: Future<Output = Result<T, RequestError>>>(
+pub(crate) async fn once_at_rest<T, F: Future<Output = Result<T, RequestError>>>(
     ask: impl Fn() -> F,
+    not_sent: fn(&T) -> Option<NotSent>,
 ) -> Result<T, RequestError> {
     let until = Instant::now() + RESTS_WITHIN;
     loop {
         let end = ask().await?;
-        let wait = match end.not_sent() {
+        let wait = match not_sent(&end) {
             None | Some(NotSent::Armed) => return Ok(end),
             Some(NotSent::TooSoon { wait }) => wait,
             Some(NotSent::Moving | NotSent::RestUnknown | NotSent::Holding) => AGAIN_AFTER,

@@ -3,8 +3,6 @@
 
 pub mod apply;
 pub mod calibrate;
-#[cfg(test)]
-mod fake;
 pub mod gesture;
 pub mod hand;
 pub mod place;
@@ -18,7 +16,9 @@ mod tests;
 
 pub use crate::tasks::hand::{Hand, Reach};
 
+use crate::hand::Span;
 use crate::link::RequestError;
+use crate::params::changes::RowOutcome;
 use crate::params::danger::Danger;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
@@ -50,6 +50,21 @@ pub enum TaskError {
     /// The link could not take the request.
     #[error(transparent)]
     NotAsked(#[from] RequestError),
+}
+
+/// What the tasks tell that read, apply and save parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ParamStep {
+    /// A group was read.
+    Read(Span, Vec<u8>),
+    /// What a person agreed to.
+    Meant(Risks),
+    /// A row was written, or was not.
+    Row(RowOutcome),
+    /// The backup is written, and a SAVE of another program waited for.
+    BackingUp,
+    /// SAVE goes out; its result is awaited.
+    Saving,
 }
 
 /// What a person should mean before a task does it.

@@ -4,7 +4,7 @@
 use crate::hand::Moment;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
-use crate::params::place::{Moved, Place, Places, command};
+use crate::params::place::{Moved, PlacePair, WhichPlace, command};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, decoded, span_of};
 use crate::record::Saved;
@@ -12,6 +12,7 @@ use crate::store::on_thread;
 use crate::tasks::hand::{Hand, Reach, rests};
 use crate::tasks::save::{back_up, save_noted};
 use crate::tasks::{TaskError, read};
+use futures::future::BoxFuture;
 use std::path::PathBuf;
 use std::time::Duration;
 use tokio::time::timeout;
@@ -31,17 +32,17 @@ pub struct PlaceChange {
     /// What it is to hold.
     pub wanted: Value,
     /// Where the hand is found before and after.
-    pub places: Places,
+    pub places: PlacePair,
     /// Whether this wire finds the hand by it, and the change may act at once.
     pub is_followed: bool,
 }
 
-/// Who decides. Neither question is asked before the hand was found again.
-pub trait Person: Send {
+/// What a person decides. Neither is waited for before the hand was found again.
+pub struct Decisions {
     /// Whether the change stays; false takes it back.
-    fn keeps(&mut self) -> impl Future<Output = bool> + Send;
+    pub keeps: BoxFuture<'static, bool>,
     /// Whether a change that stays goes into flash.
-    fn saves(&mut self) -> impl Future<Output = bool> + Send;
+    pub saves: BoxFuture<'static, bool>,
 }
 
 /// What is told on the way.
@@ -52,17 +53,17 @@ pub enum PlaceStep {
     /// What the hand holds, once it is kept.
     BackedUp(PathBuf, Params),
     /// The hand, or another one, is looked for there.
-    Looking(Place),
+    Looking(WhichPlace),
     /// The value is written there.
-    Writing(Place),
+    Writing(WhichPlace),
     /// There, or held and waiting for power: a person says whether it stays, within [`KEEP_WITHIN`].
-    Keeping(Place),
+    Keeping(WhichPlace),
     /// It is taken back.
     Returning,
     /// Kept: a person says whether it goes into flash.
-    Offering(Place),
+    Offering(WhichPlace),
     /// SAVE is under way.
-    Saving(Place),
+    Saving(WhichPlace),
 }
 
 /// How it ended.
@@ -80,11 +81,11 @@ pub enum PlaceEnd {
     /// It was taken back: the hand is as it was before.
     Back,
     /// It could not be taken back: the hand is there and holds the new value.
-    NotBack(Place),
+    NotBack(WhichPlace),
     /// Kept; with what is known of flash, if SAVE was asked for.
     Kept {
         /// Where the hand answers now.
-        at: Place,
+        at: WhichPlace,
         /// The result of SAVE.
         saved: Option<Saved>,
     },
@@ -97,10 +98,10 @@ pub enum PlaceEnd {
 impl PlaceEnd {
     /// Where the hand is; `None` = nobody knows.
     #[must_use]
-    pub const fn place(&self) -> Option<Place> {
+    pub const fn place(&self) -> Option<WhichPlace> {
         match self {
             Self::NotWritten | Self::Occupied | Self::NotTaken { .. } | Self::Back => {
-                Some(Place::Old)
+                Some(WhichPlace::Old)
             }
             Self::NotBack(at) | Self::Kept { at, .. } => Some(*at),
             Self::Unseen(_) | Self::Nowhere => None,
@@ -129,7 +130,7 @@ pub async fn change_place<R: Reach>(
     reach: &mut R,
     change: &PlaceChange,
     backups: &Backups,
-    person: &mut impl Person,
+    decisions: Decisions,
     mut tell: impl FnMut(PlaceStep),
 ) -> Result<PlaceReport, TaskError> {
     tell(PlaceStep::BackingUp);
@@ -144,92 +145,68 @@ pub async fn change_place<R: Reach>(
     };
     let backup = back_up(backups, &params, "before apply").await?;
     tell(PlaceStep::BackedUp(backup.clone(), params.clone()));
-    let mut run = Run {
+    let mut run = ChangeRun {
         reach,
         change,
         backups,
         tell: &mut tell,
+        seen: None,
         not_noted: None,
     };
-    let moved = run.go(Place::Old, change.wanted).await;
+    let moved = run.go(WhichPlace::Old, change.wanted).await;
     let end = match &moved {
         None => PlaceEnd::NotWritten,
-        Some(Went::Occupied) => PlaceEnd::Occupied,
-        Some(Went::Nowhere) => PlaceEnd::Nowhere,
-        // A third value: the hand is where it was, and would be lost once somebody saves.
-        Some(Went::Stayed { holds, .. }) if *holds != change.before => {
-            run.bring_back(Place::Old).await
+        Some(Moved::Occupied) => PlaceEnd::Occupied,
+        Some(Moved::Nowhere) => PlaceEnd::Nowhere,
+        Some(Moved::Stayed | Moved::Refused { .. }) if run.seen != Some(change.before) => {
+            run.bring_back(WhichPlace::Old).await
         }
-        Some(Went::Stayed { refused, .. }) => PlaceEnd::NotTaken {
-            reason: refused.clone(),
+        Some(Moved::Stayed) => PlaceEnd::NotTaken { reason: None },
+        Some(Moved::Refused { reason }) => PlaceEnd::NotTaken {
+            reason: Some(reason.clone()),
         },
-        Some(Went::There) => run.decide(Place::New, params, person).await,
-        Some(Went::Waits) => run.decide(Place::Old, params, person).await,
+        Some(Moved::There) => run.decide(WhichPlace::New, params, decisions).await,
+        Some(Moved::Waits) => run.decide(WhichPlace::Old, params, decisions).await,
     };
     Ok(PlaceReport {
         backup,
-        moved: moved.map(Went::moved),
+        moved,
         end,
         not_noted: run.not_noted,
     })
 }
 
-/// Where a hand is after a write.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Went {
-    Occupied,
-    There,
-    Waits,
-    Stayed {
-        holds: Value,
-        refused: Option<String>,
-    },
-    Nowhere,
-}
-
-impl Went {
-    fn moved(self) -> Moved {
-        match self {
-            Self::Occupied => Moved::Occupied,
-            Self::There => Moved::There,
-            Self::Waits => Moved::Waits,
-            Self::Stayed {
-                refused: Some(reason),
-                ..
-            } => Moved::Refused { reason },
-            Self::Stayed { refused: None, .. } => Moved::Stayed,
-            Self::Nowhere => Moved::Nowhere,
-        }
-    }
-}
-
-struct Run<'a, R, T> {
+struct ChangeRun<'a, R, T> {
     reach: &'a mut R,
     change: &'a PlaceChange,
     backups: &'a Backups,
     tell: &'a mut T,
+    /// What the hand held where it was looked for last, if it answered.
+    seen: Option<Value>,
     not_noted: Option<String>,
 }
 
-impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
+impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     /// What a hand that answers there holds in the row; `None` if nobody does.
-    async fn holds(&mut self, at: Place) -> Option<Value> {
+    async fn holds(&mut self, at: WhichPlace) -> Option<Value> {
         (self.tell)(PlaceStep::Looking(at));
+        self.seen = None;
         let hand = self.reach.reach(self.change.places.endpoint(at)).await?;
         let span = span_of(self.change.id);
         let bytes = read::group(&hand, span).await.ok()?;
-        decoded(self.change.id, span, &bytes)
+        self.seen = decoded(self.change.id, span, &bytes);
+        self.seen
     }
 
     /// Writes a value where the hand is and looks where it answers then; `None` if nothing could be written.
-    async fn go(&mut self, from: Place, value: Value) -> Option<Went> {
+    async fn go(&mut self, from: WhichPlace, value: Value) -> Option<Moved> {
         // Back at its old place, a value is only put back.
-        let is_back_there = from == Place::Old && value == self.change.before;
+        let is_back_there = from == WhichPlace::Old && value == self.change.before;
         let follows = self.change.is_followed && !is_back_there;
         // A new id may be another hand's; a hand of another serial speed cannot be heard here.
         let may_be_taken = follows && self.change.id == ParamId::HandId;
         if may_be_taken && self.holds(from.other()).await.is_some() {
-            return Some(Went::Occupied);
+            return Some(Moved::Occupied);
         }
         (self.tell)(PlaceStep::Writing(from));
         let hand = self.reach.reach(self.change.places.endpoint(from)).await?;
@@ -247,37 +224,40 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
         for round in 0..ROUNDS {
             let may_be_there = follows && (round > 0 || refused.is_none());
             if may_be_there && self.holds(from.other()).await.is_some() {
-                return Some(Went::There);
+                return Some(Moved::There);
             }
             match self.holds(from).await {
-                Some(holds) if holds == value => return Some(Went::Waits),
-                Some(holds) => return Some(Went::Stayed { holds, refused }),
+                Some(holds) if holds == value => return Some(Moved::Waits),
+                Some(_) => {
+                    let stayed = refused.map(|reason| Moved::Refused { reason });
+                    return Some(stayed.unwrap_or(Moved::Stayed));
+                }
                 None => {}
             }
         }
-        Some(Went::Nowhere)
+        Some(Moved::Nowhere)
     }
 
     /// The hand answers: a person keeps the change, or it is taken back.
-    async fn decide(&mut self, at: Place, params: Params, person: &mut impl Person) -> PlaceEnd {
+    async fn decide(&mut self, at: WhichPlace, params: Params, decisions: Decisions) -> PlaceEnd {
         (self.tell)(PlaceStep::Keeping(at));
-        let keeps = timeout(KEEP_WITHIN, person.keeps()).await;
+        let keeps = timeout(KEEP_WITHIN, decisions.keeps).await;
         if !keeps.unwrap_or(false) {
             (self.tell)(PlaceStep::Returning);
             return self.take_back(at).await;
         }
-        if at == Place::New {
-            self.adopt(Place::New, Place::Old).await;
+        if at == WhichPlace::New {
+            self.adopt(WhichPlace::New, WhichPlace::Old).await;
         }
         (self.tell)(PlaceStep::Offering(at));
-        match person.saves().await {
+        match decisions.saves.await {
             true => self.save(at, params).await,
             false => PlaceEnd::Kept { at, saved: None },
         }
     }
 
     /// What is known of the hand at one place is found at another too.
-    async fn adopt(&mut self, to: Place, from: Place) {
+    async fn adopt(&mut self, to: WhichPlace, from: WhichPlace) {
         let places = &self.change.places;
         let former = self.backups.beside(places.endpoint(from));
         let there = self.backups.beside(places.endpoint(to));
@@ -287,7 +267,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
     }
 
     /// Finds the hand and gives it back what it held.
-    async fn take_back(&mut self, last: Place) -> PlaceEnd {
+    async fn take_back(&mut self, last: WhichPlace) -> PlaceEnd {
         let mut end = PlaceEnd::Nowhere;
         for _round in 0..ROUNDS {
             end = PlaceEnd::Nowhere;
@@ -306,17 +286,19 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
         end
     }
 
-    async fn bring_back(&mut self, from: Place) -> PlaceEnd {
+    async fn bring_back(&mut self, from: WhichPlace) -> PlaceEnd {
         match self.go(from, self.change.before).await {
             None => PlaceEnd::NotWritten,
             // At a place of its own, or held where it is: both is as before.
-            Some(Went::There | Went::Waits) => PlaceEnd::Back,
-            Some(Went::Occupied | Went::Stayed { .. }) => PlaceEnd::NotBack(from),
-            Some(Went::Nowhere) => PlaceEnd::Nowhere,
+            Some(Moved::There | Moved::Waits) => PlaceEnd::Back,
+            Some(Moved::Occupied | Moved::Stayed | Moved::Refused { .. }) => {
+                PlaceEnd::NotBack(from)
+            }
+            Some(Moved::Nowhere) => PlaceEnd::Nowhere,
         }
     }
 
-    async fn save(&mut self, at: Place, mut params: Params) -> PlaceEnd {
+    async fn save(&mut self, at: WhichPlace, mut params: Params) -> PlaceEnd {
         let unsaved = PlaceEnd::Kept { at, saved: None };
         let place = self.change.places.endpoint(at);
         let Some(hand) = self.reach.reach(place).await else {
@@ -338,7 +320,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
             self.not_noted.get_or_insert(why);
         }
         // Once it is switched off and on the hand may be at the other place.
-        if !(at == Place::New && saved == Saved::Confirmed) {
+        if !(at == WhichPlace::New && saved == Saved::Confirmed) {
             self.adopt(at.other(), at).await;
         }
         // Some hands let a new id or speed act at SAVE.
@@ -346,7 +328,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
             saved,
             Saved::Confirmed | Saved::ReadBack | Saved::Unknown { .. }
         );
-        if at == Place::Old && self.change.is_followed && acts {
+        if at == WhichPlace::Old && self.change.is_followed && acts {
             return self.locate(saved).await;
         }
         let saved = Some(saved);
@@ -355,7 +337,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> Run<'_, R, T> {
 
     async fn locate(&mut self, saved: Saved) -> PlaceEnd {
         for _round in 0..ROUNDS {
-            for at in [Place::Old, Place::New] {
+            for at in [WhichPlace::Old, WhichPlace::New] {
                 if self.holds(at).await.is_some() {
                     let saved = Some(saved);
                     return PlaceEnd::Kept { at, saved };

@@ -3,7 +3,7 @@
 
 use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
 use crate::link::{Clock, LinkStatus, MotionTurn};
-use crate::poses::player::{Cue, End, Pace, Phase, Player};
+use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayView, Player};
 use crate::record::{LinkState, Record};
 use crate::tasks::hand::Hand;
 use std::time::Duration;
@@ -23,7 +23,7 @@ pub struct PlayStart {
     /// Whether it begins again at its end.
     pub looped: bool,
     /// Through, or one step.
-    pub pace: Pace,
+    pub pace: PlayMode,
     /// The arming that a person gave for it.
     pub epoch: ArmEpoch,
     /// The turn at moving the hand.
@@ -42,22 +42,11 @@ pub enum PlayCommand {
     /// Hold where the hand is, until resumed.
     Pause,
     /// Go on.
-    Resume(Pace),
+    Resume(PlayMode),
     /// End it and hold where the hand is.
     End,
     /// Leave these joints alone.
     Lock(PerDof<bool>),
-}
-
-/// Where a sequence stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PlayView {
-    /// The step, 0 the first.
-    pub at: usize,
-    /// What it does.
-    pub phase: Phase,
-    /// Steps that ran into their time limit.
-    pub late: u32,
 }
 
 /// What is told on the way.
@@ -75,10 +64,10 @@ pub async fn play<H: Hand>(
     start: PlayStart,
     mut commands: mpsc::Receiver<PlayCommand>,
     mut tell: impl FnMut(PlayStep),
-) -> End {
+) -> PlayEnd {
     let clock = start.clock;
     let mut records = hand.records();
-    let mut run = Run {
+    let mut run = Playing {
         turn: start.turn,
         hand,
         player: Player::start(start.cues, start.looped, start.pace, clock.now()),
@@ -90,18 +79,18 @@ pub async fn play<H: Hand>(
     let mut shown = None;
     loop {
         run.tick(&mut tell);
-        let view = run.view();
+        let view = run.player.view();
         if shown.replace(view) != Some(view) {
             tell(PlayStep::View(view));
         }
-        if let Phase::Ended(end) = view.phase {
+        if let PlayPhase::Ended(end) = view.phase {
             return end;
         }
         tokio::select! {
             biased;
             command = commands.recv() => match command {
                 Some(command) => run.obey(command, &mut tell),
-                None => run.player.end(End::TakenOver),
+                None => run.player.end(PlayEnd::TakenOver),
             },
             record = timeout(TICK, records.next()) => {
                 if let Ok(Some(Record::Reading { sample, .. })) = record {
@@ -112,7 +101,7 @@ pub async fn play<H: Hand>(
     }
 }
 
-struct Run<'a, H> {
+struct Playing<'a, H> {
     hand: &'a H,
     turn: MotionTurn,
     player: Player,
@@ -122,15 +111,7 @@ struct Run<'a, H> {
     clock: Clock,
 }
 
-impl<H: Hand> Run<'_, H> {
-    const fn view(&self) -> PlayView {
-        PlayView {
-            at: self.player.at(),
-            phase: self.player.phase(),
-            late: self.player.late(),
-        }
-    }
-
+impl<H: Hand> Playing<'_, H> {
     fn obey(&mut self, command: PlayCommand, tell: &mut impl FnMut(PlayStep)) {
         match command {
             PlayCommand::Pause => {
@@ -140,7 +121,7 @@ impl<H: Hand> Run<'_, H> {
             }
             PlayCommand::Resume(pace) => self.player.resume(pace, self.clock.now()),
             PlayCommand::End => {
-                self.player.end(End::Person);
+                self.player.end(PlayEnd::Person);
                 self.hold_here(tell);
             }
             PlayCommand::Lock(locked) => self.locked = locked,
@@ -212,19 +193,19 @@ impl<H: Hand> Run<'_, H> {
         if self.hand.set(self.turn, &setpoints) {
             tell(PlayStep::Sent(setpoints));
         } else {
-            self.player.end(End::TakenOver);
+            self.player.end(PlayEnd::TakenOver);
         }
     }
 }
 
 /// Why a sequence in this arming must end now, if it must.
-fn reason(status: &LinkStatus, epoch: ArmEpoch) -> Option<End> {
+fn reason(status: &LinkStatus, epoch: ArmEpoch) -> Option<PlayEnd> {
     if !status.state.is_live() {
-        Some(End::LinkLost)
+        Some(PlayEnd::LinkLost)
     } else if status.state == LinkState::Fault {
-        Some(End::Fault)
+        Some(PlayEnd::Fault)
     } else if status.armed != Some(epoch) {
-        Some(End::Disarmed)
+        Some(PlayEnd::Disarmed)
     } else {
         None
     }

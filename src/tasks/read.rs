@@ -16,14 +16,14 @@ const WAITS: u32 = TRIES;
 
 /// What was read.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Rows {
+pub struct ReadRows {
     /// The rows that could be read.
     pub params: Params,
     /// Why others could not, group by group.
     pub troubles: Vec<RequestError>,
 }
 
-impl Rows {
+impl ReadRows {
     /// All rows that are needed.
     ///
     /// # Errors
@@ -42,8 +42,8 @@ impl Rows {
 }
 
 /// Reads all rows, group by group; `took` is told each group as it comes.
-pub async fn rows<H: Hand>(hand: &H, mut took: impl FnMut(Span, &[u8])) -> Rows {
-    let mut rows = Rows::default();
+pub async fn rows<H: Hand>(hand: &H, mut took: impl FnMut(Span, &[u8])) -> ReadRows {
+    let mut rows = ReadRows::default();
     for span in SPANS {
         match group(hand, span).await {
             Ok(bytes) => {

@@ -2,7 +2,7 @@
 
 use crate::link::RequestError;
 use crate::params::backups::Backups;
-use crate::params::place::{Place, Places, factory_place};
+use crate::params::place::{PlacePair, WhichPlace, factory_place};
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::record::{NotSent, Reset};
@@ -24,7 +24,7 @@ pub enum ResetStep {
     /// RESET_PARA goes out.
     Sending,
     /// The hand is looked for there; the new place is the factory's.
-    Looking(Place),
+    Looking(WhichPlace),
 }
 
 /// How it ended.
@@ -40,7 +40,7 @@ pub enum ResetEnd {
     /// A hand answers there.
     Found {
         /// Where.
-        at: Place,
+        at: WhichPlace,
         /// What it holds.
         params: Params,
         /// Rows that are not as at delivery.
@@ -65,8 +65,8 @@ pub struct ResetReport {
 
 /// Where a hand is found before and after a reset.
 #[must_use]
-pub fn places(hand: &Endpoint) -> Places {
-    Places {
+pub fn places(hand: &Endpoint) -> PlacePair {
+    PlacePair {
         old: hand.clone(),
         new: factory_place(hand),
     }
@@ -78,7 +78,7 @@ pub fn places(hand: &Endpoint) -> Places {
 /// [`TaskError`]: then nothing was written.
 pub async fn reset<R: Reach>(
     reach: &mut R,
-    places: &Places,
+    places: &PlacePair,
     backups: &Backups,
     mut tell: impl FnMut(ResetStep),
 ) -> Result<ResetReport, TaskError> {
@@ -88,7 +88,11 @@ pub async fn reset<R: Reach>(
     let before = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
     let backup = back_up(backups, &before, "before reset").await?;
     tell(ResetStep::Sending);
-    let sent = once_at_rest(|| hand.reset()).await;
+    let not_sent = |reset: &Reset| match reset {
+        Reset::NotSent(why) => Some(*why),
+        _ => None,
+    };
+    let sent = once_at_rest(|| hand.reset(), not_sent).await;
     drop(hand);
     let mut report = ResetReport {
         backup,
@@ -116,12 +120,12 @@ pub async fn reset<R: Reach>(
 /// Looks at the factory's place first, then where the hand was.
 async fn find<R: Reach>(
     reach: &mut R,
-    places: &Places,
+    places: &PlacePair,
     tell: &mut impl FnMut(ResetStep),
 ) -> ResetEnd {
     for _round in 0..ROUNDS {
-        for at in [Place::New, Place::Old] {
-            if at == Place::Old && places.old == places.new {
+        for at in [WhichPlace::New, WhichPlace::Old] {
+            if at == WhichPlace::Old && places.old == places.new {
                 continue;
             }
             tell(ResetStep::Looking(at));
@@ -144,7 +148,7 @@ async fn find<R: Reach>(
 }
 
 /// What is known of the hand is found at its new place too.
-async fn adopt(backups: &Backups, places: &Places, end: &ResetEnd) -> std::io::Result<()> {
+async fn adopt(backups: &Backups, places: &PlacePair, end: &ResetEnd) -> std::io::Result<()> {
     let ResetEnd::Found { at, .. } = end else {
         return Ok(());
     };

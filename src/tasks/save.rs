@@ -1,7 +1,6 @@
 //! SAVE: the hand's parameters into its flash, with a backup first and notes of what went out and what came of it
 //! (manual 2.6.4).
 
-use crate::hand::Span;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::danger::worse;
@@ -10,7 +9,7 @@ use crate::record::{SaveDoubt, Saved};
 use crate::store::calendar::since_1970;
 use crate::store::on_thread;
 use crate::tasks::hand::{Hand, once_at_rest};
-use crate::tasks::{Consent, Risks, TaskError, read};
+use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
 use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
@@ -28,19 +27,6 @@ pub struct Save {
     pub before: Params,
     /// What a person agreed to.
     pub consent: Consent,
-}
-
-/// What is told on the way.
-#[derive(Debug, Clone, PartialEq)]
-pub enum SaveStep {
-    /// A group was read.
-    Read(Span, Vec<u8>),
-    /// What a person agreed to.
-    Meant(Risks),
-    /// The backup is written, and a SAVE of another program waited for.
-    BackingUp,
-    /// SAVE goes out; its result is awaited.
-    Saving,
 }
 
 /// The result.
@@ -63,23 +49,23 @@ pub struct SaveReport {
 pub async fn save<H: Hand>(
     hand: &H,
     task: &Save,
-    mut tell: impl FnMut(SaveStep),
+    mut tell: impl FnMut(ParamStep),
 ) -> Result<SaveReport, TaskError> {
-    let took = |span, bytes: &[u8]| tell(SaveStep::Read(span, bytes.to_vec()));
+    let took = |span, bytes: &[u8]| tell(ParamStep::Read(span, bytes.to_vec()));
     let params = read::rows(hand, took).await.with(|_| true)?;
     let risks = Risks {
         dangers: worse(&task.before, &params),
         ..Risks::default()
     };
     task.consent.check(&risks)?;
-    tell(SaveStep::Meant(risks));
-    tell(SaveStep::BackingUp);
+    tell(ParamStep::Meant(risks));
+    tell(ParamStep::BackingUp);
     let backup = back_up(&task.backups, &params, "before save").await?;
     if let Some(ago) = task.backups.since_attempt(SystemTime::now()) {
         sleep(APART.saturating_sub(ago)).await;
     }
     let (saved, not_noted) = save_noted(hand, &task.backups, &params, || {
-        tell(SaveStep::Saving);
+        tell(ParamStep::Saving);
     })
     .await?;
     Ok(SaveReport {
@@ -114,7 +100,11 @@ pub(crate) async fn save_noted<H: Hand>(
         .await
         .map_err(no_backup)?;
     goes_out();
-    let ended = once_at_rest(|| hand.save()).await;
+    let not_sent = |saved: &Saved| match saved {
+        Saved::NotSent(why) => Some(*why),
+        _ => None,
+    };
+    let ended = once_at_rest(|| hand.save(), not_sent).await;
     // What was not sent must not be noted as of unknown result.
     let noted = match &ended {
         Ok(saved) => saved.clone(),

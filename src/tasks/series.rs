@@ -6,10 +6,9 @@ use crate::link::{Clock, LinkStatus, MotionTurn, PollRates, Records};
 use crate::record::{Hold, Record};
 use crate::tasks::hand::Hand;
 use crate::trials::limits::{Abort, LinkView};
-use crate::trials::plan::{PlanError, TrialPlan, TrialSetting};
+use crate::trials::plan::{PlanError, TrialPlan};
 use crate::trials::recording::TrialMark;
-use crate::trials::runner::Stage;
-use crate::trials::series::{SeriesOrder, TrialSeries};
+use crate::trials::series::{SeriesOrder, SeriesView, TrialSeries};
 use crate::trials::summary::Trial;
 use std::pin::pin;
 use std::time::Duration;
@@ -26,34 +25,6 @@ const TICK: Duration = Duration::from_millis(5);
 /// How long feedback may take to show rest; the link raises its alarm after half a second.
 const REST_WITHIN: Duration = Duration::from_secs(3);
 
-/// Where a series stands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SeriesView {
-    /// Trials that began.
-    pub number: usize,
-    /// Trials in all.
-    pub total: usize,
-    /// What is tried; `None` between two trials.
-    pub setting: Option<TrialSetting>,
-    /// Whether it looks for the contact.
-    pub is_probing: bool,
-    /// What the hand does.
-    pub stage: Stage,
-}
-
-impl SeriesView {
-    fn of(series: &TrialSeries) -> Self {
-        let (number, total) = series.progress();
-        Self {
-            number,
-            total,
-            setting: series.setting(),
-            is_probing: series.is_probing(),
-            stage: series.stage(),
-        }
-    }
-}
-
 /// What is told on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SeriesStep {
@@ -63,15 +34,6 @@ pub enum SeriesStep {
     Mark(TrialMark),
     /// A trial is over.
     Trial(Box<Trial>),
-}
-
-/// Whether what was told could be kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Told {
-    /// It could.
-    Kept,
-    /// It could not: the series ends.
-    Lost,
 }
 
 /// What feedback says after a stop.
@@ -112,7 +74,7 @@ pub struct SeriesStart {
     pub clock: Clock,
 }
 
-/// Runs a series. `ended` resolves when a person ends it. At the end the hand is not armed any more.
+/// Runs a series. `tell` says whether it could keep what it was told; else the series ends. `ended` resolves when a person ends it. At the end the hand is not armed any more.
 ///
 /// # Errors
 /// [`PlanError`]: the plan makes no sense, and nothing was sent.
@@ -120,7 +82,7 @@ pub async fn series<H: Hand>(
     hand: &H,
     start: SeriesStart,
     ended: impl Future<Output = Abort>,
-    mut tell: impl FnMut(SeriesStep) -> Told,
+    mut tell: impl FnMut(SeriesStep) -> bool,
 ) -> Result<SeriesReport, PlanError> {
     let clock = start.clock;
     let mut series = TrialSeries::start(start.plan, start.epoch, clock.now())?;
@@ -129,7 +91,7 @@ pub async fn series<H: Hand>(
     hand.read_at(RATES);
     let mut sample = start.seen;
     let mut ended = pin!(ended);
-    let mut shown = Shown::default();
+    let mut shown = AlreadyTold::default();
     let mut stop = None;
     while !series.is_over() {
         let mut order = None;
@@ -141,14 +103,14 @@ pub async fn series<H: Hand>(
                     sample = *newest;
                     series.take(&sample, fresh);
                 }
-                let view = link_view(&hand.status());
-                order = order.or(series.tick(&sample, view, clock.now()));
+                let LinkStatus { state, armed, .. } = hand.status();
+                order = order.or(series.tick(&sample, LinkView { state, armed }, clock.now()));
             }
         }
         if let Some(SeriesOrder::Set(setpoints)) = &order {
             hand.set(turn, setpoints);
         }
-        if shown.tell(&mut series, &mut tell) == Told::Lost {
+        if !shown.tell(&mut series, &mut tell) {
             order = series.end(Abort::NotKept, clock.now()).or(order);
         }
         if order == Some(SeriesOrder::Stop) {
@@ -166,34 +128,22 @@ pub async fn series<H: Hand>(
     })
 }
 
-/// What a trial looks at of the link.
-fn link_view(status: &LinkStatus) -> LinkView {
-    LinkView {
-        state: status.state,
-        armed: status.armed,
-    }
-}
-
 /// What was told already.
 #[derive(Default)]
-struct Shown {
+struct AlreadyTold {
     view: Option<SeriesView>,
     marks: usize,
 }
 
-impl Shown {
+impl AlreadyTold {
     /// Tells what is new: marks before the trial that they belong to, and where the series stands last.
     fn tell(
         &mut self,
         series: &mut TrialSeries,
-        tell: &mut impl FnMut(SeriesStep) -> Told,
-    ) -> Told {
-        let mut told = Told::Kept;
-        let mut also = |step| {
-            if tell(step) == Told::Lost {
-                told = Told::Lost;
-            }
-        };
+        tell: &mut impl FnMut(SeriesStep) -> bool,
+    ) -> bool {
+        let mut is_kept = true;
+        let mut also = |step| is_kept &= tell(step);
         while let Some(trial) = series.finished() {
             for mark in trial.recording.marks().iter().skip(self.marks) {
                 also(SeriesStep::Mark(*mark));
@@ -207,11 +157,11 @@ impl Shown {
             }
             self.marks = recording.marks().len();
         }
-        let view = SeriesView::of(series);
+        let view = series.view();
         if self.view.replace(view) != Some(view) {
             also(SeriesStep::View(view));
         }
-        told
+        is_kept
     }
 }
 

@@ -4,7 +4,6 @@
 pub mod can;
 pub mod dial;
 pub mod endpoint;
-pub mod faulty;
 #[cfg(target_os = "linux")]
 mod openers;
 pub mod paced;
@@ -15,7 +14,6 @@ pub mod serial;
 pub mod tcp;
 pub mod wire;
 
-pub use crate::transport::endpoint::packing::{NoPacking, Packing};
 pub use crate::transport::endpoint::route::{Route, route};
 pub use crate::transport::serial::adapter::{Adapter, Whereabouts, is_same_port};
 pub use crate::transport::serial::permission::Remedy;
@@ -24,7 +22,6 @@ pub use crate::transport::serial::sysfs::Sysfs;
 pub use crate::transport::serial::timer::Timer;
 pub use dial::SystemDial;
 pub use endpoint::{Endpoint, EndpointError, SerialLine};
-pub use faulty::{FaultCounts, FaultOdds, FaultPlan, FaultSwitch, Pace, faulty_pair};
 pub use paced::{LinePace, paced};
 pub use pipe::{Pipe, pair};
 #[cfg(unix)]

@@ -41,7 +41,7 @@ pub async fn paced<T, F: Future<Output = T>>(
     device: impl FnOnce(Pipe) -> F,
 ) -> T {
     let (near, far) = pair();
-    let line = Line {
+    let line = PacedLine {
         wire,
         device: far,
         pace,
@@ -60,7 +60,7 @@ pub async fn paced<T, F: Future<Output = T>>(
     served.await
 }
 
-struct Line<W> {
+struct PacedLine<W> {
     wire: W,
     device: Pipe,
     pace: LinePace,
@@ -71,7 +71,7 @@ struct Line<W> {
     asked: bool,
 }
 
-impl<W: Wire> Line<W> {
+impl<W: Wire> PacedLine<W> {
     /// Until either end is gone.
     async fn carry(mut self) -> io::Result<()> {
         let (mut request, mut reply) = ([0; PIPE_LEN], [0; PIPE_LEN]);

@@ -1,4 +1,4 @@
-//! A wire in memory, without faults. Faults are in `faulty`.
+//! A wire in memory, without faults.
 
 use tokio::io::{DuplexStream, duplex};
 

@@ -43,18 +43,6 @@ struct ClosingJoint {
     proximity: Option<i32>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum RunnerPhase {
-    Begin,
-    Preparing { since: Moment },
-    Quiet { since: Moment },
-    Closing { since: Moment },
-    Dwelling { since: Moment },
-    Releasing { since: Moment },
-    After { since: Moment },
-    Over,
-}
-
 /// What the hand does in a series, for display.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
@@ -83,7 +71,9 @@ pub struct Runner {
     plan: TrialPlan,
     setting: TrialSetting,
     epoch: ArmEpoch,
-    phase: RunnerPhase,
+    stage: Stage,
+    /// Since when; zero before it began.
+    since: Moment,
     joints: PerDof<Option<ClosingJoint>>,
     rest: PerDof<Mean>,
     /// Where all joints stand still on their way to the start, and since when.
@@ -136,7 +126,8 @@ impl Runner {
             plan: plan.clone(),
             setting,
             epoch,
-            phase: RunnerPhase::Begin,
+            stage: Stage::Resting,
+            since: Moment::ZERO,
             joints,
             rest: PerDof::splat(Mean::default()),
             pose: None,
@@ -154,14 +145,7 @@ impl Runner {
     /// What the hand does now.
     #[must_use]
     pub const fn stage(&self) -> Stage {
-        match self.phase {
-            RunnerPhase::Begin | RunnerPhase::Preparing { .. } => Stage::Preparing,
-            RunnerPhase::Quiet { .. } => Stage::Quiet,
-            RunnerPhase::Closing { .. } => Stage::Closing,
-            RunnerPhase::Dwelling { .. } => Stage::Dwelling,
-            RunnerPhase::Releasing { .. } | RunnerPhase::After { .. } => Stage::Releasing,
-            RunnerPhase::Over => Stage::Over,
-        }
+        self.stage
     }
 
     /// How it ended, once it has.
@@ -179,8 +163,7 @@ impl Runner {
     /// Ends it early. The first reason stays.
     pub fn abort(&mut self, why: Abort, now: Moment) {
         if self.ending.is_none() {
-            self.recording.mark(now, TrialEvent::Aborted);
-            self.phase = RunnerPhase::Over;
+            self.enter(Stage::Over, TrialEvent::Aborted, now);
             self.ending = Some(Err(why));
         }
     }
@@ -191,8 +174,7 @@ impl Runner {
             return;
         }
         self.recording.push(sample, fresh);
-        let quiet = matches!(self.phase, RunnerPhase::Quiet { .. });
-        if quiet && fresh.contains(crate::hand::Group::Force) {
+        if self.stage == Stage::Quiet && fresh.contains(crate::hand::Group::Force) {
             for (dof, mean) in self.rest.iter_mut() {
                 let force = sample.force.and_then(|force| force.value[dof].documented());
                 if let Some(force) = force {
@@ -217,39 +199,43 @@ impl Runner {
             self.abort(why, now);
             return None;
         }
-        match self.phase {
-            RunnerPhase::Begin => Some(self.prepare(now)),
-            RunnerPhase::Preparing { since } => self.preparing(sample, since, now),
-            RunnerPhase::Quiet { since } => self.quiet(sample, since, now),
-            RunnerPhase::Closing { since } => self.closing(sample, since, now),
-            RunnerPhase::Dwelling { since } if now.since(since) >= self.plan.dwell => {
-                Some(self.release(now))
+        let lasted = now.since(self.since);
+        match self.stage {
+            Stage::Resting => {
+                self.enter(Stage::Preparing, TrialEvent::Prepare, now);
+                Some(self.to_start())
             }
-            RunnerPhase::Releasing { since } => {
-                if self.there(sample, since, now) {
-                    self.recording.mark(now, TrialEvent::Released);
-                    self.phase = RunnerPhase::After { since: now };
+            Stage::Preparing => self.preparing(sample, now),
+            Stage::Quiet => self.quiet(sample, now),
+            Stage::Closing => self.closing(sample, now),
+            Stage::Dwelling if lasted >= self.plan.dwell => {
+                self.enter(Stage::Releasing, TrialEvent::Release, now);
+                Some(self.to_start())
+            }
+            Stage::Releasing if self.recording.when(TrialEvent::Released).is_some() => {
+                if lasted >= AFTER {
+                    self.stage = Stage::Over;
+                    self.ending = Some(Ok(()));
                 }
                 None
             }
-            RunnerPhase::After { since } if now.since(since) >= AFTER => {
-                self.phase = RunnerPhase::Over;
-                self.ending = Some(Ok(()));
+            Stage::Releasing => {
+                if self.there(sample, now) {
+                    self.enter(Stage::Releasing, TrialEvent::Released, now);
+                }
                 None
             }
-            _ => None,
+            Stage::Dwelling | Stage::Over => None,
         }
+    }
+
+    fn enter(&mut self, stage: Stage, what: TrialEvent, now: Moment) {
+        self.recording.mark(now, what);
+        (self.stage, self.since) = (stage, now);
     }
 
     fn setpoints(&self) -> Setpoints {
         Setpoints::none(self.epoch)
-    }
-
-    /// To the start, gently.
-    fn prepare(&mut self, now: Moment) -> Setpoints {
-        self.recording.mark(now, TrialEvent::Prepare);
-        self.phase = RunnerPhase::Preparing { since: now };
-        self.to_start()
     }
 
     fn to_start(&self) -> Setpoints {
@@ -266,7 +252,8 @@ impl Runner {
 
     /// True if all joints stand still at their starts; ends the trial if that takes too long. A joint that still moves
     /// would finish its way at the closing speed.
-    fn there(&mut self, sample: &HandSample, since: Moment, now: Moment) -> bool {
+    fn there(&mut self, sample: &HandSample, now: Moment) -> bool {
+        let since = self.since;
         // Only what was asked for after the command tells of it.
         let angle = sample.angle.filter(|angle| angle.asked >= since);
         let away = self.plan.start.iter().find_map(|(dof, start)| {
@@ -310,12 +297,11 @@ impl Runner {
         }
     }
 
-    fn preparing(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<Setpoints> {
-        if !self.there(sample, since, now) {
+    fn preparing(&mut self, sample: &HandSample, now: Moment) -> Option<Setpoints> {
+        if !self.there(sample, now) {
             return None;
         }
-        self.recording.mark(now, TrialEvent::Limits);
-        self.phase = RunnerPhase::Quiet { since: now };
+        self.enter(Stage::Quiet, TrialEvent::Limits, now);
         let mut setpoints = self.setpoints();
         for (dof, _) in self.joints.iter().filter(|(_, joint)| joint.is_some()) {
             setpoints.speed[dof] = Some(self.first_speed());
@@ -332,19 +318,18 @@ impl Runner {
     }
 
     /// Closes once the hand was quiet and shows the limits: no finger closes with a threshold that is not known.
-    fn quiet(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<Setpoints> {
-        if now.since(since) < QUIET {
+    fn quiet(&mut self, sample: &HandSample, now: Moment) -> Option<Setpoints> {
+        if now.since(self.since) < QUIET {
             return None;
         }
-        if let Some(dof) = self.unconfirmed(sample, since) {
-            if now.since(since) >= LIMITS_WITHIN {
+        if let Some(dof) = self.unconfirmed(sample) {
+            if now.since(self.since) >= LIMITS_WITHIN {
                 self.abort(Abort::LimitsRefused { dof }, now);
             }
             return None;
         }
         let angle = sample.angle?.value;
-        self.recording.mark(now, TrialEvent::Close);
-        self.phase = RunnerPhase::Closing { since: now };
+        self.enter(Stage::Closing, TrialEvent::Close, now);
         let mut setpoints = self.setpoints();
         for (dof, joint) in self.joints.iter_mut() {
             let Some(joint) = joint else { continue };
@@ -357,17 +342,18 @@ impl Runner {
     }
 
     /// The first joint whose limits were not read back since they were set.
-    fn unconfirmed(&self, sample: &HandSample, since: Moment) -> Option<Dof> {
+    fn unconfirmed(&self, sample: &HandSample) -> Option<Dof> {
         let (speed, force) = (self.first_speed(), self.setting.force);
-        let speeds = sample.speed_set.filter(|read| read.asked > since);
-        let forces = sample.force_set.filter(|read| read.asked > since);
+        let speeds = sample.speed_set.filter(|read| read.asked > self.since);
+        let forces = sample.force_set.filter(|read| read.asked > self.since);
         self.plan.joints().find(|dof| {
             speeds.is_none_or(|read| read.value[*dof] != Some(speed))
                 || forces.is_none_or(|read| read.value[*dof] != Some(force))
         })
     }
 
-    fn closing(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<Setpoints> {
+    fn closing(&mut self, sample: &HandSample, now: Moment) -> Option<Setpoints> {
+        let since = self.since;
         let mut setpoints = self.setpoints();
         let rest_g = self.rest.map(Mean::get);
         let mut all_stopped = true;
@@ -390,8 +376,7 @@ impl Runner {
             } else {
                 TrialEvent::NotStopped
             };
-            self.recording.mark(now, what);
-            self.phase = RunnerPhase::Dwelling { since: now };
+            self.enter(Stage::Dwelling, what, now);
         }
         (!setpoints.is_empty()).then_some(setpoints)
     }
@@ -400,12 +385,6 @@ impl Runner {
     fn close_within(&self) -> Duration {
         let speed = f64::from(self.setting.speed.get().max(1));
         Duration::from_secs_f64(1000.0 / (COUNTS_PER_SPEED * speed)) + CLOSE_SLACK
-    }
-
-    fn release(&mut self, now: Moment) -> Setpoints {
-        self.recording.mark(now, TrialEvent::Release);
-        self.phase = RunnerPhase::Releasing { since: now };
-        self.to_start()
     }
 }
 

@@ -34,9 +34,24 @@ struct PlannedTrial {
 
 #[derive(Debug, Clone)]
 enum SeriesPhase {
-    Waiting { since: Moment, rest: Duration },
+    Waiting { until: Moment },
     Running(Box<Runner>, PlannedTrial),
     Over,
+}
+
+/// Where a series stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeriesView {
+    /// Trials that began.
+    pub number: usize,
+    /// Trials in all.
+    pub total: usize,
+    /// What is tried; `None` between two trials.
+    pub setting: Option<TrialSetting>,
+    /// Whether it looks for the contact.
+    pub is_probing: bool,
+    /// What the hand does.
+    pub stage: Stage,
 }
 
 /// A running series.
@@ -64,10 +79,7 @@ impl TrialSeries {
         Ok(Self {
             total: queue.len(),
             queue,
-            phase: SeriesPhase::Waiting {
-                since: now,
-                rest: Duration::ZERO,
-            },
+            phase: SeriesPhase::Waiting { until: now },
             plan,
             epoch,
             contact: PerDof::splat(None),
@@ -89,35 +101,23 @@ impl TrialSeries {
         self.aborted
     }
 
-    /// Trials that began, and trials in all.
+    /// Where it stands.
     #[must_use]
-    pub const fn progress(&self) -> (usize, usize) {
-        (self.number, self.total)
-    }
-
-    /// What the hand does now.
-    #[must_use]
-    pub fn stage(&self) -> Stage {
-        match &self.phase {
-            SeriesPhase::Waiting { .. } => Stage::Resting,
-            SeriesPhase::Running(runner, _) => runner.stage(),
-            SeriesPhase::Over => Stage::Over,
+    pub fn view(&self) -> SeriesView {
+        let (setting, is_probing, stage) = match &self.phase {
+            SeriesPhase::Waiting { .. } => (None, false, Stage::Resting),
+            SeriesPhase::Running(runner, own) => {
+                (Some(own.setting), own.repeat.is_none(), runner.stage())
+            }
+            SeriesPhase::Over => (None, false, Stage::Over),
+        };
+        SeriesView {
+            number: self.number,
+            total: self.total,
+            setting,
+            is_probing,
+            stage,
         }
-    }
-
-    /// The setting of the current trial; `None` between two.
-    #[must_use]
-    pub const fn setting(&self) -> Option<TrialSetting> {
-        match &self.phase {
-            SeriesPhase::Running(_, cell) => Some(cell.setting),
-            SeriesPhase::Waiting { .. } | SeriesPhase::Over => None,
-        }
-    }
-
-    /// Whether the current trial looks for the contact.
-    #[must_use]
-    pub fn is_probing(&self) -> bool {
-        matches!(&self.phase, SeriesPhase::Running(_, cell) if cell.repeat.is_none())
     }
 
     /// The recording of the current trial; `None` between two.
@@ -127,11 +127,6 @@ impl TrialSeries {
             SeriesPhase::Running(runner, _) => Some(runner.recording()),
             SeriesPhase::Waiting { .. } | SeriesPhase::Over => None,
         }
-    }
-
-    /// The settings of the trials that did not begin yet.
-    pub fn ahead(&self) -> impl Iterator<Item = TrialSetting> {
-        self.queue.iter().map(|cell| cell.setting)
     }
 
     /// The next finished trial. Each is returned once.
@@ -165,9 +160,9 @@ impl TrialSeries {
         now: Moment,
     ) -> Option<SeriesOrder> {
         match &mut self.phase {
-            SeriesPhase::Waiting { since, rest } => {
-                let (since, rest) = (*since, *rest);
-                self.wait(sample, link, Wait { since, rest, now })
+            SeriesPhase::Waiting { until } => {
+                let until = *until;
+                self.wait(sample, link, until, now)
             }
             SeriesPhase::Running(runner, _) => {
                 let setpoints = runner.tick(sample, link, now);
@@ -181,22 +176,27 @@ impl TrialSeries {
         }
     }
 
-    fn wait(&mut self, sample: &HandSample, link: LinkView, wait: Wait) -> Option<SeriesOrder> {
-        let Wait { since, rest, now } = wait;
+    fn wait(
+        &mut self,
+        sample: &HandSample,
+        link: LinkView,
+        until: Moment,
+        now: Moment,
+    ) -> Option<SeriesOrder> {
         if !link.state.is_live() {
             return Some(self.fail(Abort::LinkLost));
         }
         if link.armed != Some(self.epoch) {
             return Some(self.fail(Abort::Disarmed));
         }
-        if now.since(since) < rest {
+        if now < until {
             return None;
         }
         let limit = self.plan.limits.start_c;
         // Temperatures that are not known yet are waited for; the trial itself does not begin without them.
         let (dof, celsius) = warmest(sample)?;
         if celsius >= limit {
-            let waited = now.since(since) >= rest + COOLING_MAX;
+            let waited = now.since(until) >= COOLING_MAX;
             return waited.then(|| {
                 self.fail(Abort::TooWarm {
                     dof,
@@ -230,10 +230,8 @@ impl TrialSeries {
         self.phase = if self.queue.is_empty() {
             SeriesPhase::Over
         } else {
-            SeriesPhase::Waiting {
-                since: now,
-                rest: self.plan.grid.rest,
-            }
+            let until = now.plus(self.plan.grid.rest);
+            SeriesPhase::Waiting { until }
         };
         None
     }
@@ -290,12 +288,6 @@ impl TrialSeries {
         self.phase = SeriesPhase::Over;
         SeriesOrder::Stop
     }
-}
-
-struct Wait {
-    since: Moment,
-    rest: Duration,
-    now: Moment,
 }
 
 /// The trials in order; where the contact has to be measured, a slow one at the smallest threshold goes first.

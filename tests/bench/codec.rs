@@ -3,7 +3,7 @@
 use crate::clock::cpu_ms;
 use crate::report::{Aim, Failure, Report};
 use handscope::codec::rs485::{
-    Reply, ReplyDecoder, Request, RequestDecoder, encode_read, encode_read_reply,
+    ReplyDecoder, RequestDecoder, Rs485Reply, Rs485Request, encode_read, encode_read_reply,
 };
 use handscope::hand::register::{STATE, TOUCH};
 use handscope::hand::{HandId, Span};
@@ -76,14 +76,14 @@ fn exchange() -> u32 {
         if let Some(frame) = encode_read(HandId::nearest(1), span) {
             hand.push(&frame);
         }
-        if let Some(Request::Read { id, span }) = hand.next() {
+        if let Some(Rs485Request::Read { id, span }) = hand.next() {
             decoded += 1;
             let bytes = memory.get(..usize::from(span.len)).unwrap_or_default();
             if let Some(frame) = encode_read_reply(id, span.address, bytes) {
                 host.push(&frame);
             }
         }
-        if let Some(Reply::Read { bytes, .. }) = host.next() {
+        if let Some(Rs485Reply::Read { bytes, .. }) = host.next() {
             std::hint::black_box(&bytes);
             decoded += 1;
         }

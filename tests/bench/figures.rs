@@ -20,6 +20,11 @@ mod waiting;
 use crate::report::{Failure, Report};
 use std::process::ExitCode;
 
+/// The allocator of the desktop's program.
+#[cfg(feature = "desktop")]
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 #[cfg(not(unix))]
 mod line {
     use crate::report::{Failure, Report};

@@ -7,7 +7,7 @@ use crate::plain;
 use crate::report::{Aim, Failure, Report};
 use crate::scene::{Scene, Time};
 use handscope::app::settings::PlotWindow;
-use handscope::history::History;
+use handscope::app::state::State;
 use handscope::ui::View;
 use std::time::Duration;
 
@@ -18,14 +18,14 @@ const WARM: usize = 20;
 /// A display of 60 Hz.
 const FRAME_EACH: Duration = Duration::from_millis(16);
 /// What a frame may take: the middle one, and 99 of 100.
-const AIM_MS: f64 = 3.0;
-const AIM_SLOW_MS: f64 = 6.0;
+const AIM_MS: f64 = 2.5;
+const AIM_SLOW_MS: f64 = 4.0;
 /// A dead link may cost no more than this, as a part of what a live one costs.
 const AIM_DEAD: f64 = 1.1;
 /// Until a link that is gone is known to be gone.
 const DEAD_AFTER: Duration = Duration::from_secs(3);
 /// Growth that is still none: what one figure differs from the next anyway.
-const SAME: f64 = 1.15;
+const SAME: f64 = 1.1;
 
 const WINDOWS: [(PlotWindow, &str); 3] = [
     (PlotWindow::S10, "10 s"),
@@ -38,7 +38,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     scene.run(Duration::from_secs(60));
     let young = all(report, &mut scene, "1 min")?;
     scene.run(Duration::from_secs(3545));
-    let held = scene.state().hand().history.last_secs().unwrap_or_default()
+    let held = scene.state().now.secs()
         - scene
             .state()
             .hand()
@@ -49,18 +49,18 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     let old = all(report, &mut scene, "1 h")?;
     views(report, &mut scene)?;
     growth(report, young, old)?;
-    beside(report, &scene.state().hand().history, old)?;
+    beside(report, scene.state(), old)?;
     dead(report)
 }
 
 /// The same lines in egui_plot, and the whole window as a part of that.
 fn beside(
     report: &mut Report,
-    history: &History,
+    state: &State,
     [ours_10_s, _, ours_1_h]: [f64; 3],
 ) -> Result<(), Failure> {
     for (seconds, shown, ours) in [(10.0, "10 s", ours_10_s), (3600.0, "1 h", ours_1_h)] {
-        let theirs = plain::median_ms(history, seconds);
+        let theirs = plain::median_ms(&state.hand().history, seconds, state.now.secs());
         let what = format!("egui_plot alone, the same lines of {shown}: median");
         report.row(&what, theirs, "ms cpu", Aim::None)?;
         let what = format!("  the whole window with plots of {shown} to that");

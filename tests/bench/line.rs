@@ -110,7 +110,7 @@ fn serve(protocol: Protocol, path: &Path, baud: u32) -> Result<Server, Failure> 
     let server = Server::start(endpoint, async move |hand| {
         match protocol {
             Protocol::Rs485 => pty::serve_rs485(hand, &made, pace)?.await,
-            Protocol::Rtu => pty::serve_rtu(hand, &made, pace)?.await?,
+            Protocol::Rtu => pty::serve_rtu(hand, &made, pace)?.await,
         }
         Ok(())
     })?;

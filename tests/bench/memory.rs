@@ -24,13 +24,12 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     let text = String::from_utf8(output.stdout)?;
     let mut words = text.split_whitespace().map(str::parse::<f64>);
     let mut next = || words.next().ok_or("the measured process said nothing");
-    let (now, most, history) = (next()??, next()??, next()??);
+    let (now, most) = (next()??, next()??);
     report.row(what, now, "MiB", Aim::AtMost(AIM_MIB))?;
-    report.row("  at most on the way", most, "MiB", Aim::AtMost(AIM_MIB))?;
-    report.row("  of that the history", history, "MiB", Aim::None)
+    report.row("  at most on the way", most, "MiB", Aim::AtMost(AIM_MIB))
 }
 
-/// Lives an hour, then says how much memory that took: now, at most, and for the history, in MiB.
+/// Lives an hour, then says how much memory that took: now and at most, in MiB.
 pub(crate) fn child() -> Result<(), Failure> {
     let mut scene = Scene::start(Time::Virtual)?;
     scene.plot(PlotWindow::H1);
@@ -38,13 +37,7 @@ pub(crate) fn child() -> Result<(), Failure> {
         scene.run(Duration::from_secs(60) / FRAMES);
         std::hint::black_box(scene.frame());
     }
-    let history = u32::try_from(scene.state().hand().history.bytes() / 1024)?;
-    line(&format!(
-        "{} {} {}",
-        mib("VmRSS:")?,
-        mib("VmHWM:")?,
-        f64::from(history) / 1024.0
-    ))
+    line(&format!("{} {}", mib("VmRSS:")?, mib("VmHWM:")?))
 }
 
 /// One line of this process's status, in MiB.

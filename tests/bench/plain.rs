@@ -24,8 +24,7 @@ const SHOWN: [&[Quantity]; 4] = [
 ];
 
 /// Processor milliseconds of one frame with the newest so many seconds of 30 lines.
-pub(crate) fn median_ms(history: &History, seconds: f64) -> f64 {
-    let to = history.last_secs().unwrap_or_default();
+pub(crate) fn median_ms(history: &History, seconds: f64, to: f64) -> f64 {
     let plots = SHOWN.map(|quantities| lines(history, quantities, (to - seconds, to)));
     let context = Context::default();
     let figures = (0..WARM + FRAMES).map(|_| {

@@ -14,6 +14,7 @@ use handscope::app::state::State;
 use handscope::hand::Moment;
 use handscope::link::Clock;
 use handscope::shell::Cockpit;
+use handscope::shell::raster::Raster;
 use handscope::transport::Endpoint;
 use handscope::ui::View;
 use std::sync::Arc;
@@ -21,6 +22,8 @@ use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::Notify;
 
+/// Pixels of the window.
+const SIZE: [u16; 2] = [1440, 900];
 /// How often the program looks at its link while nothing is drawn.
 const LOOK_EACH: Duration = Duration::from_millis(20);
 
@@ -36,6 +39,8 @@ pub(crate) struct Scene {
     news: Arc<Notify>,
     cockpit: Cockpit,
     context: Context,
+    /// Draws the pixels too, where the graphics card does not.
+    raster: Option<Raster>,
     clock: Clock,
     runtime: Runtime,
 }
@@ -82,6 +87,7 @@ impl Scene {
             news,
             cockpit: Cockpit::new(app),
             context: Context::default(),
+            raster: None,
             clock,
             runtime,
         })
@@ -139,6 +145,24 @@ impl Scene {
         }
     }
 
+    /// How soon news are to be drawn.
+    pub(crate) fn frame_within(&self) -> Duration {
+        self.cockpit.frame_within()
+    }
+
+    /// From now on the pixels are drawn too.
+    pub(crate) fn paint(&mut self) {
+        let [width, height] = SIZE;
+        // Its textures come with the first frame of a context.
+        self.context = Context::default();
+        self.raster = Some(Raster::new(width.into(), height.into()));
+    }
+
+    /// From now on they are not.
+    pub(crate) fn paint_not(&mut self) {
+        self.raster = None;
+    }
+
     /// One frame, as far as the processor draws it. Gives processor milliseconds of logic, layout and triangles.
     pub(crate) fn frame(&mut self) -> [f64; 3] {
         let now = self.now();
@@ -147,17 +171,24 @@ impl Scene {
         let cockpit = &mut self.cockpit;
         let context = &self.context;
         let (layout, mut output) = cpu_ms(|| context.run_ui(screen(now), |ui| cockpit.ui(ui, now)));
-        // There is no screen that would take them.
-        output.textures_delta.clear();
+        match &mut self.raster {
+            Some(raster) => raster.apply_textures(&mut output.textures_delta),
+            None => output.textures_delta.clear(),
+        }
         let (triangles, meshes) =
             cpu_ms(|| context.tessellate(output.shapes, output.pixels_per_point));
+        if let Some(raster) = &mut self.raster {
+            raster.draw(&meshes, output.pixels_per_point, [0, 0, 0, 255]);
+            raster.free_textures();
+        }
         std::hint::black_box(meshes);
         [logic, layout, triangles]
     }
 }
 
 fn screen(now: Moment) -> RawInput {
-    let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(1440.0, 900.0));
+    let [width, height] = SIZE.map(f32::from);
+    let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height));
     let viewport = ViewportInfo {
         native_pixels_per_point: Some(1.0),
         inner_rect: Some(rect),

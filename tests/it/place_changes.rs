@@ -14,7 +14,7 @@ use handscope::app::state::State;
 use handscope::hand::Span;
 use handscope::link::Clock;
 use handscope::params::backups::{Backups, Known, folder_beside};
-use handscope::params::place::{Place, Places};
+use handscope::params::place::{PlacePair, WhichPlace};
 use handscope::params::rows::{ParamId, Value};
 use handscope::record::{LinkState, Saved};
 use handscope::sim::{BaudEffect, Effect, FlashWrite, Personality};
@@ -134,7 +134,7 @@ impl Program {
 
 type Stage = ProcedureStage<PlaceStep, Result<PlaceReport, TaskError>>;
 
-fn stage(state: &State) -> Option<(Stage, Places)> {
+fn stage(state: &State) -> Option<(Stage, PlacePair)> {
     match state.hand().procedure.as_ref()? {
         Procedure::Place(card) => Some((card.stage.clone(), card.change.places.clone())),
         _ => None,
@@ -285,7 +285,7 @@ async fn check(
     (row, before, wanted): (Span, &[u8], &[u8]),
 ) {
     let (_, places) = stage(program.app.state()).unwrap();
-    let Places { old, new } = places.clone();
+    let PlacePair { old, new } = places.clone();
     let line = Arc::clone(&program.line);
     let lost_power = line.lost_power.load(Ordering::Relaxed);
     let case = format!("{case}: {end:?}");
@@ -325,7 +325,7 @@ async fn check(
         PlaceEnd::Unseen(saved) => Some(saved.clone()),
         _ => None,
     };
-    let noted_at = end.place().or(saved.is_some().then_some(Place::Old));
+    let noted_at = end.place().or(saved.is_some().then_some(WhichPlace::Old));
     let known = noted_at.map(|place| program.files(places.endpoint(place)).known().unwrap());
     let is_taken = matches!(saved, Some(Saved::Confirmed | Saved::ReadBack));
     let is_unknown = matches!(saved, Some(Saved::Unknown { .. }));

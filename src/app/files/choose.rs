@@ -44,21 +44,3 @@ impl ChooseFile for NoChoice {
         Box::pin(std::future::ready(None))
     }
 }
-
-/// Without asking: always into one folder, under the suggested name.
-#[derive(Debug, Clone)]
-pub struct InFolder(pub PathBuf);
-
-impl ChooseFile for InFolder {
-    fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
-        Box::pin(std::future::ready(Some(self.0.join(suggested))))
-    }
-
-    fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
-        self.choose(suggested)
-    }
-
-    fn folder(&self) -> BoxFuture<'static, Option<PathBuf>> {
-        Box::pin(std::future::ready(Some(self.0.clone())))
-    }
-}

@@ -23,11 +23,11 @@ pub fn of_day(documents: &Path, day: &str) -> PathBuf {
     documents.join("Handscope").join(day)
 }
 
-/// A path in this folder at which nothing lies: the name, or the name with a number before its ending.
+/// A path in this folder at which nothing lies: the name, or the name with a number before its ending, if it has one.
 #[must_use]
 pub fn free_path(folder: &Path, name: &str) -> PathBuf {
-    let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
-    let numbered = (2..).map(|number| format!("{stem}-{number}.{ending}"));
+    let (stem, ending) = name.split_at(name.rfind('.').unwrap_or(name.len()));
+    let numbered = (2..).map(|number| format!("{stem}-{number}{ending}"));
     let mut names = std::iter::once(name.to_owned()).chain(numbered);
     let free = names.find(|name| !folder.join(name).exists());
     folder.join(free.as_deref().unwrap_or(name))

@@ -10,9 +10,9 @@ use crate::link::traffic::frame::Frame;
 use crate::link::traffic::words::CSV_HEAD;
 use crate::params;
 use crate::params::file::ParamsFile;
-use crate::poses::library::Library;
+use crate::poses::library::PoseLibrary;
 use crate::store::calendar;
-use crate::store::{Job, on_thread};
+use crate::store::{BackgroundJob, on_thread};
 use std::sync::Arc;
 
 /// The form of an exported list of frames.
@@ -26,7 +26,7 @@ pub enum TrafficForm {
 
 /// What is to be saved.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Content {
+pub enum Export {
     /// Frames of the wire, in this order.
     Traffic(TrafficForm, Vec<Arc<Frame>>),
     /// What the plots show, as comma-separated values.
@@ -36,12 +36,12 @@ pub enum Content {
     /// A finished picture of the plots, as the bytes of a PNG file.
     Picture(Vec<u8>),
     /// Poses and sequences.
-    Poses(Library),
+    Poses(PoseLibrary),
     /// What a hand keeps, as it was read.
     Params(Box<ParamsFile>),
 }
 
-impl Content {
+impl Export {
     /// The name that is suggested for the file.
     #[must_use]
     pub const fn file_name(&self) -> &'static str {
@@ -58,20 +58,14 @@ impl Content {
 
     /// Entries in it; a picture is one.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn entries(&self) -> usize {
         match self {
             Self::Traffic(_, frames) => frames.len(),
-            Self::Plots(table) | Self::Recording(table) => table.len(),
+            Self::Plots(table) | Self::Recording(table) => table.rows(),
             Self::Picture(bytes) => usize::from(!bytes.is_empty()),
             Self::Poses(library) => library.poses.len() + library.sequences.len(),
             Self::Params(file) => file.params.iter().count(),
         }
-    }
-
-    /// True if there is nothing to save.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     fn bytes(&self) -> std::io::Result<Vec<u8>> {
@@ -98,7 +92,7 @@ fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
 
 /// Writes into the folder of the day in the person's documents, under a name that is free; where there are none, asks for
 /// a place. What to tell a person of it.
-pub(crate) fn save(content: Content, env: &Env) -> Job<NoticeKind> {
+pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
     let chosen = match &env.documents {
         Some(documents) => {
             let folder = day_folder::of_day(documents, &calendar::day(calendar::since_1970()));
@@ -107,7 +101,7 @@ pub(crate) fn save(content: Content, env: &Env) -> Job<NoticeKind> {
         }
         None => env.files.choose(content.file_name()),
     };
-    Job::start(&env.runtime, &env.wake, async move {
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
         let Some(path) = chosen.await else {
             return NoticeKind::NoFileChosen;
         };
@@ -116,14 +110,11 @@ pub(crate) fn save(content: Content, env: &Env) -> Job<NoticeKind> {
             if let Some(folder) = place.parent() {
                 std::fs::create_dir_all(folder)?;
             }
-            std::fs::write(&place, content.bytes()?).map(|()| content.len())
+            std::fs::write(&place, content.bytes()?).map(|()| content.entries())
         };
         match on_thread(work).await {
             Ok(entries) => NoticeKind::Saved { path, entries },
-            Err(error) => NoticeKind::NotSaved {
-                message: error.to_string(),
-                path,
-            },
+            Err(error) => NoticeKind::not_saved(path, &error),
         }
     })
 }

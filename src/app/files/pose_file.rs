@@ -5,8 +5,8 @@ use crate::app::files::choose::place_of;
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
 use crate::poses::file::{PoseFileCause, PoseFileError};
-use crate::poses::library::Library;
-use crate::store::{Job, last_of, on_thread, read_text, set_aside};
+use crate::poses::library::PoseLibrary;
+use crate::store::{BackgroundJob, last_of, on_thread, read_text, set_aside};
 use std::path::{Path, PathBuf};
 
 /// Five hundred poses are a quarter of this; anything longer is not a file of poses.
@@ -24,7 +24,7 @@ pub fn path_beside(settings: &Path) -> PathBuf {
 ///
 /// # Errors
 /// [`PoseFileError`]: what cannot be read, and where.
-pub fn read(path: &Path) -> Result<Library, PoseFileError> {
+pub fn read(path: &Path) -> Result<PoseLibrary, PoseFileError> {
     let unreadable = |error: std::io::Error| PoseFileCause::Unreadable(error.to_string());
     match read_text(path, FILE_LEN_MAX).map_err(unreadable)? {
         Some(text) => file::read(&text),
@@ -36,16 +36,16 @@ pub fn read(path: &Path) -> Result<Library, PoseFileError> {
 ///
 /// # Errors
 /// What the writer of the format says.
-pub fn text(library: &Library) -> std::io::Result<String> {
+pub fn text(library: &PoseLibrary) -> std::io::Result<String> {
     file::write(library).map_err(std::io::Error::other)
 }
 
 /// The library that was kept, and what a person should know about its file. An unreadable file is put aside and the
 /// last good one taken.
 #[must_use]
-pub fn load(path: &Path) -> (Library, Option<NoticeKind>) {
+pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
     if !path.exists() {
-        return (Library::default(), None);
+        return (PoseLibrary::default(), None);
     }
     match read(path) {
         Ok(library) => (library, None),
@@ -58,9 +58,12 @@ pub fn load(path: &Path) -> (Library, Option<NoticeKind>) {
 }
 
 /// Reads the file at a place that was typed, else asks for one.
-pub(crate) fn import(typed: Option<PathBuf>, env: &Env) -> Job<Result<Library, NoticeKind>> {
+pub(crate) fn import(
+    typed: Option<PathBuf>,
+    env: &Env,
+) -> BackgroundJob<Result<PoseLibrary, NoticeKind>> {
     let chosen = place_of(typed, env.files.as_ref(), FILE_NAME);
-    Job::start(&env.runtime, &env.wake, async move {
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
         let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
         let place = path.clone();
         let unreadable =
@@ -86,7 +89,7 @@ force = 800
 angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_rotate = 1 }
 "#;
 
-    fn save(path: &Path, library: &Library) -> io::Result<()> {
+    fn save(path: &Path, library: &PoseLibrary) -> io::Result<()> {
         crate::store::replace_keeping_last(path, &text(library)?)
     }
 
@@ -94,7 +97,7 @@ angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_ro
     fn a_bad_file_on_disk_is_put_aside_and_the_last_good_one_taken() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("poses.toml");
-        assert_eq!(load(&path), (Library::default(), None));
+        assert_eq!(load(&path), (PoseLibrary::default(), None));
         let good = file::read(GOOD).unwrap();
         save(&path, &good).unwrap();
         save(&path, &good).unwrap();
@@ -119,7 +122,7 @@ angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_ro
         save(&path, &good).unwrap();
         // A folder where the new file would be made: the write fails before the old file is touched.
         std::fs::create_dir(path.with_extension("new.toml")).unwrap();
-        assert!(save(&path, &Library::default()).is_err());
+        assert!(save(&path, &PoseLibrary::default()).is_err());
         assert_eq!(
             std::fs::read_to_string(&path).unwrap(),
             text(&good).unwrap()

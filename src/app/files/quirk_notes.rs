@@ -8,11 +8,11 @@ use crate::app::procedures::Procedure;
 use crate::hand::Moment;
 use crate::link::Quirks;
 use crate::link::quirks::book::{self, QuirkBook};
-use crate::params::place::Place;
+use crate::params::place::WhichPlace;
 use crate::params::rows::{ParamId, Value};
 use crate::record::{Fact, QuirkSheet, Saved};
 use crate::store::calendar::{day, since_1970};
-use crate::store::{Job, on_thread};
+use crate::store::{BackgroundJob, on_thread};
 use crate::tasks::place::{PlaceChange, PlaceEnd};
 use crate::transport::Endpoint;
 use std::io;
@@ -26,7 +26,7 @@ type Noted = (Option<QuirkSheet>, QuirkSheet);
 pub(crate) struct QuirkNotes {
     path: Option<PathBuf>,
     noted: Option<(Endpoint, Quirks)>,
-    under_way: Option<Job<io::Result<Noted>>>,
+    under_way: Option<BackgroundJob<io::Result<Noted>>>,
     /// What this program changed itself, and whether it may be in flash: nothing to be warned of.
     own: Option<(PlaceChange, bool)>,
 }
@@ -50,7 +50,7 @@ impl QuirkNotes {
         notices: &mut Notices,
         now: Moment,
     ) {
-        match Job::take_from(&mut self.under_way) {
+        match BackgroundJob::take_from(&mut self.under_way) {
             None => {}
             Some(Err(error)) => {
                 let message = error.to_string();
@@ -95,7 +95,7 @@ impl QuirkNotes {
             }
             Ok((before, now))
         });
-        self.under_way = Some(Job::start(&env.runtime, &env.wake, note));
+        self.under_way = Some(BackgroundJob::start(&env.runtime, &env.wake, note));
     }
 
     /// What the hand answers; after a change that this program made and saved, what it will answer once it is asked again.
@@ -106,8 +106,8 @@ impl QuirkNotes {
         };
         let is_there = hand.endpoint.as_ref().is_some_and(|hand| {
             let places = [
-                change.places.endpoint(Place::Old),
-                change.places.endpoint(Place::New),
+                change.places.endpoint(WhichPlace::Old),
+                change.places.endpoint(WhichPlace::New),
             ];
             places.contains(&hand)
         });

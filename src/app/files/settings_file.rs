@@ -26,23 +26,23 @@ pub struct Loaded {
 /// Reads settings. A missing file means the defaults. A bad one too, and it is kept under another name.
 #[must_use]
 pub fn load(path: &Path) -> Loaded {
-    let message = match read_text(path, FILE_LEN_MAX) {
+    let read = match read_text(path, FILE_LEN_MAX) {
         Ok(None) => return Loaded::default(),
-        Ok(Some(text)) => match toml::from_str(&text) {
-            Ok(settings) => {
-                return Loaded {
-                    settings,
-                    notice: None,
-                };
-            }
-            Err(error) => error.to_string(),
-        },
-        Err(error) => error.to_string(),
+        Ok(Some(text)) => toml::from_str(&text).map_err(|error| error.to_string()),
+        Err(error) => Err(error.to_string()),
     };
-    let kept_as = set_aside(path);
-    Loaded {
-        settings: Settings::default(),
-        notice: Some(NoticeKind::SettingsIgnored { message, kept_as }),
+    match read {
+        Ok(settings) => Loaded {
+            settings,
+            notice: None,
+        },
+        Err(message) => {
+            let kept_as = set_aside(path);
+            Loaded {
+                settings: Settings::default(),
+                notice: Some(NoticeKind::SettingsIgnored { message, kept_as }),
+            }
+        }
     }
 }
 

@@ -2,16 +2,11 @@
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
-use crate::app::hand::open::{Leaving, Open};
+use crate::app::hand::open::{Leaving, OpenLink};
 use crate::app::notices::{NoticeKind, Notices};
-use crate::app::params::state::ParamsState;
-use crate::app::readings::faults::FaultList;
-use crate::app::readings::pace::Pace;
-use crate::app::readings::peaks::ForcePeaks;
-use crate::app::readings::tare::Tare;
-use crate::hand::{HandSample, Moment, PerDof, PerFinger};
+use crate::hand::Moment;
 use crate::history::History;
-use crate::link::{self, First, LinkConfig, LinkStats, LinkStatus, PollRates, Traffic};
+use crate::link::{self, First, LinkConfig, LinkStatus, PollRates, Traffic};
 use crate::record::{Hold, LinkState};
 use crate::transport::Endpoint;
 use std::sync::Arc;
@@ -23,44 +18,33 @@ pub(crate) const REST_WITHIN: Duration = Duration::from_millis(600);
 
 impl HandState {
     /// Leaves the hand. One that may be moving is told to hold first and gets time to.
-    pub(crate) fn leave(
-        &mut self,
-        to: Option<Endpoint>,
-        env: &Env,
-        notices: &mut Notices,
-        now: Moment,
-    ) {
+    pub(crate) fn leave(&mut self, to: Option<Endpoint>, env: &Env, notices: &mut Notices) {
+        let now = self.now;
         if let Some(leaving) = &mut self.leaving {
             leaving.to = to;
         } else if self.may_move() {
-            self.stop(notices, now);
+            self.stop(notices);
             self.leaving = Some(Leaving { to, told: now });
         } else {
-            self.go(to, env, notices, now);
+            self.go(to, env, notices);
         }
     }
 
     /// Goes on once a hand that was told to hold rests, or had its time.
-    pub(crate) fn go_on_leaving(&mut self, env: &Env, notices: &mut Notices, now: Moment) {
+    pub(crate) fn go_on_leaving(&mut self, env: &Env, notices: &mut Notices) {
         let told = self.leaving.as_ref().map(|leaving| leaving.told);
-        let is_due = |told: Moment| now.since(told) >= REST_WITHIN || self.is_held(told);
+        let is_due = |told: Moment| self.now.since(told) >= REST_WITHIN || self.is_held(told);
         if told.is_some_and(is_due)
             && let Some(leaving) = self.leaving.take()
         {
-            self.go(leaving.to, env, notices, now);
+            self.go(leaving.to, env, notices);
         }
     }
 
     /// Opens another hand, or none, at once.
-    pub(crate) fn go(
-        &mut self,
-        to: Option<Endpoint>,
-        env: &Env,
-        notices: &mut Notices,
-        now: Moment,
-    ) {
+    pub(crate) fn go(&mut self, to: Option<Endpoint>, env: &Env, notices: &mut Notices) {
         // The old link goes first: a serial port has room for one.
-        self.replace(None, None, notices, now);
+        self.replace(None, None, notices);
         let Some(endpoint) = to else { return };
         let config = LinkConfig {
             endpoint: endpoint.clone(),
@@ -69,8 +53,8 @@ impl HandState {
             dial: Arc::clone(&env.dial),
             wake: Arc::clone(&env.wake),
         };
-        let open = Open::new(link::open(config, &env.runtime));
-        self.replace(Some(endpoint), Some(open), notices, now);
+        let open = OpenLink::new(link::open(config, &env.runtime));
+        self.replace(Some(endpoint), Some(open), notices);
     }
 
     /// Puts another hand in place of the one before, or none. Nothing of the old one is taken for the new one's; what is
@@ -78,51 +62,45 @@ impl HandState {
     pub(crate) fn replace(
         &mut self,
         endpoint: Option<Endpoint>,
-        open: Option<Open>,
+        open: Option<OpenLink>,
         notices: &mut Notices,
-        now: Moment,
     ) {
-        self.traffic = match (&open, &endpoint) {
-            (Some(open), Some(endpoint)) => Traffic::of(open.link.tap(), endpoint),
-            _ => Traffic::default(),
-        };
         let former = self.name();
-        self.recorder.another_hand(&self.history, &former, now);
+        self.recorder.another_hand(&self.history, &former, self.now);
         let is_other = endpoint.is_some() && endpoint != self.measured;
-        // An id that was changed under a card makes no other hand.
-        if is_other && self.procedure.is_none() {
-            self.history = History::new();
-        }
-        if is_other {
-            self.measured.clone_from(&endpoint);
-        }
-        self.open = open;
-        self.endpoint = endpoint;
-        self.link = LinkStatus {
-            since: now,
-            ..LinkStatus::default()
+        let before = std::mem::take(self);
+        *self = Self {
+            now: before.now,
+            traffic: match (&open, &endpoint) {
+                (Some(open), Some(endpoint)) => Traffic::of(open.link.tap(), endpoint),
+                _ => Traffic::default(),
+            },
+            link: LinkStatus {
+                since: before.now,
+                ..LinkStatus::default()
+            },
+            // An id that was changed under a card makes no other hand.
+            history: match is_other && before.procedure.is_none() {
+                true => History::new(),
+                false => before.history,
+            },
+            measured: match is_other {
+                true => endpoint.clone(),
+                false => before.measured,
+            },
+            joints: before.joints,
+            recorder: before.recorder,
+            procedure: before.procedure,
+            requested: before.requested,
+            leaving: before.leaving,
+            listed: before.listed,
+            seen_from: Some(before.now),
+            open,
+            endpoint,
+            ..Self::default()
         };
-        self.stats = LinkStats::default();
-        self.sample = HandSample::default();
-        self.pace = Pace::default();
-        self.tip_pace = PerFinger::splat(self.pace);
-        self.tare = Tare::default();
-        self.peaks = ForcePeaks::default();
-        self.sheet = None;
-        self.faults = FaultList::default();
-        self.gestures.another_hand();
-        self.sequence = None;
-        self.series = None;
-        self.asked.clear();
-        // What is staged was meant for the old one.
-        self.params = ParamsState::default();
-        self.history.gap(now);
+        self.history.gap(self.now);
         notices.withdraw(|what| matches!(what, NoticeKind::LinkLost(_) | NoticeKind::NoLink(_)));
-        self.following = PerDof::splat(true);
-        self.disarmed_at = None;
-        self.commanded = false;
-        self.seen_from = Some(now);
-        self.was_live = false;
         self.follow();
     }
 

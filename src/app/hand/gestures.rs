@@ -69,13 +69,6 @@ pub struct GestureState {
 }
 
 impl GestureState {
-    /// Nothing of one hand's memory is taken for another's.
-    pub(crate) const fn another_hand(&mut self) {
-        self.last = None;
-        self.upload = None;
-        self.stored = None;
-    }
-
     /// Notes how far storing came.
     pub(crate) fn judge(&mut self, gesture: UserGesture, verdict: StoreVerdict) {
         if let Some(upload) = &mut self.upload

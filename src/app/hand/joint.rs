@@ -1,10 +1,10 @@
-//! One joint as a person sets it, and a move of several.
+//! One joint as a person sets it, a move of several, and the poses that every hand knows.
 
-use crate::hand::{Angle, Force, PerDof, Speed};
+use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 
 /// One joint as a person sets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Joint {
+pub struct JointControl {
     /// Where the slider stands: the actual angle while not armed, the person's wish while armed. `None` = not known.
     pub target: Option<Angle>,
     /// Force threshold; sent at arming and when changed while armed.
@@ -15,10 +15,45 @@ pub struct Joint {
     pub locked: bool,
 }
 
+impl Default for JointControl {
+    fn default() -> Self {
+        Self {
+            target: None,
+            force: Force::GENTLE,
+            speed: Speed::GENTLE,
+            locked: false,
+        }
+    }
+}
+
 /// Where joints go and within which limits; what is `None` stays as it is.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Move {
     pub(crate) to: PerDof<Option<Angle>>,
     pub(crate) speed: PerDof<Option<Speed>>,
     pub(crate) force: PerDof<Option<Force>>,
+}
+
+/// Poses that need no library.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Preset {
+    /// Every joint open.
+    Open,
+    /// Fingers and thumb half bent; the thumb's rotation stays.
+    Half,
+    /// Fingers and thumb bent; the thumb's rotation stays.
+    Close,
+}
+
+impl Preset {
+    /// Where this joint goes, if it moves at all.
+    #[must_use]
+    pub fn angle(self, dof: Dof) -> Option<Angle> {
+        match (self, dof) {
+            (Self::Open, _) => Some(Angle::MAX),
+            (Self::Half | Self::Close, Dof::ThumbRotate) => None,
+            (Self::Half, _) => Some(Angle::nearest(500)),
+            (Self::Close, _) => Some(Angle::MIN),
+        }
+    }
 }

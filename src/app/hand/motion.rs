@@ -1,43 +1,42 @@
 //! What a person asks of the hand, and the rules that stand before it. Opens no link, writes no file.
 
 use crate::app::hand::HandState;
-use crate::app::hand::joint::Move;
-use crate::app::hand::preset::Preset;
+use crate::app::hand::joint::{Move, Preset};
 use crate::app::notices::{NoticeKind, Notices};
-use crate::hand::{Angle, Dof, Force, Moment, PerDof, Setpoints, Speed, Target};
+use crate::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use crate::history::MarkKind;
 use crate::link::ArmRequest;
-use crate::poses::library::Pose;
+use crate::poses::library::LibraryPose;
 use crate::record::LinkState;
 use crate::trials::Abort;
 
 impl HandState {
     /// Holds now. Works in every state; whatever was armed is not any more, at once. Without a live link it says that
     /// nothing could be sent.
-    pub(crate) fn stop(&mut self, notices: &mut Notices, now: Moment) {
+    pub(crate) fn stop(&mut self, notices: &mut Notices) {
         match &self.open {
             Some(open) if self.link.state.is_live() => open.link.stop(),
             _ => {
-                notices.push(now, NoticeKind::StopNotSent);
-                self.history.mark(now, MarkKind::StopNotSent);
+                notices.push(self.now, NoticeKind::StopNotSent);
+                self.history.mark(self.now, MarkKind::StopNotSent);
             }
         }
         if let Some(run) = &mut self.series {
             run.end(Abort::Person);
         }
-        self.put_down(LinkState::Holding, now);
+        self.put_down(LinkState::Holding);
     }
 
     /// Lets no setpoint pass any more. The hand keeps what it was told.
-    pub(crate) fn disarm(&mut self, now: Moment) {
+    pub(crate) fn disarm(&mut self) {
         if let Some(open) = &self.open {
             open.link.disarm();
         }
-        self.put_down(LinkState::Monitoring, now);
+        self.put_down(LinkState::Monitoring);
     }
 
-    fn put_down(&mut self, state: LinkState, now: Moment) {
-        self.disarmed_at = Some(now);
+    fn put_down(&mut self, state: LinkState) {
+        self.disarmed_at = Some(self.now);
         if self.is_armed() {
             self.link.state = state;
         }
@@ -46,13 +45,13 @@ impl HandState {
     }
 
     /// Asks the link to let setpoints pass, if the pose is known and nothing speaks against it.
-    pub(crate) fn arm(&mut self, notices: &mut Notices, now: Moment) {
+    pub(crate) fn arm(&mut self, notices: &mut Notices) {
         // Nor is one armed that is being left, or that something is done to under a card.
         if self.is_armed() || self.leaving.is_some() || self.procedure.is_some() {
             return;
         }
         if let Some(reason) = self.arm_refusal() {
-            notices.push(now, NoticeKind::ArmRefused(reason));
+            notices.push(self.now, NoticeKind::ArmRefused(reason));
             return;
         }
         if let Some(open) = &self.open {
@@ -70,7 +69,7 @@ impl HandState {
         }
         self.take_over();
         self.joints[dof].target = Some(angle);
-        self.following[dof] = false;
+        self.steered[dof] = true;
         self.send(|setpoints| setpoints.angle[dof] = Some(Target::Go(angle)));
     }
 
@@ -97,7 +96,7 @@ impl HandState {
         let freed = joint.locked && !locked;
         joint.locked = locked;
         let (force, speed) = (joint.force, joint.speed);
-        self.following[dof] = true;
+        self.steered[dof] = false;
         self.follow();
         self.tell_locks();
         if freed && self.is_free(dof) {
@@ -112,13 +111,12 @@ impl HandState {
     pub(crate) fn preset(&mut self, preset: Preset) {
         self.take_over_for(&Move {
             to: PerDof::from_fn(|dof| preset.angle(dof)),
-            speed: PerDof::splat(None),
-            force: PerDof::splat(None),
+            ..Move::default()
         });
     }
 
     /// Takes a pose: speed and force first, then the angles of joints that are free. Arms nothing; true if something was sent.
-    pub(crate) fn recall(&mut self, pose: &Pose) -> bool {
+    pub(crate) fn recall(&mut self, pose: &LibraryPose) -> bool {
         self.take_over_for(&Move {
             to: pose.targets(),
             speed: PerDof::splat(Some(pose.speed)),
@@ -130,8 +128,7 @@ impl HandState {
     pub(crate) fn try_angles(&mut self, angles: PerDof<Angle>) {
         self.take_over_for(&Move {
             to: angles.map(Some),
-            speed: PerDof::splat(None),
-            force: PerDof::splat(None),
+            ..Move::default()
         });
     }
 
@@ -166,7 +163,7 @@ impl HandState {
             joint.target = Some(to);
             joint.speed = way.speed[dof].unwrap_or(joint.speed);
             joint.force = way.force[dof].unwrap_or(joint.force);
-            self.following[dof] = false;
+            self.steered[dof] = true;
             any = true;
         }
         any

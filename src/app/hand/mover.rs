@@ -51,7 +51,7 @@ impl HandState {
             return None;
         }
         // A gesture lets all sliders follow the hand; whatever else is sent takes its own joints from it.
-        let follows = self.following.iter().all(|(_, follows)| *follows);
+        let follows = self.steered.iter().all(|(_, steered)| !steered);
         let gesture = self.gestures.last.filter(|_| follows);
         let gesture = gesture.filter(|last| last.progress != GestureProgress::Failed);
         Some(match gesture {

@@ -29,15 +29,15 @@ impl HandState {
         let records: VecDeque<Record> = std::iter::from_fn(next).take(RECORDS_PER_FRAME).collect();
         self.stats.dropped_events = open.records.lost();
         for record in &records {
-            self.take(record, notices, now);
+            self.take(record, notices);
         }
-        self.take_status(status, notices, now);
+        self.take_status(status, notices);
         self.follow();
     }
 
-    fn take(&mut self, record: &Record, notices: &mut Notices, now: Moment) {
+    fn take(&mut self, record: &Record, notices: &mut Notices) {
         match record {
-            Record::Reading { sample, fresh } => self.take_reading(sample, *fresh, notices, now),
+            Record::Reading { sample, fresh } => self.take_reading(sample, *fresh, notices),
             Record::State {
                 at,
                 state: LinkState::Holding,
@@ -53,13 +53,8 @@ impl HandState {
         }
     }
 
-    fn take_reading(
-        &mut self,
-        sample: &HandSample,
-        fresh: Groups,
-        notices: &mut Notices,
-        now: Moment,
-    ) {
+    fn take_reading(&mut self, sample: &HandSample, fresh: Groups, notices: &mut Notices) {
+        let now = self.now;
         self.sample = *sample;
         if let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) {
             self.pace.take(angle.asked);
@@ -88,21 +83,21 @@ impl HandState {
     }
 
     /// A stop or disarm counts here at once, although the link's own word for it comes a moment later.
-    fn take_status(&mut self, mut status: LinkStatus, notices: &mut Notices, now: Moment) {
+    fn take_status(&mut self, mut status: LinkStatus, notices: &mut Notices) {
         let outdated = self.disarmed_at.is_some_and(|at| status.since <= at);
         if outdated && (status.state == LinkState::Armed || status.armed.is_some()) {
             status.state = self.link.state;
             status.armed = None;
         }
         let before = std::mem::replace(&mut self.link, status);
-        self.tell_reached(&before, notices, now);
-        self.tell_latency(&before, notices, now);
-        self.tell_hold(&before, notices, now);
-        self.tell_arming(&before, notices, now);
+        self.tell_reached(&before, notices);
+        self.tell_latency(&before, notices);
+        self.tell_hold(&before, notices);
+        self.tell_arming(&before, notices);
     }
 
     /// An adapter that keeps replies back is told of once a connection.
-    fn tell_latency(&self, before: &LinkStatus, notices: &mut Notices, now: Moment) {
+    fn tell_latency(&self, before: &LinkStatus, notices: &mut Notices) {
         let link = &self.link;
         let told = |link: &LinkStatus| link.latency_timer_ms.filter(|ms| *ms > TIMER_MS_MAX);
         let is_news = link.state.is_live()
@@ -112,22 +107,22 @@ impl HandState {
         let port = link.moved_to.as_deref().or(asked).map(str::to_owned);
         if let Some(port) = port.filter(|_| is_news) {
             let ms = told(link);
-            notices.push(now, NoticeKind::LatencyTimer { port, ms });
+            notices.push(self.now, NoticeKind::LatencyTimer { port, ms });
         }
     }
 
-    fn tell_reached(&mut self, before: &LinkStatus, notices: &mut Notices, now: Moment) {
+    fn tell_reached(&mut self, before: &LinkStatus, notices: &mut Notices) {
         let live = self.link.state.is_live();
         let trouble = self.link.trouble.clone();
         if before.state.is_live() && !live {
-            self.lost(trouble, notices, now);
+            self.lost(trouble, notices);
         } else if !before.state.is_live() && live {
-            self.found(notices, now);
+            self.found(notices);
         } else if let Some(trouble) =
             trouble.filter(|_| !live && before.trouble != self.link.trouble)
         {
             notices.push(
-                now,
+                self.now,
                 match self.was_live {
                     true => NoticeKind::LinkLost(trouble),
                     false => NoticeKind::NoLink(trouble),
@@ -136,7 +131,8 @@ impl HandState {
         }
     }
 
-    fn lost(&mut self, trouble: Option<LinkTrouble>, notices: &mut Notices, now: Moment) {
+    fn lost(&mut self, trouble: Option<LinkTrouble>, notices: &mut Notices) {
+        let now = self.now;
         self.was_live = true;
         self.seen_from = Some(now);
         self.commanded = false;
@@ -148,16 +144,16 @@ impl HandState {
         }
     }
 
-    fn found(&mut self, notices: &mut Notices, now: Moment) {
+    fn found(&mut self, notices: &mut Notices) {
         notices.withdraw(|what| matches!(what, NoticeKind::NoLink(_) | NoticeKind::StopNotSent));
         if self.was_live {
-            self.history.mark(now, MarkKind::Reconnected);
-            notices.push(now, NoticeKind::Reconnected);
+            self.history.mark(self.now, MarkKind::Reconnected);
+            notices.push(self.now, NoticeKind::Reconnected);
         }
         self.was_live = true;
     }
 
-    fn tell_hold(&mut self, before: &LinkStatus, notices: &mut Notices, now: Moment) {
+    fn tell_hold(&mut self, before: &LinkStatus, notices: &mut Notices) {
         if before.hold == self.link.hold {
             return;
         }
@@ -166,25 +162,25 @@ impl HandState {
                 self.history.mark(rest, MarkKind::HoldConfirmed);
                 notices.withdraw(|what| *what == NoticeKind::HoldAlarm);
                 let after = rest.since(at);
-                notices.push(now, NoticeKind::HoldConfirmed { after });
+                notices.push(self.now, NoticeKind::HoldConfirmed { after });
             }
-            Hold::Alarm { .. } => notices.push(now, NoticeKind::HoldAlarm),
+            Hold::Alarm { .. } => notices.push(self.now, NoticeKind::HoldAlarm),
             Hold::None | Hold::Asked { .. } => {}
         }
     }
 
-    fn tell_arming(&mut self, before: &LinkStatus, notices: &mut Notices, now: Moment) {
+    fn tell_arming(&mut self, before: &LinkStatus, notices: &mut Notices) {
         let armed = self.link.armed;
         if armed.is_some() && armed != before.armed {
-            self.history.mark(now, MarkKind::Armed);
-            let joints = self.joints;
-            self.following =
-                PerDof::from_fn(|dof| joints[dof].locked || joints[dof].target.is_none());
+            self.history.mark(self.now, MarkKind::Armed);
+            self.steered = self
+                .joints
+                .map(|joint| !joint.locked && joint.target.is_some());
         }
         if before.armed.is_some() && armed.is_none() {
             let asked_for = |why: &Disarmed| matches!(why, Disarmed::Stop | Disarmed::Person);
             if let Some(why) = self.link.disarmed.filter(|why| !asked_for(why)) {
-                notices.push(now, NoticeKind::Disarmed(why));
+                notices.push(self.now, NoticeKind::Disarmed(why));
             }
         }
     }
@@ -199,12 +195,12 @@ impl HandState {
             .angle
             .filter(|angle| live && seen_from.is_none_or(|from| angle.received > from));
         for dof in Dof::ALL {
-            if !armed || self.following[dof] {
+            if !armed || !self.steered[dof] {
                 self.joints[dof].target = angle.and_then(|angle| angle.value[dof].hold());
             }
         }
         if !armed {
-            self.following = PerDof::splat(true);
+            self.steered = PerDof::default();
         }
     }
 }

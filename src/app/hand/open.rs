@@ -1,19 +1,21 @@
-//! An open link, and a hand that is being left.
+//! An open link, a hand that is being left, and requests whose end is awaited.
 
-use crate::hand::Moment;
-use crate::link::{LinkHandle, MotionTurn, Records};
+use crate::app::notices::RequestKind;
+use crate::hand::{Moment, PerDof};
+use crate::link::{LinkHandle, MotionTurn, Records, RequestError};
+use crate::store::BackgroundJob;
 use crate::transport::Endpoint;
 
 /// An open link.
 #[derive(Debug)]
-pub(crate) struct Open {
+pub(crate) struct OpenLink {
     pub(crate) link: LinkHandle,
     pub(crate) records: Records,
     /// The turn at moving the hand, as long as no task has it.
     pub(crate) turn: MotionTurn,
 }
 
-impl Open {
+impl OpenLink {
     /// With this link and what is heard of it.
     pub(crate) fn new((link, records): (LinkHandle, Records)) -> Self {
         Self {
@@ -30,4 +32,14 @@ pub(crate) struct Leaving {
     /// Where to go then; `None` = nowhere.
     pub(crate) to: Option<Endpoint>,
     pub(crate) told: Moment,
+}
+
+/// How a request ended.
+pub(crate) type RequestEnd = Result<Option<PerDof<i16>>, RequestError>;
+
+/// A request whose end is awaited.
+#[derive(Debug)]
+pub(crate) struct Pending {
+    pub(crate) what: RequestKind,
+    pub(crate) end: Option<BackgroundJob<RequestEnd>>,
 }

@@ -5,11 +5,11 @@ use crate::app::hand::HandState;
 use crate::app::hand::joint::Move;
 use crate::app::hand::sequence::{Play, SequenceRun};
 use crate::app::running::Running;
-use crate::hand::{Moment, PerDof, Setpoints, Target};
+use crate::hand::{PerDof, Setpoints, Target};
 use crate::history::MarkKind;
-use crate::poses::library::{Library, SequenceId};
-use crate::poses::player::{Pace, Phase, cues};
-use crate::tasks::play::{self, PlayCommand, PlayStart, PlayStep, PlayView};
+use crate::poses::library::{PoseLibrary, SequenceId};
+use crate::poses::player::{PlayMode, PlayPhase, PlayView, cues};
+use crate::tasks::play::{self, PlayCommand, PlayStart, PlayStep};
 use tokio::sync::mpsc;
 
 /// Wishes that may wait: a person cannot press faster than a task takes them.
@@ -17,29 +17,29 @@ const COMMANDS_MAX: usize = 16;
 
 impl HandState {
     /// Starts, pauses or ends a sequence of the library.
-    pub(crate) fn play(&mut self, wanted: Play, library: &Library, env: &Env) {
+    pub(crate) fn play(&mut self, wanted: Play, library: &PoseLibrary, env: &Env) {
         let command = |command| {
             if let Some(run) = &self.sequence {
                 run.command(command);
             }
         };
         match wanted {
-            Play::Start(id) => self.start_sequence(id, Pace::Through, library, env),
+            Play::Start(id) => self.start_sequence(id, PlayMode::Through, library, env),
             Play::Step(id) => {
                 let waits = |run: &SequenceRun| run.sequence == id && run.is_paused();
                 match self.sequence.as_ref().is_some_and(waits) {
-                    true => command(PlayCommand::Resume(Pace::OneStep)),
-                    false => self.start_sequence(id, Pace::OneStep, library, env),
+                    true => command(PlayCommand::Resume(PlayMode::OneStep)),
+                    false => self.start_sequence(id, PlayMode::OneStep, library, env),
                 }
             }
             Play::Pause => command(PlayCommand::Pause),
-            Play::Resume => command(PlayCommand::Resume(Pace::Through)),
+            Play::Resume => command(PlayCommand::Resume(PlayMode::Through)),
             Play::End => command(PlayCommand::End),
             Play::Dry(_) | Play::EndDry => {}
         }
     }
 
-    fn start_sequence(&mut self, id: SequenceId, pace: Pace, library: &Library, env: &Env) {
+    fn start_sequence(&mut self, id: SequenceId, pace: PlayMode, library: &PoseLibrary, env: &Env) {
         let Some(epoch) = self.link.armed.filter(|_| self.is_armed()) else {
             return;
         };
@@ -64,7 +64,7 @@ impl HandState {
             sequence: id,
             view: PlayView {
                 at: 0,
-                phase: Phase::Moving { since: self.now },
+                phase: PlayPhase::Moving { since: self.now },
                 late: 0,
             },
             commands: Some(commands),
@@ -98,7 +98,7 @@ impl HandState {
         if let Some(end) = end {
             run.task = None;
             if run.is_running() {
-                run.view.phase = Phase::Ended(end);
+                run.view.phase = PlayPhase::Ended(end);
             }
         }
         if taken_over {
@@ -111,10 +111,10 @@ impl HandState {
     }
 
     /// A gesture of the hand's own was started.
-    pub(crate) fn gesture_started(&mut self, number: u8, now: Moment) {
-        self.history.mark(now, MarkKind::Gesture(number));
+    pub(crate) fn gesture_started(&mut self, number: u8) {
+        self.history.mark(self.now, MarkKind::Gesture(number));
         self.commanded = true;
-        self.following = PerDof::splat(true);
+        self.steered = PerDof::default();
     }
 }
 

@@ -3,13 +3,11 @@
 use crate::app::env::Env;
 use crate::app::hand::HandState;
 use crate::app::hand::gestures::{GestureProgress, LastGesture, StoreVerdict, Stored, Upload};
-use crate::app::hand::pending::{Pending, RequestEnd};
-use crate::app::notices::{Asked, NoticeKind, Notices};
-use crate::hand::{
-    Angle, Gesture, GestureRoute, GestureStore, HandCommand, Moment, PerDof, UserGesture,
-};
+use crate::app::hand::open::{Pending, RequestEnd};
+use crate::app::notices::{NoticeKind, Notices, RequestKind};
+use crate::hand::{Angle, Gesture, GestureRoute, GestureStore, HandCommand, PerDof, UserGesture};
 use crate::link::{LinkHandle, RequestError};
-use crate::store::Job;
+use crate::store::BackgroundJob;
 use crate::tasks::gesture;
 
 /// Requests whose end is still awaited; the link itself lets fewer wait.
@@ -18,7 +16,7 @@ const ASKED_MAX: usize = 32;
 impl HandState {
     fn ask<F: Future<Output = RequestEnd> + Send + 'static>(
         &mut self,
-        what: Asked,
+        what: RequestKind,
         env: &Env,
         notices: &mut Notices,
         ask: impl FnOnce(LinkHandle) -> F,
@@ -28,7 +26,7 @@ impl HandState {
             self.failed(what, RequestError::NotConnected, notices);
             return false;
         };
-        let end = Job::start(&env.runtime, &env.wake, ask(open.link.clone()));
+        let end = BackgroundJob::start(&env.runtime, &env.wake, ask(open.link.clone()));
         if self.asked.len() >= ASKED_MAX {
             self.asked.remove(0);
         }
@@ -45,7 +43,7 @@ impl HandState {
         env: &Env,
         notices: &mut Notices,
     ) {
-        let what = Asked::Gesture(gesture);
+        let what = RequestKind::Gesture(gesture);
         let now = self.now;
         if !self.is_armed() {
             self.failed(what, RequestError::NotArmed, notices);
@@ -68,7 +66,7 @@ impl HandState {
         let command = HandCommand::Gesture(gesture, route);
         let write = |link: LinkHandle| async move { link.write(command).await.map(|()| None) };
         if self.ask(what, env, notices, write) {
-            self.gesture_started(gesture.get(), now);
+            self.gesture_started(gesture.get());
         }
     }
 
@@ -76,7 +74,7 @@ impl HandState {
     pub(crate) fn clear_errors(&mut self, env: &Env, notices: &mut Notices) {
         let command = HandCommand::ClearErrors;
         let write = |link: LinkHandle| async move { link.write(command).await.map(|()| None) };
-        self.ask(Asked::ClearErrors, env, notices, write);
+        self.ask(RequestKind::ClearErrors, env, notices, write);
     }
 
     /// Stores six angles under a number of the user's, then reads them back.
@@ -95,9 +93,12 @@ impl HandState {
             wanted: angles,
             verdict: StoreVerdict::Writing,
         });
-        self.ask(Asked::StoreGesture(to), env, notices, |link| async move {
-            gesture::store(&link, to, angles).await
-        });
+        self.ask(
+            RequestKind::StoreGesture(to),
+            env,
+            notices,
+            |link| async move { gesture::store(&link, to, angles).await },
+        );
     }
 
     /// Reads what is stored under a number of the user's.
@@ -112,7 +113,7 @@ impl HandState {
             return;
         }
         self.ask(
-            Asked::ReadGesture(wanted),
+            RequestKind::ReadGesture(wanted),
             env,
             notices,
             |link| async move { gesture::read(&link, wanted).await },
@@ -129,16 +130,16 @@ impl HandState {
     }
 
     /// Takes in how requests ended.
-    pub(crate) fn tick_requests(&mut self, notices: &mut Notices, now: Moment) {
+    pub(crate) fn tick_requests(&mut self, notices: &mut Notices) {
         let mut ended = Vec::new();
         self.asked.retain_mut(|asked| {
-            let end = Job::take_from(&mut asked.end);
+            let end = BackgroundJob::take_from(&mut asked.end);
             ended.extend(end.map(|end| (asked.what, end)));
             asked.end.is_some()
         });
         for (what, end) in ended {
             match end {
-                Ok(stored) => self.acknowledged(what, stored, notices, now),
+                Ok(stored) => self.acknowledged(what, stored, notices),
                 Err(error) => self.failed(what, error, notices),
             }
         }
@@ -146,33 +147,32 @@ impl HandState {
 
     fn acknowledged(
         &mut self,
-        what: Asked,
+        what: RequestKind,
         stored: Option<PerDof<i16>>,
         notices: &mut Notices,
-        now: Moment,
     ) {
         match what {
-            Asked::Gesture(_) => self.gestures.progress(GestureProgress::Acknowledged),
+            RequestKind::Gesture(_) => self.gestures.progress(GestureProgress::Acknowledged),
             // The result is shown beside the pose.
-            Asked::StoreGesture(gesture) | Asked::ReadGesture(gesture) => {
+            RequestKind::StoreGesture(gesture) | RequestKind::ReadGesture(gesture) => {
                 if let Some(angles) = stored {
                     self.gestures.read_back(Stored { gesture, angles });
                 }
                 return;
             }
-            Asked::ClearErrors => {}
+            RequestKind::ClearErrors => {}
         }
-        notices.push(now, NoticeKind::Acknowledged { what });
+        notices.push(self.now, NoticeKind::Acknowledged { what });
     }
 
     /// Says that something did not work.
-    fn failed(&mut self, what: Asked, error: RequestError, notices: &mut Notices) {
+    fn failed(&mut self, what: RequestKind, error: RequestError, notices: &mut Notices) {
         match what {
-            Asked::Gesture(_) => self.gestures.progress(GestureProgress::Failed),
-            Asked::StoreGesture(gesture) | Asked::ReadGesture(gesture) => {
+            RequestKind::Gesture(_) => self.gestures.progress(GestureProgress::Failed),
+            RequestKind::StoreGesture(gesture) | RequestKind::ReadGesture(gesture) => {
                 self.gestures.judge(gesture, StoreVerdict::Failed);
             }
-            Asked::ClearErrors => {}
+            RequestKind::ClearErrors => {}
         }
         notices.push(self.now, NoticeKind::RequestFailed { what, error });
     }

@@ -2,8 +2,8 @@
 
 use crate::app::running::Running;
 use crate::poses::library::SequenceId;
-use crate::poses::player::{End, Phase};
-use crate::tasks::play::{PlayCommand, PlayStep, PlayView};
+use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
+use crate::tasks::play::{PlayCommand, PlayStep};
 use tokio::sync::mpsc;
 
 /// What a person does with a sequence.
@@ -34,31 +34,20 @@ pub struct SequenceRun {
     pub view: PlayView,
     /// `None` once a person moves the hand in another way.
     pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
-    pub(crate) task: Option<Running<PlayStep, End>>,
+    pub(crate) task: Option<Running<PlayStep, PlayEnd>>,
 }
 
 impl SequenceRun {
-    /// One that stands so and is run by nobody, for pictures and tests.
-    #[must_use]
-    pub const fn standing(sequence: SequenceId, view: PlayView) -> Self {
-        Self {
-            sequence,
-            view,
-            commands: None,
-            task: None,
-        }
-    }
-
     /// True while it may send something.
     #[must_use]
     pub const fn is_running(&self) -> bool {
-        !matches!(self.view.phase, Phase::Ended(_))
+        !matches!(self.view.phase, PlayPhase::Ended(_))
     }
 
     /// True while it waits for a person.
     #[must_use]
     pub const fn is_paused(&self) -> bool {
-        matches!(self.view.phase, Phase::Paused)
+        matches!(self.view.phase, PlayPhase::Paused)
     }
 
     pub(crate) fn command(&self, command: PlayCommand) {
@@ -72,7 +61,7 @@ impl SequenceRun {
     pub(crate) fn leave(&mut self) {
         if self.is_running() {
             self.commands = None;
-            self.view.phase = Phase::Ended(End::TakenOver);
+            self.view.phase = PlayPhase::Ended(PlayEnd::TakenOver);
         }
     }
 }

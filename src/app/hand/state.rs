@@ -1,27 +1,25 @@
 //! Everything about one hand in one value: its link, the newest readings, what was measured, faults, setpoints, tasks.
 
 use crate::app::hand::gestures::GestureState;
-use crate::app::hand::joint::Joint;
-use crate::app::hand::open::{Leaving, Open};
-use crate::app::hand::pending::Pending;
+use crate::app::hand::joint::JointControl;
+use crate::app::hand::open::{Leaving, OpenLink, Pending};
 use crate::app::hand::sequence::SequenceRun;
 use crate::app::params::state::ParamsState;
 use crate::app::procedures::procedure::Procedure;
-use crate::app::procedures::running::ProcedureWork;
+use crate::app::procedures::reach::GoRequest;
 use crate::app::readings::fault_recorder::FaultRecorder;
 use crate::app::readings::faults::FaultList;
-use crate::app::readings::pace::Pace;
+use crate::app::readings::pace::ReadingPace;
 use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
 use crate::app::trials::run::SeriesRun;
-use crate::hand::{
-    Angle, AngleReading, Finger, Force, HandSample, Moment, PerDof, PerFinger, Speed,
-};
+use crate::hand::{Angle, AngleReading, Finger, HandSample, Moment, PerDof, PerFinger};
 use crate::history::History;
 use crate::link::session::motion::arm_refusal;
 use crate::link::{LinkStats, LinkStatus, Traffic};
 use crate::record::{ArmRefusal, LinkState, QuirkSheet};
 use crate::transport::Endpoint;
+use tokio::sync::mpsc;
 
 /// How much a shown value can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +33,7 @@ pub enum Freshness {
 }
 
 /// Everything about one hand.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct HandState {
     /// The time of this frame.
     pub now: Moment,
@@ -48,15 +46,15 @@ pub struct HandState {
     /// The newest of everything the hand said, with its times. Kept when the link is lost, and then old.
     pub sample: HandSample,
     /// How often angles, and with them what else tells the motion, are read.
-    pub pace: Pace,
+    pub pace: ReadingPace,
     /// How often a fingertip is read.
-    pub tip_pace: PerFinger<Pace>,
+    pub tip_pace: PerFinger<ReadingPace>,
     /// What the tactile channels are counted from.
     pub tare: Tare,
     /// The highest forces of the last seconds.
     pub peaks: ForcePeaks,
     /// The six joints as a person sets them.
-    pub joints: PerDof<Joint>,
+    pub joints: PerDof<JointControl>,
     /// What was measured over the last minutes.
     pub history: History,
     /// Faults now and before.
@@ -77,16 +75,16 @@ pub struct HandState {
     pub traffic: Traffic,
     /// What is kept about this hand; `None` for the built-in one, and until it was kept.
     pub sheet: Option<QuirkSheet>,
-    /// What belongs to the card.
-    pub(crate) procedure_work: ProcedureWork,
+    /// Where the task under the card wants the link.
+    pub(crate) requested: Option<mpsc::UnboundedReceiver<GoRequest>>,
     /// The open link.
-    pub(crate) open: Option<Open>,
+    pub(crate) open: Option<OpenLink>,
     /// The hand is being left: it was told to hold.
     pub(crate) leaving: Option<Leaving>,
     /// Requests whose end is awaited.
     pub(crate) asked: Vec<Pending>,
-    /// Sliders that show the actual angle although the hand is armed: locked, or moved by a gesture.
-    pub(crate) following: PerDof<bool>,
+    /// Sliders that show where the joint was sent; the others show the actual angle.
+    pub(crate) steered: PerDof<bool>,
     /// No arming from before this moment counts, whatever the link still says.
     pub(crate) disarmed_at: Option<Moment>,
     /// Something was sent on this connection that may move the hand.
@@ -98,50 +96,6 @@ pub struct HandState {
     pub(crate) listed: Option<Endpoint>,
     /// The hand that the history is of.
     pub(crate) measured: Option<Endpoint>,
-}
-
-impl Default for HandState {
-    fn default() -> Self {
-        let joint = Joint {
-            target: None,
-            force: Force::GENTLE,
-            speed: Speed::GENTLE,
-            locked: false,
-        };
-        Self {
-            now: Moment::ZERO,
-            endpoint: None,
-            link: LinkStatus::default(),
-            stats: LinkStats::default(),
-            sample: HandSample::default(),
-            pace: Pace::default(),
-            tip_pace: PerFinger::splat(Pace::default()),
-            tare: Tare::default(),
-            peaks: ForcePeaks::default(),
-            joints: PerDof::splat(joint),
-            history: History::new(),
-            faults: FaultList::default(),
-            recorder: FaultRecorder::default(),
-            gestures: GestureState::default(),
-            sequence: None,
-            params: ParamsState::default(),
-            procedure: None,
-            series: None,
-            traffic: Traffic::default(),
-            sheet: None,
-            procedure_work: ProcedureWork::default(),
-            open: None,
-            leaving: None,
-            asked: Vec::new(),
-            following: PerDof::splat(true),
-            disarmed_at: None,
-            commanded: false,
-            seen_from: None,
-            was_live: false,
-            listed: None,
-            measured: None,
-        }
-    }
 }
 
 impl HandState {
@@ -164,7 +118,7 @@ impl HandState {
         self.freshness_at(asked, self.tip_pace[finger])
     }
 
-    fn freshness_at(&self, asked: Option<Moment>, pace: Pace) -> Freshness {
+    fn freshness_at(&self, asked: Option<Moment>, pace: ReadingPace) -> Freshness {
         match asked {
             None => Freshness::Unknown,
             Some(_) if !self.link.state.is_live() => Freshness::Stale,
@@ -207,12 +161,6 @@ impl HandState {
     #[must_use]
     pub const fn runs_series(&self) -> bool {
         self.series.is_some()
-    }
-
-    /// True while a sequence may send something.
-    #[must_use]
-    pub fn runs_sequence(&self) -> bool {
-        self.sequence.as_ref().is_some_and(SequenceRun::is_running)
     }
 
     /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.

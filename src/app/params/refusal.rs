@@ -7,7 +7,7 @@ use crate::record::{LinkState, Rest};
 
 /// Why not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Refusal {
+pub enum ParamRefusal {
     /// No hand answers.
     NoHand,
     /// Setpoints pass.
@@ -33,55 +33,57 @@ pub enum Refusal {
 impl HandState {
     /// Why nothing may be done now that needs a hand that is there, disarmed and at rest.
     #[must_use]
-    pub const fn rest_refusal(&self) -> Option<Refusal> {
+    pub const fn rest_refusal(&self) -> Option<ParamRefusal> {
         match (self.link.state, self.link.rest) {
-            (LinkState::Offline | LinkState::Identifying, _) => Some(Refusal::NoHand),
-            (LinkState::Armed, _) => Some(Refusal::Armed),
-            (LinkState::Holding, _) => Some(Refusal::Holding),
-            (LinkState::Monitoring | LinkState::Fault, Rest::Moving) => Some(Refusal::Moving),
-            (LinkState::Monitoring | LinkState::Fault, Rest::Unknown) => Some(Refusal::RestUnknown),
+            (LinkState::Offline | LinkState::Identifying, _) => Some(ParamRefusal::NoHand),
+            (LinkState::Armed, _) => Some(ParamRefusal::Armed),
+            (LinkState::Holding, _) => Some(ParamRefusal::Holding),
+            (LinkState::Monitoring | LinkState::Fault, Rest::Moving) => Some(ParamRefusal::Moving),
+            (LinkState::Monitoring | LinkState::Fault, Rest::Unknown) => {
+                Some(ParamRefusal::RestUnknown)
+            }
             (LinkState::Monitoring | LinkState::Fault, Rest::Resting) => None,
         }
     }
 
     /// Why the rows cannot be read now.
     #[must_use]
-    pub fn read_refusal(&self) -> Option<Refusal> {
+    pub fn read_refusal(&self) -> Option<ParamRefusal> {
         match self.link.state.is_live() {
-            false => Some(Refusal::NoHand),
-            true => self.params.is_busy().then_some(Refusal::Busy),
+            false => Some(ParamRefusal::NoHand),
+            true => self.params.is_busy().then_some(ParamRefusal::Busy),
         }
     }
 
     /// Why nothing that is kept may be written now.
     #[must_use]
-    pub fn write_refusal(&self) -> Option<Refusal> {
-        let busy = || self.params.is_busy().then_some(Refusal::Busy);
+    pub fn write_refusal(&self) -> Option<ParamRefusal> {
+        let busy = || self.params.is_busy().then_some(ParamRefusal::Busy);
         self.rest_refusal().or_else(busy)
     }
 
     /// Why what is staged cannot be applied now.
     #[must_use]
-    pub fn apply_refusal(&self) -> Option<Refusal> {
+    pub fn apply_refusal(&self) -> Option<ParamRefusal> {
         let nothing = self.params.to_apply().is_empty();
         self.write_refusal()
-            .or_else(|| nothing.then_some(Refusal::NothingStaged))
+            .or_else(|| nothing.then_some(ParamRefusal::NothingStaged))
     }
 
     /// Why the last apply cannot be undone now.
     #[must_use]
-    pub fn undo_refusal(&self) -> Option<Refusal> {
+    pub fn undo_refusal(&self) -> Option<ParamRefusal> {
         let nothing = self.params.undo.is_empty();
         self.write_refusal()
-            .or_else(|| nothing.then_some(Refusal::NothingToUndo))
+            .or_else(|| nothing.then_some(ParamRefusal::NothingToUndo))
     }
 
     /// Why the hand's parameters cannot be written to its flash now.
     #[must_use]
-    pub fn save_refusal(&self) -> Option<Refusal> {
+    pub fn save_refusal(&self) -> Option<ParamRefusal> {
         let nowhere = self.params.files.is_none();
         self.write_refusal()
-            .or_else(|| nowhere.then_some(Refusal::NoFolder))
+            .or_else(|| nowhere.then_some(ParamRefusal::NoFolder))
     }
 
     /// How fresh a row's value is.

@@ -1,22 +1,20 @@
-//! Tasks and file work for what a hand keeps, while they run.
+//! What tasks and files give for what a hand keeps.
 
-use crate::app::running::Running;
-use crate::hand::Span;
 use crate::params::backups::{Backup, Backups, Known};
 use crate::params::file::ParamsFileError;
 use crate::params::values::Params;
 use crate::tasks::TaskError;
-use crate::tasks::apply::{Applied, ApplyStep};
-use crate::tasks::read::Rows;
-use crate::tasks::save::{SaveReport, SaveStep};
+use crate::tasks::apply::Applied;
+use crate::tasks::read::ReadRows;
+use crate::tasks::save::SaveReport;
 use std::io;
 
-/// What runs.
+/// How a task ended.
 #[derive(Debug)]
-pub(crate) enum ParamsTask {
-    Read(Running<(Span, Vec<u8>), Rows>),
-    Apply(Params, Running<ApplyStep, Result<Applied, TaskError>>),
-    Save(Running<SaveStep, Result<SaveReport, TaskError>>),
+pub(crate) enum ParamsEnd {
+    Read(ReadRows),
+    Applied(Params, Result<Applied, TaskError>),
+    Saved(Result<SaveReport, TaskError>),
 }
 
 /// What the files of a hand hold.

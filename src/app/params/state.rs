@@ -2,7 +2,8 @@
 
 use crate::app::notices::NoticeKind;
 use crate::app::params::compared::Compared;
-use crate::app::params::running::{FilesRead, ParamsTask};
+use crate::app::params::running::{FilesRead, ParamsEnd};
+use crate::app::running::Running;
 use crate::hand::{Moment, Span};
 use crate::link::RequestError;
 use crate::params::backups::{Backup, Backups, Known};
@@ -10,9 +11,10 @@ use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::danger::{Danger, worse};
 use crate::params::file::{ParamsFile, ParamsFileError};
 use crate::params::rows::{ParamId, Value};
-use crate::params::values::{Difference, Params};
+use crate::params::values::{ParamDifference, Params};
 use crate::record::Saved;
-use crate::store::Job;
+use crate::store::BackgroundJob;
+use crate::tasks::ParamStep;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -43,16 +45,16 @@ pub enum Doing {
 
 /// What waits for a person's confirmation.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Question {
+pub struct WriteQuestion {
     /// What would be done.
-    pub what: Wanted,
+    pub what: WriteRequest,
     /// Why confirmation is needed.
     pub dangers: Vec<Danger>,
 }
 
 /// What a person asked to write.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Wanted {
+pub enum WriteRequest {
     /// These rows, into the hand's memory.
     Apply(Params),
     /// What the hand holds, into its flash; what is staged is applied first.
@@ -84,7 +86,7 @@ pub struct ParamsState {
     /// What was read first, before this program changed anything.
     first: Params,
     staged: Params,
-    outcomes: BTreeMap<ParamId, RowOutcome>,
+    pub(crate) outcomes: BTreeMap<ParamId, RowOutcome>,
     /// When all rows were read last.
     pub read_at: Option<Moment>,
     /// Whether a reading was begun since the hand was found.
@@ -96,7 +98,7 @@ pub struct ParamsState {
     /// Why the last reading is incomplete.
     pub trouble: Option<RequestError>,
     /// What waits for a person's confirmation.
-    pub question: Option<Question>,
+    pub question: Option<WriteQuestion>,
     /// The values that undo the last apply.
     pub undo: Params,
     /// How the last SAVE of this session ended, and when.
@@ -116,11 +118,11 @@ pub struct ParamsState {
     /// What is saved once the running apply is over, and with which dangers.
     pub(crate) save_next: Option<Vec<Danger>>,
     /// What runs.
-    pub(crate) task: Option<ParamsTask>,
+    pub(crate) task: Option<Running<ParamStep, ParamsEnd>>,
     /// The files are being read.
-    pub(crate) listing: Option<Job<FilesRead>>,
+    pub(crate) listing: Option<BackgroundJob<FilesRead>>,
     /// A file that is looked at is being chosen and read.
-    pub(crate) opening: Option<Job<Result<(PathBuf, ParamsFile), NoticeKind>>>,
+    pub(crate) opening: Option<BackgroundJob<Result<(PathBuf, ParamsFile), NoticeKind>>>,
 }
 
 impl ParamsState {
@@ -175,7 +177,7 @@ impl ParamsState {
 
     /// The rows that a SAVE would change for the next power-up, as far as this program knows.
     #[must_use]
-    pub fn unsaved(&self) -> Vec<Difference> {
+    pub fn unsaved(&self) -> Vec<ParamDifference> {
         let before = self.before_changes(&self.live_params());
         before.differences(&self.to_save())
     }
@@ -291,20 +293,6 @@ impl ParamsState {
     #[must_use]
     pub fn is_saving(&self) -> bool {
         self.doing == Doing::Saving
-    }
-
-    /// The files of this hand were changed: they are read again.
-    pub(crate) fn forget_files(&mut self) {
-        self.files = None;
-    }
-
-    pub(crate) fn forget_outcomes(&mut self) {
-        self.outcomes.clear();
-    }
-
-    /// Something was written that may change any row: what was read is old.
-    pub(crate) const fn outdated(&mut self, now: Moment) {
-        self.lost_at = Some(now);
     }
 
     /// When the hand comes back it may be another one, or have been switched off: earlier readings are old.

@@ -6,9 +6,9 @@ use crate::app::hand::HandState;
 use crate::app::notices::{NoticeKind, Notices};
 use crate::app::params::action::ParamAction;
 use crate::app::params::compared::Compared;
-use crate::app::params::running::{FilesRead, ParamsTask};
-use crate::app::params::state::{Doing, ParamsState, Question, SaveEnd, Wanted};
-use crate::app::running::Running;
+use crate::app::params::running::{FilesRead, ParamsEnd};
+use crate::app::params::state::{Doing, ParamsState, SaveEnd, WriteQuestion, WriteRequest};
+use crate::app::running::{Running, Steps};
 use crate::hand::{Dof, Moment};
 use crate::link::LinkHandle;
 use crate::params::backups::{Backups, Known, folder_beside};
@@ -17,11 +17,11 @@ use crate::params::danger::Danger;
 use crate::params::file::{self, ParamsFile, ParamsFileError};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
-use crate::store::{Job, on_thread};
-use crate::tasks::apply::{Applied, Apply, ApplyStep, Otherwise, apply};
-use crate::tasks::read::{Rows, rows};
-use crate::tasks::save::{Save, SaveReport, SaveStep, save};
-use crate::tasks::{Consent, TaskError};
+use crate::store::{BackgroundJob, on_thread};
+use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
+use crate::tasks::read::{ReadRows, rows};
+use crate::tasks::save::{Save, SaveReport, save};
+use crate::tasks::{Consent, ParamStep, TaskError};
 use futures::future::BoxFuture;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -44,23 +44,18 @@ impl HandState {
             }
             ParamAction::Save if self.save_refusal().is_none() => self.ask_save(env),
             ParamAction::Agree if self.write_refusal().is_none() => {
-                match self.params.question.take() {
-                    Some(Question {
-                        what: Wanted::Apply(wanted),
-                        dangers,
-                    }) => self.apply_rows(wanted, dangers, env),
-                    Some(Question {
-                        what: Wanted::Save,
-                        dangers,
-                    }) if self.params.to_apply().is_empty() => self.save(dangers, env),
-                    Some(Question {
-                        what: Wanted::Save,
-                        dangers,
-                    }) => {
+                let Some(WriteQuestion { what, dangers }) = self.params.question.take() else {
+                    return;
+                };
+                match what {
+                    WriteRequest::Apply(wanted) => self.apply_rows(wanted, dangers, env),
+                    WriteRequest::Save if self.params.to_apply().is_empty() => {
+                        self.save(dangers, env);
+                    }
+                    WriteRequest::Save => {
                         self.apply_rows(self.params.to_apply(), dangers.clone(), env);
                         self.params.save_next = Some(dangers);
                     }
-                    None => {}
                 }
             }
             ParamAction::Decline => self.params.question = None,
@@ -110,43 +105,47 @@ impl HandState {
     }
 
     /// Reads the rows because somebody looks at them, if it is due.
-    pub(crate) fn look_at_params(&mut self, env: &Env, now: Moment) {
+    pub(crate) fn look_at_params(&mut self, env: &Env) {
+        let now = self.now;
         if self.params.look(now) {
             self.param_action(ParamAction::Read, env);
         }
     }
 
-    fn link_handle(&self) -> Option<LinkHandle> {
-        self.open.as_ref().map(|open| open.link.clone())
+    /// Starts what reads or writes rows, if there is a link.
+    fn start_params<F>(
+        &mut self,
+        doing: Doing,
+        env: &Env,
+        task: impl FnOnce(LinkHandle, Steps<ParamStep>) -> F,
+    ) where
+        F: Future<Output = ParamsEnd> + Send + 'static,
+    {
+        if let Some(open) = &self.open {
+            let link = open.link.clone();
+            self.params.begin(doing);
+            self.params.task = Some(Running::start(env, |steps| task(link, steps)));
+        }
     }
 
     fn read_rows(&mut self, env: &Env) {
-        let Some(link) = self.link_handle() else {
-            return;
-        };
-        let params = &mut self.params;
-        (params.is_asked, params.trouble, params.doing) = (true, None, Doing::Reading);
-        let task = Running::start(env, |steps| async move {
-            rows(&link, |span, bytes| steps.tell((span, bytes.to_vec()))).await
+        self.start_params(Doing::Reading, env, |link, steps| async move {
+            let took = |span, bytes: &[u8]| steps.tell(ParamStep::Read(span, bytes.to_vec()));
+            ParamsEnd::Read(rows(&link, took).await)
         });
-        params.task = Some(ParamsTask::Read(task));
     }
 
     fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, env: &Env) {
-        let Some(link) = self.link_handle() else {
-            return;
-        };
         let task = Apply {
-            wanted: wanted.clone(),
+            wanted,
             consent: Consent::To(agreed),
             backups: None,
             otherwise: Otherwise::Stay,
         };
-        let task = Running::start(env, |steps| async move {
-            apply(&link, &task, |step| steps.tell(step)).await
+        self.start_params(Doing::Applying, env, |link, steps| async move {
+            let end = apply(&link, &task, |step| steps.tell(step)).await;
+            ParamsEnd::Applied(task.wanted, end)
         });
-        self.params.begin(Doing::Applying);
-        self.params.task = Some(ParamsTask::Apply(wanted, task));
     }
 
     /// Shows what a SAVE would change; where that is nothing, it is done at once.
@@ -155,14 +154,14 @@ impl HandState {
         if params.unsaved().is_empty() {
             return self.save(Vec::new(), env);
         }
-        params.question = Some(Question {
-            what: Wanted::Save,
+        params.question = Some(WriteQuestion {
+            what: WriteRequest::Save,
             dangers: params.save_dangers(),
         });
     }
 
     fn save(&mut self, agreed: Vec<Danger>, env: &Env) {
-        let (Some(link), Some(backups)) = (self.link_handle(), self.params.files.clone()) else {
+        let Some(backups) = self.params.files.clone() else {
             return;
         };
         let task = Save {
@@ -170,11 +169,9 @@ impl HandState {
             before: self.params.before_changes(&Params::default()),
             consent: Consent::To(agreed),
         };
-        let task = Running::start(env, |steps| async move {
-            save(&link, &task, |step| steps.tell(step)).await
+        self.start_params(Doing::BackingUp, env, |link, steps| async move {
+            ParamsEnd::Saved(save(&link, &task, |step| steps.tell(step)).await)
         });
-        self.params.begin(Doing::BackingUp);
-        self.params.task = Some(ParamsTask::Save(task));
     }
 
     fn open_params(&mut self, chosen: BoxFuture<'static, Option<PathBuf>>, env: &Env) {
@@ -191,11 +188,12 @@ impl HandState {
                 Err(error) => Err(NoticeKind::ParamsRefused { path, error }),
             }
         };
-        self.params.opening = Some(Job::start(&env.runtime, &env.wake, open));
+        self.params.opening = Some(BackgroundJob::start(&env.runtime, &env.wake, open));
     }
 
     /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
-    pub(crate) fn tick_params(&mut self, env: &Env, notices: &mut Notices, now: Moment) {
+    pub(crate) fn tick_params(&mut self, env: &Env, notices: &mut Notices) {
+        let now = self.now;
         self.params.take_task(now);
         if !self.params.is_busy()
             && let Some(agreed) = self.params.save_next.take()
@@ -206,10 +204,10 @@ impl HandState {
                 false => self.params.save = Some((SaveEnd::NotApplied, now)),
             }
         }
-        if let Some(read) = Job::take_from(&mut self.params.listing) {
+        if let Some(read) = BackgroundJob::take_from(&mut self.params.listing) {
             self.params.show_files(read);
         }
-        match Job::take_from(&mut self.params.opening) {
+        match BackgroundJob::take_from(&mut self.params.opening) {
             None => {}
             Some(Ok((path, file))) => self.params.show_file(&path, file),
             Some(Err(refused)) => {
@@ -243,76 +241,52 @@ impl HandState {
             Ok(FilesRead::of(files))
         });
         let list = async move { list.await.ok() };
-        self.params.listing = Some(Job::start_fallible(&env.runtime, &env.wake, list));
+        self.params.listing = Some(BackgroundJob::start_fallible(&env.runtime, &env.wake, list));
     }
 }
 
 impl ParamsState {
     fn begin(&mut self, doing: Doing) {
         self.is_asked = true;
-        (self.trouble, self.question, self.doing) = (None, None, doing);
+        (self.trouble, self.doing) = (None, doing);
+        if doing != Doing::Reading {
+            self.question = None;
+        }
         match doing {
-            Doing::Applying => self.forget_outcomes(),
+            Doing::Applying => self.outcomes.clear(),
             Doing::BackingUp => self.save = None,
             _ => {}
         }
     }
 
     fn take_task(&mut self, now: Moment) {
-        let Some(task) = self.task.take() else { return };
-        let is_over = match task {
-            ParamsTask::Read(mut run) => {
-                let (steps, end) = run.news();
-                for (at, (span, bytes)) in steps {
-                    self.take(span, &bytes, at);
-                }
-                let over = end.map(|end| self.rows_read(end, now)).is_some();
-                self.task = Some(ParamsTask::Read(run));
-                over
+        let Some(task) = &mut self.task else { return };
+        let (steps, end) = task.news();
+        for (at, step) in steps {
+            match step {
+                ParamStep::Read(span, bytes) => self.take(span, &bytes, at),
+                ParamStep::Row(row) => self.written(row, at),
+                ParamStep::Saving => self.doing = Doing::Saving,
+                ParamStep::BackingUp | ParamStep::Meant(_) => {}
             }
-            ParamsTask::Apply(wanted, mut run) => {
-                let (steps, end) = run.news();
-                for (at, step) in steps {
-                    match step {
-                        ApplyStep::Read(span, bytes) => self.take(span, &bytes, at),
-                        ApplyStep::Row(row) => self.written(row, at),
-                        ApplyStep::Meant(_) => {}
-                    }
-                }
-                let over = end
-                    .map(|end| self.rows_applied(&wanted, end, now))
-                    .is_some();
-                self.task = Some(ParamsTask::Apply(wanted, run));
-                over
-            }
-            ParamsTask::Save(mut run) => {
-                let (steps, end) = run.news();
-                for (at, step) in steps {
-                    match step {
-                        SaveStep::Read(span, bytes) => self.take(span, &bytes, at),
-                        SaveStep::Saving => self.doing = Doing::Saving,
-                        SaveStep::BackingUp | SaveStep::Meant(_) => {}
-                    }
-                }
-                let over = end.map(|end| self.save_ended(end, now)).is_some();
-                self.task = Some(ParamsTask::Save(run));
-                over
-            }
-        };
-        if is_over {
-            self.task = None;
-            self.doing = Doing::Nothing;
+        }
+        let Some(end) = end else { return };
+        (self.task, self.doing) = (None, Doing::Nothing);
+        match end {
+            ParamsEnd::Read(rows) => self.rows_read(rows, now),
+            ParamsEnd::Applied(wanted, end) => self.rows_applied(wanted, end, now),
+            ParamsEnd::Saved(end) => self.save_ended(end, now),
         }
     }
 
-    fn rows_read(&mut self, rows: Rows, now: Moment) {
+    fn rows_read(&mut self, rows: ReadRows, now: Moment) {
         if !rows.params.is_empty() {
             self.read_at = Some(now);
         }
         self.trouble = rows.troubles.into_iter().next_back();
     }
 
-    fn rows_applied(&mut self, wanted: &Params, end: Result<Applied, TaskError>, now: Moment) {
+    fn rows_applied(&mut self, wanted: Params, end: Result<Applied, TaskError>, now: Moment) {
         match end {
             Ok(applied) => {
                 self.read_at = Some(now);
@@ -324,7 +298,7 @@ impl ParamsState {
                 }
                 self.trouble = applied.broken_off;
             }
-            Err(error) => self.refused(Wanted::Apply(wanted.clone()), error),
+            Err(error) => self.refused(WriteRequest::Apply(wanted), error),
         }
     }
 
@@ -336,17 +310,17 @@ impl ParamsState {
             },
             Err(TaskError::NoBackup { message }) => SaveEnd::NoBackup { message },
             Err(TaskError::NotAsked(error)) => SaveEnd::NotAsked(error),
-            Err(error) => return self.refused(Wanted::Save, error),
+            Err(error) => return self.refused(WriteRequest::Save, error),
         };
-        self.forget_files();
+        self.files = None;
         self.save = Some((end, now));
     }
 
-    fn refused(&mut self, what: Wanted, error: TaskError) {
+    fn refused(&mut self, what: WriteRequest, error: TaskError) {
         match error {
             TaskError::NotMeant(risks) => {
                 let dangers = risks.dangers;
-                self.question = Some(Question { what, dangers });
+                self.question = Some(WriteQuestion { what, dangers });
             }
             TaskError::NotRead { why, .. } | TaskError::NotAsked(why) => self.trouble = Some(why),
             TaskError::NotReached | TaskError::NoBackup { .. } => {}

@@ -2,16 +2,16 @@
 
 use crate::app::poses::PoseState;
 use crate::hand::{Angle, PerDof};
-use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit, Way};
-use crate::poses::library::{Library, NAME_CHARS_MAX, Pose, PoseId, SequenceId};
+use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit, ShiftDirection};
+use crate::poses::library::{LibraryPose, NAME_CHARS_MAX, PoseId, PoseLibrary, SequenceId};
 
 fn two() -> (PoseState, PoseId, PoseId, SequenceId) {
-    let mut library = Library::default();
+    let mut library = PoseLibrary::default();
     let a = library
-        .add_pose("A", Pose::at(PerDof::splat(Angle::MAX)))
+        .add_pose("A", LibraryPose::at(PerDof::splat(Angle::MAX)))
         .unwrap();
     let b = library
-        .add_pose("B", Pose::at(PerDof::splat(Angle::MIN)))
+        .add_pose("B", LibraryPose::at(PerDof::splat(Angle::MIN)))
         .unwrap();
     let own = library.add_sequence("S").unwrap();
     for pose in [a, b, a] {
@@ -36,8 +36,11 @@ fn edits_keep_names_apart_and_steps_whole_and_a_deletion_can_be_undone() {
     book.edit(LibraryEdit::Pose(b, PoseEdit::Rename("A".into())));
     assert_eq!(names(&book), ["A", "A 2", "A 3"]);
     book.edit(LibraryEdit::Pose(b, PoseEdit::Rename("  \n ".into())));
-    book.edit(LibraryEdit::Pose(b, PoseEdit::Shift(Way::Later)));
-    book.edit(LibraryEdit::Pose(b, PoseEdit::Shift(Way::Earlier)));
+    book.edit(LibraryEdit::Pose(b, PoseEdit::Shift(ShiftDirection::Later)));
+    book.edit(LibraryEdit::Pose(
+        b,
+        PoseEdit::Shift(ShiftDirection::Earlier),
+    ));
     assert_eq!(names(&book), ["A", "A 3", "A 2"]);
     book.edit(LibraryEdit::Pose(b, PoseEdit::Rename("长".repeat(99))));
     assert_eq!(

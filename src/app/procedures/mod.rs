@@ -2,7 +2,6 @@
 
 pub mod procedure;
 pub(crate) mod reach;
-pub(crate) mod running;
 pub(crate) mod work;
 
 pub use crate::app::procedures::procedure::{

@@ -1,15 +1,17 @@
 //! What a card shows and what a person may decide on it. Plain values; asks nobody.
 
+use crate::app::running::Running;
 use crate::hand::Moment;
 use crate::params::danger::Danger;
-use crate::params::place::{Place, Places};
+use crate::params::place::{PlacePair, WhichPlace};
+use crate::store::BackgroundJob;
 use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Checks, Offsets};
 use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep};
 use crate::tasks::reset::{ResetReport, ResetStep};
-use crate::transport::Endpoint;
 use crate::transport::endpoint::route::Route;
 use std::path::PathBuf;
+use tokio::sync::oneshot;
 
 /// What a person decides on a card.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -44,6 +46,28 @@ impl<S, E> ProcedureStage<S, E> {
     #[must_use]
     pub const fn is_doing(&self) -> bool {
         matches!(self, Self::Doing(..))
+    }
+
+    /// Takes in what the task told; true once it is over. `told` is asked whether a step is shown.
+    pub(crate) fn take_news(
+        &mut self,
+        run: &mut Option<Running<S, E>>,
+        mut told: impl FnMut(&S, Moment) -> bool,
+    ) -> bool
+    where
+        S: Send + 'static,
+        E: Send + 'static,
+    {
+        let Some(running) = run else { return false };
+        let (steps, end) = running.news();
+        for (at, step) in steps {
+            if told(&step, at) {
+                *self = Self::Doing(step, at);
+            }
+        }
+        let Some(end) = end else { return false };
+        (*self, *run) = (Self::Over(end), None);
+        true
     }
 
     /// The result, once it is there.
@@ -91,28 +115,32 @@ pub struct PlaceProcedure {
     pub way: Option<WayTo>,
     /// What a SAVE would make last besides: it writes all that the hand holds.
     pub dangers: Vec<Danger>,
+    pub(crate) run: Option<Running<PlaceStep, Result<PlaceReport, TaskError>>>,
+    pub(crate) keeps: Option<oneshot::Sender<bool>>,
+    pub(crate) saves: Option<oneshot::Sender<bool>>,
+    pub(crate) looking: Option<BackgroundJob<Option<Route>>>,
 }
 
 /// A return to the factory's parameters.
 #[derive(Debug)]
 pub struct ResetProcedure {
     /// Where the hand is before and after.
-    pub places: Places,
+    pub places: PlacePair,
     /// Where it stands.
     pub stage: ProcedureStage<ResetStep, Result<ResetReport, TaskError>>,
+    pub(crate) run: Option<Running<ResetStep, Result<ResetReport, TaskError>>>,
 }
 
 /// A calibration of the force sensors.
 #[derive(Debug)]
 pub struct CalibrateProcedure {
-    /// Where the hand is.
-    pub hand: Endpoint,
     /// What must be so before.
     pub checks: Checks,
     /// The offsets before, once it began.
     pub before: Option<Offsets>,
     /// Where it stands.
     pub stage: ProcedureStage<CalibrateStep, CalibrateReport>,
+    pub(crate) run: Option<Running<CalibrateStep, CalibrateReport>>,
 }
 
 impl Procedure {
@@ -130,12 +158,12 @@ impl Procedure {
 impl PlaceProcedure {
     /// Where the hand is, as far as the card knows; `None` if nobody does.
     #[must_use]
-    pub fn place(&self) -> Option<Place> {
+    pub fn place(&self) -> Option<WhichPlace> {
         match &self.stage {
             ProcedureStage::Over(Ok(report)) => report.end.place(),
             ProcedureStage::Doing(PlaceStep::Keeping(at) | PlaceStep::Offering(at), _) => Some(*at),
             ProcedureStage::Asking | ProcedureStage::Doing(..) | ProcedureStage::Over(Err(_)) => {
-                Some(Place::Old)
+                Some(WhichPlace::Old)
             }
         }
     }

@@ -3,11 +3,11 @@
 use crate::link::{LinkHandle, Wake};
 use crate::tasks::Reach;
 use crate::tasks::hand::{REACHED_WITHIN, answers};
-use crate::tasks::place::Person;
 use crate::transport::Endpoint;
+use futures::future::BoxFuture;
 use tokio::sync::{mpsc, oneshot};
 
-/// A wish to have the link at a place.
+/// Asks the program for the link at a place.
 #[derive(Debug)]
 pub(crate) struct GoRequest {
     pub(crate) place: Endpoint,
@@ -16,43 +16,24 @@ pub(crate) struct GoRequest {
 
 /// Asks the program to go there.
 pub(crate) struct Asking {
-    pub(crate) wishes: mpsc::UnboundedSender<GoRequest>,
+    pub(crate) requests: mpsc::UnboundedSender<GoRequest>,
     pub(crate) wake: Wake,
 }
 
 impl Reach for Asking {
-    type Hand = LinkHandle;
+    type Link = LinkHandle;
 
     async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
         let (opened, open) = oneshot::channel();
         let place = place.clone();
-        self.wishes.send(GoRequest { place, opened }).ok()?;
+        self.requests.send(GoRequest { place, opened }).ok()?;
         (self.wake)();
         let hand = open.await.ok()?;
         answers(&hand, REACHED_WITHIN).await.then_some(hand)
     }
 }
 
-/// A person at the card.
-pub(crate) struct AtCard {
-    pub(crate) keeps: Option<oneshot::Receiver<bool>>,
-    pub(crate) saves: Option<oneshot::Receiver<bool>>,
-}
-
-impl Person for AtCard {
-    async fn keeps(&mut self) -> bool {
-        decided(&mut self.keeps).await
-    }
-
-    async fn saves(&mut self) -> bool {
-        decided(&mut self.saves).await
-    }
-}
-
-/// What was decided; a card that is gone decides nothing.
-async fn decided(question: &mut Option<oneshot::Receiver<bool>>) -> bool {
-    match question.take() {
-        Some(question) => question.await.unwrap_or(false),
-        None => false,
-    }
+/// What a person decides on the card; a card that is gone decides nothing.
+pub(crate) fn decided(answer: oneshot::Receiver<bool>) -> BoxFuture<'static, bool> {
+    Box::pin(async { answer.await.unwrap_or(false) })
 }

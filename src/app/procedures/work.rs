@@ -7,19 +7,17 @@ use crate::app::procedures::procedure::{
     CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, ResetProcedure,
     WayTo,
 };
-use crate::app::procedures::reach::{Asking, AtCard};
-use crate::app::procedures::running::{ProcedureTask, ProcedureWork};
+use crate::app::procedures::reach::{Asking, decided};
 use crate::app::running::Running;
 use crate::app::settings::Settings;
-use crate::hand::Moment;
 use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
-use crate::params::place::{Place, Places, command, new_place};
+use crate::params::place::{PlacePair, WhichPlace, command, new_place};
 use crate::params::rows::{ParamId, Value};
-use crate::store::Job;
+use crate::store::BackgroundJob;
 use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateStep, Checks, calibrate};
-use crate::tasks::place::{PlaceChange, PlaceEnd, PlaceStep, change_place};
+use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, PlaceStep, change_place};
 use crate::tasks::reset::{self, ResetStep, reset};
 use crate::transport::Endpoint;
 use crate::transport::endpoint::DEFAULT_TCP_PORT;
@@ -42,56 +40,57 @@ impl HandState {
         }
         let is_followed = followed.is_some();
         let new = followed.unwrap_or_else(|| at_address(&old, wanted));
-        self.procedure_work = ProcedureWork::default();
-        let mut way = None;
+        let (mut way, mut looking) = (None, None);
         if let Value::Address(address) = wanted {
             way = Some(WayTo::Asked);
             let look = async move { route(&address.to_string(), DEFAULT_TCP_PORT).await.ok() };
-            self.procedure_work.way = Some(Job::start(&env.runtime, &env.wake, look));
+            looking = Some(BackgroundJob::start(&env.runtime, &env.wake, look));
         }
         self.procedure = Some(Procedure::Place(PlaceProcedure {
             change: PlaceChange {
                 id,
                 before,
                 wanted,
-                places: Places { old, new },
+                places: PlacePair { old, new },
                 is_followed,
             },
             stage: ProcedureStage::Asking,
             backup: None,
             way,
             dangers: Vec::new(),
+            run: None,
+            keeps: None,
+            saves: None,
+            looking,
         }));
     }
 
     /// Opens the card of a return to the factory's parameters.
     pub(crate) fn open_reset(&mut self) {
-        if let Some(hand) = self.endpoint.clone().filter(|_| self.procedure.is_none()) {
-            self.procedure_work = ProcedureWork::default();
+        if let Some(hand) = self.endpoint.as_ref().filter(|_| self.procedure.is_none()) {
             self.procedure = Some(Procedure::Reset(ResetProcedure {
-                places: reset::places(&hand),
+                places: reset::places(hand),
                 stage: ProcedureStage::Asking,
+                run: None,
             }));
         }
     }
 
     /// Opens the card of a calibration.
     pub(crate) fn open_calibration(&mut self) {
-        if let Some(hand) = self.endpoint.clone().filter(|_| self.procedure.is_none()) {
-            self.procedure_work = ProcedureWork::default();
+        if self.endpoint.is_some() && self.procedure.is_none() {
             self.procedure = Some(Procedure::Calibrate(CalibrateProcedure {
-                hand,
                 checks: Checks::default(),
                 before: None,
                 stage: ProcedureStage::Asking,
+                run: None,
             }));
         }
     }
 
     /// The person goes elsewhere: the card closes, and nothing more is done for it.
     pub(crate) fn close_procedure(&mut self) {
-        self.procedure = None;
-        self.procedure_work = ProcedureWork::default();
+        (self.procedure, self.requested) = (None, None);
     }
 
     /// What the hand holds in a row by which it is found: as read back last, else as it said when the link began.
@@ -107,76 +106,74 @@ impl HandState {
         read.or(told)
     }
 
-    /// A person decided.
-    pub(crate) fn procedure_action(&mut self, action: ProcedureAction, env: &Env, now: Moment) {
-        match action {
-            ProcedureAction::Begin => self.begin_procedure(env, now),
-            ProcedureAction::Keep | ProcedureAction::GoBack => {
-                if let Some(ProcedureTask::Place { keeps, .. }) = &mut self.procedure_work.task {
-                    let keeps = keeps.take();
-                    // A task that has decided by itself hears it no more.
-                    let _heard = keeps.map(|keeps| keeps.send(action == ProcedureAction::Keep));
-                }
+    /// Carries out what a person decided on the card.
+    pub(crate) fn procedure_action(&mut self, action: ProcedureAction, env: &Env) {
+        let Some(procedure) = &mut self.procedure else {
+            return;
+        };
+        match (action, procedure) {
+            (ProcedureAction::Begin, _) => self.begin_procedure(env),
+            (ProcedureAction::Close, own) if own.may_close() => self.close_procedure(),
+            (ProcedureAction::Close, _) => {}
+            (action, Procedure::Place(card)) => {
+                let answer = match action {
+                    ProcedureAction::Keep | ProcedureAction::GoBack => card.keeps.take(),
+                    _ => card.saves.take(),
+                };
+                let agrees = matches!(action, ProcedureAction::Keep | ProcedureAction::Save);
+                // A task that is over has no ears.
+                let _heard = answer.map(|answer| answer.send(agrees));
             }
-            ProcedureAction::Save | ProcedureAction::LeaveUnsaved => {
-                if let Some(ProcedureTask::Place { saves, .. }) = &mut self.procedure_work.task {
-                    let saves = saves.take();
-                    let _heard = saves.map(|saves| saves.send(action == ProcedureAction::Save));
-                }
-            }
-            ProcedureAction::Close if self.procedure.as_ref().is_some_and(Procedure::may_close) => {
-                self.close_procedure();
-            }
-            ProcedureAction::Close => {}
+            (_, Procedure::Reset(_) | Procedure::Calibrate(_)) => {}
         }
     }
 
-    fn begin_procedure(&mut self, env: &Env, now: Moment) {
-        if self.rest_refusal().is_some() || self.procedure_work.task.is_some() {
+    fn begin_procedure(&mut self, env: &Env) {
+        if self.rest_refusal().is_some() {
             return;
         }
-        let folder = env.settings_path.as_deref().map(folder_beside);
-        let no_folder = || TaskError::NoBackup {
-            message: "there is no folder for backups".into(),
+        let now = self.now;
+        let backups = |hand: &Endpoint| match env.settings_path.as_deref().map(folder_beside) {
+            Some(folder) => Ok(Backups::new(&folder, hand)),
+            None => Err(TaskError::NoBackup {
+                message: "there is no folder for backups".into(),
+            }),
         };
-        let (wishes, wished) = mpsc::unbounded_channel();
+        let (requests, requested) = mpsc::unbounded_channel();
         let mut reach = Asking {
-            wishes,
+            requests,
             wake: Arc::clone(&env.wake),
         };
-        let task = match &mut self.procedure {
+        match &mut self.procedure {
             Some(Procedure::Place(card)) if card.stage == ProcedureStage::Asking => {
-                let Some(folder) = folder else {
-                    card.stage = ProcedureStage::Over(Err(no_folder()));
-                    return;
-                };
                 let change = card.change.clone();
-                let backups = Backups::new(&folder, &change.places.old);
+                let backups = match backups(&change.places.old) {
+                    Ok(backups) => backups,
+                    Err(error) => return card.stage = ProcedureStage::Over(Err(error)),
+                };
                 let (keeps, kept) = oneshot::channel();
                 let (saves, saved) = oneshot::channel();
-                let mut person = AtCard {
-                    keeps: Some(kept),
-                    saves: Some(saved),
+                (card.keeps, card.saves) = (Some(keeps), Some(saves));
+                let decisions = Decisions {
+                    keeps: decided(kept),
+                    saves: decided(saved),
                 };
                 card.stage = ProcedureStage::Doing(PlaceStep::BackingUp, now);
-                let run = Running::start(env, |steps| async move {
+                card.run = Some(Running::start(env, |steps| async move {
                     let tell = |step| steps.tell(step);
-                    change_place(&mut reach, &change, &backups, &mut person, tell).await
-                });
-                let (keeps, saves) = (Some(keeps), Some(saves));
-                ProcedureTask::Place { run, keeps, saves }
+                    change_place(&mut reach, &change, &backups, decisions, tell).await
+                }));
             }
             Some(Procedure::Reset(card)) if card.stage == ProcedureStage::Asking => {
-                let Some(folder) = folder else {
-                    card.stage = ProcedureStage::Over(Err(no_folder()));
-                    return;
-                };
                 let places = card.places.clone();
-                let backups = Backups::new(&folder, &places.old);
+                let backups = match backups(&places.old) {
+                    Ok(backups) => backups,
+                    Err(error) => return card.stage = ProcedureStage::Over(Err(error)),
+                };
                 card.stage = ProcedureStage::Doing(ResetStep::BackingUp, now);
-                ProcedureTask::Reset(Running::start(env, |steps| async move {
+                card.run = Some(Running::start(env, |steps| async move {
                     reset(&mut reach, &places, &backups, |step| steps.tell(step)).await
-                }))
+                }));
             }
             Some(Procedure::Calibrate(card)) if card.stage == ProcedureStage::Asking => {
                 let ready = card.checks.is_ready(&self.sample, &self.link, now);
@@ -186,137 +183,99 @@ impl HandState {
                 card.before = card.checks.mean();
                 card.stage = ProcedureStage::Doing(CalibrateStep::Calibrating, now);
                 let (link, clock) = (open.link.clone(), env.clock);
-                ProcedureTask::Calibrate(Running::start(env, |steps| async move {
+                card.run = Some(Running::start(env, |steps| async move {
                     calibrate(&link, clock, |step| steps.tell(step)).await
-                }))
+                }));
             }
             _ => return,
-        };
-        self.procedure_work.task = Some(task);
-        self.procedure_work.wishes = Some(wished);
+        }
+        self.requested = Some(requested);
     }
 
-    /// Takes in what the card's task did, and goes where it wants to be.
+    /// Takes in what the task under the card told, and goes where it has to look.
     pub(crate) fn tick_procedure(
         &mut self,
         env: &Env,
         settings: &mut Settings,
         notices: &mut Notices,
-        now: Moment,
     ) {
-        let mut work = std::mem::take(&mut self.procedure_work);
-        self.take_way(&mut work);
-        let over = self.take_procedure_task(&mut work, settings);
-        let wish = work
-            .wishes
-            .as_mut()
-            .and_then(|wishes| wishes.try_recv().ok());
-        if let Some(wish) = wish {
-            if self.endpoint.as_ref() != Some(&wish.place) {
-                self.go(Some(wish.place), env, notices, now);
+        let is_over = self.take_procedure_news(settings);
+        let requested = self.requested.as_mut();
+        if let Some(request) = requested.and_then(|all| all.try_recv().ok()) {
+            if self.endpoint.as_ref() != Some(&request.place) {
+                self.go(Some(request.place), env, notices);
             }
             if let Some(open) = &self.open {
-                // The task may be over already.
-                let _told = wish.opened.send(open.link.clone());
+                let _told = request.opened.send(open.link.clone());
             }
         }
-        if over {
-            if !matches!(work.task, Some(ProcedureTask::Calibrate(_))) {
-                // Whatever was read before it may hold no more, and is read anew by whoever looks.
-                self.params.link_lost(now);
+        if is_over {
+            if !matches!(self.procedure, Some(Procedure::Calibrate(_))) {
+                self.params.link_lost(self.now);
             }
-            work.task = None;
-            self.params.forget_files();
-            self.go_home(env, notices, now);
+            self.params.files = None;
+            self.go_home(env, notices);
         }
-        self.procedure_work = work;
     }
 
-    /// True once it is over.
-    fn take_procedure_task(&mut self, work: &mut ProcedureWork, settings: &mut Settings) -> bool {
-        if let Some(Procedure::Calibrate(card)) = &mut self.procedure
-            && card.stage == ProcedureStage::Asking
-        {
-            card.checks.watch(&self.sample);
-        }
-        match (&mut work.task, &mut self.procedure) {
-            (Some(ProcedureTask::Place { run, .. }), Some(Procedure::Place(card))) => {
-                let (steps, end) = run.news();
-                for (at, step) in steps {
+    /// True once the task is over.
+    fn take_procedure_news(&mut self, settings: &mut Settings) -> bool {
+        let params = &mut self.params;
+        match &mut self.procedure {
+            None => false,
+            Some(Procedure::Place(card)) => {
+                if let Some(found) = BackgroundJob::take_from(&mut card.looking) {
+                    card.way = Some(found.map_or(WayTo::None, WayTo::Known));
+                }
+                let is_over = card.stage.take_news(&mut card.run, |step, at| {
                     match step {
-                        PlaceStep::BackedUp(path, params) => {
-                            card.dangers = worse(&self.params.before_changes(&params), &params);
-                            card.backup = Some(path);
+                        PlaceStep::BackedUp(path, held) => {
+                            card.dangers = worse(&params.before_changes(held), held);
+                            card.backup = Some(path.clone());
                         }
-                        step => {
-                            if matches!(step, PlaceStep::Writing(_)) {
-                                self.params.outdated(at);
-                            }
-                            if let PlaceStep::Offering(place) = step {
-                                // What was kept is remembered.
-                                let there = card.change.places.endpoint(place);
-                                settings.remember(there);
-                            }
-                            card.stage = ProcedureStage::Doing(step, at);
+                        PlaceStep::Writing(_) => params.lost_at = Some(at),
+                        PlaceStep::Offering(place) => {
+                            settings.remember(card.change.places.endpoint(*place));
                         }
+                        _ => {}
                     }
-                }
-                let Some(end) = end else { return false };
-                if let Ok(report) = &end
-                    && let Some(place) = report.end.place()
-                    && matches!(report.end, PlaceEnd::Kept { .. })
+                    !matches!(step, PlaceStep::BackedUp(..))
+                });
+                if is_over
+                    && let Some(Ok(report)) = card.stage.end()
+                    && let PlaceEnd::Kept { at, .. } = &report.end
                 {
-                    let there = card.change.places.endpoint(place);
-                    settings.remember(there);
-                    self.params.stage(card.change.id, None);
+                    settings.remember(card.change.places.endpoint(*at));
+                    params.stage(card.change.id, None);
                 }
-                card.stage = ProcedureStage::Over(end);
-                true
+                is_over
             }
-            (Some(ProcedureTask::Reset(run)), Some(Procedure::Reset(card))) => {
-                let (steps, end) = run.news();
-                for (at, step) in steps {
-                    if step == ResetStep::Sending {
-                        self.params.outdated(at);
-                    }
-                    card.stage = ProcedureStage::Doing(step, at);
+            Some(Procedure::Reset(card)) => card.stage.take_news(&mut card.run, |step, at| {
+                if *step == ResetStep::Sending {
+                    params.lost_at = Some(at);
                 }
-                let Some(end) = end else { return false };
-                card.stage = ProcedureStage::Over(end);
                 true
-            }
-            (Some(ProcedureTask::Calibrate(run)), Some(Procedure::Calibrate(card))) => {
-                let (steps, end) = run.news();
-                for (at, step) in steps {
-                    card.stage = ProcedureStage::Doing(step, at);
+            }),
+            Some(Procedure::Calibrate(card)) => {
+                if card.stage == ProcedureStage::Asking {
+                    card.checks.watch(&self.sample);
                 }
-                let Some(end) = end else { return false };
-                card.stage = ProcedureStage::Over(end);
-                true
+                card.stage.take_news(&mut card.run, |_, _| true)
             }
-            _ => false,
-        }
-    }
-
-    fn take_way(&mut self, work: &mut ProcedureWork) {
-        if let Some(found) = Job::take_from(&mut work.way)
-            && let Some(Procedure::Place(card)) = &mut self.procedure
-        {
-            card.way = Some(found.map_or(WayTo::None, WayTo::Known));
         }
     }
 
     /// To the hand, not to another one that was looked for on the way.
-    fn go_home(&mut self, env: &Env, notices: &mut Notices, now: Moment) {
+    fn go_home(&mut self, env: &Env, notices: &mut Notices) {
         let Some(Procedure::Place(card)) = &self.procedure else {
             return;
         };
-        let home: Option<Place> = card.place();
+        let home: Option<WhichPlace> = card.place();
         let Some(there) = home.map(|place| card.change.places.endpoint(place).clone()) else {
             return;
         };
         if self.endpoint.as_ref() != Some(&there) {
-            self.go(Some(there), env, notices, now);
+            self.go(Some(there), env, notices);
         }
     }
 }

@@ -27,7 +27,7 @@ pub const LONGEST: Duration = Duration::from_secs(3600);
 
 /// Where the wanted temperature comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Source {
+pub enum GoalSource {
     /// [`WORKS_AGAIN_C`].
     Assumed,
     /// The last over-temperature of this drive ended there.
@@ -36,25 +36,25 @@ pub enum Source {
 
 /// The temperature to be reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Goal {
+pub struct CoolingGoal {
     /// °C.
     pub celsius: f32,
     /// Where it comes from.
-    pub source: Source,
+    pub source: GoalSource,
 }
 
-impl Goal {
+impl CoolingGoal {
     /// What this hand showed, else what is assumed.
     #[must_use]
     pub fn of(observed: Option<f32>) -> Self {
         observed.map_or(
             Self {
                 celsius: WORKS_AGAIN_C,
-                source: Source::Assumed,
+                source: GoalSource::Assumed,
             },
             |celsius| Self {
                 celsius,
-                source: Source::Observed,
+                source: GoalSource::Observed,
             },
         )
     }
@@ -78,7 +78,7 @@ pub enum Course {
 
 /// How this drive's temperature goes on. The work does not grow with the history.
 #[must_use]
-pub fn course(history: &History, dof: Dof, now_s: f64, goal: Goal) -> Course {
+pub fn course(history: &History, dof: Dof, now_s: f64, goal: CoolingGoal) -> Course {
     let series = Series::Joint(Quantity::Temperature, dof);
     let mut points = Vec::new();
     let mut from_s = now_s - LOOK_BACK_S;
@@ -115,7 +115,7 @@ pub fn extrapolate(points: &[(f64, f64)], goal_c: f64) -> Course {
         .filter(|(_, celsius)| *celsius > ambient)
         .map(|(at_s, celsius)| (*at_s, (celsius - ambient).ln()))
         .collect();
-    let Some(line) = Line::through(&excess) else {
+    let Some(line) = FittedLine::through(&excess) else {
         // The hottest is among the newest points: it has only begun to fall, or it wavers.
         let begun = points
             .last()
@@ -140,14 +140,14 @@ pub fn extrapolate(points: &[(f64, f64)], goal_c: f64) -> Course {
 }
 
 /// A straight line through points.
-struct Line {
+struct FittedLine {
     at_zero: f64,
     slope: f64,
     /// Standard error of the slope.
     error: f64,
 }
 
-impl Line {
+impl FittedLine {
     fn through(points: &[(f64, f64)]) -> Option<Self> {
         if points.len() < POINTS_MIN {
             return None;
@@ -205,7 +205,12 @@ mod tests {
 
     fn after(seconds: u32, seed: u32, celsius: impl Fn(f64) -> f64) -> Course {
         let history = history(seconds, seed, celsius);
-        course(&history, Dof::Ring, f64::from(seconds), Goal::of(None))
+        course(
+            &history,
+            Dof::Ring,
+            f64::from(seconds),
+            CoolingGoal::of(None),
+        )
     }
 
     #[test]
@@ -289,9 +294,9 @@ mod tests {
 
     #[test]
     fn what_this_hand_showed_goes_before_what_is_assumed() {
-        assert_eq!(Goal::of(None).source, Source::Assumed);
-        let own = Goal::of(Some(62.0));
-        assert_eq!((own.celsius, own.source), (62.0, Source::Observed));
+        assert_eq!(CoolingGoal::of(None).source, GoalSource::Assumed);
+        let own = CoolingGoal::of(Some(62.0));
+        assert_eq!((own.celsius, own.source), (62.0, GoalSource::Observed));
         assert_eq!(
             extrapolate(&[(-1.0, 65.0)], own.celsius.into()),
             Course::Unknown

@@ -76,19 +76,10 @@ impl FaultEntry {
 }
 
 /// Faults now and before.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct FaultList {
     entries: Vec<FaultEntry>,
     worked_again_c: PerDof<Option<f32>>,
-}
-
-impl Default for FaultList {
-    fn default() -> Self {
-        Self {
-            entries: Vec::new(),
-            worked_again_c: PerDof::splat(None),
-        }
-    }
 }
 
 impl FaultList {
@@ -177,11 +168,6 @@ impl FaultList {
         own.any(|entry| entry.is_active() && entry.what == hot)
     }
 
-    /// Another hand: nothing is known of it.
-    pub fn clear(&mut self) {
-        *self = Self::default();
-    }
-
     /// The temperature at which this drive's last over-temperature ended, °C; `None` if none did yet.
     #[must_use]
     pub fn worked_again_c(&self, dof: Dof) -> Option<f32> {
@@ -201,18 +187,6 @@ impl FaultList {
     /// What lasts, newest first.
     pub fn active(&self) -> impl Iterator<Item = &FaultEntry> {
         self.iter().filter(|entry| entry.is_active())
-    }
-
-    /// Entries of all kinds.
-    #[must_use]
-    pub const fn len(&self) -> usize {
-        self.entries.len()
-    }
-
-    /// True if nothing is or was wrong.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.entries.is_empty()
     }
 
     /// True if it was not active before.
@@ -317,10 +291,10 @@ mod tests {
         );
         see(&mut book, 5, 0, 2);
         book.forget();
-        assert_eq!(book.len(), 1, "nobody has seen it");
+        assert_eq!(book.iter().count(), 1, "nobody has seen it");
         book.see_all();
         book.forget();
-        assert!(book.is_empty());
+        assert_eq!(book.iter().count(), 0);
     }
 
     #[test]
@@ -385,7 +359,7 @@ mod tests {
     fn a_status_that_a_fault_explains_is_no_entry_of_its_own() {
         let mut book = FaultList::default();
         see(&mut book, 1, 0b1, 6);
-        assert_eq!(book.len(), 1);
+        assert_eq!(book.iter().count(), 1);
         see(&mut book, 2, 0, 6);
         assert_eq!(
             book.active().map(|entry| entry.what).collect::<Vec<_>>(),
@@ -400,7 +374,7 @@ mod tests {
             see(&mut book, 2 * u64::from(status), status, status);
             see(&mut book, 2 * u64::from(status) + 1, 0, status);
         }
-        assert!(book.len() <= FAULT_ENTRIES_MAX);
+        assert!(book.iter().count() <= FAULT_ENTRIES_MAX);
         assert_eq!(
             book.iter()
                 .filter(|entry| matches!(entry.what, FaultKind::Status(_)))

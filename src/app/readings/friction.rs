@@ -22,7 +22,7 @@ pub(crate) enum Grip {
 
 /// What they come to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum Hold {
+pub(crate) enum GripState {
     /// Nothing known.
     #[default]
     Unknown,
@@ -56,7 +56,7 @@ impl Grip {
     }
 }
 
-impl Hold {
+impl GripState {
     /// What comes after this state. A margin that wavers around a limit does not make the alarm flicker.
     pub(crate) fn next(self, grip: Grip, friction: f32) -> Self {
         let Some(margin) = grip.margin(friction) else {
@@ -101,13 +101,16 @@ mod tests {
         assert_eq!(Grip::of(Some(&block(0.05, 1.0))), Grip::Loose);
         assert_eq!(Grip::of(Some(&block(f32::NAN, 1.0))), Grip::Unknown);
         assert_eq!(Grip::of(None).margin(0.5), None);
-        assert_eq!(Hold::Slips.next(Grip::Loose, 0.5), Hold::Loose);
-        assert_eq!(Hold::Slips.next(Grip::Unknown, 0.5), Hold::Unknown);
+        assert_eq!(GripState::Slips.next(Grip::Loose, 0.5), GripState::Loose);
+        assert_eq!(
+            GripState::Slips.next(Grip::Unknown, 0.5),
+            GripState::Unknown
+        );
     }
 
     #[test]
     fn a_margin_that_wavers_around_the_limit_gives_one_alarm() {
-        let (mut hold, mut changes) = (Hold::Firm, 0);
+        let (mut hold, mut changes) = (GripState::Firm, 0);
         for step in 0..100u8 {
             // Friction 0.5: the margin wavers between -0.02 and 0.02.
             let ratio = if step % 2 == 0 { 0.51 } else { 0.49 };
@@ -115,8 +118,8 @@ mod tests {
             changes += u32::from(next != hold);
             hold = next;
         }
-        assert_eq!((hold, changes), (Hold::Slips, 1));
-        assert_eq!(hold.next(Grip::Ratio(0.45), 0.5), Hold::Near);
-        assert_eq!(hold.next(Grip::Ratio(0.2), 0.5), Hold::Firm);
+        assert_eq!((hold, changes), (GripState::Slips, 1));
+        assert_eq!(hold.next(Grip::Ratio(0.45), 0.5), GripState::Near);
+        assert_eq!(hold.next(Grip::Ratio(0.2), 0.5), GripState::Firm);
     }
 }

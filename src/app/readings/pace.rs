@@ -14,12 +14,12 @@ const INTERVALS: usize = 4;
 
 /// The last intervals between readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Pace {
+pub struct ReadingPace {
     last: Option<Moment>,
     intervals: [Duration; INTERVALS],
 }
 
-impl Pace {
+impl ReadingPace {
     /// Something was asked for at this moment, and came.
     pub fn take(&mut self, asked: Moment) {
         if let Some(last) = self.last.replace(asked) {
@@ -45,7 +45,7 @@ mod tests {
     #[test]
     fn old_is_what_missed_about_three_readings() {
         let at = |ms: u64| Moment::from_micros(ms * 1000);
-        let mut pace = Pace::default();
+        let mut pace = ReadingPace::default();
         assert_eq!(pace.stale_after(), STALE_AFTER_LEAST);
         (0..9).for_each(|nth| pace.take(at(nth * 10)));
         assert_eq!(pace.stale_after(), STALE_AFTER_LEAST, "100 Hz");

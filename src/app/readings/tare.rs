@@ -11,7 +11,7 @@ pub const TOUCHED_N: f32 = 0.3;
 
 /// The reading of one fingertip that its channels are counted from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Rest {
+pub struct TareZero {
     /// The eight channels, counts.
     pub raw: [u32; 8],
     /// When it was received.
@@ -52,8 +52,8 @@ struct Offer {
 /// The rests of all fingertips, and those before the last taring.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Tare {
-    rests: PerFinger<Option<Rest>>,
-    before: Option<PerFinger<Option<Rest>>>,
+    rests: PerFinger<Option<TareZero>>,
+    before: Option<PerFinger<Option<TareZero>>>,
     /// Looked for once a connection.
     offer: Option<Option<Offer>>,
 }
@@ -61,7 +61,7 @@ pub struct Tare {
 impl Tare {
     /// What this fingertip is counted from; `None` before it was read untouched.
     #[must_use]
-    pub fn rest(&self, finger: Finger) -> Option<Rest> {
+    pub fn rest(&self, finger: Finger) -> Option<TareZero> {
         self.rests[finger]
     }
 
@@ -106,7 +106,7 @@ impl Tare {
         Ok(())
     }
 
-    fn put(&mut self, rests: PerFinger<Option<Rest>>) {
+    fn put(&mut self, rests: PerFinger<Option<TareZero>>) {
         if self.rests != rests {
             self.before = Some(std::mem::replace(&mut self.rests, rests));
         }
@@ -152,7 +152,7 @@ impl Tare {
             }
             let raw = offer.kept.tips.get(finger.name());
             let source = Source::Kept(age);
-            let rest = raw.map(|raw| Rest {
+            let rest = raw.map(|raw| TareZero {
                 raw: *raw,
                 at: now,
                 source,
@@ -193,9 +193,9 @@ fn load(sample: &HandSample, finger: Finger) -> Option<f32> {
     (normal >= TOUCHED_N).then_some(normal)
 }
 
-fn reading(sample: &HandSample, finger: Finger, source: Source) -> Option<Rest> {
+fn reading(sample: &HandSample, finger: Finger, source: Source) -> Option<TareZero> {
     let block = sample.tactile[finger]?;
-    Some(Rest {
+    Some(TareZero {
         raw: block.value.raw,
         at: block.received,
         source,
@@ -294,7 +294,6 @@ mod tests {
         assert!(tare.can_undo());
         tare.undo();
         assert_eq!((counted_from(&tare), tare.can_undo()), (Some(100), false));
-        assert_eq!(tare.chosen_at(), None);
     }
 
     #[test]

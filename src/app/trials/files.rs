@@ -8,7 +8,8 @@ use crate::app::trials::state::{
     SessionId, SessionOrigin, SessionTrial, TrialSession, TrialsState,
 };
 use crate::store;
-use crate::store::{Job, on_thread, read_text};
+use crate::store::calendar::stamp;
+use crate::store::{BackgroundJob, on_thread, read_text};
 use crate::trials::recording::csv;
 use crate::trials::session::writer::SessionWriter;
 use crate::trials::session::{SESSION_FILE, SessionHead, load};
@@ -17,75 +18,65 @@ use futures::future::BoxFuture;
 use std::future::ready;
 use std::io;
 use std::path::{Component, Path, PathBuf};
+use std::time::Duration;
 
 /// A table of samples that is longer is not ours: a trial holds fewer rows.
 const TABLE_LEN_MAX: u64 = 256 * 1024 * 1024;
-/// Seconds of a day.
-const DAY_S: u64 = 86_400;
 
-/// What came of asking for files.
+/// What was done with files, or what to tell instead.
+pub(crate) type FilesEnd = Result<FilesDone, NoticeKind>;
+
+/// What was done with files.
 #[derive(Debug)]
-pub(crate) enum FilesEnd {
+pub(crate) enum FilesDone {
     /// A session of so many trials was written there.
     Saved(SessionId, PathBuf, usize),
     /// A session was read.
     Opened(PathBuf, Box<TrialSession>),
-    /// None was written.
-    Not(NoticeKind),
-    /// None was read.
-    NotOpened(NoticeKind),
 }
 
-/// Files of sessions.
-pub(crate) struct SessionFiles;
+/// Asks for a folder and writes a session that was run here into a new one inside it.
+pub(crate) fn save(
+    session: &TrialSession,
+    criterion: Option<Criterion>,
+    env: &Env,
+) -> Option<BackgroundJob<FilesEnd>> {
+    let is_own = !matches!(session.origin, SessionOrigin::Folder(_));
+    is_own.then(|| save_in(session.clone(), criterion, env.files.folder(), env))
+}
 
-impl SessionFiles {
-    /// Asks for a folder and writes a session that was run here into a new one inside it.
-    pub(crate) fn save(
-        session: &TrialSession,
-        criterion: Option<Criterion>,
-        env: &Env,
-    ) -> Option<Job<FilesEnd>> {
-        let is_own = !matches!(session.origin, SessionOrigin::Folder(_));
-        is_own.then(|| save_in(session.clone(), criterion, env.files.folder(), env))
-    }
-
-    /// Without asking: writes a session that lies in no file into a new folder in the folder of its day, and note and tags
-    /// of one that was saved into its file.
-    pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<Job<FilesEnd>> {
-        match &session.origin {
-            SessionOrigin::Folder(_) => None,
-            SessionOrigin::Saved(folder) => Some(keep_words(session, folder.clone(), env)),
-            SessionOrigin::Unsaved => {
-                let documents = env.documents.as_deref()?;
-                let folder = day_folder::of_day(documents, &session.head.day);
-                let folder = Box::pin(ready(Some(folder)));
-                (!session.trials.is_empty()).then(|| save_in(session.clone(), None, folder, env))
-            }
+/// Without asking: writes a session that lies in no file into a new folder in the folder of its day, and note and tags
+/// of one that was saved into its file.
+pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BackgroundJob<FilesEnd>> {
+    match &session.origin {
+        SessionOrigin::Folder(_) => None,
+        SessionOrigin::Saved(folder) => Some(keep_words(session, folder.clone(), env)),
+        SessionOrigin::Unsaved => {
+            let documents = env.documents.as_deref()?;
+            let folder = day_folder::of_day(documents, &session.head.day);
+            let folder = Box::pin(ready(Some(folder)));
+            (!session.trials.is_empty()).then(|| save_in(session.clone(), None, folder, env))
         }
     }
+}
 
-    /// Reads the folder of a session whose place was typed, else asks for its `session.toml`.
-    pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> Job<FilesEnd> {
-        let chosen = place_of(typed, env.files.as_ref(), SESSION_FILE);
-        Job::start(&env.runtime, &env.wake, async move {
-            let Some(file) = chosen.await else {
-                return FilesEnd::NotOpened(NoticeKind::NoFileChosen);
-            };
-            let path = file.clone();
-            let work = move || match file.is_dir() {
-                true => read_session(&file),
-                false => read_session(file.parent().unwrap_or(Path::new("."))),
-            };
-            match on_thread(work).await {
-                Ok(session) => FilesEnd::Opened(path, Box::new(session)),
-                Err(error) => FilesEnd::NotOpened(NoticeKind::SessionRefused {
-                    path,
-                    message: error.to_string(),
-                }),
-            }
-        })
-    }
+/// Reads the folder of a session whose place was typed, else asks for its `session.toml`.
+pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd> {
+    let chosen = place_of(typed, env.files.as_ref(), SESSION_FILE);
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
+        let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
+        let folder = match path.is_dir() {
+            true => path.clone(),
+            false => path.parent().unwrap_or(Path::new(".")).to_owned(),
+        };
+        match on_thread(move || read_session(&folder)).await {
+            Ok(session) => Ok(FilesDone::Opened(path, Box::new(session))),
+            Err(error) => Err(NoticeKind::SessionRefused {
+                path,
+                message: error.to_string(),
+            }),
+        }
+    })
 }
 
 /// Writes a session into a new folder in the one that is chosen.
@@ -94,37 +85,28 @@ fn save_in(
     criterion: Option<Criterion>,
     chosen: BoxFuture<'static, Option<PathBuf>>,
     env: &Env,
-) -> Job<FilesEnd> {
-    Job::start(&env.runtime, &env.wake, async move {
-        let Some(folder) = chosen.await else {
-            return FilesEnd::Not(NoticeKind::NoFileChosen);
-        };
+) -> BackgroundJob<FilesEnd> {
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
+        let folder = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
         let name = folder_name(&session.head);
         let (id, trials) = (session.id, session.trials.len());
         let asked = folder.join(&name);
         let work = move || {
             // Two series that begin in one second do not share a folder.
-            let names = (2..100).map(|number| folder.join(format!("{name}-{number}")));
-            let mut places = std::iter::once(folder.join(&name)).chain(names);
-            let place = places.find(|place| !place.exists());
-            let place = place.ok_or(io::ErrorKind::AlreadyExists)?;
+            let place = day_folder::free_path(&folder, &name);
             write(session, &place, criterion).map(|()| place)
         };
-        match on_thread(work).await {
-            Ok(folder) => FilesEnd::Saved(id, folder, trials),
-            Err(error) => FilesEnd::Not(NoticeKind::NotSaved {
-                path: asked,
-                message: error.to_string(),
-            }),
-        }
+        let written = on_thread(work).await;
+        let folder = written.map_err(|error| NoticeKind::not_saved(asked, &error))?;
+        Ok(FilesDone::Saved(id, folder, trials))
     })
 }
 
 /// Writes note and tags of a session into its file.
-fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> Job<FilesEnd> {
+fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> BackgroundJob<FilesEnd> {
     let (id, trials) = (session.id, session.trials.len());
     let (note, tags) = (session.head.note.clone(), session.head.tags.clone());
-    Job::start(&env.runtime, &env.wake, async move {
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
         let place = folder.clone();
         let work = move || {
             let mut file = load(&place)?;
@@ -133,21 +115,18 @@ fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> Job<FilesEn
             store::replace(&place.join(SESSION_FILE), text.as_bytes())
         };
         match on_thread(work).await {
-            Ok(()) => FilesEnd::Saved(id, folder, trials),
-            Err(error) => FilesEnd::Not(NoticeKind::NotSaved {
-                path: folder,
-                message: error.to_string(),
-            }),
+            Ok(()) => Ok(FilesDone::Saved(id, folder, trials)),
+            Err(error) => Err(NoticeKind::not_saved(folder, &error)),
         }
     })
 }
 
 /// `handscope-trials-2026-11-21-123456`, in universal time.
 fn folder_name(head: &SessionHead) -> String {
-    let of_day = head.begun_unix_s % DAY_S;
-    let (hours, minutes) = (of_day / 3600, of_day / 60 % 60);
-    let (day, seconds) = (&head.day, of_day % 60);
-    format!("handscope-trials-{day}-{hours:02}{minutes:02}{seconds:02}")
+    let begun = stamp(Duration::from_secs(head.begun_unix_s));
+    let (_, time) = begun.split_once('T').unwrap_or_default();
+    let digits: String = time.chars().filter(char::is_ascii_digit).collect();
+    format!("handscope-trials-{}-{digits}", head.day)
 }
 
 /// Writes the same files as the command line.
@@ -197,22 +176,18 @@ fn samples(folder: &Path, name: Option<&str>) -> io::Result<Option<TrialRecordin
 }
 
 impl TrialsState {
-    /// Takes in what came of files, and what to tell of it.
+    /// Takes in what was done with files, and what to tell of it.
     pub(crate) fn take(&mut self, end: FilesEnd) -> NoticeKind {
-        self.refused = None;
-        self.asks_path = matches!(end, FilesEnd::NotOpened(_));
+        self.refused = end.as_ref().err().cloned();
         match end {
-            FilesEnd::Not(notice) | FilesEnd::NotOpened(notice) => {
-                self.refused = Some(notice.clone());
-                notice
-            }
-            FilesEnd::Saved(id, path, entries) => {
+            Err(notice) => notice,
+            Ok(FilesDone::Saved(id, path, entries)) => {
                 if let Some(session) = self.session_mut(id) {
                     session.origin = SessionOrigin::Saved(path.clone());
                 }
                 NoticeKind::Saved { path, entries }
             }
-            FilesEnd::Opened(path, session) => {
+            Ok(FilesDone::Opened(path, session)) => {
                 let trials = session.trials.len();
                 self.add(session.head, session.origin, session.trials);
                 NoticeKind::SessionOpened { path, trials }

@@ -64,11 +64,11 @@ impl JointLines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trials::measure::curve::Curve;
+    use crate::trials::measure::curve::TimeSeries;
 
     #[test]
     fn a_thinned_line_is_short_and_keeps_its_peak() {
-        let curve: Curve = (0..90_000)
+        let curve: TimeSeries = (0..90_000)
             .map(|n| (f64::from(n), if n == 45_678 { 2000.0 } else { 3.0 }))
             .collect();
         let points = curve.decimated(POINTS_MAX);

@@ -9,12 +9,13 @@ use crate::app::trials::action::TrialAction;
 use crate::app::trials::form::tags;
 use crate::app::trials::run::SeriesRun;
 use crate::app::trials::state::{SessionId, SessionOrigin, TrialsState};
-use crate::hand::{Dof, Moment, PerDof};
+use crate::hand::{Dof, PerDof};
 use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
-use crate::tasks::series::{SeriesStart, SeriesStep, SeriesView, Told, series};
+use crate::tasks::series::{SeriesStart, SeriesStep, series};
 use crate::trials::plan_settings::to_settings;
 use crate::trials::recording::TrialRecording;
+use crate::trials::series::SeriesView;
 use crate::trials::session::SessionHead;
 use crate::trials::{Abort, EarlyEnd, Stage, TrialPlan};
 use tokio::sync::oneshot;
@@ -60,9 +61,7 @@ impl TrialsState {
             TrialAction::Start | TrialAction::Open(_) | TrialAction::Save(..) => {}
         }
     }
-}
 
-impl TrialsState {
     /// Wants a session in its files; one that runs is kept at its end.
     fn keep(&mut self, id: SessionId) {
         if self.running != Some(id) {
@@ -124,11 +123,11 @@ impl HandState {
         let task = Running::start(env, |steps| async move {
             let tell = |step| {
                 steps.tell(step);
-                Told::Kept
+                true
             };
             series(&link, start, ended, tell).await
         });
-        self.following = PerDof::splat(true);
+        self.steered = PerDof::default();
         self.commanded = true;
         let head = self.session_head(plan.clone());
         let session = trials.add(head, SessionOrigin::Unsaved, Vec::new());
@@ -163,12 +162,8 @@ impl HandState {
     }
 
     /// Takes in what the series did.
-    pub(crate) fn tick_series(
-        &mut self,
-        trials: &mut TrialsState,
-        notices: &mut Notices,
-        now: Moment,
-    ) {
+    pub(crate) fn tick_series(&mut self, trials: &mut TrialsState, notices: &mut Notices) {
+        let now = self.now;
         let Some(mut run) = self.series.take() else {
             // One that was broken off with its link has ended there.
             if let Some(session) = trials.running {
@@ -202,7 +197,7 @@ impl HandState {
         notices.push(now, trials.close(run.session, aborted));
         // The task disarmed the hand, or stopped it.
         if self.link.armed == Some(run.epoch) {
-            self.disarm(now);
+            self.disarm();
         }
     }
 }

@@ -16,13 +16,13 @@ pub(crate) const EDGES_MS: [u64; 7] = [1, 2, 4, 8, 16, 32, 64];
 /// One check-up of one hand.
 pub(crate) struct Checkup {
     pub(crate) endpoint: Endpoint,
-    pub(crate) place: Place,
+    pub(crate) connection: ConnectionFacts,
     /// The measurements, or why the hand did not answer.
     pub(crate) answer: Result<Measured, String>,
 }
 
 /// How the hand is reached, as the system reports it.
-pub(crate) enum Place {
+pub(crate) enum ConnectionFacts {
     /// In this program.
     BuiltIn,
     /// Behind a serial port.
@@ -43,7 +43,7 @@ pub(crate) struct Measured {
     pub(crate) answered_after: Duration,
     pub(crate) status: LinkStatus,
     pub(crate) stats: LinkStats,
-    pub(crate) windows: Vec<Window>,
+    pub(crate) windows: Vec<BlockTiming>,
     /// Round trips of short replies cluster at the ticks of a latency timer.
     pub(crate) ticks_seen: bool,
     /// Why the link was lost during the measurement.
@@ -51,18 +51,18 @@ pub(crate) struct Measured {
 }
 
 /// One block of registers, read repeatedly.
-pub(crate) struct Window {
+pub(crate) struct BlockTiming {
     pub(crate) name: &'static str,
     pub(crate) span: Span,
     /// The shortest time that the line allows, where its speed is known.
     pub(crate) line: Option<Duration>,
     pub(crate) refused: u64,
     pub(crate) failed: u64,
-    reads: u64,
+    pub(crate) reads: u64,
     trips: VecDeque<Duration>,
 }
 
-impl Window {
+impl BlockTiming {
     pub(crate) fn new(name: &'static str, span: Span, endpoint: &Endpoint) -> Self {
         Self {
             name,
@@ -81,10 +81,6 @@ impl Window {
             self.trips.pop_front();
         }
         self.trips.push_back(trip);
-    }
-
-    pub(crate) const fn reads(&self) -> u64 {
-        self.reads
     }
 
     /// The round trip at this percentile.
@@ -129,7 +125,7 @@ impl Window {
 impl Measured {
     /// Requests of the check-up, answered or not.
     pub(crate) fn requests(&self) -> u64 {
-        let asked = |window: &Window| window.reads + window.refused + window.failed;
+        let asked = |window: &BlockTiming| window.reads + window.refused + window.failed;
         self.windows.iter().map(asked).sum()
     }
 }
@@ -141,7 +137,7 @@ mod tests {
     #[test]
     fn a_window_counts_its_round_trips() {
         let endpoint = "rs485:/dev/ttyT0".parse().unwrap();
-        let mut window = Window::new("angles", Span::new(1546, 12), &endpoint);
+        let mut window = BlockTiming::new("angles", Span::new(1546, 12), &endpoint);
         assert_eq!((window.percentile(50), window.hz()), (None, None));
         for ms in [0, 1, 3, 5, 9, 20, 40, 100] {
             window.took(Duration::from_millis(ms));
@@ -157,11 +153,11 @@ mod tests {
 
     #[test]
     fn a_long_look_stays_small() {
-        let mut window = Window::new("angles", Span::new(1546, 12), &Endpoint::sim());
+        let mut window = BlockTiming::new("angles", Span::new(1546, 12), &Endpoint::sim());
         for _ in 0..=TRIPS_MAX {
             window.took(Duration::from_millis(1));
         }
         assert_eq!(window.trips.len(), TRIPS_MAX);
-        assert_eq!(window.reads(), TRIPS_MAX as u64 + 1);
+        assert_eq!(window.reads, TRIPS_MAX as u64 + 1);
     }
 }

@@ -1,6 +1,6 @@
 //! What is wrong with a hand or the connection to it, and what to do, in words.
 
-use crate::cli::doctor::checkup::{Checkup, Measured, Place};
+use crate::cli::doctor::checkup::{Checkup, ConnectionFacts, Measured};
 use crate::transport::{PortFacts, Route};
 use serde::Serialize;
 use std::time::Duration;
@@ -26,123 +26,116 @@ pub(crate) struct Finding {
     pub(crate) advice: String,
 }
 
-/// What was found so far.
-#[derive(Default)]
-struct Findings(Vec<Finding>);
-
-impl Findings {
-    fn add(&mut self, is_wrong: bool, what: impl Into<String>, advice: impl Into<String>) {
-        self.0.push(Finding {
-            is_wrong,
-            what: what.into(),
-            advice: advice.into(),
-        });
+fn wrong(what: impl Into<String>, advice: impl Into<String>) -> Finding {
+    Finding {
+        is_wrong: true,
+        what: what.into(),
+        advice: advice.into(),
     }
+}
 
-    fn wrong(&mut self, what: impl Into<String>, advice: impl Into<String>) {
-        self.add(true, what, advice);
-    }
-
-    fn hint(&mut self, what: impl Into<String>, advice: impl Into<String>) {
-        self.add(false, what, advice);
+fn hint(what: impl Into<String>, advice: impl Into<String>) -> Finding {
+    Finding {
+        is_wrong: false,
+        ..wrong(what, advice)
     }
 }
 
 /// All findings, the worst first.
 pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
-    let mut found = Findings::default();
+    let mut found = Vec::new();
     let endpoint = &checkup.endpoint;
     match &checkup.answer {
         // The sentence says itself what to do.
-        Err(why) => found.wrong(why, ""),
+        Err(why) => found.push(wrong(why, "")),
         Ok(measured) => answers(measured, &mut found),
     }
     let measured = checkup.answer.as_ref().ok();
-    match &checkup.place {
-        Place::Port(facts) => port(&endpoint.place(), facts, measured, &mut found),
-        Place::Net(way) => net(way.as_ref(), measured.is_some(), &mut found),
+    match &checkup.connection {
+        ConnectionFacts::Port(facts) => port(&endpoint.place(), facts, measured, &mut found),
+        ConnectionFacts::Net(way) => net(way.as_ref(), measured.is_some(), &mut found),
         #[cfg(target_os = "linux")]
-        Place::Can(facts) => can(&endpoint.place(), facts, &mut found),
+        ConnectionFacts::Can(facts) => can(&endpoint.place(), facts, &mut found),
         #[cfg(not(target_os = "linux"))]
-        Place::NoCan => {}
-        Place::BuiltIn => {}
+        ConnectionFacts::NoCan => {}
+        ConnectionFacts::BuiltIn => {}
     }
-    found.0.sort_by_key(|finding| !finding.is_wrong);
-    found.0
+    found.sort_by_key(|finding| !finding.is_wrong);
+    found
 }
 
-fn answers(measured: &Measured, found: &mut Findings) {
+fn answers(measured: &Measured, found: &mut Vec<Finding>) {
     if let Some(why) = &measured.lost {
-        found.wrong(
+        found.push(wrong(
             format!("the link was lost during the check: {why}"),
             "check plug, cable and the hand's power",
-        );
+        ));
     }
     let requests = measured.requests().max(1);
     let per_mille = |count: u64| count * 1000 / requests;
     let stats = &measured.stats;
     if per_mille(stats.timeouts) > TIMEOUTS_PER_MILLE {
-        found.wrong(
+        found.push(wrong(
             format!(
                 "{} of {requests} requests went without a reply",
                 stats.timeouts
             ),
             "check the cable, the termination, and whether two devices share an id",
-        );
+        ));
     }
     if per_mille(stats.checksum_errors) > CHECKSUMS_PER_MILLE {
-        found.wrong(
+        found.push(wrong(
             format!("{} replies had a wrong checksum", stats.checksum_errors),
             "check termination, ground and cable length; on RS485, Modbus RTU has a better check than the maker's framing",
-        );
+        ));
     }
     if measured.status.other_controller || stats.foreign_requests > 0 {
-        found.wrong(
+        found.push(wrong(
             format!(
                 "another controller talks to this hand ({} times noticed)",
                 stats.foreign_requests
             ),
             "close the other program, or take the other master off the bus",
-        );
+        ));
     }
     let slowest = measured
         .windows
         .iter()
         .filter_map(|window| window.percentile(50));
     if let Some(trip) = slowest.max().filter(|trip| *trip > SLOW) {
-        found.wrong(
+        found.push(wrong(
             format!("a reply takes {} ms", trip.as_millis()),
             "choose a higher baud rate, or check the latency of adapter and network",
-        );
+        ));
     }
     if measured.status.echoes {
-        found.hint(
+        found.push(hint(
             "the adapter echoes what is sent; the echo is ignored",
             "nothing to do; switching the echo off would free the line",
-        );
+        ));
     }
 }
 
-fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut Findings) {
+fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut Vec<Finding>) {
     // A port that could not be opened because of it has been told of with this name already.
     if let Some(holder) = facts.holder.as_ref().filter(|_| measured.is_some()) {
-        found.wrong(
+        found.push(wrong(
             format!("{port} is also open in {holder}"),
             "close that program: two programs mix up each other's replies",
-        );
+        ));
     }
     let timer = facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms);
     match timer {
-        Some(ms) if ms > TIMER_MS => found.wrong(
+        Some(ms) if ms > TIMER_MS => found.push(wrong(
             format!("the USB adapter holds replies back for up to {ms} ms (latency timer)"),
             timer_advice(facts, port),
-        ),
+        )),
         // The driver says that the timer is short: then it is the hand that takes so long.
         Some(_) => {}
-        None if measured.is_some_and(|measured| measured.ticks_seen) => found.wrong(
+        None if measured.is_some_and(|measured| measured.ticks_seen) => found.push(wrong(
             "replies come every 16 ms, as from a USB adapter with a latency timer of 16 ms",
             timer_advice(facts, port),
-        ),
+        )),
         None => {}
     }
 }
@@ -159,7 +152,7 @@ fn timer_advice(facts: &PortFacts, port: &str) -> String {
     format!("run 'echo 1 | sudo tee /sys/bus/usb-serial/devices/{name}/latency_timer'")
 }
 
-fn net(way: Option<&Route>, is_answered: bool, found: &mut Findings) {
+fn net(way: Option<&Route>, is_answered: bool, found: &mut Vec<Finding>) {
     let Some(way) = way.filter(|way| way.is_direct() == Some(false)) else {
         return;
     };
@@ -173,8 +166,8 @@ fn net(way: Option<&Route>, is_answered: bool, found: &mut Findings) {
         neighbour(way)
     );
     match is_answered {
-        true => found.hint(what, ""),
-        false => found.wrong(what, advice),
+        true => found.push(hint(what, "")),
+        false => found.push(wrong(what, advice)),
     }
 }
 
@@ -191,41 +184,41 @@ fn neighbour(way: &Route) -> String {
 }
 
 #[cfg(target_os = "linux")]
-fn can(interface: &str, facts: &crate::transport::can::facts::CanFacts, found: &mut Findings) {
+fn can(interface: &str, facts: &crate::transport::can::facts::CanFacts, found: &mut Vec<Finding>) {
     use crate::transport::can::facts::QUEUE_LEN_USUAL;
     let is_well = |state: &&str| matches!(*state, "ERROR-ACTIVE" | "STOPPED");
     if let Some(state) = facts.state.as_deref().filter(|state| !is_well(state)) {
-        found.wrong(
+        found.push(wrong(
             format!("the controller of {interface} is {state}"),
             "check bit rate, cable, and termination at both ends",
-        );
+        ));
     }
     let is_usual = |rate: &u64| matches!(*rate, 1_000_000 | 500_000);
     if let Some(rate) = facts.bitrate.filter(|rate| !is_usual(rate)) {
-        found.hint(
+        found.push(hint(
             format!("{interface} runs at {rate} bit/s; hands are delivered with 1000000"),
             format!("run 'sudo ip link set {interface} down', then 'sudo ip link set {interface} up type can bitrate 1000000'"),
-        );
+        ));
     }
     let queue_len = facts.queue_len.filter(|_| facts.is_up == Some(true));
     if let Some(len) = queue_len.filter(|len| *len <= QUEUE_LEN_USUAL) {
-        found.hint(
+        found.push(hint(
             format!("{interface} queues only {len} frames"),
             format!("if frames are refused, run 'sudo ip link set {interface} txqueuelen 100'"),
-        );
+        ));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::doctor::checkup::Window;
+    use crate::cli::doctor::checkup::BlockTiming;
     use crate::hand::Span;
     use crate::link::{LinkStats, LinkStatus};
     use crate::transport::{Endpoint, UsbFound};
 
     fn healthy(endpoint: &Endpoint) -> Measured {
-        let mut window = Window::new("angles", Span::new(1546, 12), endpoint);
+        let mut window = BlockTiming::new("angles", Span::new(1546, 12), endpoint);
         for _ in 0..1000 {
             window.took(Duration::from_millis(6));
         }
@@ -239,13 +232,13 @@ mod tests {
         }
     }
 
-    fn told(place: Place, change: impl Fn(&mut Measured)) -> Vec<(bool, String)> {
+    fn told(place: ConnectionFacts, change: impl Fn(&mut Measured)) -> Vec<(bool, String)> {
         let endpoint: Endpoint = "rs485:/dev/ttyT0".parse().unwrap();
         let mut measured = healthy(&endpoint);
         change(&mut measured);
         let checkup = Checkup {
             endpoint,
-            place,
+            connection: place,
             answer: Ok(measured),
         };
         let found = judge(&checkup);
@@ -260,8 +253,8 @@ mod tests {
             .collect()
     }
 
-    fn usb(latency_timer_ms: Option<u16>) -> Place {
-        Place::Port(PortFacts {
+    fn usb(latency_timer_ms: Option<u16>) -> ConnectionFacts {
+        ConnectionFacts::Port(PortFacts {
             device: Some("/dev/ttyT0".into()),
             usb: Some(UsbFound {
                 latency_timer_ms,
@@ -273,7 +266,7 @@ mod tests {
 
     #[test]
     fn a_healthy_hand_has_no_findings() {
-        assert_eq!(told(Place::BuiltIn, |_| ()), []);
+        assert_eq!(told(ConnectionFacts::BuiltIn, |_| ()), []);
         assert_eq!(told(usb(Some(1)), |_| ()), []);
         // A few of a thousand are this computer being busy.
         assert_eq!(told(usb(None), |measured| measured.stats.timeouts = 3), []);
@@ -282,7 +275,7 @@ mod tests {
     #[test]
     fn each_trouble_has_its_own_words_and_advice() {
         type Change = fn(&mut Measured);
-        let cases: [(Place, Change, bool, &str); 9] = [
+        let cases: [(ConnectionFacts, Change, bool, &str); 9] = [
             (usb(Some(16)), |_| (), true, "/ttyT0/latency_timer"),
             (
                 usb(None),
@@ -291,37 +284,37 @@ mod tests {
                 "/ttyT0/latency_timer",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.stats.timeouts = 20,
                 true,
                 "without a reply",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.stats.checksum_errors = 5,
                 true,
                 "termination",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.status.other_controller = true,
                 true,
                 "another controller",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.status.echoes = true,
                 false,
                 "echoes",
             ),
             (
-                Place::BuiltIn,
+                ConnectionFacts::BuiltIn,
                 |measured| measured.lost = Some("gone".into()),
                 true,
                 "gone",
             ),
             (
-                Place::Port(PortFacts {
+                ConnectionFacts::Port(PortFacts {
                     holder: Some("minicom (process 7)".into()),
                     ..PortFacts::default()
                 }),
@@ -330,7 +323,7 @@ mod tests {
                 "minicom (process 7)",
             ),
             (
-                Place::Net(Some(Route {
+                ConnectionFacts::Net(Some(Route {
                     to: "192.168.11.210".parse().unwrap(),
                     from: "10.0.0.7".parse().unwrap(),
                     interface: Some("eth0".into()),
@@ -361,7 +354,7 @@ mod tests {
 
     #[test]
     fn an_unreachable_network_is_wrong_and_the_address_to_take_is_named() {
-        let place = Place::Net(Some(Route {
+        let place = ConnectionFacts::Net(Some(Route {
             to: "192.168.11.210".parse().unwrap(),
             from: "10.0.0.7".parse().unwrap(),
             interface: Some("eth0".into()),
@@ -369,7 +362,7 @@ mod tests {
         }));
         let checkup = Checkup {
             endpoint: "tcp:192.168.11.210".parse().unwrap(),
-            place,
+            connection: place,
             answer: Err("nothing came".into()),
         };
         let found = judge(&checkup);

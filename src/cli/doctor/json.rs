@@ -1,8 +1,8 @@
 //! A check-up as one JSON object; a contract with scripts, documented in `assets/manual/json.md`.
 
-use crate::cli::doctor::checkup::{Checkup, EDGES_MS, Measured, Place, Window};
+use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, EDGES_MS, Measured};
 use crate::cli::doctor::findings::Finding;
-use crate::transport::{PortFacts, Route};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::time::Duration;
 
@@ -10,14 +10,20 @@ use std::time::Duration;
 pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     let measured = checkup.answer.as_ref().ok();
     let (mut port, mut network, mut can) = (None, None, None::<Value>);
-    match &checkup.place {
-        Place::Port(facts) => port = Some(port_json(facts)),
-        Place::Net(way) => network = way.as_ref().map(net_json),
+    match &checkup.connection {
+        ConnectionFacts::Port(facts) => {
+            let timer = facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms);
+            port = Some(with(facts, "latency_timer_ms", json!(timer)));
+        }
+        ConnectionFacts::Net(route) => {
+            let route = route.as_ref();
+            network = route.map(|route| with(route, "direct", json!(route.is_direct())));
+        }
         #[cfg(target_os = "linux")]
-        Place::Can(facts) => can = Some(json!(facts)),
+        ConnectionFacts::Can(facts) => can = Some(json!(facts)),
         #[cfg(not(target_os = "linux"))]
-        Place::NoCan => can = None,
-        Place::BuiltIn => {}
+        ConnectionFacts::NoCan => can = None,
+        ConnectionFacts::BuiltIn => {}
     }
     let status = measured.map(|measured| &measured.status);
     json!({
@@ -39,44 +45,22 @@ pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     })
 }
 
-fn port_json(facts: &PortFacts) -> Value {
-    let adapter = facts.usb.as_ref().map(|usb| {
-        json!({
-            "vendor_id": usb.vendor_id,
-            "product_id": usb.product_id,
-            "serial": usb.serial,
-            "maker": usb.maker,
-            "product": usb.product,
-            "location": usb.location,
-        })
-    });
-    json!({
-        "device": facts.device,
-        "adapter": adapter,
-        "driver": facts.driver,
-        "rights": facts.rights,
-        "held_by": facts.holder,
-        "latency_timer_ms": facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms),
-    })
+/// The facts as they are, with one more field that follows from them.
+fn with(facts: &impl Serialize, name: &str, value: Value) -> Value {
+    let mut object = json!(facts);
+    if let Value::Object(fields) = &mut object {
+        fields.insert(name.into(), value);
+    }
+    object
 }
 
-fn net_json(way: &Route) -> Value {
-    json!({
-        "to": way.to.to_string(),
-        "from": way.from.to_string(),
-        "interface": way.interface,
-        "prefix": way.prefix,
-        "direct": way.is_direct(),
-    })
-}
-
-fn window_json(window: &Window) -> Value {
+fn window_json(window: &BlockTiming) -> Value {
     let at = |percent| window.percentile(percent).map(millis);
     json!({
         "name": window.name,
         "address": window.span.address,
         "bytes": window.span.len,
-        "reads": window.reads(),
+        "reads": window.reads,
         "unanswered": window.failed,
         "refused": window.refused,
         "rtt_ms": {"min": at(0), "p50": at(50), "p99": at(99), "max": at(100)},

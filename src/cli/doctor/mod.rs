@@ -3,15 +3,19 @@
 mod checkup;
 mod findings;
 mod json;
-mod measure;
 mod text;
 
+use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, Measured};
+use crate::cli::interrupt::Interrupt;
 use crate::cli::out::Out;
 use crate::cli::parse::seconds;
 use crate::cli::session;
-use crate::transport::Endpoint;
+use crate::hand::{Span, register};
+use crate::link::{Clock, LinkHandle, PollRates, RequestError, Ticks};
+use crate::transport::{Endpoint, Sysfs, port_facts, route};
 use anyhow::bail;
 use std::time::Duration;
+use tokio::time::{Instant, sleep, sleep_until};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct DoctorArgs {
@@ -27,16 +31,142 @@ pub(crate) struct DoctorArgs {
 }
 
 /// Runs a check-up and prints it. Fails if something is wrong.
-pub(crate) fn run(out: &mut Out, args: &DoctorArgs) -> anyhow::Result<()> {
-    let checkup = session::runtime()?.block_on(measure::check(&args.hand, args.length))?;
+pub(crate) async fn run(out: &mut Out, args: &DoctorArgs) -> anyhow::Result<()> {
+    let checkup = check(&args.hand, args.length).await?;
     let found = findings::judge(&checkup);
-    match args.json {
-        true => out.object(&json::object(&checkup, &found))?,
-        false => out.lines(text::lines(&checkup, &found))?,
-    }
+    let object = json::object(&checkup, &found);
+    out.result(args.json, &object, text::lines(&checkup, &found))?;
     match found.iter().filter(|finding| finding.is_wrong).count() {
         0 => Ok(()),
         1 => bail!("one thing is wrong with {}", args.hand),
         count => bail!("{count} things are wrong with {}", args.hand),
+    }
+}
+
+/// Besides what is measured, only the setpoints are read: they show whether someone else changes them.
+const RATES: PollRates = PollRates {
+    state_hz: 0.0,
+    tactile_hz: 0.0,
+    settings_hz: 2.0,
+};
+/// Where a late reply is possible, the next request waits this long.
+const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
+/// The fingertips in the first of the two reads that cover all five.
+const TIPS: Span = Span::new(register::TOUCH.address, 232);
+const LAST_TIP: Span = Span::new(register::TOUCH.address + TIPS.len, 58);
+
+/// Checks the connection, then the hand, until the time is up or a person ends it.
+async fn check(hand: &Endpoint, length: Duration) -> anyhow::Result<Checkup> {
+    let interrupt = Interrupt::listen()?;
+    let connection = connection(hand).await;
+    Ok(Checkup {
+        answer: answer(hand, length, interrupt).await,
+        endpoint: hand.clone(),
+        connection,
+    })
+}
+
+async fn connection(endpoint: &Endpoint) -> ConnectionFacts {
+    match endpoint {
+        Endpoint::Sim { .. } => ConnectionFacts::BuiltIn,
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
+            ConnectionFacts::Port(port_facts(&line.port, &Sysfs::default()))
+        }
+        Endpoint::Slcan { port, .. } | Endpoint::UsbCan { port, .. } => {
+            ConnectionFacts::Port(port_facts(port, &Sysfs::default()))
+        }
+        // A name that cannot be resolved is told again, with its reason, when it is dialled.
+        Endpoint::Tcp { host, port, .. } => ConnectionFacts::Net(route(host, *port).await.ok()),
+        #[cfg(target_os = "linux")]
+        Endpoint::Can { interface, .. } => ConnectionFacts::Can(
+            crate::transport::can::facts::can_facts(interface, std::path::Path::new("/sys")),
+        ),
+        #[cfg(not(target_os = "linux"))]
+        Endpoint::Can { .. } => ConnectionFacts::NoCan,
+    }
+}
+
+async fn answer(
+    hand: &Endpoint,
+    length: Duration,
+    mut interrupt: Interrupt,
+) -> Result<Measured, String> {
+    let begun = Instant::now();
+    let link = session::open(hand, RATES, Clock::start());
+    let answered = session::answered(&link, hand);
+    tokio::select! {
+        biased;
+        () = interrupt.wished() => return Err("ended before the hand answered".into()),
+        answered = answered => answered.map_err(|error| error.to_string())?,
+    }
+    let answered_after = begun.elapsed();
+    let mut reader = BlockReader::new(hand);
+    let until = Instant::now() + length;
+    tokio::select! {
+        biased;
+        () = interrupt.wished() => {}
+        () = sleep_until(until) => {}
+        () = reader.ask_on(&link) => {}
+    }
+    let status = link.status();
+    let lost = session::trouble(&status).map(ToString::to_string);
+    Ok(Measured {
+        answered_after,
+        lost: lost.or_else(|| reader.is_lost.then(|| "the link was lost".into())),
+        stats: link.stats(),
+        status,
+        windows: reader.windows,
+        ticks_seen: reader.ticks.are_seen(),
+    })
+}
+
+/// Reads the windows in turn, one request at a time.
+struct BlockReader {
+    windows: Vec<BlockTiming>,
+    ticks: Ticks,
+    is_lost: bool,
+}
+
+impl BlockReader {
+    fn new(endpoint: &Endpoint) -> Self {
+        let windows = [
+            ("angles", register::ANGLE_ACT.span()),
+            ("set-points", register::SETPOINTS),
+            ("motion state", register::STATE),
+            ("four fingertips", TIPS),
+            ("one fingertip", LAST_TIP),
+        ];
+        Self {
+            windows: windows
+                .map(|(name, span)| BlockTiming::new(name, span, endpoint))
+                .into(),
+            ticks: Ticks::default(),
+            is_lost: false,
+        }
+    }
+
+    /// Asks until the link is lost.
+    async fn ask_on(&mut self, link: &LinkHandle) {
+        loop {
+            for window in &mut self.windows {
+                let asked = Instant::now();
+                match link.read(window.span).await {
+                    Ok(_bytes) => {
+                        let trip = asked.elapsed();
+                        window.took(trip);
+                        self.ticks.took(window.span.len, trip);
+                    }
+                    Err(RequestError::Refused { .. } | RequestError::WrongLength { .. }) => {
+                        window.refused += 1;
+                    }
+                    Err(RequestError::Ambiguous { .. }) => sleep(AMBIGUOUS_WAIT).await,
+                    Err(RequestError::LinkLost | RequestError::NotConnected) => {
+                        self.is_lost = true;
+                        return;
+                    }
+                    Err(_) => window.failed += 1,
+                }
+            }
+        }
     }
 }

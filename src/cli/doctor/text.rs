@@ -1,14 +1,15 @@
 //! A check-up as lines of text.
 
-use crate::cli::doctor::checkup::{Checkup, EDGES_MS, Measured, Place, Window};
+use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, EDGES_MS, Measured};
 use crate::cli::doctor::findings::Finding;
 use crate::transport::{PortFacts, Route, UsbFound};
+use std::fmt::Display;
 use std::time::Duration;
 
 /// Everything.
 pub(crate) fn lines(checkup: &Checkup, found: &[Finding]) -> Vec<String> {
     let mut lines = vec![row("hand", checkup.endpoint.to_string())];
-    lines.extend(place(&checkup.place));
+    lines.extend(connection(&checkup.connection));
     match &checkup.answer {
         Ok(measured) => lines.extend(answer(measured)),
         Err(_) => lines.push(row("answer", "none")),
@@ -32,41 +33,45 @@ fn row(caption: &str, value: impl AsRef<str>) -> String {
 }
 
 /// A row whose value may be unknown.
-fn known(caption: &str, value: Option<&String>) -> String {
-    row(caption, value.map_or("-", String::as_str))
+fn known(caption: &str, value: Option<impl Display>, unknown: &str) -> String {
+    row(
+        caption,
+        value.map_or(unknown.into(), |value| value.to_string()),
+    )
 }
 
-fn place(place: &Place) -> Vec<String> {
-    match place {
-        Place::BuiltIn => vec![row(
+fn connection(facts: &ConnectionFacts) -> Vec<String> {
+    match facts {
+        ConnectionFacts::BuiltIn => vec![row(
             "place",
             "built into this program, over a wire in memory",
         )],
-        Place::Port(facts) => port(facts),
-        Place::Net(way) => vec![row("route", way.as_ref().map_or_else(no_way, route))],
+        ConnectionFacts::Port(facts) => port(facts),
+        ConnectionFacts::Net(way) => {
+            let none = "none: this computer has no route to it";
+            vec![known("route", way.as_ref().map(route), none)]
+        }
         #[cfg(target_os = "linux")]
-        Place::Can(facts) => can(facts),
+        ConnectionFacts::Can(facts) => can(facts),
         #[cfg(not(target_os = "linux"))]
-        Place::NoCan => Vec::new(),
+        ConnectionFacts::NoCan => Vec::new(),
     }
 }
 
 fn port(facts: &PortFacts) -> Vec<String> {
     let usb = facts.usb.as_ref();
     let timer = usb.and_then(|usb| usb.latency_timer_ms);
-    let or = |value: Option<String>, none: &str| value.unwrap_or_else(|| none.into());
+    let no_adapter = "not on USB, or not listed by the system";
     vec![
-        known("device", facts.device.as_ref()),
-        row(
-            "adapter",
-            or(usb.map(adapter), "not on USB, or not listed by the system"),
-        ),
-        known("driver", facts.driver.as_ref()),
-        known("rights", facts.rights.as_ref()),
-        row("held by", or(facts.holder.clone(), "no other program seen")),
-        row(
+        known("device", facts.device.as_ref(), "-"),
+        known("adapter", usb.map(adapter), no_adapter),
+        known("driver", facts.driver.as_ref(), "-"),
+        known("rights", facts.rights.as_ref(), "-"),
+        known("held by", facts.holder.as_ref(), "no other program seen"),
+        known(
             "latency",
-            or(timer.map(|ms| format!("{ms} ms")), "no timer known"),
+            timer.map(|ms| format!("{ms} ms")),
+            "no timer known",
         ),
     ]
 }
@@ -80,10 +85,6 @@ fn adapter(usb: &UsbFound) -> String {
     let location = location.map(|location| format!("at {location}"));
     let words = names.chain([ids]).chain(serial).chain(location);
     words.collect::<Vec<_>>().join(" ")
-}
-
-fn no_way() -> String {
-    "none: this computer has no route to it".into()
 }
 
 fn route(way: &Route) -> String {
@@ -114,9 +115,9 @@ fn can(facts: &crate::transport::can::facts::CanFacts) -> Vec<String> {
     let queue = facts.queue_len.map(|len| format!("{len} frames"));
     vec![
         row("interface", is),
-        known("bit rate", rate.as_ref()),
-        known("controller", facts.state.as_ref()),
-        known("queue", queue.as_ref()),
+        known("bit rate", rate, "-"),
+        known("controller", facts.state.as_ref(), "-"),
+        known("queue", queue, "-"),
     ]
 }
 
@@ -166,7 +167,7 @@ fn errors(measured: &Measured) -> String {
     )
 }
 
-fn trips(window: &Window) -> String {
+fn trips(window: &BlockTiming) -> String {
     let at = |percent| {
         let trip = window.percentile(percent);
         trip.map_or_else(|| "-".into(), millis)
@@ -176,7 +177,7 @@ fn trips(window: &Window) -> String {
         "{:<17}{:>5}{:>8}{:>8}{:>8}{:>8}{:>8} |{}",
         window.name,
         window.span.len,
-        window.reads(),
+        window.reads,
         at(0),
         at(50),
         at(99),
@@ -185,7 +186,7 @@ fn trips(window: &Window) -> String {
     )
 }
 
-fn rate(window: &Window) -> String {
+fn rate(window: &BlockTiming) -> String {
     let (reached, line) = (window.hz(), window.line_hz());
     let hz = |value: Option<f64>| value.map_or_else(|| "-".into(), |hz| format!("{hz:.1}"));
     let share = match reached.zip(line).map(|(reached, line)| reached / line) {

@@ -4,17 +4,16 @@ use crate::cli::out::{Out, WrongUsage, end, say};
 use crate::cli::params::args::ApplyArgs;
 use crate::cli::params::words::{self, or_dash, outcome_json, outcome_line};
 use crate::cli::params::{place, reach};
-use crate::cli::session;
 use crate::params::changes::RowOutcome;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
-use crate::tasks::TaskError;
-use crate::tasks::apply::{Applied, Apply, ApplyStep, Otherwise, apply};
+use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
+use crate::tasks::{ParamStep, TaskError};
 use anyhow::{anyhow, bail};
 use serde_json::json;
 
 /// Applies. Fails unless every chosen row is in effect.
-pub(crate) fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
     let (file, note) =
         words::load(&args.file).map_err(|error| anyhow!("{error}; nothing was written"))?;
     note.iter().for_each(|note| say(note));
@@ -28,16 +27,14 @@ pub(crate) fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
         bail!("{path} holds {what}; nothing was written");
     }
     let place = place::wanted_row(&args.common.hand, &wanted)?;
-    session::runtime()?.block_on(async {
-        let is_done = match place {
-            Some((id, value)) => place::change(out, args, id, value).await,
-            None => rows(out, args, &file.params, wanted).await,
-        };
-        match is_done.map_err(explained)? {
-            Some(is_done) => end(is_done),
-            None => nothing_to_write(out, args),
-        }
-    })
+    let is_done = match place {
+        Some((id, value)) => place::change(out, args, id, value).await,
+        None => rows(out, args, &file.params, wanted).await,
+    };
+    match is_done.map_err(explained)? {
+        Some(is_done) => end(is_done),
+        None => nothing_to_write(out, args),
+    }
 }
 
 /// Writes rows. Whether all are in force; `None` if the hand held all of them already.
@@ -58,10 +55,8 @@ async fn rows(
     };
     let link = reach::open(&args.common.hand).await?;
     let told = |step| {
-        if let ApplyStep::Meant(risks) = step {
-            for reason in words::risks(&risks) {
-                say(&format!("warning: {reason}"));
-            }
+        if let ParamStep::Meant(risks) = step {
+            words::warn(&risks);
         }
     };
     let applied = apply(&link, &task, told).await?;
@@ -89,13 +84,12 @@ fn explained(error: anyhow::Error) -> anyhow::Error {
 
 /// That the hand is as wanted already.
 fn nothing_to_write(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
-    if args.common.json {
-        let hand = args.common.hand.to_string();
-        return out.object(
-            &json!({ "hand": hand, "backup": null, "rows": [], "applied": true, "undone": null }),
-        );
-    }
-    out.line("the hand holds all of it already; nothing was written")
+    let hand = args.common.hand.to_string();
+    out.result(
+        args.common.json,
+        &json!({ "hand": hand, "backup": null, "rows": [], "applied": true, "undone": null }),
+        ["the hand holds all of it already; nothing was written"],
+    )
 }
 
 fn tell(out: &mut Out, args: &ApplyArgs, applied: &Applied) -> anyhow::Result<Option<bool>> {
@@ -105,18 +99,19 @@ fn tell(out: &mut Out, args: &ApplyArgs, applied: &Applied) -> anyhow::Result<Op
     let is_written = |row: &&RowOutcome| row.before != Some(row.wanted);
     let rows: Vec<&RowOutcome> = applied.rows.iter().filter(is_written).collect();
     let is_whole = applied.is_whole();
-    if args.common.json {
-        out.object(&json!({
+    out.result(
+        args.common.json,
+        &json!({
             "hand": args.common.hand.to_string(),
             "backup": backup,
             "rows": rows.iter().map(|row| outcome_json(row)).collect::<Vec<_>>(),
             "applied": is_whole,
             "undone": applied.undone,
-        }))?;
-    } else {
-        out.lines(rows.iter().map(|row| outcome_line(row)))?;
-        out.line(&format!("backup: {}", backup.display()))?;
-    }
+        }),
+        rows.iter()
+            .map(|row| outcome_line(row))
+            .chain([words::backup(backup)]),
+    )?;
     if is_whole {
         if rows.iter().any(|row| row.id == ParamId::IpAddress) {
             say(

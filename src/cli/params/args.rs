@@ -107,7 +107,7 @@ pub(crate) struct ApplyArgs {
     pub(crate) common: Common,
     /// Only this row or group, for example default_speed.index or default_force; may be repeated
     #[arg(long, value_name = "ROW", value_parser = rows)]
-    pub(crate) only: Vec<Rows>,
+    pub(crate) only: Vec<RowNames>,
     /// Keep the rows that were applied even if others fail
     #[arg(long)]
     pub(crate) partial: bool,
@@ -158,9 +158,9 @@ impl FlashArgs {
 
 /// The rows that a name stands for.
 #[derive(Debug, Clone)]
-pub(crate) struct Rows(pub(crate) Vec<ParamId>);
+pub(crate) struct RowNames(pub(crate) Vec<ParamId>);
 
-fn rows(name: &str) -> Result<Rows, String> {
+fn rows(name: &str) -> Result<RowNames, String> {
     let rows = ParamId::named(name);
     if rows.is_empty() {
         let all: Vec<String> = ParamId::all().into_iter().map(ParamId::name).collect();
@@ -169,5 +169,5 @@ fn rows(name: &str) -> Result<Rows, String> {
             all.join(", ")
         ));
     }
-    Ok(Rows(rows))
+    Ok(RowNames(rows))
 }

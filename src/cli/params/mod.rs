@@ -3,13 +3,10 @@
 
 mod apply;
 mod args;
-mod backups;
-mod diff;
-mod dump;
+mod flash;
+mod inspect;
 mod place;
 mod reach;
-mod reset;
-mod save;
 mod words;
 
 pub(crate) use args::ParamsArgs;
@@ -18,13 +15,13 @@ use crate::cli::out::Out;
 use args::ParamsCommand;
 
 /// Runs one of the subcommands.
-pub(crate) fn run(out: &mut Out, args: &ParamsArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &ParamsArgs) -> anyhow::Result<()> {
     match &args.command {
-        ParamsCommand::Dump(args) => dump::run(out, args),
-        ParamsCommand::Diff(args) => diff::run(out, args),
-        ParamsCommand::Apply(args) => apply::run(out, args),
-        ParamsCommand::Save(args) => save::run(out, args),
-        ParamsCommand::Reset(args) => reset::run(out, args),
-        ParamsCommand::Backups(args) => backups::run(out, args),
+        ParamsCommand::Dump(args) => inspect::dump(out, args).await,
+        ParamsCommand::Diff(args) => inspect::diff(out, args).await,
+        ParamsCommand::Apply(args) => apply::run(out, args).await,
+        ParamsCommand::Save(args) => flash::save(out, args).await,
+        ParamsCommand::Reset(args) => flash::reset(out, args).await,
+        ParamsCommand::Backups(args) => inspect::backups(out, args),
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::cli::out::{Out, say};
 use crate::cli::params::args::ApplyArgs;
-use crate::cli::params::reach::{self, Places, SaidYes};
-use crate::cli::params::words::risks;
+use crate::cli::params::reach::{self, LinkOpener, said_yes};
+use crate::cli::params::words;
 use crate::params::place::{self, Moved, new_place};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
@@ -34,19 +34,17 @@ pub(crate) async fn change(
     let mut meant = Risks::default();
     meant.places.put(id, wanted);
     args.consent().check(&meant)?;
-    for risk in risks(&meant) {
-        say(&format!("warning: {risk}"));
-    }
+    words::warn(&meant);
     let new = new_place(&old, id, wanted).unwrap_or_else(|| old.clone());
     let change = PlaceChange {
         id,
         before,
         wanted,
-        places: place::Places { old, new },
+        places: place::PlacePair { old, new },
         is_followed: true,
     };
-    let mut reach = Places::default();
-    let report = change_place(&mut reach, &change, &files, &mut SaidYes, |_| ()).await?;
+    let mut reach = LinkOpener::default();
+    let report = change_place(&mut reach, &change, &files, said_yes(), |_| ()).await?;
     if let Some(why) = &report.not_noted {
         bail!(
             "the hand was changed, and its backups could not be taken along: they are in {}: {why}",
@@ -72,7 +70,7 @@ fn tell(
         Moved::Nowhere => None,
         _ => Some(old.to_string()),
     };
-    let sentence = words(moved, change, backup);
+    let sentence = outcome(moved, change, backup);
     let is_done = matches!(moved, Moved::There | Moved::Waits);
     if args.common.json {
         let row = json!({
@@ -90,8 +88,7 @@ fn tell(
             "words": sentence,
         }))?;
     } else if is_done {
-        out.line(&sentence)?;
-        out.line(&format!("backup: {}", backup.display()))?;
+        out.lines([&sentence, &words::backup(backup)])?;
     }
     if !is_done {
         say(&sentence);
@@ -99,7 +96,7 @@ fn tell(
     Ok(Some(is_done))
 }
 
-fn words(moved: &Moved, change: &PlaceChange, backup: &Path) -> String {
+fn outcome(moved: &Moved, change: &PlaceChange, backup: &Path) -> String {
     let (name, wanted) = (change.id.name(), change.wanted);
     let (old, new) = (&change.places.old, &change.places.new);
     match moved {

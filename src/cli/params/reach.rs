@@ -1,14 +1,12 @@
 //! How a command about parameters reaches the hand: one link at a time, and where it may be next.
 
-use crate::cli::out::{end, say};
 use crate::cli::session::{self, ANSWER_WITHIN};
-use crate::link::{Clock, LinkHandle, PollRates, RequestError};
-use crate::params::values::Params;
+use crate::link::{Clock, LinkHandle, PollRates};
+use crate::tasks::Reach;
 use crate::tasks::hand::answers;
-use crate::tasks::place::Person;
-use crate::tasks::{Reach, read};
+use crate::tasks::place::Decisions;
 use crate::transport::Endpoint;
-use anyhow::bail;
+use std::future::ready;
 use std::time::Duration;
 use tokio::time::sleep;
 
@@ -26,33 +24,14 @@ pub(crate) async fn open(hand: &Endpoint) -> anyhow::Result<LinkHandle> {
     session::reach(hand, ONLY_THE_STATE).await
 }
 
-/// All rows that can be read, and why others cannot.
-pub(crate) async fn read_rows(hand: &Endpoint) -> anyhow::Result<(Params, Vec<RequestError>)> {
-    let link = open(hand).await?;
-    let read::Rows { params, troubles } = read::rows(&link, |_, _| ()).await;
-    if params.is_empty() {
-        let why = troubles.last().map(ToString::to_string).unwrap_or_default();
-        bail!("cannot read any parameter of {hand}: {why}");
-    }
-    Ok((params, troubles))
-}
-
-/// Says what could not be read, and fails if there is any or if the command found something else.
-pub(crate) fn say_troubles(troubles: &[RequestError], is_well: bool) -> anyhow::Result<()> {
-    for trouble in troubles {
-        say(&format!("cannot read everything: {trouble}"));
-    }
-    end(is_well && troubles.is_empty())
-}
-
 /// Opens one link after the other, where the hand may be.
 #[derive(Default)]
-pub(crate) struct Places {
+pub(crate) struct LinkOpener {
     has_been_open: bool,
 }
 
-impl Reach for Places {
-    type Hand = LinkHandle;
+impl Reach for LinkOpener {
+    type Link = LinkHandle;
 
     async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
         if std::mem::replace(&mut self.has_been_open, true) {
@@ -64,14 +43,9 @@ impl Reach for Places {
 }
 
 /// Who said --yes keeps what was asked for; SAVE is a command of its own.
-pub(crate) struct SaidYes;
-
-impl Person for SaidYes {
-    async fn keeps(&mut self) -> bool {
-        true
-    }
-
-    async fn saves(&mut self) -> bool {
-        false
+pub(crate) fn said_yes() -> Decisions {
+    Decisions {
+        keeps: Box::pin(ready(true)),
+        saves: Box::pin(ready(false)),
     }
 }

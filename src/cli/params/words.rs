@@ -1,6 +1,6 @@
 //! Rows, dangers and results in sentences, tables and JSON, as the commands about parameters share them. Pure.
 
-use crate::params::backups::{Backups, Known};
+use crate::cli::out::say;
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::danger::Danger;
 use crate::params::file::{self, ParamsFile};
@@ -41,16 +41,13 @@ pub(crate) fn load(path: &Path) -> anyhow::Result<(ParamsFile, Option<String>)> 
     Ok((file, (!unknown.is_empty()).then_some(note)))
 }
 
-/// What this program knows of the hand's flash.
-pub(crate) fn known(files: &Backups) -> anyhow::Result<Known> {
-    let folder = files.folder().display();
-    files
-        .known()
-        .map_err(|error| anyhow!("the record of this hand in {folder} cannot be used: {error}"))
+/// Where the backup lies.
+pub(crate) fn backup(path: &Path) -> String {
+    format!("backup: {}", path.display())
 }
 
 /// The warning about defaults that hit hard after power-up.
-pub(crate) fn danger(danger: &Danger) -> String {
+fn danger(danger: &Danger) -> String {
     let joint = danger.dof.name();
     let (speed, force) = (danger.speed, danger.force_g);
     let strong = if danger.is_above_rated() {
@@ -72,6 +69,13 @@ pub(crate) fn risks(risks: &Risks) -> Vec<String> {
         format!("{name} becomes {value}: the hand may be found elsewhere")
     });
     dangers.chain(places).collect()
+}
+
+/// Says them.
+pub(crate) fn warn(meant: &Risks) {
+    for reason in risks(meant) {
+        say(&format!("warning: {reason}"));
+    }
 }
 
 /// One row that was to be written.

@@ -1,6 +1,6 @@
 //! The command line of `trial` as clap sees it, and the plan that it stands for.
 
-use crate::cli::parse::{angle, dof, force, seconds, speed, whole};
+use crate::cli::parse::{angle, dof, force, number, seconds, speed, whole};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::transport::Endpoint;
 use crate::trials::plan::MARGIN;
@@ -69,7 +69,7 @@ pub(crate) struct TrialArgs {
     /// A tag to find them by; may be repeated
     #[arg(long = "tag", value_name = "WORD")]
     pub(crate) tags: Vec<String>,
-    /// Name the best setting by this criterion criterion
+    /// Name the best setting by this criterion
     #[arg(long, value_name = "CRITERION")]
     pub(crate) best: Option<BestArg>,
     /// Steady force in g that the best must hold
@@ -142,10 +142,7 @@ impl TrialArgs {
 }
 
 fn grams(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(grams) if (0.0..=4000.0).contains(&grams) => Ok(grams),
-        _ => Err(format!("'{text}' is not a force between 0 and 4000 g")),
-    }
+    number(text, 0.0..=4000.0, "a force between 0 and 4000 g")
 }
 
 fn place(text: &str) -> Result<(Dof, Angle), String> {

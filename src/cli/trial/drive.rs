@@ -7,13 +7,13 @@ use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
 use crate::cli::trial::output;
 use crate::cli::trial::output::Outcome;
-use crate::cli::trial::writer::Writer;
+use crate::cli::trial::results::TrialResults;
 use crate::hand::HandSample;
 use crate::link::{Clock, LinkHandle, Records};
 use crate::record::Record;
-use crate::tasks::series::{self, SeriesStart, SeriesStep, Stop, Told};
+use crate::tasks::series::{self, SeriesStart, Stop};
 use crate::transport::Endpoint;
-use crate::trials::{Abort, Trial, TrialPlan, TrialSummary};
+use crate::trials::{Abort, TrialPlan};
 use anyhow::bail;
 use std::time::Duration;
 use tokio::time::{Instant, sleep, timeout};
@@ -46,8 +46,8 @@ pub(crate) async fn drive(
         );
     };
     // The folder is made only now: nothing is left behind by a hand that is not there.
-    let writer = match Writer::start(args, plan, &link) {
-        Ok(writer) => writer,
+    let mut results = match TrialResults::start(out, args, plan, &link) {
+        Ok(results) => results,
         Err(error) => {
             link.disarm();
             sleep(TICK).await;
@@ -61,90 +61,17 @@ pub(crate) async fn drive(
         seen,
         clock,
     };
-    let mut finished = Finished::new(out, args.json, writer);
     let ended = async {
         interrupt.wished().await;
         Abort::Person
     };
-    let report = series::series(&link, start, ended, |step| finished.take(step)).await?;
+    let report = series::series(&link, start, ended, |step| results.take(step)).await?;
     if report.stop == Some(Stop::NotConfirmed) {
         say("STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply");
     }
     disarm(&link).await;
-    Ok(Outcome {
-        hand: args.hand.to_string(),
-        folder: args.out.clone(),
-        trials: finished.close(report.aborted)?,
-        aborted: report.aborted,
-        stop: report.stop,
-    })
-}
-
-/// The trials that are over: shown, and written where that is asked.
-struct Finished<'a> {
-    out: &'a mut Out,
-    json: bool,
-    writer: Option<Writer>,
-    trials: Vec<TrialSummary>,
-    total: usize,
-    /// What could not be shown or written first.
-    error: Option<anyhow::Error>,
-}
-
-impl<'a> Finished<'a> {
-    const fn new(out: &'a mut Out, json: bool, writer: Option<Writer>) -> Self {
-        Self {
-            out,
-            json,
-            writer,
-            trials: Vec::new(),
-            total: 0,
-            error: None,
-        }
-    }
-
-    fn take(&mut self, step: SeriesStep) -> Told {
-        match step {
-            SeriesStep::View(view) => self.total = view.total,
-            SeriesStep::Mark(_) => {}
-            SeriesStep::Trial(trial) => {
-                if let Err(error) = self.add(*trial) {
-                    self.error.get_or_insert(error);
-                    return Told::Lost;
-                }
-            }
-        }
-        Told::Kept
-    }
-
-    fn add(&mut self, mut trial: Trial) -> anyhow::Result<()> {
-        if self.writer.is_some() {
-            trial.summary.samples = Some(trial.summary.samples_file());
-        }
-        self.trials.push(trial.summary.clone());
-        let shown = self.show(&trial.summary);
-        let written = self.writer.as_ref().map_or(Ok(()), |to| to.write(trial));
-        shown.and(written)
-    }
-
-    fn show(&mut self, trial: &TrialSummary) -> anyhow::Result<()> {
-        if self.json {
-            self.out.line(&output::trial_json(trial).to_string())?;
-        } else {
-            for line in output::trial_lines(trial, self.total) {
-                self.out.line(&line)?;
-            }
-        }
-        self.out.flush()
-    }
-
-    fn close(self, aborted: Option<Abort>) -> anyhow::Result<Vec<TrialSummary>> {
-        let written = self.writer.map_or(Ok(()), |writer| writer.finish(aborted));
-        match self.error {
-            Some(error) => Err(error),
-            None => written.map(|()| self.trials),
-        }
-    }
+    let trials = results.close(report.aborted)?;
+    Ok(Outcome::of(trials, report, args.criterion()))
 }
 
 /// Disarms, and waits until the link has done so.

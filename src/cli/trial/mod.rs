@@ -3,21 +3,19 @@
 mod args;
 mod drive;
 mod output;
-mod writer;
+mod results;
 
 pub(crate) use args::TrialArgs;
 
 use crate::cli::args::Cli;
 use crate::cli::out::Out;
-use crate::cli::session;
-use crate::cli::trial::output::{Findings, SessionLine};
 use crate::trials::TrialPlan;
 use anyhow::bail;
 use clap::CommandFactory as _;
 use clap::error::ErrorKind;
 
 /// Runs the series. Fails if it ended early, or if no setting is what was wanted.
-pub(crate) fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
     let plan = plan(args);
     if !args.arm {
         bail!(
@@ -26,18 +24,13 @@ pub(crate) fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
             args.hand
         );
     }
-    let outcome = session::runtime()?.block_on(drive::drive(out, args, &plan))?;
-    let found = Findings::of(&outcome, args.criterion());
-    if args.json {
-        out.line(&SessionLine::of(&outcome, &found).json().to_string())?;
-    } else {
-        output::write_found(out, &found, outcome.trials.len())?;
-    }
+    let outcome = drive::drive(out, args, &plan).await?;
+    out.result(args.json, &outcome.json(args), outcome.lines())?;
     out.flush()?;
     if let Some(why) = outcome.aborted_words() {
-        bail!("{why}{}", output::stop_words(outcome.stop));
+        bail!("{why}{}", output::stop_words(outcome.report.stop));
     }
-    if let Some(criterion) = found.criterion.filter(|_| found.best.is_none()) {
+    if let Some(criterion) = outcome.criterion.filter(|_| outcome.best.is_none()) {
         bail!("no setting that was tried qualifies: {criterion}");
     }
     Ok(())

@@ -1,29 +1,94 @@
 //! Trials and series as JSON, a contract with scripts, and as lines of text. Pure.
 
-use crate::cli::out::Out;
-use crate::hand::{Dof, Force, Speed};
-use crate::tasks::series::Stop;
+use crate::cli::trial::args::TrialArgs;
+use crate::hand::Dof;
+use crate::tasks::series::{SeriesReport, Stop};
 use crate::trials::best::{MetricSpread, Score, best, scores};
 use crate::trials::columns::COLUMNS;
-use crate::trials::{Abort, Criterion, JointMetrics, TrialPlan, TrialSummary};
-use serde::Serialize;
+use crate::trials::{Criterion, JointMetrics, TrialPlan, TrialSetting, TrialSummary};
 use serde_json::{Value, json};
-use std::path::PathBuf;
 
-/// The outcome of a series.
+/// A series that is over, and what its settings came to.
 pub(crate) struct Outcome {
-    pub(crate) hand: String,
-    pub(crate) folder: Option<PathBuf>,
-    pub(crate) trials: Vec<TrialSummary>,
-    pub(crate) aborted: Option<Abort>,
-    /// What feedback showed after the stop, if there was one.
-    pub(crate) stop: Option<Stop>,
+    trials: Vec<TrialSummary>,
+    pub(crate) report: SeriesReport,
+    scores: Vec<Score>,
+    pub(crate) criterion: Option<Criterion>,
+    pub(crate) best: Option<TrialSetting>,
 }
 
 impl Outcome {
+    /// Scores the settings that were tried, and finds the best if a criterion asks for it.
+    pub(crate) fn of(
+        trials: Vec<TrialSummary>,
+        report: SeriesReport,
+        criterion: Option<Criterion>,
+    ) -> Self {
+        let scores = scores(&trials);
+        let best = criterion.and_then(|criterion| best(&scores, criterion));
+        Self {
+            best: best.map(|score| score.setting),
+            trials,
+            report,
+            scores,
+            criterion,
+        }
+    }
+
     /// Why it ended early, in words.
     pub(crate) fn aborted_words(&self) -> Option<String> {
-        self.aborted.map(|why| format!("ended early: {why}"))
+        self.report.aborted.map(|why| format!("ended early: {why}"))
+    }
+
+    /// The last line: `{"session": {…}}`.
+    pub(crate) fn json(&self, args: &TrialArgs) -> Value {
+        let stop = self.report.stop.map(|stop| {
+            let after_s = match stop {
+                Stop::Confirmed { after } => Some(after.as_secs_f64()),
+                Stop::NotConfirmed | Stop::LinkLost => None,
+            };
+            json!({ "confirmed": after_s.is_some(), "after_s": after_s })
+        });
+        let best = self.criterion.map(|criterion| {
+            json!({
+                "criterion": criterion.to_string(),
+                "speed": self.best.map(|setting| setting.speed),
+                "force_threshold_g": self.best.map(|setting| setting.force),
+            })
+        });
+        json!({ "session": {
+            "hand": args.hand.to_string(),
+            "folder": args.out.as_ref().map(|folder| folder.display().to_string()),
+            "trials": self.trials.len(),
+            "aborted": self.aborted_words(),
+            "stop": stop,
+            "settings": self.scores,
+            "best": best,
+        }})
+    }
+
+    /// The same for people: the settings, where there were several trials, and the best.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let spread = |spread: Option<MetricSpread>| match spread {
+            None => "-".to_owned(),
+            Some(MetricSpread { median, min, max }) => {
+                format!("{median:.0} ({min:.0} to {max:.0})")
+            }
+        };
+        let scores = self.scores.iter().filter(|_| self.trials.len() > 1);
+        let scores = scores.map(|score| {
+            format!(
+                "speed {:4}, threshold {:4} g: overshoot {} g, steady {} g, {} trials",
+                score.setting.speed.get(),
+                score.setting.force.get(),
+                spread(score.overshoot_g),
+                spread(score.steady_force_g),
+                score.trials,
+            )
+        });
+        let best = self.criterion.zip(self.best);
+        let best = best.map(|(criterion, setting)| format!("best by {criterion}: {setting}"));
+        scores.chain(best).collect()
     }
 }
 
@@ -36,87 +101,6 @@ pub(crate) fn trial_json(trial: &TrialSummary) -> Value {
         line.insert("joints".into(), joints);
     }
     json!({"trial": line})
-}
-
-/// The last line: `{"session": {…}}`.
-#[derive(Debug, Serialize)]
-pub(crate) struct SessionLine<'a> {
-    hand: String,
-    folder: Option<String>,
-    trials: usize,
-    aborted: Option<String>,
-    stop: Option<StopLine>,
-    settings: &'a [Score],
-    best: Option<BestLine>,
-}
-
-#[derive(Debug, Serialize)]
-struct StopLine {
-    confirmed: bool,
-    after_s: Option<f64>,
-}
-
-#[derive(Debug, Serialize)]
-struct BestLine {
-    criterion: String,
-    speed: Option<Speed>,
-    force_threshold_g: Option<Force>,
-}
-
-impl<'a> SessionLine<'a> {
-    /// Of a series that is over.
-    pub(crate) fn of(outcome: &Outcome, found: &'a Findings) -> Self {
-        let after_s = |stop: Stop| match stop {
-            Stop::Confirmed { after } => Some(after.as_secs_f64()),
-            Stop::NotConfirmed | Stop::LinkLost => None,
-        };
-        let setting = found.best.as_ref().map(|score| score.setting);
-        Self {
-            hand: outcome.hand.clone(),
-            folder: outcome
-                .folder
-                .as_ref()
-                .map(|folder| folder.display().to_string()),
-            trials: outcome.trials.len(),
-            aborted: outcome.aborted_words(),
-            stop: outcome.stop.map(|stop| StopLine {
-                confirmed: after_s(stop).is_some(),
-                after_s: after_s(stop),
-            }),
-            settings: &found.scores,
-            best: found.criterion.map(|criterion| BestLine {
-                criterion: criterion.to_string(),
-                speed: setting.map(|own| own.speed),
-                force_threshold_g: setting.map(|own| own.force),
-            }),
-        }
-    }
-
-    /// As a line.
-    pub(crate) fn json(&self) -> Value {
-        json!({"session": self})
-    }
-}
-
-/// What the settings came to, and which is the best, if that was asked.
-#[derive(Debug)]
-pub(crate) struct Findings {
-    pub(crate) scores: Vec<Score>,
-    pub(crate) criterion: Option<Criterion>,
-    pub(crate) best: Option<Score>,
-}
-
-impl Findings {
-    /// Of a series that is over.
-    pub(crate) fn of(outcome: &Outcome, criterion: Option<Criterion>) -> Self {
-        let scores = scores(&outcome.trials);
-        let best = criterion.and_then(|criterion| best(&scores, criterion));
-        Self {
-            best: best.cloned(),
-            scores,
-            criterion,
-        }
-    }
 }
 
 /// What feedback showed after a stop, to follow a sentence.
@@ -159,26 +143,4 @@ fn joint_words(joint: &JointMetrics) -> String {
     let values: Vec<String> = values.collect();
     let end = joint.end_status.as_deref().unwrap_or("-");
     format!("{} {}, {end}", joint.dof.name(), values.join(", "))
-}
-
-/// The summary of all trials.
-pub(crate) fn write_found(out: &mut Out, found: &Findings, trials: usize) -> anyhow::Result<()> {
-    let spread = |spread: Option<MetricSpread>| match spread {
-        None => "-".to_owned(),
-        Some(MetricSpread { median, min, max }) => format!("{median:.0} ({min:.0} to {max:.0})"),
-    };
-    for score in found.scores.iter().filter(|_| trials > 1) {
-        out.line(&format!(
-            "speed {:4}, threshold {:4} g: overshoot {} g, steady {} g, {} trials",
-            score.setting.speed.get(),
-            score.setting.force.get(),
-            spread(score.overshoot_g),
-            spread(score.steady_force_g),
-            score.trials,
-        ))?;
-    }
-    if let (Some(criterion), Some(best)) = (found.criterion, &found.best) {
-        out.line(&format!("best by {criterion}: {}", best.setting))?;
-    }
-    Ok(())
 }

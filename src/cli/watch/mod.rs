@@ -9,7 +9,7 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session::{self, ANSWER_WITHIN};
 use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
-use crate::hand::{Group, Groups, HandSample, Moment};
+use crate::hand::{Group, Moment};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Records};
 use crate::record::Record;
 use anyhow::bail;
@@ -23,14 +23,12 @@ const FLUSH_EACH: Duration = Duration::from_millis(50);
 const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
 
 /// Watches until the time is up or a person ends it. Fails if the hand never answered.
-pub(crate) fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
-    session::runtime()?.block_on(async {
-        let interrupt = Interrupt::listen()?;
-        match args.wire {
-            true => wire::watch(out, args, interrupt).await,
-            false => Watch::new(out, args).run(interrupt).await,
-        }
-    })
+pub(crate) async fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
+    let interrupt = Interrupt::listen()?;
+    match args.wire {
+        true => wire::watch(out, args, interrupt).await,
+        false => Watch::new(out, args).run(interrupt).await,
+    }
 }
 
 struct Watch<'a> {
@@ -44,13 +42,6 @@ struct Watch<'a> {
     last_text: Option<Moment>,
     answered: bool,
     told: Option<LinkTrouble>,
-}
-
-/// What the watch does next.
-enum Step {
-    Record(Record),
-    Tick,
-    End,
 }
 
 impl<'a> Watch<'a> {
@@ -75,17 +66,19 @@ impl<'a> Watch<'a> {
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut end = pin!(self.args.over());
         loop {
-            let step = tokio::select! {
+            let record = tokio::select! {
                 biased;
-                () = interrupt.wished() => Step::End,
-                () = &mut end => Step::End,
-                _ = tick.tick() => Step::Tick,
-                record = self.records.next() => record.map_or(Step::End, Step::Record),
+                () = interrupt.wished() => break,
+                () = &mut end => break,
+                _ = tick.tick() => {
+                    self.tick()?;
+                    continue;
+                }
+                record = self.records.next() => record,
             };
-            match step {
-                Step::Record(record) => self.take(record)?,
-                Step::Tick => self.tick()?,
-                Step::End => break,
+            match record {
+                Some(record) => self.take(record)?,
+                None => break,
             }
         }
         self.finish()
@@ -142,13 +135,9 @@ impl<'a> Watch<'a> {
     }
 
     fn take(&mut self, record: Record) -> anyhow::Result<()> {
-        match record {
-            Record::Reading { sample, fresh } => self.sample(&sample, fresh),
-            _ => Ok(()),
-        }
-    }
-
-    fn sample(&mut self, sample: &HandSample, fresh: Groups) -> anyhow::Result<()> {
+        let Record::Reading { sample, fresh } = record else {
+            return Ok(());
+        };
         let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) else {
             return Ok(());
         };
@@ -156,14 +145,14 @@ impl<'a> Watch<'a> {
         self.taken += 1;
         let at = angle.received;
         if self.args.json {
-            return self.out.object(&sample_json(sample, at));
+            return self.out.object(&sample_json(&sample, at));
         }
         let is_soon = |last| at.since(last) < TEXT_LINE_EACH;
         if self.last_text.is_some_and(is_soon) {
             return Ok(());
         }
         self.last_text = Some(at);
-        self.out.line(&sample_text(sample, at))
+        self.out.line(&sample_text(&sample, at))
     }
 
     fn finish(mut self) -> anyhow::Result<()> {

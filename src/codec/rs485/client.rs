@@ -1,27 +1,34 @@
 //! The asking half of the framing: requests out, replies in. The device half is in `device`.
 
 use crate::codec::rs485::framing::{
-    self, CALIBRATION_END, Frame, Framer, NoiseCounts, Parts, Payload, READ_LEN_MAX, WRITE, Way,
+    self, CALIBRATION_END, FrameDirection, FrameParts, Framer, FramerCounts, Payload, READ_LEN_MAX,
+    Rs485Frame, WRITE,
 };
 use crate::hand::register::SAVE;
 use crate::hand::{HandId, RegisterWrite, Span};
 
 /// The request that reads these bytes (manual 2.2.1); `None` if there are none or more than [`READ_LEN_MAX`].
 #[must_use]
-pub fn encode_read(id: HandId, span: Span) -> Option<Frame> {
+pub fn encode_read(id: HandId, span: Span) -> Option<Rs485Frame> {
     if span.len == 0 || span.len > READ_LEN_MAX {
         return None;
     }
     let len = u8::try_from(span.len).ok()?;
-    let frame = framing::build_short(Way::Request, id.get(), framing::READ, span.address, len);
+    let frame = framing::build_short(
+        FrameDirection::Request,
+        id.get(),
+        framing::READ,
+        span.address,
+        len,
+    );
     Some(frame)
 }
 
 /// The request that writes these bytes (manual 2.2.2).
 #[must_use]
-pub fn encode_write(id: HandId, write: &RegisterWrite) -> Frame {
+pub fn encode_write(id: HandId, write: &RegisterWrite) -> Rs485Frame {
     let frame = framing::build(
-        Way::Request,
+        FrameDirection::Request,
         id.get(),
         WRITE,
         write.address(),
@@ -37,7 +44,7 @@ pub fn encode_write(id: HandId, write: &RegisterWrite) -> Frame {
     reason = "the buffer stands inside on purpose: no allocation per frame"
 )]
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Reply {
+pub enum Rs485Reply {
     /// Bytes that were read (manual 2.2.1).
     Read {
         /// The hand that answers.
@@ -69,16 +76,11 @@ pub enum SaveResult {
     Other(u8),
 }
 
-impl Reply {
-    fn from_parts(parts: Parts) -> Self {
-        let Parts {
-            id,
-            command,
-            address,
-            data: bytes,
-        } = parts;
+impl Rs485Reply {
+    fn from_parts(parts: FrameParts) -> Self {
+        let (id, address, bytes) = (parts.id, parts.address, parts.data);
         match bytes.first() {
-            Some(&value) if command == WRITE => Self::WriteAck { id, address, value },
+            Some(&value) if parts.command == WRITE => Self::WriteAck { id, address, value },
             _ => Self::Read { id, address, bytes },
         }
     }
@@ -135,7 +137,7 @@ impl Reply {
 impl ReplyDecoder {
     /// A whole request that was on the line: our own that an adapter gave back, or another controller's. Oldest first;
     /// of many at once only the first few are kept.
-    pub fn overheard(&mut self) -> Option<Frame> {
+    pub fn overheard(&mut self) -> Option<Rs485Frame> {
         self.0.overheard()
     }
 }
@@ -143,7 +145,7 @@ impl ReplyDecoder {
 framing::decoder!(
     /// Finds replies in what comes from the wire. Whole requests (echoes) are skipped and counted.
     ReplyDecoder,
-    Way::Reply,
-    Reply,
-    Reply::from_parts
+    FrameDirection::Reply,
+    Rs485Reply,
+    Rs485Reply::from_parts
 );

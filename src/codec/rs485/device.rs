@@ -1,7 +1,8 @@
 //! The answering half of the framing, for the simulated hand: requests in, replies out. The asking half is in `client`.
 
 use crate::codec::rs485::framing::{
-    self, CALIBRATION_END, Frame, Framer, NoiseCounts, Parts, Payload, READ, WRITE, Way,
+    self, CALIBRATION_END, FrameDirection, FrameParts, Framer, FramerCounts, Payload, READ,
+    Rs485Frame, WRITE,
 };
 use crate::hand::Span;
 use crate::hand::register::SAVE;
@@ -12,7 +13,7 @@ use crate::hand::register::SAVE;
     reason = "the buffer stands inside on purpose: no allocation per frame"
 )]
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Request {
+pub enum Rs485Request {
     /// Give these bytes (manual 2.2.1). The length is as received: 0 and 253 to 255 cannot be answered.
     Read {
         /// The hand that is meant.
@@ -31,16 +32,11 @@ pub enum Request {
     },
 }
 
-impl Request {
-    fn from_parts(parts: Parts) -> Self {
-        let Parts {
-            id,
-            command,
-            address,
-            data: bytes,
-        } = parts;
+impl Rs485Request {
+    fn from_parts(parts: FrameParts) -> Self {
+        let (id, address, bytes) = (parts.id, parts.address, parts.data);
         match bytes.first() {
-            Some(&len) if command == READ => Self::Read {
+            Some(&len) if parts.command == READ => Self::Read {
                 id,
                 span: Span::new(address, u16::from(len)),
             },
@@ -52,32 +48,32 @@ impl Request {
 framing::decoder!(
     /// Finds requests in what comes from the wire. Whole replies (of other hands on the bus) are skipped and counted.
     RequestDecoder,
-    Way::Request,
-    Request,
-    Request::from_parts
+    FrameDirection::Request,
+    Rs485Request,
+    Rs485Request::from_parts
 );
 
 /// The reply to a read (manual 2.2.1); `None` unless there are 1 to 252 bytes.
 #[must_use]
-pub fn encode_read_reply(id: u8, address: u16, bytes: &[u8]) -> Option<Frame> {
-    framing::build(Way::Reply, id, READ, address, bytes)
+pub fn encode_read_reply(id: u8, address: u16, bytes: &[u8]) -> Option<Rs485Frame> {
+    framing::build(FrameDirection::Reply, id, READ, address, bytes)
 }
 
 /// The acknowledgement of a write (manual 2.2.2); the manual's value is 1.
 #[must_use]
-pub fn encode_write_ack(id: u8, address: u16, value: u8) -> Frame {
-    framing::build_short(Way::Reply, id, WRITE, address, value)
+pub fn encode_write_ack(id: u8, address: u16, value: u8) -> Rs485Frame {
+    framing::build_short(FrameDirection::Reply, id, WRITE, address, value)
 }
 
 /// The late frame that tells that a calibration of the force sensors is finished.
 #[must_use]
-pub fn encode_calibration_end(id: u8) -> Frame {
-    framing::build_short(Way::Reply, id, READ, CALIBRATION_END, 0)
+pub fn encode_calibration_end(id: u8) -> Rs485Frame {
+    framing::build_short(FrameDirection::Reply, id, READ, CALIBRATION_END, 0)
 }
 
 /// The late frame that tells how a SAVE ended (manual 2.2.2), with command byte 0x11 or 0x12.
 #[must_use]
-pub fn encode_save_result(id: u8, command: u8, ok: bool) -> Frame {
+pub fn encode_save_result(id: u8, command: u8, ok: bool) -> Rs485Frame {
     let value = if ok { 0x00 } else { 0xFF };
-    framing::build_short(Way::Reply, id, command, SAVE.address, value)
+    framing::build_short(FrameDirection::Reply, id, command, SAVE.address, value)
 }

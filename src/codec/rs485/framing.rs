@@ -3,7 +3,7 @@
 use arrayvec::ArrayVec;
 
 /// A whole frame, header to checksum; the longest has 260 bytes.
-pub type Frame = ArrayVec<u8, 261>;
+pub type Rs485Frame = ArrayVec<u8, 261>;
 /// The data bytes of a frame.
 pub type Payload = ArrayVec<u8, 252>;
 /// Most bytes that one read can ask for: the length byte of the reply is this plus three.
@@ -15,9 +15,9 @@ pub const BUFFER_LEN: usize = 520;
 const OVERHEARD_MAX: usize = 4;
 
 /// Command byte of a read.
-pub(super) const READ: u8 = 0x11;
+pub const READ: u8 = 0x11;
 /// Command byte of a write.
-pub(super) const WRITE: u8 = 0x12;
+pub const WRITE: u8 = 0x12;
 
 /// What stands in the place of the address in the frame that ends a calibration.
 pub(super) const CALIBRATION_END: u16 = 2;
@@ -31,14 +31,14 @@ const SHORTEST: u8 = 4;
 
 /// Which way a frame goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub enum FrameDirection {
     /// To the hand.
     Request,
     /// From the hand.
     Reply,
 }
 
-impl Way {
+impl FrameDirection {
     const fn header(self) -> [u8; 2] {
         match self {
             Self::Request => REQUEST_HEADER,
@@ -58,10 +58,10 @@ impl Way {
 
 /// What a decoder met apart from good frames. Counts only grow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct NoiseCounts {
+pub struct FramerCounts {
     /// Good frames handed out.
     pub frames: u64,
-    /// Frames of the other way, whole and good: an adapter that echoes, or another speaker on the bus.
+    /// Frames of the other direction, whole and good: an adapter that echoes, or another speaker on the bus.
     pub echoes: u64,
     /// Headers with a possible length whose checksum was wrong.
     pub checksum_errors: u64,
@@ -71,26 +71,44 @@ pub struct NoiseCounts {
     pub skipped_bytes: u64,
 }
 
-/// The parts of a good frame.
+/// A frame's parts.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Parts {
-    pub(super) id: u8,
-    pub(super) command: u8,
-    pub(super) address: u16,
-    pub(super) data: Payload,
+pub struct FrameParts {
+    /// The hand that is meant or that answers.
+    pub id: u8,
+    /// 0x11 reads, 0x12 writes.
+    pub command: u8,
+    /// First byte's address.
+    pub address: u16,
+    /// 1 to 252 bytes of data; the length wanted in a read request.
+    pub data: Payload,
 }
 
-/// What stands at the beginning of a slice.
+/// What some bytes begin with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scan {
-    /// No frame begins here.
-    Bad,
-    /// A possible frame of this way and length whose checksum is wrong.
-    BadSum(Way, usize),
-    /// A possible frame that is not whole yet.
-    NeedMore,
-    /// A good frame of this way and length in bytes.
-    Frame(Way, usize),
+pub enum FrameStart {
+    /// A good frame of so many bytes.
+    Frame(FrameDirection, usize),
+    /// A frame of so many bytes whose checksum is wrong.
+    BadSum {
+        /// Bytes, header to checksum.
+        len: usize,
+        /// The checksum that was sent.
+        got: u8,
+        /// The checksum of what was sent.
+        want: u8,
+    },
+    /// The beginning of a frame; its length if that is known by now.
+    Open(Option<usize>),
+    /// A header, but a length or command that no frame has.
+    BadHead {
+        /// The length byte.
+        len: u8,
+        /// The command byte, if it is there.
+        command: Option<u8>,
+    },
+    /// No header.
+    Nothing,
 }
 
 /// The low byte of the sum of all bytes after the header (manual 2.2.1).
@@ -98,46 +116,48 @@ pub(super) fn checksum(body: &[u8]) -> u8 {
     body.iter().fold(0, |sum, byte| sum.wrapping_add(*byte))
 }
 
-/// Bytes of a frame with this length byte, header to checksum.
-pub(super) fn total(len: u8) -> usize {
-    usize::from(len) + AROUND
-}
-
-pub(super) fn scan(bytes: &[u8]) -> Scan {
-    let way = match bytes {
-        [] => return Scan::NeedMore,
-        [first, ..] if *first == REQUEST_HEADER[0] => Way::Request,
-        [first, ..] if *first == REPLY_HEADER[0] => Way::Reply,
-        _ => return Scan::Bad,
+/// Looks at the beginning of some bytes. None of them is [`FrameStart::Open`].
+#[must_use]
+pub fn scan(bytes: &[u8]) -> FrameStart {
+    let direction = match bytes {
+        [] => return FrameStart::Open(None),
+        [first, ..] if *first == REQUEST_HEADER[0] => FrameDirection::Request,
+        [first, ..] if *first == REPLY_HEADER[0] => FrameDirection::Reply,
+        _ => return FrameStart::Nothing,
     };
-    if bytes.get(1).is_some_and(|byte| *byte != way.header()[1]) {
-        return Scan::Bad;
+    let second = direction.header()[1];
+    if bytes.get(1).is_some_and(|byte| *byte != second) {
+        return FrameStart::Nothing;
     }
     let Some(&len) = bytes.get(3) else {
-        return Scan::NeedMore;
+        return FrameStart::Open(None);
     };
-    if len < SHORTEST {
-        return Scan::Bad;
+    let command = bytes.get(4).copied();
+    let is_allowed = |command| direction.allows(command, len);
+    if len < SHORTEST || !command.is_none_or(is_allowed) {
+        return FrameStart::BadHead { len, command };
     }
-    if bytes
-        .get(4)
-        .is_some_and(|command| !way.allows(*command, len))
-    {
-        return Scan::Bad;
-    }
-    let total = total(len);
+    let total = usize::from(len) + AROUND;
     match bytes.get(2..total) {
-        Some([body @ .., sum]) if checksum(body) == *sum => Scan::Frame(way, total),
-        Some(_) => Scan::BadSum(way, total),
-        None => Scan::NeedMore,
+        Some([body @ .., got]) => match checksum(body) {
+            want if want == *got => FrameStart::Frame(direction, total),
+            want => FrameStart::BadSum {
+                len: total,
+                got: *got,
+                want,
+            },
+        },
+        _ => FrameStart::Open(Some(total)),
     }
 }
 
-pub(super) fn parts(frame: &[u8]) -> Option<Parts> {
+/// The parts of a whole frame, whatever its checksum says; `None` if it is too short.
+#[must_use]
+pub fn parts(frame: &[u8]) -> Option<FrameParts> {
     let [_, _, id, _, command, low, high, data @ .., _sum] = frame else {
         return None;
     };
-    Some(Parts {
+    Some(FrameParts {
         id: *id,
         command: *command,
         address: u16::from_le_bytes([*low, *high]),
@@ -146,58 +166,70 @@ pub(super) fn parts(frame: &[u8]) -> Option<Parts> {
 }
 
 /// A whole frame; `None` unless there are 1 to 252 bytes of data.
-pub(super) fn build(way: Way, id: u8, command: u8, address: u16, data: &[u8]) -> Option<Frame> {
+pub(super) fn build(
+    direction: FrameDirection,
+    id: u8,
+    command: u8,
+    address: u16,
+    data: &[u8],
+) -> Option<Rs485Frame> {
     let len = u8::try_from(data.len()).ok()?.checked_add(3)?;
     if len < SHORTEST {
         return None;
     }
     let [low, high] = address.to_le_bytes();
-    let mut body = Frame::new();
+    let mut body = Rs485Frame::new();
     body.try_extend_from_slice(&[id, len, command, low, high])
         .ok()?;
     body.try_extend_from_slice(data).ok()?;
     let sum = checksum(&body);
-    let mut frame = Frame::new();
-    frame.try_extend_from_slice(&way.header()).ok()?;
+    let mut frame = Rs485Frame::new();
+    frame.try_extend_from_slice(&direction.header()).ok()?;
     frame.try_extend_from_slice(&body).ok()?;
     frame.try_push(sum).ok()?;
     Some(frame)
 }
 
 /// A frame with one byte of data, which always fits.
-pub(super) fn build_short(way: Way, id: u8, command: u8, address: u16, value: u8) -> Frame {
+pub(super) fn build_short(
+    direction: FrameDirection,
+    id: u8,
+    command: u8,
+    address: u16,
+    value: u8,
+) -> Rs485Frame {
     let [low, high] = address.to_le_bytes();
-    let [first, second] = way.header();
+    let [first, second] = direction.header();
     let body = [id, SHORTEST, command, low, high, value];
-    let mut frame = Frame::from_iter([first, second]);
+    let mut frame = Rs485Frame::from_iter([first, second]);
     frame.extend(body);
     frame.push(checksum(&body));
     frame
 }
 
-/// A bounded buffer and the search for the next good frame of one way.
+/// A bounded buffer and the search for the next good frame of one direction.
 #[derive(Debug, Clone)]
 pub(super) struct Framer {
-    way: Way,
+    direction: FrameDirection,
     buffer: ArrayVec<u8, BUFFER_LEN>,
     /// Leading bytes that came before a silence: a frame that began there and is not whole will not become so.
     stale: usize,
     /// True while skipping, so that a run is counted once.
     skipping: bool,
-    /// Whole frames of the other way.
-    overheard: ArrayVec<Frame, OVERHEARD_MAX>,
-    counts: NoiseCounts,
+    /// Whole frames of the other direction.
+    overheard: ArrayVec<Rs485Frame, OVERHEARD_MAX>,
+    counts: FramerCounts,
 }
 
 impl Framer {
-    pub(super) const fn new(way: Way) -> Self {
+    pub(super) const fn new(direction: FrameDirection) -> Self {
         Self {
-            way,
+            direction,
             buffer: ArrayVec::new_const(),
             stale: 0,
             skipping: false,
             overheard: ArrayVec::new_const(),
-            counts: NoiseCounts {
+            counts: FramerCounts {
                 frames: 0,
                 echoes: 0,
                 checksum_errors: 0,
@@ -213,28 +245,30 @@ impl Framer {
         taken
     }
 
-    pub(super) fn next(&mut self) -> Option<Parts> {
+    pub(super) fn next(&mut self) -> Option<FrameParts> {
         let mut at = 0;
         let found = loop {
             let rest = self.buffer.get(at..).unwrap_or_default();
             match scan(rest) {
-                Scan::Frame(way, total) => {
+                FrameStart::Frame(direction, total) => {
                     self.skipping = false;
                     let whole = rest.get(..total).unwrap_or_default();
                     at += total;
-                    if way == self.way {
+                    if direction == self.direction {
                         self.counts.frames += 1;
                         break parts(whole);
                     }
                     self.counts.echoes += 1;
-                    if let Ok(frame) = Frame::try_from(whole) {
+                    if let Ok(frame) = Rs485Frame::try_from(whole) {
                         // Too many at once are counted all the same.
                         let _full = self.overheard.try_push(frame);
                     }
                 }
-                Scan::NeedMore if rest.is_empty() || at >= self.stale => break None,
-                Scan::NeedMore | Scan::Bad => self.skip(&mut at),
-                Scan::BadSum(..) => {
+                FrameStart::Open(_) if rest.is_empty() || at >= self.stale => break None,
+                FrameStart::Open(_) | FrameStart::Nothing | FrameStart::BadHead { .. } => {
+                    self.skip(&mut at)
+                }
+                FrameStart::BadSum { .. } => {
                     self.counts.checksum_errors += 1;
                     self.skip(&mut at);
                 }
@@ -256,7 +290,7 @@ impl Framer {
     }
 
     /// The oldest frame of the other way that was not looked at yet.
-    pub(super) fn overheard(&mut self) -> Option<Frame> {
+    pub(super) fn overheard(&mut self) -> Option<Rs485Frame> {
         self.overheard.pop_at(0)
     }
 
@@ -264,7 +298,7 @@ impl Framer {
         self.stale = self.buffer.len();
     }
 
-    pub(super) const fn counts(&self) -> NoiseCounts {
+    pub(super) const fn counts(&self) -> FramerCounts {
         self.counts
     }
 
@@ -281,14 +315,14 @@ impl Framer {
 
 /// The methods that both decoders share, each on its own type of frame.
 macro_rules! decoder {
-    ($(#[$doc:meta])* $name:ident, $way:expr, $item:ty, $decode:expr) => {
+    ($(#[$doc:meta])* $name:ident, $direction:expr, $item:ty, $decode:expr) => {
         $(#[$doc])*
         #[derive(Debug, Clone)]
         pub struct $name(Framer);
 
         impl Default for $name {
             fn default() -> Self {
-                Self(Framer::new($way))
+                Self(Framer::new($direction))
             }
         }
 
@@ -321,7 +355,7 @@ macro_rules! decoder {
 
             /// What was met since the start, [`Self::clear`] or not.
             #[must_use]
-            pub const fn counts(&self) -> NoiseCounts {
+            pub const fn counts(&self) -> FramerCounts {
                 self.0.counts()
             }
 

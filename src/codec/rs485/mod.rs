@@ -3,14 +3,13 @@
 pub mod client;
 pub mod device;
 pub mod framing;
-pub mod inspect;
 
-pub use client::{Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
+pub use client::{ReplyDecoder, Rs485Reply, SaveResult, encode_read, encode_write};
 pub use device::{
-    Request, RequestDecoder, encode_calibration_end, encode_read_reply, encode_save_result,
+    RequestDecoder, Rs485Request, encode_calibration_end, encode_read_reply, encode_save_result,
     encode_write_ack,
 };
-pub use framing::{BUFFER_LEN, Frame, NoiseCounts, Payload, READ_LEN_MAX};
+pub use framing::{BUFFER_LEN, FramerCounts, Payload, READ_LEN_MAX, Rs485Frame};
 
 #[cfg(test)]
 mod tests;

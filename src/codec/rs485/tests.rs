@@ -1,9 +1,11 @@
 //! Frames of the manual, whole, split, glued, damaged, in noise; and what holds for all bytes. Nothing but tests.
 #![allow(clippy::cast_possible_truncation, reason = "a test may")]
 
-use crate::codec::rs485::client::{Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
+use crate::codec::rs485::client::{
+    ReplyDecoder, Rs485Reply, SaveResult, encode_read, encode_write,
+};
 use crate::codec::rs485::device::{
-    Request, RequestDecoder, encode_read_reply, encode_save_result, encode_write_ack,
+    RequestDecoder, Rs485Request, encode_read_reply, encode_save_result, encode_write_ack,
 };
 use crate::codec::rs485::framing::{BUFFER_LEN, Payload};
 use crate::hand::{
@@ -21,16 +23,16 @@ fn payload(bytes: &[u8]) -> Payload {
     Payload::try_from(bytes).unwrap()
 }
 
-fn read(address: u16, data: &[u8]) -> Reply {
-    Reply::Read {
+fn read(address: u16, data: &[u8]) -> Rs485Reply {
+    Rs485Reply::Read {
         id: 1,
         address,
         bytes: payload(data),
     }
 }
 
-const fn ack(id: u8, address: u16) -> Reply {
-    Reply::WriteAck {
+const fn ack(id: u8, address: u16) -> Rs485Reply {
+    Rs485Reply::WriteAck {
         id,
         address,
         value: 1,
@@ -41,8 +43,8 @@ const fn ack(id: u8, address: u16) -> Reply {
 const SIX: [u8; 12] = [0x64, 0, 0x64, 0, 0x64, 0, 0x64, 0, 0xD0, 0x07, 0, 0];
 
 // Manual: every printed checksum of 2.2.1 and 2.2.2 follows the rule; none had to be mended.
-fn printed_replies() -> Vec<(Vec<u8>, Reply)> {
-    let save = |value| Reply::WriteAck {
+fn printed_replies() -> Vec<(Vec<u8>, Rs485Reply)> {
+    let save = |value| Rs485Reply::WriteAck {
         id: 1,
         address: 1005,
         value,
@@ -68,18 +70,18 @@ fn printed_replies() -> Vec<(Vec<u8>, Reply)> {
     .to_vec()
 }
 
-fn write(address: u16, data: &[u8]) -> Request {
-    Request::Write {
+fn write(address: u16, data: &[u8]) -> Rs485Request {
+    Rs485Request::Write {
         id: 1,
         address,
         bytes: payload(data),
     }
 }
 
-fn printed_requests() -> Vec<(Vec<u8>, Request)> {
+fn printed_requests() -> Vec<(Vec<u8>, Rs485Request)> {
     let thousand = "E8 03 E8 03 E8 03 E8 03 E8 03 E8 03";
     let six_thousand = [0xE8, 0x03].repeat(6);
-    let read = Request::Read {
+    let read = Rs485Request::Read {
         id: 1,
         span: Span::new(1546, 12),
     };
@@ -110,7 +112,7 @@ fn printed_requests() -> Vec<(Vec<u8>, Request)> {
 }
 
 /// Feeds all bytes in pieces of these lengths (the last repeats) and gives all frames.
-fn decode_in(decoder: &mut ReplyDecoder, mut rest: &[u8], pieces: &[usize]) -> Vec<Reply> {
+fn decode_in(decoder: &mut ReplyDecoder, mut rest: &[u8], pieces: &[usize]) -> Vec<Rs485Reply> {
     let mut out = Vec::new();
     let mut pieces = pieces.iter().copied().chain(std::iter::repeat(
         pieces.last().copied().unwrap_or(1).max(1),
@@ -127,7 +129,7 @@ fn decode_in(decoder: &mut ReplyDecoder, mut rest: &[u8], pieces: &[usize]) -> V
     out
 }
 
-fn decode(bytes: &[u8]) -> Vec<Reply> {
+fn decode(bytes: &[u8]) -> Vec<Rs485Reply> {
     decode_in(&mut ReplyDecoder::default(), bytes, &[bytes.len().max(1)])
 }
 
@@ -262,7 +264,7 @@ fn bad_checksum_is_skipped_and_counted_once() {
 #[test]
 fn header_bytes_before_and_inside_a_frame_do_no_harm() {
     let inside = read(3000, &bytes("90 EB 01 04 12 90 EB EB 90 01 90"));
-    let Reply::Read { bytes: data, .. } = &inside else {
+    let Rs485Reply::Read { bytes: data, .. } = &inside else {
         unreachable!()
     };
     let frame = encode_read_reply(1, 3000, data).unwrap();
@@ -391,8 +393,8 @@ proptest! {
         let mut rest = stream.as_slice();
         for reply in decode(&stream) {
             let frame = match &reply {
-                Reply::Read { id, address, bytes } => encode_read_reply(*id, *address, bytes).unwrap(),
-                Reply::WriteAck { id, address, value } => encode_write_ack(*id, *address, *value),
+                Rs485Reply::Read { id, address, bytes } => encode_read_reply(*id, *address, bytes).unwrap(),
+                Rs485Reply::WriteAck { id, address, value } => encode_write_ack(*id, *address, *value),
             };
             let at = rest.windows(frame.len()).position(|window| window == frame.as_slice());
             prop_assert!(at.is_some());

@@ -6,7 +6,7 @@
 //! to the same write sent again. Nothing is planned or retried here.
 
 use crate::codec::can::{
-    CanFrame, CanId, Payload, Pieces, Way, may_cut, read_request, split, write_requests,
+    CanData, CanFrame, CanFunction, CanId, ReadPieces, may_cut, read_request, split, write_requests,
 };
 use crate::hand::{RegisterWrite, Span, register};
 use crate::link::bus::can_port::CanPort;
@@ -93,7 +93,7 @@ impl Can {
         }
     }
 
-    async fn read_piece(&mut self, piece: Span, limit: Duration) -> Result<Payload, BusError> {
+    async fn read_piece(&mut self, piece: Span, limit: Duration) -> Result<CanData, BusError> {
         let request = read_request(self.hand, piece).ok_or(BusError::TooLong)?;
         let got = self.exchange(&request, usize::from(piece.len), limit).await;
         match &got {
@@ -121,8 +121,8 @@ impl Can {
     }
 
     /// The pieces of a run that no late reply can answer; none if there is no such cut.
-    fn clear_pieces(&mut self, span: Span) -> Option<Pieces> {
-        let mut clear = Pieces::new();
+    fn clear_pieces(&mut self, span: Span) -> Option<ReadPieces> {
+        let mut clear = ReadPieces::new();
         for piece in split(span)? {
             if self.is_clear(piece) {
                 clear.try_push(piece).ok()?;
@@ -147,7 +147,7 @@ impl Can {
         request: &CanFrame,
         want: usize,
         limit: Duration,
-    ) -> Result<Payload, BusError> {
+    ) -> Result<CanData, BusError> {
         self.take_waiting()?;
         if self.sent.is_full() {
             self.sent.remove(0);
@@ -210,8 +210,8 @@ impl Can {
     /// acknowledged by one; a single byte of a read asks, unless we asked for a single byte there ourselves.
     fn is_request(&self, id: CanId, frame: &CanFrame) -> bool {
         match id.way {
-            Way::Write => frame.data.len() > ACK_LEN,
-            Way::Read => {
+            CanFunction::Write => frame.data.len() > ACK_LEN,
+            CanFunction::Read => {
                 let asked_here =
                     |sent: &CanFrame| sent.id == frame.id && sent.data.as_slice() == [1];
                 frame.data.len() == 1 && !self.sent.iter().any(asked_here)
@@ -231,7 +231,7 @@ impl Can {
             return;
         }
         self.foreign += 1;
-        if id.way == Way::Read
+        if id.way == CanFunction::Read
             && let Ok(len) = u16::try_from(frame.data.len())
         {
             self.late
@@ -325,9 +325,10 @@ impl Bus for Can {
     }
 
     fn counts(&self) -> BusCounts {
+        let noise = self.port.noise();
         BusCounts {
-            checksum_errors: self.port.bad_sums(),
-            resyncs: self.port.bad_lines(),
+            checksum_errors: noise.checksum_errors,
+            resyncs: noise.resyncs,
             foreign_replies: self.foreign,
             foreign_requests: self.foreign_requests,
         }

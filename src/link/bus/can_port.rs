@@ -1,8 +1,9 @@
 //! CAN frames over a wire: as text or packets through a serial adapter, or as Linux's frames. Asks nothing of a hand.
 
-use crate::codec::can::{CanFrame, RECORD_LEN, Record, from_record, to_record};
-use crate::codec::slcan::{Answer, AnswerDecoder, Command, bitrate_code, encode_command};
-use crate::codec::usbcan::{self, Content, PacketDecoder};
+use crate::codec::NoiseCounts;
+use crate::codec::can::{CanFrame, CanRecord, RECORD_LEN, from_record, to_record};
+use crate::codec::slcan::{AnswerDecoder, SlcanAnswer, SlcanCommand, bitrate_code, encode_command};
+use crate::codec::usbcan::{self, PacketContent, PacketDecoder};
 use crate::link::bus::error::{BusError, lost};
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use arrayvec::ArrayVec;
@@ -22,7 +23,7 @@ const QUIET: Duration = Duration::from_millis(25);
 const QUIET_MAX: Duration = Duration::from_millis(150);
 
 /// What stands on the wire.
-enum Form {
+enum CanEncoding {
     /// Lawicel's text.
     Text {
         bitrate: u32,
@@ -38,7 +39,7 @@ enum Form {
 pub(crate) struct CanPort {
     wire: BoxedWire,
     place: String,
-    form: Form,
+    form: CanEncoding,
     inbox: VecDeque<CanFrame>,
     /// Answers of the adapter since it was last told something.
     done: bool,
@@ -50,17 +51,19 @@ impl CanPort {
     pub(crate) fn new(wire: BoxedWire, endpoint: &Endpoint) -> Self {
         let (form, place) = match endpoint {
             Endpoint::Slcan { port, bitrate, .. } => (
-                Form::Text {
+                CanEncoding::Text {
                     bitrate: *bitrate,
                     decoder: AnswerDecoder::default(),
                 },
                 port.clone(),
             ),
             Endpoint::UsbCan { port, .. } => {
-                (Form::Packets(PacketDecoder::default()), port.clone())
+                (CanEncoding::Packets(PacketDecoder::default()), port.clone())
             }
-            Endpoint::Can { interface, .. } => (Form::Records(ArrayVec::new()), interface.clone()),
-            other => (Form::Records(ArrayVec::new()), other.to_string()),
+            Endpoint::Can { interface, .. } => {
+                (CanEncoding::Records(ArrayVec::new()), interface.clone())
+            }
+            other => (CanEncoding::Records(ArrayVec::new()), other.to_string()),
         };
         Self {
             wire,
@@ -75,12 +78,12 @@ impl CanPort {
 
     /// True if nothing that is sent here ever comes back: Linux sees to it. Adapters may echo.
     pub(crate) const fn never_echoes(&self) -> bool {
-        matches!(self.form, Form::Records(_))
+        matches!(self.form, CanEncoding::Records(_))
     }
 
     /// Goes on the bus. An adapter that never answers is taken for one that did as it was told.
     pub(crate) async fn open(&mut self) -> Result<(), BusError> {
-        let Form::Text { bitrate, .. } = self.form else {
+        let CanEncoding::Text { bitrate, .. } = self.form else {
             return Ok(());
         };
         let refused = BusError::Lost(TransportError::BitrateRefused {
@@ -93,12 +96,12 @@ impl CanPort {
         // Ends a half-sent line of whoever was here before.
         self.put(b"\r").await?;
         // An adapter that is closed already says that it failed; either is fine.
-        self.tell(&Command::Close).await?;
+        self.tell(&SlcanCommand::Close).await?;
         self.drain().await?;
-        if self.tell(&Command::Bitrate(code)).await? {
+        if self.tell(&SlcanCommand::Bitrate(code)).await? {
             return Err(refused);
         }
-        if self.tell(&Command::Open).await? {
+        if self.tell(&SlcanCommand::Open).await? {
             return Err(BusError::Lost(TransportError::Io {
                 place: self.place.clone(),
                 message: "the CAN adapter could not go on the bus".into(),
@@ -110,8 +113,8 @@ impl CanPort {
 
     /// Leaves the bus, if the wire takes it at once.
     pub(crate) fn close(&mut self) {
-        if matches!(self.form, Form::Text { .. })
-            && let Some(line) = encode_command(&Command::Close)
+        if matches!(self.form, CanEncoding::Text { .. })
+            && let Some(line) = encode_command(&SlcanCommand::Close)
         {
             // A wire that does not take it is gone.
             let _taken = self.put(&line).now_or_never();
@@ -119,7 +122,7 @@ impl CanPort {
     }
 
     /// Tells the adapter something; true if it said that it failed.
-    async fn tell(&mut self, command: &Command) -> Result<bool, BusError> {
+    async fn tell(&mut self, command: &SlcanCommand) -> Result<bool, BusError> {
         let Some(line) = encode_command(command) else {
             return Ok(false);
         };
@@ -150,12 +153,12 @@ impl CanPort {
 
     pub(crate) async fn send(&mut self, frame: &CanFrame) -> Result<(), BusError> {
         match self.form {
-            Form::Text { .. } => match encode_command(&Command::Send(frame.clone())) {
+            CanEncoding::Text { .. } => match encode_command(&SlcanCommand::Send(frame.clone())) {
                 Some(line) => self.put(&line).await,
                 None => Ok(()),
             },
-            Form::Packets(_) => self.put(&usbcan::encode(frame)).await,
-            Form::Records(_) => self.put(&to_record(frame)).await,
+            CanEncoding::Packets(_) => self.put(&usbcan::encode(frame)).await,
+            CanEncoding::Records(_) => self.put(&to_record(frame)).await,
         }
     }
 
@@ -187,18 +190,18 @@ impl CanPort {
 
     fn take(&mut self, byte: u8) -> Result<(), BusError> {
         match &mut self.form {
-            Form::Text { decoder, .. } => match decoder.push(byte) {
-                Some(Answer::Done | Answer::Sent) => self.done = true,
-                Some(Answer::Failed) => self.failed = true,
-                Some(Answer::Frame(frame)) => self.inbox.push_back(frame),
-                Some(Answer::Other(_)) | None => {}
+            CanEncoding::Text { decoder, .. } => match decoder.push(byte) {
+                Some(SlcanAnswer::Done | SlcanAnswer::Sent) => self.done = true,
+                Some(SlcanAnswer::Failed) => self.failed = true,
+                Some(SlcanAnswer::Frame(frame)) => self.inbox.push_back(frame),
+                Some(SlcanAnswer::Other(_)) | None => {}
             },
-            Form::Packets(decoder) => {
-                if let Some(Content::Frame(frame)) = decoder.push(byte) {
+            CanEncoding::Packets(decoder) => {
+                if let Some(PacketContent::Frame(frame)) = decoder.push(byte) {
                     self.inbox.push_back(frame);
                 }
             }
-            Form::Records(record) => {
+            CanEncoding::Records(record) => {
                 record.push(byte);
                 if let Ok(whole) = record.clone().into_inner() {
                     record.clear();
@@ -211,11 +214,11 @@ impl CanPort {
 
     fn take_record(&mut self, record: &[u8; RECORD_LEN]) -> Result<(), BusError> {
         match from_record(record) {
-            Record::Frame(frame) => self.inbox.push_back(frame),
-            Record::ErrorPassive => self.passive = true,
-            Record::ErrorActive => self.passive = false,
-            Record::Other => {}
-            Record::BusOff => {
+            CanRecord::Frame(frame) => self.inbox.push_back(frame),
+            CanRecord::ErrorPassive => self.passive = true,
+            CanRecord::ErrorActive => self.passive = false,
+            CanRecord::Other => {}
+            CanRecord::BusOff => {
                 return Err(BusError::Lost(TransportError::BusOff {
                     place: self.place.clone(),
                 }));
@@ -241,20 +244,12 @@ impl CanPort {
         self.failed = false;
     }
 
-    /// Lines that were no slcan text, or runs of bytes that were no packets.
-    pub(crate) fn bad_lines(&self) -> u64 {
+    /// What was no line or packet.
+    pub(crate) fn noise(&self) -> NoiseCounts {
         match &self.form {
-            Form::Text { decoder, .. } => decoder.counts().bad_lines,
-            Form::Packets(decoder) => decoder.counts().resyncs,
-            Form::Records(_) => 0,
-        }
-    }
-
-    /// Packets whose sum was wrong.
-    pub(crate) const fn bad_sums(&self) -> u64 {
-        match &self.form {
-            Form::Packets(decoder) => decoder.counts().checksum_errors,
-            Form::Text { .. } | Form::Records(_) => 0,
+            CanEncoding::Text { decoder, .. } => decoder.counts(),
+            CanEncoding::Packets(decoder) => decoder.counts(),
+            CanEncoding::Records(_) => NoiseCounts::default(),
         }
     }
 }

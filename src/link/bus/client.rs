@@ -1,7 +1,7 @@
 //! What a session asks of a wire, whichever protocol it speaks.
 
-use crate::codec::modbus::BytePacking;
 use crate::codec::rs485::SaveResult;
+use crate::hand::register::BytePacking;
 use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::error::{BusCounts, BusError, Bytes};
 use crate::link::bus::late_replies::LateReplies;

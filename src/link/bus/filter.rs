@@ -24,14 +24,14 @@ pub(crate) struct FilterCounts {
 }
 
 /// Request number and unit that the next reply must carry.
-type Key = (u16, u8);
+type ReadKey = (u16, u8);
 
 /// The wire with the filter on its reading side.
 pub(crate) struct ReplyFilter {
     wire: BoxedWire,
     splitter: MbapSplitter,
     counts: Arc<FilterCounts>,
-    open: Option<Key>,
+    open: Option<ReadKey>,
     /// Bytes of the request that were not written yet, when the wire took only a part.
     rest_of_request: usize,
     passed: VecDeque<u8>,

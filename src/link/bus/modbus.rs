@@ -2,8 +2,9 @@
 //! writes, memory out of responses, errors out of the library's. Sends nothing.
 
 use crate::codec::modbus::{
-    BytePacking, ModbusWrite, READ_WORDS_MAX, bytes_from_words, words_for, words_from_write,
+    ModbusWrite, READ_WORDS_MAX, bytes_from_words, words_for, words_from_write,
 };
+use crate::hand::register::BytePacking;
 use crate::hand::{RegisterWrite, Span};
 
 use crate::link::bus::error::{BusError, Bytes, lost};

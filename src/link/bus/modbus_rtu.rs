@@ -1,14 +1,15 @@
 //! Requests over Modbus RTU (manual 2.4), through tokio-modbus. Replies have neither number nor address, only a length:
 //! no length is asked for again while a reply of that length may still come.
 
-use crate::codec::modbus::{BytePacking, words_for};
+use crate::codec::modbus::words_for;
+use crate::hand::register::BytePacking;
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::late_replies::LateReplies;
 
 use crate::link::bus::client::Bus;
 use crate::link::bus::error::{BusCounts, BusError, Bytes, id_of, lost};
 use crate::link::bus::modbus;
-use crate::link::bus::packing::{Piece, WordUse};
+use crate::link::bus::packing::{ReadPiece, WordUse};
 use crate::link::bus::rtu_line::RtuLine;
 use crate::link::clock::Clock;
 use crate::link::poll::cost::{WireCost, byte_time};
@@ -175,12 +176,12 @@ impl Bus for ModbusRtu {
                 self.turn().await?;
             }
             match piece {
-                Piece::Memory(part) => {
+                ReadPiece::Memory(part) => {
                     let response = self.ask(modbus::read_request(part)?, part, limit).await?;
                     let packing = self.word_use.reading();
                     bytes.extend(modbus::read_response(part, &response, packing)?);
                 }
-                Piece::Group { group, skip, take } => {
+                ReadPiece::Group { group, skip, take } => {
                     let words = self.group_words(group.address, limit).await?;
                     modbus::take_group(&mut bytes, &words, skip, take)?;
                 }
@@ -234,7 +235,7 @@ impl Bus for ModbusRtu {
         let fixed = |shape: &Span| {
             let first = word_use.pieces(*shape).into_iter().next();
             match first {
-                Some(Piece::Memory(part)) => Some(seen(part)),
+                Some(ReadPiece::Memory(part)) => Some(seen(part)),
                 _ => None,
             }
         };

@@ -1,12 +1,12 @@
 //! Requests over Modbus TCP (manual 2.5), through tokio-modbus. Replies carry a number, which the filter checks.
 
-use crate::codec::modbus::BytePacking;
+use crate::hand::register::BytePacking;
 use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::client::Bus;
 use crate::link::bus::error::{BusCounts, BusError, Bytes};
 use crate::link::bus::filter::{FilterCounts, ReplyFilter};
 use crate::link::bus::modbus;
-use crate::link::bus::packing::{Piece, WordUse};
+use crate::link::bus::packing::{ReadPiece, WordUse};
 use crate::link::poll::cost::WireCost;
 use crate::transport::{BoxedWire, Endpoint};
 use async_trait::async_trait;
@@ -87,13 +87,13 @@ impl Bus for ModbusTcp {
         let mut bytes = Bytes::new();
         for piece in self.word_use.pieces(span) {
             match piece {
-                Piece::Memory(part) => {
+                ReadPiece::Memory(part) => {
                     let request = modbus::read_request(part)?;
                     let response = self.call(request, limit).await?;
                     let packing = self.word_use.reading();
                     bytes.extend(modbus::read_response(part, &response, packing)?);
                 }
-                Piece::Group { group, skip, take } => {
+                ReadPiece::Group { group, skip, take } => {
                     let count = BytePacking::OnePerWord.words_per_group();
                     let words = self.group_words(group.address, count, limit).await?;
                     modbus::take_group(&mut bytes, &words, skip, take)?;

@@ -1,11 +1,11 @@
 //! Single bytes over Modbus, where the manual leaves their packing open: which pieces a read falls into, and which writes
 //! are safe. Asks nothing itself.
 
-use crate::codec::modbus::BytePacking;
+use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
 use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::error::BusError;
-use crate::transport::{Endpoint, Packing};
+use crate::transport::Endpoint;
 use arrayvec::ArrayVec;
 
 /// The groups of single bytes: ERROR, STATUS, TEMP, one behind the other.
@@ -15,7 +15,7 @@ const PIECES_MAX: usize = 5;
 
 /// A part of a read that is one request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Piece {
+pub(crate) enum ReadPiece {
     /// Two bytes a word.
     Memory(Span),
     /// A group of six in words of its own, of which these bytes are wanted.
@@ -47,10 +47,10 @@ impl WordUse {
     }
 
     /// The requests that a read takes.
-    pub(crate) fn pieces(&self, span: Span) -> ArrayVec<Piece, PIECES_MAX> {
+    pub(crate) fn pieces(&self, span: Span) -> ArrayVec<ReadPiece, PIECES_MAX> {
         let mut pieces = ArrayVec::new();
         if self.reading() != BytePacking::OnePerWord {
-            pieces.push(Piece::Memory(span));
+            pieces.push(ReadPiece::Memory(span));
             return pieces;
         }
         let mut at = span.address;
@@ -60,12 +60,12 @@ impl WordUse {
             }
             if at < group.address {
                 let until = group.address.min(end(span));
-                pieces.push(Piece::Memory(Span::new(at, until - at)));
+                pieces.push(ReadPiece::Memory(Span::new(at, until - at)));
                 at = until;
             }
             if u32::from(at) < span.end() {
                 let until = end(group).min(end(span));
-                pieces.push(Piece::Group {
+                pieces.push(ReadPiece::Group {
                     group,
                     skip: usize::from(at - group.address),
                     take: usize::from(until - at),
@@ -74,7 +74,7 @@ impl WordUse {
             }
         }
         if u32::from(at) < span.end() {
-            pieces.push(Piece::Memory(Span::new(at, end(span) - at)));
+            pieces.push(ReadPiece::Memory(Span::new(at, end(span) - at)));
         }
         pieces
     }
@@ -103,16 +103,11 @@ impl WordUse {
 
 /// What a person said in the endpoint.
 pub(crate) fn chosen(endpoint: &Endpoint) -> Option<BytePacking> {
-    let packing = match endpoint {
+    match endpoint {
         Endpoint::Tcp { packing, .. } => *packing,
         Endpoint::Rtu(line) => line.packing,
         _ => None,
-    };
-    packing.map(|packing| match packing {
-        Packing::Low => BytePacking::LowFirst,
-        Packing::High => BytePacking::HighFirst,
-        Packing::One => BytePacking::OnePerWord,
-    })
+    }
 }
 
 /// One past the last byte, which lies below 65536 for every span that Modbus can name.
@@ -178,8 +173,8 @@ mod tests {
             let mut at = span.address;
             for piece in word_use.pieces(span) {
                 let (from, len) = match piece {
-                    Piece::Memory(part) => (part.address, usize::from(part.len)),
-                    Piece::Group { group, skip, take } => {
+                    ReadPiece::Memory(part) => (part.address, usize::from(part.len)),
+                    ReadPiece::Group { group, skip, take } => {
                         (group.address + u16::try_from(skip).unwrap(), take)
                     }
                 };

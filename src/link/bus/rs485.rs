@@ -1,6 +1,8 @@
 //! Requests over the private RS485 framing (manual 2.2). One is open at a time; replies have no number.
 
-use crate::codec::rs485::{Frame, Reply, ReplyDecoder, SaveResult, encode_read, encode_write};
+use crate::codec::rs485::{
+    ReplyDecoder, Rs485Frame, Rs485Reply, SaveResult, encode_read, encode_write,
+};
 use crate::hand::register::HAND_ID;
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::echo::Echo;
@@ -43,7 +45,7 @@ pub(crate) struct Rs485 {
     clock: Clock,
     foreign: u64,
     /// The request that went out last: what comes back like it is an echo.
-    sent: Frame,
+    sent: Rs485Frame,
     echo: Echo,
     foreign_requests: u64,
     save_results: ArrayVec<SaveResult, RESULTS_MAX>,
@@ -51,7 +53,7 @@ pub(crate) struct Rs485 {
 }
 
 /// What an open request waits for.
-enum Expected {
+enum ExpectedReply {
     Bytes(Span),
     /// Of a write to this address. Manual: silent on who acknowledges a change of HAND_ID; the older manual shows the new
     /// id (protocol choice 9).
@@ -92,7 +94,7 @@ impl Rs485 {
             late,
             clock,
             foreign: 0,
-            sent: Frame::new(),
+            sent: Rs485Frame::new(),
             echo: Echo::default(),
             foreign_requests: 0,
             save_results: ArrayVec::new(),
@@ -102,8 +104,8 @@ impl Rs485 {
 
     async fn exchange(
         &mut self,
-        frame: &Frame,
-        expected: &Expected,
+        frame: &Rs485Frame,
+        expected: &ExpectedReply,
         limit: Duration,
     ) -> Result<Fit, BusError> {
         self.take_waiting()?;
@@ -159,7 +161,7 @@ impl Rs485 {
     }
 
     /// The reply to the open request, if it is there; others are counted and dropped.
-    fn fitting(&mut self, expected: &Expected) -> Option<Fit> {
+    fn fitting(&mut self, expected: &ExpectedReply) -> Option<Fit> {
         while let Some(reply) = self.decoder.next() {
             self.sort_overheard();
             match self.fit(&reply, expected) {
@@ -174,9 +176,9 @@ impl Rs485 {
         None
     }
 
-    fn fit(&self, reply: &Reply, expected: &Expected) -> Fit {
+    fn fit(&self, reply: &Rs485Reply, expected: &ExpectedReply) -> Fit {
         match (reply, expected) {
-            (Reply::Read { id, address, bytes }, Expected::Bytes(span))
+            (Rs485Reply::Read { id, address, bytes }, ExpectedReply::Bytes(span))
                 if *id == self.id.get()
                     && *address == span.address
                     && bytes.len() == usize::from(span.len) =>
@@ -184,12 +186,12 @@ impl Rs485 {
                 Fit::Bytes(bytes.clone())
             }
             (
-                Reply::WriteAck {
+                Rs485Reply::WriteAck {
                     id,
                     address,
                     value: 1,
                 },
-                Expected::Ack {
+                ExpectedReply::Ack {
                     address: wanted,
                     new_id,
                 },
@@ -199,11 +201,11 @@ impl Rs485 {
     }
 
     /// A reply that is no answer to the open request.
-    fn unfit_reply(&mut self, reply: &Reply, expected: &Expected) {
+    fn unfit_reply(&mut self, reply: &Rs485Reply, expected: &ExpectedReply) {
         // Manual: 1 acknowledges. What comes in place of it with another value says nothing of flash, though a result looks
         // the same: that comes after the acknowledgement.
         match (reply, expected) {
-            (Reply::WriteAck { address, .. }, Expected::Ack { address: own, .. })
+            (Rs485Reply::WriteAck { address, .. }, ExpectedReply::Ack { address: own, .. })
                 if address == own =>
             {
                 self.foreign += 1;
@@ -212,7 +214,7 @@ impl Rs485 {
         }
     }
 
-    fn foreign_reply(&mut self, reply: &Reply) {
+    fn foreign_reply(&mut self, reply: &Rs485Reply) {
         if reply.id() == self.id.get()
             && let Some(result) = reply.save_result()
         {
@@ -221,7 +223,7 @@ impl Rs485 {
         }
         self.is_calibrated |= reply.id() == self.id.get() && reply.is_calibration_end();
         self.foreign += 1;
-        if let Reply::Read { address, bytes, .. } = reply
+        if let Rs485Reply::Read { address, bytes, .. } = reply
             && let Ok(len) = u16::try_from(bytes.len())
         {
             self.late
@@ -263,7 +265,9 @@ impl Bus for Rs485 {
 
     async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError> {
         let frame = encode_read(self.id, span).ok_or(BusError::TooLong)?;
-        let result = self.exchange(&frame, &Expected::Bytes(span), limit).await;
+        let result = self
+            .exchange(&frame, &ExpectedReply::Bytes(span), limit)
+            .await;
         match result {
             Ok(_) => self.late.answered(Some(span)),
             Err(_) => self.late.gave_up(span, self.clock.now()),
@@ -282,7 +286,7 @@ impl Bus for Rs485 {
         let address = write.address();
         let is_id = address == HAND_ID.address;
         let new_id = write.bytes().first().copied().filter(|_| is_id);
-        self.exchange(&frame, &Expected::Ack { address, new_id }, limit)
+        self.exchange(&frame, &ExpectedReply::Ack { address, new_id }, limit)
             .await?;
         self.late.answered(None);
         Ok(())

@@ -1,7 +1,8 @@
 //! A serial line that lets only the reply to the open request through to the Modbus client, and that its bus can
 //! listen to between requests. Which request is made, and when, is not decided here.
 
-use crate::codec::modbus_rtu::{FRAME_LEN_MAX, RtuNoise, RtuReply, RtuSplitter};
+use crate::codec::NoiseCounts;
+use crate::codec::modbus_rtu::{FRAME_LEN_MAX, RtuReply, RtuSplitter};
 use crate::link::bus::echo::Echo;
 use crate::transport::BoxedWire;
 use arrayvec::ArrayVec;
@@ -17,7 +18,7 @@ const CHUNK: usize = FRAME_LEN_MAX;
 
 /// What the reply to a request looks like. Replies have no number: this is all there is to know them by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Expected {
+enum RtuReplyShape {
     /// Function 03: so many bytes.
     Bytes(u16),
     /// Function 06 at this address.
@@ -26,7 +27,7 @@ enum Expected {
     Multiple([u8; 4]),
 }
 
-impl Expected {
+impl RtuReplyShape {
     fn to(request: &[u8]) -> Option<Self> {
         match request {
             [_, 3, _, _, high, low, ..] => Some(Self::Bytes(
@@ -56,12 +57,12 @@ impl Expected {
 
 /// The line; the client and the bus hold one each. Locked for one poll, never across a wait.
 #[derive(Clone)]
-pub(crate) struct RtuLine(Arc<Mutex<Line>>);
+pub(crate) struct RtuLine(Arc<Mutex<RtuRelay>>);
 
-struct Line {
+struct RtuRelay {
     wire: BoxedWire,
     splitter: RtuSplitter,
-    open: Option<Expected>,
+    open: Option<RtuReplyShape>,
     /// The request on its way, and how much of it the wire took.
     request: ArrayVec<u8, FRAME_LEN_MAX>,
     written: usize,
@@ -76,7 +77,7 @@ struct Line {
 
 impl RtuLine {
     pub(crate) fn new(wire: BoxedWire, unit: u8) -> Self {
-        Self(Arc::new(Mutex::new(Line {
+        Self(Arc::new(Mutex::new(RtuRelay {
             wire,
             splitter: RtuSplitter::new(unit),
             open: None,
@@ -128,7 +129,7 @@ impl RtuLine {
     }
 
     /// What was skipped since the line was opened.
-    pub(crate) fn noise(&self) -> RtuNoise {
+    pub(crate) fn noise(&self) -> NoiseCounts {
         self.line().splitter.noise()
     }
 
@@ -142,12 +143,12 @@ impl RtuLine {
         self.line().closed
     }
 
-    fn line(&self) -> MutexGuard<'_, Line> {
+    fn line(&self) -> MutexGuard<'_, RtuRelay> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Line {
+impl RtuRelay {
     fn poll_hear(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
         let mut chunk = [0; CHUNK];
         let mut buffer = ReadBuf::new(&mut chunk);
@@ -244,7 +245,7 @@ impl AsyncWrite for RtuLine {
         if line.request.try_extend_from_slice(request).is_err() {
             return Poll::Ready(Err(io::ErrorKind::InvalidInput.into()));
         }
-        line.open = Expected::to(request);
+        line.open = RtuReplyShape::to(request);
         line.expect_echo(request);
         line.passed.clear();
         Poll::Ready(Ok(request.len()))

@@ -3,7 +3,7 @@
 use crate::hand::{Moment, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::PollPlan;
-use crate::link::poll::window::Part;
+use crate::link::poll::window::ReadPart;
 use crate::link::stats::{GroupUse, LineUse, PollGroup};
 use std::time::Duration;
 
@@ -18,12 +18,12 @@ pub(crate) struct LineMeter {
     busy: Duration,
     on_wire: Duration,
     writes: Duration,
-    groups: [Sum; PollGroup::ALL.len()],
+    groups: [TimeSum; PollGroup::ALL.len()],
     shown: bool,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Sum {
+struct TimeSum {
     time: Duration,
     parts: u32,
 }
@@ -35,7 +35,7 @@ impl LineMeter {
         self.busy += took;
         self.on_wire += cost.on_wire(window.len);
         let held = || {
-            Part::ALL
+            ReadPart::ALL
                 .into_iter()
                 .filter(|part| window.covers(part.span()))
         };
@@ -98,6 +98,8 @@ impl LineMeter {
 }
 
 fn parts_of(group: PollGroup) -> u32 {
-    let parts = Part::ALL.into_iter().filter(|part| part.group() == group);
+    let parts = ReadPart::ALL
+        .into_iter()
+        .filter(|part| part.group() == group);
     u32::try_from(parts.count()).unwrap_or(1).max(1)
 }

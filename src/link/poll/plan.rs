@@ -8,7 +8,7 @@
 
 use crate::hand::{Moment, Span};
 use crate::link::poll::cost::{Turnaround, WireCost};
-use crate::link::poll::window::{Gaps, Joining, Part, SHAPES_MAX};
+use crate::link::poll::window::{Gaps, Joining, ReadPart, SHAPES_MAX};
 use crate::link::quirks::GapRead;
 use crate::link::stats::PollGroup;
 use arrayvec::ArrayVec;
@@ -68,12 +68,12 @@ impl PollRates {
         settings_hz: 2.0,
     };
 
-    fn of(&self, part: Part) -> f64 {
+    fn of(&self, part: ReadPart) -> f64 {
         match part {
-            Part::Angle | Part::Force | Part::Drives => self.state_hz,
-            Part::Temperature => self.state_hz.min(TEMPERATURE_HZ),
-            Part::Targets | Part::Speeds | Part::Position => self.settings_hz,
-            Part::Tip(_) => self.tactile_hz,
+            ReadPart::Angle | ReadPart::Force | ReadPart::Drives => self.state_hz,
+            ReadPart::Temperature => self.state_hz.min(TEMPERATURE_HZ),
+            ReadPart::Targets | ReadPart::Speeds | ReadPart::Position => self.settings_hz,
+            ReadPart::Tip(_) => self.tactile_hz,
         }
     }
 }
@@ -91,7 +91,7 @@ pub(crate) enum Tempo {
 
 /// What is read next: the forms of one window, in the order of preference.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Question {
+pub(crate) struct NextRead {
     /// The caller takes the first that no late reply can be mistaken for.
     pub(crate) shapes: ArrayVec<Span, SHAPES_MAX>,
     /// True if it asks where the hand is.
@@ -101,7 +101,7 @@ pub(crate) struct Question {
 /// Due time of one part.
 #[derive(Debug, Clone, Copy)]
 struct Due {
-    part: Part,
+    part: ReadPart,
     period: Duration,
     next: Moment,
     /// Not asked for before this, however late it is by then.
@@ -112,7 +112,7 @@ struct Due {
 /// Decides what is read next.
 #[derive(Debug)]
 pub(crate) struct PollPlan {
-    parts: [Due; Part::ALL.len()],
+    parts: [Due; ReadPart::ALL.len()],
     cost: WireCost,
     turnaround: Turnaround,
     gaps: Gaps,
@@ -125,7 +125,7 @@ pub(crate) struct PollPlan {
 impl PollPlan {
     pub(crate) fn new(rates: PollRates, cost: WireCost, now: Moment) -> Self {
         Self {
-            parts: Part::ALL.map(|part| Due {
+            parts: ReadPart::ALL.map(|part| Due {
                 part,
                 period: period(rates.of(part)),
                 next: now,
@@ -180,7 +180,8 @@ impl PollPlan {
             return 0.0;
         };
         let joining = self.joining(Tempo::Rest);
-        let mut left: ArrayVec<Part, { Part::ALL.len() }> = Part::ALL.into_iter().collect();
+        let mut left: ArrayVec<ReadPart, { ReadPart::ALL.len() }> =
+            ReadPart::ALL.into_iter().collect();
         left.retain(|part| part.group() == group);
         let mut all = Duration::ZERO;
         while let Some(first) = left.first() {
@@ -210,7 +211,7 @@ impl PollPlan {
     }
 
     /// What is to be read now, if anything is due.
-    pub(crate) fn next(&self, now: Moment, tempo: Tempo) -> Option<Question> {
+    pub(crate) fn next(&self, now: Moment, tempo: Tempo) -> Option<NextRead> {
         let due = || self.wanted(tempo).filter(|due| due.at() <= now);
         let motion = || {
             due()
@@ -237,18 +238,18 @@ impl PollPlan {
     }
 
     /// True for what is read as part of the motion state: while something moves what the drives say too, if there is room.
-    fn tells_motion(&self, part: Part, tempo: Tempo) -> bool {
-        let whole = Part::Drives.span().end() - u32::from(Part::Angle.span().address);
+    fn tells_motion(&self, part: ReadPart, tempo: Tempo) -> bool {
+        let whole = ReadPart::Drives.span().end() - u32::from(ReadPart::Angle.span().address);
         let most = || self.cost.window_moving(self.turnaround.longest());
         let has_room = || u32::from(most()) >= whole;
-        part.is_motion() || part == Part::Drives && tempo == Tempo::Motion && has_room()
+        part.is_motion() || part == ReadPart::Drives && tempo == Tempo::Motion && has_room()
     }
 
     /// The motion state, due or not.
-    pub(crate) fn motion(&self, now: Moment, tempo: Tempo) -> Question {
-        let angle = self.parts.iter().find(|due| due.part == Part::Angle);
+    pub(crate) fn motion(&self, now: Moment, tempo: Tempo) -> NextRead {
+        let angle = self.parts.iter().find(|due| due.part == ReadPart::Angle);
         let angle = angle.copied().unwrap_or(Due {
-            part: Part::Angle,
+            part: ReadPart::Angle,
             period: Duration::ZERO,
             next: now,
             held_until: now,
@@ -258,7 +259,7 @@ impl PollPlan {
     }
 
     /// What is read between two rounds of setpoints, so that a drag starves nothing; due or not it is no motion state.
-    pub(crate) fn others(&self, now: Moment) -> Option<Question> {
+    pub(crate) fn others(&self, now: Moment) -> Option<NextRead> {
         let due = self.parts.iter().filter(|due| due.at() <= now);
         due.filter(|due| !self.tells_motion(due.part, Tempo::Motion))
             .reduce(|a, b| a.later(b, now))
@@ -288,7 +289,7 @@ impl PollPlan {
     /// Reads the setpoints as soon as possible: they were just written.
     pub(crate) fn hasten_settings(&mut self, now: Moment) {
         for due in &mut self.parts {
-            if matches!(due.part, Part::Targets | Part::Speeds) {
+            if matches!(due.part, ReadPart::Targets | ReadPart::Speeds) {
                 due.next = due.next.min(now);
             }
         }
@@ -324,12 +325,12 @@ impl PollPlan {
 
     fn wanted(&self, tempo: Tempo) -> impl Iterator<Item = &Due> + Clone {
         self.parts.iter().filter(move |due| {
-            tempo != Tempo::Stopping || due.part.is_motion() || due.part == Part::Drives
+            tempo != Tempo::Stopping || due.part.is_motion() || due.part == ReadPart::Drives
         })
     }
 
     /// The question about a part and what goes well with it.
-    fn question(&self, first: &Due, now: Moment, tempo: Tempo) -> Question {
+    fn question(&self, first: &Due, now: Moment, tempo: Tempo) -> NextRead {
         let joining = self.joining(tempo);
         let tells = |due: &Due| self.tells_motion(due.part, tempo);
         let joins = self
@@ -340,11 +341,11 @@ impl PollPlan {
         let alike = joins.clone().filter(|due| due.period == first.period);
         let narrow = joining.window(first.part.span(), alike.map(|due| due.part));
         let wide = joining.window(narrow, joins.map(|due| due.part));
-        let is_motion = wide.covers(Part::Angle.span());
+        let is_motion = wide.covers(ReadPart::Angle.span());
         let mut forms = joining.shapes(wide);
         if is_motion {
             // Shorter ones, for a line on which each longer one may still be answered late.
-            let shorter = [narrow, Part::Angle.span()].into_iter();
+            let shorter = [narrow, ReadPart::Angle.span()].into_iter();
             for window in shorter.filter(|window| *window != wide) {
                 forms.extend(
                     joining
@@ -360,7 +361,7 @@ impl PollPlan {
             .chain(forms.iter().filter(is_recent))
             .copied()
             .collect();
-        Question { shapes, is_motion }
+        NextRead { shapes, is_motion }
     }
 }
 
@@ -394,7 +395,7 @@ impl Due {
     fn joins(&self, first: &Self, now: Moment) -> bool {
         match self.part {
             // Fingertips that were read just now wait for their turn, else the last of them would take them along.
-            Part::Tip(_) => now.since(self.asked) * 3 >= now.since(first.asked) * 2,
+            ReadPart::Tip(_) => now.since(self.asked) * 3 >= now.since(first.asked) * 2,
             // What belongs together stays together, and what is wanted seldom is not read much more often for company.
             _ if self.period == first.period => self.next <= now.plus(self.period / 2),
             _ => self.next <= now.plus(self.period / 8),

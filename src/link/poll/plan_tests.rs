@@ -2,7 +2,7 @@
 use crate::hand::{Moment, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::{First, PollPlan, PollRates, Tempo};
-use crate::link::poll::window::Part;
+use crate::link::poll::window::ReadPart;
 use crate::link::quirks::GapRead;
 use crate::link::stats::PollGroup;
 use std::time::Duration;
@@ -13,17 +13,17 @@ const SECONDS: u64 = 10;
 /// What a run gave.
 struct Run {
     asked: Vec<Span>,
-    /// Reads of each part a second, in the order of `Part::ALL`.
-    hz: [f64; Part::ALL.len()],
+    /// Reads of each part a second, in the order of `ReadPart::ALL`.
+    hz: [f64; ReadPart::ALL.len()],
 }
 
 impl Run {
-    fn of(&self, part: Part) -> f64 {
-        self.hz[Part::ALL.iter().position(|each| *each == part).unwrap()]
+    fn of(&self, part: ReadPart) -> f64 {
+        self.hz[ReadPart::ALL.iter().position(|each| *each == part).unwrap()]
     }
 
     fn check_all(&self, least: f64) {
-        for (part, hz) in Part::ALL.iter().zip(self.hz) {
+        for (part, hz) in ReadPart::ALL.iter().zip(self.hz) {
             assert!(hz >= least, "{part:?} is read {hz} times a second");
         }
     }
@@ -36,7 +36,7 @@ fn run(cost: WireCost, turnaround: Duration, rates: PollRates, tempo: Tempo) -> 
 
 fn read(mut plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
     let (mut now, cost) = (Moment::ZERO, *plan.cost());
-    let (mut asked, mut counts) = (Vec::<Span>::new(), [0_u32; Part::ALL.len()]);
+    let (mut asked, mut counts) = (Vec::<Span>::new(), [0_u32; ReadPart::ALL.len()]);
     while now < Moment::ZERO.plus(Duration::from_secs(SECONDS)) {
         let Some(question) = plan.next(now, tempo) else {
             now = plan.next_due(tempo);
@@ -51,7 +51,7 @@ fn read(mut plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
         plan.answered(window, now, took);
         now = now.plus(took);
         asked.push(window);
-        for (count, part) in counts.iter_mut().zip(Part::ALL) {
+        for (count, part) in counts.iter_mut().zip(ReadPart::ALL) {
             *count += u32::from(window.covers(part.span()));
         }
     }
@@ -69,12 +69,12 @@ fn rs485(baud: u32) -> WireCost {
 fn rates_are_kept_where_the_line_allows() {
     for cost in [WireCost::rs485(None), WireCost::tcp()] {
         let run = run(cost, MS / 5, PollRates::default(), Tempo::Rest);
-        for part in [Part::Angle, Part::Force, Part::Drives] {
+        for part in [ReadPart::Angle, ReadPart::Force, ReadPart::Drives] {
             assert!((99.0..=101.0).contains(&run.of(part)), "{}", run.of(part));
         }
-        assert!((29.0..=31.0).contains(&run.of(Part::Tip(3))));
-        assert!((4.9..=6.0).contains(&run.of(Part::Temperature)));
-        assert!((1.9..=2.5).contains(&run.of(Part::Speeds)));
+        assert!((29.0..=31.0).contains(&run.of(ReadPart::Tip(3))));
+        assert!((4.9..=6.0).contains(&run.of(ReadPart::Temperature)));
+        assert!((1.9..=2.5).contains(&run.of(ReadPart::Speeds)));
     }
 }
 
@@ -98,7 +98,7 @@ fn while_something_moves_every_second_read_is_motion_and_a_stop_is_in_time_behin
         for rates in [PollRates::default(), PollRates::FULL] {
             let run = run(cost, MS * 15, rates, Tempo::Motion);
             for pair in run.asked.windows(2) {
-                let motion = |span: &Span| span.covers(Part::Angle.span());
+                let motion = |span: &Span| span.covers(ReadPart::Angle.span());
                 assert!(pair.iter().any(motion), "{pair:?}");
             }
             let slowest = run.asked.iter().map(|span| cost.read(span.len, MS * 15));
@@ -106,7 +106,7 @@ fn while_something_moves_every_second_read_is_motion_and_a_stop_is_in_time_behin
             assert!(slowest.max().unwrap() + hold <= MS * 30);
             let rest = self::run(cost, MS * 15, rates, Tempo::Rest);
             assert!(
-                run.of(Part::Angle) > rest.of(Part::Angle),
+                run.of(ReadPart::Angle) > rest.of(ReadPart::Angle),
                 "motion comes first"
             );
         }
@@ -121,10 +121,22 @@ fn while_something_moves_touch_comes_at_10_hz_and_more_often_where_it_comes_firs
         read(plan, MS * 6, Tempo::Motion)
     };
     let (force, touch) = (run(First::Force), run(First::Touch));
-    assert!(force.of(Part::Angle) >= 25.0 && force.of(Part::Drives) >= 25.0);
-    assert!(force.of(Part::Tip(4)) >= 10.0, "{}", force.of(Part::Tip(4)));
-    assert!(touch.of(Part::Tip(4)) >= 14.0, "{}", touch.of(Part::Tip(4)));
-    assert!(touch.of(Part::Angle) >= 15.0, "{}", touch.of(Part::Angle));
+    assert!(force.of(ReadPart::Angle) >= 25.0 && force.of(ReadPart::Drives) >= 25.0);
+    assert!(
+        force.of(ReadPart::Tip(4)) >= 10.0,
+        "{}",
+        force.of(ReadPart::Tip(4))
+    );
+    assert!(
+        touch.of(ReadPart::Tip(4)) >= 14.0,
+        "{}",
+        touch.of(ReadPart::Tip(4))
+    );
+    assert!(
+        touch.of(ReadPart::Angle) >= 15.0,
+        "{}",
+        touch.of(ReadPart::Angle)
+    );
     touch.check_all(0.3);
 }
 
@@ -134,7 +146,7 @@ fn at_full_rate_and_rest_a_cycle_is_one_state_and_two_reads_of_fingertips() {
     let late = &run.asked[200..];
     let states = late
         .iter()
-        .filter(|span| span.covers(Part::Drives.span()))
+        .filter(|span| span.covers(ReadPart::Drives.span()))
         .count();
     let tips = late.iter().filter(|span| span.address >= 2950).count();
     assert!(
@@ -172,9 +184,9 @@ fn while_a_stop_is_confirmed_only_motion_and_faults_are_read() {
     assert!(
         run.asked
             .iter()
-            .all(|span| span.covers(Part::Angle.span()) || span.covers(Part::Drives.span()))
+            .all(|span| span.covers(ReadPart::Angle.span()) || span.covers(ReadPart::Drives.span()))
     );
-    assert!(run.of(Part::Angle) > 20.0 && run.of(Part::Drives) > 15.0);
+    assert!(run.of(ReadPart::Angle) > 20.0 && run.of(ReadPart::Drives) > 15.0);
 }
 
 #[test]
@@ -190,7 +202,11 @@ fn the_motion_state_has_forms_enough_for_a_line_with_late_replies() {
                 shapes.len() >= 14 && seen.len() >= lens,
                 "{tempo:?} {shapes:?}"
             );
-            assert!(shapes.iter().all(|shape| shape.covers(Part::Angle.span())));
+            assert!(
+                shapes
+                    .iter()
+                    .all(|shape| shape.covers(ReadPart::Angle.span()))
+            );
         }
     }
 }
@@ -232,8 +248,8 @@ fn a_hand_known_to_refuse_the_gap_is_never_asked_through_it() {
     for _ in 0..300 {
         let window = plan.next(now, Tempo::Rest).unwrap().shapes[0];
         assert!(window.end() <= 1558 || window.address >= 1582, "{window:?}");
-        seen[0] += u32::from(window.covers(Part::Angle.span()));
-        seen[1] += u32::from(window.covers(Part::Force.span()));
+        seen[0] += u32::from(window.covers(ReadPart::Angle.span()));
+        seen[1] += u32::from(window.covers(ReadPart::Force.span()));
         let took = cost.read(window.len, MS * 6);
         plan.answered(window, now, took);
         now = now.plus(took);

@@ -22,7 +22,7 @@ const STRIKES: u8 = 2;
 
 /// What is read as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Part {
+pub(crate) enum ReadPart {
     /// ANGLE_ACT.
     Angle,
     /// FORCE_ACT.
@@ -44,7 +44,7 @@ pub(crate) enum Part {
 /// Bytes of one fingertip.
 const TIP: u16 = 58;
 
-impl Part {
+impl ReadPart {
     pub(crate) const ALL: [Self; 12] = [
         Self::Angle,
         Self::Force,
@@ -164,7 +164,11 @@ pub(crate) struct Joining {
 
 impl Joining {
     /// The window around what is asked for: it takes in whichever of the others costs less in it than by itself.
-    pub(crate) fn window(&self, first: Span, others: impl Iterator<Item = Part> + Clone) -> Span {
+    pub(crate) fn window(
+        &self,
+        first: Span,
+        others: impl Iterator<Item = ReadPart> + Clone,
+    ) -> Span {
         let mut window = first;
         loop {
             let wider = others
@@ -206,12 +210,12 @@ impl Joining {
 }
 
 /// Bytes of registers around a window that could be read with it.
-struct Room {
+struct Margins {
     before: u16,
     behind: u16,
 }
 
-fn room(window: Span) -> Room {
+fn room(window: Span) -> Margins {
     let region = REGIONS.into_iter().find(|region| region.covers(window));
     let region = region.unwrap_or(window);
     let gaps_before = GAPS.iter().map(|gap| gap.end());
@@ -222,7 +226,7 @@ fn room(window: Span) -> Room {
     let end = gaps_behind
         .filter(|start| *start >= window.end())
         .fold(region.end(), u32::min);
-    Room {
+    Margins {
         before: u16::try_from(u32::from(window.address).saturating_sub(start)).unwrap_or(0) / 2 * 2,
         behind: u16::try_from(end.saturating_sub(window.end())).unwrap_or(0) / 2 * 2,
     }
@@ -253,40 +257,57 @@ mod tests {
         }
     }
 
-    fn window(joining: &Joining, first: Part, others: &[Part]) -> (u16, u16) {
+    fn window(joining: &Joining, first: ReadPart, others: &[ReadPart]) -> (u16, u16) {
         let window = joining.window(first.span(), others.iter().copied());
         (window.address, window.len)
     }
 
-    const STATE_PARTS: [Part; 4] = [Part::Angle, Part::Force, Part::Drives, Part::Temperature];
+    const STATE_PARTS: [ReadPart; 4] = [
+        ReadPart::Angle,
+        ReadPart::Force,
+        ReadPart::Drives,
+        ReadPart::Temperature,
+    ];
 
     #[test]
     fn a_gap_is_read_through_where_that_is_cheaper_than_asking_twice() {
         let fast = joining(WireCost::rs485(Some(115_200)), MS * 3, 252);
-        assert_eq!(window(&fast, Part::Angle, &STATE_PARTS), (1546, 78));
+        assert_eq!(window(&fast, ReadPart::Angle, &STATE_PARTS), (1546, 78));
         // 24 bytes take 12.5 ms at 19200 baud, another request and reply 8.9 and the hand's turnaround.
         let slow = WireCost::rs485(Some(19_200));
         let quick_hand = joining(slow, MS, 252);
-        assert_eq!(window(&quick_hand, Part::Angle, &STATE_PARTS), (1546, 12));
-        assert_eq!(window(&quick_hand, Part::Force, &STATE_PARTS), (1582, 42));
+        assert_eq!(
+            window(&quick_hand, ReadPart::Angle, &STATE_PARTS),
+            (1546, 12)
+        );
+        assert_eq!(
+            window(&quick_hand, ReadPart::Force, &STATE_PARTS),
+            (1582, 42)
+        );
         let slow_hand = joining(slow, MS * 8, 252);
-        assert_eq!(window(&slow_hand, Part::Angle, &STATE_PARTS), (1546, 78));
+        assert_eq!(
+            window(&slow_hand, ReadPart::Angle, &STATE_PARTS),
+            (1546, 78)
+        );
         // Pieces of 8 bytes: the gap is three more of them, and apart costs none more.
         let can = joining(WireCost::can(1_000_000), MS, 250);
-        assert_eq!(window(&can, Part::Angle, &STATE_PARTS), (1546, 12));
+        assert_eq!(window(&can, ReadPart::Angle, &STATE_PARTS), (1546, 12));
     }
 
     #[test]
     fn a_window_keeps_to_the_longest_reply() {
-        let tips: Vec<Part> = (0..5).map(Part::Tip).collect();
+        let tips: Vec<ReadPart> = (0..5).map(ReadPart::Tip).collect();
         for (longest, wanted) in [(252, 4), (135, 2), (58, 1)] {
             let joining = joining(WireCost::rs485(Some(115_200)), MS, longest);
-            assert_eq!(window(&joining, Part::Tip(0), &tips), (3000, 58 * wanted));
+            assert_eq!(
+                window(&joining, ReadPart::Tip(0), &tips),
+                (3000, 58 * wanted)
+            );
         }
         let short = joining(WireCost::rs485(Some(115_200)), MS * 3, 58);
-        assert_eq!(window(&short, Part::Angle, &STATE_PARTS), (1546, 48));
+        assert_eq!(window(&short, ReadPart::Angle, &STATE_PARTS), (1546, 48));
         assert_eq!(
-            window(&short, Part::Drives, &[Part::Temperature]),
+            window(&short, ReadPart::Drives, &[ReadPart::Temperature]),
             (1594, 30)
         );
     }
@@ -294,21 +315,21 @@ mod tests {
     #[test]
     fn a_gap_that_is_refused_twice_splits_the_window_and_other_failures_do_not() {
         let mut joining = joining(WireCost::rs485(Some(115_200)), MS * 3, 252);
-        let through = joining.window(Part::Angle.span(), STATE_PARTS.into_iter());
-        let single = Part::Angle.span();
+        let through = joining.window(ReadPart::Angle.span(), STATE_PARTS.into_iter());
+        let single = ReadPart::Angle.span();
         joining.gaps.failed(through);
-        assert_eq!(window(&joining, Part::Angle, &STATE_PARTS), (1546, 12));
+        assert_eq!(window(&joining, ReadPart::Angle, &STATE_PARTS), (1546, 12));
         joining.gaps.failed(single);
         joining.gaps.answered(single);
         assert_eq!(
-            joining.window(Part::Angle.span(), STATE_PARTS.into_iter()),
+            joining.window(ReadPart::Angle.span(), STATE_PARTS.into_iter()),
             through
         );
         joining.gaps.failed(through);
         joining.gaps.answered(single);
         assert!(joining.gaps.are_split());
-        assert_eq!(window(&joining, Part::Angle, &STATE_PARTS), (1546, 12));
-        assert_eq!(window(&joining, Part::Force, &STATE_PARTS), (1582, 42));
+        assert_eq!(window(&joining, ReadPart::Angle, &STATE_PARTS), (1546, 12));
+        assert_eq!(window(&joining, ReadPart::Force, &STATE_PARTS), (1582, 42));
         // Once it was read through, it is never blamed.
         let mut known = Gaps::default();
         known.answered(through);
@@ -322,12 +343,12 @@ mod tests {
     #[test]
     fn the_forms_of_a_window_differ_cover_it_and_stay_within_registers() {
         for (part, others, longest, least) in [
-            (Part::Angle, &STATE_PARTS[..2], 58, 6),
-            (Part::Angle, &STATE_PARTS[..3], 252, 12),
-            (Part::Drives, &STATE_PARTS[2..], 58, 7),
-            (Part::Tip(0), &[][..], 58, 1),
-            (Part::Tip(4), &[][..], 60, 2),
-            (Part::Targets, &[Part::Speeds][..], 58, 6),
+            (ReadPart::Angle, &STATE_PARTS[..2], 58, 6),
+            (ReadPart::Angle, &STATE_PARTS[..3], 252, 12),
+            (ReadPart::Drives, &STATE_PARTS[2..], 58, 7),
+            (ReadPart::Tip(0), &[][..], 58, 1),
+            (ReadPart::Tip(4), &[][..], 60, 2),
+            (ReadPart::Targets, &[ReadPart::Speeds][..], 58, 6),
         ] {
             let joining = joining(WireCost::rs485(Some(115_200)), MS * 3, longest);
             let window = joining.window(part.span(), others.iter().copied());

@@ -1,7 +1,7 @@
 //! What was found about each hand, kept from one start to the next and compared with what it answers now. Nothing kept here
 //! is ever sent to a hand.
 
-use crate::codec::modbus::BytePacking;
+use crate::hand::register::BytePacking;
 use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::QuirkSheet;
 use crate::store::{read_text, replace_keeping_last};

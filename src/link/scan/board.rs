@@ -19,12 +19,12 @@ pub struct ScanProgress {
 #[derive(Debug, Default)]
 pub(crate) struct Board {
     total: usize,
-    lanes: Vec<Rest>,
+    lanes: Vec<RemainingTries>,
     pub(crate) summary: ScanSummary,
 }
 
 #[derive(Debug)]
-struct Rest {
+struct RemainingTries {
     kind: LaneKind,
     tries: usize,
     cost: Duration,
@@ -32,7 +32,7 @@ struct Rest {
 
 impl Board {
     pub(crate) fn new(plan: &ScanPlan) -> Self {
-        let rest = |lane: &Lane| Rest {
+        let rest = |lane: &Lane| RemainingTries {
             kind: lane.kind,
             tries: lane.tries.len(),
             cost: lane.cost(),

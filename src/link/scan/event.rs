@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// A hand that answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Found {
+pub struct FoundHand {
     /// How it is reached.
     pub endpoint: Endpoint,
     /// What it says its HAND_ID is (manual 2.6.1).
@@ -123,7 +123,7 @@ pub enum ScanEvent {
         estimate: Duration,
     },
     /// A hand answered.
-    Found(Found),
+    Found(FoundHand),
     /// A place could not be looked at, or not any more; or nobody is at an address that was named.
     Trouble {
         /// Port, interface or address.

@@ -6,9 +6,9 @@ use crate::link::config::Wake;
 use crate::link::scan::board::{Board, ScanProgress};
 use crate::link::scan::event::ScanEvent;
 use crate::link::scan::hosts::Hosts;
-use crate::link::scan::look::{Room, look};
+use crate::link::scan::look::{ScanContext, look};
 use crate::link::scan::plan::{
-    HOSTS_AT_ONCE, LaneKind, PORTS_AT_ONCE, Places, PortWish, ScanPlan, Speaks,
+    HOSTS_AT_ONCE, LaneKind, PORTS_AT_ONCE, ScanPlan, ScanPort, ScanTargets, Speaks,
 };
 use crate::transport::{Dial, Endpoint, PortFound};
 use futures::{StreamExt as _, stream};
@@ -29,7 +29,7 @@ pub enum Local {
     /// These.
     Named {
         /// Serial ports.
-        ports: Vec<PortWish>,
+        ports: Vec<ScanPort>,
         /// CAN interfaces.
         can: Vec<String>,
     },
@@ -67,7 +67,7 @@ pub struct ScanHandle {
 pub fn start(config: ScanConfig, runtime: &Handle) -> ScanHandle {
     let (tell, events) = mpsc::channel(EVENTS_MAX);
     let board = Arc::new(Mutex::new(Board::default()));
-    let room = Room {
+    let room = ScanContext {
         dial: Arc::clone(&config.dial),
         clock: config.clock,
         events: tell,
@@ -108,16 +108,16 @@ impl Drop for ScanHandle {
     }
 }
 
-async fn scan(config: ScanConfig, room: Arc<Room>) {
+async fn scan(config: ScanConfig, room: Arc<ScanContext>) {
     let begun = config.clock.now();
     let listed = config.dial.ports().await;
     let places = match config.local {
-        Local::Listed => Places {
+        Local::Listed => ScanTargets {
             ports: listed.into_iter().map(as_it_looks).collect(),
             can: config.dial.interfaces().await,
             hosts: config.hosts,
         },
-        Local::Named { ports, can } => Places {
+        Local::Named { ports, can } => ScanTargets {
             ports: ports.into_iter().map(|wish| known(wish, &listed)).collect(),
             can,
             hosts: config.hosts,
@@ -141,7 +141,7 @@ async fn scan(config: ScanConfig, room: Arc<Room>) {
     room.tell(ScanEvent::Done(summary)).await;
 }
 
-async fn look_at_all(room: &Arc<Room>, plan: ScanPlan) {
+async fn look_at_all(room: &Arc<ScanContext>, plan: ScanPlan) {
     let lanes = plan.lanes.into_iter().enumerate();
     let (hosts, ports): (Vec<_>, Vec<_>) = lanes.partition(|(_, lane)| lane.kind == LaneKind::Host);
     let ports = stream::iter(ports).for_each_concurrent(PORTS_AT_ONCE, |(nth, lane)| {
@@ -153,9 +153,9 @@ async fn look_at_all(room: &Arc<Room>, plan: ScanPlan) {
     tokio::join!(ports, hosts);
 }
 
-fn as_it_looks(found: PortFound) -> PortWish {
+fn as_it_looks(found: PortFound) -> ScanPort {
     let can = found.usb.as_ref().is_some_and(|usb| usb.looks_like_can());
-    PortWish {
+    ScanPort {
         port: found.path,
         usb: found.usb,
         speaks: if can {
@@ -167,7 +167,7 @@ fn as_it_looks(found: PortFound) -> PortWish {
 }
 
 /// With what the system knows of the port.
-fn known(mut wish: PortWish, listed: &[PortFound]) -> PortWish {
+fn known(mut wish: ScanPort, listed: &[PortFound]) -> ScanPort {
     let same = listed.iter().find(|port| port.path == wish.port);
     wish.usb = wish.usb.or_else(|| same.and_then(|port| port.usb.clone()));
     wish

@@ -12,9 +12,9 @@ const KEPT_MAX: usize = 64;
 
 /// One open wire with several users, one at a time. It closes when the last of them is dropped.
 #[derive(Clone)]
-pub(crate) struct LentWire(Arc<Mutex<Line>>);
+pub(crate) struct LentWire(Arc<Mutex<ObservedWire>>);
 
-struct Line {
+struct ObservedWire {
     wire: BoxedWire,
     sent: Vec<u8>,
     heard: Vec<u8>,
@@ -23,7 +23,7 @@ struct Line {
 
 impl LentWire {
     pub(crate) fn new(wire: BoxedWire) -> Self {
-        Self(Arc::new(Mutex::new(Line {
+        Self(Arc::new(Mutex::new(ObservedWire {
             wire,
             sent: Vec::new(),
             heard: Vec::new(),
@@ -42,7 +42,7 @@ impl LentWire {
         heard
     }
 
-    fn line(&self) -> MutexGuard<'_, Line> {
+    fn line(&self) -> MutexGuard<'_, ObservedWire> {
         // A line whose user panicked is a whole line: nothing is left half done in it.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

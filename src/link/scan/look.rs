@@ -6,7 +6,7 @@ use crate::link::bus::late_replies::LateReplies;
 use crate::link::bus::{self, BusError};
 use crate::link::clock::Clock;
 use crate::link::scan::board::Board;
-use crate::link::scan::event::{Found, ScanEvent, ScanHint};
+use crate::link::scan::event::{FoundHand, ScanEvent, ScanHint};
 use crate::link::scan::heard::LentWire;
 use crate::link::scan::plan::{Lane, LaneKind, Try, same_line};
 use crate::transport::{Dial, Endpoint, TransportError};
@@ -18,7 +18,7 @@ use tokio::sync::mpsc;
 use tokio::time::Instant;
 
 /// What all lanes of a scan share.
-pub(crate) struct Room {
+pub(crate) struct ScanContext {
     pub(crate) dial: Arc<dyn Dial>,
     pub(crate) clock: Clock,
     pub(crate) events: mpsc::Sender<ScanEvent>,
@@ -28,7 +28,7 @@ pub(crate) struct Room {
     pub(crate) range_told: AtomicBool,
 }
 
-impl Room {
+impl ScanContext {
     pub(crate) async fn tell(&self, event: ScanEvent) {
         // Nobody listens any more when the scan is being ended.
         let _unheard = self.events.send(event).await;
@@ -41,7 +41,7 @@ impl Room {
 }
 
 /// What came back.
-enum Answer {
+enum ProbeAnswer {
     Hand {
         hand_id: u8,
         round_trip: Duration,
@@ -87,8 +87,8 @@ impl Noticed {
 }
 
 /// One place being looked at.
-struct Look {
-    room: Arc<Room>,
+struct LaneScan {
+    room: Arc<ScanContext>,
     nth: usize,
     lane: Lane,
     open: Option<(Endpoint, LentWire)>,
@@ -101,8 +101,8 @@ struct Look {
 }
 
 /// Goes through all tries of a lane, or until what it learned makes the rest needless.
-pub(crate) async fn look(room: Arc<Room>, nth: usize, lane: Lane) {
-    let mut look = Look {
+pub(crate) async fn look(room: Arc<ScanContext>, nth: usize, lane: Lane) {
+    let mut look = LaneScan {
         room,
         nth,
         lane,
@@ -117,27 +117,27 @@ pub(crate) async fn look(room: Arc<Room>, nth: usize, lane: Lane) {
     look.finish().await;
 }
 
-impl Look {
+impl LaneScan {
     async fn go(&mut self) {
         let mut rest: VecDeque<Try> = std::mem::take(&mut self.lane.tries).into();
         while let Some(one) = rest.pop_front() {
             match self.ask(&one).await {
-                Answer::Silence => {}
-                Answer::Hand {
+                ProbeAnswer::Silence => {}
+                ProbeAnswer::Hand {
                     hand_id,
                     round_trip,
                 } => {
                     self.found(&one, hand_id, round_trip).await;
                     rest.retain(|other| same_line(&one.endpoint, &other.endpoint));
                 }
-                Answer::OtherId(hand_id) => {
+                ProbeAnswer::OtherId(hand_id) => {
                     self.noticed.other.get_or_insert((one.endpoint, hand_id));
                 }
-                Answer::Refused(reason) => {
+                ProbeAnswer::Refused(reason) => {
                     self.noticed.refused.get_or_insert((one.endpoint, reason));
                 }
-                Answer::Broke(_) if self.lane.kind == LaneKind::Host => {}
-                Answer::Shut(error) | Answer::Broke(error) => {
+                ProbeAnswer::Broke(_) if self.lane.kind == LaneKind::Host => {}
+                ProbeAnswer::Shut(error) | ProbeAnswer::Broke(error) => {
                     self.after(&error, &one.endpoint, &mut rest);
                     self.trouble(error).await;
                 }
@@ -150,7 +150,7 @@ impl Look {
     async fn found(&mut self, one: &Try, hand_id: u8, round_trip: Duration) {
         self.found += 1;
         self.room.board().summary.found += 1;
-        let found = Found {
+        let found = FoundHand {
             endpoint: one.endpoint.clone(),
             hand_id,
             round_trip,
@@ -210,10 +210,10 @@ impl Look {
         }
     }
 
-    async fn ask(&mut self, one: &Try) -> Answer {
+    async fn ask(&mut self, one: &Try) -> ProbeAnswer {
         let wire = match self.wire(&one.endpoint).await {
             Ok(wire) => wire,
-            Err(error) => return Answer::Shut(error),
+            Err(error) => return ProbeAnswer::Shut(error),
         };
         let late = LateReplies::default();
         let lent = Box::new(wire.clone());
@@ -231,21 +231,21 @@ impl Look {
         bus.close();
         match read {
             Ok(bytes) => match bytes.first() {
-                Some(hand_id) if is_expected(&one.endpoint, *hand_id) => Answer::Hand {
+                Some(hand_id) if is_expected(&one.endpoint, *hand_id) => ProbeAnswer::Hand {
                     hand_id: *hand_id,
                     round_trip,
                 },
-                Some(hand_id) => Answer::OtherId(*hand_id),
-                None => Answer::Silence,
+                Some(hand_id) => ProbeAnswer::OtherId(*hand_id),
+                None => ProbeAnswer::Silence,
             },
-            Err(BusError::Refused { reason }) => Answer::Refused(reason),
+            Err(BusError::Refused { reason }) => ProbeAnswer::Refused(reason),
             Err(BusError::Lost(error)) => {
                 self.open = None;
-                Answer::Broke(error)
+                ProbeAnswer::Broke(error)
             }
             Err(_) => {
                 self.notice(&one.endpoint, heard, foreign);
-                Answer::Silence
+                ProbeAnswer::Silence
             }
         }
     }

@@ -10,7 +10,7 @@ mod look;
 pub mod plan;
 
 pub use board::ScanProgress;
-pub use event::{Found, ScanEvent, ScanHint, ScanSummary};
+pub use event::{FoundHand, ScanEvent, ScanHint, ScanSummary};
 pub use handle::{Local, ScanConfig, ScanHandle, start};
 pub use hosts::{HOSTS_MAX, Hosts, HostsError};
-pub use plan::{Places, PortWish, ScanPlan, Speaks};
+pub use plan::{ScanPlan, ScanPort, ScanTargets, Speaks};

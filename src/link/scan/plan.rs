@@ -44,7 +44,7 @@ pub enum Speaks {
 
 /// One serial port to look at.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PortWish {
+pub struct ScanPort {
     /// Path or name.
     pub port: String,
     /// What is plugged in there, if it is on USB.
@@ -55,9 +55,9 @@ pub struct PortWish {
 
 /// Where to look.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Places {
+pub struct ScanTargets {
     /// Serial ports.
-    pub ports: Vec<PortWish>,
+    pub ports: Vec<ScanPort>,
     /// CAN interfaces.
     pub can: Vec<String>,
     /// Hosts.
@@ -105,7 +105,7 @@ impl ScanPlan {
     /// Plans for these places and ids. `held` is the hand that is connected now: its port is left alone, its CAN interface
     /// too, where its link would take our questions for those of another controller.
     #[must_use]
-    pub fn new(places: &Places, ids: &[HandId], held: Option<&Endpoint>) -> Self {
+    pub fn new(places: &ScanTargets, ids: &[HandId], held: Option<&Endpoint>) -> Self {
         let mut plan = Self::default();
         for wish in &places.ports {
             plan.add(port_lane(wish, ids), held);
@@ -217,7 +217,7 @@ fn first_and_rest(ids: &[HandId]) -> [&[HandId]; 2] {
     [first, rest]
 }
 
-fn port_lane(wish: &PortWish, ids: &[HandId]) -> Lane {
+fn port_lane(wish: &ScanPort, ids: &[HandId]) -> Lane {
     let mut tries = Vec::new();
     if wish.speaks == Speaks::MakersAdapter {
         tries.extend(ids.iter().map(|id| {
@@ -339,27 +339,27 @@ mod tests {
         HandId::all().take(last).collect()
     }
 
-    fn port(name: &str, speaks: Speaks) -> PortWish {
-        PortWish {
+    fn port(name: &str, speaks: Speaks) -> ScanPort {
+        ScanPort {
             port: name.into(),
             usb: None,
             speaks,
         }
     }
 
-    fn ports(count: usize) -> Places {
-        Places {
+    fn ports(count: usize) -> ScanTargets {
+        ScanTargets {
             ports: (0..count)
                 .map(|nth| port(&format!("/dev/ttyUSB{nth}"), Speaks::Hand))
                 .collect(),
-            ..Places::default()
+            ..ScanTargets::default()
         }
     }
 
-    fn hosts(text: &str) -> Places {
-        Places {
+    fn hosts(text: &str) -> ScanTargets {
+        ScanTargets {
             hosts: vec![text.parse().unwrap()],
-            ..Places::default()
+            ..ScanTargets::default()
         }
     }
 
@@ -395,7 +395,7 @@ mod tests {
 
     #[test]
     fn each_kind_of_place_is_asked_in_its_own_way() {
-        let places = Places {
+        let places = ScanTargets {
             ports: vec![
                 port("COM3", Speaks::CanAdapter),
                 port("COM4", Speaks::Either),
@@ -457,7 +457,7 @@ mod tests {
 
     #[test]
     fn no_address_is_planned_that_was_not_named() {
-        let places = Places {
+        let places = ScanTargets {
             can: vec!["can0".into()],
             ..ports(3)
         };
@@ -485,9 +485,9 @@ mod tests {
             assert_eq!(left, kept, "{held}");
             assert_eq!(plan.held.len(), 2 - kept.len());
         }
-        let can = Places {
+        let can = ScanTargets {
             can: vec!["can0".into(), "can1".into()],
-            ..Places::default()
+            ..ScanTargets::default()
         };
         let plan = ScanPlan::new(&can, &ids(1), Some(&"can:can1?id=9".parse().unwrap()));
         assert_eq!((plan.places(), plan.held), (1, vec!["can1".to_owned()]));

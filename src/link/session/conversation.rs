@@ -12,14 +12,14 @@ use crate::link::poll::plan::PollPlan;
 use crate::link::request::RequestError;
 use crate::link::session::adapter::KnownAdapter;
 use crate::link::session::counters::Counters;
-use crate::link::session::job::Job;
+use crate::link::session::job::SessionJob;
 use crate::link::session::motion::Motion;
 use crate::link::session::other_controller::OtherController;
 use crate::link::session::rest::RestWatch;
 use crate::link::session::save_watch::SaveWatch;
 use crate::link::status::{Dialling, LinkStatus, LinkTrouble};
 use crate::link::tap::TappedWire;
-use crate::link::wanted::{Ends, Wanted};
+use crate::link::wanted::{Ends, PendingControl};
 use crate::record::{Disarmed, Hold, LinkState, Record, Rest};
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use std::sync::Arc;
@@ -42,7 +42,7 @@ const REPLY_LIMIT_MIN: Duration = Duration::from_millis(50);
 /// Longest wait for a reply: part of the time in which a stop gets through, and half of that in which silence shows.
 const REPLY_LIMIT_MAX: Duration = Duration::from_millis(120);
 /// How serving a wire ended.
-pub(crate) enum End {
+pub(crate) enum WireEnd {
     /// The handle is gone.
     Closed,
     /// The link was lost.
@@ -59,7 +59,7 @@ pub(crate) struct Session {
     pub(crate) plan: PollPlan,
     pub(crate) motion: Motion,
     pub(crate) moving: RestWatch,
-    pub(crate) job: Option<Job>,
+    pub(crate) job: Option<SessionJob>,
     /// The line is left to a hand that saves or calibrates.
     pub(crate) leaves_line: bool,
     /// Answers what a lost link broke off.
@@ -113,8 +113,8 @@ impl Session {
             attempt += 1;
             let (end, answered) = self.conversation(attempt).await;
             match end {
-                End::Closed => return,
-                End::Lost(trouble) => self.lost(trouble),
+                WireEnd::Closed => return,
+                WireEnd::Lost(trouble) => self.lost(trouble),
             }
             if answered {
                 attempt = 0;
@@ -130,19 +130,19 @@ impl Session {
     }
 
     /// One wire, from dialling to its end; and whether the hand answered on it.
-    async fn conversation(&mut self, attempt: u32) -> (End, bool) {
+    async fn conversation(&mut self, attempt: u32) -> (WireEnd, bool) {
         self.status.dialling = Dialling::Trying { attempt };
         self.publish();
         let closed = closed(Arc::clone(&self.ends.wanted));
         let dialled = tokio::select! {
             biased;
-            () = closed => return (End::Closed, false),
+            () = closed => return (WireEnd::Closed, false),
             dialled = self.dial() => dialled,
         };
         let late = std::mem::take(&mut self.late);
         let (endpoint, wire) = match dialled {
             Ok(dialled) => dialled,
-            Err(error) => return (End::Lost(error.into()), false),
+            Err(error) => return (WireEnd::Lost(error.into()), false),
         };
         self.dialled = endpoint;
         let (tap, clock) = (self.ends.tap.clone(), self.config.clock);
@@ -174,14 +174,14 @@ impl Session {
     }
 
     /// A hand that never answered, with what was heard instead.
-    fn explained(&self, end: End, bus: &dyn Bus) -> End {
-        let End::Lost(LinkTrouble::NoAnswer { id }) = end else {
+    fn explained(&self, end: WireEnd, bus: &dyn Bus) -> WireEnd {
+        let WireEnd::Lost(LinkTrouble::NoAnswer { id }) = end else {
             return end;
         };
         let place = self.dialled.place();
         let heard = bus.counts();
         let is_noisy = heard.checksum_errors + heard.resyncs + heard.foreign_replies > 0;
-        End::Lost(match self.dialled {
+        WireEnd::Lost(match self.dialled {
             Endpoint::Tcp { .. } => LinkTrouble::Mute { place, unit: id },
             _ if is_noisy => LinkTrouble::Garbled { place, id },
             _ => LinkTrouble::NoAnswer { id },
@@ -245,15 +245,15 @@ impl Session {
         self.forget_wishes_but(|_| false);
     }
 
-    fn forget_wishes_but(&self, stop: fn(&Wanted) -> bool) {
+    fn forget_wishes_but(&self, stop: fn(&PendingControl) -> bool) {
         self.ends.wanted.send_if_modified(|wanted| {
-            *wanted = Wanted {
+            *wanted = PendingControl {
                 closed: wanted.closed,
                 stop: stop(wanted),
                 rates: wanted.rates,
                 turn: wanted.turn,
                 first: wanted.first,
-                ..Wanted::default()
+                ..PendingControl::default()
             };
             false
         });
@@ -294,9 +294,13 @@ impl Session {
     }
 
     /// A request failed. Only a lost wire, or too many failures in a row, end the conversation.
-    pub(crate) async fn failed(&mut self, bus: &mut dyn Bus, error: &BusError) -> Result<(), End> {
+    pub(crate) async fn failed(
+        &mut self,
+        bus: &mut dyn Bus,
+        error: &BusError,
+    ) -> Result<(), WireEnd> {
         match error {
-            BusError::Lost(error) => return Err(End::Lost(error.clone().into())),
+            BusError::Lost(error) => return Err(WireEnd::Lost(error.clone().into())),
             BusError::Refused { .. } => {
                 self.heard();
                 self.counters.stats.refusals += 1;
@@ -308,7 +312,7 @@ impl Session {
             BusError::Ambiguous => return Ok(()),
         }
         if self.unheard(error) {
-            return Err(End::Lost(LinkTrouble::Silent {
+            return Err(WireEnd::Lost(LinkTrouble::Silent {
                 silent: self.silent,
             }));
         }
@@ -320,10 +324,7 @@ impl Session {
         tokio::select! {
             biased;
             () = stop => Ok(()),
-            settled = bus.quiet() => match settled {
-                Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
-                _ => Ok(()),
-            },
+            settled = bus.quiet() => unless_lost(settled),
         }
     }
 
@@ -396,14 +397,22 @@ impl Session {
     }
 }
 
+/// Of all failures only a lost wire ends the conversation.
+pub(crate) fn unless_lost(done: Result<(), BusError>) -> Result<(), WireEnd> {
+    match done {
+        Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
+        _ => Ok(()),
+    }
+}
+
 /// Resolves when the handle is gone.
-pub(crate) async fn closed(wanted: Arc<watch::Sender<Wanted>>) {
+pub(crate) async fn closed(wanted: Arc<watch::Sender<PendingControl>>) {
     let mut wanted = wanted.subscribe();
     let _gone = wanted.wait_for(|wanted| wanted.closed).await;
 }
 
 /// Resolves when a stop is wanted, or the handle is gone.
-pub(crate) async fn stopped(wanted: Arc<watch::Sender<Wanted>>) {
+pub(crate) async fn stopped(wanted: Arc<watch::Sender<PendingControl>>) {
     let mut wanted = wanted.subscribe();
     let _asked = wanted.wait_for(|wanted| wanted.stop || wanted.closed).await;
 }

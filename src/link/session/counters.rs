@@ -1,7 +1,6 @@
 //! Counting for [`LinkStats`]: rates over the last second and percentiles over the last round trips.
 
-use crate::hand::{Finger, Group, Groups, Moment, Span};
-use crate::link::poll::cost::WireCost;
+use crate::hand::{Finger, Group, Groups, Moment};
 use crate::link::poll::meter::LineMeter;
 use crate::link::stats::{LineUse, LinkStats};
 use std::collections::VecDeque;
@@ -34,21 +33,6 @@ impl Counters {
             self.round_trips.pop_front();
         }
         self.round_trips.push_back(took);
-    }
-
-    /// A window was answered.
-    pub(crate) fn read(&mut self, cost: &WireCost, window: Span, took: Duration) {
-        self.line.read(cost, window, took);
-    }
-
-    /// A write went out, answered or not.
-    pub(crate) fn wrote(&mut self, cost: &WireCost, written: Span, took: Duration) {
-        self.line.wrote(cost, written, took);
-    }
-
-    /// A read failed.
-    pub(crate) fn failed(&mut self, took: Duration) {
-        self.line.failed(took);
     }
 
     /// New values of these groups arrived.

@@ -1,13 +1,12 @@
 //! Identifies a hand on a fresh wire, by reading only: is it there, and how does it differ from others. Bounded in time, and
 //! cut short by a stop; nothing is written.
 
-use crate::codec::modbus::BytePacking;
-use crate::hand::register::{ANGLE_ACT, HAND_ID, REDU_RATIO, TEMP, TOUCH};
+use crate::hand::register::{ANGLE_ACT, BytePacking, HAND_ID, REDU_RATIO, TEMP, TOUCH};
 use crate::hand::{Moment, Span};
 use crate::link::bus::error::id_of;
 use crate::link::bus::{Bus, BusError, Bytes};
 use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
-use crate::link::session::conversation::{End, Session, closed, stopped};
+use crate::link::session::conversation::{Session, WireEnd, closed, stopped, unless_lost};
 use crate::link::status::LinkTrouble;
 use std::sync::Arc;
 use std::time::Duration;
@@ -55,7 +54,7 @@ const OTHER_TOUCH_SHAPES: [Span; 3] = [
     clippy::large_enum_variant,
     reason = "it lives on the stack, for one question"
 )]
-enum Heard {
+enum IdentityReply {
     Bytes(Bytes),
     Refused,
     Silent,
@@ -65,16 +64,16 @@ enum Heard {
 
 impl Session {
     /// Asks until the hand answers, and then what it does in its own way. The session lives on from there.
-    pub(crate) async fn identify(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+    pub(crate) async fn identify(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let closed = closed(Arc::clone(&self.ends.wanted));
         tokio::select! {
             biased;
-            () = closed => Err(End::Closed),
+            () = closed => Err(WireEnd::Closed),
             known = self.get_to_know(bus) => known,
         }
     }
 
-    async fn get_to_know(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+    async fn get_to_know(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let id = self.first_answer(bus).await?;
         // A stop from here on belongs to this hand; what was wished before does not.
         self.forget_wishes();
@@ -90,9 +89,9 @@ impl Session {
     }
 
     /// Asks for the id until something comes. A refusal is an answer too, without an id.
-    async fn first_answer(&mut self, bus: &mut dyn Bus) -> Result<Option<Bytes>, End> {
+    async fn first_answer(&mut self, bus: &mut dyn Bus) -> Result<Option<Bytes>, WireEnd> {
         for _ in 0..TRIES {
-            self.take_turn(bus).await?;
+            self.turn(bus).await?;
             // Where all are open, the id may be asked in the same words again: it does not change.
             let span = bus.choose(&ID_SHAPES).unwrap_or(HAND_ID.span());
             let span = Span::new(span.address, span.len + u16::from(bus.has_words()));
@@ -100,14 +99,14 @@ impl Session {
             match bus.read(span, limit).await {
                 Ok(bytes) => return Ok(Some(bytes)),
                 Err(BusError::Refused { .. } | BusError::WrongLength { .. }) => return Ok(None),
-                Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
+                Err(BusError::Lost(error)) => return Err(WireEnd::Lost(error.into())),
                 Err(BusError::Timeout { .. } | BusError::TooLong | BusError::Ambiguous) => {
                     self.counters.stats.timeouts += 1;
-                    lost(bus.quiet().await)?;
+                    unless_lost(bus.quiet().await)?;
                 }
             }
         }
-        Err(End::Lost(LinkTrouble::NoAnswer {
+        Err(WireEnd::Lost(LinkTrouble::NoAnswer {
             id: id_of(&self.config.endpoint),
         }))
     }
@@ -118,18 +117,18 @@ impl Session {
         bus: &mut dyn Bus,
         id: Option<&Bytes>,
         until: Moment,
-    ) -> Result<Option<BytePacking>, End> {
+    ) -> Result<Option<BytePacking>, WireEnd> {
         for _ in 0..ASKED {
             if self.hurried(until) {
                 break;
             }
-            self.take_turn(bus).await?;
+            self.turn(bus).await?;
             let limit = self.reply_limit(bus, 2 * BytePacking::OnePerWord.words_per_group());
             match bus.words(TEMP.address, limit).await {
                 Ok(Some(words)) => return Ok(judged_packing(id, &words)),
                 Ok(None) => break,
                 Err(error) => {
-                    if let Heard::Refused = self.unanswered(bus, error).await? {
+                    if let IdentityReply::Refused = self.unanswered(bus, error).await? {
                         break;
                     }
                 }
@@ -138,23 +137,23 @@ impl Session {
         Ok(None)
     }
 
-    async fn ask_rest(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<Quirks, End> {
+    async fn ask_rest(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<Quirks, WireEnd> {
         let baud_code = match self.ask(bus, &BAUD_SHAPES, until).await? {
-            Heard::Bytes(bytes) => bytes.first().copied(),
+            IdentityReply::Bytes(bytes) => bytes.first().copied(),
             _ => None,
         };
         // Where a run is asked for in pieces, no question is worth leading through the gap.
         let gap = match bus.cost().turns(GAP_SHAPES[0].len) {
             0 | 1 => self.ask(bus, &GAP_SHAPES, until).await?,
-            _ => Heard::Unasked,
+            _ => IdentityReply::Unasked,
         };
         let touch = self.ask_touch(bus, until).await?;
         let gap = match gap {
-            Heard::Bytes(_) => Some(GapRead::Through),
-            Heard::Refused => Some(GapRead::Split),
+            IdentityReply::Bytes(_) => Some(GapRead::Through),
+            IdentityReply::Refused => Some(GapRead::Split),
             // The serial framing has no word for no: silence is one if the next question is answered.
-            Heard::Silent if !bus.has_words() && touch.is_some() => Some(GapRead::Split),
-            Heard::Silent | Heard::Unasked => None,
+            IdentityReply::Silent if !bus.has_words() && touch.is_some() => Some(GapRead::Split),
+            IdentityReply::Silent | IdentityReply::Unasked => None,
         };
         Ok(Quirks {
             baud_code,
@@ -169,7 +168,7 @@ impl Session {
         &mut self,
         bus: &mut dyn Bus,
         until: Moment,
-    ) -> Result<Option<TouchVariant>, End> {
+    ) -> Result<Option<TouchVariant>, WireEnd> {
         const EMPTY: Option<TouchVariant> = Some(TouchVariant::Unknown(TouchDoubt::Empty));
         let mut first = judged(&self.ask(bus, &TOUCH_SHAPES, until).await?);
         // Pieces of several requests may be of several measurements: their sum says nothing.
@@ -190,10 +189,10 @@ impl Session {
         bus: &mut dyn Bus,
         shapes: &[Span],
         until: Moment,
-    ) -> Result<Heard, End> {
+    ) -> Result<IdentityReply, WireEnd> {
         let mut heard = self.ask_once(bus, shapes, until).await?;
         for _ in 1..ASKED {
-            if matches!(heard, Heard::Silent) {
+            if matches!(heard, IdentityReply::Silent) {
                 heard = self.ask_once(bus, shapes, until).await?;
             }
         }
@@ -205,30 +204,34 @@ impl Session {
         bus: &mut dyn Bus,
         shapes: &[Span],
         until: Moment,
-    ) -> Result<Heard, End> {
+    ) -> Result<IdentityReply, WireEnd> {
         if self.hurried(until) {
-            return Ok(Heard::Unasked);
+            return Ok(IdentityReply::Unasked);
         }
-        self.take_turn(bus).await?;
+        self.turn(bus).await?;
         let Some(span) = bus.choose(shapes) else {
-            return Ok(Heard::Unasked);
+            return Ok(IdentityReply::Unasked);
         };
         let (limit, asked) = (self.reply_limit(bus, span.len), self.now());
         match bus.read(span, limit).await {
             Ok(bytes) => {
                 self.answered(self.now().since(asked));
-                Ok(Heard::Bytes(bytes))
+                Ok(IdentityReply::Bytes(bytes))
             }
             Err(error) => self.unanswered(bus, error).await,
         }
     }
 
-    async fn unanswered(&mut self, bus: &mut dyn Bus, error: BusError) -> Result<Heard, End> {
+    async fn unanswered(
+        &mut self,
+        bus: &mut dyn Bus,
+        error: BusError,
+    ) -> Result<IdentityReply, WireEnd> {
         match error {
-            BusError::Lost(error) => return Err(End::Lost(error.into())),
+            BusError::Lost(error) => return Err(WireEnd::Lost(error.into())),
             BusError::Refused { .. } => {
                 self.counters.stats.refusals += 1;
-                return Ok(Heard::Refused);
+                return Ok(IdentityReply::Refused);
             }
             BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
             BusError::Ambiguous => {}
@@ -239,26 +242,14 @@ impl Session {
         tokio::select! {
             biased;
             () = stop => {}
-            settled = bus.quiet() => lost(settled)?,
+            settled = bus.quiet() => unless_lost(settled)?,
         }
-        Ok(Heard::Silent)
+        Ok(IdentityReply::Silent)
     }
 
     /// True if there is no time for another question.
     fn hurried(&self, until: Moment) -> bool {
         self.now() >= until || self.ends.wanted.borrow().stop
-    }
-
-    async fn take_turn(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
-        lost(bus.turn().await)
-    }
-}
-
-/// Of all failures only a lost wire ends the conversation.
-fn lost(done: Result<(), BusError>) -> Result<(), End> {
-    match done {
-        Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
-        _ => Ok(()),
     }
 }
 
@@ -267,11 +258,11 @@ fn judged_packing(id: Option<&Bytes>, words: &[u16]) -> Option<BytePacking> {
     BytePacking::detect(at_id, words.first_chunk()?)
 }
 
-fn judged(heard: &Heard) -> Option<TouchVariant> {
+fn judged(heard: &IdentityReply) -> Option<TouchVariant> {
     match heard {
-        Heard::Bytes(bytes) => Some(TouchVariant::judge(bytes)),
-        Heard::Refused => Some(TouchVariant::Unknown(TouchDoubt::Refused)),
-        Heard::Silent | Heard::Unasked => None,
+        IdentityReply::Bytes(bytes) => Some(TouchVariant::judge(bytes)),
+        IdentityReply::Refused => Some(TouchVariant::Unknown(TouchDoubt::Refused)),
+        IdentityReply::Silent | IdentityReply::Unasked => None,
     }
 }
 

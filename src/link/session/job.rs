@@ -7,46 +7,41 @@ use arrayvec::ArrayVec;
 /// Writes of one job: those of the longest command, and the hold before clearing errors.
 pub(crate) const JOB_MAX: usize = 7;
 
+/// Writes that go out one a step.
+pub(crate) struct WriteJob {
+    pub(crate) writes: ArrayVec<RegisterWrite, JOB_MAX>,
+    pub(crate) is_motion: bool,
+    pub(crate) answer: Answer<()>,
+}
+
+/// A read of any memory.
+pub(crate) struct ReadJob {
+    pub(crate) span: Span,
+    /// Another answer was asked for, so that this one cannot be taken for a double of the last.
+    pub(crate) cleared: bool,
+    pub(crate) answer: Answer<Vec<u8>>,
+}
+
 /// A request that is under way.
-pub(crate) enum Job {
-    /// Its writes go out one a step.
-    Write {
-        writes: ArrayVec<RegisterWrite, JOB_MAX>,
-        is_motion: bool,
-        answer: Answer<()>,
-    },
-    Read {
-        span: Span,
-        /// Another answer was asked for, so that this one cannot be taken for a double of the last.
-        cleared: bool,
-        answer: Answer<Vec<u8>>,
-    },
+pub(crate) enum SessionJob {
+    Write(WriteJob),
+    Read(ReadJob),
     /// Something that has the line for itself.
     Alone(Request),
 }
 
-impl Job {
+impl SessionJob {
     /// True if the hand moves because of it.
     pub(crate) const fn is_motion(&self) -> bool {
-        matches!(
-            self,
-            Self::Write {
-                is_motion: true,
-                ..
-            }
-        )
+        matches!(self, Self::Write(job) if job.is_motion)
     }
 
     /// Answers that it was not done, or not to its end. Whoever asked may be gone.
     pub(crate) fn fail(self, error: RequestError) {
-        match self {
-            Self::Write { answer, .. } => {
-                let _told = answer.send(Err(error));
-            }
-            Self::Read { answer, .. } => {
-                let _told = answer.send(Err(error));
-            }
-            Self::Alone(request) => request.fail(error),
-        }
+        let _told = match self {
+            Self::Write(job) => job.answer.send(Err(error)).is_ok(),
+            Self::Read(job) => job.answer.send(Err(error)).is_ok(),
+            Self::Alone(request) => return request.fail(error),
+        };
     }
 }

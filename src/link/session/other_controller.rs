@@ -20,9 +20,9 @@ pub(crate) struct OtherController {
     counted: u64,
     requests: ArrayVec<Moment, REQUESTS>,
     noticed: Option<Moment>,
-    angles: Held<PerDof<Option<Target>>>,
-    forces: Held<PerDof<Option<Force>>>,
-    speeds: Held<PerDof<Option<Speed>>>,
+    angles: GroupMemory<PerDof<Option<Target>>>,
+    forces: GroupMemory<PerDof<Option<Force>>>,
+    speeds: GroupMemory<PerDof<Option<Speed>>>,
     /// Setpoints that changed though nobody here wrote them.
     pub(crate) changes: u64,
 }
@@ -92,14 +92,14 @@ impl OtherController {
 
 /// One group of setpoints as the hand holds it.
 #[derive(Debug)]
-struct Held<T> {
+struct GroupMemory<T> {
     known: Option<T>,
     /// Read once and unlike what was known: one reading may be wrong, two are not.
     doubted: bool,
     wrote: Option<Moment>,
 }
 
-impl<T> Default for Held<T> {
+impl<T> Default for GroupMemory<T> {
     fn default() -> Self {
         Self {
             known: None,
@@ -109,7 +109,7 @@ impl<T> Default for Held<T> {
     }
 }
 
-impl<T: Copy + PartialEq> Held<T> {
+impl<T: Copy + PartialEq> GroupMemory<T> {
     /// We wrote it: what was read before says nothing any more, however long the next reading takes.
     fn wrote(&mut self, now: Moment) {
         self.wrote = Some(now);
@@ -162,7 +162,7 @@ mod tests {
     }
 
     /// Reads speeds of all joints as the hand would give them.
-    fn read(rival: &mut OtherController, speed: u8, ms: u64) {
+    fn read(other: &mut OtherController, speed: u8, ms: u64) {
         let mut sample = HandSample::default();
         let bytes = [speed, 0].repeat(6);
         let fresh = sample.take(&Reply {
@@ -171,12 +171,12 @@ mod tests {
             asked: at(ms),
             received: at(ms),
         });
-        rival.read(&sample, fresh);
+        other.read(&sample, fresh);
     }
 
     #[test]
     fn setpoints_that_change_under_us_are_noticed_at_the_second_reading() {
-        let mut rival = OtherController::default();
+        let mut other = OtherController::default();
         for (ms, speed, active) in [
             (0, 100, false),
             (500, 100, false),
@@ -185,20 +185,20 @@ mod tests {
             (6000, 50, true),
             (6600, 50, false),
         ] {
-            read(&mut rival, speed, ms);
-            assert_eq!(rival.is_active(at(ms)), active, "{ms}");
+            read(&mut other, speed, ms);
+            assert_eq!(other.is_active(at(ms)), active, "{ms}");
         }
-        assert_eq!(rival.changes, 1);
+        assert_eq!(other.changes, 1);
     }
 
     #[test]
-    fn one_wrong_reading_and_our_own_writes_are_no_rival() {
-        let mut rival = OtherController::default();
-        read(&mut rival, 100, 0);
-        read(&mut rival, 7, 500);
-        read(&mut rival, 100, 1000);
+    fn one_wrong_reading_and_our_own_writes_are_no_other_controller() {
+        let mut other = OtherController::default();
+        read(&mut other, 100, 0);
+        read(&mut other, 7, 500);
+        read(&mut other, 100, 1000);
         let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::GENTLE)));
-        rival.wrote(&speeds.writes()[0], at(1200));
+        other.wrote(&speeds.writes()[0], at(1200));
         // It acts late, after a reading that still shows the old values.
         for (ms, speed) in [
             (1500, 100),
@@ -207,30 +207,30 @@ mod tests {
             (3500, 250),
             (4000, 250),
         ] {
-            read(&mut rival, speed, ms);
+            read(&mut other, speed, ms);
         }
-        assert_eq!(rival.changes, 0);
+        assert_eq!(other.changes, 0);
         // On a line that is busy with other things it may be long until it is read again.
-        rival.wrote(&speeds.writes()[0], at(4200));
+        other.wrote(&speeds.writes()[0], at(4200));
         for (ms, speed) in [(8000, 99), (8500, 99)] {
-            read(&mut rival, speed, ms);
+            read(&mut other, speed, ms);
         }
-        assert_eq!(rival.changes, 0);
-        rival.begin();
-        read(&mut rival, 1, 9000);
-        read(&mut rival, 1, 9500);
-        assert_eq!(rival.changes, 0, "after a reconnect nothing is known");
+        assert_eq!(other.changes, 0);
+        other.begin();
+        read(&mut other, 1, 9000);
+        read(&mut other, 1, 9500);
+        assert_eq!(other.changes, 0, "after a reconnect nothing is known");
     }
 
     #[test]
     fn our_write_may_act_at_the_end_of_its_horizon_and_through_a_wire_that_is_gone() {
         let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::GENTLE)));
         for reconnected in [false, true] {
-            let mut rival = OtherController::default();
-            read(&mut rival, 100, 0);
-            rival.wrote(&speeds.writes()[0], at(100));
+            let mut other = OtherController::default();
+            read(&mut other, 100, 0);
+            other.wrote(&speeds.writes()[0], at(100));
             if reconnected {
-                rival.begin();
+                other.begin();
             }
             for (ms, speed) in [
                 (1000, 100),
@@ -239,23 +239,23 @@ mod tests {
                 (3000, 250),
                 (3500, 250),
             ] {
-                read(&mut rival, speed, ms);
+                read(&mut other, speed, ms);
             }
-            assert_eq!(rival.changes, 0);
+            assert_eq!(other.changes, 0);
         }
     }
 
     #[test]
-    fn a_few_foreign_requests_in_a_row_are_a_rival_and_scattered_ones_are_not() {
-        let mut rival = OtherController::default();
+    fn a_few_foreign_requests_in_a_row_are_another_controller_and_scattered_ones_are_not() {
+        let mut other = OtherController::default();
         for n in 1..20 {
-            rival.overheard(n, at(n * 1500));
-            assert!(!rival.is_active(at(n * 1500)));
+            other.overheard(n, at(n * 1500));
+            assert!(!other.is_active(at(n * 1500)));
         }
         for n in 20..23 {
-            rival.overheard(n, at(40_000 + n * 10));
+            other.overheard(n, at(40_000 + n * 10));
         }
-        assert!(rival.is_active(at(40_300)));
-        assert!(!rival.is_active(at(46_000)));
+        assert!(other.is_active(at(40_300)));
+        assert!(!other.is_active(at(46_000)));
     }
 }

@@ -3,8 +3,8 @@
 
 use crate::hand::{Group, Moment, Reply, Span};
 use crate::link::bus::Bus;
-use crate::link::poll::plan::{Question, Tempo};
-use crate::link::session::conversation::{End, Session};
+use crate::link::poll::plan::{NextRead, Tempo};
+use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::status::LinkTrouble;
 use crate::record::{Disarmed, LinkState, Record};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
 impl Session {
     /// What to ask now. While a stop is being confirmed only motion and faults count; once it failed, the rest gets its
     /// turns again.
-    pub(crate) fn next_poll(&mut self) -> Option<Question> {
+    pub(crate) fn next_poll(&mut self) -> Option<NextRead> {
         let now = self.now();
         let tempo = self.tempo(now);
         self.plan.prefer(self.ends.wanted.borrow().first);
@@ -49,14 +49,18 @@ impl Session {
     }
 
     /// Asks where the hand is, due or not.
-    pub(crate) async fn poll_motion(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+    pub(crate) async fn poll_motion(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let now = self.now();
         let question = self.plan.motion(now, self.tempo(now));
         self.poll(bus, &question).await
     }
 
     /// One read of a window, and what its answer changes.
-    pub(crate) async fn poll(&mut self, bus: &mut dyn Bus, question: &Question) -> Result<(), End> {
+    pub(crate) async fn poll(
+        &mut self,
+        bus: &mut dyn Bus,
+        question: &NextRead,
+    ) -> Result<(), WireEnd> {
         self.motion.asked(question.is_motion);
         let Some(span) = bus.choose(&question.shapes) else {
             return self.ambiguous(question);
@@ -72,7 +76,7 @@ impl Session {
             Ok(Some(bytes)) => {
                 self.answered(took);
                 self.watch_ticks(span.len, took);
-                self.counters.read(self.plan.cost(), span, took);
+                self.counters.line.read(self.plan.cost(), span, took);
                 let bytes = &bytes;
                 self.take(&Reply {
                     span,
@@ -83,7 +87,7 @@ impl Session {
                 Ok(())
             }
             Err(error) => {
-                self.counters.failed(took);
+                self.counters.line.failed(took);
                 self.plan.failed(span, received);
                 self.failed(bus, &error).await
             }
@@ -114,13 +118,13 @@ impl Session {
     }
 
     /// Every way to ask could be answered by a late reply. The motion state is worth a new wire; the rest waits.
-    fn ambiguous(&mut self, question: &Question) -> Result<(), End> {
+    fn ambiguous(&mut self, question: &NextRead) -> Result<(), WireEnd> {
         let now = self.now();
         let window = question.shapes.first().copied();
         let window = window.unwrap_or(Span::new(0, 0));
         self.plan.failed_to_ask(window, now.plus(AMBIGUOUS_WAIT));
         if question.is_motion {
-            return Err(End::Lost(LinkTrouble::Ambiguous));
+            return Err(WireEnd::Lost(LinkTrouble::Ambiguous));
         }
         Ok(())
     }

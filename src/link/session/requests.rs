@@ -5,8 +5,8 @@ use crate::hand::{HandCommand, RegisterWrite, Span, Writes};
 use crate::link::bus::late_replies::LATE_HORIZON;
 use crate::link::bus::{Bus, BusError};
 use crate::link::request::{Answer, Request, RequestError};
-use crate::link::session::conversation::{End, Session};
-use crate::link::session::job::{JOB_MAX, Job};
+use crate::link::session::conversation::{Session, WireEnd};
+use crate::link::session::job::{JOB_MAX, ReadJob, SessionJob, WriteJob};
 use crate::link::session::motion::hold_targets;
 use crate::record::LinkState;
 use arrayvec::ArrayVec;
@@ -31,15 +31,14 @@ impl Session {
         }
         match request {
             Request::Read(span, answer) => {
-                let cleared = false;
-                self.job = Some(Job::Read {
+                self.job = Some(SessionJob::Read(ReadJob {
                     span,
-                    cleared,
+                    cleared: false,
                     answer,
-                });
+                }));
             }
             Request::Command(command, answer) => self.take_command(command, answer),
-            request => self.job = Some(Job::Alone(request)),
+            request => self.job = Some(SessionJob::Alone(request)),
         }
     }
 
@@ -56,75 +55,57 @@ impl Session {
             extend(&mut writes, hold.writes());
         }
         extend(&mut writes, command.writes());
-        self.job = Some(Job::Write {
+        self.job = Some(SessionJob::Write(WriteJob {
             writes,
             is_motion,
             answer,
-        });
+        }));
     }
 
     /// Sends the next write of the request under way, or its read, and answers when all is done.
-    pub(crate) async fn work(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+    pub(crate) async fn work(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         match self.job.take() {
             None => Ok(()),
-            Some(Job::Alone(request)) => self.alone(bus, request).await,
-            Some(Job::Read {
-                span,
-                cleared: false,
-                answer,
-            }) if bus.choose(&[span]).is_none() => {
-                // The same question was answered just now; any other answer clears the line of doubles.
-                let cleared = true;
-                self.job = Some(Job::Read {
-                    span,
-                    cleared,
-                    answer,
-                });
-                self.poll_motion(bus).await
-            }
-            Some(Job::Read { span, answer, .. }) => self.read_for(bus, span, answer).await,
-            Some(Job::Write {
-                mut writes,
-                is_motion,
-                answer,
-            }) => {
-                let Some(write) = writes.pop_at(0) else {
-                    let _told = answer.send(Ok(()));
-                    return Ok(());
-                };
-                if is_motion {
-                    self.moving.commanded(self.now());
-                }
-                match self.write(bus, &write).await {
-                    Ok(()) if writes.is_empty() => {
-                        let _told = answer.send(Ok(()));
-                    }
-                    Ok(()) => {
-                        self.job = Some(Job::Write {
-                            writes,
-                            is_motion,
-                            answer,
-                        });
-                    }
-                    Err(error) => {
-                        let _told = answer.send(Err(request_error(&error, write.span())));
-                        self.failed(bus, &error).await?;
-                    }
-                }
-                Ok(())
-            }
+            Some(SessionJob::Alone(request)) => self.alone(bus, request).await,
+            Some(SessionJob::Read(job)) => self.read_for(bus, job).await,
+            Some(SessionJob::Write(job)) => self.write_next(bus, job).await,
         }
     }
 
-    async fn read_for(
-        &mut self,
-        bus: &mut dyn Bus,
-        span: Span,
-        answer: Answer<Vec<u8>>,
-    ) -> Result<(), End> {
+    async fn write_next(&mut self, bus: &mut dyn Bus, mut job: WriteJob) -> Result<(), WireEnd> {
+        let Some(write) = job.writes.pop_at(0) else {
+            let _told = job.answer.send(Ok(()));
+            return Ok(());
+        };
+        if job.is_motion {
+            self.moving.commanded(self.now());
+        }
+        match self.write(bus, &write).await {
+            Ok(()) if job.writes.is_empty() => {
+                let _told = job.answer.send(Ok(()));
+            }
+            Ok(()) => self.job = Some(SessionJob::Write(job)),
+            Err(error) => {
+                let _told = job.answer.send(Err(request_error(&error, write.span())));
+                self.failed(bus, &error).await?;
+            }
+        }
+        Ok(())
+    }
+
+    async fn read_for(&mut self, bus: &mut dyn Bus, mut job: ReadJob) -> Result<(), WireEnd> {
+        let span = job.span;
+        if bus.choose(&[span]).is_none() && !job.cleared {
+            // The same question was answered just now; any other answer clears the line of doubles.
+            job.cleared = true;
+            self.job = Some(SessionJob::Read(job));
+            return self.poll_motion(bus).await;
+        }
         if bus.choose(&[span]).is_none() || self.looks_like_save(span) {
             let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
-            let _told = answer.send(Err(RequestError::Ambiguous { address, wait_s }));
+            let _told = job
+                .answer
+                .send(Err(RequestError::Ambiguous { address, wait_s }));
             return Ok(());
         }
         let limit = self.reply_limit(bus, span.len);
@@ -134,21 +115,17 @@ impl Session {
         match read {
             // Asked again from its start, once the stop is through.
             Ok(None) => {
-                let cleared = false;
-                self.job = Some(Job::Read {
-                    span,
-                    cleared,
-                    answer,
-                });
+                job.cleared = false;
+                self.job = Some(SessionJob::Read(job));
             }
             Ok(Some(bytes)) => {
                 let took = self.now().since(asked);
                 self.answered(took);
                 self.watch_ticks(span.len, took);
-                let _told = answer.send(Ok(bytes.to_vec()));
+                let _told = job.answer.send(Ok(bytes.to_vec()));
             }
             Err(error) => {
-                let _told = answer.send(Err(request_error(&error, span)));
+                let _told = job.answer.send(Err(request_error(&error, span)));
                 self.failed(bus, &error).await?;
             }
         }

@@ -37,11 +37,11 @@ pub(crate) enum Next {
 #[derive(Debug, Default)]
 pub(crate) struct SaveWatch {
     sent: Option<Moment>,
-    open: Option<Open>,
+    open: Option<OpenSave>,
 }
 
 #[derive(Debug)]
-struct Open {
+struct OpenSave {
     at: Moment,
     frame: ResultFrame,
     ack: Ack,
@@ -66,7 +66,7 @@ impl SaveWatch {
     /// SAVE goes out now.
     pub(crate) fn send(&mut self, now: Moment, frame: ResultFrame) {
         self.sent = Some(now);
-        self.open = Some(Open {
+        self.open = Some(OpenSave {
             at: now,
             frame,
             ack: Ack::Unanswered,

@@ -1,16 +1,15 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::ArmEpoch;
-use crate::hand::{HandCommand, RegisterWrite};
+use crate::hand::{ArmEpoch, HandCommand, RegisterWrite};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
 use crate::link::request::RequestError;
-use crate::link::session::conversation::{End, Session};
+use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
 use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::status::{ArmRequest, LinkTrouble};
-use crate::link::wanted::Wanted;
+use crate::link::wanted::PendingControl;
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, WriteFate};
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,7 +20,7 @@ const ACK_LEN: u16 = 1;
 
 impl Session {
     /// Serves the wire until it is lost or the handle is gone.
-    pub(crate) async fn serve(&mut self, bus: &mut dyn Bus) -> End {
+    pub(crate) async fn serve(&mut self, bus: &mut dyn Bus) -> WireEnd {
         loop {
             match self.round(bus).await {
                 Ok(true) => self.after_step(bus),
@@ -34,20 +33,20 @@ impl Session {
         }
     }
 
-    async fn round(&mut self, bus: &mut dyn Bus) -> Result<bool, End> {
+    async fn round(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         self.wake_up()?;
         self.turn(bus).await?;
         self.step(bus).await
     }
 
     /// Whether this computer slept; then the link is not what it was.
-    pub(crate) fn wake_up(&mut self) -> Result<(), End> {
+    pub(crate) fn wake_up(&mut self) -> Result<(), WireEnd> {
         let Some(slept) = self.sleep.slept() else {
             return Ok(());
         };
         self.disarm(Disarmed::Resume);
         let slept_s = slept.as_secs();
-        Err(End::Lost(LinkTrouble::Suspended { slept_s }))
+        Err(WireEnd::Lost(LinkTrouble::Suspended { slept_s }))
     }
 
     /// What is told after something was done.
@@ -58,7 +57,7 @@ impl Session {
     }
 
     /// Does the most urgent thing; false if nothing is due.
-    async fn step(&mut self, bus: &mut dyn Bus) -> Result<bool, End> {
+    async fn step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         if self.urgent_step(bus).await? {
             return Ok(true);
         }
@@ -73,7 +72,7 @@ impl Session {
     }
 
     /// What goes before everything that was asked for: wishes, a stop, setpoints.
-    pub(crate) async fn urgent_step(&mut self, bus: &mut dyn Bus) -> Result<bool, End> {
+    pub(crate) async fn urgent_step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         if let Some(request) = self.take_wishes()? {
             self.arm(bus, &request).await?;
             return Ok(true);
@@ -113,15 +112,15 @@ impl Session {
         let mut wanted = self.ends.wanted.subscribe();
         tokio::select! {
             biased;
-            _ = wanted.wait_for(Wanted::is_any) => {}
+            _ = wanted.wait_for(PendingControl::is_any) => {}
             Some(request) = self.ends.requests.recv(), if self.job.is_none() => self.take_job(request),
             () = sleep_until(due) => {}
         }
     }
 
     /// Takes what the window wants; gives back the wish to arm, which takes exchanges of its own.
-    fn take_wishes(&mut self) -> Result<Option<ArmRequest>, End> {
-        let mut wishes = Wanted::default();
+    fn take_wishes(&mut self) -> Result<Option<ArmRequest>, WireEnd> {
+        let mut wishes = PendingControl::default();
         self.ends.wanted.send_if_modified(|wanted| {
             wishes = wanted.take();
             false
@@ -130,7 +129,7 @@ impl Session {
             self.begin_hold();
         }
         if wishes.closed {
-            return Err(End::Closed);
+            return Err(WireEnd::Closed);
         }
         if wishes.disarm {
             self.disarm(Disarmed::Person);
@@ -152,7 +151,7 @@ impl Session {
 
     /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
     /// An armed hand stays armed as it is.
-    async fn arm(&mut self, bus: &mut dyn Bus, request: &ArmRequest) -> Result<(), End> {
+    async fn arm(&mut self, bus: &mut dyn Bus, request: &ArmRequest) -> Result<(), WireEnd> {
         if self.status.armed.is_some() {
             return Ok(());
         }
@@ -263,7 +262,7 @@ impl Session {
         self.go(LinkState::Holding);
     }
 
-    async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+    async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let now = self.now();
         let newest = hold_targets(&self.sample, now);
         let Some(hold) = &mut self.motion.hold else {
@@ -333,13 +332,19 @@ impl Session {
             number,
             fate: fate(&written),
         });
-        self.counters.wrote(self.plan.cost(), write.span(), took);
+        self.counters
+            .line
+            .wrote(self.plan.cost(), write.span(), took);
         written?;
         self.answered(took);
         Ok(())
     }
 
-    async fn send_setpoint(&mut self, bus: &mut dyn Bus, write: RegisterWrite) -> Result<(), End> {
+    async fn send_setpoint(
+        &mut self,
+        bus: &mut dyn Bus,
+        write: RegisterWrite,
+    ) -> Result<(), WireEnd> {
         self.moving.commanded(self.now());
         let wanted = Arc::clone(&self.ends.wanted);
         let stop = || wanted.borrow().stop;
@@ -353,11 +358,8 @@ impl Session {
     }
 
     /// Waits for the line; of all failures it can only be lost.
-    pub(crate) async fn turn(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
-        match bus.turn().await {
-            Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
-            _ => Ok(()),
-        }
+    pub(crate) async fn turn(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
+        unless_lost(bus.turn().await)
     }
 }
 

@@ -5,9 +5,9 @@ use crate::hand::register::{DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, SAVE};
 use crate::hand::{HandCommand, Moment, Setting, Span};
 use crate::link::bus::{Bus, BusError, ResultFrame};
 use crate::link::request::{Answer, Request, RequestError};
-use crate::link::session::conversation::{End, Session};
+use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::save_watch::{Ack, Next};
-use crate::link::wanted::Wanted;
+use crate::link::wanted::PendingControl;
 use crate::record::{
     Calibrated, Doubt, LinkState, NotSent, Reset, Rest, SaveDoubt, Saved, Verdict, Written,
 };
@@ -49,7 +49,11 @@ impl Tries {
 impl Session {
     /// Does one of these to its end and answers it. When the link is lost meanwhile, what is known then is the answer,
     /// given once everybody can see that the link is lost.
-    pub(crate) async fn alone(&mut self, bus: &mut dyn Bus, request: Request) -> Result<(), End> {
+    pub(crate) async fn alone(
+        &mut self,
+        bus: &mut dyn Bus,
+        request: Request,
+    ) -> Result<(), WireEnd> {
         match request {
             Request::Set(setting, answer) => {
                 let end = self.write_setting(bus, setting).await;
@@ -86,9 +90,9 @@ impl Session {
     fn conclude<T: Send + Sync + 'static>(
         &mut self,
         answer: Answer<T>,
-        end: Result<T, End>,
+        end: Result<T, WireEnd>,
         lost: Result<T, RequestError>,
-    ) -> Result<(), End> {
+    ) -> Result<(), WireEnd> {
         self.leaves_line = false;
         match end {
             Ok(end) => {
@@ -105,7 +109,7 @@ impl Session {
     }
 
     /// What is more urgent goes first: wishes, and a stop until it is confirmed or has failed.
-    async fn give_way(&mut self, bus: &mut dyn Bus) -> Result<(), End> {
+    async fn give_way(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         loop {
             self.wake_up()?;
             self.turn(bus).await?;
@@ -122,7 +126,7 @@ impl Session {
     }
 
     /// Why it must not be done now. What is not known is looked at first.
-    async fn refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, End> {
+    async fn refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, WireEnd> {
         let mut looks = LOOKS;
         loop {
             self.give_way(bus).await?;
@@ -144,13 +148,17 @@ impl Session {
     }
 
     /// The same, and not while the result of an earlier SAVE may still come.
-    async fn trigger_refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, End> {
+    async fn trigger_refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, WireEnd> {
         let why = self.refusal(bus).await?;
         let wait = self.saving.may_send(self.now()).err();
         Ok(why.or(wait.map(|wait| NotSent::TooSoon { wait })))
     }
 
-    async fn write_setting(&mut self, bus: &mut dyn Bus, setting: Setting) -> Result<Written, End> {
+    async fn write_setting(
+        &mut self,
+        bus: &mut dyn Bus,
+        setting: Setting,
+    ) -> Result<Written, WireEnd> {
         let written = |verdict, holds| Written {
             span: setting.span(),
             verdict,
@@ -195,7 +203,7 @@ impl Session {
         &mut self,
         bus: &mut dyn Bus,
         setting: Setting,
-    ) -> Result<(Option<String>, bool), End> {
+    ) -> Result<(Option<String>, bool), WireEnd> {
         let (mut refused, mut is_unanswered) = (None, false);
         for write in setting.command().writes() {
             self.give_way(bus).await?;
@@ -213,7 +221,7 @@ impl Session {
         Ok((refused, is_unanswered))
     }
 
-    async fn save_parameters(&mut self, bus: &mut dyn Bus) -> Result<Saved, End> {
+    async fn save_parameters(&mut self, bus: &mut dyn Bus) -> Result<Saved, WireEnd> {
         if let Some(why) = self.trigger_refusal(bus).await? {
             return Ok(Saved::NotSent(why));
         }
@@ -241,7 +249,7 @@ impl Session {
         });
         // A hand that writes its flash may be mute: that is no silence to be counted.
         if let Err(BusError::Lost(error)) = sent {
-            return Err(End::Lost(error.into()));
+            return Err(WireEnd::Lost(error.into()));
         }
         let mut tries = Tries::new();
         loop {
@@ -260,20 +268,20 @@ impl Session {
         }
     }
 
-    async fn reset_parameters(&mut self, bus: &mut dyn Bus) -> Result<Reset, End> {
+    async fn reset_parameters(&mut self, bus: &mut dyn Bus) -> Result<Reset, WireEnd> {
         if let Some(why) = self.trigger_refusal(bus).await? {
             return Ok(Reset::NotSent(why));
         }
         match self.trigger(bus, &HandCommand::ResetParameters).await {
             Ok(()) => Ok(Reset::Acknowledged),
             Err(BusError::Refused { reason }) => Ok(Reset::Refused { reason }),
-            Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
+            Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
             Err(_) => Ok(Reset::Unanswered),
         }
     }
 
     /// Sent once, then the line is left to the hand until its frame comes or it must be over.
-    async fn calibrate_forces(&mut self, bus: &mut dyn Bus) -> Result<Calibrated, End> {
+    async fn calibrate_forces(&mut self, bus: &mut dyn Bus) -> Result<Calibrated, WireEnd> {
         if let Some(why) = self.trigger_refusal(bus).await? {
             return Ok(Calibrated::NotSent(why));
         }
@@ -284,7 +292,7 @@ impl Session {
         let is_acknowledged = match self.trigger(bus, &HandCommand::CalibrateForce).await {
             Ok(()) => true,
             Err(BusError::Refused { reason }) => return Ok(Calibrated::Refused { reason }),
-            Err(BusError::Lost(error)) => return Err(End::Lost(error.into())),
+            Err(BusError::Lost(error)) => return Err(WireEnd::Lost(error.into())),
             // A hand that measures may be mute: that is no silence to be counted.
             Err(_) => false,
         };
@@ -318,7 +326,7 @@ impl Session {
     }
 
     /// Leaves the line to the hand: takes what comes, asks nothing, and ends early for a wish of the window.
-    async fn listen(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), End> {
+    async fn listen(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), WireEnd> {
         let now = self.now();
         let until = until.min(now.plus(LISTEN_FOR));
         // A stop that feedback does not confirm goes on meanwhile.
@@ -330,11 +338,8 @@ impl Session {
         let over = sleep_until(self.config.clock.instant(until));
         tokio::select! {
             biased;
-            _ = wanted.wait_for(Wanted::is_any) => Ok(()),
-            heard = bus.listen() => match heard {
-                Err(BusError::Lost(error)) => Err(End::Lost(error.into())),
-                _ => Ok(()),
-            },
+            _ = wanted.wait_for(PendingControl::is_any) => Ok(()),
+            heard = bus.listen() => unless_lost(heard),
             () = over => Ok(()),
         }
     }
@@ -345,7 +350,7 @@ impl Session {
         bus: &mut dyn Bus,
         span: Span,
         tries: &mut Tries,
-    ) -> Result<Result<Vec<u8>, Doubt>, End> {
+    ) -> Result<Result<Vec<u8>, Doubt>, WireEnd> {
         while tries.reads > 0 {
             self.give_way(bus).await?;
             // The same bytes and a few more: each length is another question.

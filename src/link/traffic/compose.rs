@@ -4,67 +4,13 @@ use crate::codec::modbus::{ModbusWrite, words_from_write};
 use crate::codec::modbus_rtu::crc16;
 use crate::codec::{can, rs485, slcan, usbcan};
 use crate::hand::{HandCommand, HandId, RegisterWrite};
+use crate::link::traffic::frame::FrameFormat;
 use crate::transport::Endpoint;
 use std::fmt::Write as _;
 
-/// A wire that a hand can be reached over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum RecipeWire {
-    /// Private framing (manual 2.2).
-    Rs485,
-    /// Modbus RTU (manual 2.4).
-    Rtu,
-    /// Modbus TCP (manual 2.5).
-    Tcp,
-    /// CAN frames (manual 2.3).
-    Can,
-    /// The same through a serial adapter.
-    Slcan,
-    /// The same through the maker's adapter.
-    UsbCan,
-}
-
-impl RecipeWire {
-    /// All, in the order of the endpoints.
-    pub const ALL: [Self; 6] = [
-        Self::Rs485,
-        Self::Rtu,
-        Self::Tcp,
-        Self::Can,
-        Self::Slcan,
-        Self::UsbCan,
-    ];
-
-    /// The wire of an endpoint; the built-in hand speaks RS485.
-    #[must_use]
-    pub const fn of(endpoint: &Endpoint) -> Self {
-        match endpoint {
-            Endpoint::Sim { .. } | Endpoint::Rs485(_) => Self::Rs485,
-            Endpoint::Rtu(_) => Self::Rtu,
-            Endpoint::Tcp { .. } => Self::Tcp,
-            Endpoint::Can { .. } => Self::Can,
-            Endpoint::Slcan { .. } => Self::Slcan,
-            Endpoint::UsbCan { .. } => Self::UsbCan,
-        }
-    }
-
-    /// Its usual name, the same in all languages.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rs485 => "RS485",
-            Self::Rtu => "Modbus RTU",
-            Self::Tcp => "Modbus TCP",
-            Self::Can => "CAN",
-            Self::Slcan => "slcan",
-            Self::UsbCan => "USB-CAN",
-        }
-    }
-}
-
 /// A way to write the bytes down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum RecipeForm {
+pub enum SnippetFormat {
     /// Hexadecimal digits, one frame a line; CAN as `id#data`.
     Hex,
     /// Python: pyserial, a socket, or python-can.
@@ -75,7 +21,7 @@ pub enum RecipeForm {
     Rust,
 }
 
-impl RecipeForm {
+impl SnippetFormat {
     /// All.
     pub const ALL: [Self; 4] = [Self::Hex, Self::Python, Self::C, Self::Rust];
 
@@ -93,7 +39,7 @@ impl RecipeForm {
 
 /// One frame: bytes, and on CAN the identifier before them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RecipeFrame {
+pub struct SnippetFrame {
     /// The 29-bit identifier.
     pub can_id: Option<u32>,
     /// The bytes in the order in which they go out.
@@ -102,105 +48,105 @@ pub struct RecipeFrame {
 
 /// The frames of a command on one wire, in order; each is sent after the answer to the one before.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Recipe {
-    wire: RecipeWire,
-    place: Place,
+pub struct FrameSnippet {
+    wire: FrameFormat,
+    address: SnippetAddress,
     /// The frames.
-    pub frames: Vec<RecipeFrame>,
+    pub frames: Vec<SnippetFrame>,
 }
 
 /// What the code names to reach the hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Place {
+struct SnippetAddress {
     port: String,
     baud: u32,
     id: u16,
 }
 
-impl Place {
+impl SnippetAddress {
     /// From the endpoint if it is of this wire, else as the maker delivers.
-    fn of(wire: RecipeWire, endpoint: Option<&Endpoint>) -> Self {
+    fn of(wire: FrameFormat, endpoint: Option<&Endpoint>) -> Self {
         let usual = |port: &str, id: u16| Self {
             port: port.into(),
             baud: 115_200,
             id,
         };
         match (wire, endpoint) {
-            (RecipeWire::Rs485, Some(Endpoint::Rs485(line)))
-            | (RecipeWire::Rtu, Some(Endpoint::Rtu(line))) => Self {
+            (FrameFormat::Rs485, Some(Endpoint::Rs485(line)))
+            | (FrameFormat::Rtu, Some(Endpoint::Rtu(line))) => Self {
                 port: line.port.clone(),
                 baud: line.baud,
                 id: line.id.into(),
             },
-            (RecipeWire::Tcp, Some(endpoint @ Endpoint::Tcp { unit, .. })) => {
+            (FrameFormat::Tcp, Some(endpoint @ Endpoint::Tcp { unit, .. })) => {
                 usual(&endpoint.place(), (*unit).into())
             }
-            (RecipeWire::Can, Some(Endpoint::Can { interface, id })) => usual(interface, *id),
-            (RecipeWire::Slcan, Some(Endpoint::Slcan { port, id, .. })) => usual(port, *id),
-            (RecipeWire::UsbCan, Some(Endpoint::UsbCan { port, baud, id })) => Self {
+            (FrameFormat::Can, Some(Endpoint::Can { interface, id })) => usual(interface, *id),
+            (FrameFormat::Slcan, Some(Endpoint::Slcan { port, id, .. })) => usual(port, *id),
+            (FrameFormat::UsbCan, Some(Endpoint::UsbCan { port, baud, id })) => Self {
                 baud: *baud,
                 ..usual(port, *id)
             },
-            (RecipeWire::Rs485 | RecipeWire::Rtu | RecipeWire::UsbCan, _) => {
+            (FrameFormat::Rs485 | FrameFormat::Rtu | FrameFormat::UsbCan, _) => {
                 usual("/dev/ttyUSB0", 1)
             }
-            (RecipeWire::Tcp, _) => usual("192.168.11.210:6000", 255),
-            (RecipeWire::Can, _) => usual("can0", 1),
-            (RecipeWire::Slcan, _) => usual("/dev/ttyACM0", 1),
+            (FrameFormat::Tcp, _) => usual("192.168.11.210:6000", 255),
+            (FrameFormat::Can, _) => usual("can0", 1),
+            (FrameFormat::Slcan, _) => usual("/dev/ttyACM0", 1),
         }
     }
 }
 
-impl Recipe {
-    /// The recipe of a command. Its id is the endpoint's where the endpoint is of this wire, else the usual one.
+impl FrameSnippet {
+    /// The snippet of a command. Its id is the endpoint's where the endpoint is of this wire, else the usual one.
     #[must_use]
-    pub fn new(command: &HandCommand, wire: RecipeWire, endpoint: Option<&Endpoint>) -> Self {
-        let place = Place::of(wire, endpoint);
+    pub fn new(command: &HandCommand, wire: FrameFormat, endpoint: Option<&Endpoint>) -> Self {
+        let address = SnippetAddress::of(wire, endpoint);
         let frames = command
             .writes()
             .iter()
-            .flat_map(|write| frames(write, wire, place.id))
+            .flat_map(|write| frames(write, wire, address.id))
             .collect();
         Self {
             wire,
-            place,
+            address,
             frames,
         }
     }
 
-    /// The recipe of one frame that passed over the wire of this endpoint; none on CAN, where the bytes hold more than
+    /// The snippet of one frame that passed over the wire of this endpoint; none on CAN, where the bytes hold more than
     /// the frame.
     #[must_use]
     pub fn passed(bytes: &[u8], endpoint: &Endpoint) -> Option<Self> {
-        let wire = RecipeWire::of(endpoint);
-        if matches!(wire, RecipeWire::Can) {
+        let wire = FrameFormat::of(endpoint);
+        if matches!(wire, FrameFormat::Can) {
             return None;
         }
-        let frame = RecipeFrame {
+        let frame = SnippetFrame {
             can_id: None,
             bytes: bytes.into(),
         };
         Some(Self {
             wire,
-            place: Place::of(wire, Some(endpoint)),
+            address: SnippetAddress::of(wire, Some(endpoint)),
             frames: vec![frame],
         })
     }
 
-    /// The recipe written down.
+    /// The snippet written down.
     #[must_use]
-    pub fn text(&self, form: RecipeForm) -> String {
+    pub fn text(&self, form: SnippetFormat) -> String {
         match form {
-            RecipeForm::Hex => self.hex(),
-            RecipeForm::Python => self.python(),
-            RecipeForm::C => self.arrays("static const uint8_t FRAME_{n}[] = {{b}};", "{", "}"),
-            RecipeForm::Rust => self.arrays("const FRAME_{n}: [u8; {len}] = {{b}};", "[", "]"),
+            SnippetFormat::Hex => self.hex(),
+            SnippetFormat::Python => self.python(),
+            SnippetFormat::C => self.arrays("static const uint8_t FRAME_{n}[] = {{b}};", "{", "}"),
+            SnippetFormat::Rust => self.arrays("const FRAME_{n}: [u8; {len}] = {{b}};", "[", "]"),
         }
     }
 
     fn hex(&self) -> String {
-        let line = |frame: &RecipeFrame| match (self.wire, frame.can_id) {
-            (RecipeWire::Slcan, _) => text_line(&frame.bytes),
+        let line = |frame: &SnippetFrame| match (self.wire, frame.can_id) {
+            (FrameFormat::Slcan, _) => text_line(&frame.bytes),
             (_, Some(id)) => format!(
                 "{id:08X}#{}",
                 joined(&frame.bytes, "", |b| format!("{b:02X}"))
@@ -212,22 +158,22 @@ impl Recipe {
     }
 
     fn python(&self) -> String {
-        let Place { port, baud, id } = &self.place;
+        let SnippetAddress { port, baud, id } = &self.address;
         let (host, tcp_port) = port.rsplit_once(':').unwrap_or((port, "6000"));
         let (mut code, send) = match self.wire {
-            RecipeWire::Rs485 | RecipeWire::Rtu | RecipeWire::Slcan | RecipeWire::UsbCan => (
+            FrameFormat::Rs485 | FrameFormat::Rtu | FrameFormat::Slcan | FrameFormat::UsbCan => (
                 format!(
                     "import serial  # pyserial\nport = serial.Serial({port:?}, {baud}, timeout=0.2)\n"
                 ),
                 "port.write",
             ),
-            RecipeWire::Tcp => (
+            FrameFormat::Tcp => (
                 format!(
                     "import socket\nhand = socket.create_connection(({host:?}, {tcp_port}), timeout=1)\n"
                 ),
                 "hand.sendall",
             ),
-            RecipeWire::Can => (
+            FrameFormat::Can => (
                 format!(
                     "import can  # python-can, hand {id}\nbus = can.Bus({port:?}, interface=\"socketcan\")\n"
                 ),
@@ -235,8 +181,8 @@ impl Recipe {
             ),
         };
         let read = match self.wire {
-            RecipeWire::Tcp => "print(hand.recv(260).hex(\" \"))",
-            RecipeWire::Can => "print(bus.recv(0.2))",
+            FrameFormat::Tcp => "print(hand.recv(260).hex(\" \"))",
+            FrameFormat::Can => "print(bus.recv(0.2))",
             _ => "print(port.read(64).hex(\" \"))",
         };
         for frame in &self.frames {
@@ -276,23 +222,23 @@ impl Recipe {
     }
 }
 
-fn frames(write: &RegisterWrite, wire: RecipeWire, id: u16) -> Vec<RecipeFrame> {
-    let plain = |bytes: Vec<u8>| RecipeFrame {
+fn frames(write: &RegisterWrite, wire: FrameFormat, id: u16) -> Vec<SnippetFrame> {
+    let plain = |bytes: Vec<u8>| SnippetFrame {
         can_id: None,
         bytes,
     };
     match wire {
-        RecipeWire::Rs485 => HandId::new(id)
+        FrameFormat::Rs485 => HandId::new(id)
             .map(|id| plain(rs485::client::encode_write(id, write).to_vec()))
             .into_iter()
             .collect(),
-        RecipeWire::Rtu => {
+        FrameFormat::Rtu => {
             let mut bytes = vec![low(id)];
             bytes.extend(pdu(write));
             bytes.extend(crc16(&bytes).to_le_bytes());
             vec![plain(bytes)]
         }
-        RecipeWire::Tcp => {
+        FrameFormat::Tcp => {
             let pdu = pdu(write);
             let rest = u16::try_from(pdu.len() + 1).unwrap_or_default();
             let mut bytes = vec![0, 1, 0, 0];
@@ -301,17 +247,17 @@ fn frames(write: &RegisterWrite, wire: RecipeWire, id: u16) -> Vec<RecipeFrame> 
             bytes.extend(pdu);
             vec![plain(bytes)]
         }
-        RecipeWire::Can => can_frames(write, id)
-            .map(|frame| RecipeFrame {
+        FrameFormat::Can => can_frames(write, id)
+            .map(|frame| SnippetFrame {
                 can_id: Some(frame.id),
                 bytes: frame.data.to_vec(),
             })
             .collect(),
-        RecipeWire::Slcan => can_frames(write, id)
-            .filter_map(|frame| slcan::encode_command(&slcan::Command::Send(frame)))
+        FrameFormat::Slcan => can_frames(write, id)
+            .filter_map(|frame| slcan::encode_command(&slcan::SlcanCommand::Send(frame)))
             .map(|line| plain(line.to_vec()))
             .collect(),
-        RecipeWire::UsbCan => can_frames(write, id)
+        FrameFormat::UsbCan => can_frames(write, id)
             .map(|frame| plain(usbcan::encode(&frame).to_vec()))
             .collect(),
     }
@@ -372,8 +318,8 @@ mod tests {
         HandCommand::Forces(forces)
     }
 
-    fn hex(command: &HandCommand, wire: RecipeWire) -> String {
-        Recipe::new(command, wire, None).text(RecipeForm::Hex)
+    fn hex(command: &HandCommand, wire: FrameFormat) -> String {
+        FrameSnippet::new(command, wire, None).text(SnippetFormat::Hex)
     }
 
     #[test]
@@ -383,40 +329,44 @@ mod tests {
             // Manual 2.2.2, and its example for 1486.
             (
                 open_hand(),
-                RecipeWire::Rs485,
+                FrameFormat::Rs485,
                 "EB 90 01 0F 12 CE 05 E8 03 E8 03 E8 03 E8 03 E8 03 E8 03 77".into(),
             ),
             (
                 HandCommand::Save,
-                RecipeWire::Rs485,
+                FrameFormat::Rs485,
                 "EB 90 01 04 12 ED 03 01 08".into(),
             ),
             // The sum is that of an independent CRC.
             (
                 open_hand(),
-                RecipeWire::Rtu,
+                FrameFormat::Rtu,
                 format!("01 10 05 CE 00 06 0C {words} 22 EF"),
             ),
             (
                 open_hand(),
-                RecipeWire::Tcp,
+                FrameFormat::Tcp,
                 format!("00 01 00 00 00 13 FF 10 05 CE 00 06 0C {words}"),
             ),
             (
                 HandCommand::ClearErrors,
-                RecipeWire::Tcp,
+                FrameFormat::Tcp,
                 "00 01 00 00 00 06 FF 06 03 EC 00 01".into(),
             ),
             (
                 open_hand(),
-                RecipeWire::Can,
+                FrameFormat::Can,
                 "05738001#E803E803E803E803\n05758001#E803E803".into(),
             ),
-            (index_force(), RecipeWire::Can, "05780001#F401".into()),
-            (index_force(), RecipeWire::Slcan, "T057800012F401\\r".into()),
+            (index_force(), FrameFormat::Can, "05780001#F401".into()),
             (
                 index_force(),
-                RecipeWire::UsbCan,
+                FrameFormat::Slcan,
+                "T057800012F401\\r".into(),
+            ),
+            (
+                index_force(),
+                FrameFormat::UsbCan,
                 "AA AA 01 00 78 05 F4 01 00 00 00 00 00 00 02 00 01 00 76 55 55".into(),
             ),
         ] {
@@ -427,29 +377,29 @@ mod tests {
     #[test]
     fn the_code_holds_the_same_bytes_and_the_persons_own_port() {
         let endpoint: Endpoint = "rs485:/dev/ttyUSB3?baud=57600&id=2".parse().unwrap();
-        let recipe = Recipe::new(&index_force(), RecipeWire::Rs485, Some(&endpoint));
+        let snippet = FrameSnippet::new(&index_force(), FrameFormat::Rs485, Some(&endpoint));
         let hex = "EB 90 02 05 12 E0 05 F4 01 F3";
-        assert_eq!(recipe.text(RecipeForm::Hex), hex);
-        let python = recipe.text(RecipeForm::Python);
+        assert_eq!(snippet.text(SnippetFormat::Hex), hex);
+        let python = snippet.text(SnippetFormat::Python);
         assert!(python.contains(&format!("port.write(bytes.fromhex(\"{hex}\"))")));
         assert!(python.contains("serial.Serial(\"/dev/ttyUSB3\", 57600"));
         let c = "static const uint8_t FRAME_1[] = {0xEB, 0x90, 0x02, 0x05, 0x12, 0xE0, 0x05, 0xF4, 0x01, 0xF3};\n";
-        assert_eq!(recipe.text(RecipeForm::C), c);
+        assert_eq!(snippet.text(SnippetFormat::C), c);
         let rust = "const FRAME_1: [u8; 10] = [0xEB, 0x90, 0x02, 0x05, 0x12, 0xE0, 0x05, 0xF4, 0x01, 0xF3];\n";
-        assert_eq!(recipe.text(RecipeForm::Rust), rust);
+        assert_eq!(snippet.text(SnippetFormat::Rust), rust);
     }
 
     #[test]
     fn code_for_can_names_the_identifier() {
-        let recipe = Recipe::new(&index_force(), RecipeWire::Can, None);
+        let snippet = FrameSnippet::new(&index_force(), FrameFormat::Can, None);
         assert!(
-            recipe
-                .text(RecipeForm::C)
+            snippet
+                .text(SnippetFormat::C)
                 .contains("// CAN id 0x05780001, 29 bits, 2 bytes")
         );
         assert!(
-            recipe
-                .text(RecipeForm::Python)
+            snippet
+                .text(SnippetFormat::Python)
                 .contains("arbitration_id=0x05780001")
         );
     }

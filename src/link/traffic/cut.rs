@@ -10,7 +10,7 @@ const RUN_MAX: usize = 128;
 
 /// What a protocol sees at a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Seen {
+pub enum FrameCut {
     /// A frame of this many bytes.
     Whole(usize),
     /// A damaged frame of this many bytes. A good one may begin inside.
@@ -41,7 +41,7 @@ impl Cutter {
     pub fn push(
         &mut self,
         mut bytes: &[u8],
-        look: impl Fn(&[u8]) -> Seen,
+        look: impl Fn(&[u8]) -> FrameCut,
         mut out: impl FnMut(Cut),
     ) {
         while !bytes.is_empty() {
@@ -57,7 +57,7 @@ impl Cutter {
     }
 
     /// The line fell silent: what is not whole by now never will be.
-    pub fn flush(&mut self, look: impl Fn(&[u8]) -> Seen, mut out: impl FnMut(Cut)) {
+    pub fn flush(&mut self, look: impl Fn(&[u8]) -> FrameCut, mut out: impl FnMut(Cut)) {
         self.cut(&look, &mut out, true);
     }
 
@@ -67,19 +67,19 @@ impl Cutter {
         self.waiting.len()
     }
 
-    fn cut(&mut self, look: &impl Fn(&[u8]) -> Seen, out: &mut impl FnMut(Cut), silent: bool) {
-        let mut run = Run::default();
+    fn cut(&mut self, look: &impl Fn(&[u8]) -> FrameCut, out: &mut impl FnMut(Cut), silent: bool) {
+        let mut run = NoiseRun::default();
         let mut at = 0;
         while let Some(rest @ [_, ..]) = self.waiting.get(at..) {
             let (len, wrong) = match look(rest) {
-                Seen::Whole(len) => (len, None),
-                Seen::Damaged(len, wrong) => (until_next(rest, len, look), Some(wrong)),
-                Seen::Open(_) if !silent => break,
-                Seen::Open(want) => {
+                FrameCut::Whole(len) => (len, None),
+                FrameCut::Damaged(len, wrong) => (until_next(rest, len, look), Some(wrong)),
+                FrameCut::Open(_) if !silent => break,
+                FrameCut::Open(want) => {
                     let got = until_next(rest, rest.len(), look);
                     (got, Some(Wrong::CutOff { got, want }))
                 }
-                Seen::Nothing(wrong) => {
+                FrameCut::Nothing(wrong) => {
                     run.take(rest, wrong, out);
                     at += 1;
                     continue;
@@ -97,22 +97,22 @@ impl Cutter {
 }
 
 /// Bytes up to the first good frame behind a damaged beginning, or all `len`.
-fn until_next(bytes: &[u8], len: usize, look: impl Fn(&[u8]) -> Seen) -> usize {
+fn until_next(bytes: &[u8], len: usize, look: impl Fn(&[u8]) -> FrameCut) -> usize {
     let good = |at: &usize| {
         let rest = bytes.get(*at..).unwrap_or_default();
-        matches!(look(rest), Seen::Whole(_))
+        matches!(look(rest), FrameCut::Whole(_))
     };
     (1..len.min(bytes.len())).find(good).unwrap_or(len)
 }
 
 /// Bytes that begin no frame, one behind the other.
 #[derive(Default)]
-struct Run {
+struct NoiseRun {
     bytes: Vec<u8>,
     wrong: Option<Wrong>,
 }
 
-impl Run {
+impl NoiseRun {
     fn take(&mut self, rest: &[u8], wrong: Wrong, out: &mut impl FnMut(Cut)) {
         if self.bytes.len() >= RUN_MAX {
             self.end(out);

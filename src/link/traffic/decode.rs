@@ -3,10 +3,10 @@
 use crate::hand::Moment;
 use crate::link::bus::error::id_of;
 use crate::link::tap::{Direction, Piece, PieceKind};
-use crate::link::traffic::cut::{Cut, Cutter, Seen};
-use crate::link::traffic::frame::{Form, Frame, Kind, Wrong};
+use crate::link::traffic::cut::{Cut, Cutter, FrameCut};
+use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::matching::Matching;
-use crate::link::traffic::said::Said;
+use crate::link::traffic::said::FrameContent;
 use crate::link::traffic::{can, modbus, rs485};
 use crate::transport::Endpoint;
 use std::time::Duration;
@@ -35,7 +35,7 @@ struct Half {
 /// Makes frames of pieces.
 #[derive(Debug, Clone)]
 pub struct Decoder {
-    form: Form,
+    form: FrameFormat,
     unit: u8,
     to_hand: Half,
     from_hand: Half,
@@ -47,14 +47,7 @@ impl Decoder {
     /// For a link to this hand.
     #[must_use]
     pub fn new(endpoint: &Endpoint) -> Self {
-        let form = match endpoint {
-            Endpoint::Sim { .. } | Endpoint::Rs485(_) => Form::Rs485,
-            Endpoint::Rtu(_) => Form::Rtu,
-            Endpoint::Tcp { .. } => Form::Tcp,
-            Endpoint::Can { .. } => Form::Can,
-            Endpoint::Slcan { .. } => Form::Slcan,
-            Endpoint::UsbCan { .. } => Form::UsbCan,
-        };
+        let form = FrameFormat::of(endpoint);
         let hand = id_of(endpoint);
         Self {
             form,
@@ -137,7 +130,7 @@ impl Decoder {
             Some(wrong @ (Wrong::Checksum { .. } | Wrong::Crc { .. })) => {
                 said(self.form, direction, &cut.bytes).wrong(wrong)
             }
-            Some(wrong) => Said::noise(wrong),
+            Some(wrong) => FrameContent::noise(wrong),
         };
         let mut frame = self.empty(at, direction, said.kind);
         frame.bytes = cut.bytes.into_boxed_slice();
@@ -177,24 +170,24 @@ impl Decoder {
     }
 }
 
-fn looker(form: Form, unit: u8, direction: Direction) -> impl Fn(&[u8]) -> Seen {
+fn looker(form: FrameFormat, unit: u8, direction: Direction) -> impl Fn(&[u8]) -> FrameCut {
     move |bytes| match form {
-        Form::Rs485 => rs485::look(bytes),
-        Form::Rtu => modbus::look_rtu(direction, unit, bytes),
-        Form::Tcp => modbus::look_tcp(bytes),
-        Form::Can => can::look_record(bytes),
-        Form::Slcan => can::look_line(bytes),
-        Form::UsbCan => can::look_packet(bytes),
+        FrameFormat::Rs485 => rs485::look(bytes),
+        FrameFormat::Rtu => modbus::look_rtu(direction, unit, bytes),
+        FrameFormat::Tcp => modbus::look_tcp(bytes),
+        FrameFormat::Can => can::look_record(bytes),
+        FrameFormat::Slcan => can::look_line(bytes),
+        FrameFormat::UsbCan => can::look_packet(bytes),
     }
 }
 
-fn said(form: Form, direction: Direction, bytes: &[u8]) -> Said {
+fn said(form: FrameFormat, direction: Direction, bytes: &[u8]) -> FrameContent {
     match form {
-        Form::Rs485 => rs485::said(direction, bytes),
-        Form::Rtu => modbus::said_rtu(direction, bytes),
-        Form::Tcp => modbus::said_tcp(direction, bytes),
-        Form::Can => can::said_record(direction, bytes),
-        Form::Slcan => can::said_line(direction, bytes),
-        Form::UsbCan => can::said_packet(direction, bytes),
+        FrameFormat::Rs485 => rs485::said(direction, bytes),
+        FrameFormat::Rtu => modbus::said_rtu(direction, bytes),
+        FrameFormat::Tcp => modbus::said_tcp(direction, bytes),
+        FrameFormat::Can => can::said_record(direction, bytes),
+        FrameFormat::Slcan => can::said_line(direction, bytes),
+        FrameFormat::UsbCan => can::said_packet(direction, bytes),
     }
 }

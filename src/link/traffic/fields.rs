@@ -2,7 +2,7 @@
 
 use crate::codec::usbcan::split_escapes;
 use crate::link::tap::Direction;
-use crate::link::traffic::frame::{Form, Frame, Kind, Wrong};
+use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::values;
 use std::ops::Range;
 
@@ -84,12 +84,12 @@ impl Frame {
             .is_some_and(|wrong| wrong.is_damage() && !is_sum(wrong));
         match self.form {
             _ if is_broken || self.kind == Kind::Noise => {}
-            Form::Rs485 => rs485(&mut parts),
-            Form::Rtu => rtu(&mut parts),
-            Form::Tcp => tcp(&mut parts),
-            Form::Can => record(&mut parts),
-            Form::Slcan => parts.put(self.bytes.len(), FieldName::Text),
-            Form::UsbCan => packet(&mut parts),
+            FrameFormat::Rs485 => rs485(&mut parts),
+            FrameFormat::Rtu => rtu(&mut parts),
+            FrameFormat::Tcp => tcp(&mut parts),
+            FrameFormat::Can => record(&mut parts),
+            FrameFormat::Slcan => parts.put(self.bytes.len(), FieldName::Text),
+            FrameFormat::UsbCan => packet(&mut parts),
         }
         parts.rest();
         parts.fields
@@ -202,7 +202,7 @@ const fn blames(wrong: Wrong, name: FieldName) -> bool {
 
 fn value(frame: &Frame, name: FieldName, bytes: &[u8]) -> String {
     let plain: Vec<u8> = match frame.form {
-        Form::UsbCan => split_escapes(bytes).map(|(_, byte)| byte).collect(),
+        FrameFormat::UsbCan => split_escapes(bytes).map(|(_, byte)| byte).collect(),
         _ => bytes.to_vec(),
     };
     let number = |little: bool| {
@@ -213,7 +213,7 @@ fn value(frame: &Frame, name: FieldName, bytes: &[u8]) -> String {
             plain.iter().fold(0, fold)
         }
     };
-    let is_little = matches!(frame.form, Form::Rs485 | Form::UsbCan);
+    let is_little = matches!(frame.form, FrameFormat::Rs485 | FrameFormat::UsbCan);
     match name {
         FieldName::Header
         | FieldName::Data

@@ -2,11 +2,12 @@
 
 use crate::hand::{Moment, Span};
 use crate::link::tap::Direction;
+use crate::transport::Endpoint;
 use std::time::Duration;
 
 /// How frames stand on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Form {
+pub enum FrameFormat {
     /// The private framing (manual 2.2).
     Rs485,
     /// Modbus RTU (manual 2.4).
@@ -19,6 +20,44 @@ pub enum Form {
     Slcan,
     /// Packets of the maker's own CAN adapter.
     UsbCan,
+}
+
+impl FrameFormat {
+    /// All, in the order of the endpoints.
+    pub const ALL: [Self; 6] = [
+        Self::Rs485,
+        Self::Rtu,
+        Self::Tcp,
+        Self::Can,
+        Self::Slcan,
+        Self::UsbCan,
+    ];
+
+    /// What an endpoint speaks; the built-in hand speaks RS485.
+    #[must_use]
+    pub const fn of(endpoint: &Endpoint) -> Self {
+        match endpoint {
+            Endpoint::Sim { .. } | Endpoint::Rs485(_) => Self::Rs485,
+            Endpoint::Rtu(_) => Self::Rtu,
+            Endpoint::Tcp { .. } => Self::Tcp,
+            Endpoint::Can { .. } => Self::Can,
+            Endpoint::Slcan { .. } => Self::Slcan,
+            Endpoint::UsbCan { .. } => Self::UsbCan,
+        }
+    }
+
+    /// Its usual name, the same in all languages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rs485 => "RS485",
+            Self::Rtu => "Modbus RTU",
+            Self::Tcp => "Modbus TCP",
+            Self::Can => "CAN",
+            Self::Slcan => "slcan",
+            Self::UsbCan => "USB-CAN",
+        }
+    }
 }
 
 /// What a frame is.
@@ -238,7 +277,7 @@ pub struct Frame {
     /// Which way it went.
     pub direction: Direction,
     /// How it stands on the wire.
-    pub form: Form,
+    pub form: FrameFormat,
     /// All of it, as it passed.
     pub bytes: Box<[u8]>,
     /// What it is.

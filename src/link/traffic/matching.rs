@@ -1,14 +1,14 @@
 //! Sets what comes in against what was asked: which request a reply answers, and what is out of place. One request is
 //! open at a time, as the link has it.
 
-use crate::codec::modbus::BytePacking;
 use crate::codec::rs485::SaveResult;
+use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, SAVE, STATUS, TEMP};
 use crate::hand::{Moment, Span};
 use crate::link::tap::Direction;
-use crate::link::traffic::frame::{Form, Frame, Kind, Wrong};
+use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::rs485;
-use crate::link::traffic::said::Said;
+use crate::link::traffic::said::FrameContent;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ const REPLY_WITHIN: Duration = Duration::from_secs(1);
 
 /// A request that waits for its reply.
 #[derive(Debug, Clone, Copy)]
-struct Asked {
+struct OpenRequest {
     number: u64,
     at: Moment,
     writes: bool,
@@ -27,8 +27,8 @@ struct Asked {
     transaction: Option<u16>,
 }
 
-impl Asked {
-    fn is_answered_by(&self, said: &Said) -> bool {
+impl OpenRequest {
+    fn is_answered_by(&self, said: &FrameContent) -> bool {
         self.is_of_kind(said)
             && said.transaction == self.transaction
             && said
@@ -37,7 +37,7 @@ impl Asked {
             && (self.writes || said.kind == Kind::Refusal || said.len == Some(self.span.len))
     }
 
-    const fn is_of_kind(&self, said: &Said) -> bool {
+    const fn is_of_kind(&self, said: &FrameContent) -> bool {
         match said.kind {
             Kind::Refusal => true,
             Kind::WriteReply => self.writes,
@@ -49,10 +49,10 @@ impl Asked {
 /// A request of the link and its outcome.
 #[derive(Debug, Clone)]
 pub struct Matching {
-    form: Form,
+    form: FrameFormat,
     hand: u16,
-    open: Option<Asked>,
-    given_up: VecDeque<Asked>,
+    open: Option<OpenRequest>,
+    given_up: VecDeque<OpenRequest>,
     saving: bool,
     packing: BytePacking,
 }
@@ -60,7 +60,7 @@ pub struct Matching {
 impl Matching {
     /// Nothing asked yet of this hand.
     #[must_use]
-    pub fn new(form: Form, hand: u16) -> Self {
+    pub fn new(form: FrameFormat, hand: u16) -> Self {
         Self {
             form,
             hand,
@@ -85,7 +85,7 @@ impl Matching {
     }
 
     /// Puts what was said into a frame. If it is a request, the number of the one before it that stayed without reply.
-    pub fn place(&mut self, frame: &mut Frame, said: Said) -> Option<u64> {
+    pub fn place(&mut self, frame: &mut Frame, said: FrameContent) -> Option<u64> {
         frame.kind = said.kind;
         frame.hand = said.hand;
         frame.span = said.span;
@@ -109,11 +109,11 @@ impl Matching {
         before
     }
 
-    fn ask(&mut self, frame: &Frame, said: &Said) -> Option<u64> {
+    fn ask(&mut self, frame: &Frame, said: &FrameContent) -> Option<u64> {
         let before = self.open.take().map(|open| self.give_up(open));
         let span = said.span?;
         self.saving |= said.kind == Kind::Write && span.address == SAVE.address;
-        self.open = Some(Asked {
+        self.open = Some(OpenRequest {
             number: frame.number,
             at: frame.at,
             writes: said.kind == Kind::Write,
@@ -123,7 +123,7 @@ impl Matching {
         before
     }
 
-    fn give_up(&mut self, open: Asked) -> u64 {
+    fn give_up(&mut self, open: OpenRequest) -> u64 {
         if self.given_up.len() >= GIVEN_UP_MAX {
             self.given_up.pop_front();
         }
@@ -131,7 +131,7 @@ impl Matching {
         open.number
     }
 
-    fn answer(&mut self, frame: &mut Frame, said: &Said) {
+    fn answer(&mut self, frame: &mut Frame, said: &FrameContent) {
         if let Some(open) = self.open.take_if(|open| open.is_answered_by(said)) {
             frame.took = Some(frame.at.since(open.at));
             frame.span = Some(open.span);
@@ -159,7 +159,7 @@ impl Matching {
         }
     }
 
-    fn misfit(&self, said: &Said) -> Wrong {
+    fn misfit(&self, said: &FrameContent) -> Wrong {
         let Some(open) = self.open else {
             return Wrong::NotAsked;
         };
@@ -180,7 +180,10 @@ impl Matching {
             return Wrong::Address { got, want };
         }
         // Request and reply share an identifier on CAN, so an echo is told by what it carries.
-        let is_can = matches!(self.form, Form::Can | Form::Slcan | Form::UsbCan);
+        let is_can = matches!(
+            self.form,
+            FrameFormat::Can | FrameFormat::Slcan | FrameFormat::UsbCan
+        );
         let asked_for = u8::try_from(open.span.len).unwrap_or(u8::MAX);
         if is_can && said.memory == [asked_for] {
             return Wrong::Echo;
@@ -191,8 +194,8 @@ impl Matching {
         }
     }
 
-    fn is_save_result(&mut self, frame: &mut Frame, said: &Said) -> bool {
-        if self.form != Form::Rs485 || !self.saving {
+    fn is_save_result(&mut self, frame: &mut Frame, said: &FrameContent) -> bool {
+        if self.form != FrameFormat::Rs485 || !self.saving {
             return false;
         }
         let Some(result) = rs485::save_result(said) else {
@@ -210,7 +213,7 @@ impl Matching {
 
     /// Some hands keep single bytes one a word (manual 2.5 is silent); the link finds out at TEMP, and so is it here.
     fn unpack(&mut self, frame: &mut Frame) {
-        let is_modbus = matches!(self.form, Form::Rtu | Form::Tcp);
+        let is_modbus = matches!(self.form, FrameFormat::Rtu | FrameFormat::Tcp);
         let Some(span) = frame
             .span
             .filter(|_| is_modbus && frame.kind == Kind::ReadReply)

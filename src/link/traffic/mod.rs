@@ -15,5 +15,5 @@ pub mod values;
 pub mod words;
 
 pub use decode::Decoder;
-pub use frame::{Form, Frame, Kind, Wrong};
+pub use frame::{Frame, FrameFormat, Kind, Wrong};
 pub use reader::{FRAMES_MAX, Traffic};

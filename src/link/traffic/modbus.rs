@@ -2,57 +2,57 @@
 
 use crate::codec::mbap::{MbapError, MbapSplitter};
 use crate::codec::modbus_rtu::crc16;
-use crate::codec::pdu::{self, Len, Pdu, Side};
+use crate::codec::pdu::{self, Len, ModbusRole, Pdu};
 use crate::hand::Span;
 use crate::hand::register::{Element, by_address};
 use crate::link::tap::Direction;
-use crate::link::traffic::cut::Seen;
+use crate::link::traffic::cut::FrameCut;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::link::traffic::said::Said;
+use crate::link::traffic::said::FrameContent;
 
 /// Bytes before the function code of a TCP message.
 const MBAP_LEN: usize = 7;
 
-const fn side(direction: Direction) -> Side {
+const fn side(direction: Direction) -> ModbusRole {
     match direction {
-        Direction::ToHand => Side::Client,
-        Direction::FromHand => Side::Server,
+        Direction::ToHand => ModbusRole::Client,
+        Direction::FromHand => ModbusRole::Server,
     }
 }
 
 /// What stands here of an RTU line. `unit` is ours: only from it is a frame with a wrong check taken for one.
 #[must_use]
-pub fn look_rtu(direction: Direction, unit: u8, bytes: &[u8]) -> Seen {
+pub fn look_rtu(direction: Direction, unit: u8, bytes: &[u8]) -> FrameCut {
     let seen = look_side(side(direction), bytes);
-    if direction == Direction::ToHand || matches!(seen, Seen::Whole(_)) {
+    if direction == Direction::ToHand || matches!(seen, FrameCut::Whole(_)) {
         return seen;
     }
     // An adapter that echoes, or another program on the line: only a good check tells.
-    match look_side(Side::Client, bytes) {
-        echo @ Seen::Whole(_) => echo,
+    match look_side(ModbusRole::Client, bytes) {
+        echo @ FrameCut::Whole(_) => echo,
         _ => match (seen, bytes.first()) {
-            (Seen::Damaged(..), Some(first)) if *first != unit => {
-                Seen::Nothing(Wrong::NoFrame { len: 1 })
+            (FrameCut::Damaged(..), Some(first)) if *first != unit => {
+                FrameCut::Nothing(Wrong::NoFrame { len: 1 })
             }
             _ => seen,
         },
     }
 }
 
-fn look_side(side: Side, bytes: &[u8]) -> Seen {
+fn look_side(side: ModbusRole, bytes: &[u8]) -> FrameCut {
     let len = match pdu::len(side, bytes.get(1..).unwrap_or_default()) {
-        Len::Open => return Seen::Open(None),
-        Len::None => return Seen::Nothing(Wrong::NoFrame { len: 1 }),
+        Len::Open => return FrameCut::Open(None),
+        Len::None => return FrameCut::Nothing(Wrong::NoFrame { len: 1 }),
         Len::Known(len) => len + 3,
     };
     match bytes.get(..len).and_then(<[u8]>::split_last_chunk) {
-        None => Seen::Open(Some(len)),
+        None => FrameCut::Open(Some(len)),
         Some((body, check)) => {
             let (got, want) = (u16::from_le_bytes(*check), crc16(body));
             if got == want {
-                Seen::Whole(len)
+                FrameCut::Whole(len)
             } else {
-                Seen::Damaged(len, Wrong::Crc { got, want })
+                FrameCut::Damaged(len, Wrong::Crc { got, want })
             }
         }
     }
@@ -60,13 +60,13 @@ fn look_side(side: Side, bytes: &[u8]) -> Seen {
 
 /// What an RTU frame says.
 #[must_use]
-pub fn said_rtu(direction: Direction, frame: &[u8]) -> Said {
+pub fn said_rtu(direction: Direction, frame: &[u8]) -> FrameContent {
     let [unit, pdu @ .., _, _] = frame else {
-        return Said::new(Kind::Noise);
+        return FrameContent::new(Kind::Noise);
     };
     let own = pdu::parse(side(direction), pdu);
     let said = match (direction, own) {
-        (Direction::FromHand, Pdu::Other { .. }) => match pdu::parse(Side::Client, pdu) {
+        (Direction::FromHand, Pdu::Other { .. }) => match pdu::parse(ModbusRole::Client, pdu) {
             Pdu::Other { .. } => said(own),
             asked => said(asked).wrong(Wrong::Echo),
         },
@@ -77,27 +77,27 @@ pub fn said_rtu(direction: Direction, frame: &[u8]) -> Said {
 
 /// What stands here of a Modbus TCP connection.
 #[must_use]
-pub fn look_tcp(bytes: &[u8]) -> Seen {
+pub fn look_tcp(bytes: &[u8]) -> FrameCut {
     let mut splitter = MbapSplitter::default();
     splitter.push(bytes);
     match splitter.next() {
-        Ok(Some(adu)) => Seen::Whole(adu.bytes.len()),
-        Ok(None) => Seen::Open(match bytes.get(4..6) {
+        Ok(Some(adu)) => FrameCut::Whole(adu.bytes.len()),
+        Ok(None) => FrameCut::Open(match bytes.get(4..6) {
             Some([high, low]) => Some(6 + usize::from(u16::from_be_bytes([*high, *low]))),
             _ => None,
         }),
-        Err(MbapError::Protocol { got }) => Seen::Nothing(Wrong::Protocol { got }),
-        Err(MbapError::Length { got }) => Seen::Nothing(Wrong::LengthField { got }),
+        Err(MbapError::Protocol { got }) => FrameCut::Nothing(Wrong::Protocol { got }),
+        Err(MbapError::Length { got }) => FrameCut::Nothing(Wrong::LengthField { got }),
     }
 }
 
 /// What a Modbus TCP message says.
 #[must_use]
-pub fn said_tcp(direction: Direction, frame: &[u8]) -> Said {
+pub fn said_tcp(direction: Direction, frame: &[u8]) -> FrameContent {
     let (Some([t0, t1, _, _, _, _, unit]), Some(pdu)) =
         (frame.first_chunk::<MBAP_LEN>(), frame.get(MBAP_LEN..))
     else {
-        return Said::new(Kind::Noise);
+        return FrameContent::new(Kind::Noise);
     };
     let mut said = said_by(direction, pdu::parse(side(direction), pdu));
     said.transaction = Some(u16::from_be_bytes([*t0, *t1]));
@@ -105,7 +105,7 @@ pub fn said_tcp(direction: Direction, frame: &[u8]) -> Said {
 }
 
 /// One-register writes look the same both ways; the direction says which it is.
-fn said_by(direction: Direction, pdu: Pdu<'_>) -> Said {
+fn said_by(direction: Direction, pdu: Pdu<'_>) -> FrameContent {
     let mut said = said(pdu);
     if direction == Direction::FromHand && said.kind == Kind::Write {
         said.kind = Kind::WriteReply;
@@ -114,13 +114,13 @@ fn said_by(direction: Direction, pdu: Pdu<'_>) -> Said {
     said
 }
 
-fn said(pdu: Pdu<'_>) -> Said {
+fn said(pdu: Pdu<'_>) -> FrameContent {
     match pdu {
         Pdu::Read { address, count } => {
-            Said::new(Kind::Read).about(Span::new(address, count.saturating_mul(2)))
+            FrameContent::new(Kind::Read).about(Span::new(address, count.saturating_mul(2)))
         }
         Pdu::Words(words) => {
-            let mut said = Said::new(Kind::ReadReply).with(&swapped(words));
+            let mut said = FrameContent::new(Kind::ReadReply).with(&swapped(words));
             said.len = u16::try_from(words.len()).ok();
             said
         }
@@ -129,7 +129,7 @@ fn said(pdu: Pdu<'_>) -> Said {
             let is_byte = by_address(address).is_some_and(|row| row.element == Element::Byte);
             let bytes = bytes.get(..if is_byte { 1 } else { 2 }).unwrap_or_default();
             let len = u16::try_from(bytes.len()).unwrap_or_default();
-            Said::new(Kind::Write)
+            FrameContent::new(Kind::Write)
                 .about(Span::new(address, len))
                 .with(bytes)
         }
@@ -142,16 +142,18 @@ fn said(pdu: Pdu<'_>) -> Said {
                 u16::try_from(words.len()).unwrap_or(u16::MAX),
                 count.saturating_mul(2),
             );
-            Said::new(Kind::Write)
+            FrameContent::new(Kind::Write)
                 .about(Span::new(address, got))
                 .with(&swapped(words))
                 .wrong((got != want).then_some(Wrong::Amount { got, want }))
         }
         Pdu::Written { address, count } => {
-            Said::new(Kind::WriteReply).about(Span::new(address, count.saturating_mul(2)))
+            FrameContent::new(Kind::WriteReply).about(Span::new(address, count.saturating_mul(2)))
         }
-        Pdu::Exception { code, .. } => Said::new(Kind::Refusal).wrong(Wrong::Refused { code }),
-        Pdu::Other { function } => Said::noise(Wrong::Function { function }),
+        Pdu::Exception { code, .. } => {
+            FrameContent::new(Kind::Refusal).wrong(Wrong::Refused { code })
+        }
+        Pdu::Other { function } => FrameContent::noise(Wrong::Function { function }),
     }
 }
 

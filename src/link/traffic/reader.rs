@@ -16,13 +16,13 @@ const LOOK_BACK: usize = 64;
 /// The last frames of one link.
 #[derive(Debug, Clone, Default)]
 pub struct Traffic {
-    source: Option<Source>,
+    source: Option<TapSource>,
     frames: VecDeque<Arc<Frame>>,
     changes: u64,
 }
 
 #[derive(Debug, Clone)]
-struct Source {
+struct TapSource {
     tap: WireTap,
     decoder: Decoder,
     next: u64,
@@ -33,7 +33,7 @@ impl Traffic {
     #[must_use]
     pub fn of(tap: WireTap, endpoint: &Endpoint) -> Self {
         Self {
-            source: Some(Source {
+            source: Some(TapSource {
                 tap,
                 decoder: Decoder::new(endpoint),
                 next: 0,

@@ -1,67 +1,71 @@
 //! The private RS485 framing for the tap: where frames are, and what they say. The framing itself is the codec's.
 
 use crate::codec::rs485::client::SaveResult;
-use crate::codec::rs485::inspect::{Found, Way, inspect, parts};
+use crate::codec::rs485::framing::{FrameDirection, FrameStart, WRITE, parts, scan};
 use crate::hand::Span;
 use crate::hand::register::SAVE;
 use crate::link::tap::Direction;
-use crate::link::traffic::cut::Seen;
+use crate::link::traffic::cut::FrameCut;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::link::traffic::said::Said;
+use crate::link::traffic::said::FrameContent;
 
 /// What stands here.
 #[must_use]
-pub fn look(bytes: &[u8]) -> Seen {
-    match inspect(bytes) {
-        Found::Frame(_, len) => Seen::Whole(len),
-        Found::BadSum { len, got, want, .. } => Seen::Damaged(len, Wrong::Checksum { got, want }),
-        Found::Open(want) => Seen::Open(want),
-        Found::BadHead { len, command } => Seen::Nothing(Wrong::BadHead { len, command }),
-        Found::Nothing => Seen::Nothing(Wrong::NoFrame { len: 1 }),
+pub fn look(bytes: &[u8]) -> FrameCut {
+    match scan(bytes) {
+        FrameStart::Frame(_, len) => FrameCut::Whole(len),
+        FrameStart::BadSum { len, got, want } => {
+            FrameCut::Damaged(len, Wrong::Checksum { got, want })
+        }
+        FrameStart::Open(want) => FrameCut::Open(want),
+        FrameStart::BadHead { len, command } => FrameCut::Nothing(Wrong::BadHead { len, command }),
+        FrameStart::Nothing => FrameCut::Nothing(Wrong::NoFrame { len: 1 }),
     }
 }
 
 /// What a frame says; its checksum may be wrong.
 #[must_use]
-pub fn said(direction: Direction, frame: &[u8]) -> Said {
-    let way = match frame {
-        [0xEB, ..] => Way::Request,
-        _ => Way::Reply,
+pub fn said(direction: Direction, frame: &[u8]) -> FrameContent {
+    let sent = match frame {
+        [0xEB, ..] => FrameDirection::Request,
+        _ => FrameDirection::Reply,
     };
     let Some(parts) = parts(frame) else {
-        return Said::new(Kind::Noise);
+        return FrameContent::new(Kind::Noise);
     };
     let data = parts.data.as_slice();
     let id = u16::from(parts.id);
     let carried = Span::new(parts.address, u16::try_from(data.len()).unwrap_or(u16::MAX));
     let first = data.first().copied().unwrap_or_default();
-    let said = match (way, parts.writes) {
-        (Way::Request, false) => {
-            Said::new(Kind::Read).about(Span::new(parts.address, u16::from(first)))
+    let said = match (sent, parts.command == WRITE) {
+        (FrameDirection::Request, false) => {
+            FrameContent::new(Kind::Read).about(Span::new(parts.address, u16::from(first)))
         }
-        (Way::Request, true) => Said::new(Kind::Write).about(carried).with(data),
-        (Way::Reply, false) => Said::new(Kind::ReadReply).about(carried).with(data),
-        (Way::Reply, true) => {
+        (FrameDirection::Request, true) => FrameContent::new(Kind::Write).about(carried).with(data),
+        (FrameDirection::Reply, false) => {
+            FrameContent::new(Kind::ReadReply).about(carried).with(data)
+        }
+        (FrameDirection::Reply, true) => {
             let wrong = (first != 1).then_some(Wrong::NotTaken { value: first });
-            let mut said = Said::new(Kind::WriteReply).wrong(wrong);
+            let mut said = FrameContent::new(Kind::WriteReply).wrong(wrong);
             said.span = Some(Span::new(parts.address, 0));
             said
         }
     };
-    said.hand(id).wrong(misplaced(direction, way))
+    said.hand(id).wrong(misplaced(direction, sent))
 }
 
-fn misplaced(direction: Direction, way: Way) -> Option<Wrong> {
-    match (direction, way) {
-        (Direction::FromHand, Way::Request) => Some(Wrong::Echo),
-        (Direction::ToHand, Way::Reply) => Some(Wrong::Backwards),
+fn misplaced(direction: Direction, sent: FrameDirection) -> Option<Wrong> {
+    match (direction, sent) {
+        (Direction::FromHand, FrameDirection::Request) => Some(Wrong::Echo),
+        (Direction::ToHand, FrameDirection::Reply) => Some(Wrong::Backwards),
         _ => None,
     }
 }
 
 /// The late frame that tells how a SAVE ended, where one was asked and nothing else can be meant.
 #[must_use]
-pub fn save_result(said: &Said) -> Option<SaveResult> {
+pub fn save_result(said: &FrameContent) -> Option<SaveResult> {
     let address = said.span?.address;
     let value = match (said.kind, said.wrong, said.memory.as_slice()) {
         (Kind::WriteReply, Some(Wrong::NotTaken { value }), _) => value,

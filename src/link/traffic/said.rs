@@ -5,7 +5,7 @@ use crate::link::traffic::frame::{Kind, Wrong};
 
 /// What a frame says.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Said {
+pub struct FrameContent {
     /// What it is.
     pub kind: Kind,
     /// The hand that is addressed, or that answers.
@@ -22,7 +22,7 @@ pub struct Said {
     pub wrong: Option<Wrong>,
 }
 
-impl Said {
+impl FrameContent {
     /// Of this kind, and nothing more.
     #[must_use]
     pub const fn new(kind: Kind) -> Self {

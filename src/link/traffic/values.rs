@@ -6,7 +6,7 @@ use crate::link::traffic::frame::hex;
 
 /// What one register, or a part of it, holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Held {
+pub struct RegisterValues {
     /// The register.
     pub row: &'static Register,
     /// The part of it that the bytes hold.
@@ -15,7 +15,7 @@ pub struct Held {
     pub numbers: String,
 }
 
-impl Held {
+impl RegisterValues {
     /// The manual's name, with the elements in brackets where it is not all of them.
     #[must_use]
     pub fn name(&self) -> String {
@@ -54,11 +54,11 @@ pub fn has_name(span: Span, part: &str) -> bool {
 
 /// What the registers hold that lie in these bytes.
 #[must_use]
-pub fn held(span: Span, memory: &[u8]) -> Vec<Held> {
+pub fn held(span: Span, memory: &[u8]) -> Vec<RegisterValues> {
     rows(span)
         .filter_map(|(row, part)| {
             let bytes = span.slice(memory, part)?;
-            Some(Held {
+            Some(RegisterValues {
                 row,
                 span: part,
                 numbers: numbers(row, part, bytes),

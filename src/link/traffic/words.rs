@@ -2,7 +2,7 @@
 //! `assets/manual/json.md`.
 
 use crate::link::tap::Direction;
-use crate::link::traffic::frame::{Form, Frame, Kind};
+use crate::link::traffic::frame::{Frame, FrameFormat, Kind};
 use crate::link::traffic::values;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -55,7 +55,7 @@ impl Direction {
 
 /// One frame as JSON.
 #[derive(Serialize)]
-struct Line<'a> {
+struct FrameJson<'a> {
     number: u64,
     time_s: f64,
     direction: &'static str,
@@ -73,7 +73,9 @@ impl Frame {
     /// What it is about: register names, and their numbers where it carries any. Text of an adapter as it stands.
     #[must_use]
     pub fn meaning(&self) -> String {
-        if self.form == Form::Slcan && matches!(self.kind, Kind::Adapter | Kind::AdapterReply) {
+        if self.form == FrameFormat::Slcan
+            && matches!(self.kind, Kind::Adapter | Kind::AdapterReply)
+        {
             let text = String::from_utf8_lossy(&self.bytes);
             return text.escape_debug().to_string();
         }
@@ -118,7 +120,7 @@ impl Frame {
     #[must_use]
     pub fn json_line(&self) -> String {
         let hex = self.hex();
-        let line = Line {
+        let line = FrameJson {
             number: self.number,
             time_s: self.at.secs(),
             direction: self.direction.name(),

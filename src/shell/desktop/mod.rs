@@ -1,5 +1,6 @@
 //! The real window: with OpenGL, or without where there is none. Draws nothing itself; views live in `ui`.
 
+pub(crate) mod card;
 pub(crate) mod dialog;
 pub(crate) mod failure;
 pub(crate) mod gl;
@@ -11,6 +12,7 @@ pub(crate) mod screen;
 pub(crate) mod software;
 pub(crate) mod start;
 
+pub use crate::shell::desktop::card::may_draw_with_a_card;
 pub use crate::shell::desktop::failure::DesktopError;
 pub use crate::shell::desktop::options::{DesktopStart, Drawing};
 pub use crate::shell::desktop::start::run;

@@ -16,11 +16,9 @@ use crate::shell::desktop::options::{DesktopStart, Drawing};
 use egui::{Vec2, ViewportBuilder, ViewportCommand};
 use std::cell::RefCell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Samples come faster than a display shows them: one repaint serves all that come within this time.
-const REPAINT_WITHIN: Duration = Duration::from_millis(16);
 /// Ages and countdowns move on this often when nothing comes in.
 pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
 
@@ -77,6 +75,8 @@ impl Beginning {
 pub(crate) struct Program {
     cockpit: Cockpit,
     clock: Clock,
+    /// How soon news are drawn, in milliseconds.
+    frame_within_ms: Arc<AtomicU64>,
     titled: Option<String>,
     /// The window was made to fit its screen.
     fits: bool,
@@ -87,7 +87,12 @@ impl Program {
     fn new(ctx: &egui::Context, start: DesktopStart, services: Services) -> Self {
         let Services { runtime, clock } = services;
         let repaint = ctx.clone();
-        let wake = Arc::new(move || repaint.request_repaint_after(REPAINT_WITHIN));
+        let frame_within_ms = Arc::new(AtomicU64::new(0));
+        let within = Arc::clone(&frame_within_ms);
+        let wake = Arc::new(move || {
+            let within = Duration::from_millis(within.load(Ordering::Relaxed));
+            repaint.request_repaint_after(within);
+        });
         let env = Env {
             dial: Arc::new(SimDial::new(clock)),
             runtime,
@@ -109,6 +114,7 @@ impl Program {
         Self {
             cockpit: Cockpit::new(app).with_snap(start.snap),
             clock,
+            frame_within_ms,
             titled: None,
             fits: false,
             closing: false,
@@ -119,6 +125,9 @@ impl Program {
     pub(crate) fn logic(&mut self, ctx: &egui::Context) {
         let now = self.clock.now();
         self.cockpit.logic(now);
+        let within = self.cockpit.frame_within();
+        let within_ms = u64::try_from(within.as_millis()).unwrap_or(0);
+        self.frame_within_ms.store(within_ms, Ordering::Relaxed);
         self.title(ctx);
         self.fit(ctx);
         self.keep_size(ctx, now);
@@ -191,7 +200,7 @@ impl Program {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         } else {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            ctx.request_repaint_after(REPAINT_WITHIN);
+            ctx.request_repaint_after(self.cockpit.frame_within());
         }
     }
 }

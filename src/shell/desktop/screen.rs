@@ -44,7 +44,7 @@ impl Screen {
         &mut self,
         window: &Window,
         ctx: &egui::Context,
-        frame: Frame,
+        frame: DrawnFrame,
     ) -> Result<(), SoftBufferError> {
         let size = window.inner_size();
         let (Some(width), Some(height)) =
@@ -109,7 +109,7 @@ fn damage(changed: &Changed) -> Option<softbuffer::Rect> {
 }
 
 /// What egui drew in one pass.
-pub(crate) struct Frame {
+pub(crate) struct DrawnFrame {
     /// What is to be painted.
     pub(crate) shapes: Vec<ClippedShape>,
     /// Scale of the pass.

@@ -2,7 +2,7 @@
 
 use crate::shell::desktop::failure::{DesktopError, cause_of};
 use crate::shell::desktop::program::{Beginning, Program, REPAINT_AT_LEAST, viewport};
-use crate::shell::desktop::screen::{Frame, Screen};
+use crate::shell::desktop::screen::{DrawnFrame, Screen};
 use egui::{Context, RawInput, ViewportCommand, ViewportEvent, ViewportId, ViewportInfo};
 use egui_winit::accesskit_winit::{self, WindowEvent as AccessEvent};
 use egui_winit::winit::application::ApplicationHandler;
@@ -236,7 +236,7 @@ impl Open {
         self.state
             .handle_platform_output(&self.window, output.platform_output);
         self.screen.textures(&mut output.textures_delta);
-        let frame = Frame {
+        let frame = DrawnFrame {
             shapes: output.shapes,
             pixels_per_point: output.pixels_per_point,
         };

@@ -1,11 +1,11 @@
 //! Simulated hands on a CAN bus (manual 2.3), on a wire of Linux's 16-byte frames. Opens no interface.
 
 use crate::codec::can::{
-    CanFrame, CanId, PIECE_MAX, RECORD_LEN, Record, Way, frame, from_record, to_record,
+    CanFrame, CanFunction, CanId, CanRecord, PIECE_MAX, RECORD_LEN, frame, from_record, to_record,
 };
 use crate::hand::Span;
-use crate::sim::memory::Refusal;
-use crate::sim::serve::hands::Hands;
+use crate::sim::memory::AccessError;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
 use arrayvec::ArrayVec;
@@ -23,12 +23,12 @@ const NAK: u8 = 0;
 ///
 /// # Errors
 /// How the wire ended; `UnexpectedEof` if the other side hung up.
-pub async fn serve(hands: impl Into<Hands>, mut wire: impl Wire) -> io::Result<()> {
+pub async fn serve(hands: impl Into<SimHands>, mut wire: impl Wire) -> io::Result<()> {
     let hands = hands.into();
     let mut record = [0; RECORD_LEN];
     loop {
         wire.read_exact(&mut record).await?;
-        let Record::Frame(asked) = from_record(&record) else {
+        let CanRecord::Frame(asked) = from_record(&record) else {
             continue;
         };
         for hand in hands.iter() {
@@ -63,7 +63,7 @@ fn reply(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
             return None;
         }
         match (way, asked.data.as_slice()) {
-            (Way::Read, [len]) => {
+            (CanFunction::Read, [len]) => {
                 let span = Span::new(address, u16::from(*len));
                 if span.len > PIECE_MAX {
                     return None;
@@ -71,11 +71,11 @@ fn reply(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
                 let bytes = hand.read(span, now).ok()?;
                 frame(way, id, address, &bytes)
             }
-            (Way::Write, bytes @ [_, ..]) => {
+            (CanFunction::Write, bytes @ [_, ..]) => {
                 // The late frames that tell how a SAVE or a calibration ended are the serial line's.
                 let effect = match hand.write_quietly(address, bytes, now) {
                     Ok(effect) => effect,
-                    Err(Refusal::ReadOnly { .. }) => return frame(way, id, address, &[NAK]),
+                    Err(AccessError::ReadOnly { .. }) => return frame(way, id, address, &[NAK]),
                     Err(_) => return None,
                 };
                 if !effect.is_acked {

@@ -9,18 +9,18 @@ const ANY_UNITS: [u8; 2] = [255, 0];
 
 /// The hands on one wire, at least one; their order matters where an address names no id.
 #[derive(Debug, Clone)]
-pub struct Hands {
+pub struct SimHands {
     first: SharedHand,
     others: Vec<SharedHand>,
 }
 
-impl From<SharedHand> for Hands {
+impl From<SharedHand> for SimHands {
     fn from(hand: SharedHand) -> Self {
         Self::new(hand, Vec::new())
     }
 }
 
-impl Hands {
+impl SimHands {
     /// One hand and those beside it.
     #[must_use]
     pub const fn new(first: SharedHand, others: Vec<SharedHand>) -> Self {

@@ -12,5 +12,5 @@ pub mod shared;
 pub mod slcan;
 pub mod usbcan;
 
-pub use hands::Hands;
+pub use hands::SimHands;
 pub use shared::SharedHand;

@@ -2,7 +2,7 @@
 
 use crate::hand::Span;
 use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
-use crate::sim::memory::Refusal;
+use crate::sim::memory::AccessError;
 use crate::sim::personality::{ByteWords, InnerAddress, LongRead, Personality, SingleReply};
 use crate::sim::serve::shared::SharedHand;
 use std::ops::RangeInclusive;
@@ -25,12 +25,14 @@ enum No {
     Silence,
 }
 
-impl From<Refusal> for No {
-    fn from(refusal: Refusal) -> Self {
+impl From<AccessError> for No {
+    fn from(refusal: AccessError) -> Self {
         match refusal {
-            Refusal::Silent => Self::Silence,
-            Refusal::Empty { .. } | Refusal::OutOfRange { .. } => Self::Exception(ILLEGAL_VALUE),
-            Refusal::Unmapped { .. } | Refusal::Gap | Refusal::ReadOnly { .. } => {
+            AccessError::Silent => Self::Silence,
+            AccessError::Empty { .. } | AccessError::OutOfRange { .. } => {
+                Self::Exception(ILLEGAL_VALUE)
+            }
+            AccessError::Unmapped { .. } | AccessError::Gap | AccessError::ReadOnly { .. } => {
                 Self::Exception(ILLEGAL_ADDRESS)
             }
         }

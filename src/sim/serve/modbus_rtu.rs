@@ -2,7 +2,7 @@
 
 use crate::codec::modbus_rtu::crc16;
 use crate::sim::personality::RtuReplyGap;
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::modbus;
 use crate::transport::Wire;
 use arrayvec::ArrayVec;
@@ -25,29 +25,26 @@ const SHORT_LEN: usize = 8;
 const LONG_FRAMING: usize = 9;
 
 /// Answers on `wire` until the other side hangs up. Silent for other ids and bad frames.
-///
-/// # Errors
-/// None: the end of the wire is the only end there is.
-pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) -> io::Result<()> {
-    let mut line = Line {
+pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
+    let mut line = RtuServer {
         hands: hands.into(),
         wire,
         held: ArrayVec::new(),
         is_noisy: false,
     };
+    // The end of the wire is the only end there is, and the only error.
     let _hung_up = line.run().await;
-    Ok(())
 }
 
-struct Line<W> {
-    hands: Hands,
+struct RtuServer<W> {
+    hands: SimHands,
     wire: W,
     held: ArrayVec<u8, CHUNK>,
     /// What comes is not listened to until the line is silent.
     is_noisy: bool,
 }
 
-impl<W: Wire> Line<W> {
+impl<W: Wire> RtuServer<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {

@@ -2,7 +2,7 @@
 
 use crate::codec::mbap::{Adu, MbapSplitter};
 use crate::sim::personality::{ReplyUnit, TcpClients};
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::modbus;
 use crate::transport::Wire;
 use std::io;
@@ -26,7 +26,7 @@ const TARGET_SILENT: u8 = 11;
 ///
 /// # Errors
 /// The listener's own failures.
-pub async fn serve(hands: impl Into<Hands>, listener: TcpListener) -> io::Result<()> {
+pub async fn serve(hands: impl Into<SimHands>, listener: TcpListener) -> io::Result<()> {
     let hands = hands.into();
     let mut clients = JoinSet::new();
     loop {
@@ -52,12 +52,12 @@ pub async fn serve(hands: impl Into<Hands>, listener: TcpListener) -> io::Result
 }
 
 /// Answers one client until it hangs up or talks nonsense.
-pub async fn serve_client(hands: impl Into<Hands>, wire: impl Wire) {
+pub async fn serve_client(hands: impl Into<SimHands>, wire: impl Wire) {
     // A client's broken connection ends with that client; the others go on.
     let _broken = answer_all(hands.into(), wire).await;
 }
 
-async fn answer_all(hands: Hands, mut wire: impl Wire) -> io::Result<()> {
+async fn answer_all(hands: SimHands, mut wire: impl Wire) -> io::Result<()> {
     let mut splitter = MbapSplitter::default();
     let mut chunk = [0; CHUNK];
     loop {
@@ -76,7 +76,7 @@ async fn answer_all(hands: Hands, mut wire: impl Wire) -> io::Result<()> {
     }
 }
 
-async fn answer(hands: &Hands, wire: &mut impl Wire, asked: &Adu) -> io::Result<()> {
+async fn answer(hands: &SimHands, wire: &mut impl Wire, asked: &Adu) -> io::Result<()> {
     let request = asked.bytes.get(HEADER_LEN..).unwrap_or_default();
     let Some(hand) = hands.unit(asked.unit) else {
         let refused = [asked.function() | 0x80, TARGET_SILENT];

@@ -1,13 +1,12 @@
 //! Simulated hands behind a pseudo-terminal, where other programs open it like a serial port. Unix only.
 
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::modbus_rtu;
 use crate::sim::serve::rs485;
 use crate::sim::serve::slcan;
 use crate::sim::serve::usbcan;
 use crate::transport::{LinePace, PtyLink, TransportError, paced};
 use std::future::Future;
-use std::io;
 use std::path::Path;
 
 /// Makes the link at `path` at once, and answers there while the returned future lives. Clients may come and go;
@@ -17,7 +16,7 @@ use std::path::Path;
 /// As [`PtyLink::create`]: something that is no link stands there, no permission, no such folder. Must be called
 /// within a tokio runtime.
 pub fn serve_rs485(
-    hands: impl Into<Hands> + Send + 'static,
+    hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
     pace: Option<LinePace>,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
@@ -30,15 +29,15 @@ pub fn serve_rs485(
     })
 }
 
-/// As [`serve_rs485`], in Modbus RTU. The future ends with an error only if the system has no pseudo-terminals left.
+/// As [`serve_rs485`], in Modbus RTU.
 ///
 /// # Errors
 /// As [`serve_rs485`].
 pub fn serve_rtu(
-    hands: impl Into<Hands> + Send + 'static,
+    hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
     pace: Option<LinePace>,
-) -> Result<impl Future<Output = io::Result<()>> + Send + 'static, TransportError> {
+) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let (hands, link) = (hands.into(), line(path, pace)?);
     Ok(async move {
         match pace {
@@ -62,7 +61,7 @@ fn line(path: &Path, pace: Option<LinePace>) -> Result<PtyLink, TransportError> 
 /// # Errors
 /// As [`serve_rs485`].
 pub fn serve_slcan(
-    hands: impl Into<Hands> + Send + 'static,
+    hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
@@ -74,7 +73,7 @@ pub fn serve_slcan(
 /// # Errors
 /// As [`serve_rs485`].
 pub fn serve_usbcan(
-    hands: impl Into<Hands> + Send + 'static,
+    hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;

@@ -1,14 +1,14 @@
 //! Simulated hands on a serial wire, private framing (manual 2.2). Opens no port.
 
 use crate::codec::rs485::{
-    Frame, READ_LEN_MAX, Request, RequestDecoder, encode_calibration_end, encode_read_reply,
-    encode_save_result, encode_write_ack,
+    READ_LEN_MAX, RequestDecoder, Rs485Frame, Rs485Request, encode_calibration_end,
+    encode_read_reply, encode_save_result, encode_write_ack,
 };
 use crate::hand::Span;
 use crate::sim::hand::SimHand;
-use crate::sim::memory::Refusal;
+use crate::sim::memory::AccessError;
 use crate::sim::personality::{AnyId, LongRead};
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::shared::SharedHand;
 use crate::transport::Wire;
 use std::io;
@@ -27,8 +27,8 @@ const CHUNK: usize = 512;
 const SILENCE: Duration = Duration::from_millis(50);
 
 /// Answers on `wire` until the other side hangs up. Silent for other ids, bad frames and runs it refuses.
-pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
-    let mut line = Line {
+pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
+    let mut line = Rs485Server {
         hands: hands.into(),
         wire,
         decoder: RequestDecoder::default(),
@@ -37,13 +37,13 @@ pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
     let _hung_up = line.run().await;
 }
 
-struct Line<W> {
-    hands: Hands,
+struct Rs485Server<W> {
+    hands: SimHands,
     wire: W,
     decoder: RequestDecoder,
 }
 
-impl<W: Wire> Line<W> {
+impl<W: Wire> Rs485Server<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {
@@ -124,9 +124,9 @@ impl<W: Wire> Line<W> {
     }
 }
 
-fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
+fn answer(hand: &SharedHand, request: &Rs485Request) -> Option<Rs485Frame> {
     hand.with(|hand, now| match request {
-        Request::Read { id, span } if is_meant(hand, *id) => {
+        Rs485Request::Read { id, span } if is_meant(hand, *id) => {
             let cut = hand.personality().long_read == LongRead::Truncate;
             let len = match span.len {
                 ..=READ_LEN_MAX => span.len,
@@ -136,12 +136,14 @@ fn answer(hand: &SharedHand, request: &Request) -> Option<Frame> {
             let bytes = hand.read(Span::new(span.address, len), now).ok()?;
             encode_read_reply(hand.id(), span.address, &bytes)
         }
-        Request::Write { id, address, bytes } if is_meant(hand, *id) => {
+        Rs485Request::Write { id, address, bytes } if is_meant(hand, *id) => {
             match hand.write(*address, bytes, now) {
                 Ok(effect) => effect
                     .is_acked
                     .then(|| encode_write_ack(effect.ack_id, *address, ACK)),
-                Err(Refusal::ReadOnly { .. }) => Some(encode_write_ack(hand.id(), *address, NAK)),
+                Err(AccessError::ReadOnly { .. }) => {
+                    Some(encode_write_ack(hand.id(), *address, NAK))
+                }
                 Err(_) => None,
             }
         }

@@ -1,9 +1,9 @@
 //! Simulated hands behind a serial CAN adapter, adapter included (Lawicel's text). Opens no port.
 
 use crate::codec::can::CanFrame;
-use crate::codec::slcan::{Answer, BITRATES, Command, CommandDecoder, encode_answer};
+use crate::codec::slcan::{BITRATES, CommandDecoder, SlcanAnswer, SlcanCommand, encode_answer};
 use crate::sim::serve::can;
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::transport::Wire;
 use std::io;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -22,8 +22,8 @@ const SERIAL: &[u8] = b"NSIM1\r";
 const FLAGS: &[u8] = b"F00\r";
 
 /// Answers on `wire` until the other side hangs up. At another bit rate than the hand's nobody is on the bus.
-pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
-    let mut adapter = Adapter {
+pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
+    let mut adapter = SlcanServer {
         hands: hands.into(),
         wire,
         mode: Mode::Closed,
@@ -41,15 +41,15 @@ enum Mode {
     Listening,
 }
 
-struct Adapter<W> {
-    hands: Hands,
+struct SlcanServer<W> {
+    hands: SimHands,
     wire: W,
     mode: Mode,
     /// None if it was set by timing registers that are not the hand's.
     bitrate: Option<u32>,
 }
 
-impl<W: Wire> Adapter<W> {
+impl<W: Wire> SlcanServer<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut decoder = CommandDecoder::default();
         let mut chunk = [0; CHUNK];
@@ -62,46 +62,47 @@ impl<W: Wire> Adapter<W> {
                 match decoder.push(*byte) {
                     None => {}
                     Some(Ok(command)) => self.obey(command).await?,
-                    Some(Err(_unreadable)) => self.say(&Answer::Failed).await?,
+                    Some(Err(_unreadable)) => self.say(&SlcanAnswer::Failed).await?,
                 }
             }
             self.wire.flush().await?;
         }
     }
 
-    async fn obey(&mut self, command: Command) -> io::Result<()> {
+    async fn obey(&mut self, command: SlcanCommand) -> io::Result<()> {
         let allowed = match &command {
-            Command::Open | Command::Listen | Command::Bitrate(_) | Command::Timing(_) => {
-                self.mode == Mode::Closed
-            }
-            Command::Close => self.mode != Mode::Closed,
-            Command::Send(_) | Command::SendOther(_) => self.mode == Mode::Open,
-            Command::Other(_) => true,
+            SlcanCommand::Open
+            | SlcanCommand::Listen
+            | SlcanCommand::Bitrate(_)
+            | SlcanCommand::Timing(_) => self.mode == Mode::Closed,
+            SlcanCommand::Close => self.mode != Mode::Closed,
+            SlcanCommand::Send(_) | SlcanCommand::SendOther(_) => self.mode == Mode::Open,
+            SlcanCommand::Other(_) => true,
         };
         if !allowed {
-            return self.say(&Answer::Failed).await;
+            return self.say(&SlcanAnswer::Failed).await;
         }
         match command {
-            Command::Open => self.mode = Mode::Open,
-            Command::Listen => self.mode = Mode::Listening,
-            Command::Close => self.mode = Mode::Closed,
-            Command::Bitrate(code) => self.bitrate = BITRATES.get(usize::from(code)).copied(),
-            Command::Timing(registers) => {
+            SlcanCommand::Open => self.mode = Mode::Open,
+            SlcanCommand::Listen => self.mode = Mode::Listening,
+            SlcanCommand::Close => self.mode = Mode::Closed,
+            SlcanCommand::Bitrate(code) => self.bitrate = BITRATES.get(usize::from(code)).copied(),
+            SlcanCommand::Timing(registers) => {
                 self.bitrate = (registers == HAND_TIMING).then_some(HAND_BITRATE);
             }
-            Command::Other(b'V') => return self.wire.write_all(VERSION).await,
-            Command::Other(b'N') => return self.wire.write_all(SERIAL).await,
-            Command::Other(b'F') => return self.wire.write_all(FLAGS).await,
-            Command::Other(_) => {}
+            SlcanCommand::Other(b'V') => return self.wire.write_all(VERSION).await,
+            SlcanCommand::Other(b'N') => return self.wire.write_all(SERIAL).await,
+            SlcanCommand::Other(b'F') => return self.wire.write_all(FLAGS).await,
+            SlcanCommand::Other(_) => {}
             // No hand knows such frames (manual 2.3): they go out, and nobody answers.
-            Command::SendOther(b'R') => return self.say(&Answer::Sent).await,
-            Command::SendOther(_) => return self.wire.write_all(SENT_SHORT).await,
-            Command::Send(frame) => {
-                self.say(&Answer::Sent).await?;
+            SlcanCommand::SendOther(b'R') => return self.say(&SlcanAnswer::Sent).await,
+            SlcanCommand::SendOther(_) => return self.wire.write_all(SENT_SHORT).await,
+            SlcanCommand::Send(frame) => {
+                self.say(&SlcanAnswer::Sent).await?;
                 return self.put_on_the_bus(&frame).await;
             }
         }
-        self.say(&Answer::Done).await
+        self.say(&SlcanAnswer::Done).await
     }
 
     async fn put_on_the_bus(&mut self, frame: &CanFrame) -> io::Result<()> {
@@ -111,13 +112,13 @@ impl<W: Wire> Adapter<W> {
         let hands = self.hands.clone();
         for hand in hands.iter() {
             for reply in can::answer(hand, frame).await {
-                self.say(&Answer::Frame(reply)).await?;
+                self.say(&SlcanAnswer::Frame(reply)).await?;
             }
         }
         Ok(())
     }
 
-    async fn say(&mut self, answer: &Answer) -> io::Result<()> {
+    async fn say(&mut self, answer: &SlcanAnswer) -> io::Result<()> {
         match encode_answer(answer) {
             Some(line) => self.wire.write_all(&line).await,
             None => Ok(()),

@@ -1,8 +1,8 @@
 //! Simulated hands behind the maker's own USB-CAN adapter, adapter included. Opens no port.
 
-use crate::codec::usbcan::{Content, PacketDecoder, encode};
+use crate::codec::usbcan::{PacketContent, PacketDecoder, encode};
 use crate::sim::serve::can;
-use crate::sim::serve::hands::Hands;
+use crate::sim::serve::hands::SimHands;
 use crate::transport::Wire;
 use std::io;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -12,12 +12,12 @@ const CHUNK: usize = 512;
 
 /// Answers on `wire` until the other side hangs up. Packets of other kinds, the adapter's settings among them, get no
 /// answer: what the maker's adapter says to those is not known.
-pub async fn serve(hands: impl Into<Hands>, wire: impl Wire) {
+pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
     // The end of the wire is the only end there is, and the only error.
     let _hung_up = answer_all(&hands.into(), wire).await;
 }
 
-async fn answer_all(hands: &Hands, mut wire: impl Wire) -> io::Result<()> {
+async fn answer_all(hands: &SimHands, mut wire: impl Wire) -> io::Result<()> {
     let mut decoder = PacketDecoder::default();
     let mut chunk = [0; CHUNK];
     loop {
@@ -26,7 +26,7 @@ async fn answer_all(hands: &Hands, mut wire: impl Wire) -> io::Result<()> {
             return Ok(());
         }
         for byte in chunk.iter().take(got) {
-            let Some(Content::Frame(asked)) = decoder.push(*byte) else {
+            let Some(PacketContent::Frame(asked)) = decoder.push(*byte) else {
                 continue;
             };
             for hand in hands.iter() {

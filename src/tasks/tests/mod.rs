@@ -1,5 +1,6 @@
 //! What tasks ask of a hand and what they say of it, on a hand that is only a memory and a script.
 
+mod fake;
 mod place;
 mod play;
 mod rest;

@@ -2,14 +2,14 @@
 
 use crate::link::RequestError;
 use crate::params::backups::Backups;
-use crate::params::place::{Moved, Place, Places};
+use crate::params::place::{Moved, PlacePair, WhichPlace};
 use crate::params::rows::{ParamId, Value};
 use crate::record::Saved;
 use crate::tasks::TaskError;
-use crate::tasks::fake::{Asked, FakeHand, FakeReach, Fate, place_write};
 use crate::tasks::place::{
-    KEEP_WITHIN, Person, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
+    Decisions, KEEP_WITHIN, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
 };
+use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate, place_write};
 use crate::transport::Endpoint;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -78,26 +78,26 @@ impl Choices {
 struct World {
     hand: FakeHand,
     moves: Moves,
-    places: Places,
+    places: PlacePair,
     id: ParamId,
     choices: Choices,
     /// Answers, writes and acknowledgements that may still get lost.
     losses: usize,
     lost: usize,
     cuts: usize,
-    looks: Vec<(Place, bool)>,
+    looks: Vec<(WhichPlace, bool)>,
     writes: usize,
     steps: usize,
 }
 
 impl World {
-    fn place(&self) -> Place {
+    fn place(&self) -> WhichPlace {
         let (holds, flash) = (self.hand.holds(self.id), self.hand.in_flash(self.id));
         match holds {
-            _ if self.places.old == self.places.new => Place::Old,
-            Some(NEW) if self.moves == Moves::Now => Place::New,
-            Some(NEW) if self.moves == Moves::AfterSave && flash == Some(NEW) => Place::New,
-            _ => Place::Old,
+            _ if self.places.old == self.places.new => WhichPlace::Old,
+            Some(NEW) if self.moves == Moves::Now => WhichPlace::New,
+            Some(NEW) if self.moves == Moves::AfterSave && flash == Some(NEW) => WhichPlace::New,
+            _ => WhichPlace::Old,
         }
     }
 
@@ -126,7 +126,11 @@ impl World {
     fn look(&mut self, at: &Endpoint) -> bool {
         self.step();
         let is_new = *at == self.places.new && self.places.old != self.places.new;
-        let at = if is_new { Place::New } else { Place::Old };
+        let at = if is_new {
+            WhichPlace::New
+        } else {
+            WhichPlace::Old
+        };
         let is_seen = self.place() == at && self.loss(1) == 0;
         self.looks.push((at, is_seen));
         is_seen
@@ -175,16 +179,15 @@ struct Someone {
     saves: bool,
 }
 
-impl Person for Someone {
-    async fn keeps(&mut self) -> bool {
-        match self.keeps {
-            Some(keeps) => keeps,
-            None => std::future::pending().await,
+impl Someone {
+    fn decides(self) -> Decisions {
+        Decisions {
+            keeps: match self.keeps {
+                Some(keeps) => Box::pin(std::future::ready(keeps)),
+                None => Box::pin(std::future::pending()),
+            },
+            saves: Box::pin(std::future::ready(self.saves)),
         }
-    }
-
-    async fn saves(&mut self) -> bool {
-        self.saves
     }
 }
 
@@ -198,7 +201,7 @@ fn change(follows: Follows) -> PlaceChange {
         id: ParamId::HandId,
         before: OLD,
         wanted: NEW,
-        places: Places { old, new },
+        places: PlacePair { old, new },
         is_followed: follows == Follows::Wire,
     }
 }
@@ -217,7 +220,7 @@ async fn run(
         hand,
         is_there: move |place: &Endpoint| looks.lock().unwrap().look(place),
     };
-    let mut person = {
+    let person = {
         let choices = &mut world.lock().unwrap().choices;
         Someone {
             keeps: [Some(true), Some(false), None][choices.pick(3)],
@@ -225,7 +228,7 @@ async fn run(
         }
     };
     let backups = Backups::new(folder, &change.places.old);
-    change_place(&mut reach, change, &backups, &mut person, |_| ()).await
+    change_place(&mut reach, change, &backups, person.decides(), |_| ()).await
 }
 
 fn check(world: &World, end: &PlaceEnd) {
@@ -330,7 +333,7 @@ async fn told(
     change: &PlaceChange,
     hand: &FakeHand,
     is_there: impl FnMut(&Endpoint) -> bool + Send,
-    mut person: Someone,
+    person: Someone,
 ) -> (PlaceReport, Vec<(PlaceStep, Instant)>) {
     let folder = TempDir::new().unwrap();
     let backups = Backups::new(folder.path(), &change.places.old);
@@ -339,14 +342,17 @@ async fn told(
         is_there,
     };
     let mut steps = Vec::new();
-    let end = change_place(&mut reach, change, &backups, &mut person, |step| {
+    let end = change_place(&mut reach, change, &backups, person.decides(), |step| {
         steps.push((step, Instant::now()));
     });
     (end.await.unwrap(), steps)
 }
 
 /// Where a hand that acts at once answers.
-fn at_its_place(hand: &FakeHand, places: &Places) -> impl FnMut(&Endpoint) -> bool + Send + use<> {
+fn at_its_place(
+    hand: &FakeHand,
+    places: &PlacePair,
+) -> impl FnMut(&Endpoint) -> bool + Send + use<> {
     let (hand, places) = (hand.clone(), places.clone());
     move |place| match hand.holds(ParamId::HandId) {
         Some(NEW) => *place == places.new,
@@ -371,17 +377,17 @@ async fn without_an_answer_it_goes_back_after_fifteen_seconds_and_not_before() {
         let at = steps.iter().find(|(step, _)| *step == wanted);
         at.unwrap_or_else(|| panic!("{wanted:?}")).1
     };
-    let waited = when(PlaceStep::Returning) - when(PlaceStep::Keeping(Place::New));
+    let waited = when(PlaceStep::Returning) - when(PlaceStep::Keeping(WhichPlace::New));
     assert!(waited >= KEEP_WITHIN && waited < KEEP_WITHIN + Duration::from_millis(5));
     let words: Vec<_> = steps.into_iter().map(|(step, _)| step).collect();
     let back = words.iter().position(|step| *step == PlaceStep::Returning);
     assert_eq!(
         words[back.unwrap() + 1..],
         [
-            PlaceStep::Looking(Place::New),
-            PlaceStep::Looking(Place::Old),
-            PlaceStep::Writing(Place::New),
-            PlaceStep::Looking(Place::Old),
+            PlaceStep::Looking(WhichPlace::New),
+            PlaceStep::Looking(WhichPlace::Old),
+            PlaceStep::Writing(WhichPlace::New),
+            PlaceStep::Looking(WhichPlace::Old),
         ],
         "is the old id free, before it is taken"
     );
@@ -409,7 +415,7 @@ async fn an_id_that_another_hand_has_is_not_written_over_it_on_the_way_there_or_
         saves: false,
     };
     let (report, _) = told(&change, &hand, there, leaver).await;
-    assert_eq!(report.end, PlaceEnd::NotBack(Place::New));
+    assert_eq!(report.end, PlaceEnd::NotBack(WhichPlace::New));
     let writes = hand.asked().into_iter().filter(is_write);
     assert!(writes.eq([place_write(ParamId::HandId, NEW)]));
 }
@@ -425,7 +431,7 @@ async fn a_third_value_is_put_back_before_anybody_can_save_it() {
         (
             Fate::Takes(3),
             Fate::Takes(3),
-            PlaceEnd::NotBack(Place::Old),
+            PlaceEnd::NotBack(WhichPlace::Old),
         ),
     ] {
         let (change, hand) = (change(Follows::No), FakeHand::new());
@@ -596,11 +602,11 @@ async fn nothing_is_written_where_no_backup_can_be_made_or_no_hand_answers() {
             hand: hand.clone(),
             is_there: move |_: &_| is_there,
         };
-        let mut keeper = Someone {
+        let keeper = Someone {
             keeps: Some(true),
             saves: true,
         };
-        let end = change_place(&mut reach, &change, &backups, &mut keeper, |_| ()).await;
+        let end = change_place(&mut reach, &change, &backups, keeper.decides(), |_| ()).await;
         assert!(
             matches!(end, Err(TaskError::NoBackup { .. } | TaskError::NotReached)),
             "{end:?}"

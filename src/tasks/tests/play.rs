@@ -6,10 +6,10 @@ use crate::hand::{
 };
 use crate::link::RequestError;
 use crate::poses::library::PoseId;
-use crate::poses::player::{Cue, End, Pace, Phase};
+use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayView};
 use crate::record::LinkState;
-use crate::tasks::fake::{Asked, FakeHand, Fate, Said, WELL};
-use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, PlayView, play};
+use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
+use crate::tasks::tests::fake::{Asked, FakeHand, Fate, Said, WELL};
 use crate::tasks::{Hand, gesture};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -33,11 +33,11 @@ struct Bench {
     hand: FakeHand,
     commands: Option<mpsc::Sender<PlayCommand>>,
     steps: Arc<Mutex<Vec<PlayStep>>>,
-    task: JoinHandle<End>,
+    task: JoinHandle<PlayEnd>,
 }
 
 impl Bench {
-    fn start(pace: Pace, locked: PerDof<bool>) -> Self {
+    fn start(pace: PlayMode, locked: PerDof<bool>) -> Self {
         let hand = FakeHand::new();
         hand.arm_as(1);
         let start = PlayStart {
@@ -65,7 +65,7 @@ impl Bench {
     }
 
     async fn playing() -> Self {
-        let bench = Self::start(Pace::Through, PerDof::splat(false));
+        let bench = Self::start(PlayMode::Through, PerDof::splat(false));
         sleep(Duration::from_millis(1)).await;
         bench.at(600, 1).await;
         bench
@@ -115,7 +115,7 @@ impl Bench {
 #[tokio::test(start_paused = true)]
 async fn a_sequence_goes_from_pose_to_pose_and_ends() {
     let locked = PerDof::from_fn(|dof| dof == Dof::ThumbBend);
-    let bench = Bench::start(Pace::Through, locked);
+    let bench = Bench::start(PlayMode::Through, locked);
     sleep(Duration::from_millis(1)).await;
     bench.at(500, 1).await;
     bench.at(690, 3).await;
@@ -129,39 +129,39 @@ async fn a_sequence_goes_from_pose_to_pose_and_ends() {
     bench.at(690, 10).await;
     assert_eq!(bench.sent(), [Some(200)]);
     bench.at(200, 20).await;
-    assert_eq!(bench.task.await.unwrap(), End::Finished);
+    assert_eq!(bench.task.await.unwrap(), PlayEnd::Finished);
     assert_eq!(bench.hand.asked(), []);
 }
 
 #[tokio::test(start_paused = true)]
 async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
-    let ways: [(Break, End); 7] = [
-        (|bench| bench.hand.stop(), End::Disarmed),
-        (|bench| bench.hand.disarm(), End::Disarmed),
+    let ways: [(Break, PlayEnd); 7] = [
+        (|bench| bench.hand.stop(), PlayEnd::Disarmed),
+        (|bench| bench.hand.disarm(), PlayEnd::Disarmed),
         (
             |bench| bench.hand.facts().status.state = LinkState::Fault,
-            End::Fault,
+            PlayEnd::Fault,
         ),
         (
             |bench| bench.hand.facts().status.state = LinkState::Offline,
-            End::LinkLost,
+            PlayEnd::LinkLost,
         ),
-        (|bench| bench.hand.arm_as(2), End::Disarmed),
-        (|bench| drop(bench.commands.take()), End::TakenOver),
+        (|bench| bench.hand.arm_as(2), PlayEnd::Disarmed),
+        (|bench| drop(bench.commands.take()), PlayEnd::TakenOver),
         (
             |bench| {
                 let commands = bench.commands.as_ref().unwrap();
                 commands.try_send(PlayCommand::End).unwrap();
             },
-            End::Person,
+            PlayEnd::Person,
         ),
     ];
     for (break_off, want) in ways {
         let mut bench = Bench::playing().await;
         break_off(&mut bench);
         sleep(Duration::from_millis(20)).await;
-        assert_eq!(bench.view().phase, Phase::Ended(want));
+        assert_eq!(bench.view().phase, PlayPhase::Ended(want));
         bench.hand.asked();
         // Even an arming later does not bring it back.
         bench.hand.arm_as(9);
@@ -178,7 +178,7 @@ async fn whoever_takes_the_turn_ends_a_sequence() {
     let _another = bench.hand.take_turn();
     bench.at(700, 20).await;
     assert_eq!(bench.hand.asked(), []);
-    assert_eq!(bench.task.await.unwrap(), End::TakenOver);
+    assert_eq!(bench.task.await.unwrap(), PlayEnd::TakenOver);
 }
 
 #[tokio::test(start_paused = true)]
@@ -189,8 +189,8 @@ async fn a_pause_holds_and_waits_for_a_person() {
     assert_eq!(bench.sent(), [Some(600)], "holds where it is");
     bench.at(610, 1000).await;
     assert_eq!(bench.sent(), []);
-    assert_eq!(bench.view().phase, Phase::Paused);
-    bench.command(PlayCommand::Resume(Pace::Through)).await;
+    assert_eq!(bench.view().phase, PlayPhase::Paused);
+    bench.command(PlayCommand::Resume(PlayMode::Through)).await;
     bench.at(610, 1).await;
     assert_eq!(bench.sent(), [Some(700)]);
 }
@@ -206,11 +206,11 @@ async fn nothing_is_sent_by_angles_that_are_old() {
 
 #[tokio::test(start_paused = true)]
 async fn one_step_pauses_after_one_pose() {
-    let bench = Bench::start(Pace::OneStep, PerDof::splat(false));
+    let bench = Bench::start(PlayMode::OneStep, PerDof::splat(false));
     sleep(Duration::from_millis(1)).await;
     bench.at(690, 50).await;
     assert_eq!(bench.sent(), [Some(700)]);
-    assert_eq!(bench.view().phase, Phase::Paused);
+    assert_eq!(bench.view().phase, PlayPhase::Paused);
 }
 
 #[tokio::test(start_paused = true)]

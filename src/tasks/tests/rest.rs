@@ -3,7 +3,7 @@
 use crate::hand::{Dof, HandCommand};
 use crate::params::backups::Backups;
 use crate::params::changes::RowVerdict;
-use crate::params::place::Places;
+use crate::params::place::PlacePair;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::record::{Calibrated, NotSent, Rest, Saved};
@@ -11,10 +11,10 @@ use crate::tasks::Consent;
 use crate::tasks::Hand;
 use crate::tasks::apply::{Apply, Otherwise, apply};
 use crate::tasks::calibrate::{Check, Checks, calibrate};
-use crate::tasks::fake::{Asked, FakeHand, FakeReach, Fate, WELL};
-use crate::tasks::place::{Person, PlaceChange, PlaceEnd, change_place};
+use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, change_place};
 use crate::tasks::reset::{ResetEnd, places, reset};
 use crate::tasks::save::{Save, save};
+use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate, WELL};
 use std::time::Duration;
 use tempfile::TempDir;
 use tokio::time::{Instant, sleep};
@@ -129,19 +129,6 @@ async fn an_armed_hand_is_not_asked_again() {
     assert!(!applied.is_whole());
 }
 
-/// Somebody who keeps and saves whatever is asked.
-struct Eager;
-
-impl Person for Eager {
-    async fn keeps(&mut self) -> bool {
-        true
-    }
-
-    async fn saves(&mut self) -> bool {
-        true
-    }
-}
-
 #[tokio::test(start_paused = true)]
 async fn where_a_hand_is_found_is_not_changed_unless_it_is_known_to_rest() {
     for rest in [Rest::Unknown, Rest::Moving] {
@@ -152,7 +139,7 @@ async fn where_a_hand_is_found_is_not_changed_unless_it_is_known_to_rest() {
             id: ParamId::HandId,
             before: Value::Number(1),
             wanted: Value::Number(7),
-            places: Places {
+            places: PlacePair {
                 new: "rs485:/dev/x?id=7".parse().unwrap(),
                 old: place,
             },
@@ -164,7 +151,11 @@ async fn where_a_hand_is_found_is_not_changed_unless_it_is_known_to_rest() {
             is_there: move |place: &_| *place == old,
         };
         let (_folder, backups) = files();
-        let end = change_place(&mut reach, &change, &backups, &mut Eager, |_| ()).await;
+        let eager = Decisions {
+            keeps: Box::pin(std::future::ready(true)),
+            saves: Box::pin(std::future::ready(true)),
+        };
+        let end = change_place(&mut reach, &change, &backups, eager, |_| ()).await;
         assert_eq!(end.unwrap().end, PlaceEnd::NotWritten, "{rest:?}");
         let asked = hand.asked();
         let is_write = |one: &Asked| matches!(one, Asked::Write(HandCommand::Id(_)));

@@ -4,16 +4,16 @@ use crate::hand::{Dof, Setting, Span};
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::changes::{RowOutcome, undo_of};
-use crate::params::place::Place;
+use crate::params::place::WhichPlace;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, SPANS};
 use crate::record::{Doubt, NotSent, Saved, Verdict};
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
-use crate::tasks::fake::{Asked, FakeHand, FakeReach, Fate};
 use crate::tasks::read::{group, rows};
 use crate::tasks::reset::{ResetEnd, ResetReport, ResetStep, places, reset};
-use crate::tasks::save::{Save, SaveReport, SaveStep, save};
-use crate::tasks::{Consent, TaskError};
+use crate::tasks::save::{Save, SaveReport, save};
+use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate};
+use crate::tasks::{Consent, ParamStep, TaskError};
 use tempfile::TempDir;
 
 const INDEX: ParamId = ParamId::DefaultSpeed(Dof::Index);
@@ -253,7 +253,7 @@ fn files() -> (TempDir, Backups) {
 async fn saved(
     hand: &FakeHand,
     backups: Backups,
-) -> (Result<SaveReport, TaskError>, Vec<SaveStep>) {
+) -> (Result<SaveReport, TaskError>, Vec<ParamStep>) {
     let task = Save {
         backups,
         before: Params::default(),
@@ -280,7 +280,7 @@ async fn no_save_goes_out_without_a_backup_and_its_result_is_noted() {
     let end = end.unwrap();
     assert_eq!((end.saved, end.not_noted), (Saved::Confirmed, None));
     assert!(end.backup.exists());
-    assert_eq!(steps.last(), Some(&SaveStep::Saving));
+    assert_eq!(steps.last(), Some(&ParamStep::Saving));
     assert_eq!(hand.asked().last(), Some(&Asked::Save));
     let known = backups.known().unwrap();
     assert_eq!(known.saved.unwrap().params, end.params);
@@ -333,7 +333,7 @@ async fn reset_of(
     (end, steps)
 }
 
-fn looked(steps: &[ResetStep]) -> Vec<Place> {
+fn looked(steps: &[ResetStep]) -> Vec<WhichPlace> {
     let looks = steps.iter().filter_map(|step| match step {
         ResetStep::Looking(place) => Some(*place),
         _ => None,
@@ -345,16 +345,16 @@ fn looked(steps: &[ResetStep]) -> Vec<Place> {
 async fn the_hand_is_looked_for_at_the_factorys_place_first_and_in_rounds() {
     let (end, steps) = reset_of("rs485:/dev/x?id=7", Fate::AnswerLost, |_| false).await;
     assert_eq!(end.unwrap().end, ResetEnd::Nowhere);
-    assert_eq!(looked(&steps), [Place::New, Place::Old].repeat(3));
+    assert_eq!(looked(&steps), [WhichPlace::New, WhichPlace::Old].repeat(3));
 
     let (end, steps) = reset_of("rs485:/dev/x?id=1", Fate::Answered, |look| look == 1).await;
-    assert_eq!(looked(&steps), [Place::New; 2]);
+    assert_eq!(looked(&steps), [WhichPlace::New; 2]);
     let report = end.unwrap();
     assert!(report.is_acknowledged);
     let ResetEnd::Found { at, left, .. } = report.end else {
         panic!("{:?}", report.end);
     };
-    assert_eq!((at, left), (Place::New, Vec::new()));
+    assert_eq!((at, left), (WhichPlace::New, Vec::new()));
 }
 
 #[tokio::test(start_paused = true)]
@@ -368,7 +368,7 @@ async fn what_was_not_taken_is_told_as_it_is() {
     let ResetEnd::Found { at, left, .. } = end.unwrap().end else {
         panic!("it answers at its old place");
     };
-    assert_eq!((at, left), (Place::Old, vec![ParamId::HandId]));
+    assert_eq!((at, left), (WhichPlace::Old, vec![ParamId::HandId]));
 }
 
 #[tokio::test(start_paused = true)]

@@ -4,8 +4,8 @@ use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof
 use crate::link::PollRates;
 use crate::record::LinkState;
 use crate::tasks::Hand;
-use crate::tasks::fake::{Asked, FakeHand, Said, WELL};
-use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, Stop, Told, series};
+use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, Stop, series};
+use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use crate::trials::limits::Abort;
 use crate::trials::plan::{Approach, Limits, PlanError, TrialGrid, TrialPlan};
 use crate::trials::runner::Stage;
@@ -70,7 +70,7 @@ impl Bench {
         let task = tokio::spawn(async move {
             let tell = |step| {
                 told.lock().unwrap().push(step);
-                Told::Kept
+                true
             };
             series(&link, start, ended, tell).await
         });

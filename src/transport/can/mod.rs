@@ -12,9 +12,6 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Interval, interval};
 
-/// Bytes of one frame; a write must be one whole frame, a read gives one if there is room.
-pub const FRAME_LEN: usize = 16;
-
 /// Linux marks 29-bit identifiers with this bit, and remote frames with the next.
 const EXTENDED: u32 = 0x8000_0000;
 const REMOTE: u32 = 0x4000_0000;

@@ -1,11 +1,10 @@
 //! Endpoints: where a hand is, in one spelling for command line, config, window and files. Opens nothing.
 pub(crate) mod error;
-pub mod packing;
 mod parse;
 pub mod route;
 
+use crate::hand::register::BytePacking;
 pub use crate::transport::endpoint::error::EndpointError;
-use crate::transport::endpoint::packing::Packing;
 use std::fmt;
 
 /// Serial speed of a hand as delivered (manual 2.2).
@@ -43,7 +42,7 @@ pub enum Endpoint {
         /// Modbus unit id.
         unit: u8,
         /// How single bytes stand in words, where a person says so; else the link finds out.
-        packing: Option<Packing>,
+        packing: Option<BytePacking>,
     },
     /// `can:can0?id=1`: SocketCAN.
     Can {
@@ -82,7 +81,7 @@ pub struct SerialLine {
     /// Hand id, 1..=254.
     pub id: u8,
     /// As in [`Endpoint::Tcp`]; never in `rs485:`, which has no words.
-    pub packing: Option<Packing>,
+    pub packing: Option<BytePacking>,
 }
 
 impl Endpoint {
@@ -204,8 +203,8 @@ impl fmt::Display for Endpoint {
     }
 }
 
-fn packing_key(f: &mut fmt::Formatter<'_>, packing: Option<Packing>) -> fmt::Result {
-    packing.map_or(Ok(()), |packing| write!(f, "&packing={packing}"))
+fn packing_key(f: &mut fmt::Formatter<'_>, packing: Option<BytePacking>) -> fmt::Result {
+    packing.map_or(Ok(()), |packing| write!(f, "&packing={}", packing.key()))
 }
 
 #[cfg(test)]

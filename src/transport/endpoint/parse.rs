@@ -1,7 +1,7 @@
 //! How the text of an endpoint is read. Opens nothing.
 
+use crate::hand::register::BytePacking;
 use crate::transport::endpoint::error::{EndpointError, Want};
-use crate::transport::endpoint::packing::Packing;
 use crate::transport::endpoint::{
     DEFAULT_BAUD, DEFAULT_BITRATE, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
     Endpoint, SerialLine,
@@ -100,7 +100,7 @@ impl Query<'_> {
         for (key, value) in self.pairs() {
             match key {
                 "packing" if kind == "rtu" => {
-                    line.packing = Some(number(key, value, Want::OneOf(Packing::WANT))?);
+                    line.packing = Some(chosen_packing(key, value)?);
                 }
                 "baud" => line.baud = serial_speed(key, value)?,
                 "id" => line.id = in_range(key, value, 1..=254, Want::Between(1, 254))?,
@@ -128,7 +128,7 @@ impl Query<'_> {
         for (key, value) in self.pairs() {
             match key {
                 "unit" => unit = number(key, value, Want::Between(0, 255))?,
-                "packing" => packing = Some(number(key, value, Want::OneOf(Packing::WANT))?),
+                "packing" => packing = Some(chosen_packing(key, value)?),
                 _ => return Err(unknown_key(key, "tcp", "unit and packing")),
             }
         }
@@ -220,6 +220,11 @@ fn wrong_value(key: &str, value: &str, want: Want) -> EndpointError {
 
 fn serial_speed(key: &str, value: &str) -> Result<u32, EndpointError> {
     in_range(key, value, 300..=4_000_000, Want::Speed(300, 4_000_000))
+}
+
+fn chosen_packing(key: &str, value: &str) -> Result<BytePacking, EndpointError> {
+    let want = Want::OneOf("low, high or one");
+    BytePacking::by_key(value).ok_or_else(|| wrong_value(key, value, want))
 }
 
 fn can_id(key: &str, value: &str) -> Result<u16, EndpointError> {

@@ -1,11 +1,12 @@
 //! Which address of this computer a host would be reached from, and whether both are in one network. Sends nothing.
 
+use serde::Serialize;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use tokio::net::UdpSocket;
 
 /// The way to a host.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Route {
     /// The host.
     pub to: IpAddr,

@@ -1,5 +1,7 @@
 //! Serial ports that the system lists.
 
+use serde::Serialize;
+
 /// Vendor and product of USB adapters that bring CAN frames as text: CANable and its likes, CANtact, Lawicel's CANUSB.
 const CAN_ADAPTERS: [(u16, u16); 4] = [
     (0x16D0, 0x117E),
@@ -11,7 +13,7 @@ const CAN_ADAPTERS: [(u16, u16); 4] = [
 const CAN_NAMES: [&str; 5] = ["slcan", "canable", "cantact", "canusb", "usbtin"];
 
 /// A USB adapter.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct UsbFound {
     /// USB vendor id.
     pub vendor_id: u16,
@@ -26,6 +28,7 @@ pub struct UsbFound {
     /// Place on the bus and interface, such as `1-2:1.0`, where the system tells (Linux).
     pub location: Option<String>,
     /// How long it may keep what it got, milliseconds, where its driver tells (Linux).
+    #[serde(skip)]
     pub latency_timer_ms: Option<u16>,
 }
 

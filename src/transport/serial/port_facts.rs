@@ -4,20 +4,23 @@ use crate::transport::serial::adapter::is_same_port;
 use crate::transport::serial::holder;
 use crate::transport::serial::sysfs::Sysfs;
 use crate::transport::serial::{UsbFound, ports};
+use serde::Serialize;
 use std::path::Path;
 
 /// A serial port as it lies there. What the system does not tell is `None`.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct PortFacts {
     /// The device behind a link such as those under `/dev/serial/by-id`; none if it is not there.
     pub device: Option<String>,
     /// The USB adapter.
+    #[serde(rename = "adapter")]
     pub usb: Option<UsbFound>,
     /// The kernel's driver.
     pub driver: Option<String>,
     /// Rights, owner and group, such as `crw-rw---- root dialout`.
     pub rights: Option<String>,
     /// Another program that has it open, with its process id.
+    #[serde(rename = "held_by")]
     pub holder: Option<String>,
 }
 

@@ -15,9 +15,9 @@ pub struct CurvePoint {
 
 /// Values in the order of time. What was not read is not there.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Curve(Vec<CurvePoint>);
+pub struct TimeSeries(Vec<CurvePoint>);
 
-impl FromIterator<(f64, f64)> for Curve {
+impl FromIterator<(f64, f64)> for TimeSeries {
     fn from_iter<I: IntoIterator<Item = (f64, f64)>>(points: I) -> Self {
         let known = |(t, v): &(f64, f64)| t.is_finite() && v.is_finite();
         let points = points.into_iter().filter(known);
@@ -25,7 +25,7 @@ impl FromIterator<(f64, f64)> for Curve {
     }
 }
 
-impl Curve {
+impl TimeSeries {
     /// All points.
     #[must_use]
     pub fn points(&self) -> &[CurvePoint] {
@@ -91,23 +91,23 @@ impl Curve {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct JointCurves {
     /// ANGLE_ACT, where the manual knows the value.
-    pub angle: Curve,
+    pub angle: TimeSeries,
     /// FORCE_ACT, g, as it came.
-    pub force: Curve,
+    pub force: TimeSeries,
     /// CURRENT, mA.
-    pub current: Curve,
+    pub current: TimeSeries,
     /// STATUS, the raw codes.
-    pub status: Curve,
+    pub status: TimeSeries,
     /// TEMP, °C.
-    pub temperature: Curve,
+    pub temperature: TimeSeries,
     /// Normal force of the fingertip, N.
-    pub normal: Curve,
+    pub normal: TimeSeries,
     /// Tangential force, N.
-    pub tangential: Curve,
+    pub tangential: TimeSeries,
     /// Its direction, degrees; only while there is contact.
-    pub direction: Curve,
+    pub direction: TimeSeries,
     /// Proximity, counts.
-    pub proximity: Curve,
+    pub proximity: TimeSeries,
 }
 
 impl JointCurves {
@@ -116,12 +116,12 @@ impl JointCurves {
     pub fn of(recording: &TrialRecording, dof: Dof) -> Self {
         let finger = Some(dof.finger()).filter(|finger| finger.bend() == dof);
         let zero = recording.zero();
-        let curve = |value: &dyn Fn(&SampleRow) -> Option<f64>| -> Curve {
+        let curve = |value: &dyn Fn(&SampleRow) -> Option<f64>| -> TimeSeries {
             let rows = recording.rows().iter();
             rows.filter_map(|row| Some((seconds(zero, row.at), value(row)?)))
                 .collect()
         };
-        let tip = |value: fn(&TipSample) -> Option<f64>| -> Curve {
+        let tip = |value: fn(&TipSample) -> Option<f64>| -> TimeSeries {
             curve(&|row: &SampleRow| value(row.tips[finger?].as_ref()?))
         };
         let within = |value: Option<i16>, low: i16, high: i16| {

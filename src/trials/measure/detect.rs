@@ -1,6 +1,6 @@
 //! When a curve begins to rise, and how noisy it is. Knows no joint and no trial.
 
-use crate::trials::measure::curve::{Curve, CurvePoint};
+use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 
 /// The middle value; of an even number the mean of the two. `None` of nothing.
 #[must_use]
@@ -25,7 +25,7 @@ const REST_LEAST: usize = 3;
 
 /// Level and noise between two times; `None` with fewer than 3 values.
 #[must_use]
-pub fn rest(curve: &Curve, from: f64, to: f64) -> Option<RestLevel> {
+pub fn rest(curve: &TimeSeries, from: f64, to: f64) -> Option<RestLevel> {
     /// Of a normal distribution, its standard deviation by its median deviation.
     const BY_MEDIAN: f64 = 1.4826;
     let values = curve.values(from, to);
@@ -74,7 +74,7 @@ pub fn passes(points: impl Iterator<Item = CurvePoint>, level: f64) -> Option<f6
 /// When a curve begins to leave its rest in a ramp: it passes `level` for good, and the line from there to `double` the
 /// level is drawn back to zero, but not beyond the last value that was below a third of the level.
 #[must_use]
-pub fn begins(curve: &Curve, from: f64, level: f64) -> Option<f64> {
+pub fn begins(curve: &TimeSeries, from: f64, level: f64) -> Option<f64> {
     let points = || curve.between(from, f64::INFINITY);
     let one = passes(points(), level)?;
     let last_low = points()
@@ -105,7 +105,7 @@ mod tests {
     fn a_single_wild_value_is_no_rise_and_no_noise() {
         let mut points: Vec<(f64, f64)> = (0..100).map(|n| (f64::from(n) * 0.01, 0.0)).collect();
         points[50].1 = 900.0;
-        let curve: Curve = points.into_iter().collect();
+        let curve: TimeSeries = points.into_iter().collect();
         assert_eq!(passes(curve.between(0.0, 1.0), 10.0), None);
         assert_eq!(rest(&curve, 0.0, 1.0).unwrap().sigma, 0.0);
     }
@@ -114,7 +114,7 @@ mod tests {
     fn a_ramp_begins_where_it_leaves_zero_within_a_sample() {
         for start in [0.2, 0.203, 0.2071] {
             let ramp = |t: f64| ((t - start) * 400.0).max(0.0);
-            let curve: Curve = (0..100)
+            let curve: TimeSeries = (0..100)
                 .map(|n| f64::from(n) * 0.01)
                 .map(|t| (t, ramp(t)))
                 .collect();
@@ -128,7 +128,7 @@ mod tests {
         let rare = |apart: f64| {
             let values = [0.0, 0.0, 9.0, 9.0].into_iter().enumerate();
             let points = values.map(|(n, v)| (f64::from(u32::try_from(n).unwrap()) * apart, v));
-            passes(points.collect::<Curve>().between(0.0, 9.0), 0.9).unwrap()
+            passes(points.collect::<TimeSeries>().between(0.0, 9.0), 0.9).unwrap()
         };
         assert!((rare(0.05) - 0.055).abs() < 1e-9);
         assert!((rare(0.3) - 0.6).abs() < 1e-9);
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn what_was_beyond_from_the_first_has_no_beginning() {
-        let curve: Curve = (0..10).map(|n| (f64::from(n), 50.0)).collect();
+        let curve: TimeSeries = (0..10).map(|n| (f64::from(n), 50.0)).collect();
         assert_eq!(passes(curve.between(0.0, 9.0), 10.0), None);
         assert_eq!(begins(&curve, 0.0, 10.0), None);
     }

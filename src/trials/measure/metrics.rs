@@ -14,7 +14,7 @@
 //! * temperatures are whole degrees, read some times a second.
 
 use crate::hand::{Dof, Status};
-use crate::trials::measure::curve::{Curve, CurvePoint, JointCurves};
+use crate::trials::measure::curve::{CurvePoint, JointCurves, TimeSeries};
 use crate::trials::measure::detect::{RestLevel, begins, median, passes, rest};
 use crate::trials::measure::slip::{SlipEvent, slips};
 use crate::trials::plan::{TrialPlan, TrialSetting};
@@ -173,9 +173,9 @@ pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMe
     }
 }
 
-fn motion_start(angle: &Curve) -> Option<f64> {
+fn motion_start(angle: &TimeSeries) -> Option<f64> {
     let still = rest(angle, -REST_S, 0.0)?;
-    let away: Curve = angle
+    let away: TimeSeries = angle
         .points()
         .iter()
         .map(|point| (point.t, (point.v - still.level).abs()))
@@ -184,12 +184,12 @@ fn motion_start(angle: &Curve) -> Option<f64> {
 }
 
 /// Whether the fingertip felt something before the command.
-fn touched_before(normal: &Curve) -> Option<bool> {
+fn touched_before(normal: &TimeSeries) -> Option<bool> {
     let before = median(&normal.values(-REST_S, 0.0))?;
     Some(before >= TOUCH_N)
 }
 
-fn contact(force: &Curve, rest: RestLevel, end: f64) -> Option<f64> {
+fn contact(force: &TimeSeries, rest: RestLevel, end: f64) -> Option<f64> {
     let level = CONTACT_G.max(CONTACT_SIGMAS * rest.sigma);
     passes(force.between(-REST_S, end), level).filter(|at| *at >= 0.0)
 }
@@ -212,25 +212,25 @@ fn stop(curves: &JointCurves, from: f64, end: f64) -> Option<f64> {
     })
 }
 
-fn highest(curve: &Curve, end: f64) -> Option<f64> {
+fn highest(curve: &TimeSeries, end: f64) -> Option<f64> {
     curve
         .between(0.0, end)
         .map(|point| point.v)
         .reduce(f64::max)
 }
 
-fn is_clipped(raw: &Curve, end: f64) -> bool {
+fn is_clipped(raw: &TimeSeries, end: f64) -> bool {
     raw.between(0.0, end).any(|point| point.v >= FORCE_END_G)
 }
 
-fn steady(force: &Curve, stop: f64, end: f64) -> Option<f64> {
+fn steady(force: &TimeSeries, stop: f64, end: f64) -> Option<f64> {
     let window = STEADY_S.min((end - stop) / 2.0);
     let values = force.values(end - window, end);
     median(&values).filter(|_| values.len() >= STEADY_LEAST)
 }
 
 fn settle(
-    force: &Curve,
+    force: &TimeSeries,
     contact: Option<f64>,
     steady: Option<(f64, RestLevel)>,
     end: f64,
@@ -249,7 +249,7 @@ fn settle(
 }
 
 /// The temperature is followed to the end of the recording: heat comes late.
-fn temperature_rise(temperature: &Curve) -> Option<f64> {
+fn temperature_rise(temperature: &TimeSeries) -> Option<f64> {
     let before = median(&temperature.values(f64::NEG_INFINITY, 0.0))?;
     Some(highest(temperature, f64::INFINITY)? - before)
 }
@@ -265,7 +265,7 @@ fn status(code: f64) -> Option<Status> {
     Some(Status::from_raw(raw))
 }
 
-fn status_at(codes: &Curve, end: f64) -> Option<String> {
+fn status_at(codes: &TimeSeries, end: f64) -> Option<String> {
     let last = codes.between(0.0, end).next_back()?;
     Some(match status(last.v)? {
         Status::Unknown(raw) => format!("unknown_{raw}"),
@@ -273,12 +273,12 @@ fn status_at(codes: &Curve, end: f64) -> Option<String> {
     })
 }
 
-fn rate(force: &Curve, end: f64) -> Option<f64> {
+fn rate(force: &TimeSeries, end: f64) -> Option<f64> {
     let count = u32::try_from(force.between(0.0, end).count()).ok()?;
     (count > 1 && end > 0.0).then(|| f64::from(count) / end)
 }
 
-fn longest_gap(force: &Curve, end: f64) -> Option<f64> {
+fn longest_gap(force: &TimeSeries, end: f64) -> Option<f64> {
     let times = force.between(0.0, end).map(|point| point.t);
     let next = times.clone().skip(1);
     times.zip(next).map(|(a, b)| b - a).reduce(f64::max)

@@ -2,7 +2,7 @@
 //! peak.
 
 use crate::hand::{Dof, Status};
-use crate::trials::measure::curve::{Curve, JointCurves};
+use crate::trials::measure::curve::{JointCurves, TimeSeries};
 use crate::trials::measure::metrics::{DwellSpan, JointMetrics, measure_joint};
 
 const DEAD_S: f64 = 0.064;
@@ -57,7 +57,7 @@ impl Grasp {
             .map(|n| f64::from(n) * step - 0.9987)
             .filter(|t| keep(*t))
             .collect();
-        let curve = |value: &dyn Fn(f64) -> f64| -> Curve {
+        let curve = |value: &dyn Fn(f64) -> f64| -> TimeSeries {
             times.iter().map(|t| (*t, value(*t))).collect()
         };
         let noise = std::cell::RefCell::new(&mut rng);
@@ -84,7 +84,7 @@ impl Grasp {
             normal: curve(&|t| ((self.force(t) - REST_G) * 0.0098).max(0.0)),
             tangential: curve(&|t| ((self.force(t) - REST_G) * 0.002).max(0.0)),
             direction: curve(&|_| 10.0),
-            proximity: Curve::default(),
+            proximity: TimeSeries::default(),
         }
     }
 
@@ -256,7 +256,7 @@ fn of_nothing_nothing_is_known() {
 #[test]
 fn without_status_the_stop_is_where_the_angle_stands_still() {
     let grasp = JointCurves {
-        status: Curve::default(),
+        status: TimeSeries::default(),
         ..PLAIN.curves(|_| true)
     };
     let metrics = measured(&grasp);

@@ -1,6 +1,6 @@
 //! Slips of a held object: jumps of friction or of the tangential force's direction. Computes from curves, nothing else.
 
-use crate::trials::measure::curve::{Curve, JointCurves};
+use crate::trials::measure::curve::{JointCurves, TimeSeries};
 use crate::trials::measure::detect::median;
 use serde::{Deserialize, Serialize};
 
@@ -86,7 +86,7 @@ impl SlipEvent {
 }
 
 fn moments(curves: &JointCurves, from: f64, to: f64) -> Vec<HeldMoment> {
-    let near = |curve: &Curve, t: f64| {
+    let near = |curve: &TimeSeries, t: f64| {
         let mut points = curve.between(t - TOGETHER_S, t + TOGETHER_S);
         points.next().map(|point| point.v)
     };

@@ -45,27 +45,18 @@ pub fn write(recording: &TrialRecording) -> String {
     let mut text = columns().join(",");
     text.push('\n');
     let zero = recording.zero();
-    let nothing = SampleRow::default();
+    let mark_line = |text: &mut String, mark: &TrialMark| {
+        let at_s = seconds(zero, mark.at);
+        line(text, at_s, &SampleRow::default(), &mark.what.name());
+    };
     let mut marks = recording.marks().iter().peekable();
     for row in recording.rows() {
         while let Some(mark) = marks.next_if(|mark| mark.at <= row.at) {
-            line(
-                &mut text,
-                seconds(zero, mark.at),
-                &nothing,
-                &mark.what.name(),
-            );
+            mark_line(&mut text, mark);
         }
         line(&mut text, seconds(zero, row.at), row, "");
     }
-    for mark in marks {
-        line(
-            &mut text,
-            seconds(zero, mark.at),
-            &nothing,
-            &mark.what.name(),
-        );
-    }
+    marks.for_each(|mark| mark_line(&mut text, mark));
     text
 }
 

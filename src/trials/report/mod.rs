@@ -7,7 +7,7 @@ pub(crate) mod plot;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::best::{Criterion, MetricSpread, Score, best, scores};
 use crate::trials::columns::{COLUMNS, Metric, number};
-use crate::trials::measure::curve::{Curve, JointCurves};
+use crate::trials::measure::curve::{JointCurves, TimeSeries};
 use crate::trials::plan::{Approach, TrialPlan};
 use crate::trials::recording::{TrialEvent, TrialRecording, seconds};
 use crate::trials::report::overlay::{BEFORE_S, Overlay};
@@ -152,7 +152,7 @@ fn plots(trial: &TrialSummary, recording: &TrialRecording) -> [Plot; 3] {
     let all: Vec<(Dof, JointCurves)> = joints
         .map(|dof| (dof, JointCurves::of(recording, dof)))
         .collect();
-    let plot = |name, pick: fn(&JointCurves) -> &Curve| {
+    let plot = |name, pick: fn(&JointCurves) -> &TimeSeries| {
         let mut plot = Plot::new(name, -BEFORE_S, last_s);
         for (dof, curves) in &all {
             plot.add(dof.index(), &pick(curves).from(-BEFORE_S));

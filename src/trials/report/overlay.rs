@@ -1,7 +1,7 @@
 //! The forces of several trials over each other, as a part of the page of a session. Measures nothing.
 
 use crate::hand::Dof;
-use crate::trials::measure::curve::{Curve, JointCurves};
+use crate::trials::measure::curve::{JointCurves, TimeSeries};
 use crate::trials::plan::TrialSetting;
 use crate::trials::recording::TrialRecording;
 use crate::trials::report::plot::{Plot, STROKES};
@@ -17,7 +17,7 @@ const LINES_MAX: usize = 24;
 struct ForceLine {
     setting: TrialSetting,
     dof: Dof,
-    force: Curve,
+    force: TimeSeries,
 }
 
 /// Forces that are drawn over each other.

@@ -1,6 +1,6 @@
 //! Lines over time as a picture in SVG, for a page that is read without a program. Knows no trial.
 
-use crate::trials::measure::curve::Curve;
+use crate::trials::measure::curve::TimeSeries;
 use askama::Template;
 
 /// Size of a picture and of the room around the lines, points.
@@ -17,7 +17,7 @@ pub(crate) const STROKES: usize = 6;
 
 /// One line.
 #[derive(Debug)]
-struct PlotLine {
+struct ReportLine {
     stroke: usize,
     points: Vec<[f64; 2]>,
 }
@@ -40,7 +40,7 @@ pub(crate) struct Plot {
     name: &'static str,
     from_s: f64,
     to_s: f64,
-    lines: Vec<PlotLine>,
+    lines: Vec<ReportLine>,
     level: Option<f64>,
     marks: Vec<PlotMark>,
     /// Lowest and highest of what is shown.
@@ -62,13 +62,13 @@ impl Plot {
     }
 
     /// Adds a line in one of the page's strokes, 0 the first.
-    pub(crate) fn add(&mut self, stroke: usize, curve: &Curve) {
+    pub(crate) fn add(&mut self, stroke: usize, curve: &TimeSeries) {
         let points = curve.decimated(POINTS_MAX);
         for [_, value] in &points {
             self.include(*value);
         }
         let stroke = stroke % STROKES;
-        self.lines.push(PlotLine { stroke, points });
+        self.lines.push(ReportLine { stroke, points });
     }
 
     /// Shows a level to compare with.
@@ -110,7 +110,7 @@ impl Plot {
         self.level.map(|level| self.y(level))
     }
 
-    fn path(&self, line: &PlotLine) -> String {
+    fn path(&self, line: &ReportLine) -> String {
         let place = |[at_s, value]: &[f64; 2]| format!("{},{} ", self.x(at_s), self.y(*value));
         line.points.iter().map(place).collect()
     }
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_peak_of_one_reading_among_many_is_drawn() {
-        let curve: Curve = (0..100_000)
+        let curve: TimeSeries = (0..100_000)
             .map(|n| (f64::from(n) * 1e-4, if n == 54_321 { 999.0 } else { 0.0 }))
             .collect();
         let mut plot = Plot::new("Force, g", 0.0, 10.0);

@@ -3,9 +3,7 @@
 use crate::app::action::Action;
 use crate::link::{First, PollGroup};
 use crate::ui::connection::link_words::link_words;
-use crate::ui::kit::controls::{self, Label};
-use crate::ui::kit::format::{self, UNKNOWN};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Label, Pane, format};
 use crate::ui::text::{Text, errors, panels};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, vec2};
@@ -21,15 +19,15 @@ const BUDGET: [(Text, f32); 3] = [
 pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let link = &pane.state.hand().link;
-    controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
         let (word, color) = link_words(pane);
         let since = format::age(pane.state.now.since(link.since));
         let since = format!("{}{} {since}", look.say(word), look.say(panels::SINCE));
         ui.horizontal(|ui| {
             let lamp = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
             let (lamp, _) = ui.allocate_exact_size(lamp, egui::Sense::hover());
-            controls::lamp(ui, lamp.center(), color);
+            kit::lamp(ui, lamp.center(), color);
             Label::new(&since, look.palette.text).wrap().ui(ui);
         });
         let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
@@ -68,7 +66,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     let live = pane.state.hand().link.state.is_live();
     let measured = |text, value: String| match live {
         true => (text, value, palette.text),
-        false => (text, UNKNOWN.to_owned(), palette.faint),
+        false => (text, format::UNKNOWN.to_owned(), palette.faint),
     };
     let trip = |value| format!("{} ms", format::millis(value));
     let count = |text, value: u64| (text, value.to_string(), palette.text);
@@ -79,7 +77,10 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
     [
         vec![
             measured(panels::STATE_RATE, format::hertz(stats.state_hz)),
-            measured(panels::TACTILE_RATE, format::hertz(stats.tactile_hz)),
+            measured(
+                panels::group(PollGroup::Tactile),
+                format::hertz(stats.tactile_hz),
+            ),
             measured(panels::RTT_P50, trip(stats.rtt_p50)),
             measured(panels::RTT_P99, trip(stats.rtt_p99)),
         ],
@@ -93,7 +94,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
             bad(panels::CHECKSUMS, stats.checksum_errors),
             bad(panels::RESYNCS, stats.resyncs),
             bad(panels::FOREIGN, stats.foreign_replies),
-            bad(panels::RIVAL_REQUESTS, stats.foreign_requests),
+            bad(panels::FOREIGN_REQUESTS, stats.foreign_requests),
             bad(panels::REFUSALS, stats.refusals),
             bad(panels::DROPPED, stats.dropped_events),
         ],
@@ -112,7 +113,7 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 let name = format!("{caption}: {}", look.say(head));
                 let (text, color) = match live {
                     true => (value.as_str(), look.palette.text),
-                    false => (UNKNOWN, look.palette.faint),
+                    false => (format::UNKNOWN, look.palette.faint),
                 };
                 cell_ui(ui, width, |ui| {
                     if !value.is_empty() {
@@ -122,17 +123,17 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
         });
     };
-    let first = controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
+    let first = kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
         figure_ui(ui, pane, "", |ui| {
             for (head, width) in BUDGET {
-                let head = Label::new(look.say(head), look.palette.muted).small();
+                let head = Label::note(look, head);
                 cell_ui(ui, width, |ui| drop(head.ui(ui)));
             }
         });
         for (group, used) in PollGroup::ALL.into_iter().zip(&line.groups) {
             let values = [rate(used.could_hz), percent(used.share), rate(used.hz)];
-            row(ui, name(group), values);
+            row(ui, panels::group(group), values);
         }
         let share = |share| [String::new(), percent(share), String::new()];
         row(ui, panels::BUDGET_WRITES, share(line.writes));
@@ -157,7 +158,7 @@ fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<First> {
         label.on_hover_text(look.say(panels::FIRST_TIP));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().combo_width = 120.0;
-            controls::choose_ui(ui, caption, &mut first, &all)
+            kit::choose_ui(ui, caption, &mut first, &all)
         })
         .inner
     });
@@ -199,14 +200,4 @@ fn percent(share: f64) -> String {
         return format!("{percent:.1} %");
     }
     format!("{percent:.0} %")
-}
-
-const fn name(group: PollGroup) -> Text {
-    match group {
-        PollGroup::Motion => panels::GROUP_MOTION,
-        PollGroup::Drives => panels::GROUP_DRIVES,
-        PollGroup::Temperature => panels::GROUP_TEMPERATURE,
-        PollGroup::Tactile => panels::TACTILE_RATE,
-        PollGroup::Settings => panels::GROUP_SETTINGS,
-    }
 }

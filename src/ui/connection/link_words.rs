@@ -2,8 +2,8 @@
 
 use crate::link::Dialling;
 use crate::record::LinkState;
-use crate::ui::kit::look::Pane;
-use crate::ui::text::{Text, main, words};
+use crate::ui::kit::Pane;
+use crate::ui::text::{Text, main};
 use egui::Color32;
 
 /// The word and the colour for where the link stands.
@@ -28,7 +28,7 @@ pub(crate) fn link_words(pane: &Pane<'_>) -> (Text, Color32) {
                 LinkState::Armed => palette.armed,
                 LinkState::Fault => palette.bad,
             };
-            (words::link_state(state), color)
+            (main::link_state(state), color)
         }
     }
 }

@@ -6,16 +6,16 @@ mod rows;
 pub(crate) mod scan;
 
 use crate::app::action::Action;
-use crate::app::scan::ScanWish;
+use crate::app::scan::ScanTarget;
 use crate::hand::SerialSpeed;
+use crate::hand::register::BytePacking;
 use crate::link::scan::plan::BITRATES;
+use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
-use crate::transport::{Endpoint, Packing};
+use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::{Look, Pane};
-use crate::ui::kit::text_field::refused_ui;
+use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, refused_ui};
 use crate::ui::text::{errors, panels, quirks, scan as scan_text};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
@@ -34,8 +34,8 @@ const FIRST: [&str; 5] = [
 ];
 
 /// Kinds of links and their fields, both as endpoints spell them, the place first where there is one.
-type Kind = (&'static str, &'static [&'static str]);
-static KINDS: [Kind; 7] = [
+type EndpointKind = (&'static str, &'static [&'static str]);
+static KINDS: [EndpointKind; 7] = [
     ("sim", &["scenario", "seed"]),
     ("rs485", &["port", "baud", "id"]),
     ("tcp", &["host", "unit", "packing"]),
@@ -52,7 +52,7 @@ const RARE: [&str; 2] = ["seed", "packing"];
 /// The form's fields as they are typed.
 #[derive(Debug)]
 pub(crate) struct ConnectionForm {
-    kind: Kind,
+    kind: EndpointKind,
     /// By their keys; kinds share them.
     fields: BTreeMap<&'static str, String>,
     scan: ScanPanel,
@@ -143,8 +143,8 @@ impl ConnectionForm {
 
     fn form_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::card_ui(ui, look, |ui| {
-            controls::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
+        kit::card_ui(ui, look, |ui| {
+            kit::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
             self.kinds_ui(ui, look);
             ui.add_space(theme::STEP);
             for key in self.kind.1 {
@@ -186,12 +186,12 @@ impl ConnectionForm {
         let Some(key) = self.place() else { return };
         let (place, ids) = (self.field(key).to_owned(), self.scan.ids);
         let missing = place.is_empty().then_some(scan_text::ADDRESS_EMPTY);
-        let button = Button::said(look, panels::SCAN_HERE, panels::SCAN_HERE_TIP).large();
+        let button = Button::said(look, panels::SCAN_HERE).large();
         let wish = match key {
             _ if !scan::start_ui(ui, pane, button, missing) => return,
             "host" => return self.scan.scan_hosts(pane, place),
-            "interface" => ScanWish::Interface(place, ids),
-            _ => ScanWish::Port(place, ids),
+            "interface" => ScanTarget::Interface(place, ids),
+            _ => ScanTarget::Port(place, ids),
         };
         pane.actions.push(Action::Scan(wish));
     }
@@ -199,13 +199,10 @@ impl ConnectionForm {
     fn ports_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         row_ui(ui, look, "", |ui| {
-            let find = Button::said(look, panels::PORTS_REFRESH, panels::PORTS_REFRESH_TIP);
-            if find.ui(ui, look).clicked() {
-                pane.actions.push(Action::FindPorts);
-            }
+            let find = Button::said(look, panels::PORTS_REFRESH);
+            find.sends(ui, pane, Action::FindPorts);
             if pane.state.ports.is_empty() {
-                let none = Label::new(look.say(panels::PORTS_NONE), look.palette.muted);
-                none.small().wrap().ui(ui);
+                Label::note(look, panels::PORTS_NONE).wrap().ui(ui);
             }
         });
         for port in &pane.state.ports {
@@ -236,7 +233,7 @@ impl ConnectionForm {
                 .map(|it| said(it.name(), panels::scenario(it)))
                 .to_vec(),
             "packing" => {
-                let all = Packing::ALL.map(|it| said(it.name(), quirks::chosen(it)));
+                let all = BytePacking::ALL.map(|it| said(it.key(), quirks::packing(it)));
                 [said("", quirks::AS_FOUND)]
                     .into_iter()
                     .chain(all)
@@ -248,7 +245,7 @@ impl ConnectionForm {
         let caption = look.say(panels::setting(key));
         row_ui(ui, look, caption, |ui| {
             if all.is_empty() {
-                let field = controls::edit_ui(ui, caption, "", text);
+                let field = kit::edit_ui(ui, (caption, ""), text);
                 if key == "host" && !field.has_focus() && is_wrong_ip(text) {
                     let words = look.say(panels::ADDRESS_WRONG);
                     refused_ui(ui, look, (field.id, field.rect), words);
@@ -263,13 +260,13 @@ impl ConnectionForm {
                 .map(|(value, text)| (value.clone(), text.as_str()));
             let all: Vec<(String, &str)> = all.collect();
             ui.spacing_mut().combo_width = ui.available_width();
-            controls::choose_ui(ui, caption, text, &all);
+            kit::choose_ui(ui, caption, text, &all);
         });
         if key == "port" {
             self.ports_ui(ui, pane);
         }
         if key == "packing" {
-            let tip = Label::new(look.say(quirks::PACKING_TIP), look.palette.muted);
+            let tip = Label::new(look.tip(quirks::fact(Fact::Packing)), look.palette.muted);
             tip.small().wrap().ui(ui);
         }
     }
@@ -284,7 +281,7 @@ impl ConnectionForm {
             label.named(look.say(panels::ENDPOINT)).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {
-            let connect = Button::said(look, panels::CONNECT, panels::CONNECT_TIP);
+            let connect = Button::said(look, panels::CONNECT);
             if connect
                 .weight(Weight::Strong)
                 .large()
@@ -297,11 +294,9 @@ impl ConnectionForm {
                 }
             }
             let none = pane.state.hand().endpoint.is_none();
-            let disconnect = Button::said(look, panels::DISCONNECT, panels::DISCONNECT_TIP)
+            let disconnect = Button::said(look, panels::DISCONNECT)
                 .disabled(none.then(|| look.say(panels::DISCONNECT_NONE)));
-            if disconnect.large().ui(ui, look).clicked() {
-                pane.actions.push(Action::Disconnect);
-            }
+            disconnect.large().sends(ui, pane, Action::Disconnect);
             self.scan_ui(ui, pane);
         });
         if let (Err(error), true) = (&parsed, self.refused.as_ref() == Some(&spelled)) {
@@ -343,8 +338,8 @@ fn recent_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     if recent.is_empty() {
         return;
     }
-    controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(panels::RECENT), |_| ());
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(panels::RECENT), |_| ());
         for endpoint in recent {
             let (place, id) = match &endpoint {
                 Endpoint::Sim { .. } => (String::new(), None),

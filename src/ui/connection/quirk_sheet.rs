@@ -2,11 +2,10 @@
 
 use crate::link::quirks::baud_of_code;
 use crate::link::quirks::book::{self, QuirkBook};
+use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, quirks as text};
 use egui::Ui;
 
@@ -22,31 +21,39 @@ pub(crate) fn sheet_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     let line = |ui: &mut Ui, caption: Text, value: Option<String>| {
         let caption = look.say(caption);
-        let value = value.unwrap_or_else(|| UNKNOWN.to_owned());
+        let value = value.unwrap_or_else(|| format::UNKNOWN.to_owned());
         row_ui(ui, look, caption, |ui| {
             Label::new(&value, color).named(caption).wrap().ui(ui);
         });
     };
     let said = |text: Text| look.say(text).to_owned();
     let quirks = &pane.state.hand().link.quirks;
-    controls::card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, look.say(text::SHEET), |ui| copy_ui(ui, pane));
-        line(ui, text::HAND_ID, quirks.hand_id.map(|id| id.to_string()));
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(text::SHEET), |ui| copy_ui(ui, pane));
+        line(
+            ui,
+            text::fact(Fact::HandId),
+            quirks.hand_id.map(|id| id.to_string()),
+        );
         if let Some(packing) = packing(pane) {
-            line(ui, text::PACKING, Some(packing));
+            line(ui, text::fact(Fact::Packing), Some(packing));
         }
         let touch = quirks.touch.map(|touch| said(text::touch(touch)));
-        line(ui, text::TOUCH, touch);
+        line(ui, text::fact(Fact::Touch), touch);
         if let Some(sheet) = &pane.state.hand().sheet {
             let seen = format!("{} .. {}", sheet.first_seen, sheet.last_seen);
             line(ui, text::SEEN, Some(seen));
         }
         expert_ui(ui, look, |ui| {
             let code = quirks.baud_code.map(|code| baud(pane, code));
-            line(ui, text::BAUD_CODE, code);
+            line(ui, text::fact(Fact::BaudCode), code);
             // On CAN nobody asks for it.
             if !is_can(pane) {
-                line(ui, text::GAP, quirks.gap.map(|gap| said(text::gap(gap))));
+                line(
+                    ui,
+                    text::fact(Fact::Gap),
+                    quirks.gap.map(|gap| said(text::gap(gap))),
+                );
             }
         });
     });
@@ -82,7 +89,12 @@ fn packing(pane: &Pane<'_>) -> Option<String> {
     };
     Some(match chosen {
         None => look.say(found).to_owned(),
-        Some(chosen) => format!("{} ({chosen}: {})", look.say(found), look.say(text::CHOSEN)),
+        Some(chosen) => format!(
+            "{} ({}: {})",
+            look.say(found),
+            chosen.key(),
+            look.say(text::CHOSEN)
+        ),
     })
 }
 
@@ -90,8 +102,8 @@ fn copy_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let hand = pane.state.hand();
     let endpoint = hand.endpoint.as_ref().filter(|_| hand.link.state.is_live());
-    let off = endpoint.is_none().then(|| look.say(text::COPY_OFF));
-    let button = Button::said(look, text::COPY, text::COPY_TIP).disabled(off);
+    let button =
+        Button::said(look, text::COPY).disabled_if(endpoint.is_none(), look.say(text::COPY_OFF));
     if button.ui(ui, look).clicked()
         && let Some(endpoint) = endpoint
     {

@@ -1,7 +1,6 @@
 //! A caption and what stands beside it, and the drawer for experts.
 
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Label, Look};
 use crate::ui::text::panels;
 use crate::ui::theme;
 use egui::{Align, CollapsingHeader, Layout, Ui, vec2};

@@ -1,11 +1,10 @@
 //! Looking for hands: what to scan, how far it is, what was found. Asks for scans and connections; opens nothing.
 
 use crate::app::action::Action;
-use crate::app::scan::{IdRange, ScanRemark, ScanWish};
+use crate::app::scan::{IdRange, ScanRemark, ScanTarget};
 use crate::link::scan::Hosts;
 use crate::transport::Endpoint;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{Text, errors, scan};
 use crate::ui::theme;
 use egui::{Align, Layout, ProgressBar, Ui, vec2};
@@ -31,8 +30,8 @@ impl ScanPanel {
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::card_ui(ui, look, |ui| {
-            controls::head_ui(ui, look, look.say(scan::FIND), |_| ());
+        kit::card_ui(ui, look, |ui| {
+            kit::head_ui(ui, look, look.say(scan::FIND), |_| ());
             self.ports_ui(ui, pane);
             self.address_ui(ui, pane);
             ui.separator();
@@ -45,21 +44,21 @@ impl ScanPanel {
         let look = pane.look;
         ui.horizontal_wrapped(|ui| {
             if pane.state.scan.is_running() {
-                let cancel = Button::said(look, scan::CANCEL, scan::CANCEL_TIP);
-                if cancel.large().ui(ui, look).clicked() {
-                    pane.actions.push(Action::CancelScan);
-                }
+                let cancel = Button::said(look, scan::CANCEL);
+                cancel.large().sends(ui, pane, Action::CancelScan);
             } else {
-                let (text, tip) = (look.say(scan::SCAN_PORTS), look.say(scan::SCAN_PORTS_TIP));
+                let (text, tip) = (look.say(scan::SCAN_PORTS), look.tip(scan::SCAN_PORTS));
                 let button = Button::new(text, tip).weight(Weight::Strong).large();
                 if start_ui(ui, pane, button, None) {
-                    pane.actions.push(Action::Scan(ScanWish::Ports(self.ids)));
+                    pane.actions.push(Action::Scan(ScanTarget::Ports(self.ids)));
                 }
             }
-            Label::new(look.say(scan::IDS), look.palette.muted).ui(ui);
+            Label::muted(look, scan::IDS).ui(ui);
             for (range, text) in [(IdRange::Few, scan::IDS_FEW), (IdRange::All, scan::IDS_ALL)] {
                 let name = format!("{}: {}", look.say(scan::IDS), look.say(text));
-                let button = Button::said(look, text, scan::IDS_TIP).named(&name);
+                let button = Button::said(look, text)
+                    .tip(look.tip(scan::IDS))
+                    .named(&name);
                 if button.choice(self.ids == range).ui(ui, look).clicked() {
                     self.ids = range;
                 }
@@ -71,15 +70,15 @@ impl ScanPanel {
         let look = pane.look;
         ui.horizontal(|ui| {
             let text = look.say(scan::SCAN_HOST);
-            let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+            let width = kit::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
             let width = ui.available_width() - width - theme::GAP;
             ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
                 let name = look.say(scan::ADDRESS);
-                controls::edit_ui(ui, name, name, &mut self.address)
+                kit::edit_ui(ui, (name, name), &mut self.address)
             });
             let missing = self.address.trim().is_empty();
             let missing = missing.then_some(scan::ADDRESS_EMPTY);
-            let button = Button::new(text, look.say(scan::SCAN_HOST_TIP));
+            let button = Button::new(text, look.tip(scan::SCAN_HOST));
             if start_ui(ui, pane, button, missing) {
                 self.scan_hosts(pane, self.address.clone());
             }
@@ -105,7 +104,7 @@ impl ScanPanel {
     /// Scans what was typed, or says why it cannot be.
     pub(crate) fn scan_hosts(&mut self, pane: &mut Pane<'_>, typed: String) {
         match typed.parse() {
-            Ok(hosts) => pane.actions.push(Action::Scan(ScanWish::Hosts(hosts))),
+            Ok(hosts) => pane.actions.push(Action::Scan(ScanTarget::Hosts(hosts))),
             Err(_) => self.refused = Some(typed.clone()),
         }
         self.address = typed;
@@ -175,14 +174,14 @@ pub(crate) fn hand_ui(
     let look = pane.look;
     let hand = pane.state.hand();
     let is_now = hand.link.state.is_live() && hand.endpoint.as_ref() == Some(endpoint);
-    let (text, tip, weight) = if is_now {
-        (scan::CONNECTED, scan::CONNECTED_TIP, Weight::Chosen)
+    let (text, weight) = if is_now {
+        (scan::CONNECTED, Weight::Chosen)
     } else {
-        (scan::USE, scan::USE_TIP, Weight::Normal)
+        (scan::USE, Weight::Normal)
     };
     ui.horizontal(|ui| {
         let name = format!("{}: {endpoint}", look.say(text));
-        let button = Button::said(look, text, tip).named(&name);
+        let button = Button::said(look, text).named(&name);
         let size = vec2(96.0, theme::CONTROL_LARGE);
         let justified = Layout::top_down_justified(Align::Center);
         let button = ui.allocate_ui_with_layout(size, justified, |ui| {

@@ -3,13 +3,11 @@
 use crate::app::action::Action;
 use crate::app::hand::Freshness;
 use crate::app::readings::cooling;
-use crate::app::readings::cooling::{Course, Goal, Source};
+use crate::app::readings::cooling::{CoolingGoal, Course, GoalSource};
 use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::{Dof, Fault};
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::theme;
 use egui::{Color32, CornerRadius, Frame, Margin, Rect, ScrollArea, Sense, Ui, vec2};
@@ -121,7 +119,7 @@ pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> egui::Pos2 {
     let size = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
     let center = ui.allocate_exact_size(size, Sense::hover()).0.center();
     if let Some(color) = color {
-        controls::lamp(ui, center, color);
+        kit::lamp(ui, center, color);
     }
     center
 }
@@ -153,10 +151,8 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
         }
         let text = look.say(faults::SEEN);
         let name = format!("{text}: {title}");
-        let button = Button::new(text, look.say(faults::SEEN_TIP)).named(&name);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::SeenFault(entry.dof, entry.what));
-        }
+        let button = Button::new(text, look.tip(faults::SEEN)).named(&name);
+        button.sends(ui, pane, Action::SeenFault(entry.dof, entry.what));
     });
 }
 
@@ -176,7 +172,7 @@ fn foot_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) -> Option<Recording
         recording.filter(|_| {
             let words = look.say(faults::RECORDING);
             let name = format!("{words}: {}", title(pane, entry.dof, entry.what));
-            let button = Button::new(words, look.say(faults::RECORDING_OPEN_TIP));
+            let button = Button::new(words, look.tip(faults::RECORDING_OPEN));
             button.named(&name).ui(ui, look).clicked()
         })
     });
@@ -252,7 +248,7 @@ fn clear_words_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) {
 fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
     let look = pane.look;
     let state = pane.state;
-    let goal = Goal::of(state.hand().faults.worked_again_c(dof));
+    let goal = CoolingGoal::of(state.hand().faults.worked_again_c(dof));
     let celsius = state
         .hand()
         .sample
@@ -283,8 +279,8 @@ fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
         ),
     };
     let tip = match goal.source {
-        Source::Assumed => faults::COOL_ASSUMED,
-        Source::Observed => faults::COOL_OBSERVED,
+        GoalSource::Assumed => faults::COOL_ASSUMED,
+        GoalSource::Observed => faults::COOL_OBSERVED,
     };
     let text = format!("{} {celsius} °C · {more}", look.say(faults::COOL_NOW));
     (text, look.say(tip))
@@ -306,11 +302,11 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
         return;
     };
     let count = pane.state.hand().faults.unseen().count().to_string();
-    let width = (controls::text_width(ui, &count, theme::tiny()) + theme::GAP).max(FAULT_BADGE);
+    let width = (kit::text_width(ui, &count, theme::tiny()) + theme::GAP).max(FAULT_BADGE);
     let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, FAULT_BADGE));
     ui.painter().rect_filled(place, FAULT_BADGE / 2.0, color);
     let (font, ink) = (theme::tiny(), pane.look.palette.window);
-    controls::paint_text(ui, place, egui::Align2::CENTER_CENTER, &count, font, ink);
+    kit::paint_text(ui, place, egui::Align2::CENTER_CENTER, &count, font, ink);
 }
 
 /// The colour of what nobody has seen: loud while it lasts. `None` if all was seen.
@@ -330,9 +326,8 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
 pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let none = pane.state.hand().faults.unseen().next().is_none();
-    let button = Button::said(look, faults::SEEN_ALL, faults::SEEN_ALL_TIP);
-    let none = none.then(|| look.say(faults::SEEN_NONE));
-    if button.disabled(none).ui(ui, look).clicked() {
-        pane.actions.push(Action::SeenFaults);
-    }
+    let button = Button::said(look, faults::SEEN_ALL);
+    button
+        .disabled_if(none, look.say(faults::SEEN_NONE))
+        .sends(ui, pane, Action::SeenFaults);
 }

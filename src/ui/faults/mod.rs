@@ -16,9 +16,7 @@ use crate::ui::faults::entry::{
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::drive_tiles;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{faults, main, notices, panels, words};
 use crate::ui::theme;
 use crate::ui::window::message_log::MessageLog;
@@ -46,8 +44,8 @@ enum Section {
 pub(crate) fn faults_card_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let title = look.say(panels::FAULTS);
-    controls::full_card_ui(ui, look, |ui| {
-        controls::head_ui(ui, look, title, |ui| clear_ui(ui, pane));
+    kit::full_card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, title, |ui| clear_ui(ui, pane));
         scroll_ui(ui, |ui| {
             let open = entry::steady(ui, pane, |entry| entry.is_active() || !entry.seen);
             if open.is_empty() {
@@ -81,7 +79,7 @@ impl FaultsView {
             self.recordings.close();
         }
         if let Some(recording) = self.recordings.opened(pane) {
-            controls::full_card_ui(ui, pane.look, |ui| {
+            kit::full_card_ui(ui, pane.look, |ui| {
                 self.recordings.recording_ui(ui, pane, &recording);
             });
             return;
@@ -90,17 +88,17 @@ impl FaultsView {
         ui.columns(2, |columns| {
             let [left, right] = columns else { return };
             left.push_id("faults", |ui| {
-                controls::full_card_ui(ui, look, |ui| self.faults_ui(ui, pane));
+                kit::full_card_ui(ui, look, |ui| self.faults_ui(ui, pane));
             });
             right.push_id("beside", |ui| {
-                controls::full_card_ui(ui, look, |ui| self.beside_ui(ui, pane));
+                kit::full_card_ui(ui, look, |ui| self.beside_ui(ui, pane));
             });
         });
     }
 
     fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::head_ui(ui, look, look.say(panels::FAULTS), |ui| {
+        kit::head_ui(ui, look, look.say(panels::FAULTS), |ui| {
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
         });
@@ -167,21 +165,17 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         Some(NothingToClear::OnlyHeat) => Some(faults::CLEAR_ONLY_HEAT),
         None => None,
     };
-    let button = Button::said(look, panels::CLEAR, panels::CLEAR_TIP);
+    let button = Button::said(look, panels::CLEAR);
     let reason = reason.map(|reason| look.say(reason));
-    if button.disabled(reason).ui(ui, look).clicked() {
-        pane.actions.push(Action::ClearErrors);
-    }
+    button.disabled(reason).sends(ui, pane, Action::ClearErrors);
 }
 
 /// A drawer with what tidies the list.
 fn forget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     CollapsingHeader::new(look.say(faults::TIDY)).show_unindented(ui, |ui| {
-        let button = Button::said(look, faults::FORGET, faults::FORGET_TIP);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::ForgetFaults);
-        }
+        let button = Button::said(look, faults::FORGET);
+        button.sends(ui, pane, Action::ForgetFaults);
     });
 }
 
@@ -196,7 +190,7 @@ fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
     };
     ui.horizontal(|ui| {
         lamp_ui(ui, Some(color));
-        Label::new(look.say(text), look.palette.muted).ui(ui);
+        Label::muted(look, text).ui(ui);
     });
     let hint = look.say(panels::FAULTS_NONE_HINT);
     inset_ui(ui, |ui| say_ui(ui, hint, look.palette.muted));
@@ -217,7 +211,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         lamp_ui(ui, Some(said.lamp));
         Label::new(&title, palette.text).ui(ui);
         let close = look.say(faults::CHOSEN_CLOSE);
-        let button = Button::new(close, look.say(faults::DRIVE_TIP)).weight(Weight::Quiet);
+        let button = Button::new(close, look.tip(faults::DRIVE)).weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
     let sample = &pane.state.hand().sample;
@@ -241,7 +235,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
 fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.separator();
-    controls::head_ui(ui, look, look.say(faults::MEANINGS), |_| ());
+    kit::head_ui(ui, look, look.say(faults::MEANINGS), |_| ());
     say_ui(ui, look.say(faults::MEANINGS_FAULT), look.palette.muted);
     for bit in 0..5 {
         meaning_ui(ui, pane, words::fault(Fault::from_bit(bit), look.language));
@@ -290,11 +284,9 @@ fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
             let name = format!("{}: {text}", look.say(main::DISMISS));
-            let button = Button::said(look, main::DISMISS, main::DISMISS_TIP);
+            let button = Button::said(look, main::DISMISS);
             let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
-            if button.ui(ui, look).clicked() {
-                pane.actions.push(Action::Dismiss(notice.id));
-            }
+            button.sends(ui, pane, Action::Dismiss(notice.id));
             let age = format::age(pane.state.now.since(notice.at));
             Label::new(&age, palette.muted).small().ui(ui);
             ui.with_layout(Layout::left_to_right(Align::TOP), |ui| {

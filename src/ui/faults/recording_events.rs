@@ -4,7 +4,7 @@ use crate::app::hand::{Play, Preset};
 use crate::app::readings::fault_recorder::{EventKind, PersonAct, Recording};
 use crate::hand::Faults;
 use crate::history::{Mark, MarkKind};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::Look;
 use crate::ui::text::{faults, main, panels, poses, words};
 use egui::Color32;
 

@@ -2,11 +2,10 @@
 
 use crate::app::readings::fault_recorder::{DriveState, Recording, RecordingId};
 use crate::hand::{Dof, PerDof, Status};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Label, Look};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::panels::{Panel, PlotLine};
-use crate::ui::plots::time_window::Span;
+use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::Times;
 use crate::ui::text::{faults, words};
 use crate::ui::theme;
@@ -18,7 +17,7 @@ const RECORDING_LANE: f32 = 8.0;
 /// What the plots of a recording need between frames.
 #[derive(Debug, Default)]
 pub(crate) struct RecordingCharts {
-    of: Option<(RecordingId, Span)>,
+    of: Option<(RecordingId, TimeSpan)>,
     view: ChartView,
 }
 
@@ -29,7 +28,7 @@ pub(crate) struct RecordingPlot<'a> {
     /// Of this recording.
     pub(crate) recording: &'a Recording,
     /// From and to, in seconds.
-    pub(crate) span: Span,
+    pub(crate) span: TimeSpan,
     /// The moment that times are counted from, in seconds.
     pub(crate) fault_s: f64,
 }
@@ -87,9 +86,7 @@ impl RecordingPlot<'_> {
         let palette = self.look.palette;
         ui.horizontal(|ui| {
             ui.set_height(theme::PLOT_CAPTION);
-            Label::new(self.look.say(faults::LANES), palette.muted)
-                .small()
-                .ui(ui);
+            Label::note(self.look, faults::LANES).ui(ui);
             for (dof, at_s) in Dof::ALL
                 .into_iter()
                 .zip(view.pointed_s().into_iter().cycle())

@@ -1,16 +1,14 @@
 //! The recordings around faults: their list, and one of them opened with its plots and events. Plays nothing back.
 
 use crate::app::action::Action;
-use crate::app::files::export::Content;
+use crate::app::files::export::Export;
 use crate::app::readings::fault_recorder::{Listed, Recording, RecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
 use crate::ui::faults::entry::{self as fault_entry, lamp_ui, say_ui, scroll_ui};
 use crate::ui::faults::recording_events;
 use crate::ui::faults::recording_events::EventLine;
 use crate::ui::faults::recording_plot::{RecordingCharts, RecordingPlot, panel_height};
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, format};
 use crate::ui::plots::panels::{PANELS, Panel};
 use crate::ui::text::faults;
 use crate::ui::theme;
@@ -135,16 +133,14 @@ impl RecordingsView {
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) {
         let look = pane.look;
         ui.horizontal(|ui| {
-            let (back, tip) = (faults::RECORDING_BACK, faults::RECORDING_BACK_TIP);
-            let back = Button::said(look, back, tip);
+            let back = Button::said(look, faults::RECORDING_BACK);
             if back.ui(ui, look).clicked() {
                 self.close();
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let (save, tip) = (faults::RECORDING_SAVE, faults::RECORDING_SAVE_TIP);
-                let save = Button::said(look, save, tip).weight(Weight::Strong);
+                let save = Button::said(look, faults::RECORDING_SAVE).weight(Weight::Strong);
                 if save.ui(ui, look).clicked() {
-                    let content = Content::Recording(recording.table());
+                    let content = Export::Recording(recording.table());
                     pane.actions.push(Action::Save(content));
                 }
                 let title = title(pane, recording);
@@ -174,15 +170,16 @@ impl RecordingsView {
                 }
             }
             ui.separator();
-            for (text, tip, near) in [
-                (faults::RECORDING_NEAR, faults::RECORDING_NEAR_TIP, true),
-                (faults::RECORDING_WHOLE, faults::RECORDING_WHOLE_TIP, false),
-            ] {
-                let button = Button::said(look, text, tip);
-                if button.choice(self.near == near).ui(ui, look).clicked() {
-                    self.near = near;
-                }
-            }
+            let near = [
+                (true, faults::RECORDING_NEAR),
+                (false, faults::RECORDING_WHOLE),
+            ];
+            kit::pick_ui(
+                ui,
+                look,
+                (&mut self.near, faults::RECORDING_NEAR.tip()),
+                near,
+            );
         });
     }
 
@@ -245,7 +242,7 @@ fn row_ui(ui: &mut Ui, pane: &Pane<'_>, listed: &Listed) -> bool {
         let title = title(pane, recording);
         let text = look.say(faults::RECORDING_OPEN);
         let name = format!("{text}: {title}");
-        let open = Button::new(text, look.say(faults::RECORDING_OPEN_TIP)).named(&name);
+        let open = Button::new(text, look.tip(faults::RECORDING_OPEN)).named(&name);
         let pressed = open.ui(ui, look).clicked();
         let at = lamp_ui(ui, None);
         fault_entry::mark(ui, at, sign);

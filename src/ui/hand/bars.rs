@@ -1,6 +1,6 @@
 //! The segments as round bars, which keep light from what is near: folds get darker, and shadows fall. Four at a time.
 
-use crate::hand::kinematics::{Pose, Segment};
+use crate::hand::kinematics::{Segment, SegmentFrames};
 use crate::ui::hand::camera::Camera;
 use arrayvec::ArrayVec;
 use glam::{Vec3, Vec4};
@@ -81,7 +81,7 @@ struct Four {
 
 impl Bars {
     /// The bars of a hand in this pose.
-    pub(crate) fn new(camera: &Camera, pose: &Pose, key: Vec3) -> Self {
+    pub(crate) fn new(camera: &Camera, pose: &SegmentFrames, key: Vec3) -> Self {
         let bars = BARS.into_iter().map(|(segment, from, to, radius)| {
             let frame = camera.hand * pose.frame(segment);
             let from = frame.transform_point3(from.into());

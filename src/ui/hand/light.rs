@@ -1,6 +1,6 @@
 //! Light on the hand: one key light, a soft fill, the sky, and what they lose in folds and shadows.
 
-use crate::hand::kinematics::Pose;
+use crate::hand::kinematics::SegmentFrames;
 use crate::ui::hand::bars::{Bars, Near};
 use crate::ui::hand::camera::{Camera, EYE_MM};
 use crate::ui::hand::part::{Coat, Part};
@@ -30,7 +30,7 @@ pub(crate) struct Shade<'a> {
 
 impl Light {
     /// The light on a hand in this pose.
-    pub(crate) fn new(studio: &'static Studio, camera: &Camera, pose: &Pose) -> Self {
+    pub(crate) fn new(studio: &'static Studio, camera: &Camera, pose: &SegmentFrames) -> Self {
         Self {
             studio,
             bars: Bars::new(camera, pose, studio.key),

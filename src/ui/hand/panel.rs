@@ -11,9 +11,7 @@ use crate::ui::hand::scene::{HandPicture, TipLoad};
 use crate::ui::hand::shape::Held;
 use crate::ui::hand::tile;
 use crate::ui::hand::view::HandView;
-use crate::ui::kit::controls::{self, Button, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
 use crate::ui::text::{panels, touch as text, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense as Meant, Tip};
@@ -49,7 +47,7 @@ impl HandPanel {
         let finger = answer.joint.map(crate::hand::Dof::finger);
         let clicked = finger.filter(|_| answer.response.clicked());
         answer.response.on_hover_text(finger.map_or_else(
-            || look.say(panels::HAND_PICTURE_TIP).to_owned(),
+            || look.tip(panels::HAND_PICTURE).to_owned(),
             |finger| said(pane, finger),
         ));
         clicked
@@ -112,8 +110,7 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
 fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
     if shown.actual.all().is_none() {
         let place = picture.with_min_y(picture.bottom() - theme::PAD);
-        controls::Label::new(look.say(text::UNKNOWN), look.palette.muted)
-            .small()
+        kit::Label::note(look, text::UNKNOWN)
             .center()
             .put(ui, place);
     }
@@ -126,7 +123,7 @@ fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>) {
         Side::Right => text::RIGHT_HAND,
         Side::Left => text::LEFT_HAND,
     });
-    let width = controls::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
+    let width = kit::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
     let corner = picture.right_bottom() - vec2(width, theme::CONTROL);
     let place = Rect::from_min_size(corner, vec2(width, theme::CONTROL));
     let button = Button::new(words, look.say(text::SIDE_TIP)).weight(Weight::Quiet);

@@ -1,6 +1,6 @@
 //! Where the hand gets to in all poses: a picture that holds these places never jumps while the hand moves.
 
-use crate::hand::kinematics::{Pose, Segment, Side, tip_pad};
+use crate::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
 use crate::hand::{Dof, Finger, PerDof};
 use crate::ui::hand::shape;
 use glam::Vec3;
@@ -27,7 +27,7 @@ pub(crate) static REACH: LazyLock<Vec<Vec3>> = LazyLock::new(|| {
     let shares = || (0..=STEPS).map(|step| f32::from(step) / f32::from(STEPS));
     for (bend, swing) in shares().flat_map(|bend| shares().map(move |swing| (bend, swing))) {
         let pose = PerDof::from_fn(|dof| if dof == Dof::ThumbRotate { swing } else { bend });
-        let pose = Pose::of_shares(Side::Right, &pose);
+        let pose = SegmentFrames::of_shares(Side::Right, &pose);
         for finger in Finger::ALL {
             let [out, up] = shape::pad_ways(finger);
             let (pad, frame) = (tip_pad(finger) + up * 3.0, pose.frame(Segment::tip(finger)));

@@ -1,6 +1,6 @@
 //! What is to be seen of the hand: where its joints are and shall be, what its fingertips feel, what it holds.
 
-use crate::hand::kinematics::{Pose, Segment, Side};
+use crate::hand::kinematics::{Segment, SegmentFrames, Side};
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
 use crate::ui::hand::part::{Coat, Part};
 use crate::ui::hand::shape::{self, Held};
@@ -82,8 +82,9 @@ impl HandPicture {
         &self,
         palette: &Palette,
         is_small: bool,
-    ) -> (Pose, ArrayVec<Part<'static>, 32>) {
-        let pose = Pose::of_shares(self.side, &self.actual.map(|share| share.unwrap_or(1.0)));
+    ) -> (SegmentFrames, ArrayVec<Part<'static>, 32>) {
+        let pose =
+            SegmentFrames::of_shares(self.side, &self.actual.map(|share| share.unwrap_or(1.0)));
         let mut parts = ArrayVec::new();
         parts.extend(Segment::ALL.into_iter().map(|segment| Part {
             solid: shape::solid(segment, is_small),
@@ -92,7 +93,7 @@ impl HandPicture {
             coat: self.coat(segment, palette),
         }));
         let wanted = PerDof::from_fn(|dof| self.target[dof].or(self.actual[dof]).unwrap_or(1.0));
-        let wanted = Pose::of_shares(self.side, &wanted);
+        let wanted = SegmentFrames::of_shares(self.side, &wanted);
         let ghosts = Segment::ALL.into_iter().filter(|segment| {
             let off = |dof| self.is_off(dof) && Self::follows(*segment, dof);
             let known = segment.finger().is_some_and(|finger| self.is_known(finger));
@@ -139,7 +140,12 @@ impl HandPicture {
     }
 
     /// The force of a fingertip: out of the pad, leaning as the tangential force does.
-    fn arrow(&self, pose: &Pose, finger: Finger, palette: &Palette) -> Option<Part<'static>> {
+    fn arrow(
+        &self,
+        pose: &SegmentFrames,
+        finger: Finger,
+        palette: &Palette,
+    ) -> Option<Part<'static>> {
         let [normal, tipwards, right] = self.tips[finger].force?;
         let turn = pose.frame(Segment::tip(finger)).matrix3;
         let [out, up] = shape::pad_ways(finger).map(|way| turn * way);

@@ -1,7 +1,7 @@
 //! The drawn hand, looked at by its mesh.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
 use crate::app::settings::Theme;
-use crate::hand::kinematics::{Pose, Segment, Side, tip_pad};
+use crate::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
 use crate::hand::{Dof, Finger, PerDof};
 use crate::sim::Scenario;
 use crate::sim::object::Object;
@@ -10,7 +10,7 @@ use crate::ui::hand::reach::REACH;
 use crate::ui::hand::render::Sketch;
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::hand::shape::{self, Held};
-use crate::ui::hand::view::{HandView, Setting, TURN, draw};
+use crate::ui::hand::view::{DrawSettings, HandView, TURN, draw};
 use crate::ui::theme::Palette;
 use egui::{
     Context, Event, Id, Mesh, Modifiers, PointerButton, Pos2, RawInput, Rect, Sense, pos2, vec2,
@@ -19,8 +19,8 @@ use glam::Vec3;
 
 const SIDES: [Side; 2] = [Side::Right, Side::Left];
 
-fn setting(side: Side, size: f32) -> Setting {
-    Setting {
+fn setting(side: Side, size: f32) -> DrawSettings {
+    DrawSettings {
         turn: HandView::default().turn(side),
         rect: Rect::from_min_size(pos2(30.0, 50.0), vec2(size, size)),
         theme: Theme::Dark,
@@ -28,7 +28,7 @@ fn setting(side: Side, size: f32) -> Setting {
     }
 }
 
-fn camera(setting: &Setting, side: Side) -> Camera {
+fn camera(setting: &DrawSettings, side: Side) -> Camera {
     let reach = REACH.iter().map(|at| side.frame().transform_point3(*at));
     Camera::new(setting.turn, setting.rect, reach)
 }
@@ -39,7 +39,7 @@ fn posed(side: Side, [fingers, bend, swing]: [f32; 3]) -> HandPicture {
     HandPicture::of(side, &PerDof::new(shares))
 }
 
-fn drawn(picture: &HandPicture, setting: &Setting) -> (Sketch, Mesh) {
+fn drawn(picture: &HandPicture, setting: &DrawSettings) -> (Sketch, Mesh) {
     let (mut sketch, mut mesh) = (Sketch::default(), Mesh::default());
     draw(&mut sketch, picture, setting, &mut mesh);
     (sketch, mesh)
@@ -66,7 +66,7 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
             let share = f32::from(step) / 8.0;
             let mut picture = posed(side, [share, 1.0 - share, share]);
             picture.held = Some(Held::Ball);
-            let setting = Setting {
+            let setting = DrawSettings {
                 turn,
                 ..setting(side, 400.0)
             };
@@ -92,7 +92,7 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
             }
             let (_, small) = drawn(
                 &picture,
-                &Setting {
+                &DrawSettings {
                     rect: Rect::from_min_size(Pos2::ZERO, vec2(90.0, 90.0)),
                     ..setting
                 },
@@ -110,7 +110,7 @@ fn fingers_close_towards_who_looks() {
         for finger in Finger::ALL {
             let near = |share: f32| {
                 let picture = posed(side, [share, share, 1.0]);
-                let pose = Pose::of_shares(side, &picture.actual.map(Option::unwrap));
+                let pose = SegmentFrames::of_shares(side, &picture.actual.map(Option::unwrap));
                 camera.hand.transform_point3(pose.tip(finger)).z
             };
             if finger != Finger::Thumb {
@@ -142,7 +142,7 @@ fn the_joint_under_the_pointer_is_the_one_drawn_there() {
         for (shares, out) in [([1.0; 3], 1.0), ([0.0, 1.0, 1.0], -16.0)] {
             let picture = posed(side, shares);
             let (sketch, mesh) = drawn(&picture, &setting);
-            let pose = Pose::of_shares(side, &picture.actual.map(Option::unwrap));
+            let pose = SegmentFrames::of_shares(side, &picture.actual.map(Option::unwrap));
             for finger in Finger::ALL {
                 let [ahead, up] = shape::pad_ways(finger);
                 let out = if finger == Finger::Thumb { 0.0 } else { out };
@@ -205,7 +205,7 @@ fn the_simulated_hand_meets_what_is_drawn_before_it() {
         let shares = Object::of(scenario)
             .contacts
             .map(|met| met.map_or(0.32, |met| met.angle as f32 / 1000.0));
-        let pose = Pose::of_shares(Side::Right, &shares);
+        let pose = SegmentFrames::of_shares(Side::Right, &shares);
         for finger in Finger::ALL {
             let segment = Segment::tip(finger);
             let corners = shape::solid(segment, false).corners.iter();

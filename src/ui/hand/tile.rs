@@ -5,7 +5,7 @@ use crate::hand::PerDof;
 use crate::hand::kinematics::Side;
 use crate::ui::hand::render::Sketch;
 use crate::ui::hand::scene::HandPicture;
-use crate::ui::hand::view::{HandView, Setting, draw};
+use crate::ui::hand::view::{DrawSettings, HandView, draw};
 use crate::ui::theme::Palette;
 use egui::cache::{ComputerMut, FrameCache};
 use egui::emath::{Float, OrderedFloat};
@@ -45,7 +45,7 @@ impl ComputerMut<Tile, Arc<Mesh>> for Tiles {
     fn compute(&mut self, tile: Tile) -> Arc<Mesh> {
         let real = OrderedFloat::into_inner;
         let picture = HandPicture::of(tile.side, &tile.shares.map(|share| share.map(real)));
-        let setting = Setting {
+        let setting = DrawSettings {
             turn: HandView::default().turn(tile.side),
             rect: Rect::from_min_size(Pos2::ZERO, tile.size.map(real).into()),
             theme: tile.theme,

@@ -43,14 +43,14 @@ pub(crate) struct HandResponse {
 pub(crate) struct HandView {
     /// Nobody turned it where there is none.
     pub(crate) turn: Option<Turn>,
-    pub(crate) drawn: Option<(HandPicture, Setting)>,
+    pub(crate) drawn: Option<(HandPicture, DrawSettings)>,
     sketch: Sketch,
     mesh: Arc<Mesh>,
 }
 
 /// Where and how a picture is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Setting {
+pub(crate) struct DrawSettings {
     pub(crate) turn: Turn,
     pub(crate) rect: Rect,
     pub(crate) theme: Theme,
@@ -88,7 +88,7 @@ impl HandView {
             lit: joint.or(picture.lit),
             ..*picture
         };
-        let setting = Setting {
+        let setting = DrawSettings {
             turn: self.turn(picture.side),
             rect,
             theme: palette.theme,
@@ -117,7 +117,12 @@ impl HandView {
     }
 }
 
-pub(crate) fn draw(sketch: &mut Sketch, picture: &HandPicture, setting: &Setting, mesh: &mut Mesh) {
+pub(crate) fn draw(
+    sketch: &mut Sketch,
+    picture: &HandPicture,
+    setting: &DrawSettings,
+    mesh: &mut Mesh,
+) {
     let palette = Palette::of(setting.theme);
     let is_small = setting.rect.height() < SMALL_POINTS;
     // A small picture leaves the wrist out, for the sake of the fingers.

@@ -2,8 +2,7 @@
 
 use crate::app::hand::Freshness;
 use crate::hand::{Dof, Status, Words};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Pane, format};
 use crate::ui::text::{main, words};
 use egui::Color32;
 

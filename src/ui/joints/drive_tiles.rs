@@ -4,9 +4,7 @@ use crate::app::hand::Freshness;
 use crate::hand::Dof;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{faults, words};
 use crate::ui::theme;
 use egui::text::LayoutJob;
@@ -35,7 +33,7 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
     let joint = look.say(words::dof(dof));
     let said = DriveWords::of(pane, dof);
     let name = format!("{} {joint}", look.say(faults::DRIVE));
-    let mut button = Button::new(joint, look.say(faults::DRIVE_TIP)).named(&name);
+    let mut button = Button::new(joint, look.tip(faults::DRIVE)).named(&name);
     button.selected = Some(chosen);
     if chosen {
         button.weight = Weight::Chosen;
@@ -97,7 +95,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
         (format!("{heat} °C"), heat_age),
         (format!("{current} mA"), current_age),
     ] {
-        if controls::text_width(ui, &text, theme::number_small()) > ui.available_width() {
+        if kit::text_width(ui, &text, theme::number_small()) > ui.available_width() {
             return;
         }
         figure_ui(ui, &text, pane.look.value(age, pane.look.palette.muted));

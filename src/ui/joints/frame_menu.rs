@@ -1,8 +1,9 @@
 //! The frame behind a control: on the secondary button, the bytes it sends on each wire, to copy. Sends nothing.
 
 use crate::hand::HandCommand;
-use crate::link::traffic::compose::{Recipe, RecipeForm, RecipeWire};
-use crate::ui::kit::look::Pane;
+use crate::link::traffic::FrameFormat;
+use crate::link::traffic::compose::{FrameSnippet, SnippetFormat};
+use crate::ui::kit::Pane;
 use crate::ui::text::main;
 use crate::ui::theme;
 use egui::{Id, RichText, Ui};
@@ -26,18 +27,18 @@ pub(crate) fn frame_menu_ui(ui: &Ui, pane: &Pane<'_>, id: Id, command: &HandComm
 fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, id: Id, command: &HandCommand) {
     let look = pane.look;
     let endpoint = pane.state.hand().endpoint.as_ref();
-    let current = endpoint.map_or(RecipeWire::Rs485, RecipeWire::of);
-    let chosen = ui.data(|data| data.get_temp::<RecipeWire>(id));
+    let current = endpoint.map_or(FrameFormat::Rs485, FrameFormat::of);
+    let chosen = ui.data(|data| data.get_temp::<FrameFormat>(id));
     let mut wire = chosen.unwrap_or(current);
     ui.label(RichText::new(look.say(main::FRAME_TITLE)).font(theme::title()));
     ui.horizontal(|ui| {
-        for each in RecipeWire::ALL {
+        for each in FrameFormat::ALL {
             ui.selectable_value(&mut wire, each, each.name());
         }
     });
     ui.data_mut(|data| data.insert_temp(id, wire));
-    let recipe = Recipe::new(command, wire, endpoint);
-    let hex = recipe.text(RecipeForm::Hex);
+    let snippet = FrameSnippet::new(command, wire, endpoint);
+    let hex = snippet.text(SnippetFormat::Hex);
     egui::Frame::new()
         .fill(look.palette.sunken)
         .inner_margin(theme::GAP)
@@ -48,9 +49,9 @@ fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, id: Id, command: &HandCommand) {
         });
     ui.horizontal(|ui| {
         ui.label(look.say(main::FRAME_COPY));
-        for form in RecipeForm::ALL {
+        for form in SnippetFormat::ALL {
             if ui.button(form.name()).clicked() {
-                ui.ctx().copy_text(recipe.text(form));
+                ui.ctx().copy_text(snippet.text(form));
             }
         }
     });

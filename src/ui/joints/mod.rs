@@ -16,9 +16,7 @@ use crate::app::settings::AngleUnit;
 use crate::hand::Dof;
 use crate::ui::joints::row_view::{RowStyle, height, row_ui};
 use crate::ui::joints::tracks::all_joints_ui;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{layout, main};
 use crate::ui::theme;
 use egui::{Align, Layout, ScrollArea, Ui};
@@ -52,7 +50,7 @@ impl JointsView {
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             let line = least_line(ui.pixels_per_point());
             let below = theme::CONTROL_LARGE + theme::CONTROL + 2.0 * theme::GAP;
@@ -60,7 +58,7 @@ impl JointsView {
             let fits = room >= 6.0 * height(line, true);
             let each = self.each.unwrap_or(fits);
             let head = look.say(main::JOINTS);
-            controls::head_ui(ui, look, head, |ui| self.head_ui(ui, pane, each));
+            kit::head_ui(ui, look, head, |ui| self.head_ui(ui, pane, each));
             let lines = if each { 4.0 } else { 2.0 };
             let line = ((room / 6.0 - theme::GAP) / lines).clamp(line, LINE_MAX.max(line));
             let linked = self.linked;
@@ -91,15 +89,13 @@ impl JointsView {
         let button = Button::new(text, look.say(main::UNIT_TIP))
             .named(look.say(main::UNIT_NAME))
             .weight(Weight::Quiet);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::AngleUnit(unit.next()));
-        }
-        let button = Button::said(look, main::LINK_FINGERS, main::LINK_FINGERS_TIP);
+        button.sends(ui, pane, Action::AngleUnit(unit.next()));
+        let button = Button::said(look, main::LINK_FINGERS);
         let button = button.icon(theme::LINKED).choice(self.linked);
         if button.ui(ui, look).clicked() {
             self.toggle_link();
         }
-        let button = Button::said(look, main::EACH, main::EACH_TIP);
+        let button = Button::said(look, main::EACH);
         if button.icon(theme::TUNE).choice(each).ui(ui, look).clicked() {
             self.each = Some(!each);
         }
@@ -129,25 +125,24 @@ pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
         }
     };
     let label = Label::new(&text, color).small().ui(ui);
-    label.on_hover_text(look.say(main::AGE_TIP));
+    label.on_hover_text(look.tip(main::AGE));
 }
 
 fn presets_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let not_armed = pane.unready();
     let presets = [
-        (main::OPEN, main::OPEN_TIP, Preset::Open),
-        (main::HALF, main::HALF_TIP, Preset::Half),
-        (main::CLOSE, main::CLOSE_TIP, Preset::Close),
+        (main::OPEN, Preset::Open),
+        (main::HALF, Preset::Half),
+        (main::CLOSE, Preset::Close),
     ];
     ui.columns(presets.len(), |columns| {
-        for (ui, (text, tip, preset)) in columns.iter_mut().zip(presets) {
-            let button = Button::said(look, text, tip).large().disabled(not_armed);
+        for (ui, (text, preset)) in columns.iter_mut().zip(presets) {
+            let button = Button::said(look, text).large().disabled(not_armed);
             let wide = Layout::top_down_justified(Align::Center);
-            let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
-            if pressed.clicked() {
-                pane.actions.push(Action::Preset(preset));
-            }
+            ui.with_layout(wide, |ui| {
+                button.sends(ui, pane, Action::Preset(preset));
+            });
         }
     });
 }

@@ -1,14 +1,12 @@
 //! The joints where they are not set: name, lamp, actual angle and force of each. Sets nothing.
 
 use crate::app::action::Action;
-use crate::app::layout::Room;
+use crate::app::layout::WindowRoom;
 use crate::hand::{Dof, Quantity};
 use crate::ui::joints::age_ui;
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::row::Row;
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, layout, main};
 use crate::ui::theme;
 use crate::ui::window::rooms::toggled;
@@ -17,16 +15,16 @@ use egui::{Align, Layout, Ui, vec2};
 /// Draws the rail. Where joints can be set, its head opens their column.
 pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
     let look = pane.look;
-    controls::card_ui(ui, look, |ui| {
+    kit::card_ui(ui, look, |ui| {
         ui.set_min_height(ui.available_height());
         let title = look.say(main::JOINTS);
         if can_open {
             let name = format!("{} {title}", look.say(layout::OPEN));
-            let button = Button::new(title, look.say(layout::OPEN_TIP)).named(&name);
+            let button = Button::new(title, look.tip(layout::OPEN)).named(&name);
             let wide = Layout::top_down_justified(Align::Center);
             let pressed = ui.with_layout(wide, |ui| button.ui(ui, look)).inner;
             if pressed.clicked() {
-                let layout = toggled(&pane.state.settings.layout, Room::Joints);
+                let layout = toggled(&pane.state.settings.layout, WindowRoom::Joints);
                 pane.actions.push(Action::Layout(layout));
             }
         } else {
@@ -61,7 +59,7 @@ fn joint_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = theme::STEP;
                 let lamp = ui.allocate_space(vec2(theme::PAD, theme::PAD)).1;
-                controls::lamp(ui, lamp.center(), drive.lamp);
+                kit::lamp(ui, lamp.center(), drive.lamp);
                 let name = Label::new(row.name, palette.text).small().ui(ui);
                 name.on_hover_text(status);
             });

@@ -1,7 +1,7 @@
 //! A joint by its name and colour, and the ids of its parts. Draws nothing.
 
 use crate::hand::Dof;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::Pane;
 use crate::ui::text::{Text, words};
 use egui::{Color32, Id, Rect, Ui, vec2};
 

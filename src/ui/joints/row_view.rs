@@ -8,8 +8,7 @@ use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::drive_tiles;
 use crate::ui::joints::row::{READING, Row, cell};
 use crate::ui::joints::tracks;
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::look::{Explain, Pane};
+use crate::ui::kit::{self, Button, Explain, Label, Pane};
 use crate::ui::text::{faults, main};
 use crate::ui::theme;
 use egui::{
@@ -117,17 +116,17 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
     let name = row.named(pane, faults::EXPLAIN);
     let response = ui.interact(rect, row.id("explain"), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-    controls::focus_ring(ui, pane.look, &response, rect);
+    kit::focus_ring(ui, pane.look, &response, rect);
     if response.clicked() {
         *pane.explain = Some(Explain::Drive(row.dof));
     }
     let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
-    controls::lamp(ui, lamp, said.lamp);
+    kit::lamp(ui, lamp, said.lamp);
     let name = row.named(pane, main::STATUS);
     let label = Label::new(&said.title, said.text).small().named(&name);
     let place = rect.with_min_x(rect.left() + theme::INDENT);
     label.shorter(&said.short).put(ui, place);
-    let tip = pane.look.say(faults::EXPLAIN_TIP);
+    let tip = pane.look.tip(faults::EXPLAIN);
     let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
     response
         .on_hover_text(format!("{cause}\n{advice}\n{tip}").trim())
@@ -143,7 +142,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &Row) {
         return;
     }
     let (sign, response) = ui.allocate_exact_size(vec2(16.0, 12.0), Sense::hover());
-    controls::warning_sign(ui, sign, pane.look.palette.warn);
+    kit::warning_sign(ui, sign, pane.look.palette.warn);
     let name = row.named(pane, main::NAME_IMPACT);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let (speed, force) = (joint.speed.get(), joint.force.get());
@@ -169,7 +168,5 @@ fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &Row) {
     let name = row.named(pane, main::NAME_LOCK);
     let mut button = Button::new(&name, look.say(tip)).icon(icon).choice(locked);
     button.height = ui.spacing().interact_size.y;
-    if button.ui(ui, look).clicked() {
-        pane.actions.push(Action::Lock(row.dof, !locked));
-    }
+    button.sends(ui, pane, Action::Lock(row.dof, !locked));
 }

@@ -1,7 +1,6 @@
 //! The sliding track: a handle for what is wanted over a bar for what is. Knows numbers, not joints.
 
-use crate::ui::kit::controls::focus_ring;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{self, Look};
 use crate::ui::theme;
 use egui::{
     Color32, EventFilter, Id, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
@@ -221,7 +220,7 @@ impl<'a> Track<'a> {
         if let Some(x) = target {
             self.paint_handle(ui, look, response, pos2(x, rail.center().y));
         }
-        focus_ring(ui, look, response, ground.expand2(vec2(0.0, BELOW)));
+        kit::focus_ring(ui, look, response, ground.expand2(vec2(0.0, BELOW)));
     }
 
     fn paint_actual(&self, ui: &Ui, rail: Rect, target: Option<f32>) {

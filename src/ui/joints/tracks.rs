@@ -6,9 +6,7 @@ use crate::hand::{Angle, Dof, Force, HandCommand, PerDof, Speed, Target, impact}
 use crate::ui::joints::frame_menu::frame_menu_ui;
 use crate::ui::joints::row::{READING, Row, cell};
 use crate::ui::joints::track::{Actual, Track};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
+use crate::ui::kit::{Label, NumberField, Pane};
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, Ui};
@@ -17,7 +15,7 @@ use egui::{Align, Id, Layout, Ui};
 const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
 
 /// A caption, a track and a number field in a row.
-struct Setting<'a> {
+struct TrackRow<'a> {
     caption: Text,
     number_name: &'a str,
     id: Id,
@@ -29,7 +27,7 @@ struct Setting<'a> {
     after: f32,
 }
 
-impl Setting<'_> {
+impl TrackRow<'_> {
     /// Draws it. What the person set in this frame.
     fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<i16> {
         let look = pane.look;
@@ -42,15 +40,12 @@ impl Setting<'_> {
         if let Some(command) = &self.command {
             frame_menu_ui(ui, pane, self.id, command);
         }
-        let number = NumberField {
-            name: self.number_name,
-            tip: look.say(main::NUMBER_TIP),
-            disabled: self.track.disabled,
-            value: self.track.target.map(|target| self.scale.shown(target)),
-            range: self.scale.low..=self.scale.high,
-            decimals: self.scale.decimals,
-        };
-        let typed = number.ui(ui, look, pane.typing);
+        let (scale, tip) = (self.scale, look.say(main::NUMBER_TIP));
+        let number = NumberField::new(self.number_name, tip, scale.low..=scale.high)
+            .disabled(self.track.disabled)
+            .decimals(scale.decimals);
+        let value = self.track.target.map(|target| scale.shown(target));
+        let typed = number.ui(ui, pane, value);
         typed.map(|typed| self.scale.raw(typed)).or(moved)
     }
 }
@@ -63,12 +58,12 @@ impl Row {
         let (angle, freshness) = pane.newest(self.dof, pane.state.hand().sample.angle);
         let name = self.named(pane, main::NAME_ANGLE_TARGET);
         let locked = joint.locked.then(|| look.say(main::LOCKED));
-        let setting = Setting {
+        let setting = TrackRow {
             caption: main::ANGLE,
             number_name: &self.named(pane, main::NAME_ANGLE_NUMBER),
             id: self.id("angle"),
             track: Track {
-                tip: look.say(main::ANGLE_TIP),
+                tip: look.tip(main::ANGLE),
                 disabled: pane.unready().or(locked),
                 target: joint.target.map(Angle::get),
                 actual: angle.and_then(|angle| angle.hold()).map(Angle::get),
@@ -113,7 +108,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
     let runs = series(pane);
     let value = value_of(row, joints.map(|joint| joint.force.get()));
     let mut track = Track {
-        tip: &staged(pane, main::FORCE_TIP),
+        tip: &staged(pane, main::FORCE.tip()),
         disabled: runs,
         target: value.filter(|_| runs.is_none()),
         tick: Some(Force::RATED.get()),
@@ -129,7 +124,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
         track.rough_from = impact::rough_from_threshold(joint.speed).map(Force::get);
         track.peak = hand.peaks.get(row.dof).map(|(grams, _)| grams);
     }
-    let setting = Setting {
+    let setting = TrackRow {
         caption: main::FORCE,
         number_name: &named(pane, row, main::NAME_FORCE_NUMBER),
         id: id_of(row, "force"),
@@ -154,12 +149,12 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
     let value = value.filter(|_| runs.is_none());
     let rough = row.and_then(|row| impact::rough_from_speed(joints[row.dof].force));
     let name = named(pane, row, main::NAME_SPEED);
-    let setting = Setting {
+    let setting = TrackRow {
         caption: main::SPEED,
         number_name: &named(pane, row, main::NAME_SPEED_NUMBER),
         id: id_of(row, "speed"),
         track: Track {
-            tip: &staged(pane, main::SPEED_TIP),
+            tip: &staged(pane, main::SPEED.tip()),
             disabled: runs,
             target: value,
             actual: value,
@@ -180,7 +175,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&Row>) {
 
 /// Force threshold and speed of all joints; what differs from joint to joint is not known here.
 pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let name = Label::new(pane.look.say(main::ALL_JOINTS), pane.look.palette.text);
+    let name = Label::said(pane.look, main::ALL_JOINTS);
     ui.horizontal(|ui| {
         name.ui(ui);
         ui.columns(2, |columns| {

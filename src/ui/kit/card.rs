@@ -11,6 +11,7 @@ use egui::{
     Align, Area, Frame, Id, Key, Layout, Order, ProgressBar, Rect, Role, ScrollArea, Sense, Stroke,
     Ui, UiBuilder, WidgetInfo, vec2,
 };
+use std::fmt::Display;
 
 /// What pressing a button of a card means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,27 +31,20 @@ pub(crate) enum Manner {
 #[derive(Debug, Clone)]
 pub(crate) struct Choice {
     text: Text,
-    tip: Text,
     manner: Manner,
-    disabled: Option<String>,
+    disabled: Option<Text>,
     does: Vec<Action>,
 }
 
 impl Choice {
     /// A button that asks for nothing yet.
-    pub(crate) const fn new(text: Text, tip: Text, manner: Manner) -> Self {
+    pub(crate) const fn new(text: Text, manner: Manner) -> Self {
         Self {
             text,
-            tip,
             manner,
             disabled: None,
             does: Vec::new(),
         }
-    }
-
-    /// The usual way out.
-    pub(crate) const fn cancel() -> Self {
-        Self::new(cards::CANCEL, cards::CANCEL_TIP, Manner::Safe)
     }
 
     /// Asks for this too.
@@ -60,7 +54,7 @@ impl Choice {
     }
 
     /// Cannot be pressed, for this reason.
-    pub(crate) fn disabled(mut self, reason: Option<String>) -> Self {
+    pub(crate) fn disabled(mut self, reason: Option<Text>) -> Self {
         self.disabled = reason;
         self
     }
@@ -68,7 +62,7 @@ impl Choice {
 
 /// One line of a card.
 #[derive(Debug, Clone)]
-pub(crate) enum Line {
+enum CardLine {
     /// A sentence.
     Words(String),
     /// A sentence that matters less.
@@ -83,28 +77,116 @@ pub(crate) enum Line {
     Cells(Vec<String>),
 }
 
-/// How far something is.
-#[derive(Debug, Clone)]
-pub(crate) struct Progress {
-    /// From 0 to 1.
-    pub(crate) part: f32,
-    /// What is going on, or what is left.
-    pub(crate) words: String,
+/// What can be said in a card: a sentence of the window, or words put together.
+pub(crate) trait Said {
+    /// In the window's language.
+    fn said(self, look: Look) -> String;
+}
+
+impl Said for Text {
+    fn said(self, look: Look) -> String {
+        look.say(self).to_owned()
+    }
+}
+
+impl Said for String {
+    fn said(self, _look: Look) -> String {
+        self
+    }
+}
+
+impl<D: Display> Said for (Text, D) {
+    fn said(self, look: Look) -> String {
+        format!("{} {}", look.say(self.0), self.1)
+    }
 }
 
 /// What a card says and offers.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct Card {
-    /// What it is about.
-    pub(crate) title: String,
-    /// What should be known.
-    pub(crate) lines: Vec<Line>,
-    /// How far it is.
-    pub(crate) progress: Option<Progress>,
+    look: Look,
+    title: String,
+    lines: Vec<CardLine>,
+    /// How far it is, from 0 to 1, and what is going on or what is left.
+    progress: Option<(f32, String)>,
     /// A word that has to be typed before anything dangerous can be pressed.
-    pub(crate) word: Option<&'static str>,
+    word: Option<&'static str>,
     /// The buttons, the safe one first.
-    pub(crate) choices: Vec<Choice>,
+    choices: Vec<Choice>,
+}
+
+impl Card {
+    /// A card that says nothing yet.
+    pub(crate) fn new(look: Look, title: impl Said) -> Self {
+        Self {
+            look,
+            title: title.said(look),
+            lines: Vec::new(),
+            progress: None,
+            word: None,
+            choices: Vec::new(),
+        }
+    }
+
+    /// Says this.
+    pub(crate) fn words(self, said: impl Said) -> Self {
+        let said = CardLine::Words(said.said(self.look));
+        self.line(said)
+    }
+
+    /// Says what matters less.
+    pub(crate) fn note(self, said: impl Said) -> Self {
+        let said = CardLine::Note(said.said(self.look));
+        self.line(said)
+    }
+
+    /// Says what matters more.
+    pub(crate) fn warning(self, said: impl Said) -> Self {
+        let said = CardLine::Warning(said.said(self.look));
+        self.line(said)
+    }
+
+    /// Says what must be so, and whether it is; `None` = not known.
+    pub(crate) fn check(self, is_so: Option<bool>, said: Text) -> Self {
+        let said = CardLine::Check(is_so, said.said(self.look));
+        self.line(said)
+    }
+
+    /// Says what the columns of a table hold.
+    pub(crate) fn head(self, columns: impl IntoIterator<Item = Text>) -> Self {
+        let columns = columns.into_iter().map(|text| text.said(self.look));
+        let head = CardLine::Head(columns.collect());
+        self.line(head)
+    }
+
+    /// Says a row of a table: what it is of, then its cells.
+    pub(crate) fn row(self, of: impl Said, cells: impl IntoIterator<Item = String>) -> Self {
+        let of = [of.said(self.look)].into_iter();
+        self.line(CardLine::Cells(of.chain(cells).collect()))
+    }
+
+    fn line(mut self, line: CardLine) -> Self {
+        self.lines.push(line);
+        self
+    }
+
+    /// Tells how far it is, from 0 to 1, and what is going on or what is left.
+    pub(crate) fn progress(mut self, part: f32, said: impl Said) -> Self {
+        self.progress = Some((part, said.said(self.look)));
+        self
+    }
+
+    /// Wants a word typed before anything dangerous can be pressed.
+    pub(crate) fn typed(mut self, word: &'static str) -> Self {
+        self.word = Some(word);
+        self
+    }
+
+    /// Offers this too; the safe one comes first.
+    pub(crate) fn choice(mut self, choice: Choice) -> Self {
+        self.choices.push(choice);
+        self
+    }
 }
 
 /// What the window remembers of its card.
@@ -127,13 +209,7 @@ impl CardView {
     }
 
     /// Draws the card, if there is one, over `shade`; what the person asked for in it.
-    pub(crate) fn ui(
-        &mut self,
-        ui: &Ui,
-        shade: Rect,
-        look: Look,
-        card: Option<Card>,
-    ) -> Vec<Action> {
+    pub(crate) fn ui(&mut self, ui: &Ui, shade: Rect, card: Option<Card>) -> Vec<Action> {
         let Some(card) = card else {
             self.shown = None;
             self.informs = false;
@@ -156,9 +232,9 @@ impl CardView {
         let shown = area.show(ui.ctx(), |ui| {
             // Takes every press beside the card, too.
             ui.allocate_rect(shade, Sense::click_and_drag());
-            let veil = look.palette.window.gamma_multiply(0.75);
+            let veil = card.look.palette.window.gamma_multiply(0.75);
             ui.painter().rect_filled(shade, 0.0, veil);
-            self.placed_ui(ui, shade.shrink(theme::PAD), look, (&card, is_new))
+            self.placed_ui(ui, shade.shrink(theme::PAD), &card, is_new)
         });
         if is_new {
             ui.ctx().move_to_top(shown.response.layer_id);
@@ -168,18 +244,12 @@ impl CardView {
     }
 
     /// The card in the middle of a place, as high as it was last; the button that was pressed.
-    fn placed_ui(
-        &mut self,
-        ui: &mut Ui,
-        place: Rect,
-        look: Look,
-        card: (&Card, bool),
-    ) -> Option<usize> {
+    fn placed_ui(&mut self, ui: &mut Ui, place: Rect, card: &Card, is_new: bool) -> Option<usize> {
         let width = 560.0_f32.min(place.width());
         let high = vec2(width, self.height.min(place.height()));
         let corner = Rect::from_center_size(place.center(), high).min;
         let room = Rect::from_min_size(corner, vec2(width, place.height()));
-        let palette = look.palette;
+        let palette = card.look.palette;
         let frame = Frame::new()
             .fill(palette.card)
             .stroke(Stroke::new(theme::LINE, palette.accent))
@@ -190,12 +260,12 @@ impl CardView {
             frame.show(ui, |ui| {
                 ui.set_width(ui.available_width());
                 ui.spacing_mut().item_spacing.y = theme::GAP;
-                self.card_ui(ui, place.height() - self.chrome, look, card)
+                self.card_ui(ui, place.height() - self.chrome, card, is_new)
             })
         });
         let (pressed, lines) = shown.inner.inner;
         let response = shown.response;
-        response.widget_info(|| WidgetInfo::labeled(Role::AlertDialog, true, &card.0.title));
+        response.widget_info(|| WidgetInfo::labeled(Role::AlertDialog, true, &card.title));
         ui.ctx()
             .accesskit_node_builder(response.id, |node| node.set_modal());
         let height = response.rect.height();
@@ -212,10 +282,10 @@ impl CardView {
         &mut self,
         ui: &mut Ui,
         most: f32,
-        look: Look,
-        (card, is_new): (&Card, bool),
+        card: &Card,
+        is_new: bool,
     ) -> (Option<usize>, f32) {
-        let palette = look.palette;
+        let (look, palette) = (card.look, card.look.palette);
         let title = Label::new(&card.title, palette.text).font(theme::large());
         title.wrap().ui(ui);
         let lines = ScrollArea::vertical().max_height(most).show(ui, |ui| {
@@ -223,16 +293,16 @@ impl CardView {
                 line_ui(ui, look, line);
             }
         });
-        if let Some(progress) = &card.progress {
-            Label::new(&progress.words, palette.muted).ui(ui);
-            let bar = ProgressBar::new(progress.part).fill(palette.accent);
+        if let Some((part, words)) = &card.progress {
+            Label::new(words, palette.muted).ui(ui);
+            let bar = ProgressBar::new(*part).fill(palette.accent);
             ui.add(bar.desired_height(6.0));
         }
         if let Some(word) = card.word {
             let ask = format!("{} {word}", look.say(cards::TYPE));
             ui.horizontal(|ui| {
                 Label::new(&ask, palette.text).ui(ui);
-                let field = controls::edit_ui(ui, &ask, "", &mut self.typed);
+                let field = controls::edit_ui(ui, (&ask, ""), &mut self.typed);
                 if is_new {
                     field.request_focus();
                 }
@@ -240,13 +310,14 @@ impl CardView {
         }
         let row = ui.horizontal(|ui| {
             let right = Layout::right_to_left(Align::Center);
-            ui.with_layout(right, |ui| self.choices_ui(ui, look, card, is_new))
+            ui.with_layout(right, |ui| self.choices_ui(ui, card, is_new))
         });
         (row.inner.inner, lines.inner_rect.height())
     }
 
     /// The buttons. The keyboard goes to the field, else to what is safe, so that Enter does no harm.
-    fn choices_ui(&self, ui: &mut Ui, look: Look, card: &Card, is_new: bool) -> Option<usize> {
+    fn choices_ui(&self, ui: &mut Ui, card: &Card, is_new: bool) -> Option<usize> {
+        let look = card.look;
         let (escaped, entered) = ui.input(|input| {
             (
                 input.key_pressed(Key::Escape),
@@ -258,9 +329,9 @@ impl CardView {
         let untyped = untyped.map(|word| format!("{} {word}", look.say(cards::TYPE)));
         for (index, choice) in card.choices.iter().enumerate().rev() {
             let is_danger = choice.manner == Manner::Danger;
-            let reason = choice.disabled.clone();
+            let reason = choice.disabled.map(|reason| look.say(reason).to_owned());
             let reason = reason.or_else(|| untyped.clone().filter(|_| is_danger));
-            let button = Button::new(look.say(choice.text), look.say(choice.tip))
+            let button = Button::said(look, choice.text)
                 .weight(weight(choice.manner))
                 .disabled(reason.as_deref())
                 .large()
@@ -288,19 +359,19 @@ const fn weight(manner: Manner) -> Weight {
     }
 }
 
-fn line_ui(ui: &mut Ui, look: Look, line: &Line) {
+fn line_ui(ui: &mut Ui, look: Look, line: &CardLine) {
     let palette = look.palette;
     let words = |ui: &mut Ui, text: &str, color| {
         Label::new(text, color).wrap().ui(ui);
     };
     match line {
-        Line::Words(text) => words(ui, text, palette.text),
-        Line::Note(text) => words(ui, text, palette.muted),
-        Line::Warning(text) => signed_ui(ui, |ui, sign| {
+        CardLine::Words(text) => words(ui, text, palette.text),
+        CardLine::Note(text) => words(ui, text, palette.muted),
+        CardLine::Warning(text) => signed_ui(ui, |ui, sign| {
             controls::warning_sign(ui, sign, palette.warn);
             words(ui, text, palette.warn);
         }),
-        Line::Check(known, text) => signed_ui(ui, |ui, sign| {
+        CardLine::Check(known, text) => signed_ui(ui, |ui, sign| {
             let (lamp, color) = match known {
                 Some(true) => (palette.ok, palette.muted),
                 Some(false) => (palette.bad, palette.text),
@@ -309,8 +380,10 @@ fn line_ui(ui: &mut Ui, look: Look, line: &Line) {
             controls::lamp(ui, sign.center(), lamp);
             words(ui, text, color);
         }),
-        Line::Head(cells) => cells_ui(ui, cells, |text, _| Label::new(text, palette.muted).small()),
-        Line::Cells(cells) => cells_ui(ui, cells, |text, first| match first {
+        CardLine::Head(cells) => {
+            cells_ui(ui, cells, |text, _| Label::new(text, palette.muted).small())
+        }
+        CardLine::Cells(cells) => cells_ui(ui, cells, |text, first| match first {
             Some(first) => Label::new(text, palette.text).number().named(first),
             None => Label::new(text, palette.muted),
         }),

@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::settings::{Language, Theme};
-use crate::ui::kit::card::{Card, CardView, Choice, Line, Manner, Progress};
+use crate::ui::kit::card::{Card, CardView, Choice, Manner};
 use crate::ui::kit::controls::{Button, pressed};
 use crate::ui::kit::look::Look;
 use crate::ui::text::{Text, cards};
@@ -55,7 +55,7 @@ fn frame(ui: &mut Ui, room: &mut Room) {
     let below = Button::new("Below", "tip").put(ui, look, body, Id::unique("below"));
     room.below += u32::from(below.clicked());
     let card = room.card.clone();
-    let asked = room.cards.ui(ui, body, look, card);
+    let asked = room.cards.ui(ui, body, card);
     if !asked.is_empty() {
         room.card = None;
     }
@@ -63,33 +63,41 @@ fn frame(ui: &mut Ui, room: &mut Room) {
 }
 
 const fn text(en: &'static str) -> Text {
-    Text { en, zh: en }
+    Text::new(en, en)
 }
 
 fn card() -> Card {
-    Card {
-        title: "Really".into(),
-        lines: vec![
-            Line::Words("This is a sentence of many words. ".repeat(6)),
-            Line::Warning("Look out.".into()),
-            Line::Note("By the way.".into()),
-            Line::Check(Some(true), "open".into()),
-            Line::Check(None, "still".into()),
-            Line::Cells(vec!["Index".into(), "12 g".into(), "0 g".into()]),
-        ],
-        progress: Some(Progress {
-            part: 0.4,
-            words: "9 s".into(),
-        }),
-        word: None,
-        choices: vec![
-            Choice::cancel().does(Action::Param(ParamAction::Decline)),
-            Choice::new(text("Other"), cards::CANCEL_TIP, Manner::Plain),
-            Choice::new(text("Best"), cards::CANCEL_TIP, Manner::Main)
-                .disabled(Some("not yet".into())),
-            Choice::new(cards::TYPE, cards::CANCEL_TIP, Manner::Danger).does(Action::Disarm),
-        ],
-    }
+    titled("Really")
+}
+
+fn titled(title: &'static str) -> Card {
+    let cancel = Choice::new(cards::CANCEL, Manner::Safe);
+    let cancel = cancel.does(Action::Param(ParamAction::Decline));
+    offering(said(title).choice(cancel))
+}
+
+fn said(title: &'static str) -> Card {
+    let look = Look {
+        palette: Palette::of(Theme::Dark),
+        language: Language::En,
+        side: crate::hand::kinematics::Side::Right,
+    };
+    Card::new(look, text(title))
+        .words("This is a sentence of many words. ".repeat(6))
+        .warning(text("Look out."))
+        .note(text("By the way."))
+        .check(Some(true), text("open"))
+        .check(None, text("still"))
+        .row(text("Index"), ["12 g".into(), "0 g".into()])
+        .progress(0.4, text("9 s"))
+}
+
+fn offering(card: Card) -> Card {
+    let best = Choice::new(text("Best"), Manner::Main).disabled(Some(text("not yet")));
+    let danger = Choice::new(cards::TYPE, Manner::Danger).does(Action::Disarm);
+    card.choice(Choice::new(text("Other"), Manner::Plain))
+        .choice(best)
+        .choice(danger)
 }
 
 fn open(card: Card, size: Vec2) -> Harness<'static, Room> {
@@ -177,9 +185,7 @@ fn escape_stops_and_closes_only_what_is_safe_to_close() {
     let room = harness.state();
     assert_eq!((room.stops, room.card.is_some()), (1, false));
 
-    let mut without = card();
-    without.choices.remove(0);
-    let mut harness = open(without, LARGE);
+    let mut harness = open(offering(said("Really")), LARGE);
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     let room = harness.state();
@@ -203,11 +209,7 @@ fn the_tab_key_stays_in_the_card() {
 
 #[test]
 fn what_is_dangerous_waits_for_its_word() {
-    let with_word = Card {
-        word: Some("RESET"),
-        ..card()
-    };
-    let mut harness = open(with_word, LARGE);
+    let mut harness = open(card().typed("RESET"), LARGE);
     let field = "To go on, type RESET";
     click(&mut harness, DANGER);
     assert!(harness.state().asked.is_empty());
@@ -239,10 +241,8 @@ fn what_is_dangerous_waits_for_its_word() {
 #[test]
 fn a_card_fits_every_window_and_is_read_as_one() {
     for size in [SMALL, LARGE, sized(640.0, 400.0)] {
-        let mut long = card();
-        long.lines
-            .extend((0..40).map(|row| Line::Words(format!("Line {row} of many."))));
-        for card in [card(), long] {
+        let many = (0..40).map(|row| format!("Line {row} of many."));
+        for card in [card(), many.fold(card(), Card::words)] {
             let harness = open(card, size);
             let dialog = harness.get_by_role_and_label(Role::AlertDialog, "Really");
             let body = egui::Rect::from_min_max(at(0.0, theme::TOP_BAR), size.to_pos2());
@@ -261,11 +261,7 @@ fn a_card_fits_every_window_and_is_read_as_one() {
 
 #[test]
 fn another_card_begins_with_an_empty_field() {
-    let with_word = |title: &str| Card {
-        title: title.into(),
-        word: Some("RESET"),
-        ..card()
-    };
+    let with_word = |title| titled(title).typed("RESET");
     let mut harness = open(with_word("One"), LARGE);
     let field = "To go on, type RESET";
     harness

@@ -1,6 +1,7 @@
 //! The few widgets that everything is made of: placed by rectangle, painted from the theme, named for accessibility.
 
-use crate::ui::kit::look::Look;
+use crate::app::action::Action;
+use crate::ui::kit::look::{Look, Pane};
 use crate::ui::text::Text;
 use crate::ui::theme::{self, Icon};
 use egui::text::{LayoutJob, TextWrapping};
@@ -38,6 +39,21 @@ impl<'a> Label<'a> {
             shorter: None,
             wraps: false,
         }
+    }
+
+    /// A sentence in the window's language.
+    pub(crate) const fn said(look: Look, text: Text) -> Self {
+        Self::new(look.say(text), look.palette.text)
+    }
+
+    /// A sentence that matters less.
+    pub(crate) const fn muted(look: Look, text: Text) -> Self {
+        Self::new(look.say(text), look.palette.muted)
+    }
+
+    /// A small sentence that matters less.
+    pub(crate) fn note(look: Look, text: Text) -> Self {
+        Self::muted(look, text).small()
     }
 
     /// With another font.
@@ -227,8 +243,14 @@ impl<'a> Button<'a> {
     }
 
     /// The same in the window's language.
-    pub(crate) const fn said(look: Look, text: Text, tip: Text) -> Self {
-        Self::new(look.say(text), look.say(tip))
+    pub(crate) const fn said(look: Look, text: Text) -> Self {
+        Self::new(look.say(text), look.tip(text))
+    }
+
+    /// Explains itself with another tip.
+    pub(crate) const fn tip(mut self, tip: &'a str) -> Self {
+        self.tip = tip;
+        self
     }
 
     /// As high as what matters most.
@@ -255,14 +277,28 @@ impl<'a> Button<'a> {
         self
     }
 
+    /// Disabled for this reason if that is so.
+    pub(crate) const fn disabled_if(self, is_so: bool, reason: &'a str) -> Self {
+        self.disabled(if is_so { Some(reason) } else { None })
+    }
+
     /// One of a row of which one is chosen.
-    pub(crate) const fn choice(mut self, selected: bool) -> Self {
-        self.selected = Some(selected);
-        self.weight = if selected {
-            Weight::Chosen
-        } else {
-            Weight::Quiet
-        };
+    pub(crate) const fn choice(self, selected: bool) -> Self {
+        let quiet = Weight::Quiet;
+        let weight = if selected { Weight::Chosen } else { quiet };
+        self.selected(selected).weight(weight)
+    }
+
+    /// It is on or off.
+    pub(crate) const fn switch(self, on: bool) -> Self {
+        let normal = Weight::Normal;
+        let weight = if on { Weight::Chosen } else { normal };
+        self.selected(on).weight(weight)
+    }
+
+    /// Told to be on or off, and looks the same.
+    pub(crate) const fn selected(mut self, on: bool) -> Self {
+        self.selected = Some(on);
         self
     }
 
@@ -281,6 +317,13 @@ impl<'a> Button<'a> {
         let height = self.height.max(ui.spacing().interact_size.y);
         let (id, rect) = ui.allocate_space(vec2(width, height));
         self.put(ui, look, rect, id)
+    }
+
+    /// Draws it, and asks for `action` when it is pressed.
+    pub(crate) fn sends(self, ui: &mut Ui, pane: &mut Pane<'_>, action: Action) {
+        if self.ui(ui, pane.look).clicked() {
+            pane.actions.push(action);
+        }
     }
 
     const fn font(&self) -> FontId {
@@ -458,7 +501,7 @@ pub(crate) fn head_ui<R>(
 }
 
 /// A line of text that counts as it is typed.
-pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> Response {
+pub(crate) fn edit_ui(ui: &mut Ui, (name, hint): (&str, &str), text: &mut String) -> Response {
     let edit = egui::TextEdit::singleline(text)
         .hint_text(hint.to_owned())
         .align(Align2::LEFT_CENTER)
@@ -467,12 +510,36 @@ pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) ->
         .align(Align2::LEFT_CENTER)
         .desired_width(ui.available_width());
     let response = ui.add(edit);
+    named_field(&response, name, true, text);
+    response
+}
+
+/// Tells a screen reader the name of a text field, and what stands in it.
+pub(crate) fn named_field(response: &Response, name: &str, enabled: bool, text: &str) {
     response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
-        info.current_text_value = Some(text.clone());
+        let mut info = WidgetInfo::labeled(Role::TextInput, enabled, name);
+        info.current_text_value = Some(text.to_owned());
         info
     });
-    response
+}
+
+/// A button for each value, of which one is chosen; `tip` explains those whose text has none. True if another was chosen.
+pub(crate) fn pick_ui<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    look: Look,
+    (chosen, tip): (&mut T, Text),
+    all: impl IntoIterator<Item = (T, Text)>,
+) -> bool {
+    let before = *chosen;
+    for (value, text) in all {
+        let own = look.tip(text);
+        let tip = if own.is_empty() { look.say(tip) } else { own };
+        let button = Button::new(look.say(text), tip).choice(before == value);
+        if button.ui(ui, look).clicked() {
+            *chosen = value;
+        }
+    }
+    before != *chosen
 }
 
 /// One of several, from a list that opens; true if another one was chosen.

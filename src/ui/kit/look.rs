@@ -37,6 +37,16 @@ impl Look {
         text.of(self.language)
     }
 
+    /// The name of a control and its tooltip or hint in the window's language.
+    pub(crate) const fn both(self, text: Text) -> (&'static str, &'static str) {
+        (self.say(text), self.tip(text))
+    }
+
+    /// The tooltip of a control in the window's language.
+    pub(crate) const fn tip(self, text: Text) -> &'static str {
+        self.say(text.tip())
+    }
+
     /// A name and what is said of it, with the colon of the language.
     pub(crate) fn pair(self, name: &str, said: &str) -> String {
         let colon = match self.language {
@@ -119,6 +129,8 @@ impl Pane<'_> {
 /// The one field that is being typed into. Nothing in it counts before Enter.
 #[derive(Debug, Default)]
 pub(crate) struct Typing {
+    /// The line of text that is typed into, and what stands in it.
+    pub(crate) written: Option<(Id, String)>,
     /// Which field.
     pub(crate) field: Option<Id>,
     /// What was typed so far.

@@ -1,71 +1,91 @@
 //! The number field: nothing that is typed counts before Enter. Knows no joint.
 
+use crate::ui::kit::controls;
 use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::{Look, Typing};
+use crate::ui::kit::look::{Look, Pane, Typing};
 use crate::ui::kit::text_field::refused_ui;
 use crate::ui::text::main;
 use crate::ui::theme;
 use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
-use egui::{Align2, Id, Key, Rect, Role, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{Align2, Id, Key, Rect, Stroke, TextEdit, Ui, UiBuilder, vec2};
 use std::ops::RangeInclusive;
 
 /// Characters that fit in a field.
 const TYPED_MAX: usize = 8;
 
-/// A number field at a place.
+/// A field for a number.
 #[derive(Debug, Clone)]
 pub(crate) struct NumberField<'a> {
-    /// What a screen reader says.
-    pub(crate) name: &'a str,
-    /// What it does, in a sentence.
-    pub(crate) tip: &'a str,
-    /// Why nothing can be typed now.
-    pub(crate) disabled: Option<&'a str>,
-    /// What is in force; none is shown as "-".
-    pub(crate) value: Option<f64>,
-    /// What may be typed.
-    pub(crate) range: RangeInclusive<f64>,
-    /// Digits after the decimal mark; with none only whole numbers are taken.
-    pub(crate) decimals: usize,
+    name: &'a str,
+    tip: &'a str,
+    disabled: Option<&'a str>,
+    range: RangeInclusive<f64>,
+    decimals: usize,
 }
 
-impl NumberField<'_> {
-    /// Draws the field where `ui` is. The number that was typed and confirmed with Enter in this frame.
-    pub(crate) fn ui(self, ui: &mut Ui, look: Look, typing: &mut Typing) -> Option<f64> {
-        let height = theme::CONTROL.min(ui.spacing().interact_size.y);
-        let place = ui.allocate_space(vec2(theme::FIELD, height));
-        self.at(ui, look, typing, place)
+impl<'a> NumberField<'a> {
+    /// A field for whole numbers of a range: what a screen reader says, and what it does, in a sentence.
+    pub(crate) const fn new(name: &'a str, tip: &'a str, range: RangeInclusive<f64>) -> Self {
+        Self {
+            name,
+            tip,
+            disabled: None,
+            range,
+            decimals: 0,
+        }
     }
 
-    fn at(
+    /// Nothing can be typed now, for this reason.
+    pub(crate) const fn disabled(mut self, reason: Option<&'a str>) -> Self {
+        self.disabled = reason;
+        self
+    }
+
+    /// So many digits may stand after the decimal mark.
+    pub(crate) const fn decimals(mut self, decimals: usize) -> Self {
+        self.decimals = decimals;
+        self
+    }
+
+    /// Draws a field for whole numbers. The one that was typed and confirmed with Enter in this frame.
+    pub(crate) fn whole_ui(
         self,
         ui: &mut Ui,
-        look: Look,
-        typing: &mut Typing,
-        (id, rect): (Id, Rect),
-    ) -> Option<f64> {
+        pane: &mut Pane<'_>,
+        value: Option<impl Into<f64>>,
+    ) -> Option<i64> {
+        let typed = self.ui(ui, pane, value.map(Into::into))?;
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "only whole numbers of the range pass"
+        )]
+        let whole = typed as i64;
+        Some(whole)
+    }
+
+    /// Draws it where `ui` is; what is in force is shown, none as "-". The number that was typed and confirmed with Enter
+    /// in this frame.
+    pub(crate) fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: Option<f64>) -> Option<f64> {
+        let (look, typing) = (pane.look, &mut *pane.typing);
+        let height = theme::CONTROL.min(ui.spacing().interact_size.y);
+        let (id, rect) = ui.allocate_space(vec2(theme::FIELD, height));
         let decimals = self.decimals;
-        let shown = self
-            .value
-            .map_or_else(|| UNKNOWN.to_owned(), |value| format!("{value:.decimals$}"));
-        if ui.memory(|memory| memory.has_focus(id)) && self.disabled.is_none() {
-            if typing.field != Some(id) {
-                *typing = Typing {
-                    field: Some(id),
-                    text: shown.clone(),
-                    refused: None,
-                };
-            }
-        } else if typing.field == Some(id)
-            && (typing.refused != Some(id) || self.disabled.is_some())
-        {
-            *typing = Typing::default();
+        let shown = value.map_or_else(|| UNKNOWN.to_owned(), |value| format!("{value:.decimals$}"));
+        let is_disabled = self.disabled.is_some();
+        let is_typed = ui.memory(|memory| memory.has_focus(id)) && !is_disabled;
+        if is_typed && typing.field != Some(id) {
+            typing.field = Some(id);
+            typing.text.clone_from(&shown);
+            typing.refused = None;
         }
-        let mut text = if typing.field == Some(id) {
-            typing.text.clone()
-        } else {
-            shown
+        if !is_typed && typing.field == Some(id) && (typing.refused != Some(id) || is_disabled) {
+            typing.field = None;
+            typing.refused = None;
+        }
+        let mut text = match typing.field == Some(id) {
+            true => typing.text.clone(),
+            false => shown,
         };
         let response = self.edit(ui, (look, typing), &mut text, (id, rect));
         if response.gained_focus() {
@@ -76,7 +96,6 @@ impl NumberField<'_> {
             typing.refused = typing.refused.filter(|_| !response.changed());
         }
         let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        let parsed = strict(&text, decimals).filter(|value| self.range.contains(value));
         let (from, to) = (self.range.start(), self.range.end());
         if typing.refused == Some(id) {
             let text = format!("{} {from}..{to}", look.say(main::ONLY_FROM_TO));
@@ -90,11 +109,11 @@ impl NumberField<'_> {
         if !entered || typing.field != Some(id) {
             return None;
         }
-        if parsed.is_none() {
-            typing.refused = Some(id);
-            return None;
+        let parsed = strict(&text, decimals).filter(|value| self.range.contains(value));
+        match parsed {
+            None => typing.refused = Some(id),
+            Some(_) => typing.field = None,
         }
-        *typing = Typing::default();
         parsed
     }
 
@@ -114,51 +133,35 @@ impl NumberField<'_> {
         } else {
             palette.edge
         };
+        let (ground, ink) = match enabled {
+            true => (palette.sunken, palette.text),
+            false => (palette.card, palette.faint),
+        };
         let frame = egui::Frame::new()
-            .fill(if enabled {
-                palette.sunken
-            } else {
-                palette.card
-            })
+            .fill(ground)
             .stroke(Stroke::new(1.0, edge))
             .corner_radius(theme::ROUND_SMALL)
             .inner_margin(theme::NUMBER_INSET);
         let edit = TextEdit::singleline(text)
             .id(id)
             .font(theme::number())
-            .text_color(if enabled { palette.text } else { palette.faint })
+            .text_color(ink)
             .align(Align2::RIGHT_CENTER)
             .char_limit(TYPED_MAX)
             .interactive(enabled)
             .frame(frame)
             .clip_text(true)
-            .min_size(vec2(rect.width(), rect.height()))
+            .min_size(rect.size())
             .desired_width(rect.width() - 14.0);
         let place = UiBuilder::new().max_rect(rect);
-        let response = ui
-            .scope_builder(place, |ui| {
-                // A field is as high as its place, not as high as a button.
-                ui.spacing_mut().interact_size.y = rect.height();
-                ui.add(edit)
-            })
-            .inner;
-        let value = text.clone();
-        response.widget_info(|| {
-            let mut info = WidgetInfo::labeled(Role::TextInput, enabled, self.name);
-            info.current_text_value = Some(value.clone());
-            info
+        let shown = ui.scope_builder(place, |ui| {
+            // A field is as high as its place, not as high as a button.
+            ui.spacing_mut().interact_size.y = rect.height();
+            ui.add(edit)
         });
-        response
+        controls::named_field(&shown.inner, self.name, enabled, text);
+        shown.inner
     }
-}
-
-/// A typed whole number.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "a field lets only whole numbers of its range pass"
-)]
-pub(crate) const fn whole(number: f64) -> i64 {
-    number as i64
 }
 
 /// Marks all of the field's text, so that what is typed next takes its place.

@@ -15,10 +15,10 @@ pub(crate) fn path_ui(ui: &mut Ui, look: Look, id: &'static str) -> Option<PathB
     let size = egui::vec2(ui.available_width(), crate::ui::theme::CONTROL);
     let opened = ui.allocate_ui_with_layout(size, row, |ui| {
         let none = path.is_empty().then(|| look.say(traffic::PATH_NONE));
-        let open = Button::said(look, traffic::PATH_OPEN, traffic::PATH_OPEN_TIP);
+        let open = Button::said(look, traffic::PATH_OPEN);
         let open = open.disabled(none).ui(ui, look).clicked();
-        let (name, hint) = (look.say(traffic::PATH), look.say(traffic::PATH_HINT));
-        let field = controls::edit_ui(ui, name, hint, &mut typed);
+        let named = (look.say(traffic::PATH), look.say(traffic::PATH_HINT));
+        let field = controls::edit_ui(ui, named, &mut typed);
         open || field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
     });
     ui.data_mut(|data| data.insert_temp(id, typed));

@@ -1,7 +1,7 @@
 //! Things that a person puts in another order, by dragging one to the place of another or with Alt and the arrow keys.
 //! Knows nothing of what they are.
 
-use crate::poses::edit::Way;
+use crate::poses::edit::ShiftDirection;
 use crate::ui::kit::look::Look;
 use crate::ui::theme;
 use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, Ui};
@@ -50,16 +50,16 @@ impl Reorder {
 }
 
 /// Which way Alt and an arrow key move the thing that has the keyboard.
-pub(crate) fn keyed(ui: &Ui, response: &Response) -> Option<Way> {
+pub(crate) fn keyed(ui: &Ui, response: &Response) -> Option<ShiftDirection> {
     if !response.has_focus() {
         return None;
     }
     ui.input_mut(|input| {
         let mut pressed = |key| input.consume_key(Modifiers::ALT, key);
         if pressed(Key::ArrowLeft) || pressed(Key::ArrowUp) {
-            Some(Way::Earlier)
+            Some(ShiftDirection::Earlier)
         } else if pressed(Key::ArrowRight) || pressed(Key::ArrowDown) {
-            Some(Way::Later)
+            Some(ShiftDirection::Later)
         } else {
             None
         }

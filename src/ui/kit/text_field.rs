@@ -1,40 +1,54 @@
 //! A line of text that counts when it is left, and not when it is left with Esc. Knows nothing of what it names.
 
-use crate::ui::kit::look::Look;
+use crate::ui::kit::controls;
+use crate::ui::kit::look::{Look, Pane};
 use crate::ui::theme;
-use egui::{Id, Key, Rect, Role, TextEdit, Tooltip, Ui, WidgetInfo, vec2};
+use egui::{Id, Key, Rect, TextEdit, Tooltip, Ui, vec2};
 
-/// A text field at a place.
+/// A field for a line of text.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TextField<'a> {
     /// What a screen reader says.
     pub(crate) name: &'a str,
-    /// Shown while nothing stands in it.
-    pub(crate) hint: &'a str,
-    /// What is in force.
-    pub(crate) value: &'a str,
-    /// Characters that fit.
-    pub(crate) max: usize,
+    hint: &'a str,
+    max: usize,
+    check: Check<'a>,
 }
 
-impl TextField<'_> {
-    /// Draws it where `ui` is, over the width that is left. What was typed, once it was left with something new in it.
-    pub(crate) fn ui(self, ui: &mut Ui, typed: &mut Option<(Id, String)>) -> Option<String> {
-        let (id, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
-        self.put(ui, typed, rect, id)
+/// What passes, and the words beside what does not.
+type Check<'a> = (fn(&str) -> bool, &'a str);
+
+impl<'a> TextField<'a> {
+    /// A field of at most so many characters.
+    pub(crate) const fn new(name: &'a str, max: usize) -> Self {
+        Self {
+            name,
+            hint: "",
+            max,
+            check: (|_| true, ""),
+        }
     }
 
-    /// Draws it. What was typed, once it was left with something new in it.
-    pub(crate) fn put(
-        self,
-        ui: &mut Ui,
-        typed: &mut Option<(Id, String)>,
-        rect: Rect,
-        id: Id,
-    ) -> Option<String> {
-        let mut text = match typed {
+    /// Shows this while nothing stands in it.
+    pub(crate) const fn hint(mut self, hint: &'a str) -> Self {
+        self.hint = hint;
+        self
+    }
+
+    /// What does not pass stays, with these words beside it, and is not given back.
+    pub(crate) const fn check(mut self, passes: fn(&str) -> bool, words: &'a str) -> Self {
+        self.check = (passes, words);
+        self
+    }
+
+    /// Draws it where `ui` is, over the width that is left, with what is in force. What was typed, once it was left with
+    /// something new in it.
+    pub(crate) fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: &str) -> Option<String> {
+        let (id, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
+        let written = &mut pane.typing.written;
+        let mut text = match written {
             Some((field, text)) if *field == id => text.clone(),
-            _ => self.value.to_owned(),
+            _ => value.to_owned(),
         };
         let edit = TextEdit::singleline(&mut text)
             .id(id)
@@ -47,21 +61,28 @@ impl TextField<'_> {
             .min_size(rect.size())
             .desired_width(rect.width() - theme::PAD);
         let response = ui.put(rect, edit);
-        response.widget_info(|| {
-            let mut info = WidgetInfo::labeled(Role::TextInput, true, self.name);
-            info.current_text_value = Some(text.clone());
-            info
-        });
+        controls::named_field(&response, self.name, true, &text);
         if response.changed() {
-            *typed = Some((id, text.clone()));
+            *written = Some((id, text.clone()));
+        }
+        let (passes, words) = self.check;
+        let is_refused = !text.trim().is_empty() && !passes(text.trim());
+        if !response.has_focus()
+            && is_refused
+            && written.as_ref().is_some_and(|(field, _)| *field == id)
+        {
+            refused_ui(ui, pane.look, (id, rect), words);
         }
         if !response.lost_focus() {
             return None;
         }
         let escaped = ui.input(|input| input.key_pressed(Key::Escape));
-        *typed = None;
+        if is_refused && !escaped {
+            return None;
+        }
+        *written = None;
         let text = text.trim();
-        (!escaped && text != self.value).then(|| text.to_owned())
+        (!escaped && text != value).then(|| text.to_owned())
     }
 }
 

@@ -3,12 +3,11 @@
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::app::params::state::{Question, Wanted};
+use crate::app::params::state::{WriteQuestion, WriteRequest};
 use crate::app::state::State;
 use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::params::danger::Danger;
-use crate::ui::kit::card::{Card, Choice, Line, Manner};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Card, Choice, Look, Manner};
 use crate::ui::params::table::value_text;
 use crate::ui::text::{cards, device, verdicts, words};
 
@@ -18,117 +17,92 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     Some(card(state, look, question))
 }
 
-fn card(state: &State, look: Look, question: &Question) -> Card {
+fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
     let hurts = !question.dangers.is_empty();
     let staged = !state.hand().params.to_apply().is_empty();
     let (title, agree) = match question.what {
-        Wanted::Apply(_) => (device::DANGER_APPLY, device::AGREE_APPLY),
-        Wanted::Save if hurts => (device::DANGER_SAVE, device::AGREE_SAVE),
-        Wanted::Save if staged => (device::SAVE_TITLE, device::AGREE_APPLY_SAVE),
-        Wanted::Save => (device::SAVE_TITLE, device::AGREE),
+        WriteRequest::Apply(_) => (device::DANGER_APPLY, device::AGREE_APPLY),
+        WriteRequest::Save if hurts => (device::DANGER_SAVE, device::AGREE_SAVE),
+        WriteRequest::Save if staged => (device::SAVE_TITLE, device::AGREE_APPLY_SAVE),
+        WriteRequest::Save => (device::SAVE_TITLE, device::AGREE),
     };
-    let manner = match hurts {
-        true => Manner::Danger,
-        false => Manner::Main,
-    };
-    let why = state.hand().write_refusal();
-    let why = why.map(|why| look.say(verdicts::refusal(why)).to_owned());
-    let back = Choice::new(device::DECLINE, device::DECLINE_TIP, Manner::Safe);
-    let agree = Choice::new(agree, device::AGREE_TIP, manner);
-    let mut all = match question.what {
-        Wanted::Apply(_) => Vec::new(),
-        Wanted::Save => changes(state, look),
-    };
+    let mut card = Card::new(look, title);
+    if matches!(question.what, WriteRequest::Save) {
+        card = changes(state, look, card);
+    }
+    let mut manner = Manner::Main;
     if hurts {
-        all.extend(lines(look, &question.dangers));
+        card = dangers(look, card, &question.dangers);
+        manner = Manner::Danger;
     }
-    Card {
-        title: look.say(title).into(),
-        lines: all,
-        choices: vec![
-            back.does(Action::Param(ParamAction::Decline)),
-            agree.does(Action::Param(ParamAction::Agree)).disabled(why),
-        ],
-        ..Card::default()
-    }
+    let why = state.hand().write_refusal().map(device::refusal);
+    let back = Choice::new(device::DECLINE, Manner::Safe);
+    let agree = Choice::new(agree, manner).does(Action::Param(ParamAction::Agree));
+    card.choice(back.does(Action::Param(ParamAction::Decline)))
+        .choice(agree.disabled(why))
 }
 
 /// What a SAVE changes for the next power-up, row by row.
-fn changes(state: &State, look: Look) -> Vec<Line> {
+fn changes(state: &State, look: Look, card: Card) -> Card {
     let book = &state.hand().params;
-    let say = |text| look.say(text).to_owned();
-    let heads = [
+    let card = card.words(device::SAVE_CHANGES).head([
         device::NAME,
         device::SAVE_FROM,
         device::LIVE,
         device::SAVE_TO,
-    ];
-    let mut lines = vec![
-        Line::Words(say(device::SAVE_CHANGES)),
-        Line::Head(heads.map(say).into()),
-    ];
-    lines.extend(book.unsaved().into_iter().map(|row| {
+    ]);
+    let card = book.unsaved().into_iter().fold(card, |card, row| {
         let live = book.live(row.id).map(|(value, _)| value);
         let values = [row.ours, live, Some(row.theirs)];
-        let name = [verdicts::whole_name(look, row.id)].into_iter();
-        Line::Cells(
-            name.chain(values.map(|value| value_text(row.id, value)))
-                .collect(),
-        )
-    }));
-    if !book.to_apply().is_empty() {
-        lines.push(Line::Note(say(device::SAVE_STAGED)));
+        let values = values.map(|value| value_text(row.id, value));
+        card.row(verdicts::whole_name(look, row.id), values)
+    });
+    match book.to_apply().is_empty() {
+        true => card,
+        false => card.note(device::SAVE_STAGED),
     }
-    lines
 }
 
 /// What is dangerous about these joints, with the measured figures.
-pub(crate) fn lines(look: Look, dangers: &[Danger]) -> Vec<Line> {
+pub(crate) fn dangers(look: Look, mut card: Card, dangers: &[Danger]) -> Card {
     let hard = dangers
         .iter()
         .filter(|danger| danger.overshoot_g >= NOTABLE_G);
     let slowly = hard.map(|danger| overshoot_g(SLOWEST, f64::from(danger.force_g)));
     let slowly = slowly.reduce(f64::max);
-    let mut lines = Vec::new();
     if slowly.is_some() {
-        lines.push(Line::Warning(look.say(device::DANGER_LATE).into()));
+        card = card.warning(device::DANGER_LATE);
     }
     let strong = dangers.iter().filter(|danger| danger.is_above_rated());
     let strong: Vec<&str> = strong
         .map(|danger| look.say(words::dof(danger.dof)))
         .collect();
     if !strong.is_empty() {
-        let joints = strong.join(", ");
-        let words = format!("{} {joints}", look.say(device::DANGER_RATED));
-        lines.push(Line::Warning(words));
+        card = card.warning((device::DANGER_RATED, strong.join(", ")));
     }
-    let head = [
+    card = card.head([
         cards::JOINT,
         device::DANGER_SPEED,
         device::DANGER_FORCE,
         device::DANGER_OVER,
         device::DANGER_PEAK,
-    ];
-    let head = head.map(|text| look.say(text).to_owned());
-    lines.push(Line::Head(head.into()));
-    lines.extend(dangers.iter().map(|danger| row(look, danger)));
-    lines.push(Line::Note(look.say(device::DANGER_MEASURED).into()));
+    ]);
+    card = dangers.iter().fold(card, row).note(device::DANGER_MEASURED);
     if dangers.iter().any(|danger| danger.is_beyond_measured()) {
-        lines.push(Line::Note(look.say(device::DANGER_BEYOND).into()));
+        card = card.note(device::DANGER_BEYOND);
     }
-    if let Some(peak) = slowly {
-        let words = format!("{} {peak:.0} g", look.say(device::DANGER_SLOWLY));
-        lines.push(Line::Note(words));
+    match slowly {
+        Some(peak) => card.note((device::DANGER_SLOWLY, format!("{peak:.0} g"))),
+        None => card,
     }
-    lines
 }
 
-fn row(look: Look, danger: &Danger) -> Line {
-    Line::Cells(vec![
-        look.say(words::dof(danger.dof)).into(),
+fn row(card: Card, danger: &Danger) -> Card {
+    let cells = [
         danger.speed.to_string(),
         danger.force_g.to_string(),
         format!("+{:.0}", danger.overshoot_g),
         format!("{:.0}", danger.peak_g()),
-    ])
+    ];
+    card.row(words::dof(danger.dof), cells)
 }

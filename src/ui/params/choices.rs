@@ -1,38 +1,29 @@
 //! What the cards of all procedures have in common.
 
 use crate::app::action::Action;
-use crate::app::params::Refusal;
 use crate::app::procedures::ProcedureAction;
 use crate::app::state::State;
-use crate::ui::kit::card::{Card, Choice, Manner, Progress};
-use crate::ui::kit::look::Look;
-use crate::ui::text::{Text, cards, verdicts};
+use crate::ui::kit::{Card, Choice, Manner};
+use crate::ui::text::{Text, cards, device};
 
-/// A card of something that goes on by itself.
-pub(crate) fn under_way(look: Look, title: Text, words: &str, part: f32) -> Card {
-    Card {
-        title: look.say(title).into(),
-        progress: Some(Progress {
-            part,
-            words: words.into(),
-        }),
-        ..Card::default()
-    }
+/// A button that goes one step further.
+pub(crate) fn step(text: Text, manner: Manner, step: ProcedureAction) -> Choice {
+    Choice::new(text, manner).does(Action::Procedure(step))
 }
 
 /// The way out of a card that was read.
 pub(crate) fn close() -> Choice {
-    Choice::new(cards::CLOSE, cards::CLOSE_TIP, Manner::Safe)
-        .does(Action::Procedure(ProcedureAction::Close))
+    step(cards::CLOSE, Manner::Safe, ProcedureAction::Close)
 }
 
-/// The way out of a card that asks.
-pub(crate) fn cancel() -> Choice {
-    Choice::cancel().does(Action::Procedure(ProcedureAction::Close))
-}
-
-/// Why nothing can begin now, in words.
-pub(crate) fn reason(state: &State, look: Look) -> Option<String> {
-    let why: Refusal = state.hand().rest_refusal()?;
-    Some(look.say(verdicts::refusal(why)).into())
+/// A card that asks whether to begin, unless nothing can begin now or not yet.
+pub(crate) fn asking(
+    state: &State,
+    card: Card,
+    (begin, manner): (Text, Manner),
+    not_yet: Option<Text>,
+) -> Card {
+    let why = state.hand().rest_refusal().map(device::refusal).or(not_yet);
+    card.choice(step(cards::CANCEL, Manner::Safe, ProcedureAction::Close))
+        .choice(step(begin, manner, ProcedureAction::Begin).disabled(why))
 }

@@ -4,8 +4,7 @@ use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::params::compared::Compared;
 use crate::params::rows::{ParamId, Value};
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Button, Label, Pane, Weight};
 use crate::ui::params::flash::moment;
 use crate::ui::params::table::{cell_name, cell_ui, value_text};
 use crate::ui::text::{device, verdicts};
@@ -34,7 +33,7 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
         let grid = Grid::new("compared").num_columns(3).min_col_width(width);
         grid.show(ui, |ui| {
             for text in [device::TAKE, device::LIVE, device::IN_FILE] {
-                Label::new(look.say(text), palette.muted).small().ui(ui);
+                Label::note(look, text).ui(ui);
             }
             ui.end_row();
             for row in file.params.iter() {
@@ -53,21 +52,13 @@ fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
     let look = pane.look;
     let count = compared.chosen().iter().count();
     let text = format!("{} ({count})", look.say(device::STAGE_TICKED));
-    let none = (count == 0).then(|| look.say(device::STAGE_NONE));
-    let stage = Button::new(&text, look.say(device::STAGE_TICKED_TIP))
+    let stage = Button::new(&text, look.tip(device::STAGE_TICKED))
         .named(look.say(device::STAGE_TICKED))
         .weight(Weight::Strong)
-        .disabled(none);
-    if stage.ui(ui, look).clicked() {
-        pane.actions.push(Action::Param(ParamAction::StageTicked));
-    }
-    let (text, tip) = (device::CLOSE_FILE, device::CLOSE_FILE_TIP);
-    if Button::new(look.say(text), look.say(tip))
-        .ui(ui, look)
-        .clicked()
-    {
-        pane.actions.push(Action::Param(ParamAction::CloseFile));
-    }
+        .disabled_if(count == 0, look.say(device::STAGE_NONE));
+    stage.sends(ui, pane, Action::Param(ParamAction::StageTicked));
+    let close = Button::said(look, device::CLOSE_FILE);
+    close.sends(ui, pane, Action::Param(ParamAction::CloseFile));
 }
 
 fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (ParamId, Value)) {

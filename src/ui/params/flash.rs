@@ -2,20 +2,18 @@
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::app::params::refusal::Refusal;
+use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
 use crate::ui::kit::path_field::path_ui;
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{cards, device, errors, notices, verdicts};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui};
 
 /// Draws the card: beside the table its parts under each other, below it side by side.
 pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    controls::card_ui(ui, pane.look, |ui| {
+    kit::card_ui(ui, pane.look, |ui| {
         let height = ui.available_height();
         ui.set_min_height(height);
         if height > ui.available_width() {
@@ -37,19 +35,17 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let look = pane.look;
     let hand = pane.state.hand();
     let reason = hand.save_refusal();
-    let reason = reason.map(|why| look.say(verdicts::refusal(why)));
+    let reason = reason.map(|why| look.say(device::refusal(why)));
     // Bright only where it is the next thing to do.
     let unsaved = hand.params.unsaved();
     let weight = match hand.params.to_apply().is_empty() && !unsaved.is_empty() {
         true => Weight::Strong,
         false => Weight::Normal,
     };
-    let save = Button::new(look.say(device::SAVE), look.say(device::SAVE_TIP));
+    let save = Button::said(look, device::SAVE);
     let save = save.weight(weight).disabled(reason);
-    controls::head_ui(ui, look, look.say(device::FLASH), |ui| {
-        if save.ui(ui, look).clicked() {
-            pane.actions.push(Action::Param(ParamAction::Save));
-        }
+    kit::head_ui(ui, look, look.say(device::FLASH), |ui| {
+        save.sends(ui, pane, Action::Param(ParamAction::Save));
     });
     let lines = lines(pane, reason);
     let area = ScrollArea::vertical().id_salt("flash").max_height(most);
@@ -121,16 +117,13 @@ pub(crate) fn moment(stamp: &str) -> String {
 fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let nothing = pane.state.hand().params.live_params().is_empty();
-    let nothing = nothing.then(|| look.say(verdicts::refusal(Refusal::NothingRead)));
+    let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingRead)));
     ui.horizontal(|ui| {
-        let dump = Button::new(look.say(device::DUMP), look.say(device::DUMP_TIP));
-        let open = Button::new(look.say(device::OPEN), look.say(device::OPEN_TIP));
-        if dump.disabled(nothing).ui(ui, look).clicked() {
-            pane.actions.push(Action::Param(ParamAction::Dump));
-        }
-        if open.ui(ui, look).clicked() {
-            pane.actions.push(Action::Param(ParamAction::Open));
-        }
+        let dump = Button::said(look, device::DUMP);
+        let open = Button::said(look, device::OPEN);
+        dump.disabled(nothing)
+            .sends(ui, pane, Action::Param(ParamAction::Dump));
+        open.sends(ui, pane, Action::Param(ParamAction::Open));
     });
     if let Some(refused) = &pane.state.hand().params.file_refused {
         let words = notices::notice(look, refused);
@@ -140,7 +133,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 .push(Action::Param(ParamAction::OpenBackup(path)));
         }
     }
-    let title = Label::new(look.say(device::BACKUPS), look.palette.text);
+    let title = Label::said(look, device::BACKUPS);
     title.font(theme::title()).ui(ui);
     let backups = &pane.state.hand().params.backups;
     let most = ui.available_height() - theme::CONTROL - theme::GAP;
@@ -148,8 +141,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let area = area.id_salt("backups").min_scrolled_height(0.0);
     area.show(ui, |ui| {
         if backups.is_empty() {
-            let none = Label::new(look.say(device::BACKUPS_NONE), look.palette.muted);
-            none.small().wrap().ui(ui);
+            Label::note(look, device::BACKUPS_NONE).wrap().ui(ui);
         }
         for backup in backups.iter().rev() {
             backup_ui(ui, pane, backup);
@@ -190,19 +182,11 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
 pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let live = pane.state.hand().link.state.is_live();
-    let reason = (!live).then(|| look.say(cards::NO_HAND));
-    let reset = Button::new(
-        look.say(cards::RESET_ENTRY),
-        look.say(cards::RESET_ENTRY_TIP),
-    );
-    if reset.disabled(reason).ui(ui, look).clicked() {
-        pane.actions.push(Action::FactoryReset);
-    }
-    let calibrate = Button::new(
-        look.say(cards::CALIBRATE_ENTRY),
-        look.say(cards::CALIBRATE_ENTRY_TIP),
-    );
-    if calibrate.disabled(reason).ui(ui, look).clicked() {
-        pane.actions.push(Action::CalibrateForce);
+    for (text, action) in [
+        (cards::RESET_ENTRY, Action::FactoryReset),
+        (cards::CALIBRATE_ENTRY, Action::CalibrateForce),
+    ] {
+        let button = Button::said(look, text).disabled_if(!live, look.say(cards::NO_HAND));
+        button.sends(ui, pane, action);
     }
 }

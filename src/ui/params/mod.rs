@@ -10,19 +10,16 @@ pub(crate) mod table;
 
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::app::params::refusal::ParamRefusal;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::params::table::Shown;
 use crate::ui::text::{device, errors, verdicts};
-use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, Ui};
+use egui::{Align, Color32, Frame, Layout, Margin, Panel, Ui};
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct DeviceView {
     shown: Shown,
-    typed: Option<(Id, String)>,
 }
 
 impl DeviceView {
@@ -44,7 +41,7 @@ impl DeviceView {
         flash
             .resizable(false)
             .show(ui, |ui| flash::flash_ui(ui, pane));
-        controls::card_ui(ui, pane.look, |ui| {
+        kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             if let Some(compared) = &pane.state.hand().params.compared {
                 return file::file_ui(ui, pane, compared);
@@ -53,7 +50,7 @@ impl DeviceView {
             ui.horizontal(|ui| tools_ui(ui, pane));
             let (words, color) = status(pane);
             Label::new(&words, color).small().ui(ui);
-            table::table_ui(ui, pane, &self.shown, &mut self.typed);
+            table::table_ui(ui, pane, &self.shown);
         });
     }
 
@@ -62,17 +59,15 @@ impl DeviceView {
         let look = pane.look;
         ui.scope(|ui| {
             ui.set_max_width(200.0);
-            let (name, hint) = (look.say(device::FIND), look.say(device::FIND_HINT));
-            controls::edit_ui(ui, name, hint, &mut self.shown.words);
+            kit::edit_ui(ui, look.both(device::FIND), &mut self.shown.words);
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let refusal = pane.state.hand().read_refusal();
-            let refusal = refusal.map(|why| look.say(verdicts::refusal(why)));
-            let read = Button::new(look.say(device::READ), look.say(device::READ_TIP));
-            if read.disabled(refusal).ui(ui, look).clicked() {
-                pane.actions.push(Action::Param(ParamAction::Read));
-            }
-            let only = Button::new(look.say(device::ONLY), look.say(device::ONLY_TIP));
+            let refusal = refusal.map(|why| look.say(device::refusal(why)));
+            let read = Button::said(look, device::READ);
+            read.disabled(refusal)
+                .sends(ui, pane, Action::Param(ParamAction::Read));
+            let only = Button::said(look, device::ONLY);
             if only.choice(self.shown.only).ui(ui, look).clicked() {
                 self.shown.only = !self.shown.only;
             }
@@ -83,26 +78,25 @@ impl DeviceView {
 /// What is done with what is staged.
 fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, hand) = (pane.look, pane.state.hand());
-    let why = |why: Option<_>| why.map(|why| look.say(verdicts::refusal(why)));
+    let why = |why: Option<_>| why.map(|why| look.say(device::refusal(why)));
     let apply = match hand.params.to_apply().iter().count() {
         0 => look.say(device::APPLY).to_owned(),
         count => format!("{} ({count})", look.say(device::APPLY)),
     };
     let nothing = hand.params.all_staged().is_empty();
-    let nothing = nothing.then(|| look.say(device::WHY_NOTHING_STAGED));
+    let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingStaged)));
     let is_known = hand.sample.speed_set.is_some() && hand.link.state.is_live();
     let unknown = (!is_known).then(|| look.say(device::COPY_UNKNOWN));
     let weight = match hand.apply_refusal() {
         None => Weight::Strong,
         Some(_) => Weight::Normal,
     };
-    let apply = Button::new(&apply, look.say(device::APPLY_TIP))
+    let apply = Button::new(&apply, look.tip(device::APPLY))
         .named(look.say(device::APPLY))
         .weight(weight);
-    let tool = |text, tip| Button::new(look.say(text), look.say(tip));
-    let undo = tool(device::UNDO, device::UNDO_TIP);
-    let drop = tool(device::UNSTAGE_ALL, device::UNSTAGE_ALL_TIP);
-    let copy = tool(device::COPY, device::COPY_TIP);
+    let undo = Button::said(look, device::UNDO);
+    let drop = Button::said(look, device::UNSTAGE_ALL);
+    let copy = Button::said(look, device::COPY);
     let tools = [
         (apply, why(hand.apply_refusal()), ParamAction::Apply),
         (undo, why(hand.undo_refusal()), ParamAction::Undo),
@@ -110,9 +104,9 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (copy, unknown, ParamAction::CopyLive),
     ];
     for (button, disabled, wish) in tools {
-        if button.disabled(disabled).ui(ui, look).clicked() {
-            pane.actions.push(Action::Param(wish));
-        }
+        button
+            .disabled(disabled)
+            .sends(ui, pane, Action::Param(wish));
     }
 }
 

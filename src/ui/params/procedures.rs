@@ -7,7 +7,7 @@ use crate::app::procedures::{
 };
 use crate::app::state::State;
 use crate::hand::Moment;
-use crate::params::place::{Place, Places};
+use crate::params::place::{PlacePair, WhichPlace};
 use crate::params::rows::ParamId;
 use crate::record::Saved;
 use crate::tasks::TaskError;
@@ -15,11 +15,11 @@ use crate::tasks::place::{
     KEEP_WITHIN, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, taken_back_at,
 };
 use crate::tasks::reset::{ResetEnd, ResetReport, ResetStep};
-use crate::ui::kit::card::{Card, Choice, Line, Manner, Progress};
-use crate::ui::kit::look::Look;
+use crate::transport::Endpoint;
+use crate::ui::kit::{Card, Choice, Look, Manner};
 use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
-use crate::ui::params::choices::{cancel, close, reason, under_way};
+use crate::ui::params::choices::{asking, close, step};
 use crate::ui::params::table::value_text;
 use crate::ui::text::{Text, cards, device, errors};
 use std::path::Path;
@@ -46,32 +46,20 @@ const fn titles(change: &PlaceChange) -> [Text; 2] {
 }
 
 /// Nothing was written: why.
-fn not_begun(look: Look, title: Text, error: &TaskError) -> Card {
-    let (text, note) = match error {
-        TaskError::NoBackup { message } => (cards::NO_BACKUP, Some(message.clone())),
-        TaskError::NotRead { .. } => (cards::NO_BACKUP, Some(errors::task(look, error))),
-        _ => (cards::OVER_NOT_WRITTEN, None),
+fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
+    let card = match error {
+        TaskError::NoBackup { message } => card.warning(cards::NO_BACKUP).note(message.clone()),
+        TaskError::NotRead { .. } => {
+            let why = errors::task(look, error);
+            card.warning(cards::NO_BACKUP).note(why)
+        }
+        _ => card.warning(cards::OVER_NOT_WRITTEN),
     };
-    let mut lines = vec![Line::Warning(look.say(text).into())];
-    lines.extend(note.map(Line::Note));
-    Card {
-        title: look.say(title).into(),
-        lines,
-        choices: vec![close()],
-        ..Card::default()
-    }
+    card.choice(close())
 }
 
-fn step(text: Text, tip: Text, manner: Manner, step: ProcedureAction) -> Choice {
-    Choice::new(text, tip, manner).does(Action::Procedure(step))
-}
-
-fn at(look: Look, caption: Text, places: &Places, place: Place) -> String {
-    format!("{} {}", look.say(caption), places.endpoint(place))
-}
-
-/// What is changed, from what to what.
-fn from_to(look: Look, change: &PlaceChange) -> Line {
+/// From which value to which.
+fn from_to(look: Look, change: &PlaceChange) -> String {
     let name = match change.id {
         ParamId::HandId => cards::FROM_TO_ID,
         ParamId::IpAddress => cards::FROM_TO_IP,
@@ -79,78 +67,67 @@ fn from_to(look: Look, change: &PlaceChange) -> Line {
     };
     let (from, to) = (change.before, change.wanted);
     let [from, to] = [from, to].map(|value| value_text(change.id, Some(value)));
-    Line::Words(format!("{}: {from} -> {to}", look.say(name)))
+    format!("{}: {from} -> {to}", look.say(name))
+}
+
+/// Where the hand is now, and where it will be if that is elsewhere.
+fn now_and_then(card: Card, places: &PlacePair) -> Card {
+    let card = card.note((cards::NOW_AT, &places.old));
+    match places.new == places.old {
+        true => card,
+        false => card.note((cards::THEN_AT, &places.new)),
+    }
 }
 
 fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let (change, places) = (&run.change, &run.change.places);
-    let mut lines = vec![
-        from_to(look, change),
-        Line::Note(at(look, cards::NOW_AT, places, Place::Old)),
-    ];
-    if places.new != places.old {
-        lines.push(Line::Note(at(look, cards::THEN_AT, places, Place::New)));
+    let card = Card::new(look, titles(change)[0]).words(from_to(look, change));
+    let mut card = now_and_then(card, places);
+    if let Some(way) = &run.way {
+        card = way_to(card, way);
     }
-    lines.extend(run.way.as_ref().map(|way| way_line(look, way)));
-    let words = match change.id {
+    let card = card.words(match change.id {
         ParamId::IpAddress => cards::POWERED,
         _ if places.new == places.old => cards::POWERED,
         _ => cards::FOLLOWED,
-    };
-    lines.push(Line::Words(look.say(words).into()));
-    let begin = step(
-        cards::CHANGE,
-        cards::CHANGE_TIP,
-        Manner::Danger,
-        ProcedureAction::Begin,
-    );
-    Card {
-        title: look.say(titles(change)[0]).into(),
-        lines,
-        choices: vec![cancel(), begin.disabled(reason(state, look))],
-        ..Card::default()
-    }
+    });
+    asking(state, card, (cards::CHANGE, Manner::Danger), None)
 }
 
-fn way_line(look: Look, way: &WayTo) -> Line {
+/// Whether this computer reaches the new address, before anything is written.
+fn way_to(card: Card, way: &WayTo) -> Card {
     match way {
-        WayTo::Asked => Line::Note(look.say(cards::WAY_ASKED).into()),
-        WayTo::None => Line::Warning(look.say(cards::WAY_NONE).into()),
-        WayTo::Known(route) => {
-            let from = route.from;
-            match route.is_direct() {
-                Some(true) => Line::Note(format!("{} {from}", look.say(cards::WAY_DIRECT))),
-                Some(false) => Line::Warning(format!("{} {from}", look.say(cards::WAY_ROUTED))),
-                None => Line::Note(format!("{} {from}", look.say(cards::WAY_UNSURE))),
-            }
-        }
+        WayTo::Asked => card.note(cards::WAY_ASKED),
+        WayTo::None => card.warning(cards::WAY_NONE),
+        WayTo::Known(route) => match route.is_direct() {
+            Some(true) => card.note((cards::WAY_DIRECT, route.from)),
+            Some(false) => card.warning((cards::WAY_ROUTED, route.from)),
+            None => card.note((cards::WAY_UNSURE, route.from)),
+        },
     }
 }
 
 fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let change = &run.change;
     let places = &change.places;
+    let card = Card::new(look, titles(change)[1]);
     match &run.stage {
         ProcedureStage::Asking => ask_change(state, look, run),
-        ProcedureStage::Over(Ok(report)) => change_over(look, change, report),
-        ProcedureStage::Over(Err(error)) => not_begun(look, titles(change)[1], error),
+        ProcedureStage::Over(Ok(report)) => change_over(card, places, report),
+        ProcedureStage::Over(Err(error)) => not_begun(look, card, error),
         ProcedureStage::Doing(step, since) => match step {
-            PlaceStep::BackingUp | PlaceStep::BackedUp(..) => {
-                under_way(look, titles(change)[1], look.say(cards::BACKING_UP), 0.1)
-            }
+            PlaceStep::BackingUp | PlaceStep::BackedUp(..) => card.progress(0.1, cards::BACKING_UP),
             PlaceStep::Looking(place) => {
-                let words = at(look, cards::LOOKING, places, *place);
-                under_way(look, titles(change)[1], &words, 0.6)
+                card.progress(0.6, (cards::LOOKING, places.endpoint(*place)))
             }
             PlaceStep::Writing(place) => {
-                let words = at(look, cards::WRITING, places, *place);
-                under_way(look, titles(change)[1], &words, 0.4)
+                card.progress(0.4, (cards::WRITING, places.endpoint(*place)))
             }
             PlaceStep::Keeping(place) => keep_card(state, look, change, (*place, *since)),
-            PlaceStep::Returning => under_way(look, cards::GOING_BACK, "", 0.9),
+            PlaceStep::Returning => Card::new(look, cards::GOING_BACK).progress(0.9, String::new()),
             PlaceStep::Offering(_) => offer_card(look, run),
             PlaceStep::Saving(_) => {
-                under_way(look, cards::OFFER_TITLE, look.say(cards::SAVING), 0.8)
+                Card::new(look, cards::OFFER_TITLE).progress(0.8, cards::SAVING)
             }
         },
     }
@@ -160,264 +137,157 @@ fn keep_card(
     state: &State,
     look: Look,
     change: &PlaceChange,
-    (place, since): (Place, Moment),
+    (place, since): (WhichPlace, Moment),
 ) -> Card {
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
-    let words = match place {
-        Place::New => cards::KEEP_THERE,
-        Place::Old => cards::KEEP_WAITS,
-    };
-    let keep = step(
-        cards::KEEP,
-        cards::KEEP_TIP,
-        Manner::Main,
-        ProcedureAction::Keep,
-    );
-    let go_back = step(
-        cards::GO_BACK,
-        cards::GO_BACK_TIP,
-        Manner::Plain,
-        ProcedureAction::GoBack,
-    );
-    let reached = state.hand().link.state.is_live();
-    let lost = (!reached).then(|| look.say(cards::NO_HAND).to_owned());
-    Card {
-        title: look.say(cards::KEEP_TITLE).into(),
-        lines: vec![
-            from_to(look, change),
-            Line::Words(look.say(words).into()),
-            Line::Note(at(look, cards::NOW_AT, &change.places, place)),
-        ],
-        progress: Some(Progress {
-            part: seconds / KEEP_WITHIN.as_secs_f32(),
-            words: format!("{} {:.0} s", look.say(cards::GOES_BACK_IN), seconds.ceil()),
-        }),
-        choices: vec![go_back, keep.disabled(lost)],
-        ..Card::default()
-    }
+    let left = format!("{:.0} s", seconds.ceil());
+    let lost = (!state.hand().link.state.is_live()).then_some(cards::NO_HAND);
+    let keep = step(cards::KEEP, Manner::Main, ProcedureAction::Keep);
+    Card::new(look, cards::KEEP_TITLE)
+        .words(from_to(look, change))
+        .words(match place {
+            WhichPlace::New => cards::KEEP_THERE,
+            WhichPlace::Old => cards::KEEP_WAITS,
+        })
+        .note((cards::NOW_AT, change.places.endpoint(place)))
+        .progress(
+            seconds / KEEP_WITHIN.as_secs_f32(),
+            (cards::GOES_BACK_IN, left),
+        )
+        .choice(step(cards::GO_BACK, Manner::Plain, ProcedureAction::GoBack))
+        .choice(keep.disabled(lost))
 }
 
-/// SAVE writes all that the hand holds: what could hurt among it is told before.
 fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
-    let places = &run.change.places;
-    let unsaved = step(
-        cards::UNSAVED,
-        cards::UNSAVED_TIP,
-        Manner::Safe,
-        ProcedureAction::LeaveUnsaved,
-    );
-    let mut lines = vec![Line::Words(at(look, cards::OFFER, places, Place::Old))];
-    let (text, manner) = match run.dangers.is_empty() {
-        true => (cards::SAVE, Manner::Main),
-        false => {
-            lines.push(Line::Words(look.say(cards::OFFER_ALL).into()));
-            lines.extend(device_card::lines(look, &run.dangers));
-            (device::AGREE_SAVE, Manner::Danger)
-        }
-    };
-    Card {
-        title: look.say(cards::OFFER_TITLE).into(),
-        lines,
-        choices: vec![
-            unsaved,
-            step(text, cards::SAVE_TIP, manner, ProcedureAction::Save),
-        ],
-        ..Card::default()
+    let mut card =
+        Card::new(look, cards::OFFER_TITLE).words((cards::OFFER, &run.change.places.old));
+    let (mut text, mut manner) = (cards::SAVE, Manner::Main);
+    if !run.dangers.is_empty() {
+        card = device_card::dangers(look, card.words(cards::OFFER_ALL), &run.dangers);
+        (text, manner) = (device::AGREE_SAVE, Manner::Danger);
     }
+    let leave = ProcedureAction::LeaveUnsaved;
+    card.choice(step(cards::UNSAVED, Manner::Safe, leave))
+        .choice(step(text, manner, ProcedureAction::Save))
 }
 
-fn change_over(look: Look, change: &PlaceChange, report: &PlaceReport) -> Card {
-    let places = &change.places;
-    let backup = report.backup.as_path();
-    let words = |text| Line::Words(look.say(text).into());
-    let warning = |text| Line::Warning(look.say(text).into());
-    let mut choices = vec![close()];
-    let lines = match &report.end {
-        PlaceEnd::NotWritten => vec![words(cards::OVER_NOT_WRITTEN), from_line(look, places)],
-        PlaceEnd::Occupied => vec![
-            warning(cards::OVER_OCCUPIED),
-            Line::Note(places.new.to_string()),
-            from_line(look, places),
-        ],
+fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
+    let now_at = (cards::NOW_AT, &places.old);
+    let card = card.choice(close());
+    match &report.end {
+        PlaceEnd::NotWritten => card.words(cards::OVER_NOT_WRITTEN).note(now_at),
+        PlaceEnd::Occupied => card
+            .warning(cards::OVER_OCCUPIED)
+            .note(places.new.to_string())
+            .note(now_at),
         PlaceEnd::NotTaken { reason } => {
-            let mut lines = vec![warning(cards::OVER_NOT_TAKEN)];
-            lines.extend(reason.clone().map(Line::Note));
-            lines
+            let card = card.warning(cards::OVER_NOT_TAKEN);
+            reason.iter().cloned().fold(card, Card::note)
         }
-        PlaceEnd::Back => vec![words(cards::OVER_BACK), from_line(look, places)],
-        PlaceEnd::NotBack(place) => vec![
-            Line::Warning(at(look, cards::OVER_NOT_BACK, places, *place)),
-            words(cards::OVER_NOT_BACK_POWER),
-            backup_line(look, backup),
-        ],
+        PlaceEnd::Back => card.words(cards::OVER_BACK).note(now_at),
+        PlaceEnd::NotBack(place) => {
+            let card = card.warning((cards::OVER_NOT_BACK, places.endpoint(*place)));
+            backup(card.words(cards::OVER_NOT_BACK_POWER), &report.backup)
+        }
         PlaceEnd::Unseen(saved) => {
-            choices.extend(ways(places));
-            let mut lines = vec![
-                warning(cards::OVER_UNSEEN),
-                Line::Note(places.old.to_string()),
-                Line::Note(places.new.to_string()),
-            ];
-            if !matches!(saved, Saved::Unknown { .. }) {
-                lines.extend(saved_lines(look, places, Some(saved)));
-            }
-            lines.push(backup_line(look, backup));
-            lines
+            let card = both(ways(card, places).warning(cards::OVER_UNSEEN), places);
+            let card = match saved {
+                Saved::Unknown { .. } => card,
+                saved => save_end(card, places, Some(saved)),
+            };
+            backup(card, &report.backup)
         }
         PlaceEnd::Nowhere => {
-            choices.extend(ways(places));
-            vec![
-                warning(cards::OVER_NOWHERE),
-                from_line(look, places),
-                backup_line(look, backup),
-            ]
+            let card = ways(card, places).warning(cards::OVER_NOWHERE);
+            backup(card.note(now_at), &report.backup)
         }
         PlaceEnd::Kept { at: place, saved } => {
-            let mut lines = vec![Line::Words(at(look, cards::OVER_KEPT, places, *place))];
-            lines.extend(saved_lines(look, places, saved.as_ref()));
+            let card = card.words((cards::OVER_KEPT, places.endpoint(*place)));
+            let mut card = save_end(card, places, saved.as_ref());
             let is_saved = saved.as_ref().is_some_and(Saved::may_be_in_flash);
-            if *place == Place::Old && places.new != places.old && is_saved {
-                lines.push(Line::Words(at(look, cards::OVER_WAITS, places, Place::New)));
-            }
             if is_saved && places.new != places.old {
-                choices.extend(ways(places));
+                if *place == WhichPlace::Old {
+                    card = card.words((cards::OVER_WAITS, &places.new));
+                }
+                card = ways(card, places);
             }
-            lines.push(backup_line(look, backup));
-            lines
+            backup(card, &report.backup)
         }
-    };
-    Card {
-        title: look.say(titles(change)[1]).into(),
-        lines,
-        choices,
-        ..Card::default()
     }
 }
 
-fn saved_lines(look: Look, places: &Places, saved: Option<&Saved>) -> Vec<Line> {
-    let text = match saved {
+/// What is known of the flash after a change was kept.
+fn save_end(card: Card, places: &PlacePair, saved: Option<&Saved>) -> Card {
+    let said = match saved {
         None => cards::OVER_UNSAVED,
         Some(Saved::Confirmed) => cards::SAVED_OK,
         Some(Saved::ReadBack) => cards::SAVED_READ,
         Some(Saved::Failed { .. }) => cards::SAVED_FAILED,
         Some(Saved::Refused { .. } | Saved::NotSent(_)) => cards::SAVED_NOT_SENT,
         Some(Saved::Unknown { .. }) => {
-            return vec![
-                Line::Warning(look.say(cards::SAVED_UNKNOWN).into()),
-                Line::Note(places.old.to_string()),
-                Line::Note(places.new.to_string()),
-            ];
+            return both(card.warning(cards::SAVED_UNKNOWN), places);
         }
     };
-    vec![Line::Words(look.say(text).into())]
+    card.words(said)
 }
 
-fn from_line(look: Look, places: &Places) -> Line {
-    Line::Note(at(look, cards::NOW_AT, places, Place::Old))
+/// Both places where the hand may be.
+fn both(card: Card, places: &PlacePair) -> Card {
+    card.note(places.old.to_string())
+        .note(places.new.to_string())
 }
 
-fn backup_line(look: Look, backup: &Path) -> Line {
-    Line::Note(format!("{}: {}", look.say(cards::BACKUP), backup.display()))
-}
-
-fn connect(text: Text, places: &Places, place: Place) -> Choice {
-    let there = places.endpoint(place).clone();
-    Choice::new(text, cards::CONNECT_TIP, Manner::Plain).does(Action::Connect(there))
+fn backup(card: Card, backup: &Path) -> Card {
+    card.note((cards::BACKUP, backup.display()))
 }
 
 /// The ways back to a hand: each place where it may be.
-fn ways(places: &Places) -> Vec<Choice> {
-    let mut ways = vec![connect(cards::TO_OLD, places, Place::Old)];
-    if places.new != places.old {
-        ways.push(connect(cards::TO_NEW, places, Place::New));
-    }
-    ways
-}
-
-fn ask_reset(state: &State, look: Look, places: &Places) -> Card {
-    let mut lines = vec![
-        Line::Words(look.say(cards::RESET_WORDS).into()),
-        Line::Note(at(look, cards::NOW_AT, places, Place::Old)),
-    ];
-    if places.new != places.old {
-        lines.push(Line::Note(at(look, cards::THEN_AT, places, Place::New)));
-    }
-    let begin = step(
-        cards::RESET,
-        cards::RESET_TIP,
-        Manner::Danger,
-        ProcedureAction::Begin,
-    );
-    Card {
-        title: look.say(cards::RESET_TITLE).into(),
-        lines,
-        word: Some(RESET_WORD),
-        choices: vec![cancel(), begin.disabled(reason(state, look))],
-        ..Card::default()
+fn ways(card: Card, places: &PlacePair) -> Card {
+    let connect = |text, place: &Endpoint| {
+        Choice::new(text, Manner::Plain).does(Action::Connect(place.clone()))
+    };
+    let card = card.choice(connect(cards::TO_OLD, &places.old));
+    match places.new == places.old {
+        true => card,
+        false => card.choice(connect(cards::TO_NEW, &places.new)),
     }
 }
 
 fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
-    let (title, places) = (cards::RESETTING_TITLE, &run.places);
+    let (card, places) = (Card::new(look, cards::RESETTING_TITLE), &run.places);
     match &run.stage {
-        ProcedureStage::Asking => ask_reset(state, look, places),
-        ProcedureStage::Doing(ResetStep::BackingUp, _) => {
-            under_way(look, title, look.say(cards::BACKING_UP), 0.1)
+        ProcedureStage::Asking => {
+            let card = Card::new(look, cards::RESET_TITLE).words(cards::RESET_WORDS);
+            let card = now_and_then(card, places).typed(RESET_WORD);
+            asking(state, card, (cards::RESET, Manner::Danger), None)
         }
-        ProcedureStage::Doing(ResetStep::Sending, _) => {
-            under_way(look, title, look.say(cards::RESET_SENDING), 0.4)
-        }
+        ProcedureStage::Doing(ResetStep::BackingUp, _) => card.progress(0.1, cards::BACKING_UP),
+        ProcedureStage::Doing(ResetStep::Sending, _) => card.progress(0.4, cards::RESET_SENDING),
         ProcedureStage::Doing(ResetStep::Looking(place), _) => {
-            under_way(look, title, &at(look, cards::LOOKING, places, *place), 0.7)
+            card.progress(0.7, (cards::LOOKING, places.endpoint(*place)))
         }
-        ProcedureStage::Over(Ok(report)) => reset_over(look, places, report),
-        ProcedureStage::Over(Err(error)) => not_begun(look, title, error),
+        ProcedureStage::Over(Ok(report)) => reset_over(card, places, report),
+        ProcedureStage::Over(Err(error)) => not_begun(look, card, error),
     }
 }
 
-fn reset_over(look: Look, places: &Places, report: &ResetReport) -> Card {
-    let (title, backup) = (cards::RESETTING_TITLE, report.backup.as_path());
-    let mut choices = vec![close()];
-    let lines = match &report.end {
-        ResetEnd::NotSent(_) => vec![Line::Warning(look.say(cards::RESET_NOT_SENT).into())],
-        ResetEnd::Refused { reason } => vec![
-            Line::Warning(look.say(cards::RESET_REFUSED).into()),
-            Line::Note(reason.clone()),
-        ],
-        ResetEnd::Found {
-            at: place, left, ..
-        } if left.is_empty() => {
-            vec![
-                Line::Words(at(look, cards::RESET_FOUND, places, *place)),
-                backup_line(look, backup),
-            ]
+fn reset_over(card: Card, places: &PlacePair, report: &ResetReport) -> Card {
+    let card = card.choice(close());
+    let card = match &report.end {
+        ResetEnd::NotSent(_) => return card.warning(cards::RESET_NOT_SENT),
+        ResetEnd::Refused { reason } => {
+            return card.warning(cards::RESET_REFUSED).note(reason.clone());
         }
-        ResetEnd::Found {
-            at: place, left, ..
-        } => {
-            choices.extend(ways(places));
+        ResetEnd::Found { at, left, .. } if left.is_empty() => {
+            card.words((cards::RESET_FOUND, places.endpoint(*at)))
+        }
+        ResetEnd::Found { at, left, .. } => {
             let names: Vec<String> = left.iter().map(|id| id.name()).collect();
-            vec![
-                Line::Words(at(look, cards::OVER_KEPT, places, *place)),
-                Line::Warning(format!(
-                    "{} {}",
-                    look.say(cards::RESET_LEFT),
-                    names.join(", ")
-                )),
-                backup_line(look, backup),
-            ]
+            ways(card, places)
+                .words((cards::OVER_KEPT, places.endpoint(*at)))
+                .warning((cards::RESET_LEFT, names.join(", ")))
         }
-        ResetEnd::Nowhere => {
-            choices.extend(ways(places));
-            vec![
-                Line::Warning(look.say(cards::RESET_NOWHERE).into()),
-                backup_line(look, backup),
-            ]
-        }
+        ResetEnd::Nowhere => ways(card, places).warning(cards::RESET_NOWHERE),
     };
-    Card {
-        title: look.say(title).into(),
-        lines,
-        choices,
-        ..Card::default()
-    }
+    backup(card, &report.backup)
 }

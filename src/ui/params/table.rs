@@ -6,17 +6,12 @@ use crate::app::hand::Freshness;
 use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::{Look, Pane};
-use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::text_field::{TextField, refused_ui};
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
 use crate::ui::text::{Text, device, panels, verdicts};
 use crate::ui::theme;
-use egui::{Align, Color32, Id, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
+use std::net::Ipv4Addr;
 
 /// Characters of an address.
 const ADDRESS_MAX: usize = 15;
@@ -26,9 +21,9 @@ const ROW_HIGH: f32 = 62.0;
 /// Parts of the width for live, staged, saved and range; the name has the rest.
 const COLUMNS: [f32; 4] = [0.16, 0.23, 0.16, 0.16];
 /// Which rows are in a group, its title, and what they are.
-type Group = (fn(ParamId) -> bool, Text, Text);
+type ParamGroup = (fn(ParamId) -> bool, Text, Text);
 /// The groups in their order.
-const GROUPS: [Group; 3] = [
+const GROUPS: [ParamGroup; 3] = [
     (
         |id| matches!(id, ParamId::DefaultSpeed(_)),
         device::GROUP_SPEED,
@@ -65,12 +60,7 @@ impl Shown {
 }
 
 /// Draws the table.
-pub(crate) fn table_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    shown: &Shown,
-    typed: &mut Option<(Id, String)>,
-) {
+pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &Shown) {
     let look = pane.look;
     let rows = ParamId::all().into_iter();
     let rows: Vec<ParamId> = rows.filter(|id| shown.passes(pane, *id)).collect();
@@ -79,7 +69,7 @@ pub(crate) fn table_ui(
             true => device::NO_DIFFERENCE,
             false => device::FIND_NONE,
         };
-        Label::new(look.say(text), look.palette.muted).ui(ui);
+        Label::muted(look, text).ui(ui);
         return;
     }
     ui.visuals_mut().selection.bg_fill = look.palette.wash(look.palette.accent);
@@ -101,9 +91,7 @@ pub(crate) fn table_ui(
     let table = table.header(theme::LIST_LINE, |mut head| {
         for text in heads {
             head.col(|ui| {
-                Label::new(look.say(text), look.palette.muted)
-                    .small()
-                    .ui(ui);
+                Label::note(look, text).ui(ui);
             });
         }
     });
@@ -114,18 +102,15 @@ pub(crate) fn table_ui(
                 continue;
             }
             line_ui(&mut body, theme::CONTROL_LARGE, |ui| {
-                let title = Label::new(look.say(title), look.palette.text);
-                title.font(theme::title()).ui(ui);
-                Label::new(look.say(about), look.palette.muted)
-                    .small()
-                    .ui(ui);
+                Label::said(look, title).font(theme::title()).ui(ui);
+                Label::note(look, about).ui(ui);
             });
             for id in own {
                 let height = match id.is_place() {
                     true => ROW_HIGH,
                     false => ROW,
                 };
-                body.row(height, |row| row_ui(row, pane, id, typed));
+                body.row(height, |row| row_ui(row, pane, id));
                 if has_trouble(pane, id) {
                     line_ui(&mut body, theme::LIST_LINE, |ui| verdict_ui(ui, pane, id));
                 }
@@ -154,12 +139,7 @@ fn has_trouble(pane: &Pane<'_>, id: ParamId) -> bool {
     end.is_some_and(|end| end.verdict != RowVerdict::Applied)
 }
 
-fn row_ui(
-    mut row: TableRow<'_, '_>,
-    pane: &mut Pane<'_>,
-    id: ParamId,
-    typed: &mut Option<(Id, String)>,
-) {
+fn row_ui(mut row: TableRow<'_, '_>, pane: &mut Pane<'_>, id: ParamId) {
     let (book, muted) = (&pane.state.hand().params, pane.look.palette.muted);
     row.set_selected(book.staged(id).is_some());
     row.col(|ui| name_ui(ui, pane, id));
@@ -172,7 +152,7 @@ fn row_ui(
                 (ROW - theme::CONTROL) / 2.0
             };
             ui.add_space(field);
-            ui.horizontal(|ui| staged_ui(ui, pane, id, typed));
+            ui.horizontal(|ui| staged_ui(ui, pane, id));
             if id.is_place() {
                 change_ui(ui, pane, id);
             }
@@ -229,30 +209,28 @@ pub(crate) fn cell_name(pane: &Pane<'_>, id: ParamId, column: Text) -> String {
 /// A value as a person says it: the serial speed in baud, not as its code.
 pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
     let speed = match (id, value) {
-        (ParamId::ReduRatio, Some(Value::Number(code))) => SerialSpeed::ALL
-            .into_iter()
-            .find(|speed| i32::from(speed.code()) == code),
+        (ParamId::ReduRatio, Some(Value::Number(code))) => SerialSpeed::of_code(code.into()),
         _ => None,
     };
     match (speed, value) {
         (Some(speed), _) => speed.baud().to_string(),
         (None, Some(value)) => value.to_string(),
-        (None, None) => UNKNOWN.into(),
+        (None, None) => format::UNKNOWN.into(),
     }
 }
 
 /// A value, and beside or below it what is to be known of it.
 pub(crate) fn cell_ui(ui: &mut Ui, (name, value, color): (&str, &str, Color32), below: &str) {
     let muted = ui.visuals().weak_text_color();
-    let fits = controls::text_width(ui, value, theme::number()) <= ui.available_width();
+    let fits = kit::text_width(ui, value, theme::number()) <= ui.available_width();
     let label = Label::new(value, color).named(name);
     let label = if fits { label.number() } else { label.small() };
     if below.is_empty() {
         label.ui(ui);
         return;
     }
-    let both = controls::text_width(ui, value, theme::number())
-        + controls::text_width(ui, below, theme::small());
+    let both =
+        kit::text_width(ui, value, theme::number()) + kit::text_width(ui, below, theme::small());
     let add = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
         label.ui(ui);
@@ -285,8 +263,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
             label.named(&verdict).ui(ui);
         }
         if id.is_place() {
-            let about = Label::new(look.say(verdicts::about(id)), palette.muted);
-            about.small().wrap().ui(ui);
+            Label::note(look, verdicts::about(id)).wrap().ui(ui);
         }
     });
 }
@@ -322,7 +299,7 @@ fn live_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
 }
 
 /// The field of what is to be staged, and the way to drop it.
-fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(Id, String)>) {
+fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let book = &pane.state.hand().params;
     let staged = book.staged(id);
@@ -334,7 +311,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(
         let width = ui.available_width() - theme::CONTROL - theme::GAP;
         ui.set_max_width(width);
         let new = match id {
-            ParamId::IpAddress => address_ui(ui, look, (&name, shown), typed),
+            ParamId::IpAddress => address_ui(ui, pane, (&name, shown)),
             ParamId::ReduRatio => speed_ui(ui, &name, shown),
             _ => number_ui(ui, pane, (&name, id), shown),
         };
@@ -346,10 +323,8 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, typed: &mut Option<(
     });
     if staged.is_some() {
         let label = format!("{} {whole_name}", look.say(device::UNSTAGE));
-        let drop = Button::new(&label, look.say(device::UNSTAGE_TIP)).icon(theme::CLOSE);
-        if drop.ui(ui, look).clicked() {
-            pane.actions.push(Action::Stage(id, None));
-        }
+        let drop = Button::new(&label, look.tip(device::UNSTAGE)).icon(theme::CLOSE);
+        drop.sends(ui, pane, Action::Stage(id, None));
     }
 }
 
@@ -361,19 +336,13 @@ fn number_ui(
 ) -> Option<Value> {
     let (min, max) = id.range()?;
     let value = match value {
-        Some(Value::Number(number)) => Some(f64::from(number)),
+        Some(Value::Number(number)) => Some(number),
         _ => None,
     };
-    let field = NumberField {
-        name,
-        tip: pane.look.say(device::STAGED_TIP),
-        disabled: None,
-        value,
-        range: f64::from(min)..=f64::from(max),
-        decimals: 0,
-    };
-    let typed = field.ui(ui, pane.look, pane.typing)?;
-    Some(Value::Number(i32::try_from(whole(typed)).ok()?))
+    let tip = pane.look.tip(device::STAGED);
+    let field = NumberField::new(name, tip, min.into()..=max.into());
+    let typed = field.whole_ui(ui, pane, value)?;
+    Some(Value::Number(i32::try_from(typed).ok()?))
 }
 
 fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
@@ -386,34 +355,21 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
         .collect();
     let mut chosen = value;
     ui.spacing_mut().combo_width = 0.0;
-    controls::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
+    kit::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
 }
 
 /// What was typed and is no address stays, with the reason beside it.
 fn address_ui(
     ui: &mut Ui,
-    look: Look,
+    pane: &mut Pane<'_>,
     (name, value): (&str, Option<Value>),
-    typed: &mut Option<(Id, String)>,
 ) -> Option<Value> {
     let text = value.map_or_else(String::new, |value| value.to_string());
-    let field = TextField {
-        name,
-        hint: UNKNOWN,
-        value: &text,
-        max: ADDRESS_MAX,
-    };
-    let (id, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
-    let left = field.put(ui, typed, rect, id);
-    let address = left.as_ref().and_then(|text| text.parse().ok());
-    if let Some(text) = left.filter(|text| !text.is_empty() && address.is_none()) {
-        *typed = Some((id, text));
-    }
-    let stays = typed.as_ref().is_some_and(|(field, _)| *field == id);
-    if stays && !ui.memory(|memory| memory.has_focus(id)) {
-        refused_ui(ui, look, (id, rect), look.say(panels::ADDRESS_WRONG));
-    }
-    address.map(Value::Address)
+    let words = pane.look.say(panels::ADDRESS_WRONG);
+    let field = TextField::new(name, ADDRESS_MAX).hint(format::UNKNOWN);
+    let field = field.check(|text| text.parse::<Ipv4Addr>().is_ok(), words);
+    let typed = field.ui(ui, pane, &text)?;
+    typed.parse().ok().map(Value::Address)
 }
 
 /// A row that says where the hand is found is not written from the table: it is changed under a card, with a way back.
@@ -428,9 +384,9 @@ fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let reason = match wanted {
         None => Some(device::CHANGE_NONE),
         Some(_) if hand.is_simulated() => Some(device::CHANGE_SIM),
-        Some(_) => hand.write_refusal().map(verdicts::refusal),
+        Some(_) => hand.write_refusal().map(device::refusal),
     };
-    let button = Button::new(look.say(device::CHANGE), look.say(device::CHANGE_TIP))
+    let button = Button::said(look, device::CHANGE)
         .named(&label)
         .disabled(reason.map(|reason| look.say(reason)));
     let pressed = button.ui(ui, look);

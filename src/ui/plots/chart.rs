@@ -1,12 +1,10 @@
 //! The one plot of the program: curves over time in `egui_plot`, with what that lacks. Knows no hand.
 
 use crate::history::{History, Series, Trace};
-use crate::ui::kit::controls::{self, Label};
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{self, Label, Look, format};
 use crate::ui::plots::bars;
 use crate::ui::plots::scales::{self, Scales};
-use crate::ui::plots::time_window::{Span, TimeWindow};
+use crate::ui::plots::time_window::{TimeSpan, TimeWindow};
 use crate::ui::plots::times::{Times, marks};
 use crate::ui::text::{Text, panels, plots};
 use crate::ui::theme;
@@ -214,7 +212,11 @@ impl<'a> Chart<'a> {
             .add(mesh);
         if dense.is_empty() && sparse.is_empty() {
             let empty = Label::new(self.look.say(self.empty), self.look.palette.muted);
-            empty.small().shorter(UNKNOWN).center().put(ui, frame);
+            empty
+                .small()
+                .shorter(format::UNKNOWN)
+                .center()
+                .put(ui, frame);
         }
         view.traces = traces;
         let name = self.look.say(self.title);
@@ -239,7 +241,7 @@ impl<'a> Chart<'a> {
     fn fetch(
         &self,
         traces: &mut Traces,
-        (from_s, to_s): Span,
+        (from_s, to_s): TimeSpan,
         columns: f32,
     ) -> (Option<(f64, f64)>, bool) {
         #[expect(
@@ -289,12 +291,12 @@ impl<'a> Chart<'a> {
                     .ui(ui);
                 let is_fixed = view.scales.chosen(self.title).is_some();
                 for (is_said, text, tip) in [
-                    (is_fixed, plots::RANGE_FIXED, plots::RANGE_TIP),
-                    (is_decimated, plots::DECIMATED, plots::DECIMATED_TIP),
+                    (is_fixed, plots::RANGE_FIXED, plots::RANGE.tip()),
+                    (is_decimated, plots::DECIMATED, plots::DECIMATED.tip()),
                 ] {
-                    let width = controls::text_width(ui, look.say(text), theme::tiny());
+                    let width = kit::text_width(ui, look.say(text), theme::tiny());
                     if is_said && width <= ui.available_width() {
-                        let label = Label::new(look.say(text), look.palette.muted);
+                        let label = Label::muted(look, text);
                         label
                             .font(theme::tiny())
                             .ui(ui)
@@ -318,7 +320,7 @@ impl<'a> Chart<'a> {
                 .reading(series, at_s)
                 .map(|reading| f64::from(reading.value));
             let value = value.map(|value| format!("{:.digits$}", value - curve.zero[1]));
-            let text = value.unwrap_or_else(|| UNKNOWN.to_owned());
+            let text = value.unwrap_or_else(|| format::UNKNOWN.to_owned());
             let format = TextFormat::simple(theme::number_small(), curve.stroke.color);
             job.append(&format!(" {text:>6}"), 0.0, format);
             texts.push(text);

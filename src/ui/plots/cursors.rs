@@ -1,12 +1,10 @@
 //! Two cursors in the plots, and the table of what lies between them. The figures come from all measurements.
 
 use crate::history::Series;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{Button, Label, Look, Pane, format};
 use crate::ui::plots::chart::ChartResponse;
 use crate::ui::plots::panels::{Panel, PlotLine};
-use crate::ui::plots::time_window::Span;
+use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, plots, words};
 use crate::ui::theme;
@@ -59,7 +57,7 @@ fn figures(pane: &Pane<'_>, series: Series, [a_s, b_s]: [f64; 2]) -> [Option<f64
 
 impl Cursors {
     /// On at a third and two thirds of what is shown, or off.
-    pub(crate) fn toggle(&mut self, (from, to): Span) {
+    pub(crate) fn toggle(&mut self, (from, to): TimeSpan) {
         let third = (to - from) / 3.0;
         self.0 = match self.0 {
             Some(_) => None,
@@ -109,7 +107,7 @@ impl Cursors {
         let look = pane.look;
         let title = look.say(panel.title);
         let head = ui.horizontal(|ui| {
-            let button = Button::new(title, look.say(plots::FIGURES_TIP));
+            let button = Button::new(title, look.tip(plots::FIGURES));
             let pressed = button
                 .named(look.say(plots::FIGURES))
                 .ui(ui, look)
@@ -145,8 +143,10 @@ impl Cursors {
                 Label::new(name, look.palette.dof[line.dof]).small().ui(ui);
                 for (value, column) in figures(pane, line.series, at).into_iter().zip(COLUMNS) {
                     let digits = panel.row.decimals.max(1);
-                    let text =
-                        value.map_or_else(|| UNKNOWN.into(), |value| format!("{value:.digits$}"));
+                    let text = value.map_or_else(
+                        || format::UNKNOWN.into(),
+                        |value| format!("{value:.digits$}"),
+                    );
                     let named = format!("{name} {title}: {}", look.say(column));
                     cell(ui, &text, Some(&named));
                 }

@@ -1,12 +1,10 @@
 //! What stands over the plots: window, pause, cursors, the menu, and the joints. Draws no curve.
 
 use crate::app::action::Action;
-use crate::app::files::export::Content;
+use crate::app::files::export::Export;
 use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Weight};
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Button, Look, Pane, Weight};
 use crate::ui::plots::PlotView;
 use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
@@ -22,12 +20,12 @@ const COPY_ROWS_MAX: usize = 20_000;
 pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let is_narrow = ui.available_width() < 440.0;
-    controls::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
+    kit::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
         ui.spacing_mut().item_spacing.x = theme::STEP;
         menu_ui(ui, pane, view);
         let text = look.say(plots::CURSORS);
         let cursors =
-            Button::new(text, look.say(plots::CURSORS_TIP)).named(look.say(plots::CURSORS_NAME));
+            Button::new(text, look.tip(plots::CURSORS)).named(look.say(plots::CURSORS_NAME));
         if switch(cursors, view.cursors.0.is_some(), Weight::Chosen)
             .ui(ui, look)
             .clicked()
@@ -35,7 +33,7 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
             view.cursors.toggle(view.view.time.span());
         }
         if !is_narrow {
-            let note = Button::new(look.say(plots::NOTE), look.say(plots::NOTE_TIP));
+            let note = Button::said(look, plots::NOTE);
             let note = note.named(look.say(plots::NOTE_NAME)).ui(ui, look);
             view.note_asked |= note.clicked();
         }
@@ -56,7 +54,7 @@ const fn switch(button: Button<'_>, on: bool, weight: Weight) -> Button<'_> {
 /// Everything that is not needed all the time.
 fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
-    let button = Button::new(look.say(plots::MORE), look.say(plots::MORE_TIP));
+    let button = Button::said(look, plots::MORE);
     let button = button
         .named(look.say(plots::MORE_NAME))
         .icon(theme::MORE)
@@ -67,7 +65,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         shown_ui(ui, pane);
         ui.separator();
         ui.checkbox(&mut view.large, look.say(plots::ENLARGE));
-        view.note_asked |= entry_ui(ui, look, (plots::NOTE_NAME, plots::NOTE_TIP));
+        view.note_asked |= entry_ui(ui, look, plots::NOTE_NAME);
         ui.separator();
         if let Some(at_s) = notes_ui(ui, pane) {
             view.view.time.center(at_s);
@@ -87,15 +85,15 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     }
 }
 
-fn entry_ui(ui: &mut Ui, look: Look, (text, tip): (Text, Text)) -> bool {
+fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
     ui.button(look.say(text))
-        .on_hover_text(look.say(tip))
+        .on_hover_text(look.tip(text))
         .clicked()
 }
 
 /// A switch for each plot. The last one that is shown stays.
 fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let shown = pane.state.settings.plots;
+    let shown = pane.state.settings.plots.clone();
     for panel in &PANELS {
         let mut on = shown.shows(panel.kind);
         let enabled = !on || shown.count() > 1;
@@ -114,23 +112,23 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let history = &pane.state.hand().history;
     let fits = history.rows(&series, from_s, to_s) <= COPY_ROWS_MAX;
     let copy = ui.add_enabled(fits, egui::Button::new(look.say(plots::COPY)));
-    let copy = copy.on_hover_text(look.say(plots::COPY_TIP));
+    let copy = copy.on_hover_text(look.tip(plots::COPY));
     if copy
         .on_disabled_hover_text(look.say(plots::COPY_LONG))
         .clicked()
     {
         let table = history.table(&series, from_s, to_s);
         ui.copy_text(table.csv());
-        view.copied = Some(table.len());
+        view.copied = Some(table.rows());
     }
     if let Some(rows) = view.copied {
         ui.label(format!("{} {rows}", look.say(plots::COPIED)));
     }
-    let save = entry_ui(ui, look, (plots::SAVE_CSV, plots::SAVE_CSV_TIP)).then(|| {
+    let save = entry_ui(ui, look, plots::SAVE_CSV).then(|| {
         let table = history.table(&series, from_s, to_s);
-        Action::Save(Content::Plots(table))
+        Action::Save(Export::Plots(table))
     });
-    let picture = entry_ui(ui, look, (plots::SAVE_PNG, plots::SAVE_PNG_TIP));
+    let picture = entry_ui(ui, look, plots::SAVE_PNG);
     let picture = picture.then(|| Action::SavePicture(view.pixels()));
     if let Some(action) = save.or(picture) {
         pane.actions.push(action);
@@ -145,7 +143,7 @@ fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bo
         true => (panels::PAUSED, theme::PLAY),
         false => (panels::PAUSE, theme::PAUSE),
     };
-    let button = Button::new(look.say(text), look.say(panels::PAUSE_TIP));
+    let button = Button::new(look.say(text), look.tip(panels::PAUSE));
     let button = switch(
         button.named(look.say(panels::PAUSE_NAME)),
         is_paused,
@@ -165,7 +163,7 @@ fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     // All of them without scrolling.
     ui.spacing_mut().combo_height = f32::INFINITY;
     let name = pane.look.say(panels::WINDOW_NAME);
-    if controls::choose_ui(ui, name, &mut chosen, &all) {
+    if kit::choose_ui(ui, name, &mut chosen, &all) {
         view.view.time.resize(chosen.seconds());
         pane.actions.push(Action::PlotWindow(chosen));
     }
@@ -213,7 +211,7 @@ pub(crate) fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
         let response = switch_ui(ui, look, (("- - ", palette.text), words, on));
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, on, words));
         if response
-            .on_hover_text(look.say(panels::THRESHOLDS_TIP))
+            .on_hover_text(look.tip(panels::THRESHOLDS))
             .clicked()
         {
             view.thresholds = !on;

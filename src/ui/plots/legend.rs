@@ -1,9 +1,6 @@
 //! What the colours and strokes of a chart stand for.
 
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::dash;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{self, Label, Look, dash};
 use crate::ui::theme;
 use egui::{Color32, Stroke, Ui, vec2};
 use egui_plot::LineStyle;
@@ -21,7 +18,7 @@ pub(crate) struct Key {
 /// True if all of them have room in one row.
 pub(crate) fn fits(ui: &Ui, keys: &[Key]) -> bool {
     let widths = keys.iter().map(|key| {
-        let words = controls::text_width(ui, &key.words, theme::small());
+        let words = kit::text_width(ui, &key.words, theme::small());
         words + theme::KEY_SIGN + 2.0 * theme::GAP
     });
     widths.sum::<f32>() <= ui.available_width()
@@ -32,7 +29,7 @@ pub(crate) fn legend_ui(ui: &mut Ui, look: Look, keys: &[Key]) {
     ui.horizontal(|ui| {
         ui.set_height(theme::LIST_LINE);
         for (at, key) in keys.iter().enumerate() {
-            let width = controls::text_width(ui, &key.words, theme::small());
+            let width = kit::text_width(ui, &key.words, theme::small());
             // Room for the sign, the gaps and the count of those that are left.
             if at > 0 && width + 2.0 * theme::KEY_SIGN + 3.0 * theme::GAP > ui.available_width() {
                 let more = format!("+{}", keys.len() - at);

@@ -1,8 +1,7 @@
 //! What happened, as lines across the plots with their words. Knows no curve.
 
 use crate::history::{Mark, MarkKind};
-use crate::ui::kit::controls::{self, Label};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Label, Pane};
 use crate::ui::plots::chart::{ChartResponse, pointed_s};
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, panels};
@@ -32,7 +31,7 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
         let (_, color) = mark_look(pane, &mark.kind);
         let text: String = mark_text(pane, mark).chars().take(NOTE_SHOWN).collect();
         let size = vec2(
-            controls::text_width(ui, &text, theme::small()) + 1.0,
+            kit::text_width(ui, &text, theme::small()) + 1.0,
             theme::TEXT_LINE,
         );
         let right = x + size.x + theme::GAP <= rect.right();

@@ -15,8 +15,7 @@ use crate::app::settings::PlotKind;
 use crate::hand::{Dof, PerDof};
 use crate::history::Series;
 use crate::transport::Endpoint;
-use crate::ui::kit::controls;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Look, Pane};
 use crate::ui::plots::chart::{Chart, ChartResponse, ChartView, Curve, Points};
 use crate::ui::plots::cursors::Cursors;
 use crate::ui::plots::panels::{PANELS, Panel, PlotLine};
@@ -61,7 +60,7 @@ impl PlotView {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.advance(pane);
         self.size = ui.available_size().into();
-        controls::card_ui(ui, pane.look, |ui| {
+        kit::card_ui(ui, pane.look, |ui| {
             head::head_ui(ui, pane, self);
             head::legend_ui(ui, pane.look, self);
             self.body_ui(ui, pane);
@@ -83,7 +82,7 @@ impl PlotView {
     }
 
     fn body_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let plots = pane.state.settings.plots;
+        let plots = &pane.state.settings.plots;
         let shown = PANELS.iter().filter(|panel| plots.shows(panel.kind));
         let mut shown: Vec<&Panel> = shown.collect();
         let at = shown

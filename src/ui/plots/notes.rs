@@ -2,8 +2,7 @@
 
 use crate::app::action::Action;
 use crate::history::{Mark, MarkKind};
-use crate::ui::kit::controls::{Button, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Button, Pane, Weight};
 use crate::ui::plots::times::clock;
 use crate::ui::text::plots;
 use crate::ui::theme;
@@ -36,14 +35,14 @@ pub(crate) fn notes_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
         for (mark, words) in notes {
             ui.horizontal(|ui| {
                 let name = look.pair(look.say(plots::NOTE_DELETE), words);
-                let delete = Button::said(look, plots::NOTE_DELETE, plots::NOTE_DELETE_TIP);
+                let delete = Button::said(look, plots::NOTE_DELETE);
                 let delete = delete.icon(theme::CLOSE).weight(Weight::Quiet);
                 if delete.named(&name).ui(ui, look).clicked() {
                     pane.actions.push(Action::RemoveMark(mark.clone()));
                 }
                 let short: String = words.chars().take(SHOWN).collect();
                 let text = format!("{}  {short}", clock(mark.at.secs(), 0.01));
-                let tip = format!("{words}\n{}", look.say(plots::NOTE_SHOW_TIP));
+                let tip = format!("{words}\n{}", look.tip(plots::NOTE_SHOW));
                 if ui.button(text).on_hover_text(tip).clicked() {
                     asked = Some(mark.at.secs());
                 }

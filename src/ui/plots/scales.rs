@@ -1,7 +1,6 @@
 //! Value scales: round by themselves, or as a person set them by dragging, by the wheel or by typing the ends.
 
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
+use crate::ui::kit::{NumberField, Pane};
 use crate::ui::text::{Text, plots};
 use crate::ui::theme;
 use egui::{CursorIcon, Popup, PopupCloseBehavior, Response, Role, Sense, Ui, WidgetInfo};
@@ -160,7 +159,7 @@ impl Scales {
                 }
                 let automatic = ui.button(look.say(plots::RANGE_AUTO));
                 if automatic
-                    .on_hover_text(look.say(plots::RANGE_AUTO_TIP))
+                    .on_hover_text(look.tip(plots::RANGE_AUTO))
                     .clicked()
                 {
                     self.forget(title);
@@ -171,7 +170,7 @@ impl Scales {
             self.forget(title);
             Popup::close_all(&axis.ctx);
         }
-        axis.on_hover_text(look.say(plots::RANGE_TIP));
+        axis.on_hover_text(look.tip(plots::RANGE));
     }
 }
 
@@ -179,15 +178,9 @@ fn end_ui(ui: &mut Ui, pane: &mut Pane<'_>, (title, end): (Text, Text), value: f
     let look = pane.look;
     let name = format!("{}: {}", look.say(end), look.say(title));
     let row = ui.horizontal(|ui| {
-        let field = NumberField {
-            name: &name,
-            tip: look.say(plots::RANGE_END_TIP),
-            disabled: None,
-            value: Some(value),
-            range: -MOST..=MOST,
-            decimals: 2,
-        };
-        let typed = ui.scope(|ui| field.ui(ui, look, pane.typing)).inner;
+        let tip = look.say(plots::RANGE_END_TIP);
+        let field = NumberField::new(&name, tip, -MOST..=MOST).decimals(2);
+        let typed = ui.scope(|ui| field.ui(ui, pane, Some(value))).inner;
         ui.label(look.say(end));
         typed
     });

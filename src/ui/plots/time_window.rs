@@ -8,14 +8,14 @@ const LONGEST_S: f64 = 3600.0;
 const STAYS: f64 = 0.1;
 
 /// From and to, in seconds.
-pub(crate) type Span = (f64, f64);
+pub(crate) type TimeSpan = (f64, f64);
 
 /// What is shown of the time from the oldest to the newest measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TimeWindow {
-    held: Option<Span>,
+    held: Option<TimeSpan>,
     /// Time of the oldest measurement and of this frame.
-    bounds: Span,
+    bounds: TimeSpan,
     /// Seconds shown while the plots follow.
     window_s: f64,
 }
@@ -32,13 +32,13 @@ impl Default for TimeWindow {
 
 impl TimeWindow {
     /// Time went on.
-    pub(crate) const fn advance(&mut self, bounds: Span, window_s: f64) {
+    pub(crate) const fn advance(&mut self, bounds: TimeSpan, window_s: f64) {
         self.bounds = bounds;
         self.window_s = window_s;
     }
 
     /// What is shown.
-    pub(crate) fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> TimeSpan {
         let newest = self.bounds.1;
         self.held.unwrap_or((newest - self.window_s, newest))
     }
@@ -69,7 +69,7 @@ impl TimeWindow {
     }
 
     /// Shows this stretch.
-    pub(crate) fn show(&mut self, (from, to): Span) {
+    pub(crate) fn show(&mut self, (from, to): TimeSpan) {
         let width = (to - from).clamp(SHORTEST_S, LONGEST_S);
         let (first, newest) = self.bounds;
         let earliest = (first + width * STAYS).min(newest);
@@ -120,7 +120,7 @@ mod tests {
         time.span().1 - time.span().0
     }
 
-    fn same(one: Span, two: Span) {
+    fn same(one: TimeSpan, two: TimeSpan) {
         let apart = (one.0 - two.0).abs().max((one.1 - two.1).abs());
         assert!(apart < 1e-6, "{one:?} {two:?}");
     }

@@ -2,17 +2,14 @@
 
 use crate::app::action::Action;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
-use crate::poses::edit::{LibraryEdit, PoseEdit, Way};
-use crate::poses::library::{NAME_CHARS_MAX, Pose};
+use crate::poses::edit::{LibraryEdit, PoseEdit, ShiftDirection};
+use crate::poses::library::{LibraryPose, NAME_CHARS_MAX};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
 use crate::ui::poses::tiles::{go_ui, shares};
 use crate::ui::text::{Text, poses, words};
 use crate::ui::theme;
-use egui::{Color32, Id, Layout, ScrollArea, Ui, vec2};
+use egui::{Color32, Layout, ScrollArea, Ui, vec2};
 
 /// Characters of all tags.
 const TAGS_MAX: usize = 120;
@@ -20,17 +17,12 @@ const TAGS_MAX: usize = 120;
 const FIELDS: f32 = 11.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
 
 /// Draws the editor of one pose.
-pub(crate) fn editor_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    typed: &mut Option<(Id, String)>,
-    pose: &Pose,
-) {
+pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let height = (ui.available_height() - FIELDS).clamp(48.0, 320.0);
     let (_, picture) = ui.allocate_space(vec2(ui.available_width(), height));
     panel::pose_ui(ui, pane.look, picture, &shares(&pose.angles));
     ScrollArea::vertical().id_salt(pose.id).show(ui, |ui| {
-        words_ui(ui, pane, typed, pose);
+        words_ui(ui, pane, pose);
         for dof in Dof::ALL {
             ui.horizontal(|ui| joint_ui(ui, pane, pose, dof));
         }
@@ -40,7 +32,7 @@ pub(crate) fn editor_ui(
     });
 }
 
-fn change(pane: &mut Pane<'_>, pose: &Pose, edit: PoseEdit) {
+fn change(pane: &mut Pane<'_>, pose: &LibraryPose, edit: PoseEdit) {
     let edit = LibraryEdit::Pose(pose.id, edit);
     pane.actions.push(Action::Library(edit));
 }
@@ -55,33 +47,23 @@ pub(crate) fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
     });
 }
 
-fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, typed: &mut Option<(Id, String)>, pose: &Pose) {
+fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let tags = pose.tags.join(", ");
-    let name = TextField {
-        name: look.say(poses::NAME),
-        hint: "",
-        value: &pose.name,
-        max: NAME_CHARS_MAX,
-    };
-    let tags = TextField {
-        name: look.say(poses::TAGS),
-        hint: look.say(poses::TAGS_HINT),
-        value: &tags,
-        max: TAGS_MAX,
-    };
-    let edits: [fn(String) -> PoseEdit; 2] = [PoseEdit::Rename, PoseEdit::Tags];
-    for (field, edit) in [name, tags].into_iter().zip(edits) {
+    let name = TextField::new(look.say(poses::NAME), NAME_CHARS_MAX);
+    let words = TextField::new(look.say(poses::TAGS), TAGS_MAX).hint(look.tip(poses::TAGS));
+    let rename: fn(String) -> PoseEdit = PoseEdit::Rename;
+    for (field, value, edit) in [(name, &pose.name, rename), (words, &tags, PoseEdit::Tags)] {
         ui.horizontal(|ui| {
             caption_ui(ui, field.name, look.palette.muted);
-            if let Some(text) = field.ui(ui, typed) {
+            if let Some(text) = field.ui(ui, pane, value) {
                 change(pane, pose, edit(text));
             }
         });
     }
 }
 
-fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose, dof: Dof) {
+fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
     let look = pane.look;
     if let Some(angle) = angle_ui(ui, pane, ("pose", dof), Some(pose.angles[dof])) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
@@ -89,7 +71,7 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose, dof: Dof) {
     let text = look.say(poses::LEAVE);
     let label = format!("{} {text}", look.say(words::dof(dof)));
     let leave = pose.leave[dof];
-    let button = Button::new(text, look.say(poses::LEAVE_TIP)).named(&label);
+    let button = Button::new(text, look.tip(poses::LEAVE)).named(&label);
     if button.choice(leave).ui(ui, look).clicked() {
         change(pane, pose, PoseEdit::Leave(dof, !leave));
     }
@@ -106,37 +88,22 @@ pub(crate) fn angle_ui(
     let name = look.say(words::dof(dof));
     caption_ui(ui, name, look.palette.dof[dof]);
     let label = format!("{name} {of} {}", look.say(poses::ANGLE));
-    let field = NumberField {
-        name: &label,
-        tip: look.say(poses::ANGLE_TIP),
-        disabled: None,
-        value: angle.map(|angle| f64::from(angle.get())),
-        range: 0.0..=1000.0,
-        decimals: 0,
-    };
-    let typed = field.ui(ui, look, pane.typing)?;
-    Angle::new(whole(typed)).ok()
+    let field = NumberField::new(&label, look.tip(poses::ANGLE), 0.0..=1000.0);
+    let typed = field.whole_ui(ui, pane, angle.map(Angle::get))?;
+    Angle::new(typed).ok()
 }
 
-fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
-    let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, (value, max): (i16, f64)| {
+    let mut number = |pane: &mut Pane<'_>, caption: Text, value: i16, max: f64| {
         let text = look.say(caption);
         Label::new(text, look.palette.muted).ui(ui);
         let label = format!("{} {text}", look.say(poses::POSE));
-        let field = NumberField {
-            name: &label,
-            tip: look.say(tip),
-            disabled: None,
-            value: Some(f64::from(value)),
-            range: 0.0..=max,
-            decimals: 0,
-        };
-        field.ui(ui, look, pane.typing).map(whole)
+        let field = NumberField::new(&label, look.tip(caption), 0.0..=max);
+        field.whole_ui(ui, pane, Some(value))
     };
-    let (speed, force) = (pose.speed.get(), pose.force.get());
-    let speed = number(pane, poses::SPEED, poses::SPEED_TIP, (speed, 1000.0));
-    let force = number(pane, poses::FORCE, poses::FORCE_TIP, (force, 3000.0));
+    let speed = number(pane, poses::SPEED, pose.speed.get(), 1000.0);
+    let force = number(pane, poses::FORCE, pose.force.get(), 3000.0);
     if let Some(speed) = speed.and_then(|speed| Speed::new(speed).ok()) {
         change(pane, pose, PoseEdit::Speed(speed));
     }
@@ -145,32 +112,34 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     }
 }
 
-fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let unknown = pane.state.hand().pose_now().is_none();
-    let unknown = unknown.then(|| look.say(poses::CAPTURE_UNKNOWN));
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
-    let [earlier, later] = [Way::Earlier, Way::Later].map(|way| edit(PoseEdit::Shift(way)));
+    let [earlier, later] =
+        [ShiftDirection::Earlier, ShiftDirection::Later].map(|way| edit(PoseEdit::Shift(way)));
     let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
     let again = Action::Recapture(pose.id);
-    let button = |text, tip| Button::new(look.say(text), look.say(tip));
     let [left, right] = [
         (poses::EARLIER, theme::TO_LEFT),
         (poses::LATER, theme::TO_RIGHT),
     ]
-    .map(|(text, icon)| button(text, poses::SHIFT_TIP).icon(icon));
-    let retake = button(poses::RECAPTURE, poses::RECAPTURE_TIP).disabled(unknown);
-    let double = button(poses::DUPLICATE, poses::DUPLICATE_TIP);
-    let away = button(poses::DELETE, poses::DELETE_TIP);
+    .map(|(text, icon)| {
+        Button::said(look, text)
+            .tip(look.say(poses::SHIFT_TIP))
+            .icon(icon)
+    });
+    let retake =
+        Button::said(look, poses::RECAPTURE).disabled_if(unknown, look.say(poses::CAPTURE_UNKNOWN));
+    let double = Button::said(look, poses::DUPLICATE);
+    let away = Button::said(look, poses::DELETE);
     for row in [
         &[(retake, again), (double, copy)][..],
         &[(left, earlier), (right, later), (away, delete)],
     ] {
         ui.horizontal(|ui| {
             for (button, action) in row {
-                if button.ui(ui, look).clicked() {
-                    pane.actions.push(action.clone());
-                }
+                button.sends(ui, pane, action.clone());
             }
         });
     }

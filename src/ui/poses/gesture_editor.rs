@@ -5,9 +5,7 @@ use crate::app::hand::gestures::StoreVerdict;
 use crate::hand::command::stored_gesture;
 use crate::hand::{Angle, GestureStore, PerDof, UserGesture};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::{NumberField, whole};
+use crate::ui::kit::{Button, Label, NumberField, Pane, Weight};
 use crate::ui::poses::editor::{caption_ui, six_ui};
 use crate::ui::text::{main, poses};
 use egui::{Ui, vec2};
@@ -51,11 +49,10 @@ impl GestureEditor {
         self.verdict_ui(ui, pane);
         let known = match pane.state.settings.gesture_store {
             GestureStore::Register1066 => &[poses::STORE_KNOWN, poses::STORE_UNKNOWN][..],
-            GestureStore::Off => &[poses::STORE_OFF_TIP],
+            GestureStore::Off => &[poses::STORE_OFF.tip()],
         };
         for text in known {
-            let label = Label::new(look.say(*text), look.palette.muted);
-            label.small().wrap().ui(ui);
+            Label::note(look, *text).wrap().ui(ui);
         }
     }
 
@@ -72,16 +69,9 @@ impl GestureEditor {
         let look = pane.look;
         let text = look.say(poses::USER_GESTURE);
         caption_ui(ui, text, look.palette.text);
-        let field = NumberField {
-            name: text,
-            tip: look.say(poses::USER_GESTURE_TIP),
-            disabled: None,
-            value: Some(f64::from(self.gesture.get())),
-            range: 14.0..=40.0,
-            decimals: 0,
-        };
-        let typed = field.ui(ui, look, pane.typing);
-        if let Some(gesture) = typed.and_then(|typed| UserGesture::new(whole(typed)).ok()) {
+        let field = NumberField::new(text, look.tip(poses::USER_GESTURE), 14.0..=40.0);
+        let typed = field.whole_ui(ui, pane, Some(self.gesture.get()));
+        if let Some(gesture) = typed.and_then(|typed| UserGesture::new(typed).ok()) {
             self.gesture = gesture;
             self.reading = false;
         }
@@ -103,9 +93,9 @@ impl GestureEditor {
             let text = look.say(text);
             let name = format!("{}: {text}", look.say(poses::STORE_NAME));
             let button = Button::new(text, look.say(poses::STORE_TIP)).named(&name);
-            if button.choice(now == store).ui(ui, look).clicked() {
-                pane.actions.push(Action::GestureStore(store));
-            }
+            button
+                .choice(now == store)
+                .sends(ui, pane, Action::GestureStore(store));
         }
         if now == GestureStore::Register1066 {
             let span = stored_gesture(self.gesture);
@@ -118,7 +108,7 @@ impl GestureEditor {
     fn buttons_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let unreachable = match pane.state.settings.gesture_store {
-            GestureStore::Off => Some(look.say(poses::STORE_OFF_TIP)),
+            GestureStore::Off => Some(look.tip(poses::STORE_OFF)),
             GestureStore::Register1066 => {
                 let live = pane.state.hand().link.state.is_live();
                 (!live).then(|| look.say(main::REFUSED_OFFLINE))
@@ -128,28 +118,28 @@ impl GestureEditor {
         let unknown = now.is_none().then(|| look.say(poses::CAPTURE_UNKNOWN));
         let angles = self.angles.all();
         let missing = angles.is_none().then(|| look.say(poses::FIRST_ANGLES));
-        let mut pressed = |text, tip, disabled, weight| {
-            let button = Button::new(look.say(text), look.say(tip)).weight(weight);
+        let mut pressed = |text, disabled, weight| {
+            let button = Button::said(look, text).weight(weight);
             button.disabled(disabled).ui(ui, look).clicked()
         };
         let (normal, strong) = (Weight::Normal, Weight::Strong);
-        if pressed(poses::RECAPTURE, poses::RECAPTURE_TIP, unknown, normal)
+        if pressed(poses::RECAPTURE, unknown, normal)
             && let Some(now) = now
         {
             self.angles = now.map(Some);
         }
-        if pressed(poses::READ_HAND, poses::READ_HAND_TIP, unreachable, normal) {
+        if pressed(poses::READ_HAND, unreachable, normal) {
             self.reading = true;
             pane.actions.push(Action::ReadGesture(self.gesture));
         }
         let untested = missing.or(pane.unready());
-        if pressed(poses::TEST, poses::TEST_TIP, untested, normal)
+        if pressed(poses::TEST, untested, normal)
             && let Some(angles) = angles
         {
             pane.actions.push(Action::TryAngles(angles));
         }
         let unsent = unreachable.or(missing);
-        if pressed(poses::UPLOAD, poses::UPLOAD_TIP, unsent, strong)
+        if pressed(poses::UPLOAD, unsent, strong)
             && let Some(angles) = angles
         {
             let store = Action::StoreGesture(self.gesture, angles);

@@ -3,14 +3,11 @@
 
 use crate::app::action::Action;
 use crate::hand::{Gesture, GestureRoute};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight};
 use crate::ui::poses::gesture_editor::GestureEditor;
 use crate::ui::poses::tiles::gesture_ui;
 use crate::ui::text::{panels, poses};
-use egui::{CollapsingHeader, Grid, Id, ScrollArea, Ui};
+use egui::{CollapsingHeader, Grid, ScrollArea, Ui};
 
 /// Characters that a name may have.
 const NAME_MAX: usize = 24;
@@ -22,8 +19,6 @@ const NAMES: usize = 4;
 pub(crate) struct GestureView {
     /// True while names are typed instead of gestures started.
     naming: bool,
-    /// The name being typed.
-    typed: Option<(Id, String)>,
     editor: GestureEditor,
 }
 
@@ -69,12 +64,11 @@ impl GestureView {
             true => (panels::GESTURE_NAME_DONE, Weight::Strong),
             false => (panels::GESTURE_NAME_EDIT, Weight::Normal),
         };
-        let tip = look.say(panels::GESTURE_NAME_EDIT_TIP);
+        let tip = look.tip(panels::GESTURE_NAME_EDIT);
         let mut button = Button::new(look.say(text), tip).weight(weight);
         button.selected = Some(self.naming);
         if button.ui(ui, look).clicked() {
             self.naming = !self.naming;
-            self.typed = None;
         }
     }
 
@@ -85,15 +79,10 @@ impl GestureView {
                 let number = gesture.get().to_string();
                 let name = format!("{} {number}", look.say(panels::GESTURE_NAME));
                 let known = pane.state.settings.gesture_name(gesture);
-                let field = TextField {
-                    name: &name,
-                    hint: &number,
-                    value: known.unwrap_or_default(),
-                    max: NAME_MAX,
-                };
+                let field = TextField::new(&name, NAME_MAX).hint(&number);
                 ui.scope(|ui| {
                     ui.set_width(120.0);
-                    if let Some(name) = field.ui(ui, &mut self.typed) {
+                    if let Some(name) = field.ui(ui, pane, known.unwrap_or_default()) {
                         pane.actions.push(Action::NameGesture(gesture, name));
                     }
                 });
@@ -122,14 +111,11 @@ fn route_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let name = look.say(panels::GESTURE_ROUTE);
     ui.horizontal(|ui| {
         Label::new(name, look.palette.text).ui(ui);
-        if controls::choose_ui(ui, name, &mut route, &routes) {
+        if kit::choose_ui(ui, name, &mut route, &routes) {
             pane.actions.push(Action::GestureRoute(route));
         }
     });
     for text in [panels::GESTURES_TIP, known] {
-        Label::new(look.say(text), look.palette.muted)
-            .small()
-            .wrap()
-            .ui(ui);
+        Label::note(look, text).wrap().ui(ui);
     }
 }

@@ -9,19 +9,16 @@ pub(crate) mod tiles;
 use crate::app::action::Action;
 use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
-use crate::poses::library::{Pose, PoseId};
+use crate::poses::library::{LibraryPose, PoseId};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
 use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::reorder::Reorder;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, tile_ui};
 use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
-use egui::{Align, Id, Layout, ScrollArea, Ui, vec2};
+use egui::{Align, Layout, ScrollArea, Ui, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -48,10 +45,9 @@ pub(crate) struct PoseView {
     shown: Option<PoseId>,
     sequences: SequenceView,
     gestures: GestureView,
-    order: Reorder,
+    order: reorder::Reorder,
     /// Only poses with these words are shown.
     find: String,
-    typed: Option<(Id, String)>,
 }
 
 impl PoseView {
@@ -61,13 +57,13 @@ impl PoseView {
         if newest != self.shown {
             (self.shown, self.chosen) = (newest, newest);
         }
-        controls::card_ui(ui, pane.look, |ui| {
+        kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             ui.horizontal(|ui| self.head_ui(ui, pane));
             refused_ui(ui, pane);
             match self.section {
                 Section::Mine => self.mine_ui(ui, pane),
-                Section::Sequences => self.sequences.ui(ui, pane, &mut self.typed),
+                Section::Sequences => self.sequences.ui(ui, pane),
                 Section::InHand => self.gestures.ui(ui, pane),
             }
         });
@@ -76,13 +72,8 @@ impl PoseView {
     /// The sections, and what is done with all poses.
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        for (section, title) in Section::ALL {
-            let button = Button::new(look.say(title), look.say(poses::SECTION_TIP));
-            let button = button.choice(self.section == section);
-            if button.ui(ui, look).clicked() {
-                self.section = section;
-            }
-        }
+        let sections = (&mut self.section, poses::SECTION_TIP);
+        kit::pick_ui(ui, look, sections, Section::ALL);
         if self.section != Section::InHand {
             let right = Layout::right_to_left(Align::Center);
             ui.with_layout(right, |ui| tools_ui(ui, pane));
@@ -96,12 +87,11 @@ impl PoseView {
             return empty_ui(ui, pane);
         }
         ui.horizontal(|ui| {
-            let capture = Button::new(look.say(poses::CAPTURE), look.say(poses::CAPTURE_TIP));
+            let capture = Button::said(look, poses::CAPTURE);
             capture_ui(ui, pane, capture.weight(Weight::Strong));
             ui.scope(|ui| {
                 ui.set_max_width(200.0);
-                let (name, hint) = (look.say(poses::FIND), look.say(poses::FIND_HINT));
-                controls::edit_ui(ui, name, hint, &mut self.find);
+                kit::edit_ui(ui, look.both(poses::FIND), &mut self.find);
             });
         });
         let chosen = self.chosen.and_then(|chosen| library.pose(chosen));
@@ -110,7 +100,7 @@ impl PoseView {
         let width = (ui.available_width() * 0.42).clamp(268.0, 380.0);
         beside(width, "pose").show(ui, |ui| {
             if let Some(pose) = chosen {
-                editor::editor_ui(ui, pane, &mut self.typed, pose);
+                editor::editor_ui(ui, pane, pose);
             }
         });
         self.tiles_ui(ui, pane);
@@ -119,11 +109,9 @@ impl PoseView {
     fn tiles_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let words = self.find.trim().to_lowercase();
         let all = pane.state.poses.library.poses.iter().enumerate();
-        let shown: Vec<(usize, &Pose)> = all.filter(|(_, pose)| pose.has(&words)).collect();
+        let shown: Vec<(usize, &LibraryPose)> = all.filter(|(_, pose)| pose.has(&words)).collect();
         if shown.is_empty() {
-            Label::new(pane.look.say(poses::FIND_NONE), pane.look.palette.muted)
-                .wrap()
-                .ui(ui);
+            Label::muted(pane.look, poses::FIND_NONE).wrap().ui(ui);
         }
         let gap = theme::STEP;
         let room = ui.available_width() - theme::GAP;
@@ -158,25 +146,13 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let nothing = book.library.is_empty().then(|| look.say(poses::NOTHING));
     let no_undo = (!book.can_undo()).then(|| look.say(poses::UNDO_NONE));
     let undo = Action::Library(LibraryEdit::Undo);
-    for (text, tip, disabled, action) in [
-        (
-            poses::EXPORT,
-            poses::EXPORT_TIP,
-            nothing,
-            Action::ExportPoses,
-        ),
-        (
-            poses::IMPORT,
-            poses::IMPORT_TIP,
-            None,
-            Action::ImportPoses(None),
-        ),
-        (poses::UNDO, poses::UNDO_TIP, no_undo, undo),
+    for (text, disabled, action) in [
+        (poses::EXPORT, nothing, Action::ExportPoses),
+        (poses::IMPORT, None, Action::ImportPoses(None)),
+        (poses::UNDO, no_undo, undo),
     ] {
-        let button = Button::new(look.say(text), look.say(tip)).disabled(disabled);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(action);
-        }
+        let button = Button::said(look, text).disabled(disabled);
+        button.sends(ui, pane, action);
     }
 }
 
@@ -200,12 +176,11 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
         let open = PerDof::splat(Some(1.0));
         panel::pose_ui(ui, look, picture, &open);
-        let title = Label::new(look.say(poses::EMPTY_TITLE), look.palette.text);
+        let title = Label::said(look, poses::EMPTY_TITLE);
         title.font(theme::title()).ui(ui);
-        let body = Label::new(look.say(poses::EMPTY_BODY), look.palette.muted);
-        body.wrap().ui(ui);
+        Label::muted(look, poses::EMPTY_BODY).wrap().ui(ui);
         ui.add_space(theme::GAP);
-        let tip = look.say(poses::CAPTURE_TIP);
+        let tip = look.tip(poses::CAPTURE);
         let button = Button::new(look.say(poses::EMPTY_BUTTON), tip).weight(Weight::Strong);
         capture_ui(ui, pane, button.large());
     });

@@ -2,14 +2,10 @@
 
 use crate::app::action::Action;
 use crate::hand::Speed;
-use crate::poses::edit::{LibraryEdit, SequenceEdit, Way};
-use crate::poses::library::{Millis, Sequence, Step};
+use crate::poses::edit::{LibraryEdit, SequenceEdit, ShiftDirection};
+use crate::poses::library::{Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::{NumberField, whole};
-use crate::ui::kit::reorder;
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
@@ -40,7 +36,7 @@ pub(crate) fn step_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
     sequence: &Sequence,
-    (at, step): (usize, &Step),
+    (at, step): (usize, &SequenceStep),
 ) {
     let look = pane.look;
     let place = ui.max_rect();
@@ -60,14 +56,14 @@ pub(crate) fn step_ui(
     ui.spacing_mut().item_spacing.x = theme::STEP;
     ui.set_min_height(ui.available_height());
     let (earlier, later) = (
-        SequenceEdit::Shift(at, Way::Earlier),
-        SequenceEdit::Shift(at, Way::Later),
+        SequenceEdit::Shift(at, ShiftDirection::Earlier),
+        SequenceEdit::Shift(at, ShiftDirection::Later),
     );
     for (icon, caption, tip, edit) in [
         (
             theme::CLOSE,
             poses::REMOVE,
-            poses::REMOVE_TIP,
+            poses::REMOVE.tip(),
             SequenceEdit::Remove(at),
         ),
         (theme::TO_BOTTOM, poses::LATER, poses::SHIFT_TIP, later),
@@ -99,14 +95,14 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
     let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
     let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id(at));
     let (words, left) = (rect.shrink2(vec2(theme::STEP, 0.0)), Align2::LEFT_CENTER);
-    controls::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
+    kit::paint_text(ui, words, left, &text, theme::body(), look.palette.text);
     if response.clicked() {
         response.request_focus();
     }
     if let Some(way) = reorder::keyed(ui, &response) {
         let to = match way {
-            Way::Earlier => at.saturating_sub(1),
-            Way::Later => (at + 1).min(sequence.steps.len().saturating_sub(1)),
+            ShiftDirection::Earlier => at.saturating_sub(1),
+            ShiftDirection::Later => (at + 1).min(sequence.steps.len().saturating_sub(1)),
         };
         // The keyboard goes with the step.
         ui.memory_mut(|memory| memory.request_focus(id(to)));
@@ -116,33 +112,31 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
 }
 
 /// From right to left.
-fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, step): (usize, &Step)) {
+fn numbers_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    sequence: &Sequence,
+    (at, step): (usize, &SequenceStep),
+) {
     let look = pane.look;
     let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, (value, max): (f64, f64)| {
         let text = look.say(caption);
         let label = format!("{} {} {text}", look.say(poses::STEP), at + 1);
-        let field = NumberField {
-            name: &label,
-            tip: look.say(tip),
-            disabled: None,
-            value: Some(value),
-            range: 0.0..=max,
-            decimals: 0,
-        };
+        let field = NumberField::new(&label, look.say(tip), 0.0..=max);
         let (size, down) = (vec2(58.0, 36.0), Layout::top_down(Align::Min));
         let typed = ui.allocate_ui_with_layout(size, down, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.spacing_mut().interact_size.y = 20.0;
             Label::new(text, look.palette.muted).small().ui(ui);
-            field.ui(ui, look, pane.typing)
+            field.whole_ui(ui, pane, Some(value))
         });
-        typed.inner.map(whole)
+        typed.inner
     };
     let millis = |time: Millis| (f64::from(time.get()), f64::from(Millis::MAX));
-    let limit = number(pane, poses::LIMIT, poses::LIMIT_TIP, millis(step.limit));
-    let dwell = number(pane, poses::DWELL, poses::DWELL_TIP, millis(step.dwell));
+    let limit = number(pane, poses::LIMIT, poses::LIMIT.tip(), millis(step.limit));
+    let dwell = number(pane, poses::DWELL, poses::DWELL.tip(), millis(step.dwell));
     let now = (f64::from(step.speed.get()), 1000.0);
-    let speed = number(pane, poses::STEP_SPEED, poses::SPEED_TIP, now);
+    let speed = number(pane, poses::STEP_SPEED, poses::SPEED.tip(), now);
     let time = |typed: i64| Millis::try_from(typed).ok();
     if let Some(limit) = limit.and_then(time) {
         change(pane, sequence, SequenceEdit::Limit(at, limit));

@@ -4,19 +4,15 @@ use crate::app::action::Action;
 use crate::app::hand::Play;
 use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
-use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId, Step};
-use crate::poses::player::{End, Phase};
+use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId, SequenceStep};
+use crate::poses::player::{PlayEnd, PlayPhase};
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::reorder::Reorder;
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
 use egui::{
-    Align, Align2, Frame, Id, Layout, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2,
+    Align, Align2, Frame, Layout, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2,
 };
 use std::time::Duration;
 
@@ -29,7 +25,7 @@ pub(crate) struct SequenceView {
     chosen: Option<SequenceId>,
     shown: Option<SequenceId>,
     adding: Option<PoseId>,
-    order: Reorder,
+    order: reorder::Reorder,
 }
 
 /// A part of the view with a card's distance to what is at its left.
@@ -47,12 +43,7 @@ pub(crate) fn beside(width: f32, id: &'static str) -> Panel {
 
 impl SequenceView {
     /// Draws the list, and the chosen sequence.
-    pub(crate) fn ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        typed: &mut Option<(Id, String)>,
-    ) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let state = pane.state;
         let newest = state.poses.newest_sequence;
         if newest != self.shown {
@@ -64,7 +55,7 @@ impl SequenceView {
         self.chosen = chosen.map(|sequence| sequence.id);
         let width = ui.available_width() - 148.0;
         beside(width, "sequence").show(ui, |ui| match chosen {
-            Some(sequence) => self.sequence_ui(ui, pane, typed, sequence),
+            Some(sequence) => self.sequence_ui(ui, pane, sequence),
             None => empty_ui(ui, pane),
         });
         self.list_ui(ui, pane);
@@ -73,7 +64,7 @@ impl SequenceView {
     fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let library = &pane.state.poses.library;
-        let tip = look.say(poses::NEW_SEQUENCE_TIP);
+        let tip = look.tip(poses::NEW_SEQUENCE);
         let new = Button::new(look.say(poses::NEW_SEQUENCE), tip);
         let none = library.poses.is_empty();
         let new = new.disabled(none.then(|| look.say(poses::NEEDS_POSES)));
@@ -97,21 +88,15 @@ impl SequenceView {
         });
     }
 
-    fn sequence_ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        typed: &mut Option<(Id, String)>,
-        sequence: &Sequence,
-    ) {
+    fn sequence_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
         let right = Layout::right_to_left(Align::Center);
-        ui.horizontal(|ui| ui.with_layout(right, |ui| head_ui(ui, pane, typed, sequence)));
+        ui.horizontal(|ui| ui.with_layout(right, |ui| head_ui(ui, pane, sequence)));
         timeline_ui(ui, pane, sequence);
         picture_ui(ui, pane, sequence);
         let foot = theme::CONTROL + theme::CONTROL_LARGE + 4.0 * theme::STEP;
         let most = ui.available_height() - foot;
         if sequence.steps.is_empty() {
-            Label::new(pane.look.say(poses::STEPS_EMPTY), pane.look.palette.muted).ui(ui);
+            Label::muted(pane.look, poses::STEPS_EMPTY).ui(ui);
         }
         let area = ScrollArea::vertical().auto_shrink([false, true]);
         let area = area
@@ -144,8 +129,8 @@ impl SequenceView {
         if !all.iter().any(|(pose, _)| *pose == self.adding) {
             self.adding = all.first().and_then(|(pose, _)| *pose);
         }
-        controls::choose_ui(ui, look.say(poses::POSE), &mut self.adding, &all);
-        let button = Button::new(look.say(poses::ADD), look.say(poses::ADD_TIP));
+        kit::choose_ui(ui, look.say(poses::POSE), &mut self.adding, &all);
+        let button = Button::said(look, poses::ADD);
         if button.ui(ui, look).clicked()
             && let Some(pose) = self.adding
         {
@@ -158,11 +143,9 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
     ui.vertical_centered(|ui| {
         ui.add_space(ui.available_height() * 0.3);
-        let title = Label::new(look.say(poses::SEQUENCE_EMPTY), palette.text);
+        let title = Label::said(look, poses::SEQUENCE_EMPTY);
         title.font(theme::title()).ui(ui);
-        Label::new(look.say(poses::SEQUENCE_EMPTY_BODY), palette.muted)
-            .wrap()
-            .ui(ui);
+        Label::muted(look, poses::SEQUENCE_EMPTY_BODY).wrap().ui(ui);
         if pane.state.poses.library.poses.is_empty() {
             Label::new(look.say(poses::NEEDS_POSES), palette.warn).ui(ui);
         }
@@ -170,29 +153,19 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
 }
 
 /// From right to left.
-fn head_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    typed: &mut Option<(Id, String)>,
-    sequence: &Sequence,
-) {
+fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
-    let delete = Button::new(look.say(poses::DELETE), look.say(poses::DELETE_TIP));
+    let delete = Button::said(look, poses::DELETE);
     if delete.ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Delete);
     }
-    let looped = Button::new(look.say(poses::LOOP), look.say(poses::LOOP_TIP));
+    let looped = Button::said(look, poses::LOOP);
     if looped.choice(sequence.looped).ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Loop(!sequence.looped));
     }
     let name = format!("{} {}", look.say(poses::SEQUENCE), look.say(poses::NAME));
-    let field = TextField {
-        name: &name,
-        hint: "",
-        value: &sequence.name,
-        max: NAME_CHARS_MAX,
-    };
-    if let Some(name) = field.ui(ui, typed) {
+    let field = TextField::new(&name, NAME_CHARS_MAX);
+    if let Some(name) = field.ui(ui, pane, &sequence.name) {
         change(pane, sequence, SequenceEdit::Rename(name));
     }
 }
@@ -203,7 +176,7 @@ fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
     let (_, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
     let now = step_now(pane, sequence);
     // A step without dwell is still seen; its way takes time as well.
-    let length = |step: &Step| Duration::from_millis(600 + u64::from(step.dwell.get()));
+    let length = |step: &SequenceStep| Duration::from_millis(600 + u64::from(step.dwell.get()));
     let whole: Duration = sequence.steps.iter().map(length).sum();
     let mut x = rect.left();
     for (at, step) in sequence.steps.iter().enumerate() {
@@ -219,7 +192,7 @@ fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
         let name = pose.map_or("", |pose| pose.name.as_str());
         let text = format!("{} {name}", at + 1);
         let (inner, center) = (inner.shrink2(vec2(theme::STEP, 0.0)), Align2::CENTER_CENTER);
-        controls::paint_text(ui, inner, center, &text, theme::small(), color);
+        kit::paint_text(ui, inner, center, &text, theme::small(), color);
         x += width;
     }
 }
@@ -261,15 +234,15 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
         return (look.say(poses::SAY_IDLE).into(), palette.muted);
     };
     let (text, color) = match run.view.phase {
-        Phase::Moving { .. } => (poses::SAY_MOVING, palette.armed),
-        Phase::Dwelling { .. } => (poses::SAY_DWELLING, palette.armed),
-        Phase::Paused => (poses::SAY_PAUSED, palette.warn),
-        Phase::Ended(End::Finished) => (poses::END_FINISHED, palette.ok),
-        Phase::Ended(End::Person) => (poses::END_PERSON, palette.muted),
-        Phase::Ended(End::Disarmed) => (poses::END_DISARMED, palette.warn),
-        Phase::Ended(End::Fault) => (poses::END_FAULT, palette.bad),
-        Phase::Ended(End::LinkLost) => (poses::END_LOST, palette.bad),
-        Phase::Ended(End::TakenOver) => (poses::END_TAKEN, palette.warn),
+        PlayPhase::Moving { .. } => (poses::SAY_MOVING, palette.armed),
+        PlayPhase::Dwelling { .. } => (poses::SAY_DWELLING, palette.armed),
+        PlayPhase::Paused => (poses::SAY_PAUSED, palette.warn),
+        PlayPhase::Ended(PlayEnd::Finished) => (poses::END_FINISHED, palette.ok),
+        PlayPhase::Ended(PlayEnd::Person) => (poses::END_PERSON, palette.muted),
+        PlayPhase::Ended(PlayEnd::Disarmed) => (poses::END_DISARMED, palette.warn),
+        PlayPhase::Ended(PlayEnd::Fault) => (poses::END_FAULT, palette.bad),
+        PlayPhase::Ended(PlayEnd::LinkLost) => (poses::END_LOST, palette.bad),
+        PlayPhase::Ended(PlayEnd::TakenOver) => (poses::END_TAKEN, palette.warn),
     };
     let mut words = look.say(text).to_owned();
     if run.is_running() {
@@ -294,28 +267,28 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
     let cannot = empty.or(pane.unready());
     let go_on = match paused {
-        true => (poses::RESUME, poses::RESUME_TIP, idle, Play::Resume),
-        false => (poses::PAUSE, poses::PAUSE_TIP, idle, Play::Pause),
+        true => (poses::RESUME, idle, Play::Resume),
+        false => (poses::PAUSE, idle, Play::Pause),
     };
     let dry_run = match dry {
-        true => (poses::DRY_END, poses::DRY_TIP, None, Play::EndDry),
-        false => (poses::DRY, poses::DRY_TIP, empty, Play::Dry(id)),
+        true => (poses::DRY_END, None, Play::EndDry),
+        false => (poses::DRY, empty, Play::Dry(id)),
     };
     let all = [
         dry_run,
-        (poses::START, poses::START_TIP, cannot, Play::Start(id)),
-        (poses::STEP, poses::STEP_TIP, cannot, Play::Step(id)),
+        (poses::START, cannot, Play::Start(id)),
+        (poses::STEP, cannot, Play::Step(id)),
         go_on,
-        (poses::END, poses::END_TIP, idle, Play::End),
+        (poses::END, idle, Play::End),
     ];
-    for (ui, (text, tip, disabled, play)) in columns.iter_mut().zip(all) {
+    for (ui, (text, disabled, play)) in columns.iter_mut().zip(all) {
         let weight = match text == poses::START {
             true => Weight::Strong,
             false => Weight::Normal,
         };
-        let button = Button::new(look.say(text), look.say(tip)).weight(weight);
-        if button.disabled(disabled).large().ui(ui, look).clicked() {
-            pane.actions.push(Action::Play(play));
-        }
+        let button = Button::said(look, text).weight(weight).large();
+        button
+            .disabled(disabled)
+            .sends(ui, pane, Action::Play(play));
     }
 }

@@ -3,12 +3,9 @@
 use crate::app::action::Action;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
-use crate::poses::library::Pose;
+use crate::poses::library::LibraryPose;
 use crate::ui::hand::panel;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::reorder;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
 use crate::ui::text::{main, panels, poses};
 use crate::ui::theme;
 use egui::{Align2, Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
@@ -22,7 +19,7 @@ pub(crate) fn shares(angles: &PerDof<Angle>) -> PerDof<Option<f32>> {
 }
 
 /// Why this pose cannot be taken now.
-fn refusal(pane: &Pane<'_>, pose: &Pose) -> Option<&'static str> {
+fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     if let Some(unready) = pane.unready() {
         return Some(unready);
     }
@@ -40,16 +37,14 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
 }
 
 /// A button that takes a pose.
-pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
-    let button = Button::new(look.say(poses::RECALL), look.say(poses::RECALL_TIP))
+    let button = Button::said(look, poses::RECALL)
         .named(&name)
         .disabled(refusal(pane, pose))
         .weight(Weight::Strong);
-    if button.ui(ui, look).clicked() {
-        pane.actions.push(Action::Recall(pose.id));
-    }
+    button.sends(ui, pane, Action::Recall(pose.id));
 }
 
 /// A tile of the library: picture, name, tags. True if it was chosen.
@@ -57,7 +52,7 @@ pub(crate) fn tile_ui(
     ui: &mut Ui,
     rect: Rect,
     pane: &mut Pane<'_>,
-    (pose, chosen): (&Pose, bool),
+    (pose, chosen): (&LibraryPose, bool),
 ) -> bool {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::POSE), pose.name);
@@ -96,8 +91,8 @@ pub(crate) fn tile_ui(
         false => pose.tags.join(" · "),
     };
     let (center, palette) = (Align2::CENTER_CENTER, look.palette);
-    controls::paint_text(&ui, upper, center, &pose.name, theme::body(), palette.text);
-    controls::paint_text(&ui, lower, center, &about, theme::small(), palette.muted);
+    kit::paint_text(&ui, upper, center, &pose.name, theme::body(), palette.text);
+    kit::paint_text(&ui, lower, center, &about, theme::small(), palette.muted);
     go_ui(&mut ui, pane, pose);
     response.clicked()
 }
@@ -105,11 +100,11 @@ pub(crate) fn tile_ui(
 /// The overview's strip: the person's poses first, then named gestures, then the other numbers. True if all are wanted.
 pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
     let look = pane.look;
-    controls::card_ui(ui, look, |ui| {
-        let opened = controls::head_ui(ui, look, look.say(poses::STRIP), |ui| {
-            let all = Button::new(look.say(poses::EVERY), look.say(poses::EVERY_TIP));
+    kit::card_ui(ui, look, |ui| {
+        let opened = kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
+            let all = Button::said(look, poses::EVERY);
             let opened = all.ui(ui, look).clicked();
-            let tip = look.say(poses::CAPTURE_TIP);
+            let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
             opened
         });
@@ -127,7 +122,7 @@ fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     let library = &state.poses.library;
     if library.poses.is_empty() {
-        Label::new(look.say(poses::STRIP_EMPTY), look.palette.muted).ui(ui);
+        Label::muted(look, poses::STRIP_EMPTY).ui(ui);
     }
     for pose in &library.poses {
         small_tile_ui(ui, pane, pose);
@@ -153,10 +148,10 @@ pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     }
 }
 
-fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
+fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let name = format!("{} {}", look.say(poses::RECALL_NAME), pose.name);
-    let button = Button::new(&pose.name, look.say(poses::RECALL_TIP))
+    let button = Button::new(&pose.name, look.tip(poses::RECALL))
         .named(&name)
         .disabled(refusal(pane, pose));
     let (id, rect) = ui.allocate_space(STRIP_TILE);
@@ -165,7 +160,7 @@ fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &Pose) {
     panel::pose_ui(ui, look, picture.shrink(2.0), &shares(&pose.angles));
     let words = words.shrink2(vec2(theme::STEP, 0.0));
     let (left, color) = (Align2::LEFT_CENTER, button.text_color(look));
-    controls::paint_text(ui, words, left, &pose.name, theme::body(), color);
+    kit::paint_text(ui, words, left, &pose.name, theme::body(), color);
     if response.clicked() {
         pane.actions.push(Action::Recall(pose.id));
     }

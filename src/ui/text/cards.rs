@@ -1,15 +1,14 @@
 //! Sentences of the cards over the window. No layout, no numbers.
 
+use crate::tasks::calibrate::Check;
 use crate::ui::text::phrase::texts;
 
 texts! {
-    CANCEL: "Cancel", "取消";
-    CANCEL_TIP: "Closes this card. Nothing is written.", "关闭此卡片，不写入任何内容。";
-    CLOSE: "Done", "完成";
-    CLOSE_TIP: "Closes this card.", "关闭此卡片。";
+    CANCEL: "Cancel", "取消", "Closes this card. Nothing is written.", "关闭此卡片，不写入任何内容。";
+    CLOSE: "Done", "完成", "Closes this card.", "关闭此卡片。";
     TYPE: "To go on, type", "要继续，请输入";
     NO_HAND: "No hand answers.", "没有灵巧手应答。";
-    BACKUP: "Backup", "备份";
+    BACKUP: "Backup:", "备份：";
     BACKING_UP: "Keeping a backup of what the hand holds", "正在备份灵巧手的参数";
     NO_BACKUP: "No backup could be made, and nothing was written.", "无法备份，未写入任何内容。";
 
@@ -31,25 +30,20 @@ texts! {
     WAY_ROUTED: "Not in one network with this computer: give it an address in the network of the new one before power off and on. It would be reached through a router, from", "与本机不在同一网段：重新上电前，请给本机设置同一网段的地址。否则要经过路由器，本机地址为";
     WAY_UNSURE: "This computer would reach the new address from", "本机将从此地址到达新地址：";
     WAY_NONE: "This computer has no way to the new address: give it an address in the same network before power off and on.", "本机没有到新地址的路由：重新上电前，请给本机设置同一网段的地址。";
-    CHANGE: "Change", "更改";
-    CHANGE_TIP: "Keeps a backup, then writes the new value.", "先备份，再写入新值。";
+    CHANGE: "Change", "更改", "Keeps a backup, then writes the new value.", "先备份，再写入新值。";
     LOOKING: "Looking for a hand at", "正在寻找灵巧手：";
     WRITING: "Writing at", "正在写入：";
     KEEP_TITLE: "Keep the change?", "保留更改？";
     KEEP_THERE: "The hand answers at its new place.", "灵巧手已在新位置应答。";
     KEEP_WAITS: "The hand took the new value and still answers where it was: it acts after SAVE, or after power off and on.", "灵巧手已接受新值，仍在原位置应答：保存后或重新上电后生效。";
     GOES_BACK_IN: "Goes back by itself in", "将自动恢复，剩余";
-    KEEP: "Keep", "保留";
-    KEEP_TIP: "Leaves the hand at its new place. Next you are asked about flash.", "灵巧手留在新位置，接着询问是否写入闪存。";
-    GO_BACK: "Go back", "恢复";
-    GO_BACK_TIP: "Writes the former value again.", "重新写入原来的值。";
+    KEEP: "Keep", "保留", "Leaves the hand at its new place. Next you are asked about flash.", "灵巧手留在新位置，接着询问是否写入闪存。";
+    GO_BACK: "Go back", "恢复", "Writes the former value again.", "重新写入原来的值。";
     OFFER_TITLE: "Save it in the hand?", "保存到灵巧手？";
     OFFER: "Without SAVE the hand forgets the change when it is switched off, and is found here again:", "不保存的话，断电后灵巧手会忘记更改，并回到：";
     OFFER_ALL: "SAVE writes everything that the hand holds, these defaults too:", "保存会写入灵巧手的全部参数，包括以下默认值：";
-    UNSAVED: "Until power off", "断电前有效";
-    UNSAVED_TIP: "Writes nothing into flash.", "不写入闪存。";
-    SAVE: "Save", "保存";
-    SAVE_TIP: "Writes all parameters of the hand into its flash.", "把灵巧手的全部参数写入闪存。";
+    UNSAVED: "Until power off", "断电前有效", "Writes nothing into flash.", "不写入闪存。";
+    SAVE: "Save", "保存", "Writes all parameters of the hand into its flash.", "把灵巧手的全部参数写入闪存。";
     SAVING: "The hand writes its flash", "灵巧手正在写入闪存";
     GOING_BACK: "Going back", "正在恢复";
     OVER_OCCUPIED: "Another hand answers there. Nothing was written.", "另一只灵巧手已在该位置应答，未写入任何内容。";
@@ -68,37 +62,26 @@ texts! {
     SAVED_FAILED: "The hand says that nothing was written to flash.", "灵巧手报告未写入闪存。";
     SAVED_UNKNOWN: "It is not known whether it is in flash. Switched off and on the hand is at one of these places:", "不确定是否已写入闪存。断电再上电后，灵巧手在以下位置之一：";
     SAVED_NOT_SENT: "SAVE was not sent, or the hand refused it: it is not in flash.", "未发送保存或被拒绝：未写入闪存。";
-    TO_OLD: "Connect: former place", "连接原位置";
-    TO_NEW: "Connect: new place", "连接新位置";
-    CONNECT_TIP: "Connects there. Nothing is written.", "连接到该位置，不写入任何内容。";
+    TO_OLD: "Connect: former place", "连接原位置", "Connects there. Nothing is written.", "连接到该位置，不写入任何内容。";
+    TO_NEW: "Connect: new place", "连接新位置", "Connects there. Nothing is written.", "连接到该位置，不写入任何内容。";
 
     RESET_TITLE: "Return to the factory's parameters?", "恢复出厂参数？";
     RESETTING_TITLE: "Return to the factory's parameters", "恢复出厂参数";
     RESET_WORDS: "Speeds and forces after power-up, id, serial speed and IP address return to what the factory set. A backup is kept first; afterwards the hand is looked for at the factory's place.", "上电速度与力、ID、波特率和 IP 地址都恢复为出厂值。先备份，之后到出厂位置寻找灵巧手。";
-    RESET: "Reset", "恢复出厂";
-    RESET_TIP: "Keeps a backup, then sends RESET_PARA.", "先备份，再发送 RESET_PARA。";
+    RESET: "Reset", "恢复出厂", "Keeps a backup, then sends RESET_PARA.", "先备份，再发送 RESET_PARA。";
     RESET_SENDING: "The hand returns to the factory's parameters", "灵巧手正在恢复出厂参数";
     RESET_FOUND: "The hand holds the factory's parameters and answers here:", "灵巧手已恢复出厂参数，并在此应答：";
     RESET_LEFT: "The hand was reset and these are not as at delivery; some act after power off and on:", "已恢复出厂，以下参数与出厂值不同，部分要重新上电后生效：";
     RESET_REFUSED: "The hand refused it. Nothing was changed.", "灵巧手拒绝，未作任何更改。";
     RESET_NOT_SENT: "It was not sent. Nothing was changed.", "未发送，未作任何更改。";
     RESET_NOWHERE: "It was sent, and no hand answers at the factory's place or at the former one. Switch the hand off and on, then connect or look for it in the Connection view: id 1, 115200 baud, address 192.168.11.210.", "已发送，但出厂位置和原位置都没有应答。请断电再上电，然后连接，或在连接视图中扫描：ID 1，波特率 115200，地址 192.168.11.210。";
-    RESET_ENTRY: "Factory reset", "恢复出厂";
-    RESET_ENTRY_TIP: "Asks first. Returns the hand to the parameters of its delivery.", "先询问，再把灵巧手恢复为出厂参数。";
+    RESET_ENTRY: "Factory reset", "恢复出厂", "Asks first. Returns the hand to the parameters of its delivery.", "先询问，再把灵巧手恢复为出厂参数。";
 
     CALIBRATE_TITLE: "Calibrate the force sensors", "校准力传感器";
     CALIBRATE_WORDS: "The hand takes the forces of now as zero; that takes 2 to 6 s, and nothing else moves it meanwhile. Open it, and let it touch nothing.", "灵巧手把当前的力作为零点，需 2 到 6 秒，期间不会运动。请张开手，不要接触任何物体。";
-    CALIBRATE: "Calibrate", "校准";
-    CALIBRATE_TIP: "Sends GESTURE_FORCE_CLB.", "发送 GESTURE_FORCE_CLB。";
+    CALIBRATE: "Calibrate", "校准", "Sends GESTURE_FORCE_CLB.", "发送 GESTURE_FORCE_CLB。";
     CALIBRATE_NOT_YET: "Not all of it is so yet.", "条件尚未全部满足。";
-    CALIBRATE_ENTRY: "Calibrate force", "力校准";
-    CALIBRATE_ENTRY_TIP: "Opens a card that checks what must be so first.", "打开卡片，先检查所需条件。";
-    CHECK_OPEN: "Fingers and thumb are open", "手指和拇指已张开";
-    CHECK_STILL: "No joint moves", "各关节静止";
-    CHECK_UNTOUCHED: "Nothing is touched", "没有接触物体";
-    CHECK_STEADY: "The force is steady for 2 s", "力稳定 2 秒";
-    CHECK_NO_FAULT: "No drive has a fault", "驱动器没有故障";
-    CHECK_DISARMED: "The hand is not armed", "灵巧手未使能";
+    CALIBRATE_ENTRY: "Calibrate force", "力校准", "Opens a card that checks what must be so first.", "打开卡片，先检查所需条件。";
     CALIBRATING: "The hand calibrates its force sensors", "灵巧手正在校准";
     MEASURING: "Measuring the new zero", "正在测量新的零点";
     CALIBRATED: "The hand says that it is finished.", "灵巧手报告校准完成。";
@@ -110,4 +93,14 @@ texts! {
     OFFSET_NOW: "Force, g", "力 g";
     OFFSET_BEFORE: "Before, g", "校准前 g";
     OFFSET_AFTER: "After, g", "校准后 g";
+
+    /// What must be so before a calibration.
+    fn check(Check) {
+        Check::Open => "Fingers and thumb are open", "手指和拇指已张开";
+        Check::Still => "No joint moves", "各关节静止";
+        Check::Untouched => "Nothing is touched", "没有接触物体";
+        Check::Steady => "The force is steady for 2 s", "力稳定 2 秒";
+        Check::NoFault => "No drive has a fault", "驱动器没有故障";
+        Check::Disarmed => "The hand is not armed", "灵巧手未使能";
+    }
 }

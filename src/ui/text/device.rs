@@ -1,43 +1,34 @@
 //! Sentences of what the hand keeps: rows, verdicts, SAVE, files.
 
+use crate::app::params::refusal::ParamRefusal;
 use crate::ui::text::phrase::texts;
 
 texts! {
     REFUSED: "Nothing of the file was taken.", "文件未被采用。";
 
-    FIND: "Find parameters", "查找参数";
-    FIND_HINT: "Filter", "筛选";
+    FIND: "Find parameters", "查找参数", "Filter", "筛选";
     FIND_NONE: "No row has these words.", "没有符合的行。";
     NO_DIFFERENCE: "No row differs.", "没有不同的行。";
-    ONLY: "Only differences", "只看不同";
-    ONLY_TIP: "Shows only rows in which live, staged, saved and factory are not all the same.", "只显示实际值、暂存值、已存值与出厂值不完全相同的行。";
-    READ: "Read again", "重新读取";
-    READ_TIP: "Reads all rows from the hand. Writes nothing.", "从灵巧手读取全部行，不写入任何内容。";
-    APPLY: "Apply", "应用";
-    APPLY_TIP: "Writes the staged rows and reads them back. They hold until the hand is switched off, unless they are saved to flash.", "写入暂存的行并读回。若不保存到闪存，断电后即失效。";
-    UNDO: "Undo apply", "撤销应用";
-    UNDO_TIP: "Writes back what the last apply changed, and reads it back.", "写回上次应用所改动的值，并读回核对。";
-    UNSTAGE_ALL: "Drop staged", "清除暂存";
-    UNSTAGE_ALL_TIP: "Forgets everything that is staged. Writes nothing.", "清除全部暂存值，不写入任何内容。";
-    UNSTAGE: "Drop", "清除";
-    UNSTAGE_TIP: "Forgets what is staged here. Writes nothing.", "清除此行暂存值，不写入任何内容。";
-    COPY: "Copy live speed and force", "取当前速度与力阈值";
-    COPY_TIP: "Stages SPEED_SET and FORCE_SET, as they are read from the hand now, as defaults after power-up, for all joints. Writes nothing.", "把当前从灵巧手读到的 SPEED_SET 与 FORCE_SET 暂存为全部关节的上电默认值，不写入任何内容。";
+    ONLY: "Only differences", "只看不同", "Shows only rows in which live, staged, saved and factory are not all the same.", "只显示实际值、暂存值、已存值与出厂值不完全相同的行。";
+    READ: "Read again", "重新读取", "Reads all rows from the hand. Writes nothing.", "从灵巧手读取全部行，不写入任何内容。";
+    APPLY: "Apply", "应用", "Writes the staged rows and reads them back. They hold until the hand is switched off, unless they are saved to flash.", "写入暂存的行并读回。若不保存到闪存，断电后即失效。";
+    UNDO: "Undo apply", "撤销应用", "Writes back what the last apply changed, and reads it back.", "写回上次应用所改动的值，并读回核对。";
+    UNSTAGE_ALL: "Drop staged", "清除暂存", "Forgets everything that is staged. Writes nothing.", "清除全部暂存值，不写入任何内容。";
+    UNSTAGE: "Drop", "清除", "Forgets what is staged here. Writes nothing.", "清除此行暂存值，不写入任何内容。";
+    COPY: "Copy live speed and force", "取当前速度与力阈值", "Stages SPEED_SET and FORCE_SET, as they are read from the hand now, as defaults after power-up, for all joints. Writes nothing.", "把当前从灵巧手读到的 SPEED_SET 与 FORCE_SET 暂存为全部关节的上电默认值，不写入任何内容。";
     COPY_UNKNOWN: "SPEED_SET and FORCE_SET are not known now.", "SPEED_SET 与 FORCE_SET 目前未知。";
-    CHANGE: "Change...", "更改...";
-    CHANGE_TIP: "Changes where the hand is found, step by step and with a way back.", "分步更改灵巧手的通信地址，并保留退路。";
+    CHANGE: "Change...", "更改...", "Changes where the hand is found, step by step and with a way back.", "分步更改灵巧手的通信地址，并保留退路。";
     CHANGE_NONE: "Type another value first.", "请先输入另一个值。";
 
     CHANGE_SIM: "The simulated hand is always found here.", "仿真手总在此处。";
 
     NAME: "Name", "名称";
     LIVE: "Live", "实际值";
-    STAGED: "Staged", "暂存值";
+    STAGED: "Staged", "暂存值", "What this row is to hold once it is applied. Enter stages it; nothing is written by typing.", "应用后此行的值。按回车暂存，输入时不写入任何内容。";
     SAVED: "Last saved", "上次保存";
     FACTORY: "Factory", "出厂值";
     RANGE: "Range", "范围";
     MANUAL: "manual", "手册";
-    STAGED_TIP: "What this row is to hold once it is applied. Enter stages it; nothing is written by typing.", "应用后此行的值。按回车暂存，输入时不写入任何内容。";
     ADDRESS_HINT: "address", "地址";
     FOUR_SPEEDS: "4 speeds", "4 种速率";
 
@@ -66,16 +57,6 @@ texts! {
     AGO: "ago", "前";
     TROUBLE: "Not all rows could be read, and nothing was written on the strength of them:", "部分行无法读取，因此未写入任何内容：";
 
-    WHY_NO_HAND: "No hand answers.", "没有灵巧手应答。";
-    WHY_ARMED: "The hand is armed: disarm it first.", "灵巧手已使能：请先取消使能。";
-    WHY_HOLDING: "A stop is being confirmed.", "正在确认停止。";
-    WHY_MOVING: "The hand moves: wait until it rests.", "灵巧手在运动：请等它静止。";
-    WHY_REST_UNKNOWN: "It is not known whether the hand rests: wait for its status.", "尚不清楚灵巧手是否静止：请等待状态更新。";
-    WHY_BUSY: "Something is under way.", "正在进行其他操作。";
-    WHY_NOTHING_STAGED: "Nothing is staged that can be applied.", "没有可应用的暂存值。";
-    WHY_NOTHING_TO_UNDO: "No apply of this session changed anything.", "本次没有可撤销的应用。";
-    WHY_NO_FOLDER: "There is no place for the backup.", "没有存放备份的位置。";
-    WHY_NOTHING_READ: "No row was read yet.", "尚未读取任何行。";
 
     APPLIED: "applied, read back", "已应用并读回";
     NOT_TAKEN: "refused", "被拒绝";
@@ -102,16 +83,13 @@ texts! {
     DANGER_SLOWLY: "With speed 25 the same thresholds were passed by at most", "速度为 25 时，同样的阈值最多超出";
     SPEED: "speed", "速度";
     FORCE: "force", "力";
-    AGREE_APPLY: "Apply anyway", "仍然应用";
-    AGREE_SAVE: "Save anyway", "仍然保存";
-    AGREE_TIP: "Goes on with what is listed here.", "按所列内容继续。";
-    DECLINE: "Back", "返回";
-    DECLINE_TIP: "Writes nothing. What is staged stays staged.", "不写入任何内容，暂存值保留。";
+    AGREE_APPLY: "Apply anyway", "仍然应用", "Goes on with what is listed here.", "按所列内容继续。";
+    AGREE_SAVE: "Save anyway", "仍然保存", "Goes on with what is listed here.", "按所列内容继续。";
+    DECLINE: "Back", "返回", "Writes nothing. What is staged stays staged.", "不写入任何内容，暂存值保留。";
 
     FLASH: "Flash", "闪存";
     FLASH_BODY: "Flash itself cannot be read. \"Last saved\" is what this program saved.", "闪存本身无法读取。“上次保存”是本程序所保存的内容。";
-    SAVE: "Save to flash", "保存到闪存";
-    SAVE_TIP: "Shows what would change, makes a backup, then lets the hand write all its parameters to flash. Takes up to 3 seconds.", "先显示将要改变的内容并备份，然后让灵巧手把全部参数写入闪存，最多 3 秒。";
+    SAVE: "Save to flash", "保存到闪存", "Shows what would change, makes a backup, then lets the hand write all its parameters to flash. Takes up to 3 seconds.", "先显示将要改变的内容并备份，然后让灵巧手把全部参数写入闪存，最多 3 秒。";
     SAVE_TITLE: "Save these changes to flash?", "把这些更改保存到闪存？";
     SAVE_CHANGES: "SAVE writes all parameters of the hand. After the next power-up these are not as before:", "保存会写入灵巧手的全部参数。下次上电后，以下各项与以前不同：";
     SAVE_FROM: "Until now", "以前";
@@ -119,8 +97,8 @@ texts! {
     SAVE_STAGED: "Rows are staged and not applied. Save to flash applies them first.", "有暂存值尚未应用。保存到闪存时会先应用。";
     SAVE_NOT_APPLIED: "Not saved: not all that was staged is in force. Each row says why.", "未保存：暂存值未全部生效，原因见各行。";
     UNSAVED: "Not in flash yet:", "尚未写入闪存：";
-    AGREE: "Save", "保存";
-    AGREE_APPLY_SAVE: "Apply and save", "应用并保存";
+    AGREE: "Save", "保存", "Goes on with what is listed here.", "按所列内容继续。";
+    AGREE_APPLY_SAVE: "Apply and save", "应用并保存", "Goes on with what is listed here.", "按所列内容继续。";
     NEVER_SAVED: "This program saved nothing on this hand yet.", "本程序尚未在此灵巧手上保存过。";
     SAVED_ON: "Last saved", "上次保存";
     BY_FRAME: "confirmed by the hand", "灵巧手已确认";
@@ -141,10 +119,8 @@ texts! {
     SAVE_NOT_READ: "its parameters could not be read back as they were.", "参数无法照原样读回。";
     SAVE_LINK: "the link was lost.", "连接断开。";
 
-    DUMP: "Dump to file", "导出到文件";
-    DUMP_TIP: "Writes what was read to a file of parameters.", "把读到的值写入参数文件。";
-    OPEN: "Open file", "打开文件";
-    OPEN_TIP: "Shows a file of parameters beside the hand. Writes nothing.", "把参数文件与灵巧手对照显示，不写入任何内容。";
+    DUMP: "Dump to file", "导出到文件", "Writes what was read to a file of parameters.", "把读到的值写入参数文件。";
+    OPEN: "Open file", "打开文件", "Shows a file of parameters beside the hand. Writes nothing.", "把参数文件与灵巧手对照显示，不写入任何内容。";
     BACKUPS: "Backups", "备份";
     BACKUP_OF: "Hand of the backup", "备份所属灵巧手";
     BACKUPS_NONE: "None yet. One is made before each save.", "还没有备份。每次保存前会自动备份。";
@@ -154,15 +130,27 @@ texts! {
     TAKE: "Take", "采用";
     TICK_TIP: "Stages this row with the others that are ticked.", "与其他勾选的行一起暂存。";
     TICK_PLACE_TIP: "Says where another hand may be found: tick it only if it is meant.", "可能是另一只灵巧手的通信地址：确有需要才勾选。";
-    STAGE_TICKED: "Stage ticked rows", "暂存勾选的行";
-    STAGE_TICKED_TIP: "Puts the ticked rows beside what the hand holds. Writes nothing.", "把勾选的行放入暂存值，不写入任何内容。";
+    STAGE_TICKED: "Stage ticked rows", "暂存勾选的行", "Puts the ticked rows beside what the hand holds. Writes nothing.", "把勾选的行放入暂存值，不写入任何内容。";
     STAGE_NONE: "No row is ticked.", "没有勾选任何行。";
-    CLOSE_FILE: "Close", "关闭";
-    CLOSE_FILE_TIP: "Goes back to the table.", "返回参数表。";
+    CLOSE_FILE: "Close", "关闭", "Goes back to the table.", "返回参数表。";
     SAME: "same", "相同";
     UNKNOWN_KEYS: "Keys that are not known:", "无法识别的字段：";
     WHY_DUMP: "dump", "导出";
     WHY_BEFORE_SAVE: "before save", "保存前";
     WHY_BEFORE_APPLY: "before apply", "应用前";
     WHY_BEFORE_RESET: "before reset", "复位前";
+
+    /// Why it cannot be done now.
+    fn refusal(ParamRefusal) {
+        ParamRefusal::NoHand => "No hand answers.", "没有灵巧手应答。";
+        ParamRefusal::Armed => "The hand is armed: disarm it first.", "灵巧手已使能：请先取消使能。";
+        ParamRefusal::Holding => "A stop is being confirmed.", "正在确认停止。";
+        ParamRefusal::Moving => "The hand moves: wait until it rests.", "灵巧手在运动：请等它静止。";
+        ParamRefusal::RestUnknown => "It is not known whether the hand rests: wait for its status.", "尚不清楚灵巧手是否静止：请等待状态更新。";
+        ParamRefusal::Busy => "Something is under way.", "正在进行其他操作。";
+        ParamRefusal::NothingStaged => "Nothing is staged that can be applied.", "没有可应用的暂存值。";
+        ParamRefusal::NothingToUndo => "No apply of this session changed anything.", "本次没有可撤销的应用。";
+        ParamRefusal::NoFolder => "There is no place for the backup.", "没有存放备份的位置。";
+        ParamRefusal::NothingRead => "No row was read yet.", "尚未读取任何行。";
+    }
 }

@@ -10,14 +10,13 @@ use crate::poses::file::{PoseFileCause, PoseFileError};
 use crate::tasks::TaskError;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::{Remedy, TransportError};
-use crate::ui::kit::format::sentence;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, format};
 use std::fmt::Display;
 
 /// The error's own words in English; else what `zh` makes of it.
 fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> String {
     match look.language {
-        Language::En => sentence(&error.to_string()),
+        Language::En => format::sentence(&error.to_string()),
         Language::Zh => zh(error),
     }
 }
@@ -137,7 +136,7 @@ pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
         (Language::En, LinkTrouble::NoAnswer { id }) => format!(
             "No answer from id {id}: check power, id, baud and protocol of the hand, or let 'Scan' in Connection try them all."
         ),
-        (Language::En, trouble) => sentence(&trouble.to_string()),
+        (Language::En, trouble) => format::sentence(&trouble.to_string()),
         (Language::Zh, trouble) => trouble_zh(trouble),
     }
 }
@@ -217,7 +216,7 @@ pub(crate) fn endpoint(look: Look, error: &EndpointError) -> String {
         (Language::Zh, EndpointError::Place { example, .. }) => {
             format!("缺少端口或地址：例如 {}。", bare(example))
         }
-        (Language::En, error) => sentence(&error.to_string()),
+        (Language::En, error) => format::sentence(&error.to_string()),
         (Language::Zh, EndpointError::Kind { text }) => format!("{text} 没有说明连接方式。"),
         (Language::Zh, EndpointError::Key { key, kind, .. }) => {
             format!("{kind}: 没有 {key} 这一项。")

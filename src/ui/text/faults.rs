@@ -3,10 +3,8 @@
 use crate::ui::text::phrase::texts;
 
 texts! {
-    DRIVE: "Drive", "驱动器";
-    DRIVE_TIP: "Shows what this drive says, and its faults first.", "查看该驱动器的状态说明，并把其故障排在最前。";
-    EXPLAIN: "status, explained", "状态说明";
-    EXPLAIN_TIP: "Click: what this means and what to do.", "点击：查看含义与处理建议。";
+    DRIVE: "Drive", "驱动器", "Shows what this drive says, and its faults first.", "查看该驱动器的状态说明，并把其故障排在最前。";
+    EXPLAIN: "status, explained", "状态说明", "Click: what this means and what to do.", "点击：查看含义与处理建议。";
     SAYS_NOW: "says now", "当前状态";
     SAID_LAST: "said last", "上次状态";
     CHOSEN_CLOSE: "Show all drives", "显示全部驱动器";
@@ -21,18 +19,14 @@ texts! {
     LASTED: "lasted", "持续";
     TIMES: "times", "次";
     CAME: "came", "共";
-    SEEN: "Seen", "已看";
-    SEEN_TIP: "You have seen this fault. It stays in the list until it is forgotten, and is unseen again if it comes again.", "表示已查看该故障。它仍留在列表中；再次出现时会重新标为未查看。";
-    SEEN_ALL: "All seen", "全部已看";
-    SEEN_ALL_TIP: "You have seen all faults of the list.", "表示已查看列表中的全部故障。";
+    SEEN: "Seen", "已看", "You have seen this fault. It stays in the list until it is forgotten, and is unseen again if it comes again.", "表示已查看该故障。它仍留在列表中；再次出现时会重新标为未查看。";
+    SEEN_ALL: "All seen", "全部已看", "You have seen all faults of the list.", "表示已查看列表中的全部故障。";
     SEEN_NONE: "Every fault was seen.", "没有未查看的故障。";
     UNSEEN_BEFORE: "Faults:", "故障";
-    UNSEEN: "unseen", "项未查看";
-    UNSEEN_TIP: "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
+    UNSEEN: "unseen", "项未查看", "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
     UNSEEN_MARK: "unseen fault", "未查看的故障";
     TIDY: "Tidy up", "整理列表";
-    FORGET: "Forget", "清空历史";
-    FORGET_TIP: "Takes faults that are over and seen from the list.", "从列表中移除已结束且已看的故障。";
+    FORGET: "Forget", "清空历史", "Takes faults that are over and seen from the list.", "从列表中移除已结束且已看的故障。";
 
     CLEAR_HELPS: "Clear errors can end it.", "可用“清除错误”结束。";
     CLEAR_CANNOT: "Clear errors cannot end it: it ends by itself when the drive is cool.", "不可清除：温度回落后自动结束。";
@@ -60,18 +54,15 @@ texts! {
     LOG_NONE: "Nothing has happened yet.", "还没有消息。";
     LOG_NONE_PASS: "No message passes the filter.", "没有符合条件的消息。";
     LOG_LOST: "older messages were dropped:", "已丢弃的较早消息：";
-    LOG_FILTER: "Filter messages", "筛选消息";
-    LOG_FILTER_HINT: "words", "关键词";
-    LEVEL: "Level", "级别";
-    LEVEL_TIP: "Shows messages of this level and above.", "显示此级别及以上的消息。";
+    LOG_FILTER: "Filter messages", "筛选消息", "words", "关键词";
+    LEVEL: "Level", "级别", "Shows messages of this level and above.", "显示此级别及以上的消息。";
     LEVEL_ALL: "All", "全部";
     LEVEL_WARN: "Warnings", "警告";
     LEVEL_ALARM: "Alarms", "报警";
     WORD_INFO: "info", "信息";
     WORD_WARN: "warning", "警告";
     WORD_ALARM: "alarm", "报警";
-    COPY: "Copy", "复制";
-    COPY_TIP: "Copies the messages that are listed, with seconds since the start of the program.", "复制列出的消息，附程序启动以来的秒数。";
+    COPY: "Copy", "复制", "Copies the messages that are listed, with seconds since the start of the program.", "复制列出的消息，附程序启动以来的秒数。";
     COPIED: "Copied", "已复制";
 
 
@@ -81,19 +72,14 @@ texts! {
     RECORDINGS_KEPT: "Kept in memory until the program ends, 12 at most: the oldest that was looked at goes first.", "记录保存在内存中，程序退出即清除，最多 12 份；先移除已看过的最早记录。";
     RECORDINGS_LOST: "Recordings that went unseen:", "未看过即被移除的记录：";
     RECORDING_RUNS: "Recording a fault, ends in", "正在记录故障，剩余";
-    RECORDING_OPEN: "Open", "打开";
-    RECORDING_OPEN_TIP: "Shows what was measured and done around this fault. Nothing is sent to the hand.", "查看该故障前后的测量与操作，不会向灵巧手发送任何内容。";
+    RECORDING_OPEN: "Open", "打开", "Shows what was measured and done around this fault. Nothing is sent to the hand.", "查看该故障前后的测量与操作，不会向灵巧手发送任何内容。";
     RECORDING: "Recording", "记录";
     RECORDING_NEW: "not opened yet", "未看过";
     RECORDING_MORE: "more", "项其他故障";
-    RECORDING_BACK: "Back", "返回";
-    RECORDING_BACK_TIP: "Back to the faults and the lists.", "返回故障与列表。";
-    RECORDING_SAVE: "Save CSV", "保存 CSV";
-    RECORDING_SAVE_TIP: "Saves everything of this recording as comma-separated values.", "把该记录的全部内容保存为 CSV。";
-    RECORDING_NEAR: "5 s around", "前后 5 s";
-    RECORDING_NEAR_TIP: "Shows the five seconds before and after the fault.", "显示故障前后各 5 秒。";
-    RECORDING_WHOLE: "Whole", "全部";
-    RECORDING_WHOLE_TIP: "Shows the whole recording.", "显示整段记录。";
+    RECORDING_BACK: "Back", "返回", "Back to the faults and the lists.", "返回故障与列表。";
+    RECORDING_SAVE: "Save CSV", "保存 CSV", "Saves everything of this recording as comma-separated values.", "把该记录的全部内容保存为 CSV。";
+    RECORDING_NEAR: "5 s around", "前后 5 s", "Shows the five seconds before and after the fault.", "显示故障前后各 5 秒。";
+    RECORDING_WHOLE: "Whole", "全部", "Shows the whole recording.", "显示整段记录。";
     RECORDING_PANEL_TIP: "Shows or hides this plot. Strong lines: the joints with the fault.", "显示或隐藏该曲线。粗线为发生故障的自由度。";
     RECORDING_EVENTS: "What happened", "事件";
     RECORDING_EVENTS_LOST: "Events that were not kept:", "未保留的事件：";

@@ -4,8 +4,7 @@ use crate::ui::text::phrase::texts;
 
 texts! {
     TITLE: "Keys", "快捷键";
-    BUTTON: "Keys", "快捷键";
-    BUTTON_TIP: "Shows what each key does.", "显示各个按键的作用。";
+    BUTTON: "Keys", "快捷键", "Shows what each key does.", "显示各个按键的作用。";
     CLOSE: "Close the list of keys", "关闭快捷键列表";
     SHUT: "Close", "关闭";
     STOP: "STOP, from everywhere", "停止（任何时候）";

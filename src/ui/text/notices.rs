@@ -1,13 +1,12 @@
 //! Messages, troubles of the link and failed requests as sentences in the window's language. Decides nothing.
 
-use crate::app::notices::{Asked, NoticeKind};
+use crate::app::notices::{NoticeKind, RequestKind};
 use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
 use crate::hand::Words;
 use crate::record::Disarmed;
-use crate::record::quirk_sheet::Difference;
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
+use crate::record::quirk_sheet::FactDifference;
+use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, errors, main, panels, poses, quirks, traffic, trials, tune, words};
 use std::path::Path;
@@ -20,16 +19,16 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
     }
 }
 
-fn asked(look: Look, what: Asked) -> String {
+fn asked(look: Look, what: RequestKind) -> String {
     match what {
-        Asked::Gesture(gesture) => format!("{} {}", look.say(panels::GESTURE), gesture.get()),
-        Asked::StoreGesture(gesture) => {
+        RequestKind::Gesture(gesture) => format!("{} {}", look.say(panels::GESTURE), gesture.get()),
+        RequestKind::StoreGesture(gesture) => {
             format!("{} {}", look.say(poses::STORE_ASKED), gesture.get())
         }
-        Asked::ReadGesture(gesture) => {
+        RequestKind::ReadGesture(gesture) => {
             format!("{} {}", look.say(poses::READ_ASKED), gesture.get())
         }
-        Asked::ClearErrors => look.say(panels::CLEAR).into(),
+        RequestKind::ClearErrors => look.say(panels::CLEAR).into(),
     }
 }
 
@@ -40,7 +39,7 @@ fn disarmed(look: Look, why: Disarmed) -> &'static str {
         Disarmed::Fault => panels::DISARMED_FAULT,
         Disarmed::LinkLost => panels::DISARMED_LOST,
         Disarmed::Stale => panels::DISARMED_STALE,
-        Disarmed::OtherController => panels::DISARMED_RIVAL,
+        Disarmed::OtherController => panels::DISARMED_OTHER_CONTROLLER,
         Disarmed::Resume => panels::DISARMED_RESUME,
     })
 }
@@ -76,7 +75,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::LatencyTimer { port, ms } => latency_timer(look, port, *ms),
         NoticeKind::Reconnected => said(panels::NOTICE_RECONNECTED),
         NoticeKind::HoldConfirmed { after } => told(panels::NOTICE_HELD, &format::age(*after)),
-        NoticeKind::HoldAlarm => said(main::ALARM_BODY),
+        NoticeKind::HoldAlarm => said(main::ALARM_TITLE.tip()),
         NoticeKind::StopNotSent => said(panels::NOTICE_STOP_NOT_SENT),
         NoticeKind::TareUnderLoad { finger, newtons } => {
             let finger = look.say(words::finger(*finger));
@@ -110,7 +109,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         | NoticeKind::SessionOpened { .. }
         | NoticeKind::SessionRefused { .. } => trials::notice(look, what),
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
-        NoticeKind::GestureStoreOff => said(poses::STORE_OFF_TIP),
+        NoticeKind::GestureStoreOff => said(poses::STORE_OFF.tip()),
         // The words of the graphics driver help whoever mends it.
         NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
             Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),
@@ -172,9 +171,9 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
     }
 }
 
-fn differing(look: Look, differences: &[Difference], last_seen: &str) -> String {
+fn differing(look: Look, differences: &[FactDifference], last_seen: &str) -> String {
     let facts = differences.iter().map(|difference| {
-        let Difference { fact, before, now } = difference;
+        let FactDifference { fact, before, now } = difference;
         format!("{}: {before} -> {now}", look.say(quirks::fact(*fact)))
     });
     let facts: Vec<String> = facts.collect();

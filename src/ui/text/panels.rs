@@ -1,18 +1,20 @@
 //! Sentences of the plots, the fingertips, the fault list, the gestures and the connection.
 
+use crate::app::readings::friction::GripState;
+use crate::link::PollGroup;
+use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
 use crate::ui::text::phrase::{Text, texts};
+use crate::ui::text::quirks;
 
 texts! {
     HISTORY: "History", "曲线";
     WINDOW_NAME: "Plot window", "时间窗口";
-    PAUSE: "Pause", "暂停";
+    PAUSE: "Pause", "暂停", "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
     PAUSED: "Paused", "已暂停";
     PAUSE_NAME: "Pause the plots", "暂停曲线";
-    PAUSE_TIP: "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
     SHOW_CURVE: "Show or hide this joint's curves.", "显示或隐藏该自由度的曲线。";
-    THRESHOLDS: "Thresholds", "阈值";
-    THRESHOLDS_TIP: "Shows the force thresholds as dashed lines.", "以虚线显示力阈值。";
+    THRESHOLDS: "Thresholds", "阈值", "Shows the force thresholds as dashed lines.", "以虚线显示力阈值。";
     PLOT_FORCE: "Force, g", "受力 g";
     PLOT_CURRENT: "Current, mA", "电流 mA";
     PLOT_TEMPERATURE: "Temperature, °C", "温度 °C";
@@ -29,7 +31,7 @@ texts! {
     MARK_NOTE: "Note", "标记";
     MARK_HELD: "At rest", "静止";
 
-    TOUCH: "Fingertips", "指尖触觉";
+    TOUCH: "Fingertips", "指尖触觉", "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
     TOUCH_SCALE: "Heat: counts above zero", "热度：相对零点的增量";
     TOUCH_NO_ZERO: "No zero yet: let go of the fingertips", "尚无零点：请松开指尖";
     TOUCH_SCALE_SHORT: "Heat", "热度";
@@ -46,22 +48,17 @@ texts! {
     TOUCH_OK: "ok", "正常";
     TOUCH_DIFFERS: "diff", "不符";
     TOUCH_NO_CONTACT: "none", "无";
-    TOUCH_TIP: "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
     TOUCH_CHANNEL: "Channel", "通道";
     TOUCH_DELTA_N: "Normal delta", "法向变化";
     TOUCH_DELTA_T: "Shear delta", "切向变化";
 
     HAND: "Hand", "灵巧手";
-    HAND_PICTURE: "Picture of the hand", "手部姿态图";
-    HAND_PICTURE_TIP: "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Arrows are the forces on the fingertips. A coloured shell is where a joint is told to go.\nLengths and couplings are those of a public model of this hand (Unitree Robotics, BSD-3-Clause); which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。箭头为指尖受力，彩色轮廓为目标姿态。\n尺寸与联动关系取自该手的公开模型（Unitree Robotics，BSD-3-Clause）；拇指旋转方向手册没有说明。";
+    HAND_PICTURE: "Picture of the hand", "手部姿态图", "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Arrows are the forces on the fingertips. A coloured shell is where a joint is told to go.\nLengths and couplings are those of a public model of this hand (Unitree Robotics, BSD-3-Clause); which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。箭头为指尖受力，彩色轮廓为目标姿态。\n尺寸与联动关系取自该手的公开模型（Unitree Robotics，BSD-3-Clause）；拇指旋转方向手册没有说明。";
 
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
-    TARE_ALL: "Tare all", "全部去皮";
-    TARE_ALL_TIP: "Counts all channels from now on. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
-    TARE_ONE: "Tare", "去皮";
-    TARE_ONE_TIP: "Counts the channels of the chosen fingertip from now on.", "所选指尖的通道从当前读数起算。";
-    TARE_UNDO: "Undo", "撤销";
-    TARE_UNDO_TIP: "Takes the last taring back.", "撤销最近一次去皮。";
+    TARE_ALL: "Tare all", "全部去皮", "Counts all channels from now on. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
+    TARE_ONE: "Tare", "去皮", "Counts the channels of the chosen fingertip from now on.", "所选指尖的通道从当前读数起算。";
+    TARE_UNDO: "Undo", "撤销", "Takes the last taring back.", "撤销最近一次去皮。";
     TARE_NOTHING: "Nothing was tared.", "还没有去皮。";
     TARE_OFFLINE: "No live hand.", "没有在线的手。";
     TIP: "Fingertip", "指尖";
@@ -70,22 +67,15 @@ texts! {
     TIP_SHEAR: "Tangential", "切向力";
     TIP_RATIO: "Tangential / normal", "切向 / 法向";
     TIP_MARGIN: "Slip margin", "防滑余量";
-    TIP_FRICTION: "Friction", "摩擦系数";
+    TIP_FRICTION: "Friction", "摩擦系数", "Friction between fingertip and object, from 0.01 to 1.5. The program cannot know it: choose it for your object. The ring shows it.", "指尖与物体间的摩擦系数，0.01 到 1.5。程序无法得知，请按物体选择；圆环表示该值。";
     TIP_FRICTION_NAME: "Friction, percent", "摩擦系数，百分比";
-    TIP_FRICTION_TIP: "Friction between fingertip and object, from 0.01 to 1.5. The program cannot know it: choose it for your object. The ring shows it.", "指尖与物体间的摩擦系数，0.01 到 1.5。程序无法得知，请按物体选择；圆环表示该值。";
-    TIP_UNKNOWN: "Not known", "未知";
-    TIP_LOOSE: "No contact", "没有接触";
-    TIP_HOLDS: "Holds", "稳定";
-    TIP_NEAR: "Near to slipping", "接近打滑";
-    TIP_SLIPS: "Slips at this friction", "按此摩擦会打滑";
 
     FAULTS: "Faults", "故障";
     FAULTS_NONE: "No faults", "没有故障";
     FAULTS_NONE_HINT: "Faults appear here with their cause and what to do.", "出现故障时，这里会列出原因与处理建议。";
     FAULTS_NONE_OLD: "No faults when last read", "上次读取时没有故障";
     FAULTS_UNKNOWN: "Faults not read yet", "尚未读取故障";
-    CLEAR: "Clear errors", "清除错误";
-    CLEAR_TIP: "Holds the pose, then clears stall, over-current, motor and communication faults. Over-temperature cannot be cleared: it ends by itself when cool.", "先保持姿态，再清除堵转、过流、电机异常和通讯故障。过温故障不可清除，温度回落后自动清除。";
+    CLEAR: "Clear errors", "清除错误", "Holds the pose, then clears stall, over-current, motor and communication faults. Over-temperature cannot be cleared: it ends by itself when cool.", "先保持姿态，再清除堵转、过流、电机异常和通讯故障。过温故障不可清除，温度回落后自动清除。";
     NOT_LIVE: "There is no live hand.", "没有在线的灵巧手。";
     MESSAGES_NONE: "No messages", "没有消息";
     NOTICE_LOST: "Link lost.", "连接断开。";
@@ -109,7 +99,7 @@ texts! {
     DISARMED_FAULT: "Not armed any more: a drive reports a fault.", "已取消使能：驱动器报告故障。";
     DISARMED_LOST: "Not armed any more: the link was lost.", "已取消使能：连接断开。";
     DISARMED_STALE: "Not armed any more: feedback grew old.", "已取消使能：反馈过时。";
-    DISARMED_RIVAL: "Not armed any more: another controller talks to this hand. Arm again if you want both.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。";
+    DISARMED_OTHER_CONTROLLER: "Not armed any more: another controller talks to this hand. Arm again if you want both.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。";
     DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
 
     GESTURE: "Gesture", "手势";
@@ -125,8 +115,7 @@ texts! {
     KNOWN_LIBRARY: "2320, then 2322 = 1: not in the manual's table. Known: the maker's newer demos write it. Not known: whether this firmware moves.", "先写 2320，再写 2322 = 1：手册寄存器表中没有。已知：厂家较新的示例使用此方式。未知：本固件是否动作。";
     KNOWN_OFF: "Off: no address outside the manual's table is written, and no gesture can be started.", "关闭：不写手册寄存器表以外的地址，也无法启动手势。";
     GESTURES_OFF: "The gesture route is off.", "手势方式已关闭。";
-    GESTURE_NAME_EDIT: "Name gestures", "命名手势";
-    GESTURE_NAME_EDIT_TIP: "Type names for the numbers. The hand does not tell what its gestures are.", "为编号输入名称。灵巧手不会给出手势名称。";
+    GESTURE_NAME_EDIT: "Name gestures", "命名手势", "Type names for the numbers. The hand does not tell what its gestures are.", "为编号输入名称。灵巧手不会给出手势名称。";
     GESTURE_NAME_DONE: "Done", "完成";
     GESTURE_NAME: "Name of gesture", "手势名称";
 
@@ -141,8 +130,7 @@ texts! {
     KIND_USBCAN: "Maker's CAN", "因时 USB-CAN";
     PORT: "Serial port", "串口";
     PORTS_NONE: "None found. Type a name, or plug the adapter in and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
-    PORTS_REFRESH: "Refresh", "刷新";
-    PORTS_REFRESH_TIP: "Looks for serial ports again.", "重新查找串口。";
+    PORTS_REFRESH: "Refresh", "刷新", "Looks for serial ports again.", "重新查找串口。";
     PORT_PICK_TIP: "Takes this port.", "选用此串口。";
     BAUD: "Baud", "波特率";
     HAND_ID: "Hand id", "灵巧手 ID";
@@ -152,21 +140,11 @@ texts! {
     UNIT: "Unit id", "单元标识符";
     SEED: "Seed", "种子";
     SCENARIO: "Scenario", "场景";
-    SCENARIO_IDLE: "Soft ball", "软球";
-    SCENARIO_FREE: "Nothing to hold", "无物体";
-    SCENARIO_RIGID: "Hard block", "硬块";
-    SCENARIO_FRAGILE: "Fragile cup", "易碎杯";
-    SCENARIO_GRASP: "Grasps by itself", "自动抓握";
-    SCENARIO_FAULTS: "All faults in turn", "依次出现各种故障";
-    SCENARIO_EXTREMES: "Impossible values", "异常数值";
     EXPERT: "For experts", "专家选项";
-    SCAN_HERE: "Scan", "扫描";
-    SCAN_HERE_TIP: "Looks for hands here and nowhere else, at all speeds and in all protocols. It only reads.", "仅在此处以各种波特率与协议查找灵巧手。只读取，不写入。";
+    SCAN_HERE: "Scan", "扫描", "Looks for hands here and nowhere else, at all speeds and in all protocols. It only reads.", "仅在此处以各种波特率与协议查找灵巧手。只读取，不写入。";
     RECENT: "Recent hands", "最近的灵巧手";
-    CONNECT: "Connect", "连接";
-    CONNECT_TIP: "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
-    DISCONNECT: "Disconnect", "断开";
-    DISCONNECT_TIP: "Talks to no hand. The hand keeps what it was told.", "停止通信。灵巧手保持上一次的设置。";
+    CONNECT: "Connect", "连接", "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
+    DISCONNECT: "Disconnect", "断开", "Talks to no hand. The hand keeps what it was told.", "停止通信。灵巧手保持上一次的设置。";
     DISCONNECT_NONE: "Nothing is connected.", "当前没有连接。";
     HINT_SIM: "The built-in hand answers on a simulated RS485 wire. Nothing real moves.", "内置仿真手通过模拟的 RS485 线路应答，不会有真实动作。";
     ADDRESS_WRONG: "No IP address: four numbers from 0 to 255, as 192.168.11.210", "不是 IP 地址：应为四个 0 至 255 的数字，例如 192.168.11.210";
@@ -189,13 +167,8 @@ texts! {
     BUDGET_SHARE: "share", "占比";
     BUDGET_COULD: "alone", "独占可达";
     BUDGET_WRITES: "Writes", "写入";
-    GROUP_MOTION: "Angles, forces", "角度、受力";
-    GROUP_DRIVES: "Currents, faults", "电流、故障";
-    GROUP_TEMPERATURE: "Temperatures", "温度";
-    GROUP_SETTINGS: "Setpoints", "设定值";
     LINE_USED: "Line used", "线路占用";
     STATE_RATE: "Motion state", "运动状态";
-    TACTILE_RATE: "Fingertips", "指尖";
     RTT_P50: "Round trip, median", "往返时间，中位数";
     RTT_P99: "Round trip, 99 %", "往返时间，99 %";
     READS: "Reads", "读取次数";
@@ -203,23 +176,39 @@ texts! {
     TIMEOUTS: "Timeouts", "超时";
     CHECKSUMS: "Checksum errors", "校验错误";
     RESYNCS: "Noise skipped", "跳过噪声";
-    RIVAL_REQUESTS: "Requests of others", "其他主站请求";
+    FOREIGN_REQUESTS: "Requests of others", "其他主站请求";
     FOREIGN: "Foreign replies", "无关应答";
     REFUSALS: "Refusals", "拒绝";
     RECONNECTS: "Reconnects", "重新连接";
     DROPPED: "Samples dropped", "丢弃样本";
-}
 
-/// What the built-in hand does, with the name that endpoints have for it.
-pub(crate) const fn scenario(scenario: Scenario) -> Text {
-    match scenario {
-        Scenario::Idle => SCENARIO_IDLE,
-        Scenario::Free => SCENARIO_FREE,
-        Scenario::Rigid => SCENARIO_RIGID,
-        Scenario::Fragile => SCENARIO_FRAGILE,
-        Scenario::Grasp => SCENARIO_GRASP,
-        Scenario::Faults => SCENARIO_FAULTS,
-        Scenario::Extremes => SCENARIO_EXTREMES,
+    /// What the built-in hand does, with the name that endpoints have for it.
+    fn scenario(Scenario) {
+        Scenario::Idle => "Soft ball", "软球";
+        Scenario::Free => "Nothing to hold", "无物体";
+        Scenario::Rigid => "Hard block", "硬块";
+        Scenario::Fragile => "Fragile cup", "易碎杯";
+        Scenario::Grasp => "Grasps by itself", "自动抓握";
+        Scenario::Faults => "All faults in turn", "依次出现各种故障";
+        Scenario::Extremes => "Impossible values", "异常数值";
+    }
+
+    /// How firmly a fingertip holds.
+    fn hold(GripState) {
+        GripState::Unknown => "Not known", "未知";
+        GripState::Loose => "No contact", "没有接触";
+        GripState::Firm => "Holds", "稳定";
+        GripState::Near => "Near to slipping", "接近打滑";
+        GripState::Slips => "Slips at this friction", "按此摩擦会打滑";
+    }
+
+    /// What is read together.
+    fn group(PollGroup) {
+        PollGroup::Motion => "Angles, forces", "角度、受力";
+        PollGroup::Drives => "Currents, faults", "电流、故障";
+        PollGroup::Temperature => "Temperatures", "温度";
+        PollGroup::Tactile => "Fingertips", "指尖";
+        PollGroup::Settings => "Setpoints", "设定值";
     }
 }
 
@@ -247,7 +236,7 @@ pub(crate) fn setting(key: &str) -> Text {
         "baud" => BAUD,
         "bitrate" => BITRATE,
         "unit" => UNIT,
-        "packing" => crate::ui::text::quirks::PACKING,
+        "packing" => quirks::fact(Fact::Packing),
         _ => HAND_ID,
     }
 }

@@ -3,16 +3,36 @@
 use crate::app::settings::Language;
 use std::fmt::Display;
 
-/// One sentence in all languages.
+/// One sentence in all languages, and for a control the tooltip that explains it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Text {
     /// English.
     pub(crate) en: &'static str,
     /// 中文.
     pub(crate) zh: &'static str,
+    /// The tooltip in both, empty without one.
+    tip: [&'static str; 2],
 }
 
 impl Text {
+    /// A sentence without a tooltip.
+    pub(crate) const fn new(en: &'static str, zh: &'static str) -> Self {
+        let tip = ["", ""];
+        Self { en, zh, tip }
+    }
+
+    /// It with a tooltip.
+    pub(crate) const fn with_tip(self, en: &'static str, zh: &'static str) -> Self {
+        let tip = [en, zh];
+        Self { tip, ..self }
+    }
+
+    /// The tooltip.
+    pub(crate) const fn tip(self) -> Self {
+        let [en, zh] = self.tip;
+        Self::new(en, zh)
+    }
+
     /// The sentence in one language.
     pub(crate) const fn of(self, language: Language) -> &'static str {
         match language {
@@ -30,15 +50,30 @@ impl Text {
     }
 }
 
-/// Writes a table of sentences as constants, and a list of them all for the tests.
+/// Writes a table of sentences as constants, then functions that name each value of a type, and a list of them all for
+/// the tests. A row holds English and Chinese, and for a control its tooltip in both.
 macro_rules! texts {
-    ($($name:ident: $en:literal, $zh:literal;)*) => {
+    (
+        $($name:ident: $en:literal, $zh:literal $(, $tip_en:literal, $tip_zh:literal)?;)*
+        $(
+            $(#[$doc:meta])+
+            fn $of:ident($type:ty) { $($value:pat => $of_en:literal, $of_zh:literal $(, $of_tip_en:literal, $of_tip_zh:literal)?;)* }
+        )*
+    ) => {
         $(
             #[doc = $en]
-            pub(crate) const $name: $crate::ui::text::phrase::Text = $crate::ui::text::phrase::Text { en: $en, zh: $zh };
+            pub(crate) const $name: $crate::ui::text::Text = $crate::ui::text::Text::new($en, $zh)$(.with_tip($tip_en, $tip_zh))?;
+        )*
+        $(
+            $(#[$doc])+
+            pub(crate) fn $of(of: $type) -> $crate::ui::text::Text {
+                match of {
+                    $($value => $crate::ui::text::Text::new($of_en, $of_zh)$(.with_tip($of_tip_en, $of_tip_zh))?,)*
+                }
+            }
         )*
         #[cfg(test)]
-        pub(crate) const ALL: &[$crate::ui::text::phrase::Text] = &[$($name),*];
+        pub(crate) const ALL: &[$crate::ui::text::Text] = &[$($name,)* $($($crate::ui::text::Text::new($of_en, $of_zh)$(.with_tip($of_tip_en, $of_tip_zh))?,)*)*];
     };
 }
 pub(crate) use texts;
@@ -51,7 +86,7 @@ mod tests {
         touch, traffic, tune,
     };
 
-    fn all() -> impl Iterator<Item = &'static Text> {
+    fn all() -> impl Iterator<Item = Text> {
         let lists = [
             cards::ALL,
             compare::ALL,
@@ -69,7 +104,9 @@ mod tests {
             traffic::ALL,
             tune::ALL,
         ];
-        lists.into_iter().flatten()
+        let texts = lists.into_iter().flatten().copied();
+        let all = texts.flat_map(|text| [text, text.tip()]);
+        all.filter(|text| *text != Text::new("", ""))
     }
 
     #[test]

@@ -1,25 +1,20 @@
 //! Sentences of looking for hands. Decides nothing.
 
-use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanWish};
+use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanTarget};
 use crate::transport::{Endpoint, UsbFound};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::{Text, texts};
 use crate::ui::text::{errors, panels};
 
 texts! {
     FIND: "Find hands", "查找灵巧手";
-    SCAN_PORTS: "Scan all ports", "扫描全部端口";
-    SCAN_PORTS_TIP: "Asks on all serial ports and CAN interfaces, at all speeds, in all protocols. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
-    SCAN_HOST: "Scan address", "扫描地址";
-    SCAN_HOST_TIP: "Asks at this address, or at all of a range such as 192.168.11.0/24, and nowhere else. It only reads.", "仅查询此地址，或一个网段（例如 192.168.11.0/24）。只读取，不写入。";
-    CANCEL: "Cancel", "取消";
-    CANCEL_TIP: "Ends the scan. What was found stays.", "结束扫描，保留已找到的结果。";
+    SCAN_PORTS: "Scan all ports", "扫描全部端口", "Asks on all serial ports and CAN interfaces, at all speeds, in all protocols. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
+    SCAN_HOST: "Scan address", "扫描地址", "Asks at this address, or at all of a range such as 192.168.11.0/24, and nowhere else. It only reads.", "仅查询此地址，或一个网段（例如 192.168.11.0/24）。只读取，不写入。";
+    CANCEL: "Cancel", "取消", "Ends the scan. What was found stays.", "结束扫描，保留已找到的结果。";
     RUNNING: "A scan is under way.", "正在扫描。";
-    IDS: "Ids", "ID";
+    IDS: "Ids", "ID", "Which ids are asked on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
     IDS_FEW: "1 to 10", "1 至 10";
     IDS_ALL: "1 to 254", "1 至 254";
-    IDS_TIP: "Which ids are asked on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
     ADDRESS: "Address or range", "地址或网段";
     ADDRESS_EMPTY: "Type an address first.", "请先输入地址。";
     PRESET_MAKER: "As delivered", "出厂地址";
@@ -38,10 +33,8 @@ texts! {
     NOTHING_AT_ALL: "No hand answered to any id. Check power, cable and wiring.", "所有 ID 均无应答。请检查电源、线缆与接线。";
     NOWHERE: "Nothing could be scanned:", "无法扫描：";
     CANCELLED: "Cancelled.", "已取消。";
-    USE: "Connect", "连接";
-    USE_TIP: "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
-    CONNECTED: "Connected", "已连接";
-    CONNECTED_TIP: "This is the hand of now.", "当前连接的灵巧手。";
+    USE: "Connect", "连接", "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
+    CONNECTED: "Connected", "已连接", "This is the hand of now.", "当前连接的灵巧手。";
     HELD: "left alone, the connection of now uses it. Disconnect first to scan it.", "已跳过，当前连接正在使用。请先断开再扫描。";
     MORE: "more", "更多";
 }
@@ -89,8 +82,8 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
     Err(match &book.wish {
         _ if summary.places == 0 && !book.remarks.is_empty() => NOWHERE,
         _ if summary.places == 0 => NO_PLACES,
-        Some(ScanWish::Hosts(_)) => NOTHING_THERE,
-        Some(ScanWish::Ports(ids) | ScanWish::Port(_, ids) | ScanWish::Interface(_, ids))
+        Some(ScanTarget::Hosts(_)) => NOTHING_THERE,
+        Some(ScanTarget::Ports(ids) | ScanTarget::Port(_, ids) | ScanTarget::Interface(_, ids))
             if *ids == IdRange::All =>
         {
             NOTHING_AT_ALL

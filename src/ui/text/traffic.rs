@@ -3,41 +3,33 @@
 use crate::app::settings::Language;
 use crate::link::traffic::fields::FieldName;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::ui::kit::look::Look;
-use crate::ui::text::phrase::{Text, texts};
+use crate::ui::kit::Look;
+use crate::ui::text::phrase::texts;
 
 texts! {
     TITLE: "Traffic", "报文";
     SHOWN_OF: "of", "/";
     FRAMES: "frames", "条报文";
-    PAUSE: "Pause", "暂停";
-    PAUSED: "Paused", "已暂停";
+    PAUSE: "Pause", "暂停", "Lets the list stand still. Recording goes on.", "列表停止更新，记录继续进行。";
+    PAUSED: "Paused", "已暂停", "Lets the list stand still. Recording goes on.", "列表停止更新，记录继续进行。";
     PAUSE_NAME: "Pause the list", "暂停列表";
-    PAUSE_TIP: "Lets the list stand still. Recording goes on.", "列表停止更新，记录继续进行。";
     CAME_SINCE: "came since", "条新报文";
-    FOLLOW: "Follow", "跟随";
+    FOLLOW: "Follow", "跟随", "Keeps the newest frame in sight.", "始终显示最新的报文。";
     FOLLOW_NAME: "Follow the newest", "跟随最新报文";
-    FOLLOW_TIP: "Keeps the newest frame in sight.", "始终显示最新的报文。";
-    CLEAR: "Clear", "清除";
+    CLEAR: "Clear", "清除", "Takes all frames from the list. New ones appear as they pass.", "清空列表，之后的报文会继续显示。";
     CLEAR_NAME: "Clear the list", "清除列表";
-    CLEAR_TIP: "Takes all frames from the list. New ones appear as they pass.", "清空列表，之后的报文会继续显示。";
-    COPY: "Copy hex", "复制十六进制";
-    COPY_TIP: "Puts the bytes of the chosen frames on the clipboard, one frame a line. Ctrl+C does the same.", "将所选报文的字节复制到剪贴板，每条一行。Ctrl+C 作用相同。";
+    COPY: "Copy hex", "复制十六进制", "Puts the bytes of the chosen frames on the clipboard, one frame a line. Ctrl+C does the same.", "将所选报文的字节复制到剪贴板，每条一行。Ctrl+C 作用相同。";
     COPY_NONE: "No frame is chosen.", "没有选择报文。";
-    EXPORT_CSV: "Export CSV", "导出 CSV";
-    EXPORT_JSON: "Export JSON", "导出 JSON";
-    EXPORT_TIP: "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";
+    EXPORT_CSV: "Export CSV", "导出 CSV", "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";
+    EXPORT_JSON: "Export JSON", "导出 JSON", "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";
     EXPORT_NONE: "The list is empty.", "列表为空。";
-    FILTER: "Filter", "筛选";
-    FILTER_HINT: "name or hex bytes", "名称或十六进制字节";
+    FILTER: "Filter", "筛选", "name or hex bytes", "名称或十六进制字节";
     WAY_ALL: "Both ways", "双向";
     WAY_OUT: "To hand", "发往手";
     WAY_IN: "From hand", "来自手";
     WAY_TIP: "Which way frames went.", "报文的方向。";
-    WRONG_ONLY: "Only wrong", "仅异常";
-    WRONG_ONLY_TIP: "Shows only frames with something wrong about them.", "只显示有异常的报文。";
-    HIDE_POLLING: "Hide polling", "隐藏轮询";
-    HIDE_POLLING_TIP: "Hides the regular reads and their good replies.", "隐藏定时读取及其正常应答。";
+    WRONG_ONLY: "Only wrong", "仅异常", "Shows only frames with something wrong about them.", "只显示有异常的报文。";
+    HIDE_POLLING: "Hide polling", "隐藏轮询", "Hides the regular reads and their good replies.", "隐藏定时读取及其正常应答。";
     EMPTY: "Nothing has passed over the wire yet.", "线路上还没有报文。";
     EMPTY_LINK: "Nothing is connected. Frames appear here as soon as a wire is open.", "当前没有连接。线路打开后，报文会显示在这里。";
     EMPTY_FILTER: "No frame passes the filter.", "没有符合筛选条件的报文。";
@@ -56,91 +48,51 @@ texts! {
     PATH: "Path of the file", "文件路径";
     PATH_HINT: "or type the path of the file here", "或在此输入文件路径";
     PATH_NONE: "No path was typed.", "尚未输入路径。";
-    PATH_OPEN: "Open path", "打开路径";
-    PATH_OPEN_TIP: "Opens the file that was typed. Enter does the same.", "打开所输入的文件。按回车作用相同。";
+    PATH_OPEN: "Open path", "打开路径", "Opens the file that was typed. Enter does the same.", "打开所输入的文件。按回车作用相同。";
 
-    OPENED: "Wire opened", "线路打开";
-    CLOSED: "Wire closed", "线路关闭";
-    BROKEN: "Wire broke", "线路断开";
-    GAP: "Not kept", "未保留";
-    READ: "Read", "读取";
-    READ_REPLY: "Values", "数值";
-    WRITE: "Write", "写入";
-    WRITE_REPLY: "Taken", "确认";
-    REFUSAL: "Refused", "拒绝";
-    SAVE_RESULT: "Save result", "保存结果";
-    ADAPTER: "To adapter", "适配器命令";
-    ADAPTER_REPLY: "Adapter", "适配器";
-    NOISE: "No frame", "非报文";
 
-    HEADER: "Header", "帧头";
-    ID: "Hand id", "灵巧手 ID";
-    UNIT: "Unit id", "单元标识符";
-    LENGTH: "Length", "长度";
-    COMMAND: "Command", "命令";
-    FUNCTION: "Function", "功能码";
-    ADDRESS: "Address", "地址";
-    WANTED: "Bytes wanted", "读取字节数";
-    WORDS: "Words", "字数";
-    DATA: "Data", "数据";
-    ACKNOWLEDGE: "Acknowledgement", "确认";
-    CODE: "Code", "异常码";
-    CHECKSUM: "Checksum", "校验和";
-    CRC: "CRC", "CRC";
-    TRANSACTION: "Transaction", "事务编号";
-    PROTOCOL: "Protocol", "协议";
-    CAN_ID: "Identifier", "标识符";
-    FILLER: "Filler", "填充";
-    FRAME_KIND: "Kind of frame", "帧类型";
-    TAIL: "Tail", "帧尾";
-    TEXT_LINE: "Text", "文本";
-    UNKNOWN: "Unknown", "未知";
-}
 
-/// What a frame is, in a word.
-pub(crate) const fn kind(kind: Kind) -> Text {
-    match kind {
-        Kind::Opened => OPENED,
-        Kind::Closed => CLOSED,
-        Kind::Broken => BROKEN,
-        Kind::Gap => GAP,
-        Kind::Read => READ,
-        Kind::ReadReply => READ_REPLY,
-        Kind::Write => WRITE,
-        Kind::WriteReply => WRITE_REPLY,
-        Kind::Refusal => REFUSAL,
-        Kind::SaveResult => SAVE_RESULT,
-        Kind::Adapter => ADAPTER,
-        Kind::AdapterReply => ADAPTER_REPLY,
-        Kind::Noise => NOISE,
+    /// What a frame is, in a word.
+    fn kind(Kind) {
+        Kind::Opened => "Wire opened", "线路打开";
+        Kind::Closed => "Wire closed", "线路关闭";
+        Kind::Broken => "Wire broke", "线路断开";
+        Kind::Gap => "Not kept", "未保留";
+        Kind::Read => "Read", "读取";
+        Kind::ReadReply => "Values", "数值";
+        Kind::Write => "Write", "写入";
+        Kind::WriteReply => "Taken", "确认";
+        Kind::Refusal => "Refused", "拒绝";
+        Kind::SaveResult => "Save result", "保存结果";
+        Kind::Adapter => "To adapter", "适配器命令";
+        Kind::AdapterReply => "Adapter", "适配器";
+        Kind::Noise => "No frame", "非报文";
     }
-}
 
-/// What some bytes are, in a word.
-pub(crate) const fn field(name: FieldName) -> Text {
-    match name {
-        FieldName::Header => HEADER,
-        FieldName::Id => ID,
-        FieldName::Unit => UNIT,
-        FieldName::Length => LENGTH,
-        FieldName::Command => COMMAND,
-        FieldName::Function => FUNCTION,
-        FieldName::Address => ADDRESS,
-        FieldName::Wanted => WANTED,
-        FieldName::Words => WORDS,
-        FieldName::Data => DATA,
-        FieldName::Acknowledge => ACKNOWLEDGE,
-        FieldName::Code => CODE,
-        FieldName::Checksum => CHECKSUM,
-        FieldName::Crc => CRC,
-        FieldName::Transaction => TRANSACTION,
-        FieldName::Protocol => PROTOCOL,
-        FieldName::CanId => CAN_ID,
-        FieldName::Filler => FILLER,
-        FieldName::FrameKind => FRAME_KIND,
-        FieldName::Tail => TAIL,
-        FieldName::Text => TEXT_LINE,
-        FieldName::Unknown => UNKNOWN,
+    /// What some bytes are, in a word.
+    fn field(FieldName) {
+        FieldName::Header => "Header", "帧头";
+        FieldName::Id => "Hand id", "灵巧手 ID";
+        FieldName::Unit => "Unit id", "单元标识符";
+        FieldName::Length => "Length", "长度";
+        FieldName::Command => "Command", "命令";
+        FieldName::Function => "Function", "功能码";
+        FieldName::Address => "Address", "地址";
+        FieldName::Wanted => "Bytes wanted", "读取字节数";
+        FieldName::Words => "Words", "字数";
+        FieldName::Data => "Data", "数据";
+        FieldName::Acknowledge => "Acknowledgement", "确认";
+        FieldName::Code => "Code", "异常码";
+        FieldName::Checksum => "Checksum", "校验和";
+        FieldName::Crc => "CRC", "CRC";
+        FieldName::Transaction => "Transaction", "事务编号";
+        FieldName::Protocol => "Protocol", "协议";
+        FieldName::CanId => "Identifier", "标识符";
+        FieldName::Filler => "Filler", "填充";
+        FieldName::FrameKind => "Kind of frame", "帧类型";
+        FieldName::Tail => "Tail", "帧尾";
+        FieldName::Text => "Text", "文本";
+        FieldName::Unknown => "Unknown", "未知";
     }
 }
 

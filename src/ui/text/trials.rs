@@ -1,13 +1,10 @@
 //! Why a series or its plan is refused or ended, as sentences in the window's language. Decides nothing.
 
 use crate::app::notices::NoticeKind;
-use crate::app::trials::ApproachKind;
 use crate::app::trials::form::ListError;
 use crate::hand::{Dof, Fault};
-use crate::trials::{Abort, EarlyEnd, PlanError, Stage};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
-use crate::ui::text::phrase::Text;
+use crate::trials::{Abort, EarlyEnd, PlanError};
+use crate::ui::kit::{Look, format};
 use crate::ui::text::{errors, tune, words};
 
 /// Why something ended early. A file tells it in its own words.
@@ -44,7 +41,7 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
         Abort::Unreached { dof, target } => look.fill(tune::UNREACHED, &[&joint(dof), &target]),
         Abort::LimitsRefused { dof } => look.fill(tune::LIMITS_REFUSED, &[&joint(dof)]),
         Abort::Blind { what, dof } => {
-            look.fill(tune::BLIND, &[&joint(dof), &look.say(group(what))])
+            look.fill(tune::BLIND, &[&joint(dof), &look.say(tune::group(what))])
         }
         Abort::TooWarm {
             dof,
@@ -52,15 +49,6 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
             limit,
         } => look.fill(tune::COOLING, &[&joint(dof), &celsius, &limit]),
         Abort::NoContact { dof } => look.fill(tune::NO_CONTACT, &[&joint(dof)]),
-    }
-}
-
-fn group(what: &str) -> Text {
-    match what {
-        "angle" => tune::ANGLE,
-        "force" => tune::FORCE,
-        "temperature" => tune::TEMPERATURE,
-        _ => tune::FAULTS,
     }
 }
 
@@ -93,30 +81,6 @@ pub(crate) fn list_error(look: Look, error: ListError) -> String {
         ListError::NotInRange { most } => look.fill(tune::LIST_RANGE, &[&most]),
         ListError::TooLong => look.say(tune::LIST_LONG).into(),
         ListError::Empty => look.say(tune::LIST_EMPTY).into(),
-    }
-}
-
-/// What the hand does in a series.
-pub(crate) const fn stage(stage: Stage) -> Text {
-    match stage {
-        Stage::Resting => tune::STAGE_RESTING,
-        Stage::Preparing => tune::STAGE_PREPARING,
-        Stage::Quiet => tune::STAGE_QUIET,
-        Stage::Closing => tune::STAGE_CLOSING,
-        Stage::Dwelling => tune::STAGE_DWELLING,
-        Stage::Releasing => tune::STAGE_RELEASING,
-        Stage::Over => tune::STAGE_OVER,
-    }
-}
-
-/// How the object is reached.
-pub(crate) const fn approach(kind: ApproachKind) -> Text {
-    match kind {
-        ApproachKind::OneStage => tune::ONE_STAGE,
-        ApproachKind::Measured => tune::TWO_MEASURED,
-        ApproachKind::Angle => tune::TWO_ANGLE,
-        ApproachKind::Proximity => tune::TWO_PROXIMITY,
-        ApproachKind::Touch => tune::TWO_TOUCH,
     }
 }
 

@@ -1,5 +1,7 @@
 //! Sentences of the plan of grasp trials, its running, and what was measured.
 
+use crate::app::trials::{ApproachKind, TrialQuantity};
+use crate::trials::Stage;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -22,64 +24,38 @@ texts! {
     COOLING: "{} stayed too warm to begin: {} °C, limit {} °C.", "{}一直过热，无法开始：{} °C，上限 {} °C。";
     NOT_KEPT: "What was read could not be kept.", "读到的数据无法保存。";
     NO_CONTACT: "{} felt no contact that could be approached.", "{}没有感到接触，无法确定接触位置。";
-    ANGLE: "angle", "角度";
-    FORCE: "force", "力";
-    TEMPERATURE: "temperature", "温度";
-    FAULTS: "fault", "故障";
 
     PLAN_IGNORED: "The plan of trials of last time is of another version; the first plan is shown:", "上次的试验计划版本不同，已改用初始计划：";
     PLAN: "Plan", "试验计划";
     SERIES: "Series", "试验过程";
     JOINTS: "Joints that close", "参与的自由度";
     JOINT_TIP: "Lets this joint close in each trial, or leaves it where it is. Nothing moves now.", "让该自由度在每次试验中闭合，或保持不动。现在不会运动。";
-    START: "from", "起点";
-    START_TIP: "Angle at which the joint stands before each trial; 1000 is open.", "每次试验前的角度，1000 为张开。";
-    CLOSE: "to", "终点";
-    CLOSE_TIP: "Angle to which the joint closes; the force threshold stops it before.", "闭合的目标角度；到达力阈值时会提前停下。";
+    START: "from", "起点", "Angle at which the joint stands before each trial; 1000 is open.", "每次试验前的角度，1000 为张开。";
+    CLOSE: "to", "终点", "Angle to which the joint closes; the force threshold stops it before.", "闭合的目标角度；到达力阈值时会提前停下。";
     TAKE_START: "Start from a pose", "起点取自姿态";
     TAKE_CLOSE: "Close to a pose", "终点取自姿态";
     TAKE_TIP: "Takes the angles of a pose. Nothing moves.", "采用某个姿态的角度，不会运动。";
     TAKE_NOW: "The pose the hand has now", "灵巧手当前的姿态";
     SETTINGS: "Settings to try", "试验的设置";
     SPEEDS: "Speeds", "速度";
-    SPEEDS_NAME: "Speeds to try", "试验速度";
-    SPEEDS_HINT: "25, 50, 100", "25, 50, 100";
+    SPEEDS_NAME: "Speeds to try", "试验速度", "25, 50, 100", "25, 50, 100";
     FORCES: "Thresholds, g", "力阈值 g";
-    FORCES_NAME: "Force thresholds to try", "试验力阈值";
-    FORCES_HINT: "300, 500", "300, 500";
-    REPEATS: "Repeats", "重复次数";
-    REPEATS_TIP: "Trials of each speed with each threshold.", "每个速度与力阈值组合的试验次数。";
+    FORCES_NAME: "Force thresholds to try", "试验力阈值", "300, 500", "300, 500";
+    REPEATS: "Repeats", "重复次数", "Trials of each speed with each threshold.", "每个速度与力阈值组合的试验次数。";
     APPROACH: "Approach", "接近方式";
-    ONE_STAGE: "One speed all the way", "全程同一速度";
-    TWO_MEASURED: "Fast to the measured contact", "快速到实测接触处";
-    TWO_ANGLE: "Fast to an angle", "快速到指定角度";
-    TWO_PROXIMITY: "Fast until the fingertip is near", "快速到指尖接近物体";
-    TWO_TOUCH: "Fast until first touch", "快速到首次触碰";
-    FAST: "Fast speed", "快速段速度";
-    FAST_TIP: "Speed until the fast part ends.", "快速段的速度。";
-    UNTIL_MARGIN: "Slow down before contact by", "接触前减速的提前量";
-    UNTIL_MARGIN_TIP: "Units of the angle before the contact that a first, slow trial measures.", "距首次慢速试验测得的接触处的提前量，角度单位。";
-    UNTIL_ANGLE: "Slow down at angle", "减速的角度";
-    UNTIL_ANGLE_TIP: "The joints stop at this angle by themselves, then go on slowly.", "自由度先停在该角度，再慢速继续。";
-    UNTIL_PROXIMITY: "Slow down at proximity rise", "减速的接近增量";
-    UNTIL_PROXIMITY_TIP: "Counts that the fingertip's proximity rises by.", "指尖接近值的增量，计数。";
-    UNTIL_TOUCH: "Slow down at touch, g", "减速的触碰力 g";
-    UNTIL_TOUCH_TIP: "Grams that the fingertip or the force sensor feels.", "指尖或力传感器感到的克数。";
-    DWELL: "Hold, s", "保持时间 s";
-    DWELL_TIP: "Time held after the stop; the steady force is measured at its end.", "停下后的保持时间，稳态力在其末尾测量。";
-    REST: "Rest, s", "间隔时间 s";
-    REST_TIP: "Time between two trials.", "两次试验之间的时间。";
+    FAST: "Fast speed", "快速段速度", "Speed until the fast part ends.", "快速段的速度。";
+    UNTIL_MARGIN: "Slow down before contact by", "接触前减速的提前量", "Units of the angle before the contact that a first, slow trial measures.", "距首次慢速试验测得的接触处的提前量，角度单位。";
+    UNTIL_ANGLE: "Slow down at angle", "减速的角度", "The joints stop at this angle by themselves, then go on slowly.", "自由度先停在该角度，再慢速继续。";
+    UNTIL_PROXIMITY: "Slow down at proximity rise", "减速的接近增量", "Counts that the fingertip's proximity rises by.", "指尖接近值的增量，计数。";
+    UNTIL_TOUCH: "Slow down at touch, g", "减速的触碰力 g", "Grams that the fingertip or the force sensor feels.", "指尖或力传感器感到的克数。";
+    DWELL: "Hold, s", "保持时间 s", "Time held after the stop; the steady force is measured at its end.", "停下后的保持时间，稳态力在其末尾测量。";
+    REST: "Rest, s", "间隔时间 s", "Time between two trials.", "两次试验之间的时间。";
     LIMITS: "Safety limits", "安全限制";
-    CEILING_CAPTION: "Force limit, g", "力上限 g";
-    CEILING_TIP: "Force above the reading at rest that ends the series with a stop.", "超过静止读数达到此力时，立即停止并结束。";
-    STOP_C: "Stop at, °C", "停止温度 °C";
-    STOP_C_TIP: "Drive temperature that ends the series with a stop.", "驱动器达到此温度时，立即停止并结束。";
-    START_C: "Begin below, °C", "开始温度 °C";
-    START_C_TIP: "A trial begins only when all drives are below this temperature; until then it waits.", "所有驱动器低于此温度才开始试验，否则等待。";
-    NOTE: "Note", "备注";
-    NOTE_HINT: "what is held, where it lies", "抓握的物体与摆放";
-    TAGS: "Tags", "标签";
-    TAGS_HINT: "separated by commas", "用逗号分隔";
+    CEILING_CAPTION: "Force limit, g", "力上限 g", "Force above the reading at rest that ends the series with a stop.", "超过静止读数达到此力时，立即停止并结束。";
+    STOP_C: "Stop at, °C", "停止温度 °C", "Drive temperature that ends the series with a stop.", "驱动器达到此温度时，立即停止并结束。";
+    START_C: "Begin below, °C", "开始温度 °C", "A trial begins only when all drives are below this temperature; until then it waits.", "所有驱动器低于此温度才开始试验，否则等待。";
+    NOTE: "Note", "备注", "what is held, where it lies", "抓握的物体与摆放";
+    TAGS: "Tags", "标签", "separated by commas", "用逗号分隔";
 
     LIST_RANGE: "Write whole numbers with commas, none above {}.", "请输入用逗号分隔的整数，最大为 {}。";
     LIST_LONG: "At most 20 numbers.", "最多 20 个数。";
@@ -99,8 +75,7 @@ texts! {
     BAD_CEILING: "The force limit must be {} to 4000 g.", "力上限须在 {} g 到 4000 g 之间。";
     BAD_HEAT: "Begin must be below stop, and stop at most 75 °C.", "开始温度须低于停止温度，停止温度最高 75 °C。";
 
-    START_BUTTON: "Start trials", "开始试验";
-    START_BUTTON_TIP: "Runs the plan while armed now. Any key, STOP, a fault, heat, the force limit or a lost link end it.", "在当前使能下运行计划。按任意键、停止、故障、过热、超过力上限或断线都会结束。";
+    START_BUTTON: "Start trials", "开始试验", "Runs the plan while armed now. Any key, STOP, a fault, heat, the force limit or a lost link end it.", "在当前使能下运行计划。按任意键、停止、故障、过热、超过力上限或断线都会结束。";
     NEED_HAND: "Connect a hand first.", "请先连接灵巧手。";
     NEED_ARM: "Press Arm first: each series needs a person who arms it.", "请先点击“使能”：每轮试验都需由人使能。";
     NEED_FREE: "{} is locked and would have to move.", "{}已锁定，但试验需要它运动。";
@@ -111,47 +86,30 @@ texts! {
     EXPECT: "On a rigid object expect a peak of up to this much above the threshold: {} g (speed {}, threshold {} g).", "抓握刚性物体时，峰值可能超过力阈值 {} g（速度 {}，力阈值 {} g）。";
     EXPECT_WHY: "The threshold stops the drive, it does not regulate force. Slower at the contact is gentler.", "力阈值只会让驱动器停下，并不调节力。接触时越慢越轻柔。";
     ANY_KEY: "Any key ends it with a stop.", "按任意键即停止并结束。";
-    STOP_SERIES: "End with a stop", "停止并结束";
-    STOP_SERIES_TIP: "Holds the hand and ends the series.", "保持灵巧手当前位置并结束试验。";
+    STOP_SERIES: "End with a stop", "停止并结束", "Holds the hand and ends the series.", "保持灵巧手当前位置并结束试验。";
     TRIAL: "Trial {} of {}: {}", "第 {} 次，共 {} 次：{}";
     LEFT: "at most about {} left", "最多还剩约 {}";
     TEMPS: "Temperatures, °C", "各自由度温度 °C";
     PROGRESS: "Progress", "进度";
     LIVE_FORCE: "Force now, g", "当前的力 g";
     LIVE_EMPTY: "Waits for the trial", "等待试验开始";
-    STAGE_RESTING: "resting", "间隔";
-    STAGE_PREPARING: "going to the start", "正在回到起点";
-    STAGE_QUIET: "still, limits being confirmed", "静止，正在确认设置";
-    STAGE_CLOSING: "closing", "正在闭合";
-    STAGE_DWELLING: "holding", "保持中";
-    STAGE_RELEASING: "opening", "正在张开";
-    STAGE_OVER: "over", "已结束";
     PROBE: "looks for the contact", "寻找接触位置";
     LAST: "Last series: {}", "上一轮：{}";
     ALL_DONE: "all trials done.", "全部试验已完成。";
-    SEE_COMPARE: "Compare", "查看对比";
-    SEE_COMPARE_TIP: "Opens what was measured.", "打开测量结果。";
+    SEE_COMPARE: "Compare", "查看对比", "Opens what was measured.", "打开测量结果。";
     STAGED_NEXT: "Staged, nothing is written yet. Next: check, apply and save it in Device.", "已暂存，尚未写入。下一步：在“参数”中核对、应用并保存。";
-    SEE_DEVICE: "Go to Device", "前往参数";
-    SEE_DEVICE_TIP: "Opens the parameters, where what is staged is checked, applied and saved.", "打开参数页，核对、应用并保存暂存的值。";
+    SEE_DEVICE: "Go to Device", "前往参数", "Opens the parameters, where what is staged is checked, applied and saved.", "打开参数页，核对、应用并保存暂存的值。";
     ENDS_AT: "force limit {} g", "力上限 {} g";
     IDLE_TITLE: "Nothing tried yet", "还没有试验";
     IDLE_BODY: "Put an object between the fingers, choose how they close, arm the hand and start.", "把物体放在手指之间，设置闭合方式，使能后开始。";
     THRESHOLD: "threshold {} g", "力阈值 {} g";
     COMPARE_EMPTY: "Nothing tried yet: run trials in Tune, or open an earlier session.", "还没有试验：请在“整定”中运行，或打开以前的试验。";
-    OPEN: "Open", "打开";
-    OPEN_TIP: "Opens the session.toml of an earlier session, and what lies beside it.", "打开以前试验的 session.toml 及同一文件夹的数据。";
-    SAVE: "Save session", "保存试验";
-    SAVE_TIP: "Writes the session into a new folder: settings, samples and a report.", "把试验写入新文件夹：设置、数据与报告。";
+    OPEN: "Open", "打开", "Opens the session.toml of an earlier session, and what lies beside it.", "打开以前试验的 session.toml 及同一文件夹的数据。";
+    SAVE: "Save session", "保存试验", "Writes the session into a new folder: settings, samples and a report.", "把试验写入新文件夹：设置、数据与报告。";
     SAVE_READ: "This session was read from files.", "该试验是从文件读取的。";
     SAVE_RUNS: "This series still runs.", "该轮试验仍在进行。";
-    SESSION: "Session {}", "第 {} 轮";
-    SESSION_TIP: "Selects this session for note, tags and files. Shows it alone unless it is shown already.", "选择该轮次的备注、标签与文件；若未显示，则只显示它。";
+    SESSION: "Session {}", "第 {} 轮", "Selects this session for note, tags and files. Shows it alone unless it is shown already.", "选择该轮次的备注、标签与文件；若未显示，则只显示它。";
     SHOWN_TIP: "Shows this quantity.", "显示该量。";
-    SHOW_FORCE: "Force, g", "力 g";
-    SHOW_ANGLE: "Angle", "角度";
-    SHOW_CURRENT: "Current, mA", "电流 mA";
-    SHOW_TOUCH: "Touch, N", "触觉 N";
     ON_COMMAND: "From command", "从指令起";
     ON_CONTACT: "From contact", "从接触起";
     ALIGN_TIP: "Where the time of each curve begins. Without a contact a curve is left out.", "各曲线的时间起点。没有接触的曲线不显示。";
@@ -171,15 +129,13 @@ texts! {
     COLUMN_END: "End", "结束";
     REPEATED: "Mean of {}: {}", "{} 次平均：{}";
     MAP: "Overshoot, g, by speed and threshold", "各速度与力阈值的超出量 g";
-    BEST: "Best", "最佳";
+    BEST: "Best", "最佳", "What the best setting is chosen by, judged by the worst of its trials.", "最佳设置的选择标准，以最差的一次为准。";
     BEST_NONE: "No setting will do.", "没有满足要求的设置。";
     LEAST_OVER: "Least overshoot", "超出最少";
     FASTEST: "Fastest within 100 g", "超出 100 g 内最快";
-    BEST_TIP: "What the best setting is chosen by, judged by the worst of its trials.", "最佳设置的选择标准，以最差的一次为准。";
     HOLD_AT_LEAST: "Holds at least, g", "最小稳态力 g";
     HOLD_TIP: "Steady force that the best setting must keep.", "最佳设置至少要有的稳态力。";
-    PROMOTE: "Stage as defaults", "暂存为默认";
-    PROMOTE_TIP: "Stages speed and threshold of the best as those after power-up, for the joints tried. Nothing is written.", "把最佳的速度与力阈值暂存为所试自由度的上电默认值，不写入。";
+    PROMOTE: "Stage as defaults", "暂存为默认", "Stages speed and threshold of the best as those after power-up, for the joints tried. Nothing is written.", "把最佳的速度与力阈值暂存为所试自由度的上电默认值，不写入。";
     JOINT_NAME: "{} takes part", "{}参与试验";
     START_NAME: "{} from", "{}起点";
     CLOSE_NAME: "{} to", "{}终点";
@@ -188,4 +144,40 @@ texts! {
     SAVED_IN: "Saved in {}", "已保存到 {}";
     READ_FROM: "Read from {}", "读取自 {}";
     NOT_SAVED: "Not saved yet", "尚未保存";
+
+    /// What the hand does in a series.
+    fn stage(Stage) {
+        Stage::Resting => "resting", "间隔";
+        Stage::Preparing => "going to the start", "正在回到起点";
+        Stage::Quiet => "still, limits being confirmed", "静止，正在确认设置";
+        Stage::Closing => "closing", "正在闭合";
+        Stage::Dwelling => "holding", "保持中";
+        Stage::Releasing => "opening", "正在张开";
+        Stage::Over => "over", "已结束";
+    }
+
+    /// How the object is reached.
+    fn approach(ApproachKind) {
+        ApproachKind::OneStage => "One speed all the way", "全程同一速度";
+        ApproachKind::Measured => "Fast to the measured contact", "快速到实测接触处";
+        ApproachKind::Angle => "Fast to an angle", "快速到指定角度";
+        ApproachKind::Proximity => "Fast until the fingertip is near", "快速到指尖接近物体";
+        ApproachKind::Touch => "Fast until first touch", "快速到首次触碰";
+    }
+
+    /// What cannot be watched.
+    fn group(&str) {
+        "angle" => "angle", "角度";
+        "force" => "force", "力";
+        "temperature" => "temperature", "温度";
+        _ => "fault", "故障";
+    }
+
+    /// A quantity of trials.
+    fn quantity(TrialQuantity) {
+        TrialQuantity::Force => "Force, g", "力 g";
+        TrialQuantity::Angle => "Angle", "角度";
+        TrialQuantity::Current => "Current, mA", "电流 mA";
+        TrialQuantity::Touch => "Touch, N", "触觉 N";
+    }
 }

@@ -1,29 +1,13 @@
 //! What came of writes and of SAVE, why something cannot be done, and what could hurt, as sentences in the window's language.
 
-use crate::app::params::refusal::Refusal;
+use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::{Doing, SaveEnd};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::rows::ParamId;
 use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::Look;
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{device, errors, words};
-
-/// Why it cannot be done now.
-pub(crate) const fn refusal(why: Refusal) -> Text {
-    match why {
-        Refusal::NoHand => device::WHY_NO_HAND,
-        Refusal::Armed => device::WHY_ARMED,
-        Refusal::Holding => device::WHY_HOLDING,
-        Refusal::Moving => device::WHY_MOVING,
-        Refusal::RestUnknown => device::WHY_REST_UNKNOWN,
-        Refusal::Busy => device::WHY_BUSY,
-        Refusal::NothingStaged => device::WHY_NOTHING_STAGED,
-        Refusal::NothingToUndo => device::WHY_NOTHING_TO_UNDO,
-        Refusal::NoFolder => device::WHY_NO_FOLDER,
-        Refusal::NothingRead => device::WHY_NOTHING_READ,
-    }
-}
 
 /// What is going on; none where nothing is.
 pub(crate) const fn doing(doing: Doing) -> Option<Text> {
@@ -102,10 +86,10 @@ pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
 
 fn not_sent(look: Look, why: NotSent) -> String {
     let text = match why {
-        NotSent::Armed => device::WHY_ARMED,
-        NotSent::Holding => device::WHY_HOLDING,
-        NotSent::Moving => device::WHY_MOVING,
-        NotSent::RestUnknown => device::WHY_REST_UNKNOWN,
+        NotSent::Armed => device::refusal(ParamRefusal::Armed),
+        NotSent::Holding => device::refusal(ParamRefusal::Holding),
+        NotSent::Moving => device::refusal(ParamRefusal::Moving),
+        NotSent::RestUnknown => device::refusal(ParamRefusal::RestUnknown),
         NotSent::TooSoon { wait } => {
             let wait = wait.as_secs_f64().ceil();
             return format!("{} {wait} s", look.say(device::TOO_SOON));

@@ -2,8 +2,8 @@
 
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Finger, Status, Words};
-use crate::record::{ArmRefusal, LinkState};
-use crate::ui::kit::look::Look;
+use crate::record::ArmRefusal;
+use crate::ui::kit::Look;
 use crate::ui::text::main;
 use crate::ui::text::phrase::Text;
 
@@ -27,18 +27,6 @@ pub(crate) const fn finger(finger: Finger) -> Text {
         Finger::Middle => main::MIDDLE,
         Finger::Index => main::INDEX,
         Finger::Thumb => main::THUMB,
-    }
-}
-
-/// The word for a state of the link.
-pub(crate) const fn link_state(state: LinkState) -> Text {
-    match state {
-        LinkState::Offline => main::STATE_OFFLINE,
-        LinkState::Identifying => main::STATE_IDENTIFYING,
-        LinkState::Monitoring => main::STATE_MONITORING,
-        LinkState::Armed => main::STATE_ARMED,
-        LinkState::Holding => main::STATE_HOLDING,
-        LinkState::Fault => main::STATE_FAULT,
     }
 }
 

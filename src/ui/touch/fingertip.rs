@@ -1,6 +1,6 @@
 //! One fingertip as a picture: skin, seven pads and the eighth channel as heat, force circle, shear arrow, proximity halo.
 
-use crate::ui::kit::look::Look;
+use crate::ui::kit::Look;
 use crate::ui::theme;
 use egui::{
     Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2,

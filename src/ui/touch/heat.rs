@@ -2,9 +2,7 @@
 
 use crate::app::hand::Freshness;
 use crate::hand::{Finger, PerFinger, TactileBlock};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Label, Pane, format};
 use crate::ui::text::panels;
 use crate::ui::touch::fingertip::{Sense, Tip};
 use egui::{CornerRadius, Rect, Ui, vec2};
@@ -53,7 +51,7 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
         .small()
         .shorter(look.say(panels::TOUCH_SCALE_SHORT))
         .ui(ui)
-        .on_hover_text(look.say(panels::TOUCH_TIP));
+        .on_hover_text(look.tip(panels::TOUCH));
 }
 
 fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock) -> Tip {

@@ -6,12 +6,10 @@ pub(crate) mod tip_channels;
 pub(crate) mod tip_detail;
 
 use crate::app::action::Action;
-use crate::app::readings::friction::Hold;
+use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
 use crate::ui::hand::panel::HandPanel;
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{panels, touch as text, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
@@ -42,9 +40,9 @@ impl TouchView {
     pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let tips = heat::tips(pane);
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
-            controls::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
+            kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
                 heat::scale_ui(ui, pane);
             });
             let width = ui.available_width();
@@ -89,10 +87,7 @@ impl TouchView {
                 fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
                 let name = format!("{}: {name}", look.say(panels::TIP));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-                if response
-                    .on_hover_text(look.say(panels::TOUCH_TIP))
-                    .clicked()
-                {
+                if response.on_hover_text(look.tip(panels::TOUCH)).clicked() {
                     self.detail.finger = finger;
                 }
             }
@@ -125,13 +120,13 @@ impl TouchView {
                 ..Margin::ZERO
             };
             left.frame(Frame::new().inner_margin(gap)).show(ui, |ui| {
-                controls::card_ui(ui, look, |ui| {
-                    controls::head_ui(ui, look, look.say(panels::HAND), |_| {});
+                kit::card_ui(ui, look, |ui| {
+                    kit::head_ui(ui, look, look.say(panels::HAND), |_| {});
                     self.hand_ui(ui, pane);
                 });
             });
-            controls::card_ui(ui, look, |ui| {
-                controls::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
+            kit::card_ui(ui, look, |ui| {
+                kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
                     heat::scale_ui(ui, pane);
                 });
                 self.tare_ui(ui, pane);
@@ -146,7 +141,7 @@ impl TouchView {
             });
         });
         ui.add_space(theme::GAP);
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             self.lower_ui(ui, pane);
         });
@@ -157,19 +152,12 @@ impl TouchView {
         let finger = self.detail.finger;
         let name = look.say(words::finger(finger));
         let title = format!("{}: {name}", look.say(panels::TIP));
-        controls::head_ui(ui, look, &title, |ui| {
-            for (name, tip, numbers) in [
-                (text::NUMBERS, text::NUMBERS_TIP, true),
-                (text::DETAIL, text::DETAIL_TIP, false),
-            ] {
-                let button = Button::new(look.say(name), look.say(tip));
-                let button = button.choice(self.numbers == numbers);
-                if button.ui(ui, look).clicked() {
-                    self.numbers = numbers;
-                }
-            }
-            let assumed = Label::new(look.say(text::ASSUMED), look.palette.muted).small();
-            assumed.ui(ui).on_hover_text(look.say(text::ASSUMED_TIP));
+        kit::head_ui(ui, look, &title, |ui| {
+            let shown = (&mut self.numbers, text::NUMBERS.tip());
+            let all = [(true, text::NUMBERS), (false, text::DETAIL)];
+            kit::pick_ui(ui, look, shown, all);
+            let assumed = Label::note(look, text::ASSUMED).ui(ui);
+            assumed.on_hover_text(look.tip(text::ASSUMED));
             let rest = pane.state.hand().tare.rest(finger);
             let tared = match rest {
                 None => look.say(text::NO_ZERO).to_owned(),
@@ -199,7 +187,7 @@ impl TouchView {
         let look = pane.look;
         let name = look.say(words::finger(finger));
         let label = format!("{}: {name}", look.say(panels::TIP));
-        let button = Button::new(name, look.say(panels::TOUCH_TIP))
+        let button = Button::new(name, look.tip(panels::TOUCH))
             .named(&label)
             .choice(self.detail.finger == finger);
         let id = Id::unique(("tip", finger));
@@ -212,7 +200,7 @@ impl TouchView {
         let (below, color) = match (sense, self.detail.hold(finger)) {
             (Sense::NoNumber, _) => (look.say(text::NO_NUMBER).to_owned(), look.palette.warn),
             (Sense::Beyond, _) => (look.say(text::BEYOND).to_owned(), look.palette.warn),
-            (Sense::Fine, Hold::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
+            (Sense::Fine, GripState::Slips) => (look.say(text::SLIP).to_owned(), look.palette.bad),
             (Sense::Fine, _) => {
                 let shear = format::newtons(block.map(|block| block.tangential_n));
                 // The arrow says the direction, too.
@@ -225,8 +213,8 @@ impl TouchView {
             _ => look.palette.warn,
         };
         let meaning = look.say(match sense {
-            Sense::Beyond => text::BEYOND_TIP,
-            _ => panels::TOUCH_TIP,
+            Sense::Beyond => text::BEYOND.tip(),
+            _ => panels::TOUCH.tip(),
         });
         let freshness = pane.state.hand().tip_freshness(finger);
         let builder = egui::UiBuilder::new()
@@ -264,19 +252,17 @@ impl TouchView {
         let offered = hand.tare.offered(pane.state.now);
         ui.horizontal(|ui| {
             for (words, tip, disabled, action) in [
-                (all, panels::TARE_ALL_TIP, offline, Action::Tare(None)),
+                (all, panels::TARE_ALL.tip(), offline, Action::Tare(None)),
                 (
                     &one,
-                    panels::TARE_ONE_TIP,
+                    panels::TARE_ONE.tip(),
                     offline,
                     Action::Tare(Some(finger)),
                 ),
-                (undo, panels::TARE_UNDO_TIP, nothing, Action::UndoTare),
+                (undo, panels::TARE_UNDO.tip(), nothing, Action::UndoTare),
             ] {
                 let button = Button::new(words, look.say(tip)).disabled(disabled);
-                if button.ui(ui, look).clicked() {
-                    pane.actions.push(action);
-                }
+                button.sends(ui, pane, action);
             }
             if let Some(age) = offered {
                 let words = text::kept(look, age);

@@ -1,9 +1,7 @@
 //! The numbers of the five fingertips in rows: forces, deltas, channels. Draws no picture.
 
 use crate::hand::{Finger, TactileBlock};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{Label, Look, Pane, format};
 use crate::ui::text::{Text, panels, words};
 use crate::ui::touch::tip_channels::signed;
 use egui::{Grid, Ui};

@@ -2,9 +2,7 @@
 
 use crate::hand::Finger;
 use crate::history::Series;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Label, Look, Pane, format};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels, touch as text};
@@ -73,25 +71,12 @@ impl TipChannels {
     }
 
     fn head_ui(&mut self, ui: &mut Ui, look: Look) {
-        let choice = |ui: &mut Ui, (name, tip): (Text, Text), is_chosen: bool| {
-            let button = Button::new(look.say(name), look.say(tip)).choice(is_chosen);
-            button.ui(ui, look).clicked()
-        };
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            for (name, tip, tared) in [
-                (text::RAW, text::RAW_TIP, false),
-                (text::TARED, text::TARED_TIP, true),
-            ] {
-                if choice(ui, (name, tip), self.tared == tared) {
-                    self.tared = tared;
-                }
-            }
-            for (window_s, name) in WINDOWS {
-                if choice(ui, (name, text::LAST_TIP), self.window_s == window_s) {
-                    self.window_s = window_s;
-                    self.chart.time.follow();
-                }
+            let zeros = [(false, text::RAW), (true, text::TARED)];
+            kit::pick_ui(ui, look, (&mut self.tared, text::TARED.tip()), zeros);
+            if kit::pick_ui(ui, look, (&mut self.window_s, text::LAST_TIP), WINDOWS) {
+                self.chart.time.follow();
             }
         });
     }
@@ -129,8 +114,8 @@ fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
     let look = pane.look;
     let hand = pane.state.hand();
     ui.spacing_mut().item_spacing.y = 0.0;
-    let head = Label::new(look.say(text::NOISE_HEAD), look.palette.muted).small();
-    head.ui(ui).on_hover_text(look.say(text::NOISE_TIP));
+    let head = Label::note(look, text::NOISE_HEAD);
+    head.ui(ui).on_hover_text(look.tip(text::NOISE));
     let now = pane.state.now.secs();
     let rest = hand.tare.rest(finger);
     let row = (ui.available_height() / 8.0).min(20.0);

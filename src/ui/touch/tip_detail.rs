@@ -1,15 +1,12 @@
 //! One fingertip in detail: how near its grip is to slipping, its forces and channels over time.
 
 use crate::app::hand::Freshness;
-use crate::app::readings::friction::{Grip, Hold, NEAR};
+use crate::app::readings::friction::{Grip, GripState, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::history::Series;
 use crate::ui::joints::track::Track;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Label, Look, Pane, format};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::legend::{Key, legend_ui};
 use crate::ui::plots::times::Times;
@@ -37,7 +34,7 @@ pub(crate) struct TipDetail {
     /// The fingertip.
     pub(crate) finger: Finger,
     friction_percent: i16,
-    holds: PerFinger<Hold>,
+    holds: PerFinger<GripState>,
     channels: TipChannels,
     chart: ChartView,
 }
@@ -70,7 +67,7 @@ impl TipDetail {
     }
 
     /// How the grip of a fingertip stood when it was looked at last.
-    pub(crate) fn hold(&self, finger: Finger) -> Hold {
+    pub(crate) fn hold(&self, finger: Finger) -> GripState {
         self.holds[finger]
     }
 
@@ -79,17 +76,17 @@ impl TipDetail {
         let mut body = rect;
         if rect.width() >= 700.0 {
             let size = rect.height().min(rect.width() * 0.22);
-            let mut left = controls::take_left(&mut body, size);
-            let compass = controls::take_top(&mut left, size);
+            let mut left = kit::take_left(&mut body, size);
+            let compass = kit::take_top(&mut left, size);
             self.compass_ui(ui, compass, pane);
         }
         let width = (body.width() * 0.28).clamp(150.0, 230.0);
-        let readings = controls::take_left(&mut body, width);
+        let readings = kit::take_left(&mut body, width);
         self.readings_ui(ui, readings, pane);
         body.min.x += theme::GAP;
         if body.height() >= 270.0 {
             let forces = body.height() * 0.36;
-            let forces = controls::take_top(&mut body, forces);
+            let forces = kit::take_top(&mut body, forces);
             let place = UiBuilder::new().max_rect(forces);
             ui.scope_builder(place, |ui| self.forces_ui(ui, pane));
         }
@@ -194,20 +191,18 @@ impl TipDetail {
         ];
         let row = (rect.height() / 8.0).min(theme::CONTROL);
         for (caption, value, color) in &rows {
-            let place = controls::take_top(&mut rest, row);
+            let place = kit::take_top(&mut rest, row);
             rest.min.y -= theme::GAP;
-            Label::new(look.say(*caption), look.palette.muted)
-                .small()
-                .put(ui, place);
+            Label::note(look, *caption).put(ui, place);
             let label = Label::new(value, look.value(freshness, *color))
                 .number()
                 .right();
             let response = label.named(look.say(*caption)).put(ui, place);
             if *caption == text::CHECK {
-                response.on_hover_text(look.say(text::CHECK_TIP));
+                response.on_hover_text(look.tip(text::CHECK));
             }
         }
-        let place = controls::take_top(&mut rest, row);
+        let place = kit::take_top(&mut rest, row);
         rest.min.y -= theme::GAP;
         self.verdict_ui(ui, place, look);
         self.friction_ui(ui, rest.with_max_y(rest.top() + row), look);
@@ -217,24 +212,24 @@ impl TipDetail {
     fn verdict_ui(&self, ui: &mut Ui, place: Rect, look: Look) {
         let hold = self.hold(self.finger);
         let color = color_of(hold, look.palette);
-        if hold == Hold::Slips {
+        if hold == GripState::Slips {
             let ground = place.expand2(vec2(theme::STEP, 0.0));
             let wash = look.palette.wash(color);
             ui.painter().rect_filled(ground, theme::STEP, wash);
         }
-        Label::new(look.say(words_of(hold)), color).put(ui, place);
+        Label::new(look.say(panels::hold(hold)), color).put(ui, place);
     }
 
     fn friction_ui(&mut self, ui: &mut Ui, rect: Rect, look: Look) {
         let caption = format!("{} {:.2}", look.say(panels::TIP_FRICTION), self.friction());
-        let width = controls::text_width(ui, &caption, theme::small()) + theme::GAP;
+        let width = kit::text_width(ui, &caption, theme::small()) + theme::GAP;
         let (left, right) = rect.split_left_right_at_x(rect.left() + width);
         Label::new(&caption, look.palette.muted)
             .small()
             .put(ui, left);
         let name = look.say(panels::TIP_FRICTION_NAME);
         let track = Track {
-            tip: look.say(panels::TIP_FRICTION_TIP),
+            tip: look.tip(panels::TIP_FRICTION),
             step: 1,
             target: Some(self.friction_percent),
             tick: Some(FRICTION_PERCENT),
@@ -279,24 +274,13 @@ impl TipDetail {
     }
 }
 
-/// How a grip stands, in words.
-const fn words_of(hold: Hold) -> Text {
-    match hold {
-        Hold::Unknown => panels::TIP_UNKNOWN,
-        Hold::Loose => panels::TIP_LOOSE,
-        Hold::Firm => panels::TIP_HOLDS,
-        Hold::Near => panels::TIP_NEAR,
-        Hold::Slips => panels::TIP_SLIPS,
-    }
-}
-
 /// The colour of how a grip stands.
-const fn color_of(hold: Hold, palette: &theme::Palette) -> egui::Color32 {
+const fn color_of(hold: GripState, palette: &theme::Palette) -> egui::Color32 {
     match hold {
-        Hold::Unknown | Hold::Loose => palette.faint,
-        Hold::Firm => palette.ok,
-        Hold::Near => palette.warn,
-        Hold::Slips => palette.bad,
+        GripState::Unknown | GripState::Loose => palette.faint,
+        GripState::Firm => palette.ok,
+        GripState::Near => palette.warn,
+        GripState::Slips => palette.bad,
     }
 }
 

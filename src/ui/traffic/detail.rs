@@ -2,9 +2,7 @@
 
 use crate::link::traffic::fields::Field;
 use crate::link::traffic::frame::{Frame, hex};
-use crate::ui::kit::controls::{self, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{self, Label, Look, format};
 use crate::ui::text::traffic;
 use crate::ui::theme;
 use egui::{Sense, Ui, vec2};
@@ -20,7 +18,7 @@ pub(crate) fn detail_ui(ui: &mut Ui, look: Look, chosen: &[&Frame]) {
     let title = look.say(traffic::DETAIL);
     let text = match chosen {
         [frame] => {
-            controls::head_ui(ui, look, title, |ui| {
+            kit::head_ui(ui, look, title, |ui| {
                 Label::new(&about(look, frame), look.palette.muted).ui(ui)
             });
             verdict_ui(ui, look, frame);
@@ -34,7 +32,7 @@ pub(crate) fn detail_ui(ui: &mut Ui, look: Look, chosen: &[&Frame]) {
             format!("{} {chosen}, {bytes} B", many.len())
         }
     };
-    controls::head_ui(ui, look, title, |_| ());
+    kit::head_ui(ui, look, title, |_| ());
     ui.vertical_centered(|ui| Label::new(&text, look.palette.muted).wrap().ui(ui));
 }
 
@@ -66,7 +64,7 @@ fn verdict_ui(ui: &mut Ui, look: Look, frame: &Frame) {
 fn sign_ui(ui: &mut Ui, color: egui::Color32) {
     let size = vec2(theme::SIGN_SMALL, theme::SIGN_SMALL);
     let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-    controls::warning_sign(ui, place, color);
+    kit::warning_sign(ui, place, color);
 }
 
 fn fields_ui(ui: &mut Ui, look: Look, frame: &Frame) {

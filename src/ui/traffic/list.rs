@@ -1,9 +1,8 @@
 //! The table of frames: only the rows in sight are drawn. Which frames they are is decided elsewhere.
 
-use crate::link::traffic::compose::{Recipe, RecipeForm};
+use crate::link::traffic::compose::{FrameSnippet, SnippetFormat};
 use crate::link::traffic::frame::{Frame, Kind};
-use crate::ui::kit::controls;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Look, Pane};
 use crate::ui::text::{main, traffic};
 use crate::ui::theme;
 use egui::{
@@ -161,7 +160,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
     row.col(|ui| {
         if frame.wrong.is_some() {
             let sign = Rect::from_center_size(ui.max_rect().center(), egui::vec2(12.0, 11.0));
-            controls::warning_sign(ui, sign, strong);
+            kit::warning_sign(ui, sign, strong);
         }
     });
     row.col(|ui| paint(ui, &said, font, color));
@@ -189,12 +188,12 @@ fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
 fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
     ui.label(pane.look.say(main::FRAME_COPY));
     let endpoint = pane.state.hand().endpoint.as_ref();
-    for form in RecipeForm::ALL {
+    for form in SnippetFormat::ALL {
         let text = match form {
-            RecipeForm::Hex => Some(frame.hex()),
+            SnippetFormat::Hex => Some(frame.hex()),
             form => endpoint
-                .and_then(|endpoint| Recipe::passed(&frame.bytes, endpoint))
-                .map(|recipe| recipe.text(form)),
+                .and_then(|endpoint| FrameSnippet::passed(&frame.bytes, endpoint))
+                .map(|snippet| snippet.text(form)),
         };
         if let Some(text) = text
             && ui.button(form.name()).clicked()
@@ -205,7 +204,7 @@ fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
 }
 
 fn paint(ui: &Ui, text: &str, font: FontId, color: Color32) {
-    controls::paint_text(ui, ui.max_rect(), Align2::LEFT_CENTER, text, font, color);
+    kit::paint_text(ui, ui.max_rect(), Align2::LEFT_CENTER, text, font, color);
 }
 
 /// What is wrong, else what it means.

@@ -4,11 +4,10 @@ pub(crate) mod filter;
 pub(crate) mod list;
 
 use crate::app::action::Action;
-use crate::app::files::export::{Content, TrafficForm};
+use crate::app::files::export::{Export, TrafficForm};
 use crate::link::tap::Direction;
 use crate::link::traffic::frame::Frame;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{Text, traffic};
 use crate::ui::theme;
 use crate::ui::traffic::filter::{Filter, Passed};
@@ -47,11 +46,11 @@ impl TrafficView {
         ui.spacing_mut().item_spacing.y = theme::GAP;
         let size = vec2(whole.x, whole.y - detail.round() - theme::GAP);
         ui.allocate_ui(size, |ui| {
-            controls::full_card_ui(ui, pane.look, |ui| self.list_ui(ui, pane));
+            kit::full_card_ui(ui, pane.look, |ui| self.list_ui(ui, pane));
         });
         self.copy_by_key(ui);
         let chosen: Vec<&Frame> = self.chosen().collect();
-        controls::full_card_ui(ui, pane.look, |ui| {
+        kit::full_card_ui(ui, pane.look, |ui| {
             detail::detail_ui(ui, pane.look, &chosen)
         });
     }
@@ -81,7 +80,7 @@ impl TrafficView {
     fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.spacing_mut().item_spacing.y = theme::STEP;
-        controls::head_ui(ui, look, look.say(traffic::TITLE), |ui| {
+        kit::head_ui(ui, look, look.say(traffic::TITLE), |ui| {
             Label::new(&self.count(pane), look.palette.muted).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {
@@ -133,8 +132,8 @@ impl TrafficView {
         } else {
             traffic::PAUSE
         };
-        let pause = Button::said(look, text, traffic::PAUSE_TIP);
-        let pause = switch(pause.named(look.say(traffic::PAUSE_NAME)), is_paused);
+        let pause = Button::said(look, text);
+        let pause = pause.named(look.say(traffic::PAUSE_NAME)).switch(is_paused);
         if pause.ui(ui, look).clicked() {
             let live = &pane.state.hand().traffic;
             self.paused = (!is_paused).then(|| Paused {
@@ -146,14 +145,16 @@ impl TrafficView {
             self.passed = Passed::default();
             self.update(pane);
         }
-        let follow = Button::said(look, traffic::FOLLOW, traffic::FOLLOW_TIP);
-        let follow = switch(follow.named(look.say(traffic::FOLLOW_NAME)), !self.scrolls);
+        let follow = Button::said(look, traffic::FOLLOW);
+        let follow = follow
+            .named(look.say(traffic::FOLLOW_NAME))
+            .switch(!self.scrolls);
         if follow.ui(ui, look).clicked() {
             self.scrolls = !self.scrolls;
         }
         let nothing = self.passed.frames().is_empty();
         let nothing = nothing.then(|| look.say(traffic::EXPORT_NONE));
-        let clear = Button::said(look, traffic::CLEAR, traffic::CLEAR_TIP);
+        let clear = Button::said(look, traffic::CLEAR);
         let clear = clear.named(look.say(traffic::CLEAR_NAME)).disabled(nothing);
         if clear.ui(ui, look).clicked() {
             let newest = pane.state.hand().traffic.newest();
@@ -161,7 +162,7 @@ impl TrafficView {
             self.choice = Choice::default();
         }
         let none = self.choice.numbers.is_empty();
-        let copy = Button::said(look, traffic::COPY, traffic::COPY_TIP);
+        let copy = Button::said(look, traffic::COPY);
         let copy = copy.disabled(none.then(|| look.say(traffic::COPY_NONE)));
         if copy.ui(ui, look).clicked() {
             self.copy(ui);
@@ -170,10 +171,10 @@ impl TrafficView {
             (traffic::EXPORT_CSV, TrafficForm::Csv),
             (traffic::EXPORT_JSON, TrafficForm::JsonLines),
         ] {
-            let button = Button::said(look, text, traffic::EXPORT_TIP);
+            let button = Button::said(look, text);
             if button.disabled(nothing).ui(ui, look).clicked() {
                 let frames = self.passed.frames().iter().cloned().collect();
-                let content = Content::Traffic(form, frames);
+                let content = Export::Traffic(form, frames);
                 pane.actions.push(Action::Save(content));
             }
         }
@@ -183,36 +184,19 @@ impl TrafficView {
         let look = pane.look;
         let filter = &mut self.filter;
         ui.allocate_ui(vec2(220.0, theme::CONTROL), |ui| {
-            let (name, hint) = (look.say(traffic::FILTER), look.say(traffic::FILTER_HINT));
-            controls::edit_ui(ui, name, hint, &mut filter.text);
+            kit::edit_ui(ui, look.both(traffic::FILTER), &mut filter.text);
         });
-        for (text, way) in [
-            (traffic::WAY_ALL, None),
-            (traffic::WAY_OUT, Some(Direction::ToHand)),
-            (traffic::WAY_IN, Some(Direction::FromHand)),
+        let ways = [
+            (None, traffic::WAY_ALL),
+            (Some(Direction::ToHand), traffic::WAY_OUT),
+            (Some(Direction::FromHand), traffic::WAY_IN),
+        ];
+        kit::pick_ui(ui, look, (&mut filter.direction, traffic::WAY_TIP), ways);
+        for (text, on) in [
+            (traffic::WRONG_ONLY, &mut filter.wrong_only),
+            (traffic::HIDE_POLLING, &mut filter.hide_polling),
         ] {
-            let button = Button::said(look, text, traffic::WAY_TIP);
-            if button
-                .choice(filter.direction == way)
-                .ui(ui, look)
-                .clicked()
-            {
-                filter.direction = way;
-            }
-        }
-        for (text, tip, on) in [
-            (
-                traffic::WRONG_ONLY,
-                traffic::WRONG_ONLY_TIP,
-                &mut filter.wrong_only,
-            ),
-            (
-                traffic::HIDE_POLLING,
-                traffic::HIDE_POLLING_TIP,
-                &mut filter.hide_polling,
-            ),
-        ] {
-            let button = switch(Button::said(look, text, tip), *on);
+            let button = Button::said(look, text).switch(*on);
             if button.ui(ui, look).clicked() {
                 *on = !*on;
             }
@@ -231,9 +215,4 @@ impl TrafficView {
         let lines: Vec<String> = self.chosen().map(Frame::hex).collect();
         ui.ctx().copy_text(lines.join("\n"));
     }
-}
-
-const fn switch(mut button: Button<'_>, on: bool) -> Button<'_> {
-    button.selected = Some(on);
-    button.weight(if on { Weight::Chosen } else { Weight::Normal })
 }

@@ -4,12 +4,8 @@
 use crate::app::action::Action;
 use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
-use crate::ui::kit::card::{Card, Choice, Line, Manner};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::look::{Look, Pane};
 use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, TextField};
 use crate::ui::text::{compare, notices, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::BestView;
@@ -18,7 +14,7 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::Sheet;
 use crate::ui::trials::compare_table::TableView;
-use egui::{Align, Color32, Frame, Id, Layout, Margin, Panel, ScrollArea, Ui};
+use egui::{Align, Color32, Frame, Layout, Margin, Panel, ScrollArea, Ui};
 
 /// Characters of a note.
 const NOTE_CHARS: usize = 300;
@@ -33,7 +29,6 @@ pub(crate) struct CompareView {
     /// The trial that stands out.
     strong: Option<TrialKey>,
     best: BestView,
-    typed: Option<(Id, String)>,
 }
 
 impl CompareView {
@@ -42,7 +37,7 @@ impl CompareView {
         let look = pane.look;
         let trials = &pane.state.trials;
         self.chosen.follow(&trials.sessions);
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             let focus = self.chosen.focus.and_then(|id| trials.session(id));
             ui.horizontal(|ui| self.head_ui(ui, pane, focus));
@@ -56,7 +51,7 @@ impl CompareView {
             }
             let Some(focus) = focus else {
                 ui.centered_and_justified(|ui| {
-                    Label::new(look.say(tune::COMPARE_EMPTY), look.palette.muted).ui(ui);
+                    Label::muted(look, tune::COMPARE_EMPTY).ui(ui);
                 });
                 return;
             };
@@ -122,17 +117,12 @@ impl CompareView {
         let save = id.map(|id| TrialAction::Save(id, Some(self.best.criterion())));
         let forget = id.map(TrialAction::Forget);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            for (text, tip, disabled, action) in [
-                (compare::FORGET, compare::FORGET_TIP, busy, forget),
-                (tune::SAVE, tune::SAVE_TIP, busy.or(read), save),
-                (
-                    tune::OPEN,
-                    tune::OPEN_TIP,
-                    None,
-                    Some(TrialAction::Open(None)),
-                ),
+            for (text, disabled, action) in [
+                (compare::FORGET, busy, forget),
+                (tune::SAVE, busy.or(read), save),
+                (tune::OPEN, None, Some(TrialAction::Open(None))),
             ] {
-                let button = Button::new(look.say(text), look.say(tip)).disabled(disabled);
+                let button = Button::said(look, text).disabled(disabled);
                 if button.ui(ui, look).clicked() {
                     pane.actions.extend(action.map(Action::Trial));
                 }
@@ -144,25 +134,20 @@ impl CompareView {
         });
     }
 
-    fn words_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
+    fn words_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         let look = pane.look;
         let (id, head) = (session.id, &session.head);
         let tags = head.tags.join(", ");
         let half = (ui.available_width() - theme::GAP) / 2.0;
         let note = TrialAction::Note as fn(SessionId, String) -> TrialAction;
-        for (name, hint, value, action) in [
-            (tune::NOTE, tune::NOTE_HINT, &head.note, note),
-            (tune::TAGS, tune::TAGS_HINT, &tags, TrialAction::Tags),
+        for (name, value, action) in [
+            (tune::NOTE, &head.note, note),
+            (tune::TAGS, &tags, TrialAction::Tags),
         ] {
-            let field = TextField {
-                name: look.say(name),
-                hint: look.say(hint),
-                value,
-                max: NOTE_CHARS,
-            };
+            let field = TextField::new(look.say(name), NOTE_CHARS).hint(look.tip(name));
             ui.push_id((id, name.en), |ui| {
                 ui.set_max_width(half);
-                if let Some(text) = field.ui(ui, &mut self.typed) {
+                if let Some(text) = field.ui(ui, pane, value) {
                     pane.actions.push(Action::Trial(action(id, text)));
                 }
             });
@@ -193,18 +178,12 @@ pub(crate) fn told(state: &State, look: Look, now: Option<&TrialSession>) -> (St
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
     let loses = look.fill(compare::FORGET_LOSES, &[&session.trials.len()]);
-    let back = Choice::new(compare::FORGET_NOT, compare::FORGET_NOT_TIP, Manner::Safe);
-    let forget = Choice::new(compare::FORGET_SURE, compare::FORGET_TIP, Manner::Danger);
-    Some(Card {
-        title: look.say(compare::FORGET_TITLE).into(),
-        lines: vec![
-            Line::Words(compare_list::name(look, session.id)),
-            Line::Warning(loses),
-        ],
-        choices: vec![
-            back.does(Action::Trial(TrialAction::CancelForget)),
-            forget.does(Action::Trial(TrialAction::ConfirmForget)),
-        ],
-        ..Card::default()
-    })
+    let back = Choice::new(compare::FORGET_NOT, Manner::Safe);
+    let forget = Choice::new(compare::FORGET_SURE, Manner::Danger);
+    let card = Card::new(look, compare::FORGET_TITLE)
+        .words(compare_list::name(look, session.id))
+        .warning(loses)
+        .choice(back.does(Action::Trial(TrialAction::CancelForget)))
+        .choice(forget.does(Action::Trial(TrialAction::ConfirmForget)));
+    Some(card)
 }

@@ -1,15 +1,13 @@
 //! The map of overshoot over speed and threshold, and the best setting by what a person wants. Writes nothing.
 
 use crate::app::action::Action;
-use crate::app::trials::{Comparison, SessionDifference, TrialSession};
+use crate::app::trials::{Comparison, TrialSession};
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::trials::best::{Score, best};
 use crate::trials::{Criterion, TrialSetting};
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
-use crate::ui::text::{Text, compare, tune};
+use crate::ui::kit::{Button, Label, NumberField, Pane};
+use crate::ui::text::{compare, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
@@ -71,7 +69,7 @@ impl BestView {
                 (Wanted::LeastOvershoot, tune::LEAST_OVER),
                 (Wanted::Fastest, tune::FASTEST),
             ] {
-                let button = Button::new(look.say(text), look.say(tune::BEST_TIP));
+                let button = Button::new(look.say(text), look.tip(tune::BEST));
                 let button = button.choice(self.wanted == wanted);
                 if button.ui(ui, look).clicked() {
                     self.wanted = wanted;
@@ -81,15 +79,8 @@ impl BestView {
         ui.horizontal(|ui| {
             let name = look.say(tune::HOLD_AT_LEAST);
             Label::new(name, look.palette.muted).small().ui(ui);
-            let field = NumberField {
-                name,
-                tip: look.say(tune::HOLD_TIP),
-                disabled: None,
-                value: Some(self.steady_g),
-                range: 0.0..=4000.0,
-                decimals: 0,
-            };
-            if let Some(steady_g) = field.ui(ui, look, pane.typing) {
+            let field = NumberField::new(name, look.say(tune::HOLD_TIP), 0.0..=4000.0);
+            if let Some(steady_g) = field.ui(ui, pane, Some(self.steady_g)) {
                 self.steady_g = steady_g;
             }
         });
@@ -98,8 +89,7 @@ impl BestView {
         if comparison.sessions().len() > 1 {
             of_ui(ui, pane, comparison, focus);
         }
-        let title = Label::new(look.say(tune::MAP), look.palette.muted);
-        title.small().ui(ui);
+        Label::note(look, tune::MAP).ui(ui);
         map_ui(ui, pane, &comparison.scores, best);
     }
 }
@@ -114,7 +104,7 @@ fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison, best: Opti
     ui.horizontal_wrapped(|ui| {
         let label = Label::new(&text, color).named(look.say(tune::BEST));
         label.font(theme::title()).ui(ui);
-        let button = Button::new(look.say(tune::PROMOTE), look.say(tune::PROMOTE_TIP));
+        let button = Button::said(look, tune::PROMOTE);
         let button = button.disabled(best.is_none().then_some(none));
         let clicked = button.ui(ui, look).clicked();
         if let Some(setting) = best.filter(|_| clicked) {
@@ -140,27 +130,16 @@ fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSes
     let look = pane.look;
     let differences = comparison.differences.iter();
     let words: Vec<&str> = differences
-        .map(|difference| look.say(difference_words(*difference)))
+        .map(|difference| look.say(compare::difference(*difference)))
         .collect();
     if words.is_empty() {
-        let together = Label::new(look.say(compare::TOGETHER), look.palette.muted);
-        together.small().ui(ui);
+        Label::note(look, compare::TOGETHER).ui(ui);
         return;
     }
     let own = compare_list::name(look, focus.id);
     let text = look.fill(compare::ALONE, &[&own, &look.list(&words)]);
     let label = Label::new(&text, look.palette.warn).small().wrap();
-    label.ui(ui).on_hover_text(look.say(compare::ALONE_TIP));
-}
-
-const fn difference_words(difference: SessionDifference) -> Text {
-    match difference {
-        SessionDifference::Hand => compare::HAND,
-        SessionDifference::Joints => compare::JOINTS,
-        SessionDifference::Way => compare::WAY,
-        SessionDifference::Approach => compare::APPROACH,
-        SessionDifference::Dwell => compare::DWELL,
-    }
+    label.ui(ui).on_hover_text(look.tip(compare::ALONE));
 }
 
 /// Overshoot as colours with numbers: speeds below each other, thresholds side by side.

@@ -3,8 +3,7 @@
 use crate::hand::Status;
 use crate::trials::TrialSetting;
 use crate::trials::columns::{COLUMNS, Metric, TrialColumn, number};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Look, format};
 use crate::ui::text::{Text, tune, words};
 use std::cmp::Ordering;
 

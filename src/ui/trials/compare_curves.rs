@@ -4,9 +4,7 @@
 use crate::app::trials::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, TrialQuantity,
 };
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::dash;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Button, Label, Pane, dash};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
 use crate::ui::plots::legend::{Key, fits, legend_ui};
 use crate::ui::text::{Text, compare, tune, words};
@@ -96,7 +94,7 @@ impl CurvesView {
                 _ => Vec::new(),
             },
             empty: tune::CURVES_EMPTY,
-            ..Chart::new(look, title(shown), ui.available_height())
+            ..Chart::new(look, tune::quantity(shown), ui.available_height())
         };
         let (response, near) = trial_chart_ui(ui, chart, &mut self.chart);
         self.pointed = near.and_then(|at| keys.get(at)).copied();
@@ -142,7 +140,11 @@ impl CurvesView {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = theme::STEP;
             for shown in TrialQuantity::ALL {
-                if choice(ui, (title(shown), tune::SHOWN_TIP), self.shown == shown) {
+                if choice(
+                    ui,
+                    (tune::quantity(shown), tune::SHOWN_TIP),
+                    self.shown == shown,
+                ) {
                     self.shown = shown;
                 }
             }
@@ -315,13 +317,4 @@ pub(crate) fn color(
     seen: ComparedRow<'_>,
 ) -> Color32 {
     group_color(pane, comparison, comparison.group(place, seen))
-}
-
-const fn title(shown: TrialQuantity) -> Text {
-    match shown {
-        TrialQuantity::Force => tune::SHOW_FORCE,
-        TrialQuantity::Angle => tune::SHOW_ANGLE,
-        TrialQuantity::Current => tune::SHOW_CURRENT,
-        TrialQuantity::Touch => tune::SHOW_TOUCH,
-    }
 }

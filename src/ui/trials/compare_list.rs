@@ -2,9 +2,7 @@
 
 use crate::app::trials::comparison::SHOWN_MAX;
 use crate::app::trials::{SessionId, SessionOrigin, TrialSession, TrialsState};
-use crate::ui::kit::controls::Label;
-use crate::ui::kit::dash;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{Label, Look, dash};
 use crate::ui::text::{compare, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::ShownSessions;
@@ -92,10 +90,7 @@ fn row_ui(
     });
     row.col(|ui| {
         let response = ui.selectable_label(chosen.focus == Some(id), &name);
-        if response
-            .on_hover_text(look.say(tune::SESSION_TIP))
-            .clicked()
-        {
+        if response.on_hover_text(look.tip(tune::SESSION)).clicked() {
             chosen.choose(id);
         }
     });
@@ -130,7 +125,7 @@ fn tick_ui(ui: &mut Ui, sheet: Sheet<'_>, id: SessionId, chosen: &mut ShownSessi
         chosen.toggle(id);
     }
     match reason {
-        None => tick.on_hover_text(look.say(compare::SHOW_TIP)),
+        None => tick.on_hover_text(look.tip(compare::SHOW)),
         Some(reason) => tick.on_disabled_hover_text(look.say(reason)),
     };
 }

@@ -4,10 +4,7 @@ use crate::app::settings::Language;
 use crate::app::trials::{ComparedRow, Comparison, RowKey, SessionId};
 use crate::trials::columns::{Better, COLUMNS, Metric};
 use crate::trials::{JointMetrics, TrialSetting};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::dash;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, dash};
 use crate::ui::text::{Text, compare, trials, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
@@ -246,7 +243,7 @@ impl<'a> Sheet<'a, '_> {
         };
         for (place, text) in [(upper, text), (lower, unit)] {
             let (font, color) = (theme::small(), look.palette.muted);
-            controls::paint_text(ui, place, align, text, font, color);
+            kit::paint_text(ui, place, align, text, font, color);
         }
         if is_own {
             let (arrow, way) = match sorting.falling {
@@ -254,7 +251,7 @@ impl<'a> Sheet<'a, '_> {
                 false => (theme::TO_TOP, compare::RISING),
             };
             let place = lower.with_max_x(lower.left() + theme::SIGN_SMALL);
-            controls::sign(ui, place, arrow, look.palette.accent);
+            kit::sign(ui, place, arrow, look.palette.accent);
             ui.ctx().accesskit_node_builder(response.id, |node| {
                 node.set_value(look.say(way));
             });

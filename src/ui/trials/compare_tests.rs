@@ -3,7 +3,7 @@
 use crate::app::settings::{Language, Theme};
 use crate::app::trials::{SessionId, SessionOrigin, TrialsState};
 use crate::trials::session::SessionHead;
-use crate::ui::kit::look::Look;
+use crate::ui::kit::Look;
 use crate::ui::theme::Palette;
 use crate::ui::trials::compare_choice::ShownSessions;
 use crate::ui::trials::compare_list;

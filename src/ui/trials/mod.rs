@@ -15,7 +15,7 @@ pub(crate) mod tune_form;
 pub(crate) mod tune_live;
 pub(crate) mod tune_result;
 
-use crate::ui::kit::controls::Label;
+use crate::ui::kit::Label;
 use egui::{Color32, Ui};
 
 /// Least height of curves.

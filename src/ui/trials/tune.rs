@@ -5,10 +5,7 @@ use crate::app::action::Action;
 use crate::app::trials::{StartRefusal, TrialAction};
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::tune_form::TuneForm;
@@ -38,14 +35,14 @@ impl TuneView {
         let plan = Panel::left("plan").exact_size(width).frame(frame);
         let plan = plan.resizable(false).show_separator_line(false);
         plan.show(ui, |ui| {
-            controls::card_ui(ui, look, |ui| {
-                controls::head_ui(ui, look, look.say(tune::PLAN), |_| ());
+            kit::card_ui(ui, look, |ui| {
+                kit::head_ui(ui, look, look.say(tune::PLAN), |_| ());
                 self.form.ui(ui, pane);
             });
         });
-        controls::card_ui(ui, look, |ui| {
+        kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
-            controls::head_ui(ui, look, look.say(tune::SERIES), |_| ());
+            kit::head_ui(ui, look, look.say(tune::SERIES), |_| ());
             if runs {
                 tune_live::live_ui(ui, pane, &mut self.result.chart);
                 return None;
@@ -74,7 +71,7 @@ impl TuneView {
             meaning_ui(ui, pane);
             if last.is_none() {
                 let palette = pane.look.palette;
-                Label::new(pane.look.say(tune::IDLE_TITLE), palette.text).ui(ui);
+                Label::said(pane.look, tune::IDLE_TITLE).ui(ui);
                 line_ui(ui, pane.look.say(tune::IDLE_BODY), palette.muted);
             }
             asked
@@ -103,15 +100,12 @@ fn refusal(pane: &Pane<'_>) -> Option<String> {
 fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let reason = refusal(pane);
-    let (text, tip) = (tune::START_BUTTON, tune::START_BUTTON_TIP);
-    let button = Button::new(look.say(text), look.say(tip)).large();
+    let button = Button::said(look, tune::START_BUTTON).large();
     let button = button.disabled(reason.as_deref()).weight(Weight::Strong);
     let wide = Layout::top_down_justified(Align::Center);
     ui.with_layout(wide, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::Trial(TrialAction::Start));
-        }
+        button.sends(ui, pane, Action::Trial(TrialAction::Start));
     });
     line_ui(ui, reason.as_deref().unwrap_or(" "), look.palette.warn);
 }

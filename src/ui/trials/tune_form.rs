@@ -5,16 +5,12 @@ use crate::app::trials::form::{ListError, PlanSide, list, set_target, tags, take
 use crate::app::trials::{ApproachKind, PlanField, TrialAction};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::{Approach, TrialPlan, Until};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label};
-use crate::ui::kit::look::Pane;
-use crate::ui::kit::number::NumberField;
-use crate::ui::kit::number::whole;
-use crate::ui::kit::text_field::TextField;
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField};
 use crate::ui::text::{Text, trials, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::line_ui;
-use egui::{Align, Id, Layout, ScrollArea, Ui, vec2};
+use egui::{Align, Layout, ScrollArea, Ui, vec2};
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// Characters of a list or all tags, and of a note.
@@ -29,7 +25,6 @@ const FAST: i16 = 250;
 /// What the form needs between frames.
 #[derive(Debug)]
 pub(crate) struct TuneForm {
-    typed: Option<(Id, String)>,
     refused: Option<(PlanField, ListError)>,
     /// Where each joint closed to when it took part last.
     targets: PerDof<Angle>,
@@ -40,7 +35,6 @@ pub(crate) struct TuneForm {
 impl Default for TuneForm {
     fn default() -> Self {
         Self {
-            typed: None,
             refused: None,
             targets: PerDof::splat(Angle::MIN),
             fast: Speed::nearest(FAST),
@@ -55,32 +49,6 @@ struct Pass<'a, 'p> {
     plan: TrialPlan,
     wrong: Option<(PlanField, String)>,
     disabled: Option<&'static str>,
-}
-
-/// A number of the form: where it stands, what it is called and does, and what may be typed.
-struct Number {
-    field: PlanField,
-    texts: (Text, Text),
-    range: (f64, f64),
-    decimals: usize,
-}
-
-impl Number {
-    const fn new(field: PlanField, texts: (Text, Text), range: (f64, f64)) -> Self {
-        Self {
-            field,
-            texts,
-            range,
-            decimals: 0,
-        }
-    }
-
-    const fn seconds(field: PlanField, texts: (Text, Text)) -> Self {
-        Self {
-            decimals: 1,
-            ..Self::new(field, texts, (0.0, 600.0))
-        }
-    }
 }
 
 impl TuneForm {
@@ -153,7 +121,7 @@ impl Pass<'_, '_> {
     fn title_ui(&self, ui: &mut Ui, text: Text) {
         let look = self.pane.look;
         ui.add_space(theme::STEP);
-        Label::new(look.say(text), look.palette.text).ui(ui);
+        Label::said(look, text).ui(ui);
     }
 
     /// What is wrong here, once.
@@ -168,9 +136,7 @@ impl Pass<'_, '_> {
         let row = Layout::left_to_right(Align::Center);
         ui.allocate_ui_with_layout(vec2(width, theme::CONTROL), row, |ui| {
             ui.set_min_size(vec2(width, theme::CONTROL));
-            Label::new(look.say(text), look.palette.muted)
-                .small()
-                .ui(ui);
+            Label::note(look, text).ui(ui);
         });
     }
 
@@ -191,11 +157,11 @@ impl Pass<'_, '_> {
             let angle = self.form.targets[dof];
             set_target(&mut self.plan, dof, (!takes_part).then_some(angle));
         }
-        let start = (tune::START_NAME, tune::START_TIP);
+        let start = (tune::START_NAME, tune::START.tip());
         if let Some(angle) = self.angle_ui(ui, dof, start, self.plan.start[dof]) {
             self.plan.start[dof] = Some(angle);
         }
-        let close = (tune::CLOSE_NAME, tune::CLOSE_TIP);
+        let close = (tune::CLOSE_NAME, tune::CLOSE.tip());
         if takes_part && let Some(angle) = self.angle_ui(ui, dof, close, target) {
             self.plan.close[dof] = Some(angle);
         }
@@ -210,16 +176,9 @@ impl Pass<'_, '_> {
     ) -> Option<Angle> {
         let look = self.pane.look;
         let name = look.fill(name, &[&look.say(words::dof(dof))]);
-        let field = NumberField {
-            name: &name,
-            tip: look.say(tip),
-            disabled: self.disabled,
-            value: angle.map(|angle| f64::from(angle.get())),
-            range: 0.0..=1000.0,
-            decimals: 0,
-        };
-        let typed = field.ui(ui, look, self.pane.typing)?;
-        Some(Angle::nearest(whole(typed)))
+        let field = NumberField::new(&name, look.say(tip), 0.0..=1000.0).disabled(self.disabled);
+        let typed = field.whole_ui(ui, self.pane, angle.map(Angle::get))?;
+        Some(Angle::nearest(typed))
     }
 
     /// Starts and targets out of poses.
@@ -229,7 +188,7 @@ impl Pass<'_, '_> {
             (PlanSide::Start, tune::TAKE_START),
             (PlanSide::Close, tune::TAKE_CLOSE),
         ] {
-            let button = Button::new(look.say(text), look.say(tune::TAKE_TIP));
+            let button = Button::said(look, text).tip(look.say(tune::TAKE_TIP));
             let response = button.disabled(self.disabled).ui(ui, look);
             let mut taken = None;
             egui::Popup::menu(&response).show(|ui| {
@@ -255,21 +214,20 @@ impl Pass<'_, '_> {
         let grid = &self.plan.grid;
         let speeds = grid.speeds.iter().map(|own| own.get()).collect();
         let forces = grid.forces.iter().map(|own| own.get()).collect();
-        let texts = [tune::SPEEDS, tune::SPEEDS_NAME, tune::SPEEDS_HINT];
+        let texts = (tune::SPEEDS, tune::SPEEDS_NAME);
         let speeds = (speeds, Speed::MAX.get());
         if let Some(speeds) = self.list_ui(ui, PlanField::Speeds, texts, speeds) {
             self.plan.grid.speeds = speeds.into_iter().map(Speed::nearest).collect();
         }
-        let texts = [tune::FORCES, tune::FORCES_NAME, tune::FORCES_HINT];
+        let texts = (tune::FORCES, tune::FORCES_NAME);
         let forces = (forces, Force::MAX.get());
         if let Some(forces) = self.list_ui(ui, PlanField::Forces, texts, forces) {
             self.plan.grid.forces = forces.into_iter().map(Force::nearest).collect();
         }
-        let texts = (tune::REPEATS, tune::REPEATS_TIP);
-        let number = Number::new(PlanField::Repeats, texts, (1.0, 1000.0));
-        let repeats = u16::try_from(self.plan.grid.repeats).unwrap_or(u16::MAX);
-        if let Some(repeats) = self.number_ui(ui, &number, repeats.into()) {
-            self.plan.grid.repeats = usize::try_from(whole(repeats)).unwrap_or(1);
+        let repeats = i32::try_from(self.plan.grid.repeats).unwrap_or(i32::MAX);
+        let at = (PlanField::Repeats, tune::REPEATS);
+        if let Some(repeats) = self.number_ui(ui, at, 1..=1000, repeats) {
+            self.plan.grid.repeats = usize::try_from(repeats).unwrap_or(1);
         }
     }
 
@@ -278,12 +236,11 @@ impl Pass<'_, '_> {
         &mut self,
         ui: &mut Ui,
         field: PlanField,
-        [caption, name, hint]: [Text; 3],
+        (caption, name): (Text, Text),
         (numbers, most): (Vec<i16>, i16),
     ) -> Option<Vec<i16>> {
         let numbers: Vec<String> = numbers.iter().map(i16::to_string).collect();
-        let shown = (&*numbers.join(", "), LIST_CHARS);
-        let typed = self.text_ui(ui, caption, (name, hint), shown);
+        let typed = self.text_ui(ui, (caption, name), (&numbers.join(", "), LIST_CHARS));
         let read = typed.map(|text| list(&text, most));
         match read {
             Some(Err(why)) => self.form.refused = Some((field, why)),
@@ -294,55 +251,73 @@ impl Pass<'_, '_> {
         read.and_then(Result::ok)
     }
 
-    fn text_ui(
+    /// A field beside its caption.
+    fn row_ui<R>(
         &mut self,
         ui: &mut Ui,
         caption: Text,
-        (name, hint): (Text, Text),
-        (value, max): (&str, usize),
-    ) -> Option<String> {
-        let look = self.pane.look;
-        let field = TextField {
-            name: look.say(name),
-            hint: look.say(hint),
-            value,
-            max,
-        };
+        field: impl FnOnce(&mut Ui, &mut Pane<'_>) -> R,
+    ) -> R {
         let row = ui.horizontal(|ui| {
             self.caption_ui(ui, caption, CAPTION);
-            field.ui(ui, &mut self.form.typed)
+            field(ui, self.pane)
         });
         row.inner
     }
 
-    /// A number in a row of its own, over what is wrong with it.
-    fn number_ui(&mut self, ui: &mut Ui, number: &Number, value: f64) -> Option<f64> {
+    fn text_ui(
+        &mut self,
+        ui: &mut Ui,
+        (caption, name): (Text, Text),
+        (value, max): (&str, usize),
+    ) -> Option<String> {
         let look = self.pane.look;
-        let (name, tip) = number.texts;
-        let field = NumberField {
-            name: look.say(name),
-            tip: look.say(tip),
-            disabled: self.disabled,
-            value: Some(value),
-            range: number.range.0..=number.range.1,
-            decimals: number.decimals,
-        };
-        let row = ui.horizontal(|ui| {
-            self.caption_ui(ui, name, CAPTION);
-            field.ui(ui, look, self.pane.typing)
-        });
-        self.trouble_ui(ui, number.field);
-        row.inner
+        let field = TextField::new(look.say(name), max).hint(look.tip(name));
+        self.row_ui(ui, caption, |ui, pane| field.ui(ui, pane, value))
+    }
+
+    /// A whole number in a row of its own, over what is wrong with it.
+    fn number_ui(
+        &mut self,
+        ui: &mut Ui,
+        (field, text): (PlanField, Text),
+        range: RangeInclusive<i32>,
+        value: i32,
+    ) -> Option<i64> {
+        let look = self.pane.look;
+        let (from, to) = (f64::from(*range.start()), f64::from(*range.end()));
+        let number = NumberField::new(look.say(text), look.tip(text), from..=to);
+        let number = number.disabled(self.disabled);
+        let typed = self.row_ui(ui, text, |ui, pane| number.whole_ui(ui, pane, Some(value)));
+        self.trouble_ui(ui, field);
+        typed
+    }
+
+    /// A time in a row of its own, over what is wrong with it.
+    fn time_ui(
+        &mut self,
+        ui: &mut Ui,
+        (field, text): (PlanField, Text),
+        time: Duration,
+    ) -> Duration {
+        let look = self.pane.look;
+        let number = NumberField::new(look.say(text), look.tip(text), 0.0..=600.0);
+        let number = number.decimals(1).disabled(self.disabled);
+        let seconds = Some(time.as_secs_f64());
+        let typed = self.row_ui(ui, text, |ui, pane| number.ui(ui, pane, seconds));
+        self.trouble_ui(ui, field);
+        let typed = typed.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        typed.unwrap_or(time)
     }
 
     fn approach_ui(&mut self, ui: &mut Ui) {
         let look = self.pane.look;
         let mut kind = ApproachKind::of(self.plan.approach);
-        let all = ApproachKind::ALL.map(|kind| (kind, look.say(trials::approach(kind))));
+        let all = ApproachKind::ALL.map(|kind| (kind, look.say(tune::approach(kind))));
         ui.horizontal(|ui| {
             self.caption_ui(ui, tune::APPROACH, 64.0);
             ui.spacing_mut().combo_width = ui.available_width();
-            if controls::choose_ui(ui, look.say(tune::APPROACH), &mut kind, &all) {
+            if kit::choose_ui(ui, look.say(tune::APPROACH), &mut kind, &all) {
                 let fast = self.form.fast;
                 self.plan.approach = match kind.usual() {
                     None => Approach::OneStage,
@@ -353,64 +328,52 @@ impl Pass<'_, '_> {
         let Approach::TwoStage { fast, until } = self.plan.approach else {
             return;
         };
-        let texts = (tune::FAST, tune::FAST_TIP);
-        let number = Number::new(PlanField::Fast, texts, (1.0, 1000.0));
-        let typed = self.number_ui(ui, &number, fast.get().into());
-        let fast = typed.map_or(fast, |typed| Speed::nearest(whole(typed)));
-        let (texts, most) = match until {
-            Until::Measured { .. } => ((tune::UNTIL_MARGIN, tune::UNTIL_MARGIN_TIP), 500.0),
-            Until::Angle(_) => ((tune::UNTIL_ANGLE, tune::UNTIL_ANGLE_TIP), 1000.0),
-            Until::Proximity(_) => ((tune::UNTIL_PROXIMITY, tune::UNTIL_PROXIMITY_TIP), 16e6),
-            Until::Touch(_) => ((tune::UNTIL_TOUCH, tune::UNTIL_TOUCH_TIP), 3000.0),
+        let at = (PlanField::Fast, tune::FAST);
+        let typed = self.number_ui(ui, at, 1..=1000, fast.get().into());
+        let fast = typed.map_or(fast, Speed::nearest);
+        let (text, most) = match until {
+            Until::Measured { .. } => (tune::UNTIL_MARGIN, 500),
+            Until::Angle(_) => (tune::UNTIL_ANGLE, 1000),
+            Until::Proximity(_) => (tune::UNTIL_PROXIMITY, 16_000_000),
+            Until::Touch(_) => (tune::UNTIL_TOUCH, 3000),
         };
-        let number = Number::new(PlanField::Until, texts, (0.0, most));
-        let typed = self.number_ui(ui, &number, until.value().into());
-        let typed = typed.and_then(|typed| Until::new(until.name(), whole(typed)).ok());
+        let typed = self.number_ui(ui, (PlanField::Until, text), 0..=most, until.value());
+        let typed = typed.and_then(|typed| Until::new(until.name(), typed).ok());
         let until = typed.unwrap_or(until);
         self.plan.approach = Approach::TwoStage { fast, until };
     }
 
     fn times_ui(&mut self, ui: &mut Ui) {
-        let of = |seconds: f64| Duration::try_from_secs_f64(seconds).unwrap_or_default();
-        let dwell = Number::seconds(PlanField::Dwell, (tune::DWELL, tune::DWELL_TIP));
-        if let Some(dwell) = self.number_ui(ui, &dwell, self.plan.dwell.as_secs_f64()) {
-            self.plan.dwell = of(dwell);
-        }
-        let rest = Number::seconds(PlanField::Rest, (tune::REST, tune::REST_TIP));
-        if let Some(rest) = self.number_ui(ui, &rest, self.plan.grid.rest.as_secs_f64()) {
-            self.plan.grid.rest = of(rest);
-        }
+        let (dwell, rest) = (self.plan.dwell, self.plan.grid.rest);
+        self.plan.dwell = self.time_ui(ui, (PlanField::Dwell, tune::DWELL), dwell);
+        self.plan.grid.rest = self.time_ui(ui, (PlanField::Rest, tune::REST), rest);
     }
 
     fn limits_ui(&mut self, ui: &mut Ui) {
         let limits = self.plan.limits;
-        let texts = (tune::CEILING_CAPTION, tune::CEILING_TIP);
-        let number = Number::new(PlanField::Ceiling, texts, (1.0, 4000.0));
-        if let Some(ceiling) = self.number_ui(ui, &number, limits.ceiling_g.into()) {
-            self.plan.limits.ceiling_g = i16::try_from(whole(ceiling)).unwrap_or(i16::MAX);
+        let at = (PlanField::Ceiling, tune::CEILING_CAPTION);
+        if let Some(ceiling) = self.number_ui(ui, at, 1..=4000, limits.ceiling_g.into()) {
+            self.plan.limits.ceiling_g = i16::try_from(ceiling).unwrap_or(i16::MAX);
         }
-        let celsius = |typed: f64| u8::try_from(whole(typed)).unwrap_or(u8::MAX);
-        let texts = (tune::START_C, tune::START_C_TIP);
-        let number = Number::new(PlanField::Heat, texts, (1.0, 100.0));
-        if let Some(start) = self.number_ui(ui, &number, limits.start_c.into()) {
+        let celsius = |typed: i64| u8::try_from(typed).unwrap_or(u8::MAX);
+        let start = (PlanField::Heat, tune::START_C);
+        if let Some(start) = self.number_ui(ui, start, 1..=100, limits.start_c.into()) {
             self.plan.limits.start_c = celsius(start);
         }
-        let texts = (tune::STOP_C, tune::STOP_C_TIP);
-        let number = Number { texts, ..number };
-        if let Some(stop) = self.number_ui(ui, &number, limits.stop_c.into()) {
+        let stop = (PlanField::Heat, tune::STOP_C);
+        if let Some(stop) = self.number_ui(ui, stop, 1..=100, limits.stop_c.into()) {
             self.plan.limits.stop_c = celsius(stop);
         }
     }
 
     fn words_ui(&mut self, ui: &mut Ui) {
         let note = self.plan.note.clone();
-        let texts = (tune::NOTE, tune::NOTE_HINT);
-        if let Some(note) = self.text_ui(ui, tune::NOTE, texts, (&note, NOTE_CHARS)) {
+        let (of_note, of_tags) = ((tune::NOTE, tune::NOTE), (tune::TAGS, tune::TAGS));
+        if let Some(note) = self.text_ui(ui, of_note, (&note, NOTE_CHARS)) {
             self.plan.note = note;
         }
         let own = self.plan.tags.join(", ");
-        let texts = (tune::TAGS, tune::TAGS_HINT);
-        if let Some(words) = self.text_ui(ui, tune::TAGS, texts, (&own, LIST_CHARS)) {
+        if let Some(words) = self.text_ui(ui, of_tags, (&own, LIST_CHARS)) {
             self.plan.tags = tags(&words);
         }
     }

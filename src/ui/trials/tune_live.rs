@@ -5,12 +5,9 @@ use crate::app::hand::Freshness;
 use crate::app::trials::SeriesRun;
 use crate::hand::Dof;
 use crate::trials::recording::{TrialRecording, seconds};
-use crate::ui::kit::controls;
-use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::plots::chart::{Chart, ChartView, Curve, Points};
-use crate::ui::text::{trials, tune, words};
+use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::plot::trial_chart_ui;
 use crate::ui::trials::{PLOT_LEAST, line_ui};
@@ -25,13 +22,12 @@ pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
         return;
     };
     let look = pane.look;
-    let (text, tip) = (tune::STOP_SERIES, tune::STOP_SERIES_TIP);
-    let button = Button::new(look.say(text), look.say(tip)).weight(Weight::Stop);
+    let button = Button::said(look, tune::STOP_SERIES).weight(Weight::Stop);
     let wide = Layout::top_down_justified(Align::Center);
     ui.with_layout(wide, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);
         let response = button.large().ui(ui, look);
-        if controls::pressed(ui, &response) {
+        if kit::pressed(ui, &response) {
             pane.actions.push(Action::Stop);
         }
     });
@@ -45,7 +41,7 @@ pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
 fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     let (look, palette) = (pane.look, pane.look.palette);
     let (number, total) = (run.view.number, run.view.total);
-    let stage = look.say(trials::stage(run.view.stage));
+    let stage = look.say(tune::stage(run.view.stage));
     let trial = look.fill(tune::TRIAL, &[&number, &total, &stage]);
     let name = look.say(tune::PROGRESS);
     let label = Label::new(&trial, palette.text).font(theme::title());

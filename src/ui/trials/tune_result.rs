@@ -4,8 +4,7 @@ use crate::app::trials::{ComparedLines, Comparison, TrialQuantity, TrialSession}
 use crate::params::rows::{ParamId, Value};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
-use crate::ui::kit::controls::{Button, Weight};
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{Button, Pane, Weight};
 use crate::ui::plots::chart::{Chart, ChartView};
 use crate::ui::plots::legend::legend_ui;
 use crate::ui::text::{trials, tune};
@@ -60,22 +59,19 @@ impl ResultView {
         if is_staged {
             line_ui(ui, look.say(tune::STAGED_NEXT), palette.ok);
         }
-        let button_ui = |ui: &mut Ui, text, tip, weight| {
-            let tip = look.say(tip);
-            let button = Button::new(look.say(text), tip).named(tip);
+        let button_ui = |ui: &mut Ui, text, weight| {
+            let button = Button::said(look, text).named(look.tip(text));
             button.weight(weight).ui(ui, look).clicked()
         };
         let row = ui.horizontal_wrapped(|ui| {
-            let (text, tip) = (tune::SEE_COMPARE, tune::SEE_COMPARE_TIP);
-            let mut asked = button_ui(ui, text, tip, Weight::Normal).then_some(View::Compare);
+            let compare = button_ui(ui, tune::SEE_COMPARE, Weight::Normal);
+            let mut asked = compare.then_some(View::Compare);
             if is_staged {
-                let (text, tip) = (tune::SEE_DEVICE, tune::SEE_DEVICE_TIP);
-                if button_ui(ui, text, tip, Weight::Strong) {
+                if button_ui(ui, tune::SEE_DEVICE, Weight::Strong) {
                     asked = Some(View::Device);
                 }
             } else if let Some(score) = score {
-                let (text, tip) = (tune::PROMOTE, tune::PROMOTE_TIP);
-                if button_ui(ui, text, tip, Weight::Normal) {
+                if button_ui(ui, tune::PROMOTE, Weight::Normal) {
                     let joints = comparison.joints.iter();
                     let all = joints.flat_map(|dof| staging(*dof, score.setting));
                     pane.actions.extend(all);
@@ -101,7 +97,11 @@ impl ResultView {
             curves: drawn.curves().map(|(_, curve)| curve).collect(),
             levels: drawn.levels(),
             empty: tune::CURVES_EMPTY,
-            ..Chart::new(look, tune::SHOW_FORCE, ui.available_height())
+            ..Chart::new(
+                look,
+                tune::quantity(TrialQuantity::Force),
+                ui.available_height(),
+            )
         };
         trial_chart_ui(ui, force, &mut chart);
         self.chart = chart;

@@ -4,9 +4,7 @@ use crate::app::action::Action;
 use crate::app::settings::{Language, Theme};
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Explain, Look, Pane};
+use crate::ui::kit::{self, Button, Explain, Label, Look, Pane, Weight, format};
 use crate::ui::text::{Text, faults, keys, main, words};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -38,7 +36,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) -> bool
 
 fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let button = Button::new(look.say(main::STOP), look.say(main::STOP_TIP)).weight(Weight::Stop);
+    let button = Button::said(look, main::STOP).weight(Weight::Stop);
     let (id, rect) = ui.allocate_space(vec2(148.0, ui.available_height()));
     let response = button.ground(ui, look, rect, id);
     let strong = look.palette.on_strong;
@@ -47,7 +45,7 @@ fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     word.font(theme::large()).paint(ui, upper);
     let keys = Label::new(look.say(main::STOP_KEYS), strong).center();
     keys.small().paint(ui, lower);
-    if controls::pressed(ui, &response) {
+    if kit::pressed(ui, &response) {
         pane.actions.push(Action::Stop);
     }
 }
@@ -58,9 +56,9 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let refusal = pane.state.hand().arm_refusal();
     let refusal = refusal.map(|reason| words::refusal(look, reason));
     let (text, name, tip) = if armed {
-        (main::DISARM, main::DISARM_NAME, main::DISARM_TIP)
+        (main::DISARM, main::DISARM_NAME, main::DISARM.tip())
     } else {
-        (main::ARM, main::ARM_NAME, main::ARM_TIP)
+        (main::ARM, main::ARM_NAME, main::ARM.tip())
     };
     let mut button = Button::new(look.say(text), look.say(tip))
         .named(look.say(name))
@@ -76,12 +74,12 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// A button with a lamp before its words.
 fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) -> Response {
-    let words = controls::text_width(ui, button.text, theme::body());
+    let words = kit::text_width(ui, button.text, theme::body());
     let size = vec2(words + 40.0, theme::CONTROL_LARGE);
     let (id, rect) = ui.allocate_space(size);
     let response = button.ground(ui, look, rect, id);
     let center = pos2(rect.left() + 16.0, rect.center().y);
-    controls::lamp(ui, center, lamp);
+    kit::lamp(ui, center, lamp);
     let words = rect.with_min_x(rect.left() + 29.0);
     Label::new(button.text, look.palette.text).paint(ui, words);
     response
@@ -96,7 +94,7 @@ fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let count = pane.state.hand().faults.unseen().count();
     let (before, after) = (look.say(faults::UNSEEN_BEFORE), look.say(faults::UNSEEN));
     let text = format!("{before} {count} {after}");
-    let button = Button::new(text.trim(), look.say(faults::UNSEEN_TIP));
+    let button = Button::new(text.trim(), look.tip(faults::UNSEEN));
     if lamp_button_ui(ui, look, button, color).clicked() {
         *pane.explain = Some(Explain::Faults);
     }
@@ -113,17 +111,17 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
         (None, _) => (main::NO_HAND, palette.control, palette.muted),
     };
     let text = look.say(text);
-    let width = controls::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
+    let width = kit::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
     ui.painter().rect_filled(place, 12.0, fill);
     let badge = Label::new(text, color).center().put(ui, place);
     if simulated {
-        badge.on_hover_text(look.say(main::SIMULATED_TIP));
+        badge.on_hover_text(look.tip(main::SIMULATED));
     }
     if let (Some(endpoint), false) = (&pane.state.hand().endpoint, simulated) {
         let text = endpoint.to_string();
         let most = ui.available_width() * 0.5;
-        let width = controls::text_width(ui, &text, theme::number()) + 1.0;
+        let width = kit::text_width(ui, &text, theme::number()) + 1.0;
         ui.scope(|ui| {
             ui.set_max_width(width.min(most));
             let scheme = text.split(':').next().unwrap_or_default();
@@ -167,7 +165,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
         (
             main::ERRORS,
             errors.to_string(),
-            main::ERRORS_TIP,
+            main::ERRORS.tip(),
             error_color,
         ),
     ];
@@ -204,9 +202,7 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut View) -> bool
         let button = Button::new(text, look.say(main::LANGUAGE_TIP))
             .named(look.say(main::LANGUAGE_NAME))
             .weight(Weight::Quiet);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::Language(language.other()));
-        }
+        button.sends(ui, pane, Action::Language(language.other()));
         let icon = match theme {
             Theme::Dark => theme::DARK,
             Theme::Light => theme::LIGHT,
@@ -214,10 +210,8 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut View) -> bool
         let button = Button::new(look.say(main::THEME_NAME), look.say(main::THEME_TIP))
             .icon(icon)
             .weight(Weight::Quiet);
-        if button.ui(ui, look).clicked() {
-            pane.actions.push(Action::Theme(theme.other()));
-        }
-        let list = Button::new("?", look.say(keys::BUTTON_TIP))
+        button.sends(ui, pane, Action::Theme(theme.other()));
+        let list = Button::new("?", look.tip(keys::BUTTON))
             .named(look.say(keys::BUTTON))
             .weight(Weight::Quiet);
         let list = list.ui(ui, look).clicked();

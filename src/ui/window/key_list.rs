@@ -1,7 +1,6 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::look::Look;
+use crate::ui::kit::{self, Button, Label, Look, Weight};
 use crate::ui::text::{Text, keys};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
@@ -98,7 +97,7 @@ fn columns() -> [Vec<Part>; 3] {
 /// True if it is to be hidden.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    let shut = controls::head_ui(ui, look, look.say(keys::TITLE), |ui| {
+    let shut = kit::head_ui(ui, look, look.say(keys::TITLE), |ui| {
         let shut = Button::new(look.say(keys::SHUT), "").weight(Weight::Quiet);
         shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
     });
@@ -112,7 +111,7 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
                         ui.horizontal(|ui| {
                             keys.split(", ").for_each(|key| cap_ui(ui, look, key));
                         });
-                        Label::new(look.say(words), palette.text).ui(ui);
+                        Label::said(look, words).ui(ui);
                         ui.end_row();
                     }
                 });
@@ -120,7 +119,7 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
         }
     });
     for text in [keys::ON_TRACKS, keys::IN_FIELDS, keys::ESCAPE] {
-        Label::new(look.say(text), palette.muted).small().ui(ui);
+        Label::note(look, text).ui(ui);
     }
     shut
 }

@@ -3,9 +3,7 @@
 use crate::app::notices::{Level, Notice};
 use crate::app::settings::Language;
 use crate::hand::Moment;
-use crate::ui::kit::controls::{self, Button, Label};
-use crate::ui::kit::format;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::{self, Button, Label, Look, Pane, format};
 use crate::ui::text::{Text, faults, notices};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Sense, Ui, vec2};
@@ -61,11 +59,7 @@ impl MessageLog {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
         self.tools_ui(ui, look);
-        let (name, hint) = (
-            look.say(faults::LOG_FILTER),
-            look.say(faults::LOG_FILTER_HINT),
-        );
-        controls::edit_ui(ui, name, hint, &mut self.words);
+        kit::edit_ui(ui, look.both(faults::LOG_FILTER), &mut self.words);
         self.update(ui, pane);
         if !self.lines.is_empty() {
             self.lines_ui(ui, pane);
@@ -75,7 +69,7 @@ impl MessageLog {
             Some(_) => faults::LOG_NONE_PASS,
             None => faults::LOG_NONE,
         };
-        Label::new(look.say(text), look.palette.muted).ui(ui);
+        Label::muted(look, text).ui(ui);
     }
 
     /// Levels and copying.
@@ -88,7 +82,9 @@ impl MessageLog {
                 (faults::LEVEL_ALARM, Some(Level::Alarm)),
             ] {
                 let name = look.pair(look.say(faults::LEVEL), look.say(text));
-                let button = Button::said(look, text, faults::LEVEL_TIP).named(&name);
+                let button = Button::said(look, text)
+                    .tip(look.tip(faults::LEVEL))
+                    .named(&name);
                 if button.choice(self.least == least).ui(ui, look).clicked() {
                     self.least = least;
                 }
@@ -99,9 +95,12 @@ impl MessageLog {
                     Some(lines) => format!("{} ({lines})", look.say(faults::COPIED)),
                 };
                 let name = look.pair(look.say(faults::COPY), look.say(faults::LOG));
-                let none = self.lines.is_empty().then(|| look.say(faults::LOG_NONE));
-                let copy = Button::new(&text, look.say(faults::COPY_TIP)).named(&name);
-                if copy.disabled(none).ui(ui, look).clicked() {
+                let copy = Button::new(&text, look.tip(faults::COPY)).named(&name);
+                if copy
+                    .disabled_if(self.lines.is_empty(), look.say(faults::LOG_NONE))
+                    .ui(ui, look)
+                    .clicked()
+                {
                     ui.ctx().copy_text(self.text(look));
                     self.copied = Some(self.lines.len());
                 }
@@ -165,7 +164,7 @@ impl MessageLog {
                 row.col(|ui| {
                     let size = vec2(LAMP, theme::TEXT_LINE);
                     let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-                    controls::lamp(ui, place.center(), level_look(look, line.level).1);
+                    kit::lamp(ui, place.center(), level_look(look, line.level).1);
                 });
                 row.col(|ui| {
                     let label = Label::new(&line.text, look.palette.text);

@@ -23,7 +23,7 @@ pub(crate) mod status;
 
 use crate::app::action::Action;
 use crate::app::hand::{Play, Preset};
-use crate::app::layout::Room;
+use crate::app::layout::WindowRoom;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::ProcedureAction;
 use crate::app::settings::{Language, Theme, Zoom};
@@ -35,8 +35,7 @@ use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
 use crate::ui::joints::row::Row;
-use crate::ui::kit::card::CardView;
-use crate::ui::kit::look::{Explain, Look, Pane, Typing};
+use crate::ui::kit::{CardView, Explain, Look, Pane, Typing};
 use crate::ui::params::DeviceView;
 use crate::ui::params::card as device_card;
 use crate::ui::params::procedures as guard;
@@ -297,7 +296,7 @@ impl Window {
         let card = guard::card_of(pane.state, pane.look);
         let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
         let card = card.or_else(|| compare::card_of(pane.state, pane.look));
-        let asked = self.cards.ui(ui, covered, pane.look, card);
+        let asked = self.cards.ui(ui, covered, card);
         pane.actions.extend(asked);
     }
 
@@ -326,7 +325,7 @@ impl Window {
             rest: PLOTS_LEAST + theme::GAP + SIDE_LEAST,
         };
         let Self { rooms, joints, .. } = self;
-        rooms.room_ui(ui, pane, (Room::Joints, size), |ui, pane| {
+        rooms.room_ui(ui, pane, (WindowRoom::Joints, size), |ui, pane| {
             joints.ui(ui, pane);
         });
     }
@@ -354,7 +353,7 @@ impl Window {
         let strip = if rect.height() < 640.0 {
             STRIP_LEAST
         } else {
-            144.0
+            160.0
         };
         let strip = RoomSize {
             designed: strip + theme::GAP,
@@ -362,7 +361,7 @@ impl Window {
             rest: 300.0,
         };
         let mut poses_asked = false;
-        rooms.room_ui(ui, pane, (Room::Strip, strip), |ui, pane| {
+        rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), |ui, pane| {
             poses_asked = pose_tiles::strip_ui(ui, pane);
         });
         let side = (rect.width() * 0.4).clamp(SIDE_LEAST, 560.0);
@@ -371,13 +370,18 @@ impl Window {
             least: SIDE_LEAST + theme::GAP,
             rest: PLOTS_LEAST,
         };
-        rooms.room_ui(ui, pane, (Room::Side, side), |ui, pane| {
+        rooms.room_ui(ui, pane, (WindowRoom::Side, side), |ui, pane| {
             let faults = RoomSize {
                 designed: 104.0 + theme::GAP,
                 least: 84.0 + theme::GAP,
                 rest: 200.0,
             };
-            rooms.room_ui(ui, pane, (Room::Faults, faults), faults::faults_card_ui);
+            rooms.room_ui(
+                ui,
+                pane,
+                (WindowRoom::Faults, faults),
+                faults::faults_card_ui,
+            );
             touch.small_ui(ui, pane);
         });
         let rect = ui.available_rect_before_wrap();

@@ -2,9 +2,8 @@
 //! Where they stand is kept in the settings.
 
 use crate::app::action::Action;
-use crate::app::layout::{Layout, Room, RoomLayout};
-use crate::ui::kit::controls::{Button, Weight};
-use crate::ui::kit::look::Pane;
+use crate::app::layout::{Layout, RoomLayout, WindowRoom};
+use crate::ui::kit::{Button, Pane, Weight};
 use crate::ui::text::{Text, layout, main, panels};
 use crate::ui::theme;
 use egui::{Frame, Margin, Panel, Popup, Ui};
@@ -29,17 +28,17 @@ pub(crate) struct Rooms {
 }
 
 /// What a room is called.
-pub(crate) const fn title(room: Room) -> Text {
+pub(crate) const fn title(room: WindowRoom) -> Text {
     match room {
-        Room::Joints => main::JOINTS,
-        Room::Side => layout::SIDE,
-        Room::Faults => panels::FAULTS,
-        Room::Strip => main::TAB_POSES,
+        WindowRoom::Joints => main::JOINTS,
+        WindowRoom::Side => layout::SIDE,
+        WindowRoom::Faults => panels::FAULTS,
+        WindowRoom::Strip => main::TAB_POSES,
     }
 }
 
 /// The layout with a room shut or opened.
-pub(crate) fn toggled(layout: &Layout, room: Room) -> Layout {
+pub(crate) fn toggled(layout: &Layout, room: WindowRoom) -> Layout {
     let standing = layout.room(room);
     let shut = !standing.shut;
     layout.with(room, RoomLayout { shut, ..standing })
@@ -48,7 +47,7 @@ pub(crate) fn toggled(layout: &Layout, room: Room) -> Layout {
 impl Rooms {
     /// Begins a frame in which the rooms stand so.
     pub(crate) fn begin(&mut self, layout: Layout) {
-        let is_put_back = Room::ALL.into_iter().any(|room| {
+        let is_put_back = WindowRoom::ALL.into_iter().any(|room| {
             self.layout.room(room).share.is_some() && layout.room(room).share.is_none()
         });
         self.resets += u32::from(is_put_back);
@@ -60,16 +59,18 @@ impl Rooms {
         &self,
         ui: &mut Ui,
         pane: &mut Pane<'_>,
-        (room, size): (Room, RoomSize),
+        (room, size): (WindowRoom, RoomSize),
         add: impl FnOnce(&mut Ui, &mut Pane<'_>),
     ) {
         let salt = (room, self.resets);
         let (panel, gap) = match room {
-            Room::Joints => (Panel::left(salt), Margin { right: GAP, ..NONE }),
-            Room::Side => (Panel::right(salt), Margin { left: GAP, ..NONE }),
-            Room::Faults | Room::Strip => (Panel::bottom(salt), Margin { top: GAP, ..NONE }),
+            WindowRoom::Joints => (Panel::left(salt), Margin { right: GAP, ..NONE }),
+            WindowRoom::Side => (Panel::right(salt), Margin { left: GAP, ..NONE }),
+            WindowRoom::Faults | WindowRoom::Strip => {
+                (Panel::bottom(salt), Margin { top: GAP, ..NONE })
+            }
         };
-        let is_upright = matches!(room, Room::Joints | Room::Side);
+        let is_upright = matches!(room, WindowRoom::Joints | WindowRoom::Side);
         let extent = along(ui.available_size(), is_upright);
         let standing = self.layout.room(room);
         let most = (extent - size.rest).max(size.least);
@@ -119,14 +120,14 @@ fn along(size: egui::Vec2, is_upright: bool) -> f32 {
 /// The window's menu: which rooms are open, and the layout put back.
 pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let button = Button::new(look.say(layout::MENU), look.say(layout::MENU_TIP))
+    let button = Button::said(look, layout::MENU)
         .icon(theme::MENU)
         .weight(Weight::Quiet);
     let response = button.ui(ui, look);
     Popup::menu(&response).show(|ui| {
         let before = pane.state.settings.layout;
         let mut after = before;
-        for room in Room::ALL {
+        for room in WindowRoom::ALL {
             let mut open = !before.room(room).shut;
             if ui.checkbox(&mut open, look.say(title(room))).changed() {
                 after = toggled(&before, room);
@@ -134,7 +135,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         ui.separator();
         let reset = ui.button(look.say(layout::RESET));
-        if reset.on_hover_text(look.say(layout::RESET_TIP)).clicked() {
+        if reset.on_hover_text(look.tip(layout::RESET)).clicked() {
             after = before.reset();
         }
         if after != before {

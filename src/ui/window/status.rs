@@ -9,17 +9,14 @@ use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
-use crate::ui::kit::controls::{self, Button, Label, Weight};
-use crate::ui::kit::format;
-use crate::ui::kit::look::Pane;
+use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, errors, layout, main, notices, plots, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
-use egui::{
-    Align, Color32, Frame, Key, Layout, Rect, Role, Stroke, TextEdit, Ui, WidgetInfo, vec2,
-};
+use egui::{Align, Color32, Frame, Key, Layout, Rect, Stroke, TextEdit, Ui, vec2};
+use std::fmt::Display;
 use std::time::Duration;
 
 /// A hand that answers sooner is there before a word could be read.
@@ -31,9 +28,8 @@ const NOTE_WIDTH: f32 = 440.0;
 
 /// What helps against a warning.
 enum Help {
-    None,
-    /// A view: the button's text, and what it does.
-    View(View, Text, Text),
+    /// A view, and the button that opens it.
+    View(View, Text),
     /// It was read.
     Dismiss(u64),
 }
@@ -44,34 +40,74 @@ struct Warning {
     body: String,
     aside: String,
     color: Color32,
-    help: Help,
+    help: Option<Help>,
+}
+
+impl Warning {
+    /// A title over what its tip says.
+    fn new(pane: &Pane<'_>, title: Text, color: Color32) -> Self {
+        Self {
+            title,
+            body: pane.look.tip(title).to_owned(),
+            aside: String::new(),
+            color,
+            help: None,
+        }
+    }
+
+    /// Says this behind the rest.
+    fn more(mut self, more: impl Display) -> Self {
+        self.body = format!("{} {more}", self.body).trim_start().to_owned();
+        self
+    }
+
+    /// Tells when the link is tried again.
+    fn retried(mut self, pane: &Pane<'_>) -> Self {
+        self.aside = match pane.state.hand().link.dialling {
+            Dialling::Idle => String::new(),
+            Dialling::Trying { attempt } => {
+                format!("{} {attempt}", pane.look.say(main::LOST_TRYING))
+            }
+            Dialling::Waiting { until, .. } => {
+                let left = until.since(pane.state.now).as_secs_f64();
+                format!("{} {left:.1} s", pane.look.say(main::LOST_RETRY_IN))
+            }
+        };
+        self
+    }
+
+    fn help(mut self, help: Help) -> Self {
+        self.help = Some(help);
+        self
+    }
 }
 
 /// The warnings of now, worst first.
 fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
-    [
+    let all = [
         unsent(pane),
         alarm(pane),
         lost(pane),
         faults(pane),
-        rival(pane),
+        other_controller(pane),
         stale(pane),
         connecting(pane),
         empty(pane),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    ];
+    all.into_iter().flatten().collect()
+}
+
+/// A stop that could not be sent, until it was read or the hand answers again.
+fn unsent(pane: &Pane<'_>) -> Option<Warning> {
+    let mut all = pane.state.notices.iter();
+    let notice = all.find(|notice| notice.what == NoticeKind::StopNotSent)?;
+    let unsent = Warning::new(pane, layout::STOP_NOT_SENT, pane.look.palette.bad);
+    Some(unsent.help(Help::Dismiss(notice.id)))
 }
 
 fn alarm(pane: &Pane<'_>) -> Option<Warning> {
-    matches!(pane.state.hand().link.hold, Hold::Alarm { .. }).then(|| Warning {
-        title: main::ALARM_TITLE,
-        body: pane.look.say(main::ALARM_BODY).into(),
-        aside: String::new(),
-        color: pane.look.palette.bad,
-        help: Help::None,
-    })
+    let alarm = || Warning::new(pane, main::ALARM_TITLE, pane.look.palette.bad);
+    matches!(pane.state.hand().link.hold, Hold::Alarm { .. }).then(alarm)
 }
 
 fn lost(pane: &Pane<'_>) -> Option<Warning> {
@@ -79,81 +115,43 @@ fn lost(pane: &Pane<'_>) -> Option<Warning> {
     if link.state != LinkState::Offline && link.state != LinkState::Identifying {
         return None;
     }
-    let trouble = link.trouble.as_ref()?;
+    let cause = errors::trouble(pane.look, link.trouble.as_ref()?);
     // A hand that has answered may be moving; one that never did is only not reached.
-    let known = pane.state.hand().sample.angle.is_some();
-    let (title, color) = if known {
-        (main::LOST_TITLE, pane.look.palette.bad)
-    } else {
-        (main::UNREACHABLE_TITLE, pane.look.palette.warn)
+    let (title, color) = match pane.state.hand().sample.angle {
+        Some(_) => (main::LOST_TITLE, pane.look.palette.bad),
+        None => (main::UNREACHABLE_TITLE, pane.look.palette.warn),
     };
-    let cause = errors::trouble(pane.look, trouble);
-    let body = if known {
-        format!("{} {cause}", pane.look.say(main::LOST_BODY))
-    } else {
-        cause
-    };
-    Some(Warning {
-        title,
-        body,
-        aside: retry(pane),
-        color,
-        help: Help::None,
-    })
-}
-
-fn retry(pane: &Pane<'_>) -> String {
-    match pane.state.hand().link.dialling {
-        Dialling::Idle => String::new(),
-        Dialling::Trying { attempt } => {
-            format!("{} {attempt}", pane.look.say(main::LOST_TRYING))
-        }
-        Dialling::Waiting { until, .. } => {
-            let left = until.since(pane.state.now).as_secs_f64();
-            format!("{} {left:.1} s", pane.look.say(main::LOST_RETRY_IN))
-        }
-    }
+    Some(Warning::new(pane, title, color).more(cause).retried(pane))
 }
 
 fn faults(pane: &Pane<'_>) -> Option<Warning> {
-    let faults = pane
-        .state
-        .hand()
-        .sample
-        .faults
-        .filter(|_| pane.state.hand().sample.has_fault())?;
-    let look = pane.look;
-    let list: Vec<String> = Dof::ALL
+    let (look, sample) = (pane.look, &pane.state.hand().sample);
+    let faults = sample.faults.filter(|_| sample.has_fault())?;
+    let all = Dof::ALL
         .into_iter()
-        .flat_map(|dof| faults.value[dof].iter().map(move |fault| (dof, fault)))
-        .map(|(dof, fault)| {
-            let title = words::fault(fault, look.language).title;
-            format!("{}: {title}", look.say(words::dof(dof)))
-        })
-        .collect();
+        .flat_map(|dof| faults.value[dof].iter().map(move |fault| (dof, fault)));
+    let said = all.map(|(dof, fault)| {
+        let title = words::fault(fault, look.language).title;
+        format!("{}: {title}", look.say(words::dof(dof)))
+    });
+    let list: Vec<String> = said.collect();
+    let (list, end) = (list.join(" · "), look.say(main::LIST_END));
+    let color = look.value(pane.freshness(Some(faults.asked)), look.palette.bad);
+    let warning = Warning::new(pane, main::FAULT_TITLE, color);
     Some(Warning {
-        title: main::FAULT_TITLE,
-        body: format!(
-            "{}{}{}",
-            list.join(" · "),
-            look.say(main::LIST_END),
-            look.say(main::FAULT_BODY)
-        ),
-        aside: String::new(),
-        color: look.value(pane.freshness(Some(faults.asked)), look.palette.bad),
-        help: Help::View(View::Faults, main::FAULT_SHOW, main::FAULT_SHOW_TIP),
+        body: format!("{list}{end}{}", warning.body),
+        help: Some(Help::View(View::Faults, main::FAULT_SHOW)),
+        ..warning
     })
 }
 
-fn rival(pane: &Pane<'_>) -> Option<Warning> {
+fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
     let link = &pane.state.hand().link;
-    (link.state.is_live() && link.other_controller).then(|| Warning {
-        title: main::RIVAL_TITLE,
-        body: pane.look.say(main::RIVAL_BODY).into(),
-        aside: String::new(),
-        color: pane.look.palette.warn,
-        help: Help::None,
-    })
+    let warn = || {
+        let color = pane.look.palette.warn;
+        Warning::new(pane, main::OTHER_CONTROLLER_TITLE, color)
+    };
+    (link.state.is_live() && link.other_controller).then(warn)
 }
 
 fn stale(pane: &Pane<'_>) -> Option<Warning> {
@@ -161,17 +159,10 @@ fn stale(pane: &Pane<'_>) -> Option<Warning> {
     let link = &pane.state.hand().link;
     // While the hand saves, nobody asks it: whoever wanted that sees it where it was wanted.
     let expected = link.state.is_live() && !link.line_left;
-    (expected && pane.freshness(Some(asked)) == Freshness::Stale).then(|| Warning {
-        title: main::STALE_TITLE,
-        body: format!(
-            "{} {}",
-            pane.look.say(main::STALE_BODY),
-            format::age(pane.state.now.since(asked))
-        ),
-        aside: String::new(),
-        color: pane.look.palette.warn,
-        help: Help::None,
-    })
+    let is_stale = expected && pane.freshness(Some(asked)) == Freshness::Stale;
+    let age = format::age(pane.state.now.since(asked));
+    let stale = || Warning::new(pane, main::STALE_TITLE, pane.look.palette.warn);
+    is_stale.then(|| stale().more(age))
 }
 
 /// A hand that is asked for the first time, and has not said no yet.
@@ -181,36 +172,17 @@ fn connecting(pane: &Pane<'_>) -> Option<Warning> {
     let asks = matches!(link.state, LinkState::Offline | LinkState::Identifying);
     // One that answers at once is not announced.
     let waited = pane.state.now.since(link.since) >= ANNOUNCE_AFTER;
-    (asks && waited && link.trouble.is_none()).then(|| Warning {
-        title: main::CONNECTING_TITLE,
-        body: format!("{} {hand}", pane.look.say(main::CONNECTING_BODY)),
-        aside: retry(pane),
-        color: pane.look.palette.accent,
-        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP),
-    })
+    let warning = || Warning::new(pane, main::CONNECTING_TITLE, pane.look.palette.accent);
+    let help = Help::View(View::Connection, main::EMPTY_OPEN);
+    (asks && waited && link.trouble.is_none())
+        .then(|| warning().more(hand).retried(pane).help(help))
 }
 
 fn empty(pane: &Pane<'_>) -> Option<Warning> {
-    pane.state.hand().endpoint.is_none().then(|| Warning {
-        title: main::EMPTY_TITLE,
-        body: pane.look.say(main::EMPTY_BODY).into(),
-        aside: String::new(),
-        color: pane.look.palette.accent,
-        help: Help::View(View::Connection, main::EMPTY_OPEN, main::EMPTY_OPEN_TIP),
-    })
-}
-
-/// A stop that could not be sent, until it was read or the hand answers again.
-fn unsent(pane: &Pane<'_>) -> Option<Warning> {
-    let mut all = pane.state.notices.iter();
-    let notice = all.find(|notice| notice.what == NoticeKind::StopNotSent)?;
-    Some(Warning {
-        title: layout::STOP_NOT_SENT,
-        body: pane.look.say(layout::STOP_NOT_SENT_BODY).into(),
-        aside: String::new(),
-        color: pane.look.palette.bad,
-        help: Help::Dismiss(notice.id),
-    })
+    let warning = || Warning::new(pane, main::EMPTY_TITLE, pane.look.palette.accent);
+    let help = Help::View(View::Connection, main::EMPTY_OPEN);
+    let is_none = pane.state.hand().endpoint.is_none();
+    is_none.then(|| warning().help(help))
 }
 
 /// What moves the hand, in words, and what ends it.
@@ -229,24 +201,14 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
             let name = sequence.map_or("", |sequence| sequence.name.as_str());
             let steps = sequence.map_or(0, |sequence| sequence.steps.len());
             let title = look.say(layout::MOVES_SEQUENCE);
-            let words = format!(
-                "{title} {name}: {} {} / {steps}",
-                look.say(layout::MOVES_STEP),
-                step + 1
-            );
+            let (of, step) = (look.say(layout::MOVES_STEP), step + 1);
+            let words = format!("{title} {name}: {of} {step} / {steps}");
             (words, Some(Action::Play(Play::End)))
         }
         Mover::Gesture(gesture) => {
-            let name = pane
-                .state
-                .settings
-                .gesture_name(gesture)
-                .unwrap_or_default();
-            let words = format!(
-                "{} {} {name}",
-                look.say(layout::MOVES_GESTURE),
-                gesture.get()
-            );
+            let name = pane.state.settings.gesture_name(gesture);
+            let (title, name) = (look.say(layout::MOVES_GESTURE), name.unwrap_or_default());
+            let words = format!("{title} {} {name}", gesture.get());
             (words.trim().to_owned(), None)
         }
         Mover::Setpoints => (say(layout::MOVES_SETPOINTS), None),
@@ -323,15 +285,12 @@ impl StatusLine {
     fn note_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let Some(at) = self.note_at else { return };
         let look = pane.look;
-        let cancel = Button::new(
-            look.say(plots::NOTE_CANCEL),
-            look.say(plots::NOTE_CANCEL_TIP),
-        );
+        let cancel = Button::said(look, plots::NOTE_CANCEL);
         let cancelled = cancel.ui(ui, look).clicked();
-        let keep = Button::new(look.say(plots::NOTE_KEEP), look.say(plots::NOTE_KEEP_TIP));
+        let keep = Button::said(look, plots::NOTE_KEEP);
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
         let title = format!("{} {}", look.say(plots::NOTE_AT), clock(at.secs(), 0.01));
-        let words = controls::text_width(ui, &title, theme::body()) + theme::GAP;
+        let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
         let hint = match pane.state.hand().rests() {
             true => plots::NOTE_HINT,
             false => plots::NOTE_HINT_MOVING,
@@ -342,13 +301,7 @@ impl StatusLine {
             .margin(theme::FIELD_INSET)
             .desired_width((NOTE_WIDTH - words).max(theme::FIELD));
         let response = ui.add(edit);
-        let text = self.note.clone();
-        response.widget_info(|| {
-            let name = look.say(plots::NOTE_FIELD);
-            let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
-            info.current_text_value = Some(text.clone());
-            info
-        });
+        kit::named_field(&response, look.say(plots::NOTE_FIELD), true, &self.note);
         Label::new(&title, look.palette.text).ui(ui);
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
@@ -371,11 +324,9 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
         return;
     };
     if let Some(end) = end {
-        let button = Button::new(look.say(layout::END), look.say(layout::END_TIP));
+        let button = Button::said(look, layout::END);
         let name = format!("{}: {words}", look.say(layout::END));
-        if button.named(&name).ui(ui, look).clicked() {
-            pane.actions.push(end);
-        }
+        button.named(&name).sends(ui, pane, end);
     }
     if is_aside {
         Label::new(&words, look.palette.text).ui(ui);
@@ -409,12 +360,12 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
                 true => layout::AT_REST,
                 false => layout::NO_HAND,
             };
-            Label::new(look.say(words), palette.muted).ui(ui);
+            Label::muted(look, words).ui(ui);
             return;
         }
     };
     let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-    controls::lamp(ui, lamp.center(), color);
+    kit::lamp(ui, lamp.center(), color);
     Label::new(&words, palette.text).ui(ui);
 }
 
@@ -424,14 +375,13 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
     let palette = look.palette;
     let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
     let sign = Rect::from_center_size(place.center(), vec2(theme::SIGN, 14.0));
-    if worst.color == palette.accent {
-        controls::lamp(ui, sign.center(), worst.color);
-    } else {
-        controls::warning_sign(ui, sign, worst.color);
+    match worst.color == palette.accent {
+        true => kit::lamp(ui, sign.center(), worst.color),
+        false => kit::warning_sign(ui, sign, worst.color),
     }
     let row = Layout::right_to_left(Align::Center);
     let shown = ui.with_layout(row, |ui| {
-        let asked = help_ui(ui, pane, &worst.help);
+        let asked = help_ui(ui, pane, worst.help.as_ref());
         for other in all.iter().skip(1).rev() {
             let label = Label::new(look.say(other.title), other.color).ui(ui);
             label.on_hover_text(&other.body);
@@ -458,19 +408,15 @@ fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     response.on_hover_text(&warning.body);
 }
 
-fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) -> Option<View> {
-    let look = pane.look;
-    match help {
-        Help::None => None,
-        Help::View(view, text, tip) => {
-            let button = Button::new(look.say(*text), look.say(*tip));
-            button.ui(ui, look).clicked().then_some(*view)
+fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: Option<&Help>) -> Option<View> {
+    match help? {
+        Help::View(view, text) => {
+            let button = Button::said(pane.look, *text).ui(ui, pane.look);
+            button.clicked().then_some(*view)
         }
         Help::Dismiss(id) => {
-            let button = Button::new(look.say(layout::UNDERSTOOD), "");
-            if button.ui(ui, look).clicked() {
-                pane.actions.push(Action::Dismiss(*id));
-            }
+            let button = Button::said(pane.look, layout::UNDERSTOOD);
+            button.sends(ui, pane, Action::Dismiss(*id));
             None
         }
     }

@@ -9,7 +9,7 @@ use handscope::link::traffic::decode::Heard;
 use handscope::link::traffic::frame::hex;
 use handscope::link::traffic::{Decoder, Frame, Kind, Wrong};
 use handscope::sim::serve::{modbus_rtu, modbus_tcp, rs485, slcan};
-use handscope::sim::{Hands, SharedHand, SimConfig, SimHand};
+use handscope::sim::{SharedHand, SimConfig, SimHand, SimHands};
 use handscope::transport::{Endpoint, Wire, pair};
 use std::net::Ipv4Addr;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -64,7 +64,7 @@ pub(crate) enum Passed {
 
 /// A line to one hand or more.
 pub(crate) struct Line {
-    hands: Hands,
+    hands: SimHands,
     first: SharedHand,
     passed: Mutex<Vec<Passed>>,
     upsets: Mutex<Vec<Upset>>,
@@ -83,7 +83,7 @@ impl Line {
         let mut hands: Vec<SharedHand> = ids.iter().map(hand).collect();
         let first = hands.remove(0);
         let line = Self {
-            hands: Hands::new(first.clone(), hands),
+            hands: SimHands::new(first.clone(), hands),
             first,
             passed: Mutex::default(),
             upsets: Mutex::new(upsets.iter().map(|words| Upset::parse(words)).collect()),
@@ -221,7 +221,7 @@ impl Line {
         let (kind, hands) = (place.kind(), self.hands.clone());
         tokio::spawn(async move {
             match kind {
-                "rtu" => drop(modbus_rtu::serve(hands, at_hand).await),
+                "rtu" => modbus_rtu::serve(hands, at_hand).await,
                 "tcp" => modbus_tcp::serve_client(hands, at_hand).await,
                 "slcan" => slcan::serve(hands, at_hand).await,
                 _ => rs485::serve(hands, at_hand).await,

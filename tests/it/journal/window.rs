@@ -3,11 +3,11 @@
 
 use crate::journal::line::{Line, named};
 use crate::journal::page::{Case, Outcome, masked, write_file};
+use crate::setup::program::InFolder;
 use futures::FutureExt as _;
 use futures::future::{BoxFuture, ready};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::files::choose::InFolder;
 use handscope::app::hand::{Play, Preset};
 use handscope::app::params::action::ParamAction;
 use handscope::app::params::state::SaveEnd;
@@ -185,7 +185,11 @@ impl Program {
                 decides && state.hand().params.files.is_some()
             }
             ["series", "over"] => !state.hand().runs_series(),
-            ["sequence", "over"] => !state.hand().runs_sequence(),
+            ["sequence", "over"] => !state
+                .hand()
+                .sequence
+                .as_ref()
+                .is_some_and(handscope::app::hand::sequence::SequenceRun::is_running),
             [dof, "below", angle] => self.line.angle(named(dof)) <= angle.parse().unwrap(),
             [dof, "above", angle] => self.line.angle(named(dof)) >= angle.parse().unwrap(),
             other => panic!("nothing to wait for: {other:?}"),

@@ -5,6 +5,7 @@ use crate::setup::client::{Client, Outcome, Request};
 use crate::setup::hand;
 use crate::setup::link::{self, ask, pass};
 use crate::setup::skipped::{can_interface, skipped};
+use handscope::codec::can::RECORD_LEN;
 use handscope::hand::{HandId, register};
 use handscope::link::scan::{Local, ScanConfig, ScanEvent, start};
 use handscope::link::{Clock, LinkStatus, LinkTrouble};
@@ -111,7 +112,7 @@ async fn the_filter_passes_frames_of_one_hand_with_long_identifiers_only() {
     let mut ours = can::open(interface, Some(7)).unwrap();
     let mut other = can::open(interface, None).unwrap();
     let record = |id: u32| {
-        let mut record = [0; can::FRAME_LEN];
+        let mut record = [0; RECORD_LEN];
         for (at, byte) in record.iter_mut().zip(id.to_ne_bytes()) {
             *at = byte;
         }
@@ -122,7 +123,7 @@ async fn the_filter_passes_frames_of_one_hand_with_long_identifiers_only() {
         other.write_all(&record(id)).await.unwrap();
     }
     ours.write_all(&record(0x8184_0007)).await.unwrap();
-    let mut got = [0; can::FRAME_LEN];
+    let mut got = [0; RECORD_LEN];
     timeout(PATIENCE, ours.read_exact(&mut got))
         .await
         .unwrap()

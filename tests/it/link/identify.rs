@@ -2,7 +2,7 @@
 
 use crate::setup::client::Client;
 use crate::setup::link;
-use handscope::codec::rs485::{Request, RequestDecoder, encode_read_reply, encode_write_ack};
+use handscope::codec::rs485::{RequestDecoder, Rs485Request, encode_read_reply, encode_write_ack};
 use handscope::hand::Span;
 use handscope::link::Quirks;
 use handscope::record::LinkState;
@@ -17,7 +17,7 @@ const WITHIN: Duration = Duration::from_millis(500);
 /// A hand that answers for its id, takes writes, and is silent on everything else.
 #[derive(Clone, Default)]
 struct Shy {
-    asked: Arc<Mutex<Vec<(Instant, Request)>>>,
+    asked: Arc<Mutex<Vec<(Instant, Rs485Request)>>>,
 }
 
 impl Shy {
@@ -29,11 +29,13 @@ impl Shy {
             while let Some(request) = decoder.next() {
                 let now = Instant::now();
                 let reply = match &request {
-                    Request::Read { id, span } if span.address == 1000 => {
+                    Rs485Request::Read { id, span } if span.address == 1000 => {
                         encode_read_reply(*id, 1000, &vec![*id; usize::from(span.len)])
                     }
-                    Request::Read { .. } => None,
-                    Request::Write { id, address, .. } => Some(encode_write_ack(*id, *address, 1)),
+                    Rs485Request::Read { .. } => None,
+                    Rs485Request::Write { id, address, .. } => {
+                        Some(encode_write_ack(*id, *address, 1))
+                    }
                 };
                 self.asked.lock().unwrap().push((now, request));
                 if let Some(reply) = reply {
@@ -43,7 +45,7 @@ impl Shy {
         }
     }
 
-    fn asked(&self) -> Vec<(Instant, Request)> {
+    fn asked(&self) -> Vec<(Instant, Rs485Request)> {
         self.asked.lock().unwrap().clone()
     }
 }
@@ -83,7 +85,7 @@ async fn a_hand_that_answers_nothing_but_its_id_is_live_within_half_a_second_and
     assert!(asked.len() > 4, "{asked:?}");
     let mut spans: Vec<Span> = Vec::new();
     for (_, request) in asked {
-        let Request::Read { span, .. } = request else {
+        let Rs485Request::Read { span, .. } = request else {
             panic!("{request:?} writes");
         };
         assert!(
@@ -109,7 +111,7 @@ async fn a_stop_ends_the_questions_and_is_the_next_thing_on_the_wire() {
     }
     let (at, next) = hand.asked()[before].clone();
     assert!(
-        matches!(next, Request::Write { address: 1486, .. }),
+        matches!(next, Rs485Request::Write { address: 1486, .. }),
         "{next:?}"
     );
     let waited = at.duration_since(pressed);

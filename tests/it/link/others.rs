@@ -21,7 +21,7 @@ use tokio::sync::mpsc;
 use tokio::time::{Duration, timeout};
 
 const SOON: Duration = Duration::from_secs(3);
-/// A rival that is not heard of any more is forgotten after five seconds.
+/// Another controller that is not heard of any more is forgotten after five seconds.
 const FORGOTTEN: Duration = Duration::from_secs(6);
 
 /// A line with one hand, ourselves, and room for another speaker.

@@ -3,7 +3,7 @@
 use crate::setup::client::{Client, LinkEvent, Outcome, Request};
 use crate::setup::hand;
 use crate::setup::link;
-use handscope::codec::modbus::BytePacking;
+use handscope::hand::register::BytePacking;
 use handscope::hand::{Dof, Fault, HandCommand, PerDof, TemperatureReading};
 use handscope::link::RequestError;
 use handscope::sim::serve::modbus_tcp;

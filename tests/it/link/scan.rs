@@ -6,10 +6,10 @@ use handscope::codec::modbus_rtu::crc16;
 use handscope::hand::HandId;
 use handscope::link::Clock;
 use handscope::link::scan::{
-    Local, PortWish, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanSummary, Speaks, start,
+    Local, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanPort, ScanSummary, Speaks, start,
 };
 use handscope::sim::serve::{can, rs485, slcan};
-use handscope::sim::{Hands, SharedHand};
+use handscope::sim::{SharedHand, SimHands};
 use handscope::transport::{
     BoxedWire, Dial, Endpoint, Pipe, PortFound, Remedy, TransportError, UsbFound, pair,
 };
@@ -23,13 +23,13 @@ use tokio::time::Instant;
 #[derive(Clone)]
 enum There {
     /// Hands in the private framing at this speed; at others they hear nothing that makes sense.
-    Rs485(u32, Hands),
+    Rs485(u32, SimHands),
     /// A Modbus RTU device at this speed, with these ids; its HAND_ID reads what is given here.
     Rtu(u32, Vec<(u8, u8)>),
     /// A serial CAN adapter with hands on its bus.
-    Adapter(Hands),
+    Adapter(SimHands),
     /// A CAN bus.
-    Can(Hands),
+    Can(SimHands),
     /// Opens, and nothing is ever heard.
     Nobody,
     /// Everything that is sent comes back.
@@ -196,10 +196,10 @@ async fn rtu(ids: &[(u8, u8)], mut wire: Pipe) {
     }
 }
 
-fn hands(ids: &[u8]) -> (Hands, Vec<SharedHand>) {
+fn hands(ids: &[u8]) -> (SimHands, Vec<SharedHand>) {
     let all = ids.iter().map(|id| hand::shared(hand::numbered(*id)));
     let all: Vec<SharedHand> = all.collect();
-    (Hands::new(all[0].clone(), all[1..].to_vec()), all)
+    (SimHands::new(all[0].clone(), all[1..].to_vec()), all)
 }
 
 fn ids(count: usize) -> Vec<HandId> {
@@ -268,7 +268,7 @@ async fn hands_on_every_kind_of_wire_are_found_and_nothing_is_written() {
         ("can0", There::Can(bus)),
         ("/dev/ttyACM0", There::Adapter(behind)),
     ]);
-    let port = |port: &str, speaks| PortWish {
+    let port = |port: &str, speaks| ScanPort {
         port: port.into(),
         usb: None,
         speaks,
@@ -507,7 +507,7 @@ async fn addresses_are_called_sixty_four_at_a_time_and_ports_eight() {
         otherwise: Some(There::Pending),
         ..Street::default()
     });
-    let ports = (0..30).map(|nth| PortWish {
+    let ports = (0..30).map(|nth| ScanPort {
         port: format!("/dev/ttyUSB{nth}"),
         usb: None,
         speaks: Speaks::Hand,

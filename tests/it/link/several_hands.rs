@@ -9,7 +9,7 @@ use handscope::hand::register::{ANGLE_ACT, STATE};
 use handscope::hand::{Angle, HandCommand, HandId, PerDof, Target};
 use handscope::record::LinkState;
 use handscope::sim::serve::rs485;
-use handscope::sim::{Hands, SharedHand, SimConfig};
+use handscope::sim::{SharedHand, SimConfig, SimHands};
 use handscope::transport::pair;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -45,7 +45,7 @@ async fn between(
 }
 
 /// A link to one of two hands on a bus, on which another program asks the second one between our questions.
-fn open(hands: Hands, id: u8) -> Client {
+fn open(hands: SimHands, id: u8) -> Client {
     let dial = link::behind(move |_, middle| {
         let (bus, its) = pair();
         tokio::spawn(rs485::serve(hands.clone(), its));
@@ -55,7 +55,7 @@ fn open(hands: Hands, id: u8) -> Client {
 }
 
 /// Bends all fingers of one hand half way, over the bus.
-async fn bend(hands: &Hands, id: u8) {
+async fn bend(hands: &SimHands, id: u8) {
     let (mut wire, its) = pair();
     tokio::spawn(rs485::serve(hands.clone(), its));
     let command = HandCommand::Angles(PerDof::splat(Target::Go(Angle::nearest(400))));
@@ -76,7 +76,7 @@ fn angles(hand: &SharedHand) -> Vec<i16> {
 async fn what_one_hand_is_told_the_others_do_not_do() {
     let begun = Instant::now();
     let (one, two) = (hand(1, begun), hand(2, begun));
-    let hands = Hands::new(one.clone(), vec![two.clone()]);
+    let hands = SimHands::new(one.clone(), vec![two.clone()]);
     bend(&hands, 2).await;
     assert!(angles(&one).iter().all(|angle| *angle > 990));
     assert!(angles(&two).iter().all(|angle| (390..=410).contains(angle)));
@@ -87,7 +87,7 @@ async fn what_one_hand_is_told_the_others_do_not_do() {
 #[tokio::test(start_paused = true)]
 async fn replies_of_another_hand_are_counted_and_never_taken() {
     let begun = Instant::now();
-    let hands = Hands::new(hand(1, begun), vec![hand(2, begun)]);
+    let hands = SimHands::new(hand(1, begun), vec![hand(2, begun)]);
     bend(&hands, 2).await;
     for (id, wanted) in [(1, 990..=1010), (2, 390..=410), (1, 990..=1010)] {
         let mut link = open(hands.clone(), id);

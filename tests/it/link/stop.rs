@@ -7,7 +7,7 @@ use crate::setup::hand;
 use crate::setup::link;
 use crate::setup::time::in_virtual_time;
 use futures::FutureExt as _;
-use handscope::codec::can::{CanId, Record, Way, frame, from_record, to_record};
+use handscope::codec::can::{CanFunction, CanId, CanRecord, frame, from_record, to_record};
 use handscope::hand::Setpoints;
 use handscope::hand::{Angle, Dof, Span, Target};
 use handscope::link::{LinkConfig, PollRates};
@@ -208,19 +208,23 @@ fn crc(bytes: &[u8]) -> [u8; 2] {
 }
 
 fn can(hand: &SharedHand, request: &[u8]) -> (u16, bool, Vec<u8>) {
-    let Record::Frame(asked) = from_record(request.try_into().unwrap()) else {
+    let CanRecord::Frame(asked) = from_record(request.try_into().unwrap()) else {
         panic!("{request:02X?}")
     };
     let id = CanId::from_raw(asked.id).unwrap();
     let data = match id.way {
-        Way::Read => read(hand, id.address, u16::from(asked.data[0])),
-        Way::Write => {
+        CanFunction::Read => read(hand, id.address, u16::from(asked.data[0])),
+        CanFunction::Write => {
             write(hand, id.address, &asked.data);
             vec![1]
         }
     };
     let reply = frame(id.way, id.hand, id.address, &data).unwrap();
-    (id.address, id.way == Way::Write, to_record(&reply).to_vec())
+    (
+        id.address,
+        id.way == CanFunction::Write,
+        to_record(&reply).to_vec(),
+    )
 }
 
 /// What the hand is about when stop is pressed.

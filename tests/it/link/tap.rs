@@ -2,6 +2,7 @@
 //! or reckoned by hand, not made by our encoder; live links run in virtual time.
 
 use crate::setup::client::Client;
+use crate::setup::faulty::{FaultOdds, FaultPlan, faulty_pair};
 use crate::setup::hand;
 use crate::setup::link;
 use handscope::hand::{Moment, Span};
@@ -11,7 +12,7 @@ use handscope::link::traffic::frame::{Frame, Kind, Wrong};
 use handscope::link::traffic::reader::FRAMES_MAX;
 use handscope::link::{Clock, Traffic};
 use handscope::sim::serve::{modbus_tcp, rs485};
-use handscope::transport::{Dial, FaultOdds, FaultPlan, SystemDial, faulty_pair};
+use handscope::transport::{Dial, SystemDial};
 use std::sync::Arc;
 use tokio::time::{Duration, sleep};
 

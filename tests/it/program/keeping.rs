@@ -126,7 +126,8 @@ async fn settings_are_kept_and_setpoints_never() {
             "plots",
             "recent",
             "side",
-            "theme"
+            "theme",
+            "zoom"
         ]
     );
     let setpoints = ["777", "888", "111"];

@@ -5,8 +5,8 @@ use crate::program::{Bench, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
 use handscope::app::hand::Freshness;
-use handscope::app::params::state::{Doing, SaveEnd, Wanted};
-use handscope::app::params::{ParamAction, Refusal};
+use handscope::app::params::state::{Doing, SaveEnd, WriteRequest};
+use handscope::app::params::{ParamAction, ParamRefusal};
 use handscope::app::procedures::{Procedure, ProcedureAction};
 use handscope::hand::{Dof, Span};
 use handscope::params::rows::{ParamId, Value};
@@ -161,7 +161,7 @@ async fn what_could_hurt_is_asked_first_and_written_only_when_meant() {
     done(&mut bench).await;
     assert_eq!(bench.addresses(), [0_u16; 0], "nothing before the answer");
     let question = bench.hand().params.question.clone().unwrap();
-    assert!(matches!(question.what, Wanted::Apply(_)));
+    assert!(matches!(question.what, WriteRequest::Apply(_)));
     let joints: Vec<_> = question.dangers.iter().map(|danger| danger.dof).collect();
     assert_eq!(joints, [Dof::Index]);
     ask(&mut bench, ParamAction::Decline);
@@ -178,12 +178,15 @@ async fn what_could_hurt_is_asked_first_and_written_only_when_meant() {
 #[tokio::test(start_paused = true)]
 async fn no_write_begins_while_the_hand_is_armed_or_something_is_under_way() {
     let mut bench = gentle().await;
-    assert_eq!(bench.hand().apply_refusal(), Some(Refusal::NothingStaged));
+    assert_eq!(
+        bench.hand().apply_refusal(),
+        Some(ParamRefusal::NothingStaged)
+    );
     stage(&mut bench, INDEX, 50);
     ask(&mut bench, ParamAction::Apply);
     ask(&mut bench, ParamAction::Save);
     assert_eq!(bench.hand().params.doing, Doing::Applying, "one at a time");
-    assert_eq!(bench.hand().write_refusal(), Some(Refusal::Busy));
+    assert_eq!(bench.hand().write_refusal(), Some(ParamRefusal::Busy));
     done(&mut bench).await;
     bench.run(1000).await;
     stage(&mut bench, INDEX, 60);
@@ -192,7 +195,7 @@ async fn no_write_begins_while_the_hand_is_armed_or_something_is_under_way() {
     ask(&mut bench, ParamAction::Save);
     bench.run(1000).await;
     assert_eq!(bench.addresses(), [0_u16; 0]);
-    assert_eq!(bench.hand().apply_refusal(), Some(Refusal::Armed));
+    assert_eq!(bench.hand().apply_refusal(), Some(ParamRefusal::Armed));
 }
 
 #[tokio::test(start_paused = true)]

@@ -9,7 +9,7 @@ use handscope::app::notices::NoticeKind;
 use handscope::hand::{Angle, Dof, Fault, Force, GestureStore, PerDof, Speed, UserGesture};
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use handscope::poses::library::{Millis, PoseId, SequenceId};
-use handscope::poses::player::{End, Phase};
+use handscope::poses::player::{PlayEnd, PlayPhase};
 use tokio::time::Duration;
 
 /// Two poses, each captured and then edited, and a sequence of both.
@@ -27,7 +27,7 @@ fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
     bench.act(Action::Library(LibraryEdit::NewSequence("S".into())));
     let own = bench.state().poses.newest_sequence.unwrap();
     for (at, pose) in ids.iter().enumerate() {
-        let dwell = Millis::nearest(50);
+        let dwell = Millis::try_from(50).unwrap();
         for edit in [SequenceEdit::Add(*pose), SequenceEdit::Dwell(at, dwell)] {
             bench.act(Action::Library(LibraryEdit::Sequence(own, edit)));
         }
@@ -35,7 +35,7 @@ fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
     (ids[0], own)
 }
 
-fn phase(bench: &Bench) -> Option<Phase> {
+fn phase(bench: &Bench) -> Option<PlayPhase> {
     let run = bench.hand().sequence.as_ref();
     run.map(|run| run.view.phase)
 }
@@ -105,25 +105,25 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
 #[tokio::test(start_paused = true)]
 async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
-    let ways: [(Break, End); 6] = [
-        (|bench| bench.act(Action::Stop), End::Disarmed),
-        (|bench| bench.act(Action::Disarm), End::Disarmed),
+    let ways: [(Break, PlayEnd); 6] = [
+        (|bench| bench.act(Action::Stop), PlayEnd::Disarmed),
+        (|bench| bench.act(Action::Disarm), PlayEnd::Disarmed),
         (
             |bench| {
                 bench
                     .hand
                     .with(|hand, _| hand.inject_fault(Dof::Index, Fault::OverTemperature))
             },
-            End::Fault,
+            PlayEnd::Fault,
         ),
-        (|bench| bench.act(Action::Play(Play::End)), End::Person),
+        (|bench| bench.act(Action::Play(Play::End)), PlayEnd::Person),
         (
             |bench| bench.act(Action::Target(Dof::Index, Angle::MAX)),
-            End::TakenOver,
+            PlayEnd::TakenOver,
         ),
         (
             |bench| bench.act(Action::Preset(Preset::Open)),
-            End::TakenOver,
+            PlayEnd::TakenOver,
         ),
     ];
     for (break_off, want) in ways {
@@ -131,13 +131,13 @@ async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
         let (_, own) = library(&mut bench);
         bench.act(Action::Play(Play::Start(own)));
         bench.run(200).await;
-        assert!(bench.hand().runs_sequence());
+        assert!(bench.hand().sequence.as_ref().unwrap().is_running());
         break_off(&mut bench);
         bench.run(3000).await;
-        let Some(Phase::Ended(end)) = phase(&bench) else {
+        let Some(PlayPhase::Ended(end)) = phase(&bench) else {
             panic!("{want:?}: {:?}", phase(&bench));
         };
-        let by_fault = want == End::Fault && end == End::Disarmed;
+        let by_fault = want == PlayEnd::Fault && end == PlayEnd::Disarmed;
         assert!(end == want || by_fault, "{end:?} for {want:?}");
         // Even an arming later does not bring it back.
         bench.act(Action::Arm);

@@ -181,7 +181,7 @@ fn session(more: &[&str]) {
 
 #[test]
 fn a_session_with_the_mouse_in_the_window_with_opengl() {
-    session(&[]);
+    session(&["--opengl"]);
 }
 
 #[test]

@@ -100,7 +100,7 @@ impl Window {
             ("__EGL_VENDOR_LIBRARY_FILENAMES", "/dev/null"),
             ("LIBGL_DRIVERS_PATH", "/nowhere"),
         ];
-        Self::start_in(&hidden, display, hand, &[])
+        Self::start_in(&hidden, display, hand, &["--opengl"])
     }
 
     fn start_in(around: &[(&str, &str)], display: &str, hand: &Hand, more: &[&str]) -> Self {

@@ -3,14 +3,13 @@
 
 use crate::session::beside_others;
 use crate::setup::process::{Running, Wires, run, sim_on_all};
-use crate::setup::program::{Program, env};
+use crate::setup::program::{InFolder, Program, env};
 use crate::setup::time::Time;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use handscope::app::env::Env;
-use handscope::app::files::choose::InFolder;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::Dof;

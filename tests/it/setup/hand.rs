@@ -2,7 +2,7 @@
 
 use futures::FutureExt as _;
 use handscope::sim::serve::{can, modbus_rtu, modbus_tcp, rs485, slcan, usbcan};
-use handscope::sim::{Hands, Object, Personality, SharedHand, SimConfig, SimHand};
+use handscope::sim::{Object, Personality, SharedHand, SimConfig, SimHand, SimHands};
 use handscope::transport::{Endpoint, Wire};
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
@@ -47,13 +47,13 @@ pub(crate) fn like(personality: Personality) -> SimConfig {
 
 /// Serves hands at the far end of a wire, in what the endpoint speaks.
 pub(crate) fn serve(
-    hands: impl Into<Hands>,
+    hands: impl Into<SimHands>,
     endpoint: &Endpoint,
     far: impl Wire,
 ) -> JoinHandle<()> {
-    let hands: Hands = hands.into();
+    let hands: SimHands = hands.into();
     match endpoint {
-        Endpoint::Rtu(_) => tokio::spawn(modbus_rtu::serve(hands, far).map(drop)),
+        Endpoint::Rtu(_) => tokio::spawn(modbus_rtu::serve(hands, far)),
         Endpoint::Tcp { .. } => tokio::spawn(modbus_tcp::serve_client(hands, far)),
         Endpoint::Can { .. } => tokio::spawn(can::serve(hands, far).map(drop)),
         Endpoint::Slcan { .. } => tokio::spawn(slcan::serve(hands, far)),

@@ -3,7 +3,7 @@
 use crate::setup::hand;
 use crate::setup::link;
 use handscope::hand::{SerialSpeed, Span};
-use handscope::sim::{Hands, Personality, SaveAnswer, SharedHand, SimHand};
+use handscope::sim::{Personality, SaveAnswer, SharedHand, SimHand, SimHands};
 use handscope::transport::{Dial, Endpoint, Pipe, pair};
 use std::net::Ipv4Addr;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -268,7 +268,7 @@ impl Dial for Dialled {
         }
         let (near, ours) = pair();
         let (far, at_hand) = pair();
-        let hands = Hands::new(line.hand.clone(), line.other.iter().cloned().collect());
+        let hands = SimHands::new(line.hand.clone(), line.other.iter().cloned().collect());
         let baud = match endpoint {
             Endpoint::Rs485(serial) | Endpoint::Rtu(serial) => Some(serial.baud),
             _ => None,

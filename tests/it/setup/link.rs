@@ -8,7 +8,7 @@ use futures::future::{BoxFuture, ready};
 use handscope::hand::{Force, PerDof, Speed};
 use handscope::link::{ArmRequest, Clock, LinkConfig, LinkStatus, PollRates, RequestError};
 use handscope::record::LinkState;
-use handscope::sim::Hands;
+use handscope::sim::SimHands;
 use handscope::transport::{BoxedWire, Dial, Endpoint, Pipe, TransportError, Wire, pair};
 use std::sync::Arc;
 use tokio::time::{Duration, sleep, timeout};
@@ -57,8 +57,8 @@ pub(crate) fn behind(far: impl Fn(&Endpoint, Pipe) + Send + Sync + 'static) -> A
 }
 
 /// Opens wires to simulated hands, which speak what the endpoint speaks.
-pub(crate) fn to_hand(hands: impl Into<Hands>) -> Arc<dyn Dial> {
-    let hands: Hands = hands.into();
+pub(crate) fn to_hand(hands: impl Into<SimHands>) -> Arc<dyn Dial> {
+    let hands: SimHands = hands.into();
     behind(move |endpoint, far| drop(hand::serve(hands.clone(), endpoint, far)))
 }
 

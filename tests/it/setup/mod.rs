@@ -4,6 +4,7 @@
 pub(crate) mod body;
 pub(crate) mod client;
 pub(crate) mod device;
+pub(crate) mod faulty;
 pub(crate) mod hand;
 pub(crate) mod line;
 pub(crate) mod link;

@@ -1,16 +1,18 @@
 //! The program with its window, on a runtime of its own, with nobody to choose files and nothing on disk unless a test says so.
 
 use crate::setup::time::Time;
+use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
 use handscope::app::env::Env;
-use handscope::app::files::choose::NoChoice;
+use handscope::app::files::choose::{ChooseFile, NoChoice};
 use handscope::app::program::App;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::Moment;
 use handscope::link::Clock;
 use handscope::shell::Cockpit;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::{EnterGuard, Handle, Runtime};
@@ -101,5 +103,23 @@ impl Program {
     pub(crate) fn ui(&mut self, ui: &mut egui::Ui) {
         let _inside = self.runtime.enter();
         self.cockpit.ui(ui, self.clock.now());
+    }
+}
+
+/// Without asking: always into one folder, under the suggested name.
+#[derive(Debug, Clone)]
+pub(crate) struct InFolder(pub(crate) PathBuf);
+
+impl ChooseFile for InFolder {
+    fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        Box::pin(std::future::ready(Some(self.0.join(suggested))))
+    }
+
+    fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        self.choose(suggested)
+    }
+
+    fn folder(&self) -> BoxFuture<'static, Option<PathBuf>> {
+        Box::pin(std::future::ready(Some(self.0.clone())))
     }
 }

@@ -1,8 +1,9 @@
 //! The real program with its real window, in front of a simulated hand on a wire that can be pulled. Virtual time only.
 
+use crate::setup::faulty::{FaultPlan, faulty_pair};
 use crate::setup::hand;
 use crate::setup::link;
-use crate::setup::program::{Program, env};
+use crate::setup::program::{InFolder, Program, env};
 use crate::setup::time::Time;
 use egui::{Key, Modifiers, Rect, Vec2, vec2};
 use egui_kittest::Harness;
@@ -10,16 +11,13 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::files::choose::InFolder;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::{Dof, Moment, SerialSpeed};
 use handscope::record::LinkState;
 use handscope::sim::serve::SharedHand;
-use handscope::sim::{Hands, SimConfig, SimHand};
-use handscope::transport::{
-    BoxedWire, Dial, Endpoint, FaultPlan, PortFound, Wire, faulty_pair, pair,
-};
+use handscope::sim::{SimConfig, SimHand, SimHands};
+use handscope::transport::{BoxedWire, Dial, Endpoint, PortFound, Wire, pair};
 use handscope::ui::View;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -82,7 +80,7 @@ impl Dial for Socket {
                 (ours, its)
             }
         };
-        let hands = Hands::new(self.hand.clone(), self.others.lock().unwrap().clone());
+        let hands = SimHands::new(self.hand.clone(), self.others.lock().unwrap().clone());
         let mut tasks = Vec::new();
         let its = match endpoint {
             Endpoint::Rs485(line) | Endpoint::Rtu(line) => {

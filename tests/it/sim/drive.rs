@@ -3,14 +3,14 @@
 use handscope::hand::impact::RIGID_G_PER_COUNT;
 use handscope::hand::{Fault, Status};
 use handscope::sim::Contact;
-use handscope::sim::drive::{DEAD_TIME_MS, Drive, Goal, STROKE, Setting};
+use handscope::sim::drive::{DEAD_TIME_MS, Drive, DriveGoal, DriveSettings, STROKE};
 
-const FAST: Setting = Setting {
+const FAST: DriveSettings = DriveSettings {
     speed: 1000.0,
     threshold_g: 3000.0,
 };
 
-fn run(drive: &mut Drive, from: u64, ms: u64, setting: Setting) -> f64 {
+fn run(drive: &mut Drive, from: u64, ms: u64, setting: DriveSettings) -> f64 {
     let mut peak: f64 = 0.0;
     for now in from..from + ms {
         drive.step(now, setting);
@@ -26,14 +26,14 @@ fn rigid() -> Drive {
         stiffness: RIGID_G_PER_COUNT,
         breaks_at_g: None,
     }));
-    drive.command(Goal::Position(STROKE), 0);
+    drive.command(DriveGoal::Position(STROKE), 0);
     drive
 }
 
 #[test]
 fn full_stroke_at_1000_takes_600_ms_after_the_dead_time() {
     let mut drive = Drive::new(25.0);
-    drive.command(Goal::Position(STROKE), 0);
+    drive.command(DriveGoal::Position(STROKE), 0);
     run(&mut drive, 0, DEAD_TIME_MS, FAST);
     assert!(drive.position() < 1e-9);
     let mut ms = 0;
@@ -67,7 +67,7 @@ fn the_peak_above_the_threshold_is_that_of_the_table() {
         (1000.0, 1000.0, 2502.0),
     ] {
         let mut drive = rigid();
-        let setting = Setting {
+        let setting = DriveSettings {
             speed,
             threshold_g: threshold,
         };
@@ -85,7 +85,7 @@ fn the_peak_above_the_threshold_is_that_of_the_table() {
 #[test]
 fn a_fast_approach_with_a_slow_contact_hits_softly() {
     let mut drive = rigid();
-    let slow = Setting {
+    let slow = DriveSettings {
         speed: 25.0,
         threshold_g: 500.0,
     };
@@ -99,9 +99,9 @@ fn a_fast_approach_with_a_slow_contact_hits_softly() {
     while drive.position() < 900.0 {
         drive.step(100, FAST);
     }
-    drive.command(Goal::Freeze, 36);
+    drive.command(DriveGoal::Freeze, 36);
     run(&mut drive, 100, 600, slow);
-    drive.command(Goal::Position(STROKE), 700);
+    drive.command(DriveGoal::Position(STROKE), 700);
     let peak = run(&mut drive, 700, 5000, slow);
     assert!((peak - 564.0).abs() < 0.15 * 64.0, "{peak}");
 }
@@ -109,7 +109,7 @@ fn a_fast_approach_with_a_slow_contact_hits_softly() {
 #[test]
 fn after_the_impact_no_current_flows_and_the_grip_relaxes() {
     let mut drive = rigid();
-    let setting = Setting {
+    let setting = DriveSettings {
         speed: 1000.0,
         threshold_g: 500.0,
     };
@@ -141,25 +141,25 @@ fn a_fragile_thing_breaks_if_pressed_too_hard_and_is_replaced_when_the_hand_open
     };
     let mut drive = Drive::new(25.0);
     drive.set_contact(Some(cup));
-    let gentle = Setting {
+    let gentle = DriveSettings {
         speed: 25.0,
         threshold_g: 400.0,
     };
-    drive.command(Goal::Position(STROKE), 0);
+    drive.command(DriveGoal::Position(STROKE), 0);
     run(&mut drive, 0, 14_000, gentle);
     assert_eq!(drive.status(), Status::ForceReached);
     assert!(drive.load_g() > 300.0, "held whole");
-    let rough = Setting {
+    let rough = DriveSettings {
         speed: 1000.0,
         threshold_g: 400.0,
     };
-    drive.command(Goal::Position(0.0), 14_000);
+    drive.command(DriveGoal::Position(0.0), 14_000);
     run(&mut drive, 14_000, 2000, rough);
-    drive.command(Goal::Position(STROKE), 16_000);
+    drive.command(DriveGoal::Position(STROKE), 16_000);
     run(&mut drive, 16_000, 2000, rough);
     assert!(drive.load_g() < 1e-9, "broken");
     assert_eq!(drive.gap(), None);
-    drive.command(Goal::Position(0.0), 18_000);
+    drive.command(DriveGoal::Position(0.0), 18_000);
     run(&mut drive, 18_000, 2000, rough);
     assert!(drive.gap().is_some(), "another one");
 }
@@ -168,17 +168,17 @@ fn a_fragile_thing_breaks_if_pressed_too_hard_and_is_replaced_when_the_hand_open
 fn a_jam_below_the_threshold_is_a_stall() {
     let mut drive = Drive::new(25.0);
     drive.set_jam(Some(600.0));
-    drive.command(Goal::Position(STROKE), 0);
+    drive.command(DriveGoal::Position(STROKE), 0);
     run(&mut drive, 0, 900, FAST);
     assert_eq!(drive.status(), Status::Grasping);
     assert!(drive.current_ma() > 900.0);
     run(&mut drive, 900, 400, FAST);
     assert_eq!(drive.status(), Status::Stalled);
     assert!(drive.faults().contains(Fault::Stall));
-    drive.command(Goal::Position(STROKE), 1300);
+    drive.command(DriveGoal::Position(STROKE), 1300);
     run(&mut drive, 1300, 200, FAST);
     assert_eq!(drive.status(), Status::Stalled);
-    drive.command(Goal::Position(0.0), 1500);
+    drive.command(DriveGoal::Position(0.0), 1500);
     run(&mut drive, 1500, 1000, FAST);
     assert!(drive.position() < 1e-9);
     assert!(drive.faults().contains(Fault::Stall));
@@ -189,7 +189,7 @@ fn a_jam_below_the_threshold_is_a_stall() {
 #[test]
 fn a_slow_hard_squeeze_ends_in_current_protection() {
     let mut drive = rigid();
-    let setting = Setting {
+    let setting = DriveSettings {
         speed: 25.0,
         threshold_g: 3000.0,
     };
@@ -201,7 +201,7 @@ fn a_slow_hard_squeeze_ends_in_current_protection() {
 #[test]
 fn over_temperature_cannot_be_cleared_and_ends_by_itself_without_motion() {
     let mut drive = Drive::new(25.0);
-    drive.command(Goal::Position(STROKE), 0);
+    drive.command(DriveGoal::Position(STROKE), 0);
     run(&mut drive, 0, 200, FAST);
     drive.warm(90.0);
     run(&mut drive, 200, 10, FAST);
@@ -209,7 +209,7 @@ fn over_temperature_cannot_be_cleared_and_ends_by_itself_without_motion() {
     assert_eq!(drive.status(), Status::DriveFault);
     drive.clear_errors();
     assert!(drive.faults().contains(Fault::OverTemperature));
-    drive.command(Goal::Position(STROKE), 210);
+    drive.command(DriveGoal::Position(STROKE), 210);
     run(&mut drive, 210, 10_000, FAST);
     assert!(drive.faults().contains(Fault::OverTemperature));
     run(&mut drive, 10_210, 20_000, FAST);
@@ -220,9 +220,9 @@ fn over_temperature_cannot_be_cleared_and_ends_by_itself_without_motion() {
 #[test]
 fn freeze_stops_after_the_dead_time() {
     let mut drive = Drive::new(25.0);
-    drive.command(Goal::Position(STROKE), 0);
+    drive.command(DriveGoal::Position(STROKE), 0);
     run(&mut drive, 0, 200, FAST);
-    drive.command(Goal::Freeze, 200);
+    drive.command(DriveGoal::Freeze, 200);
     run(&mut drive, 200, 100, FAST);
     let position = drive.position();
     run(&mut drive, 300, 300, FAST);
@@ -233,7 +233,7 @@ fn freeze_stops_after_the_dead_time() {
 #[test]
 fn a_target_told_again_at_rest_draws_no_current() {
     // At the target, off it by less than ANGLE_ACT shows, and held by the force threshold.
-    let setting = Setting {
+    let setting = DriveSettings {
         speed: 250.0,
         threshold_g: 500.0,
     };
@@ -242,12 +242,12 @@ fn a_target_told_again_at_rest_draws_no_current() {
         (Drive::new(25.0), 1000.5, 1000.0),
         (rigid(), STROKE, STROKE),
     ] {
-        drive.command(Goal::Position(first), 0);
+        drive.command(DriveGoal::Position(first), 0);
         run(&mut drive, 0, 6000, setting);
         let (place, load, status) = (drive.position(), drive.load_g(), drive.status());
         for now in 6000..8000 {
             if now % 20 == 0 {
-                drive.command(Goal::Position(again), now);
+                drive.command(DriveGoal::Position(again), now);
             }
             drive.step(now, setting);
             assert!(
@@ -258,14 +258,14 @@ fn a_target_told_again_at_rest_draws_no_current() {
         }
         assert_eq!((drive.position(), drive.status()), (place, status));
         // A higher threshold is room to close on; the way open is free.
-        let more = Setting {
+        let more = DriveSettings {
             threshold_g: 700.0,
             ..setting
         };
-        drive.command(Goal::Position(STROKE), 8000);
+        drive.command(DriveGoal::Position(STROKE), 8000);
         run(&mut drive, 8000, 3000, more);
         assert!(drive.load_g() > load + 50.0 || drive.position() >= STROKE);
-        drive.command(Goal::Position(0.0), 11_000);
+        drive.command(DriveGoal::Position(0.0), 11_000);
         run(&mut drive, 11_000, 6000, more);
         assert!(drive.position() < 1e-9);
     }

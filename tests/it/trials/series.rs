@@ -290,7 +290,7 @@ async fn ended_by(
 
 fn closing(series: &TrialSeries, bench: &Bench) -> bool {
     let angle = bench.sample.angle.unwrap().value[Dof::Index].raw();
-    series.progress().0 == 1 && angle < 620
+    series.view().number == 1 && angle < 620
 }
 
 #[tokio::test(start_paused = true)]

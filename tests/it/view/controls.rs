@@ -7,7 +7,7 @@ use egui::{Key, Modifiers, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use handscope::app::action::Action;
-use handscope::app::scan::{IdRange, ScanWish};
+use handscope::app::scan::{IdRange, ScanTarget};
 use handscope::app::settings::{Language, Theme};
 use handscope::app::state::State;
 use handscope::hand::{Angle, Dof, Force, Gesture, Speed};
@@ -542,13 +542,13 @@ fn the_port_just_typed_can_be_scanned() {
             "RS485",
             "Serial port",
             "/dev/ttyUSB9",
-            ScanWish::Port("/dev/ttyUSB9".into(), IdRange::Few),
+            ScanTarget::Port("/dev/ttyUSB9".into(), IdRange::Few),
         ),
         (
             "Modbus TCP",
             "Address",
             "",
-            ScanWish::Hosts("192.168.11.210:6000".parse().unwrap()),
+            ScanTarget::Hosts("192.168.11.210:6000".parse().unwrap()),
         ),
     ] {
         let mut harness = open_at(states::empty(), View::Connection, LARGE);

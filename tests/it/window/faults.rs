@@ -332,7 +332,6 @@ fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
         .map(|one| one.opened)
         .collect();
     assert_eq!(listed, [true]);
-    assert!(bench.state().hand().recorder.bytes() < 4_000_000);
     bench.click("Drive Ring");
     bench.run(60);
     assert!(!bench.shows("Status of the drives"), "tiles lead back");

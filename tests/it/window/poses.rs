@@ -5,7 +5,7 @@ use egui::Key;
 use handscope::app::hand::gestures::StoreVerdict;
 use handscope::app::notices::NoticeKind;
 use handscope::hand::Dof;
-use handscope::poses::player::{End, Phase};
+use handscope::poses::player::{PlayEnd, PlayPhase};
 
 const LEAVE: i16 = -1;
 /// Where gesture 20 lies, as the field has it.
@@ -61,7 +61,7 @@ fn with_sequence() -> Bench {
     bench
 }
 
-fn phase(bench: &Bench) -> Phase {
+fn phase(bench: &Bench) -> PlayPhase {
     bench.state().hand().sequence.as_ref().unwrap().view.phase
 }
 
@@ -164,7 +164,7 @@ fn a_sequence_runs_pauses_resumes_and_finishes() {
     bench.run(600);
     bench.click("Pause");
     bench.run(100);
-    assert_eq!(phase(&bench), Phase::Paused);
+    assert_eq!(phase(&bench), PlayPhase::Paused);
     bench.wait(3000);
     let rest = bench.angle(Dof::Index);
     assert!((510..=990).contains(&rest), "held on its way: {rest}");
@@ -175,24 +175,24 @@ fn a_sequence_runs_pauses_resumes_and_finishes() {
     bench.wait(3000);
     assert!((bench.angle(Dof::Index) - 500).abs() <= 25);
     bench.wait(6000);
-    assert_eq!(phase(&bench), Phase::Ended(End::Finished));
+    assert_eq!(phase(&bench), PlayPhase::Ended(PlayEnd::Finished));
     assert!(bench.writes().len() > armed);
 }
 
 #[test]
 fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
-    let breaks: [(Break, End); 3] = [
-        (|bench| bench.key(Key::Space), End::Disarmed),
+    let breaks: [(Break, PlayEnd); 3] = [
+        (|bench| bench.key(Key::Space), PlayEnd::Disarmed),
         (
             |bench| {
                 bench.hand(|hand, _| {
                     hand.inject_fault(Dof::Ring, handscope::hand::Fault::Motor);
                 });
             },
-            End::Fault,
+            PlayEnd::Fault,
         ),
-        (Bench::unplug, End::LinkLost),
+        (Bench::unplug, PlayEnd::LinkLost),
     ];
     for (break_off, want) in breaks {
         let mut bench = with_sequence();
@@ -200,7 +200,7 @@ fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
         bench.run(600);
         break_off(&mut bench);
         bench.wait(3000);
-        assert_eq!(phase(&bench), Phase::Ended(want));
+        assert_eq!(phase(&bench), PlayPhase::Ended(want));
         bench.plug();
         let ended = bench.writes().len();
         bench.wait(8000);
@@ -214,7 +214,7 @@ fn one_step_is_one_step() {
     let mut bench = with_sequence();
     bench.click("Step");
     bench.wait(6000);
-    assert_eq!(phase(&bench), Phase::Paused);
+    assert_eq!(phase(&bench), PlayPhase::Paused);
     assert!((bench.angle(Dof::Index) - 500).abs() <= 5);
     let after = bench.writes().len();
     bench.wait(3000);

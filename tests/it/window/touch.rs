@@ -3,6 +3,7 @@
 use crate::setup::window::{Bench, LARGE, Role};
 use handscope::app::action::Action;
 use handscope::app::hand::Preset;
+use handscope::app::readings::tare::Source;
 use handscope::hand::Finger;
 use handscope::sim::{Scenario, SimConfig};
 
@@ -68,7 +69,11 @@ fn taring_counts_all_tips_from_now_and_writes_nothing() {
     let mut bench = free();
     bench.click("Tare all");
     bench.run(60);
-    assert!(bench.state().hand().tare.chosen_at().is_some());
+    let is_kept = |finger| {
+        let rest = bench.state().hand().tare.rest(finger);
+        rest.is_some_and(|rest| rest.source == Source::Person)
+    };
+    assert!(Finger::ALL.into_iter().all(is_kept));
     for finger in Finger::ALL {
         let now = bench.state().hand().sample.tactile[finger].expect("it was read");
         let apart = rest(&bench, finger)[0].abs_diff(now.value.raw[0]);

@@ -1,8 +1,8 @@
 //! Claims about the traffic view: what passes over the wire is shown, can be held, searched, copied and saved.
 
+use crate::setup::faulty::{FaultOdds, FaultPlan};
 use crate::setup::window::{Bench, Role};
 use handscope::app::notices::NoticeKind;
-use handscope::transport::{FaultOdds, FaultPlan};
 
 fn rows(bench: &Bench) -> Vec<String> {
     let rows = bench.all(Role::Row).into_iter();

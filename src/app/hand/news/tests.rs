@@ -41,9 +41,8 @@ impl Bench {
     /// The link says so, and nothing else of before.
     fn status(&mut self, status: LinkStatus) {
         self.millis += 10;
-        let now = self.now();
-        self.hand.now = now;
-        self.hand.take_status(status, &mut self.notices, now);
+        self.hand.now = self.now();
+        self.hand.take_status(status, &mut self.notices);
         self.hand.follow();
     }
 
@@ -73,9 +72,8 @@ impl Bench {
         fresh.insert(group);
         let sample = Arc::new(sample);
         let record = Record::Reading { sample, fresh };
-        let now = self.now();
-        self.hand.now = now;
-        self.hand.take(&record, &mut self.notices, now);
+        self.hand.now = self.now();
+        self.hand.take(&record, &mut self.notices);
         self.hand.follow();
     }
 
@@ -138,8 +136,8 @@ fn the_links_own_word_comes_later_and_arms_nothing_after_a_stop() {
     bench.epoch(1);
     assert!(bench.hand.is_armed());
     let armed = bench.hand.link.clone();
-    let now = bench.now();
-    bench.hand.stop(&mut bench.notices, now);
+    bench.hand.now = bench.now();
+    bench.hand.stop(&mut bench.notices);
     assert!(!bench.hand.is_armed(), "at once");
     // Until then it still says armed.
     bench.status(armed);
@@ -160,8 +158,8 @@ fn after_disarming_the_sliders_follow_again() {
         (Some(1000), Some(400)),
         "where a person has them while it is armed"
     );
-    let now = bench.now();
-    bench.hand.disarm(now);
+    bench.hand.now = bench.now();
+    bench.hand.disarm();
     bench.state(LinkState::Monitoring);
     bench.angles(450);
     assert_eq!(bench.target(Dof::Index), Some(450));
@@ -283,8 +281,8 @@ fn stop_without_a_live_link_says_that_nothing_was_sent() {
     for state in [LinkState::Offline, LinkState::Identifying] {
         let mut bench = Bench::new();
         bench.state(state);
-        let now = bench.now();
-        bench.hand.stop(&mut bench.notices, now);
+        bench.hand.now = bench.now();
+        bench.hand.stop(&mut bench.notices);
         assert_eq!(bench.told(), [NoticeKind::StopNotSent], "{state:?}");
     }
 }
@@ -296,7 +294,8 @@ fn a_hand_at_rest_that_was_only_watched_needs_no_stop_to_leave() {
     bench.epoch(1);
     assert!(bench.hand.may_move());
     let told = bench.now();
-    bench.hand.stop(&mut bench.notices, told);
+    bench.hand.now = told;
+    bench.hand.stop(&mut bench.notices);
     assert!(!bench.hand.is_held(told));
     let rest = bench.now().plus(Duration::from_millis(1));
     bench.status(LinkStatus {

@@ -1,6 +1,6 @@
 //! What the recorder notes between measurements: what a person did, and how a drive's status and faults changed.
 
-use crate::app::hand::preset::Preset;
+use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
 use crate::hand::{Angle, Dof, Faults, Force, Moment, Speed, Status};
 use std::sync::Arc;

@@ -4,9 +4,10 @@ use crate::link::faults::can;
 use crate::link::faults::tap::{Log, Tap};
 use crate::setup::body::{Protocol, Quirks};
 use crate::setup::device;
+use crate::setup::faulty::{FaultPlan, FaultSwitch, faulty_pair};
 use crate::setup::link;
 use handscope::sim::SharedHand;
-use handscope::transport::{Dial, Endpoint, FaultPlan, FaultSwitch, faulty_pair};
+use handscope::transport::{Dial, Endpoint};
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 

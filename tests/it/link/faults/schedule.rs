@@ -5,6 +5,7 @@ use crate::link::faults::oracle::{Seen, Witness};
 use crate::link::faults::tap::{Lie, Log};
 use crate::setup::body::{Adapter, Protocol, Quirks};
 use crate::setup::client::{Client, LinkEvent, Request};
+use crate::setup::faulty::{FaultOdds, FaultPlan, LineSpeed};
 use crate::setup::hand;
 use crate::setup::link;
 use crate::setup::time::in_virtual_time;
@@ -14,7 +15,6 @@ use handscope::link::handle::REQUESTS_MAX;
 use handscope::link::{Clock, LinkConfig, PollRates, RequestError};
 use handscope::record::LinkState;
 use handscope::sim::{Personality, Scenario, SharedHand, SimConfig};
-use handscope::transport::{FaultOdds, FaultPlan, Pace};
 use std::sync::{Arc, Mutex};
 use tokio::time::{Duration, Instant, sleep_until};
 
@@ -92,17 +92,17 @@ fn odds(rng: &mut fastrand::Rng, protocol: Protocol) -> FaultOdds {
     }
 }
 
-fn pace(rng: &mut fastrand::Rng, protocol: Protocol) -> Option<Pace> {
+fn pace(rng: &mut fastrand::Rng, protocol: Protocol) -> Option<LineSpeed> {
     let bauds = match protocol {
         Protocol::Tcp => return None,
         // A record of 16 bytes takes 160 bits, as a frame of eight does with its head, stuffing and end.
         Protocol::Can => [None, Some(500_000), Some(1_000_000)],
         Protocol::Rs485 | Protocol::Rtu | Protocol::Slcan => [None, Some(115_200), Some(921_600)],
     };
-    bauds[rng.usize(..3)].map(|baud| Pace { baud })
+    bauds[rng.usize(..3)].map(|baud| LineSpeed { baud })
 }
 
-fn endpoint(protocol: Protocol, pace: Option<Pace>) -> String {
+fn endpoint(protocol: Protocol, pace: Option<LineSpeed>) -> String {
     match (protocol, pace) {
         (Protocol::Tcp, _) => "tcp:test".into(),
         (Protocol::Can, _) => "can:test".into(),

@@ -4,13 +4,13 @@ use crate::link::faults::dial::FaultyDial;
 use crate::link::faults::tap::{Lie, Log};
 use crate::setup::body::{Protocol, Quirks};
 use crate::setup::client::{Client, LinkEvent};
+use crate::setup::faulty::{FaultPlan, LineSpeed};
 use crate::setup::hand;
 use crate::setup::link;
 use handscope::hand::Setpoints;
 use handscope::hand::{Angle, Dof, Target};
 use handscope::link::{Clock, LinkConfig};
 use handscope::record::LinkState;
-use handscope::transport::{FaultPlan, Pace};
 use std::sync::{Arc, Mutex};
 use tokio::time::{Duration, Instant, sleep_until};
 
@@ -20,7 +20,7 @@ async fn armed_on(baud: u32, turnaround: Duration) -> (Client, Log, Clock) {
     let hand = hand::plain();
     let log = Log::new(clock, Lie::None);
     let plan = FaultPlan {
-        pace: Some(Pace { baud }),
+        pace: Some(LineSpeed { baud }),
         ..FaultPlan::quiet(1)
     };
     let dial = Arc::new(FaultyDial {

@@ -1,15 +1,12 @@
 //! `sim`: simulated hands on wires that other programs can open, until the program is ended. How a hand behaves is decided in
 //! [`crate::sim`].
-mod quirks;
-
-use crate::cli::ids::HandIds;
-use crate::cli::interrupt::{Interrupt, PowerCut};
+use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
-use crate::cli::sim::quirks::Quirk;
+use crate::cli::parse::{HandIds, hand_ids, number};
 use crate::sim::serve::modbus_tcp;
 #[cfg(unix)]
 use crate::sim::serve::pty;
-use crate::sim::{Hands, Scenario, SharedHand, SimConfig, SimHand};
+use crate::sim::{Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand, SimHands};
 use crate::transport::LinePace;
 #[cfg(unix)]
 use crate::transport::TransportError;
@@ -17,6 +14,7 @@ use anyhow::{Context as _, anyhow, ensure};
 #[cfg(unix)]
 use futures::FutureExt;
 use futures::future::{BoxFuture, select_all};
+use std::fmt::Write as _;
 use std::io;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -28,16 +26,36 @@ use tokio::time::{Instant, interval};
 const LIVE_EACH: Duration = Duration::from_millis(10);
 
 /// A wire being served.
-struct Wire {
+struct ServedWire {
     /// Kind and place, as they are announced.
     name: String,
     /// Resolves only on failure.
     served: BoxFuture<'static, anyhow::Error>,
 }
 
+impl ServedWire {
+    /// `closed` is the error of a server that ends without one.
+    fn new(
+        kind: &str,
+        place: String,
+        closed: String,
+        served: impl Future<Output = io::Result<()>> + Send + 'static,
+    ) -> Self {
+        Self {
+            name: format!("{kind} {place}"),
+            served: Box::pin(async move {
+                match served.await {
+                    Ok(()) => anyhow!(closed),
+                    Err(error) => anyhow!("the server on {place} failed: {error}"),
+                }
+            }),
+        }
+    }
+}
+
 /// What is spoken on a pseudo-terminal.
 #[derive(Clone, Copy)]
-enum Speech {
+enum PtyProtocol {
     Rs485,
     Rtu,
     Slcan,
@@ -86,7 +104,7 @@ pub(crate) struct SimArgs {
     #[arg(long, value_name = "NAME", default_value = "idle")]
     scenario: Scenario,
     /// What the hand does where the manual leaves a choice, from the list below; may be repeated
-    #[arg(long = "quirk", value_name = "NAME=VALUE", value_parser = quirks::quirk)]
+    #[arg(long = "quirk", value_name = "NAME=VALUE", value_parser = quirk)]
     quirks: Vec<Quirk>,
 }
 
@@ -96,45 +114,16 @@ On Modbus TCP the unit id selects the hand; 255 means the first, and a single ha
 
 /// What stands under the list of switches.
 pub(crate) fn help() -> String {
-    format!("{SIM_HELP}\n\n{}", quirks::list())
+    format!("{SIM_HELP}\n\n{}", quirk_list())
 }
 
 /// Serves the hand until a person ends it.
-pub(crate) fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
-    tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .context("cannot start the simulated hand")?
-        .block_on(serve(out, args))
-}
-
-async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
+pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
-    let power = PowerCut::listen()?;
+    let power = Interrupt::power_cut()?;
     let hands = hands(args).context("no hand to simulate")?;
-    let pace = args.baud.map(|baud| LinePace {
-        baud,
-        turnaround: args.turnaround,
-    });
     // All wires are there before any is announced: who waits for one may use all.
-    let mut wires = Vec::new();
-    if let Some(address) = args.tcp {
-        wires.push(serve_tcp(&hands, address).await?);
-    }
-    let links = [
-        (Speech::Rs485, &args.rs485),
-        (Speech::Rtu, &args.rtu),
-        (Speech::Slcan, &args.slcan),
-        (Speech::UsbCan, &args.usbcan),
-    ];
-    for (speech, link) in links {
-        if let Some(link) = link {
-            wires.push(serve_link(&hands, speech, link, pace)?);
-        }
-    }
-    if let Some(interface) = &args.can {
-        wires.push(serve_can(&hands, interface)?);
-    }
+    let wires = wires(&hands, args).await?;
     ensure!(!wires.is_empty(), "no wire to serve the hand on");
     out.lines(wires.iter().map(|wire| format!("ready {}", wire.name)))?;
     out.flush()?;
@@ -147,8 +136,33 @@ async fn serve(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     }
 }
 
+async fn wires(hands: &SimHands, args: &SimArgs) -> anyhow::Result<Vec<ServedWire>> {
+    let mut wires = Vec::new();
+    if let Some(address) = args.tcp {
+        wires.push(serve_tcp(hands, address).await?);
+    }
+    let pace = args.baud.map(|baud| LinePace {
+        baud,
+        turnaround: args.turnaround,
+    });
+    for (protocol, link) in [
+        (PtyProtocol::Rs485, &args.rs485),
+        (PtyProtocol::Rtu, &args.rtu),
+        (PtyProtocol::Slcan, &args.slcan),
+        (PtyProtocol::UsbCan, &args.usbcan),
+    ] {
+        if let Some(link) = link {
+            wires.push(serve_link(hands, protocol, link, pace)?);
+        }
+    }
+    if let Some(interface) = &args.can {
+        wires.push(serve_can(hands, interface)?);
+    }
+    Ok(wires)
+}
+
 /// Switches all hands off and on at each signal, and says so once they answer again.
-async fn lose_power(out: &mut Out, mut power: PowerCut, hands: &Hands) -> anyhow::Error {
+async fn lose_power(out: &mut Out, mut power: Interrupt, hands: &SimHands) -> anyhow::Error {
     loop {
         power.wished().await;
         hands.with_each(SimHand::switch_off);
@@ -161,23 +175,23 @@ async fn lose_power(out: &mut Out, mut power: PowerCut, hands: &Hands) -> anyhow
 }
 
 /// Separate hands, each with its own memory, body and random numbers.
-fn hands(args: &SimArgs) -> Option<Hands> {
+fn hands(args: &SimArgs) -> Option<SimHands> {
     let begun = Instant::now();
     let seeds = (0..).map(|nth| args.seed.wrapping_add(nth));
-    let mut hands = args.id.iter().zip(seeds).map(|(id, seed)| {
+    let mut hands = args.id.0.iter().zip(seeds).map(|(id, seed)| {
         let hand = SimHand::new(SimConfig {
             seed,
             id: id.get(),
             scenario: args.scenario,
-            personality: quirks::personality(&args.quirks),
+            personality: personality(&args.quirks),
         });
         SharedHand::new(hand, begun)
     });
     let first = hands.next()?;
-    Some(Hands::new(first, hands.collect()))
+    Some(SimHands::new(first, hands.collect()))
 }
 
-async fn live(hands: &Hands) {
+async fn live(hands: &SimHands) {
     let mut tick = interval(LIVE_EACH);
     loop {
         tick.tick().await;
@@ -185,7 +199,7 @@ async fn live(hands: &Hands) {
     }
 }
 
-async fn serve_tcp(hands: &Hands, address: SocketAddr) -> anyhow::Result<Wire> {
+async fn serve_tcp(hands: &SimHands, address: SocketAddr) -> anyhow::Result<ServedWire> {
     let listener = TcpListener::bind(address)
         .await
         .map_err(|error| anyhow!("cannot serve on {address}: {}", bind_words(&error)))?;
@@ -197,17 +211,9 @@ async fn serve_tcp(hands: &Hands, address: SocketAddr) -> anyhow::Result<Wire> {
             "warning: anyone in the network can reach {bound} and move the simulated hand; 127.0.0.1 keeps it to this computer"
         ));
     }
-    let hands = hands.clone();
-    let served = async move {
-        match modbus_tcp::serve(hands, listener).await {
-            Ok(()) => anyhow!("the server on {bound} ended"),
-            Err(error) => anyhow!("the server on {bound} failed: {error}"),
-        }
-    };
-    Ok(Wire {
-        name: format!("tcp {bound}"),
-        served: Box::pin(served),
-    })
+    let closed = format!("the server on {bound} ended");
+    let served = modbus_tcp::serve(hands.clone(), listener);
+    Ok(ServedWire::new("tcp", bound.to_string(), closed, served))
 }
 
 fn bind_words(error: &io::Error) -> String {
@@ -227,32 +233,22 @@ fn bind_words(error: &io::Error) -> String {
 
 #[cfg(unix)]
 fn serve_link(
-    hands: &Hands,
-    speech: Speech,
+    hands: &SimHands,
+    protocol: PtyProtocol,
     link: &Path,
     pace: Option<LinePace>,
-) -> anyhow::Result<Wire> {
+) -> anyhow::Result<ServedWire> {
     let hands = hands.clone();
-    let (kind, served) = match speech {
-        Speech::Rs485 => ("rs485", pty::serve_rs485(hands, link, pace).map(endless)),
-        Speech::Rtu => (
-            "rtu",
-            pty::serve_rtu(hands, link, pace).map(FutureExt::boxed),
-        ),
-        Speech::Slcan => ("slcan", pty::serve_slcan(hands, link).map(endless)),
-        Speech::UsbCan => ("usbcan", pty::serve_usbcan(hands, link).map(endless)),
+    let (kind, served) = match protocol {
+        PtyProtocol::Rs485 => ("rs485", pty::serve_rs485(hands, link, pace).map(endless)),
+        PtyProtocol::Rtu => ("rtu", pty::serve_rtu(hands, link, pace).map(endless)),
+        PtyProtocol::Slcan => ("slcan", pty::serve_slcan(hands, link).map(endless)),
+        PtyProtocol::UsbCan => ("usbcan", pty::serve_usbcan(hands, link).map(endless)),
     };
     let served = served.map_err(|error| link_words(link, &error))?;
     let place = link.display().to_string();
-    Ok(Wire {
-        name: format!("{kind} {place}"),
-        served: Box::pin(async move {
-            match served.await {
-                Ok(()) => anyhow!("the pseudo-terminal behind {place} was closed"),
-                Err(error) => anyhow!("the server on {place} failed: {error}"),
-            }
-        }),
-    })
+    let closed = format!("the pseudo-terminal behind {place} was closed");
+    Ok(ServedWire::new(kind, place, closed, served))
 }
 
 /// A server that fails only by ending.
@@ -279,34 +275,26 @@ fn link_words(link: &Path, error: &TransportError) -> anyhow::Error {
 }
 
 #[cfg(target_os = "linux")]
-fn serve_can(hands: &Hands, interface: &str) -> anyhow::Result<Wire> {
-    use crate::sim::serve::can;
+fn serve_can(hands: &SimHands, interface: &str) -> anyhow::Result<ServedWire> {
     let wire = crate::transport::can::open(interface, None)
         .map_err(|error| anyhow!("cannot serve on {interface}: {error}"))?;
-    let (hands, place) = (hands.clone(), interface.to_owned());
-    Ok(Wire {
-        name: format!("can {interface}"),
-        served: Box::pin(async move {
-            match can::serve(hands, wire).await {
-                Ok(()) => anyhow!("the CAN interface {place} was closed"),
-                Err(error) => anyhow!("serving on {place} failed: {error}"),
-            }
-        }),
-    })
+    let closed = format!("the CAN interface {interface} was closed");
+    let served = crate::sim::serve::can::serve(hands.clone(), wire);
+    Ok(ServedWire::new("can", interface.to_owned(), closed, served))
 }
 
 #[cfg(not(target_os = "linux"))]
-fn serve_can(_hands: &Hands, _interface: &str) -> anyhow::Result<Wire> {
+fn serve_can(_hands: &SimHands, _interface: &str) -> anyhow::Result<ServedWire> {
     Err(anyhow!(crate::transport::TransportError::LinuxOnly))
 }
 
 #[cfg(not(unix))]
 fn serve_link(
-    _hands: &Hands,
-    _speech: Speech,
+    _hands: &SimHands,
+    _protocol: PtyProtocol,
     link: &Path,
     _pace: Option<LinePace>,
-) -> anyhow::Result<Wire> {
+) -> anyhow::Result<ServedWire> {
     Err(anyhow!(
         "cannot create {}: pseudo-terminals need Linux or macOS; use --tcp here",
         link.display()
@@ -314,12 +302,8 @@ fn serve_link(
 }
 
 fn turnaround(text: &str) -> Result<Duration, String> {
-    match text.parse::<f64>() {
-        Ok(ms) if (0.0..=1000.0).contains(&ms) => Ok(Duration::from_secs_f64(ms / 1000.0)),
-        _ => Err(format!(
-            "'{text}' is not a time between 0 and 1000 milliseconds"
-        )),
-    }
+    let what = "a time between 0 and 1000 milliseconds";
+    number(text, 0.0..=1000.0, what).map(|ms: f64| Duration::from_secs_f64(ms / 1000.0))
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {
@@ -332,12 +316,74 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 const SIM_HANDS_MAX: usize = 32;
 
 fn few_ids(text: &str) -> Result<HandIds, String> {
-    let ids: HandIds = text.parse()?;
-    let asked = ids.iter().len();
+    let ids = hand_ids(text)?;
+    let asked = ids.0.len();
     if asked > SIM_HANDS_MAX {
         return Err(format!(
             "'{text}' asks for {asked} hands; at most {SIM_HANDS_MAX} can be simulated at once"
         ));
     }
     Ok(ids)
+}
+
+/// A switch and a position that it has.
+type Quirk = (String, String);
+
+/// Reads `NAME=VALUE`.
+fn quirk(text: &str) -> Result<Quirk, String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or_else(|| format!("'{text}' is not a quirk: write NAME=VALUE"))?;
+    let known = Personality::default().set(name, value);
+    known.map_err(|error| error.to_string())?;
+    Ok((name.into(), value.into()))
+}
+
+/// A hand with these quirks; where a switch is set twice, the last one counts.
+fn personality(quirks: &[Quirk]) -> Personality {
+    let mut personality = Personality::default();
+    for (name, value) in quirks {
+        let known = personality.set(name, value);
+        debug_assert!(known.is_ok(), "it was looked up when it was read");
+    }
+    personality
+}
+
+/// All switches and positions, for the help text.
+fn quirk_list() -> String {
+    let mut text = String::from(
+        "Quirks: what the hand does where the manual leaves a choice. The first value of each is the default.\n",
+    );
+    for switch in SWITCHES {
+        let values = switch.values.join("|");
+        // Writing to a string cannot fail.
+        let _written = writeln!(text, "  {}={values}\n      {}", switch.name, switch.about);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::GapAnswer;
+
+    #[test]
+    fn quirks_are_read_by_name_and_wrong_ones_say_what_there_is() {
+        let all = [
+            quirk("gap=refused").unwrap(),
+            quirk("doubles=some").unwrap(),
+        ];
+        assert_eq!(personality(&all).gap, GapAnswer::Refused);
+        for (text, part) in [
+            ("gap", "NAME=VALUE"),
+            ("gap=ajar", "through, refused"),
+            ("warp=9", "no quirk 'warp'"),
+        ] {
+            let error = quirk(text).unwrap_err();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+        for switch in SWITCHES {
+            assert!(quirk_list().contains(switch.name));
+        }
+    }
 }

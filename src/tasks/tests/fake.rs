@@ -4,7 +4,7 @@ use crate::hand::{
     AngleReading, ArmEpoch, Faults, ForceReading, Group, Groups, HandCommand, HandSample, Moment,
     PerDof, RegisterWrite, Setpoints, Setting, Span, Speed, Status, TemperatureReading, Timed,
 };
-use crate::link::{ArmRequest, Clock, LinkStatus, MotionTurn, PollRates, Records, RequestError};
+use crate::link::{Clock, LinkStatus, MotionTurn, PollRates, Records, RequestError};
 use crate::params::changes::plan_writes;
 use crate::params::place;
 use crate::params::rows::{ParamId, Value};
@@ -32,7 +32,6 @@ pub(crate) enum Asked {
     Reset,
     Calibrate,
     Stop,
-    Arm(ArmRequest),
     Disarm,
     Move(Setpoints),
     ReadAt(PollRates),
@@ -197,6 +196,12 @@ impl FakeHand {
         fate
     }
 
+    pub(crate) fn take_turn(&self) -> MotionTurn {
+        let mut facts = self.facts();
+        facts.turn += 1;
+        MotionTurn(facts.turn)
+    }
+
     fn note(&self, asked: Asked) {
         self.facts().asked.push(asked);
     }
@@ -355,10 +360,6 @@ impl Hand for FakeHand {
         }
     }
 
-    fn arm(&self, request: ArmRequest) {
-        self.note(Asked::Arm(request));
-    }
-
     fn disarm(&self) {
         self.note(Asked::Disarm);
         let mut facts = self.facts();
@@ -366,12 +367,6 @@ impl Hand for FakeHand {
         if facts.status.state == LinkState::Armed {
             facts.status.state = LinkState::Monitoring;
         }
-    }
-
-    fn take_turn(&self) -> MotionTurn {
-        let mut facts = self.facts();
-        facts.turn += 1;
-        MotionTurn(facts.turn)
     }
 
     fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
@@ -437,7 +432,7 @@ pub(crate) struct FakeReach<F> {
 }
 
 impl<F: FnMut(&Endpoint) -> bool + Send> Reach for FakeReach<F> {
-    type Hand = FakeHand;
+    type Link = FakeHand;
 
     async fn reach(&mut self, place: &Endpoint) -> Option<FakeHand> {
         (self.is_there)(place).then(|| self.hand.clone())

@@ -1,7 +1,7 @@
-//! A wire in memory that takes its time and makes seeded mistakes, for tests and for the simulated line. Knows no protocol.
+//! A wire in memory that takes its time and makes seeded mistakes. Knows no protocol.
 
-use crate::transport::pipe::{Pipe, pair};
 use fastrand::Rng;
+use handscope::transport::{Pipe, pair};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -18,29 +18,29 @@ const BACK_SEED: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// How likely each fault is for a chunk of one direction, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct FaultOdds {
+pub(crate) struct FaultOdds {
     /// It is lost.
-    pub drop: f64,
+    pub(crate) drop: f64,
     /// It and all behind it come later, by up to [`FaultPlan::delay_max`].
-    pub delay: f64,
+    pub(crate) delay: f64,
     /// One to [`FaultPlan::flips_max`] bits are flipped.
-    pub corrupt: f64,
+    pub(crate) corrupt: f64,
     /// Its end is lost.
-    pub truncate: f64,
+    pub(crate) truncate: f64,
     /// It comes twice.
-    pub duplicate: f64,
+    pub(crate) duplicate: f64,
     /// The wire is cut for good.
-    pub hang_up: f64,
+    pub(crate) hang_up: f64,
 }
 
 /// The speed of a serial line: bytes take ten bits each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pace {
+pub(crate) struct LineSpeed {
     /// Bits a second; 0 counts as 1.
-    pub baud: u32,
+    pub(crate) baud: u32,
 }
 
-impl Pace {
+impl LineSpeed {
     fn time_of(self, bytes: usize) -> Duration {
         let bits = u64::try_from(bytes)
             .unwrap_or(u64::MAX)
@@ -51,25 +51,24 @@ impl Pace {
 
 /// Which faults a wire has. Equal plans and equal writes give equal faults.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FaultPlan {
+pub(crate) struct FaultPlan {
     /// Seed of all chances.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// From the first pipe to the second.
-    pub out: FaultOdds,
+    pub(crate) out: FaultOdds,
     /// From the second pipe to the first.
-    pub back: FaultOdds,
+    pub(crate) back: FaultOdds,
     /// Longest delay.
-    pub delay_max: Duration,
+    pub(crate) delay_max: Duration,
     /// Most bits that are flipped in one chunk, at least 1.
-    pub flips_max: u8,
+    pub(crate) flips_max: u8,
     /// Speed of the line; `None` = no time at all.
-    pub pace: Option<Pace>,
+    pub(crate) pace: Option<LineSpeed>,
 }
 
 impl FaultPlan {
     /// No faults, no delay: a start to put faults into.
-    #[must_use]
-    pub fn quiet(seed: u64) -> Self {
+    pub(crate) fn quiet(seed: u64) -> Self {
         Self {
             seed,
             out: FaultOdds::default(),
@@ -83,35 +82,35 @@ impl FaultPlan {
 
 /// How many faults were made, both directions together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct FaultCounts {
+pub(crate) struct FaultCounts {
     /// Chunks that went through, harmed or not.
-    pub chunks: u64,
+    pub(crate) chunks: u64,
     /// Chunks lost.
-    pub dropped: u64,
+    pub(crate) dropped: u64,
     /// Chunks held back.
-    pub delayed: u64,
+    pub(crate) delayed: u64,
     /// Chunks with flipped bits.
-    pub corrupted: u64,
+    pub(crate) corrupted: u64,
     /// Chunks cut short.
-    pub truncated: u64,
+    pub(crate) truncated: u64,
     /// Chunks sent twice.
-    pub duplicated: u64,
+    pub(crate) duplicated: u64,
     /// 1 if the plan cut the wire.
-    pub hang_ups: u64,
+    pub(crate) hang_ups: u64,
 }
 
 /// Governs a faulty wire from outside.
 #[derive(Debug, Clone)]
-pub struct FaultSwitch(Arc<Shared>);
+pub(crate) struct FaultSwitch(Arc<FaultState>);
 
 #[derive(Debug)]
-struct Shared {
+struct FaultState {
     quiet: AtomicBool,
     cut: watch::Sender<bool>,
     counts: Mutex<FaultCounts>,
 }
 
-impl Shared {
+impl FaultState {
     fn counts(&self) -> MutexGuard<'_, FaultCounts> {
         self.counts.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -119,18 +118,17 @@ impl Shared {
 
 impl FaultSwitch {
     /// No faults from now on; the pace stays.
-    pub fn quiet(&self) {
+    pub(crate) fn quiet(&self) {
         self.0.quiet.store(true, Ordering::Relaxed);
     }
 
     /// Cuts the wire: both ends read zero bytes, writes fail, and what was on its way is lost.
-    pub fn hang_up(&self) {
+    pub(crate) fn hang_up(&self) {
         self.0.cut.send_replace(true);
     }
 
     /// What was done so far.
-    #[must_use]
-    pub fn counts(&self) -> FaultCounts {
+    pub(crate) fn counts(&self) -> FaultCounts {
         *self.0.counts()
     }
 }
@@ -138,18 +136,17 @@ impl FaultSwitch {
 /// Both ends of a wire with faults, and its switch. A delayed chunk delays what is behind it: a line never reorders.
 /// When one end is dropped, the other end reads zero bytes after what was still carried to it.
 /// Must be called within a tokio runtime; one task each way drives it.
-#[must_use]
-pub fn faulty_pair(plan: FaultPlan) -> (Pipe, Pipe, FaultSwitch) {
+pub(crate) fn faulty_pair(plan: FaultPlan) -> (Pipe, Pipe, FaultSwitch) {
     let (near, near_inner) = pair();
     let (far, far_inner) = pair();
     let (near_read, near_write) = split(near_inner);
     let (far_read, far_write) = split(far_inner);
-    let shared = Arc::new(Shared {
+    let shared = Arc::new(FaultState {
         quiet: AtomicBool::new(false),
         cut: watch::Sender::new(false),
         counts: Mutex::default(),
     });
-    let lane = |from, to, odds, seed| Lane {
+    let lane = |from, to, odds, seed| FaultyDirection {
         from,
         to,
         odds,
@@ -166,7 +163,7 @@ pub fn faulty_pair(plan: FaultPlan) -> (Pipe, Pipe, FaultSwitch) {
 }
 
 /// One direction.
-struct Lane {
+struct FaultyDirection {
     from: ReadHalf<Pipe>,
     to: WriteHalf<Pipe>,
     odds: FaultOdds,
@@ -174,18 +171,18 @@ struct Lane {
     rng: Rng,
     /// When the line has sent all that was given to it.
     free_at: Instant,
-    shared: Arc<Shared>,
+    shared: Arc<FaultState>,
 }
 
 /// What happens to one chunk.
-struct Fate {
+struct ChunkFate {
     drop: bool,
     hang_up: bool,
     copies: usize,
     delay: Duration,
 }
 
-impl Lane {
+impl FaultyDirection {
     async fn run(mut self) {
         let mut cut = self.shared.cut.subscribe();
         tokio::select! {
@@ -226,7 +223,7 @@ impl Lane {
     }
 
     /// Throws the dice, the same number for each chunk whatever comes out.
-    fn decide(&mut self, chunk: &mut Vec<u8>) -> Fate {
+    fn decide(&mut self, chunk: &mut Vec<u8>) -> ChunkFate {
         let loud = !self.shared.quiet.load(Ordering::Relaxed);
         let odds = self.odds;
         let mut roll = |chance: f64| self.rng.f64() < chance && loud;
@@ -249,7 +246,7 @@ impl Lane {
         counts.truncated += u64::from(truncate);
         counts.duplicated += u64::from(twice);
         counts.hang_ups += u64::from(hang_up);
-        Fate {
+        ChunkFate {
             drop,
             hang_up,
             copies: if twice { 2 } else { 1 },
@@ -274,7 +271,6 @@ fn flip_bits(chunk: &mut [u8], most: u8, rng: &mut Rng) {
     }
 }
 
-#[cfg(test)]
 mod tests {
     #![allow(clippy::cast_possible_truncation, reason = "a test may")]
     use super::*;
@@ -389,7 +385,7 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn a_paced_line_takes_ten_bits_a_byte() {
-        let pace = Some(Pace { baud: 115_200 });
+        let pace = Some(LineSpeed { baud: 115_200 });
         let (mut near, mut far, _switch) = faulty_pair(FaultPlan {
             pace,
             ..FaultPlan::quiet(1)

@@ -1,0 +1,127 @@
+//! The trials that are over: shown, and written where that is asked. The files are written on a thread of their own: a slow disk
+//! must not make the hand's feedback old.
+
+use crate::cli::out::Out;
+use crate::cli::trial::args::TrialArgs;
+use crate::cli::trial::output::{trial_json, trial_lines};
+use crate::link::LinkHandle;
+use crate::link::quirks::book;
+use crate::store::calendar::{day, since_1970};
+use crate::tasks::series::SeriesStep;
+use crate::trials::session::SessionHead;
+use crate::trials::session::writer::SessionWriter;
+use crate::trials::{Abort, EarlyEnd, Trial, TrialPlan, TrialSummary};
+use anyhow::{Context as _, anyhow};
+use std::io;
+use std::path::Path;
+use std::sync::mpsc;
+use std::thread::JoinHandle;
+
+/// Trials that wait to be written while the next runs.
+const WAITING_MAX: usize = 16;
+
+/// Takes each trial as it ends.
+pub(crate) struct TrialResults<'a> {
+    out: &'a mut Out,
+    json: bool,
+    writer: Option<Writer>,
+    trials: Vec<TrialSummary>,
+    total: usize,
+    /// What could not be shown or written first.
+    error: Option<anyhow::Error>,
+}
+
+/// The way to the thread that writes, and the thread.
+type Writer = (
+    mpsc::SyncSender<Trial>,
+    JoinHandle<io::Result<SessionWriter>>,
+);
+
+impl<'a> TrialResults<'a> {
+    /// Creates the folder, if one was given.
+    pub(crate) fn start(
+        out: &'a mut Out,
+        args: &TrialArgs,
+        plan: &TrialPlan,
+        link: &LinkHandle,
+    ) -> anyhow::Result<Self> {
+        let now = since_1970();
+        let head = || SessionHead {
+            hand: args.hand.to_string(),
+            simulated: args.hand.is_sim(),
+            quirks: Some(book::sheet(&args.hand, &link.status().quirks, &day(now))),
+            ..SessionHead::begin(plan.clone(), now)
+        };
+        let started = |folder: &Path| {
+            let writer = SessionWriter::create(folder, head(), args.criterion());
+            let writer =
+                writer.with_context(|| format!("cannot store the trials in {}", folder.display()));
+            writer.map(write_on_thread)
+        };
+        Ok(Self {
+            out,
+            json: args.json,
+            writer: args.out.as_deref().map(started).transpose()?,
+            trials: Vec::new(),
+            total: 0,
+            error: None,
+        })
+    }
+
+    /// Takes a step of the series; false if it cannot be shown or written, which ends the series.
+    pub(crate) fn take(&mut self, step: SeriesStep) -> bool {
+        match step {
+            SeriesStep::View(view) => self.total = view.total,
+            SeriesStep::Mark(_) => {}
+            SeriesStep::Trial(trial) => {
+                if let Err(error) = self.add(*trial) {
+                    self.error.get_or_insert(error);
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    fn add(&mut self, mut trial: Trial) -> anyhow::Result<()> {
+        if self.writer.is_some() {
+            trial.summary.samples = Some(trial.summary.samples_file());
+        }
+        let summary = trial.summary.clone();
+        let written = self.writer.as_ref().map_or(Ok(()), |(to, _)| {
+            to.try_send(trial).map_err(|_gone| {
+                anyhow!("the trials cannot be written as fast as they come, or at all")
+            })
+        });
+        let lines = trial_lines(&summary, self.total);
+        let shown = self.out.result(self.json, &trial_json(&summary), lines);
+        self.trials.push(summary);
+        shown.and_then(|()| self.out.flush()).and(written)
+    }
+
+    /// Waits until all is written, and gives the trials.
+    pub(crate) fn close(self, aborted: Option<Abort>) -> anyhow::Result<Vec<TrialSummary>> {
+        let written = self.writer.map_or(Ok(()), |(trials, thread)| {
+            drop(trials);
+            let ended = thread.join();
+            let writer = ended.map_err(|_panic| anyhow!("writing the trials failed"))?;
+            let finished = writer.and_then(|writer| writer.finish(aborted.map(EarlyEnd::Here)));
+            finished.context("cannot write the trials")
+        });
+        match self.error {
+            Some(error) => Err(error),
+            None => written.map(|()| self.trials),
+        }
+    }
+}
+
+fn write_on_thread(mut writer: SessionWriter) -> Writer {
+    let (trials, waiting) = mpsc::sync_channel::<Trial>(WAITING_MAX);
+    let thread = std::thread::spawn(move || {
+        for trial in waiting {
+            writer.add(&trial.summary, &trial.recording)?;
+        }
+        Ok(writer)
+    });
+    (trials, thread)
+}
