@@ -69,7 +69,7 @@ fn event_words(look: Look, what: &EventKind) -> (String, Color32) {
     let palette = look.palette;
     let of = |dof, said: &str| look.pair(look.say(words::dof(dof)), said);
     match what {
-        EventKind::PersonAct(deed) => (deed_words(look, deed), palette.accent),
+        EventKind::PersonAct(act) => (act_words(look, act), palette.accent),
         EventKind::Status(dof, status) => {
             let color = match status.is_protective() {
                 true => palette.bad,
@@ -98,12 +98,12 @@ fn fault_words(look: Look, bits: Faults) -> String {
     titles.collect::<Vec<_>>().join(" + ")
 }
 
-fn deed_words(look: Look, deed: &PersonAct) -> String {
+fn act_words(look: Look, act: &PersonAct) -> String {
     let say = |text| look.say(text).to_owned();
     let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.say(what));
     let joint = |dof| look.say(words::dof(dof));
     let all = look.say(faults::DEED_ALL);
-    match deed {
+    match act {
         PersonAct::Disarm => say(faults::DEED_DISARM),
         PersonAct::Target(dof, angle) => set(joint(*dof), faults::DEED_TARGET, angle.get()),
         PersonAct::Force(dof, force) => set(joint(*dof), faults::DEED_FORCE, force.get()),
