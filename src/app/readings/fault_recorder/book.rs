@@ -411,8 +411,8 @@ mod tests {
         let mut bench = Bench::new();
         for step in 0..200_i16 {
             bench.tick += 1;
-            let deed = PersonAct::Target(Dof::Index, Angle::nearest(step));
-            bench.recorder.person(deed, bench.now());
+            let act = PersonAct::Target(Dof::Index, Angle::nearest(step));
+            bench.recorder.person(act, bench.now());
         }
         assert_eq!(bench.recorder.events.len(), 8, "two seconds");
         for flip in 0..10_000_u64 {

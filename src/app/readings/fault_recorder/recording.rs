@@ -101,11 +101,11 @@ impl Recording {
         let table = self
             .history
             .table(&series, self.from.secs(), self.to.secs());
-        let deeds = self.events.iter().filter_map(|event| match &event.what {
+        let acts = self.events.iter().filter_map(|event| match &event.what {
             EventKind::PersonAct(act) => Some((event.at.secs(), act.words())),
             EventKind::Status(..) | EventKind::Faults(..) => None,
         });
-        table.with(self.drives(), deeds.collect())
+        table.with(self.drives(), acts.collect())
     }
 
     /// Status and fault byte of all drives, a row for each change.
