@@ -172,7 +172,7 @@ fn what_is_read_first_while_the_hand_moves_is_chosen_beside_the_lines_time_and_k
     let mut bench = Bench::live();
     bench.show(View::Connection);
     assert_eq!(bench.state().settings.first, First::Force);
-    bench.choose("While it moves, first", "Fingertips");
+    bench.choose("While it moves, first", "Touch");
     assert_eq!(bench.state().settings.first, First::Touch);
     let kept = toml::to_string(&bench.state().settings).unwrap();
     assert!(kept.contains("first = \"touch\""), "{kept}");
