@@ -252,7 +252,6 @@ impl Session {
                 stop: stop(wanted),
                 rates: wanted.rates,
                 turn: wanted.turn,
-                first: wanted.first,
                 ..PendingControl::default()
             };
             false
