@@ -5,6 +5,7 @@ use crate::clock::{page_faults, wall_and_cpu_ms};
 use crate::cycles::count;
 use crate::report::{Aim, Failure, Report};
 use crate::scene::{Scene, Time};
+use handscope::transport::Endpoint;
 use std::time::{Duration, Instant};
 
 /// How long is counted.
@@ -15,7 +16,11 @@ const WARM: Duration = Duration::from_secs(2);
 const AT_LEAST: Duration = Duration::from_millis(250);
 
 pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
-    let mut scene = Scene::start(Time::Real)?;
+    let hand = Endpoint::Sim {
+        seed: 1,
+        scenario: "idle".into(),
+    };
+    let mut scene = Scene::open(Time::Real, hand)?;
     rest(&mut scene, WARM);
     let before = scene.state().hand().stats.state_reads;
     let [frames, cpu, faults] = measure(&mut scene);
