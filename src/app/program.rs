@@ -155,7 +155,7 @@ impl App {
             hand.tick_params(env, notices);
             hand.tick_series(trials, notices);
             hand.tick_procedure(env, settings, notices);
-            hand.offer_tare(settings, now);
+            hand.offer_tare(settings);
             hand.record();
             hand.go_on_leaving(env, notices);
             self.quirk_notes.tick(hand, env, notices, now);
@@ -294,14 +294,14 @@ impl App {
             Action::CalibrateForce => hand.open_calibration(),
             Action::Procedure(action) => hand.procedure_action(action, env),
             Action::Tare(finger) => {
-                hand.tare(finger, notices, now);
+                hand.tare(finger, notices);
                 hand.keep_tare(settings);
             }
             Action::UndoTare => {
                 hand.tare.undo();
                 hand.keep_tare(settings);
             }
-            Action::TakeKeptTare => hand.take_kept_tare(notices, now),
+            Action::TakeKeptTare => hand.take_kept_tare(notices),
             Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
             Action::SeenFaults => hand.faults.see_all(),
             Action::ForgetFaults => hand.faults.forget(),

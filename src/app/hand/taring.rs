@@ -3,25 +3,25 @@
 use crate::app::hand::{Freshness, HandState};
 use crate::app::notices::{NoticeKind, Notices};
 use crate::app::settings::Settings;
-use crate::hand::{Finger, Moment};
+use crate::hand::Finger;
 use crate::store::calendar::since_1970;
 use crate::transport::Endpoint;
 
 impl HandState {
     /// Counts tactile channels from now, where the reading is fresh: one fingertip, or all. Refused where one is touched.
-    pub(crate) fn tare(&mut self, finger: Option<Finger>, notices: &mut Notices, now: Moment) {
+    pub(crate) fn tare(&mut self, finger: Option<Finger>, notices: &mut Notices) {
         let wanted = |each: &Finger| finger.is_none_or(|finger| finger == *each);
         let fresh = self.fresh_tips().filter(wanted).collect::<Vec<_>>();
         if let Err((finger, newtons)) = self.tare.tare(fresh, &self.sample) {
-            notices.push(now, NoticeKind::TareUnderLoad { finger, newtons });
+            notices.push(self.now, NoticeKind::TareUnderLoad { finger, newtons });
         }
     }
 
     /// Counts from the taring that was kept, where the reading is fresh. Refused where one fingertip is touched.
-    pub(crate) fn take_kept_tare(&mut self, notices: &mut Notices, now: Moment) {
+    pub(crate) fn take_kept_tare(&mut self, notices: &mut Notices) {
         let fresh = self.fresh_tips().collect::<Vec<_>>();
-        if let Err((finger, newtons)) = self.tare.take_kept(fresh, &self.sample, now) {
-            notices.push(now, NoticeKind::TareUnderLoad { finger, newtons });
+        if let Err((finger, newtons)) = self.tare.take_kept(fresh, &self.sample, self.now) {
+            notices.push(self.now, NoticeKind::TareUnderLoad { finger, newtons });
         }
     }
 
@@ -38,11 +38,11 @@ impl HandState {
     }
 
     /// Once a connection: offers what was kept of the same hand. Applies nothing.
-    pub(crate) fn offer_tare(&mut self, settings: &Settings, now: Moment) {
+    pub(crate) fn offer_tare(&mut self, settings: &Settings) {
         if self.link.state.is_live() && !self.tare.was_offered() {
             let hand = self.tared_hand();
             let kept = hand.and_then(|hand| settings.tares.get(&hand)).cloned();
-            self.tare.offer(kept, since_1970(), now);
+            self.tare.offer(kept, since_1970(), self.now);
         }
     }
 

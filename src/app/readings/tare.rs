@@ -20,14 +20,14 @@ pub struct TareZero {
     pub source: Source,
 }
 
-/// Where the rest of a fingertip comes from.
+/// Where the zero of a fingertip comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// The first reading of the untouched fingertip.
     First,
     /// A person tared it.
     Person,
-    /// A person tared it in an earlier session, so long before [`Rest::at`].
+    /// A person tared it in an earlier session, so long before [`TareZero::at`].
     Kept(Duration),
 }
 
@@ -49,10 +49,10 @@ struct Offer {
     at: Moment,
 }
 
-/// The rests of all fingertips, and those before the last taring.
+/// The zeros of all fingertips, and those before the last taring.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Tare {
-    rests: PerFinger<Option<TareZero>>,
+    zeros: PerFinger<Option<TareZero>>,
     before: Option<PerFinger<Option<TareZero>>>,
     /// Looked for once a connection.
     offer: Option<Option<Offer>>,
@@ -61,16 +61,16 @@ pub struct Tare {
 impl Tare {
     /// What this fingertip is counted from; `None` before it was read untouched.
     #[must_use]
-    pub fn rest(&self, finger: Finger) -> Option<TareZero> {
-        self.rests[finger]
+    pub fn zero(&self, finger: Finger) -> Option<TareZero> {
+        self.zeros[finger]
     }
 
     /// When a person tared last, if one did and it was not undone.
     #[must_use]
     pub fn chosen_at(&self) -> Option<Moment> {
-        let chosen = self.rests.iter().filter_map(|(_, rest)| *rest);
-        let chosen = chosen.filter(|rest| rest.source == Source::Person);
-        chosen.map(|rest| rest.at).max()
+        let chosen = self.zeros.iter().filter_map(|(_, zero)| *zero);
+        let chosen = chosen.filter(|zero| zero.source == Source::Person);
+        chosen.map(|zero| zero.at).max()
     }
 
     /// Whether there is a taring to take back.
@@ -79,11 +79,11 @@ impl Tare {
         self.before.is_some()
     }
 
-    /// Takes the first reading of each untouched fingertip as its rest.
+    /// Takes the first reading of each untouched fingertip as its zero.
     pub(crate) fn begin(&mut self, sample: &HandSample) {
-        for (finger, rest) in self.rests.iter_mut() {
-            if rest.is_none() && load(sample, finger).is_none() {
-                *rest = reading(sample, finger, Source::First);
+        for (finger, zero) in self.zeros.iter_mut() {
+            if zero.is_none() && load(sample, finger).is_none() {
+                *zero = reading(sample, finger, Source::First);
             }
         }
     }
@@ -95,20 +95,20 @@ impl Tare {
         fingers: impl IntoIterator<Item = Finger>,
         sample: &HandSample,
     ) -> Result<(), (Finger, f32)> {
-        let mut rests = self.rests;
+        let mut zeros = self.zeros;
         for finger in fingers {
             if let Some(newtons) = load(sample, finger) {
                 return Err((finger, newtons));
             }
-            rests[finger] = reading(sample, finger, Source::Person).or(rests[finger]);
+            zeros[finger] = reading(sample, finger, Source::Person).or(zeros[finger]);
         }
-        self.put(rests);
+        self.put(zeros);
         Ok(())
     }
 
-    fn put(&mut self, rests: PerFinger<Option<TareZero>>) {
-        if self.rests != rests {
-            self.before = Some(std::mem::replace(&mut self.rests, rests));
+    fn put(&mut self, zeros: PerFinger<Option<TareZero>>) {
+        if self.zeros != zeros {
+            self.before = Some(std::mem::replace(&mut self.zeros, zeros));
         }
     }
 
@@ -145,21 +145,21 @@ impl Tare {
         let (Some(Some(offer)), Some(age)) = (&self.offer, self.offered(now)) else {
             return Ok(());
         };
-        let mut rests = self.rests;
+        let mut zeros = self.zeros;
         for finger in fingers {
             if let Some(newtons) = load(sample, finger) {
                 return Err((finger, newtons));
             }
             let raw = offer.kept.tips.get(finger.name());
             let source = Source::Kept(age);
-            let rest = raw.map(|raw| TareZero {
+            let zero = raw.map(|raw| TareZero {
                 raw: *raw,
                 at: now,
                 source,
             });
-            rests[finger] = rest.or(rests[finger]);
+            zeros[finger] = zero.or(zeros[finger]);
         }
-        self.put(rests);
+        self.put(zeros);
         Ok(())
     }
 
@@ -169,20 +169,20 @@ impl Tare {
             let offer = self.offer.as_ref()?.as_ref();
             return offer.map(|offer| offer.kept.clone());
         };
-        let rests = self.rests.iter().filter_map(|(finger, rest)| {
-            let rest = rest.filter(|rest| rest.source != Source::First)?;
-            Some((finger.name().to_owned(), rest.raw))
+        let zeros = self.zeros.iter().filter_map(|(finger, zero)| {
+            let zero = zero.filter(|zero| zero.source != Source::First)?;
+            Some((finger.name().to_owned(), zero.raw))
         });
         Some(KeptTare {
             unix_s: since_1970.saturating_sub(now.since(at)).as_secs(),
-            tips: rests.collect(),
+            tips: zeros.collect(),
         })
     }
 
     /// Takes the last taring back, once.
     pub(crate) fn undo(&mut self) {
         if let Some(before) = self.before.take() {
-            self.rests = before;
+            self.zeros = before;
         }
     }
 }
@@ -223,7 +223,7 @@ mod tests {
     }
 
     fn counted_from(tare: &Tare) -> Option<u32> {
-        tare.rest(Finger::Index).map(|rest| rest.raw[0])
+        tare.zero(Finger::Index).map(|zero| zero.raw[0])
     }
 
     #[test]
@@ -276,9 +276,9 @@ mod tests {
         assert_eq!(refused, Err((Finger::Index, 4.5)));
         assert_eq!(counted_from(&tare), Some(100));
         tare.take_kept(Finger::ALL, &sample(400, 8), at(8)).unwrap();
-        let rest = tare.rest(Finger::Index).unwrap();
+        let zero = tare.zero(Finger::Index).unwrap();
         let source = Source::Kept(Duration::from_secs(63));
-        assert_eq!((rest.raw[0], rest.source), (300, source));
+        assert_eq!((zero.raw[0], zero.source), (300, source));
         assert_eq!(tare.chosen_at(), None, "not chosen in this session");
         tare.undo();
         assert_eq!(counted_from(&tare), Some(100));
@@ -300,7 +300,7 @@ mod tests {
     fn a_fingertip_that_was_never_read_is_not_tared() {
         let mut tare = Tare::default();
         tare.tare([Finger::Thumb], &sample(300, 3)).unwrap();
-        assert_eq!(tare.rest(Finger::Thumb), None);
+        assert_eq!(tare.zero(Finger::Thumb), None);
         assert!(!tare.can_undo());
     }
 }

@@ -17,7 +17,7 @@ use crate::hand::Dof;
 use crate::ui::joints::row_view::{RowStyle, height, row_ui};
 use crate::ui::joints::tracks::all_joints_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::text::{layout, main};
+use crate::ui::text::{main, window};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 
@@ -101,7 +101,7 @@ impl JointsView {
         let live = pane.freshness(hand.sample.angle.map(|angle| angle.asked)) == Freshness::Live;
         // A first look must find what comes before moving; the header says why it cannot be armed.
         if live && !hand.is_armed() && hand.arm_refusal().is_none() {
-            Label::new(look.say(layout::ARM_FIRST), look.palette.accent)
+            Label::new(look.say(window::ARM_FIRST), look.palette.accent)
                 .small()
                 .ui(ui);
         }

@@ -7,7 +7,7 @@ use crate::ui::joints::age_ui;
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::row::JointRow;
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{Text, layout, main};
+use crate::ui::text::{Text, main, window};
 use crate::ui::theme;
 use crate::ui::window::rooms::toggled;
 use egui::{Align, Layout, Ui, vec2};
@@ -19,8 +19,8 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
         ui.set_min_height(ui.available_height());
         let title = look.say(main::JOINTS);
         if can_open {
-            let name = look.told(layout::OPEN, title);
-            let button = Button::new(title, look.tip(layout::OPEN)).named(&name);
+            let name = look.told(window::OPEN, title);
+            let button = Button::new(title, look.tip(window::OPEN)).named(&name);
             let pressed = kit::wide_ui(ui, |ui| button.ui(ui, look));
             if pressed.clicked() {
                 let layout = toggled(&pane.state.settings.layout, WindowRoom::Joints);

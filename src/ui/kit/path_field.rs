@@ -2,7 +2,8 @@
 
 use crate::ui::kit::controls::{self, Button};
 use crate::ui::kit::look::Look;
-use crate::ui::text::traffic;
+use crate::ui::text::window;
+use crate::ui::theme;
 use egui::{Align, Id, Key, Layout, Ui};
 use std::path::PathBuf;
 
@@ -12,12 +13,12 @@ pub(crate) fn path_ui(ui: &mut Ui, look: Look, id: &'static str) -> Option<PathB
     let mut typed = ui.data_mut(|data| data.get_temp::<String>(id).unwrap_or_default());
     let path = typed.trim().trim_matches(['"', '\'']).to_owned();
     let row = Layout::right_to_left(Align::Center);
-    let size = egui::vec2(ui.available_width(), crate::ui::theme::CONTROL);
+    let size = egui::vec2(ui.available_width(), theme::CONTROL);
     let opened = ui.allocate_ui_with_layout(size, row, |ui| {
-        let none = path.is_empty().then(|| look.say(traffic::PATH_NONE));
-        let open = Button::said(look, traffic::PATH_OPEN);
+        let none = path.is_empty().then(|| look.say(window::PATH_NONE));
+        let open = Button::said(look, window::PATH_OPEN);
         let open = open.disabled(none).ui(ui, look).clicked();
-        let named = (look.say(traffic::PATH), look.say(traffic::PATH_HINT));
+        let named = (look.say(window::PATH), look.say(window::PATH_HINT));
         let field = controls::edit_ui(ui, named, &mut typed);
         open || field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
     });

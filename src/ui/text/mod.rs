@@ -4,7 +4,7 @@ pub(crate) mod cards;
 pub(crate) mod device;
 pub(crate) mod errors;
 pub(crate) mod faults;
-pub(crate) mod layout;
+pub(crate) mod keys;
 pub(crate) mod main;
 pub(crate) mod notices;
 pub(crate) mod panels;
@@ -13,6 +13,7 @@ pub(crate) mod poses;
 pub(crate) mod scan;
 pub(crate) mod traffic;
 pub(crate) mod tune;
+pub(crate) mod window;
 pub(crate) mod words;
 
 pub(crate) use phrase::Text;

@@ -8,7 +8,7 @@ use crate::record::Disarmed;
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{device, errors, main, panels, poses, scan, traffic, tune, words};
+use crate::ui::text::{device, errors, main, panels, poses, scan, tune, window, words};
 use std::path::Path;
 
 /// Title, cause and advice of what is wrong with a drive.
@@ -112,7 +112,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),
             Language::Zh => said(panels::NOTICE_WITHOUT_OPENGL),
         },
-        NoticeKind::NoFileChosen => said(traffic::NO_FILE),
+        NoticeKind::NoFileChosen => said(window::NO_FILE),
         NoticeKind::HandDiffers {
             differences,
             last_seen,
@@ -164,10 +164,10 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::Saved { path, entries } => {
             let path = path.display().to_string();
-            format!("{} ({entries})", told(traffic::SAVED, &path))
+            format!("{} ({entries})", told(window::SAVED, &path))
         }
         NoticeKind::NotSaved { path, message } => {
-            of(traffic::NOT_SAVED, path, &errors::system(look, message))
+            of(window::NOT_SAVED, path, &errors::system(look, message))
         }
         NoticeKind::SheetNotKept { message } => system(scan::NOT_KEPT, message),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),

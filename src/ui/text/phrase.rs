@@ -82,26 +82,22 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        cards, device, faults, layout, main, panels, poses, scan, traffic, tune,
+        cards, device, faults, keys, main, panels, poses, scan, traffic, tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {
         let lists = [
             cards::ALL,
-            tune::ALL,
             device::ALL,
             faults::ALL,
-            layout::ALL,
-            layout::ALL,
+            keys::ALL,
             main::ALL,
-            panels::ALL,
             panels::ALL,
             poses::ALL,
             scan::ALL,
-            scan::ALL,
-            panels::ALL,
             traffic::ALL,
             tune::ALL,
+            window::ALL,
         ];
         let texts = lists.into_iter().flatten().copied();
         let all = texts.flat_map(|text| [text, text.tip()]);

@@ -42,7 +42,7 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let hand = pane.state.hand();
     let touched = Finger::ALL
         .into_iter()
-        .any(|finger| hand.sample.tactile[finger].is_some() && hand.tare.rest(finger).is_none());
+        .any(|finger| hand.sample.tactile[finger].is_some() && hand.tare.zero(finger).is_none());
     let (words, color) = match touched {
         true => (panels::TOUCH_NO_ZERO, look.palette.warn),
         false => (panels::TOUCH_SCALE, look.palette.muted),
@@ -56,9 +56,9 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
 
 fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock) -> Tip {
     let mut heat = [None; 8];
-    if let Some(rest) = pane.state.hand().tare.rest(finger) {
-        for ((heat, raw), rest) in heat.iter_mut().zip(block.raw).zip(rest.raw) {
-            *heat = known(raw).then(|| part(raw, rest));
+    if let Some(zero) = pane.state.hand().tare.zero(finger) {
+        for ((heat, raw), zero) in heat.iter_mut().zip(block.raw).zip(zero.raw) {
+            *heat = known(raw).then(|| part(raw, zero));
         }
     }
     Tip {
@@ -77,8 +77,8 @@ const fn known(raw: u32) -> bool {
 }
 
 /// Heat of a channel, 0..=1. By the root, so that a light touch is seen beside a firm grip.
-fn part(raw: u32, rest: u32) -> f32 {
-    let above = counts_of(i64::from(raw) - i64::from(rest)).max(0.0);
+fn part(raw: u32, zero: u32) -> f32 {
+    let above = counts_of(i64::from(raw) - i64::from(zero)).max(0.0);
     (above / counts_of(FULL_COUNTS)).sqrt().min(1.0)
 }
 

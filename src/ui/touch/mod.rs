@@ -150,10 +150,10 @@ impl TouchView {
             kit::pick_ui(ui, look, shown, all);
             let assumed = Label::note(look, panels::ASSUMED).ui(ui);
             assumed.on_hover_text(look.tip(panels::ASSUMED));
-            let rest = pane.state.hand().tare.rest(finger);
-            let tared = match rest {
+            let zero = pane.state.hand().tare.zero(finger);
+            let tared = match zero {
                 None => look.say(panels::NO_ZERO).to_owned(),
-                Some(rest) => panels::zero(look, rest, pane.state.now),
+                Some(zero) => panels::zero(look, zero, pane.state.now),
             };
             let tared = Label::new(&tared, look.palette.muted).small();
             tared.named(look.say(panels::TARED_NAME)).ui(ui);

@@ -118,14 +118,14 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
     });
 }
 
-/// A channel as sent, and its change from its rest.
+/// A channel as sent, and its change from its zero.
 fn channel_text(pane: &Pane<'_>, finger: Finger, channel: usize) -> Option<String> {
     let hand = pane.state.hand();
     let raw = hand.sample.tactile[finger]?.value.raw;
     let raw = i64::from(*raw.get(channel)?);
-    let rest = hand.tare.rest(finger);
-    let rest = rest.and_then(|rest| rest.raw.get(channel).copied());
-    let change = rest.map(|rest| raw - i64::from(rest));
+    let zero = hand.tare.zero(finger);
+    let zero = zero.and_then(|zero| zero.raw.get(channel).copied());
+    let change = zero.map(|zero| raw - i64::from(zero));
     Some(format!(
         "{:>6} {:>7}",
         format::counts(Some(raw)),

@@ -1,4 +1,4 @@
-//! The eight channels of one fingertip over time, as sent or from their rest, each with its change and noise.
+//! The eight channels of one fingertip over time, as sent or from their zero, each with its change and noise.
 
 use crate::hand::Finger;
 use crate::history::Series;
@@ -23,7 +23,7 @@ const LEAST: (f64, f64) = (-1000.0, 1000.0);
 /// How the channels are shown.
 #[derive(Debug)]
 pub(crate) struct TipChannels {
-    /// From the rest, or as the hand sends them.
+    /// From the zero, or as the hand sends them.
     tared: bool,
     /// Seconds.
     window_s: f64,
@@ -81,17 +81,17 @@ impl TipChannels {
     fn plot_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
         let look = pane.look;
         let hand = pane.state.hand();
-        let rest = hand.tare.rest(finger).filter(|_| self.tared);
+        let zero = hand.tare.zero(finger).filter(|_| self.tared);
         let now = pane.state.now.secs();
         let first = hand.history.first_secs().unwrap_or(now);
         self.chart
             .time
             .advance((first.min(now), now), self.window_s);
         let curve = |(channel, number): (u8, usize)| {
-            let rest = rest.and_then(|rest| rest.raw.get(number).copied());
+            let zero = zero.and_then(|zero| zero.raw.get(number).copied());
             let points = Points::Measured(&hand.history, Series::Channel(channel, finger));
             ChartCurve {
-                zero: [0.0, rest.map_or(0.0, f64::from)],
+                zero: [0.0, zero.map_or(0.0, f64::from)],
                 told: Some(0),
                 ..ChartCurve::new(points, Stroke::new(theme::LINE, color(look, number)))
             }
@@ -106,7 +106,7 @@ impl TipChannels {
     }
 }
 
-/// Each channel with its change from rest and its noise, over the last second.
+/// Each channel with its change from zero and its noise, over the last second.
 fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
     let look = pane.look;
     let hand = pane.state.hand();
@@ -114,14 +114,14 @@ fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
     let head = Label::note(look, panels::NOISE_HEAD);
     head.ui(ui).on_hover_text(look.tip(panels::NOISE));
     let now = pane.state.now.secs();
-    let rest = hand.tare.rest(finger);
+    let zero = hand.tare.zero(finger);
     let row = (ui.available_height() / 8.0).min(20.0);
     for (channel, at) in (0..8u8).zip(0..) {
         let series = Series::Channel(channel, finger);
         let spread = hand.history.spread(series, now - NOISE_S, now);
-        let rest = rest.and_then(|rest| rest.raw.get(at).copied());
-        let change = spread.zip(rest);
-        let change = change.map(|(spread, rest)| whole(spread.mean - f64::from(rest)));
+        let zero = zero.and_then(|zero| zero.raw.get(at).copied());
+        let change = spread.zip(zero);
+        let change = change.map(|(spread, zero)| whole(spread.mean - f64::from(zero)));
         let noise = spread.map(|spread| whole(spread.deviation.round()));
         let place = vec2(ui.available_width(), row);
         ui.allocate_ui_with_layout(place, Layout::right_to_left(Align::Center), |ui| {

@@ -1,7 +1,7 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
 use crate::ui::kit::{self, Button, Label, Look, Opens, Weight};
-use crate::ui::text::{Text, layout};
+use crate::ui::text::{Text, keys};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
 use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
@@ -38,7 +38,7 @@ impl KeyList {
         }
         let edge = Stroke::new(theme::LINE, look.palette.accent);
         let frame = Frame::window(ui.style()).stroke(edge);
-        let window = Window::new(look.say(layout::TITLE))
+        let window = Window::new(look.say(keys::TITLE))
             .id(Id::unique("key list"))
             .title_bar(false)
             .resizable(false)
@@ -71,22 +71,22 @@ fn columns() -> [Vec<KeyGroup>; 3] {
         let named = |wish: Wish| (wish.keys(), wish.words());
         (title, wishes.into_iter().map(named).collect())
     };
-    let motion = part(layout::MOTION, |wish| {
+    let motion = part(keys::MOTION, |wish| {
         matches!(
             wish,
             Wish::Stop | Wish::ArmOrNot | Wish::Open | Wish::Half | Wish::Close
         )
     });
-    let joints = part(layout::JOINTS, |wish| {
+    let joints = part(keys::JOINTS, |wish| {
         matches!(wish, Wish::Joint(_) | Wish::LinkFingers | Wish::AngleUnit)
     });
-    let measuring = part(layout::MEASURING, |wish| {
+    let measuring = part(keys::MEASURING, |wish| {
         matches!(
             wish,
             Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Opens(Opens::Note)
         )
     });
-    let mut window = part(layout::WINDOW, |wish| {
+    let mut window = part(keys::WINDOW, |wish| {
         matches!(
             wish,
             Wish::Opens(Opens::View(_) | Opens::Keys) | Wish::Language | Wish::Theme
@@ -100,9 +100,9 @@ fn columns() -> [Vec<KeyGroup>; 3] {
 /// True if it is to be hidden.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    let shut = kit::head_ui(ui, look, look.say(layout::TITLE), |ui| {
-        let shut = Button::new(look.say(layout::SHUT), "").weight(Weight::Quiet);
-        shut.named(look.say(layout::CLOSE)).ui(ui, look).clicked()
+    let shut = kit::head_ui(ui, look, look.say(keys::TITLE), |ui| {
+        let shut = Button::new(look.say(keys::SHUT), "").weight(Weight::Quiet);
+        shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {
         for (ui, parts) in all.iter_mut().zip(columns()) {
@@ -121,7 +121,7 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
             }
         }
     });
-    for text in [layout::ON_TRACKS, layout::IN_FIELDS, layout::ESCAPE] {
+    for text in [keys::ON_TRACKS, keys::IN_FIELDS, keys::ESCAPE] {
         Label::note(look, text).ui(ui);
     }
     shut

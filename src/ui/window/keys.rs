@@ -3,7 +3,7 @@
 
 use crate::hand::Dof;
 use crate::ui::kit::Opens;
-use crate::ui::text::{Text, layout, main, panels, words};
+use crate::ui::text::{Text, keys, main, panels, words};
 use crate::ui::view::View;
 use egui::{Event, InputState, Key, Modifiers, Ui};
 
@@ -112,14 +112,14 @@ pub(crate) static ROWS: [KeyRow; 31] = [
 /// The keys with which egui itself makes everything larger and smaller.
 pub(crate) const ZOOM: [(&str, Text); 3] = match cfg!(target_os = "macos") {
     true => [
-        ("Cmd++", layout::ZOOM_IN),
-        ("Cmd+-", layout::ZOOM_OUT),
-        ("Cmd+0", layout::ZOOM_RESET),
+        ("Cmd++", keys::ZOOM_IN),
+        ("Cmd+-", keys::ZOOM_OUT),
+        ("Cmd+0", keys::ZOOM_RESET),
     ],
     false => [
-        ("Ctrl++", layout::ZOOM_IN),
-        ("Ctrl+-", layout::ZOOM_OUT),
-        ("Ctrl+0", layout::ZOOM_RESET),
+        ("Ctrl++", keys::ZOOM_IN),
+        ("Ctrl+-", keys::ZOOM_OUT),
+        ("Ctrl+0", keys::ZOOM_RESET),
     ],
 };
 
@@ -156,22 +156,22 @@ impl Wish {
     /// What it does, in words.
     pub(crate) const fn words(self) -> Text {
         match self {
-            Self::Stop => layout::STOP,
-            Self::ArmOrNot => layout::ARM,
+            Self::Stop => keys::STOP,
+            Self::ArmOrNot => keys::ARM,
             Self::Open => main::OPEN,
             Self::Half => main::HALF,
             Self::Close => main::CLOSE,
             Self::Joint(dof) => words::dof(dof),
-            Self::LinkFingers => layout::LINK,
-            Self::AngleUnit => layout::UNIT,
+            Self::LinkFingers => keys::LINK,
+            Self::AngleUnit => keys::UNIT,
             Self::Tare => panels::TARE_ALL,
-            Self::UndoTare => layout::UNDO_TARE,
-            Self::Pause => layout::PAUSE,
-            Self::Language => layout::LANGUAGE,
-            Self::Theme => layout::THEME,
+            Self::UndoTare => keys::UNDO_TARE,
+            Self::Pause => keys::PAUSE,
+            Self::Language => keys::LANGUAGE,
+            Self::Theme => keys::THEME,
             Self::Opens(Opens::View(view)) => view.title(),
-            Self::Opens(Opens::Note) => layout::NOTE,
-            Self::Opens(Opens::Keys) => layout::LIST,
+            Self::Opens(Opens::Note) => keys::NOTE,
+            Self::Opens(Opens::Keys) => keys::LIST,
             Self::Opens(Opens::Drive(dof)) => words::dof(dof),
             Self::Opens(Opens::Faults) => View::Faults.title(),
         }

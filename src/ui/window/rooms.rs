@@ -4,7 +4,7 @@
 use crate::app::action::Action;
 use crate::app::layout::{Layout, RoomLayout, WindowRoom};
 use crate::ui::kit::{Button, Pane, Weight};
-use crate::ui::text::{Text, layout, main, panels};
+use crate::ui::text::{Text, main, panels, window};
 use crate::ui::theme;
 use egui::{Frame, Margin, Panel, Popup, Ui};
 
@@ -31,7 +31,7 @@ pub(crate) struct Rooms {
 pub(crate) const fn title(room: WindowRoom) -> Text {
     match room {
         WindowRoom::Joints => main::JOINTS,
-        WindowRoom::Side => layout::SIDE,
+        WindowRoom::Side => window::SIDE,
         WindowRoom::Faults => panels::FAULTS,
         WindowRoom::Strip => main::TAB_POSES,
     }
@@ -120,7 +120,7 @@ fn along(size: egui::Vec2, is_upright: bool) -> f32 {
 /// The window's menu: which rooms are open, and the layout put back.
 pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let button = Button::said(look, layout::MENU)
+    let button = Button::said(look, window::MENU)
         .icon(theme::MENU)
         .weight(Weight::Quiet);
     let response = button.ui(ui, look);
@@ -134,8 +134,8 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
         }
         ui.separator();
-        let reset = ui.button(look.say(layout::RESET));
-        if reset.on_hover_text(look.tip(layout::RESET)).clicked() {
+        let reset = ui.button(look.say(window::RESET));
+        if reset.on_hover_text(look.tip(window::RESET)).clicked() {
             after = before.reset();
         }
         if after != before {

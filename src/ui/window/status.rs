@@ -11,7 +11,7 @@ use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
 use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, errors, layout, main, notices, panels, words};
+use crate::ui::text::{Text, errors, main, notices, panels, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
@@ -99,7 +99,7 @@ fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
 fn unsent(pane: &Pane<'_>) -> Option<Warning> {
     let mut all = pane.state.notices.iter();
     let notice = all.find(|notice| notice.what == NoticeKind::StopNotSent)?;
-    let unsent = Warning::new(pane, layout::STOP_NOT_SENT, pane.look.palette.bad);
+    let unsent = Warning::new(pane, window::STOP_NOT_SENT, pane.look.palette.bad);
     Some(unsent.help(Help::Dismiss(notice.id)))
 }
 
@@ -185,29 +185,29 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     let look = pane.look;
     let say = |text: Text| look.say(text).to_owned();
     Some(match pane.state.hand().mover()? {
-        Mover::Stop => (say(layout::MOVES_STOP), None),
-        Mover::Calibration => (say(layout::MOVES_CALIBRATION), None),
+        Mover::Stop => (say(window::MOVES_STOP), None),
+        Mover::Calibration => (say(window::MOVES_CALIBRATION), None),
         Mover::Series(number, total) => {
-            let words = format!("{} {number} / {total}", look.say(layout::MOVES_SERIES));
+            let words = format!("{} {number} / {total}", look.say(window::MOVES_SERIES));
             (words, Some(Action::Stop))
         }
         Mover::Sequence(id, step) => {
             let sequence = pane.state.poses.library.sequence(id);
             let name = sequence.map_or("", |sequence| sequence.name.as_str());
             let steps = sequence.map_or(0, |sequence| sequence.steps.len());
-            let title = look.say(layout::MOVES_SEQUENCE);
-            let (of, step) = (look.say(layout::MOVES_STEP), step + 1);
+            let title = look.say(window::MOVES_SEQUENCE);
+            let (of, step) = (look.say(window::MOVES_STEP), step + 1);
             let words = format!("{title} {name}: {of} {step} / {steps}");
             (words, Some(Action::Play(Play::End)))
         }
         Mover::Gesture(gesture) => {
             let name = pane.state.settings.gesture_name(gesture);
-            let (title, name) = (look.say(layout::MOVES_GESTURE), name.unwrap_or_default());
+            let (title, name) = (look.say(window::MOVES_GESTURE), name.unwrap_or_default());
             let words = format!("{title} {} {name}", gesture.get());
             (words.trim().to_owned(), None)
         }
-        Mover::Setpoints => (say(layout::MOVES_SETPOINTS), None),
-        Mover::Unknown => (say(layout::MOVES_UNKNOWN), None),
+        Mover::Setpoints => (say(window::MOVES_SETPOINTS), None),
+        Mover::Unknown => (say(window::MOVES_UNKNOWN), None),
     })
 }
 
@@ -312,8 +312,8 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
         return;
     };
     if let Some(end) = end {
-        let button = Button::said(look, layout::END);
-        let name = format!("{}: {words}", look.say(layout::END));
+        let button = Button::said(look, window::END);
+        let name = format!("{}: {words}", look.say(window::END));
         button.named(&name).sends(ui, pane, end);
     }
     if is_aside {
@@ -341,8 +341,8 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
         (None, Some((words, _))) => (words, palette.armed),
         (None, None) => {
             let words = match pane.state.hand().link.state.is_live() {
-                true => layout::AT_REST,
-                false => layout::NO_HAND,
+                true => window::AT_REST,
+                false => window::NO_HAND,
             };
             Label::muted(look, words).ui(ui);
             return;
@@ -398,7 +398,7 @@ fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) {
             }
         }
         Help::Dismiss(id) => {
-            let button = Button::said(pane.look, layout::UNDERSTOOD);
+            let button = Button::said(pane.look, window::UNDERSTOOD);
             button.sends(ui, pane, Action::Dismiss(*id));
         }
     }

@@ -33,7 +33,7 @@ fn rest(bench: &Bench, finger: Finger) -> [u32; 8] {
         .state()
         .hand()
         .tare
-        .rest(finger)
+        .zero(finger)
         .expect("it was read")
         .raw
 }
@@ -70,7 +70,7 @@ fn taring_counts_all_tips_from_now_and_writes_nothing() {
     bench.click("Tare all");
     bench.run(60);
     let is_kept = |finger| {
-        let rest = bench.state().hand().tare.rest(finger);
+        let rest = bench.state().hand().tare.zero(finger);
         rest.is_some_and(|rest| rest.source == Source::Person)
     };
     assert!(Finger::ALL.into_iter().all(is_kept));
@@ -118,13 +118,13 @@ fn a_hand_that_grips_when_it_is_connected_has_no_zero_until_it_lets_go() {
         block.expect("it was read").value.normal_n
     };
     assert!(pressed(&bench) > 0.3, "{}", pressed(&bench));
-    assert_eq!(bench.state().hand().tare.rest(Finger::Index), None);
+    assert_eq!(bench.state().hand().tare.zero(Finger::Index), None);
     assert_eq!(bench.texts_with("No zero yet").len(), 1);
     bench.click("Arm the hand");
     bench.run(100);
     bench.click("Open all");
     bench.wait(8000);
-    assert!(bench.state().hand().tare.rest(Finger::Index).is_some());
+    assert!(bench.state().hand().tare.zero(Finger::Index).is_some());
     assert!(bench.texts_with("No zero yet").is_empty());
 }
 

@@ -1,0 +1,31 @@
+//! Sentences of the window's frame: status line, menu, rooms, and what became of files.
+
+use crate::ui::text::phrase::texts;
+
+texts! {
+    MENU: "Window menu", "窗口菜单", "Rooms of the window: shut, open, put back.", "窗口各区域：收起、展开、恢复。";
+    RESET: "Reset layout", "恢复默认布局", "All rooms open, all borders where they were at first. Nothing moves on the hand.", "展开所有区域，边界恢复到初始位置。灵巧手不会动作。";
+    AT_REST: "Nothing moves the hand.", "灵巧手静止，无动作指令。";
+    NO_HAND: "No hand is connected.", "未连接灵巧手。";
+    MOVES_STOP: "Stopping: waiting for feedback that the hand rests", "正在停止：等待反馈确认静止";
+    MOVES_CALIBRATION: "Force calibration moves the hand", "力传感器校准正在驱动灵巧手";
+    MOVES_SERIES: "Trial", "试验";
+    MOVES_SEQUENCE: "Sequence", "序列";
+    MOVES_STEP: "step", "第";
+    MOVES_GESTURE: "Gesture", "手势";
+    MOVES_SETPOINTS: "The hand moves to your setpoints", "灵巧手正在移向设定值";
+    MOVES_UNKNOWN: "The hand moves, and not because of this window", "灵巧手正在运动，但并非由本窗口发起";
+    END: "End", "结束", "Ends it and holds the hand where it is.", "结束并保持灵巧手当前位置。";
+    STOP_NOT_SENT: "STOP COULD NOT BE SENT", "停止命令未能发出", "No hand answers. If it moves, switch off its 24 V supply.", "没有灵巧手应答。若仍在运动，请关闭 24 V 电源。";
+    UNDERSTOOD: "Understood", "知道了";
+    OPEN: "Expand", "展开", "Shows this room again.", "重新显示此区域。";
+    SIDE: "Fingertips and faults", "指尖与故障";
+    ARM_FIRST: "Press Arm to move", "先点击“使能”再操作";
+    SAVED: "Saved:", "已保存：";
+    NOT_SAVED: "Could not be written:", "无法写入：";
+    NO_FILE: "No file was chosen. Where no dialog came up, this desktop has none.", "没有选择文件。如果没有出现对话框，说明此桌面不提供。";
+    PATH: "Path of the file", "文件路径";
+    PATH_HINT: "or type the path of the file here", "或在此输入文件路径";
+    PATH_NONE: "No path was typed.", "尚未输入路径。";
+    PATH_OPEN: "Open path", "打开路径", "Opens the file that was typed. Enter does the same.", "打开所输入的文件。按回车作用相同。";
+}
