@@ -12,10 +12,7 @@ use crate::app::scan::ScanTarget;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
-use crate::hand::{
-    Angle, Dof, Finger, Force, Gesture, GestureRoute, GestureStore, Moment, PerDof, Speed,
-    UserGesture,
-};
+use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Speed};
 use crate::history::Mark;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
@@ -48,10 +45,6 @@ pub enum Action {
     SpeedOfAll(Speed),
     /// Take a stored pose. Needs arming.
     Gesture(Gesture),
-    /// Store six angles under a number of the user's, and read them back.
-    StoreGesture(UserGesture, PerDof<Angle>),
-    /// Read what is stored under a number of the user's.
-    ReadGesture(UserGesture),
     /// Keep the pose that the hand has now, by this name or the next free one.
     Capture(String),
     /// Put the pose that the hand has now in the place of this one.
@@ -60,8 +53,6 @@ pub enum Action {
     Library(LibraryEdit),
     /// Take a pose of the library, within its speed and force. Needs arming.
     Recall(PoseId),
-    /// Go to six angles at the speeds that are set. Needs arming.
-    TryAngles(PerDof<Angle>),
     /// Run a sequence, pause it, end it.
     Play(Play),
     /// What is asked about grasp trials.
@@ -74,8 +65,6 @@ pub enum Action {
     NameGesture(Gesture, String),
     /// How gestures are started.
     GestureRoute(GestureRoute),
-    /// Where the poses of the user's gestures are stored.
-    GestureStore(GestureStore),
     /// Clear what can be cleared; the pose is held first.
     ClearErrors,
     /// Change what the hand is found by: its id, serial speed or IP address. Asks first, under a card.
@@ -159,10 +148,7 @@ impl Action {
             | Self::ForceOfAll(_)
             | Self::SpeedOfAll(_)
             | Self::Gesture(_)
-            | Self::StoreGesture(..)
-            | Self::ReadGesture(_)
             | Self::Recall(_)
-            | Self::TryAngles(_)
             | Self::ClearErrors => true,
             Self::Param(action) => matches!(
                 action,
@@ -193,7 +179,6 @@ impl Action {
             Self::Lock(dof, locked) => PersonAct::Lock(*dof, *locked),
             Self::Preset(preset) => PersonAct::Preset(*preset),
             Self::Recall(id) => PersonAct::Pose(library.pose(*id)?.name.as_str().into()),
-            Self::TryAngles(_) => PersonAct::Angles,
             Self::Play(
                 play @ (Play::Start(_) | Play::Step(_) | Play::Pause | Play::Resume | Play::End),
             ) => PersonAct::Play(*play),

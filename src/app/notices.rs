@@ -1,7 +1,7 @@
 //! What a person should read, as typed causes. The words, in every language, are the views'.
 
 use crate::app::readings::faults::FaultKind;
-use crate::hand::{Dof, Finger, Gesture, Moment, UserGesture};
+use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, RequestError};
 use crate::params::file::ParamsFileError;
 use crate::poses::file::PoseFileError;
@@ -33,10 +33,6 @@ pub enum Level {
 pub enum RequestKind {
     /// A stored pose.
     Gesture(Gesture),
-    /// To store a pose in the hand.
-    StoreGesture(UserGesture),
-    /// To read a pose that is stored in the hand.
-    ReadGesture(UserGesture),
     /// To clear errors.
     ClearErrors,
 }
@@ -103,8 +99,6 @@ pub enum NoticeKind {
     },
     /// Gestures are switched off. Nothing was sent.
     GesturesOff,
-    /// Storing gestures is switched off. Nothing was sent.
-    GestureStoreOff,
     /// A pose cannot be kept while an angle is unknown or old.
     PoseUnknown,
     /// A file of poses was added.

@@ -278,17 +278,10 @@ impl App {
                     hand.speed(dof, speed);
                 }
             }
-            Action::TryAngles(angles) => hand.try_angles(angles),
             Action::Gesture(gesture) => {
                 hand.gesture(gesture, settings.gesture_route, env, notices);
             }
             Action::ClearErrors if hand.procedure.is_none() => hand.clear_errors(env, notices),
-            Action::StoreGesture(gesture, angles) => {
-                hand.store_gesture((gesture, angles), settings.gesture_store, env, notices);
-            }
-            Action::ReadGesture(gesture) => {
-                hand.read_gesture(gesture, settings.gesture_store, env, notices);
-            }
             Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted, env),
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
@@ -374,7 +367,6 @@ impl App {
         match action {
             Action::NameGesture(gesture, name) => settings.name_gesture(gesture, &name),
             Action::GestureRoute(route) => settings.gesture_route = route,
-            Action::GestureStore(store) => settings.gesture_store = store,
             Action::Theme(theme) => settings.theme = theme,
             Action::Side(side) => settings.side = side,
             Action::Layout(layout) => settings.layout = layout,

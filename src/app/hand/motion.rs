@@ -124,14 +124,6 @@ impl HandState {
         })
     }
 
-    /// Goes to six angles that are being edited, at the speeds that are set.
-    pub(crate) fn try_angles(&mut self, angles: PerDof<Angle>) {
-        self.take_over_for(&Move {
-            to: angles.map(Some),
-            ..Move::default()
-        });
-    }
-
     /// A person moves the hand in another way than what moves it now; true if something was sent.
     fn take_over_for(&mut self, way: &Move) -> bool {
         if !Dof::ALL.into_iter().any(|dof| self.is_free(dof)) {

@@ -101,7 +101,6 @@ fn act_words(look: Look, act: &PersonAct) -> String {
         PersonAct::Preset(Preset::Half) => say(main::HALF),
         PersonAct::Preset(Preset::Close) => say(main::CLOSE),
         PersonAct::Pose(name) => format!("{} {name}", say(poses::RECALL_NAME)),
-        PersonAct::Angles => say(faults::ACT_ANGLES),
         PersonAct::Play(play) => {
             let verb = match play {
                 Play::Start(_) => poses::START,

@@ -84,7 +84,6 @@ texts! {
     ACT_ALL: "All", "全部";
     ACT_LOCK: "locked", "已锁定";
     ACT_UNLOCK: "unlocked", "已解锁";
-    ACT_ANGLES: "Edited angles", "测试编辑的角度";
     ACT_SEQUENCE: "Sequence", "序列";
     NO_FAULT_BITS: "no fault", "无故障";
 }

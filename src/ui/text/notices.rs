@@ -22,8 +22,6 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
 fn asked(look: Look, what: RequestKind) -> String {
     match what {
         RequestKind::Gesture(gesture) => look.told(panels::GESTURE, gesture.get()),
-        RequestKind::StoreGesture(gesture) => look.told(poses::STORE_ASKED, gesture.get()),
-        RequestKind::ReadGesture(gesture) => look.told(poses::READ_ASKED, gesture.get()),
         RequestKind::ClearErrors => look.say(panels::CLEAR).into(),
     }
 }
@@ -106,7 +104,6 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),
         },
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
-        NoticeKind::GestureStoreOff => said(poses::STORE_OFF.tip()),
         // The words of the graphics driver help whoever mends it.
         NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
             Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),

@@ -446,7 +446,6 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
                 | Action::Preset(_)
                 | Action::Gesture(_)
                 | Action::Recall(_)
-                | Action::TryAngles(_)
                 | Action::Param(
                     ParamAction::Apply | ParamAction::Undo | ParamAction::Save | ParamAction::Agree
                 )
@@ -475,7 +474,6 @@ mod tests {
                 Action::Gesture(Gesture::MIN),
                 Action::Recall(PoseId(1)),
                 Action::Procedure(ProcedureAction::Begin),
-                Action::TryAngles(PerDof::splat(Angle::MAX)),
                 Action::Trial(TrialAction::Start),
                 Action::Play(Play::Start(SequenceId(1))),
                 Action::Play(Play::Step(SequenceId(1))),

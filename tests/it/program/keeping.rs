@@ -119,7 +119,6 @@ async fn settings_are_kept_and_setpoints_never() {
             "angle_unit",
             "gesture_names",
             "gesture_route",
-            "gesture_store",
             "language",
             "layout",
             "plot_window",

@@ -3,10 +3,9 @@
 use crate::program::{ANGLE_SET, Bench, shorts, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
-use handscope::app::hand::gestures::StoreVerdict;
 use handscope::app::hand::{Play, Preset};
 use handscope::app::notices::NoticeKind;
-use handscope::hand::{Angle, Dof, Fault, Force, GestureStore, PerDof, Speed, UserGesture};
+use handscope::hand::{Angle, Dof, Fault, Force, PerDof, Speed};
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use handscope::poses::library::{Millis, PoseId, SequenceId};
 use handscope::poses::player::{PlayEnd, PlayPhase};
@@ -66,7 +65,6 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
         bench.act(Action::Play(play));
     }
     bench.act(Action::Recall(a));
-    bench.act(Action::TryAngles(PerDof::splat(Angle::MAX)));
     bench.run(300).await;
     assert_eq!(bench.addresses(), [0_u16; 0]);
     assert!(!bench.hand().is_armed() && bench.hand().sequence.is_none());
@@ -158,27 +156,4 @@ async fn a_dry_run_sends_nothing_even_while_armed() {
     bench.run(5000).await;
     bench.act(Action::Play(Play::EndDry));
     assert_eq!(bench.addresses(), [0_u16; 0]);
-}
-
-#[tokio::test(start_paused = true)]
-async fn a_gesture_is_stored_and_judged_and_not_even_read_while_that_is_off() {
-    let gesture = UserGesture::nearest(14);
-    let angles = PerDof::splat(Angle::nearest(300));
-    let mut bench = Bench::live().await;
-    bench.act(Action::GestureStore(GestureStore::Off));
-    bench.act(Action::StoreGesture(gesture, angles));
-    bench.act(Action::ReadGesture(gesture));
-    bench.run(300).await;
-    assert_eq!(bench.addresses(), [0_u16; 0]);
-    assert!(bench.hand().gestures.upload.is_none());
-    let notices = bench.state().notices.iter();
-    let off: Vec<_> = notices.map(|one| (one.what.clone(), one.count)).collect();
-    assert_eq!(off, [(NoticeKind::GestureStoreOff, 2)]);
-    bench.act(Action::GestureStore(GestureStore::Register1066));
-    bench.act(Action::StoreGesture(gesture, angles));
-    let verdict = |bench: &Bench| bench.hand().gestures.upload.unwrap().verdict;
-    assert_eq!(verdict(&bench), StoreVerdict::Writing);
-    bench.run(300).await;
-    assert_eq!(bench.addresses(), [1066]);
-    assert_eq!(verdict(&bench), StoreVerdict::Same);
 }

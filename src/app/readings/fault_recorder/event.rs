@@ -26,8 +26,6 @@ pub enum PersonAct {
     Preset(Preset),
     /// A pose of the library, by name.
     Pose(Arc<str>),
-    /// Six angles that were being edited.
-    Angles,
     /// A sequence was started, stepped, paused or ended.
     Play(Play),
     /// Errors were to be cleared.
@@ -63,7 +61,6 @@ impl PersonAct {
             Self::Preset(Preset::Half) => "half".into(),
             Self::Preset(Preset::Close) => "close".into(),
             Self::Pose(name) => format!("pose {name}"),
-            Self::Angles => "edited angles".into(),
             Self::Play(Play::Start(_)) => "sequence start".into(),
             Self::Play(Play::Step(_)) => "sequence step".into(),
             Self::Play(Play::Pause) => "sequence pause".into(),
