@@ -31,18 +31,14 @@ pub enum Action {
     Disarm,
     /// Where a joint should go. Ignored unless armed and the joint is not locked.
     Target(Dof, Angle),
-    /// Force threshold of a joint: sent when armed, kept for arming otherwise.
-    Force(Dof, Force),
-    /// Speed of a joint: sent when armed, kept for arming otherwise.
-    Speed(Dof, Speed),
+    /// Force threshold of one joint or of all: sent when armed, kept for arming otherwise.
+    Force(Option<Dof>, Force),
+    /// Speed of one joint or of all: sent when armed, kept for arming otherwise.
+    Speed(Option<Dof>, Speed),
     /// Leave a joint alone, or not.
     Lock(Dof, bool),
     /// All joints that are not locked towards open or bent, at the speeds that are set. Needs arming.
     Preset(Preset),
-    /// Force threshold of all joints.
-    ForceOfAll(Force),
-    /// Speed of all joints.
-    SpeedOfAll(Speed),
     /// Take a stored pose. Needs arming.
     Gesture(Gesture),
     /// Keep the pose that the hand has now, by this name or the next free one.
@@ -145,8 +141,6 @@ impl Action {
             | Self::Speed(..)
             | Self::Lock(..)
             | Self::Preset(_)
-            | Self::ForceOfAll(_)
-            | Self::SpeedOfAll(_)
             | Self::Gesture(_)
             | Self::Recall(_)
             | Self::ClearErrors => true,
@@ -174,8 +168,6 @@ impl Action {
             Self::Target(dof, angle) => PersonAct::Target(*dof, *angle),
             Self::Force(dof, force) => PersonAct::Force(*dof, *force),
             Self::Speed(dof, speed) => PersonAct::Speed(*dof, *speed),
-            Self::ForceOfAll(force) => PersonAct::ForceOfAll(*force),
-            Self::SpeedOfAll(speed) => PersonAct::SpeedOfAll(*speed),
             Self::Lock(dof, locked) => PersonAct::Lock(*dof, *locked),
             Self::Preset(preset) => PersonAct::Preset(*preset),
             Self::Recall(id) => PersonAct::Pose(library.pose(*id)?.name.as_str().into()),

@@ -17,7 +17,7 @@ use crate::app::settings::Settings;
 use crate::app::state::{PortChoice, State};
 use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
-use crate::hand::Moment;
+use crate::hand::{Dof, Moment};
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
 use crate::poses::library::{LibraryPose, PoseLibrary};
@@ -264,20 +264,10 @@ impl App {
             Action::Arm => hand.arm(notices),
             Action::Disarm => hand.disarm(),
             Action::Target(dof, angle) => hand.target(dof, angle),
-            Action::Force(dof, force) => hand.force(dof, force),
-            Action::Speed(dof, speed) => hand.speed(dof, speed),
+            Action::Force(dof, force) => each(dof).for_each(|dof| hand.force(dof, force)),
+            Action::Speed(dof, speed) => each(dof).for_each(|dof| hand.speed(dof, speed)),
             Action::Lock(dof, locked) => hand.lock(dof, locked),
             Action::Preset(preset) => hand.preset(preset),
-            Action::ForceOfAll(force) => {
-                for dof in crate::hand::Dof::ALL {
-                    hand.force(dof, force);
-                }
-            }
-            Action::SpeedOfAll(speed) => {
-                for dof in crate::hand::Dof::ALL {
-                    hand.speed(dof, speed);
-                }
-            }
             Action::Gesture(gesture) => {
                 hand.gesture(gesture, settings.gesture_route, env, notices);
             }
@@ -499,6 +489,13 @@ impl App {
         let waited = now.since(closing.since);
         (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN)
     }
+}
+
+/// One joint, or all.
+fn each(dof: Option<Dof>) -> impl Iterator<Item = Dof> {
+    Dof::ALL
+        .into_iter()
+        .filter(move |own| dof.is_none_or(|dof| dof == *own))
 }
 
 fn choice(found: PortFound) -> PortChoice {

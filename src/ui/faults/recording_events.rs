@@ -87,14 +87,12 @@ fn act_words(look: Look, act: &PersonAct) -> String {
     let say = |text| look.say(text).to_owned();
     let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.say(what));
     let joint = |dof| look.say(words::dof(dof));
-    let all = look.say(faults::ACT_ALL);
+    let joints = |dof: &Option<Dof>| dof.map_or_else(|| look.say(faults::ACT_ALL), joint);
     match act {
         PersonAct::Disarm => say(faults::ACT_DISARM),
         PersonAct::Target(dof, angle) => set(joint(*dof), faults::ACT_TARGET, angle.get()),
-        PersonAct::Force(dof, force) => set(joint(*dof), faults::ACT_FORCE, force.get()),
-        PersonAct::Speed(dof, speed) => set(joint(*dof), faults::ACT_SPEED, speed.get()),
-        PersonAct::ForceOfAll(force) => set(all, faults::ACT_FORCE, force.get()),
-        PersonAct::SpeedOfAll(speed) => set(all, faults::ACT_SPEED, speed.get()),
+        PersonAct::Force(dof, force) => set(joints(dof), faults::ACT_FORCE, force.get()),
+        PersonAct::Speed(dof, speed) => set(joints(dof), faults::ACT_SPEED, speed.get()),
         PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(faults::ACT_LOCK)),
         PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(faults::ACT_UNLOCK)),
         PersonAct::Preset(Preset::Open) => say(main::OPEN),

@@ -100,8 +100,8 @@ async fn settings_are_kept_and_setpoints_never() {
     run(&mut app, clock, 100).await;
     for action in [
         Action::Target(Dof::Index, Angle::nearest(777)),
-        Action::Force(Dof::Index, Force::nearest(888)),
-        Action::Speed(Dof::Index, Speed::nearest(111)),
+        Action::Force(Some(Dof::Index), Force::nearest(888)),
+        Action::Speed(Some(Dof::Index), Speed::nearest(111)),
         Action::Lock(Dof::Ring, true),
         Action::Theme(Theme::Light),
     ] {

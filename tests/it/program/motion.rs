@@ -26,8 +26,8 @@ async fn nothing_is_told_by_starting_connecting_or_dragging_while_not_armed() {
     let mut bench = Bench::live().await;
     for dof in Dof::ALL {
         bench.act(Action::Target(dof, Angle::MIN));
-        bench.act(Action::Force(dof, Force::RATED));
-        bench.act(Action::Speed(dof, Speed::MAX));
+        bench.act(Action::Force(Some(dof), Force::RATED));
+        bench.act(Action::Speed(Some(dof), Speed::MAX));
         bench.act(Action::Lock(dof, true));
         bench.act(Action::Lock(dof, false));
     }
@@ -48,7 +48,7 @@ async fn nothing_is_told_by_starting_connecting_or_dragging_while_not_armed() {
 #[tokio::test(start_paused = true)]
 async fn arming_sends_the_staged_limits_and_no_angle() {
     let mut bench = Bench::live().await;
-    bench.act(Action::Speed(Dof::Ring, Speed::MIN));
+    bench.act(Action::Speed(Some(Dof::Ring), Speed::MIN));
     bench.act(Action::Arm);
     bench.run(300).await;
     assert!(bench.hand().is_armed());
@@ -107,8 +107,8 @@ async fn an_armed_joint_goes_where_it_is_told_and_a_locked_one_never() {
     bench.run(1000).await;
     bench.forget();
     bench.act(Action::Target(Dof::Ring, Angle::MIN));
-    bench.act(Action::Force(Dof::Ring, Force::MIN));
-    bench.act(Action::Speed(Dof::Ring, Speed::MAX));
+    bench.act(Action::Force(Some(Dof::Ring), Force::MIN));
+    bench.act(Action::Speed(Some(Dof::Ring), Speed::MAX));
     bench.run(300).await;
     assert_eq!(bench.addresses(), [0_u16; 0]);
     let ring = bench.angle(Dof::Ring);
@@ -225,7 +225,7 @@ async fn leaving_an_armed_hand_holds_it_first() {
 #[tokio::test(start_paused = true)]
 async fn closing_holds_an_armed_hand_first_and_ends_in_time() {
     let mut bench = Bench::armed().await;
-    bench.act(Action::Speed(Dof::Index, Speed::MAX));
+    bench.act(Action::Speed(Some(Dof::Index), Speed::MAX));
     bench.act(Action::Target(Dof::Index, Angle::MIN));
     bench.run(150).await;
     let asked = bench.clock.now();

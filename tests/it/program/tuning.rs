@@ -77,7 +77,7 @@ async fn nothing_else_moves_the_hand_while_a_series_runs() {
     for action in [
         Action::Target(Dof::Ring, Angle::MIN),
         Action::Preset(Preset::Close),
-        Action::Speed(Dof::Index, Speed::MAX),
+        Action::Speed(Some(Dof::Index), Speed::MAX),
     ] {
         bench.act(action);
     }
