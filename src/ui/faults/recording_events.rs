@@ -2,7 +2,7 @@
 
 use crate::app::hand::{Play, Preset};
 use crate::app::readings::fault_recorder::{EventKind, PersonAct, Recording};
-use crate::hand::Faults;
+use crate::hand::{Dof, Faults};
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::Look;
 use crate::ui::plots::marks;
