@@ -129,11 +129,6 @@ pub enum NoticeKind {
         /// Where it lies now; `None` if it could not be moved.
         kept_as: Option<PathBuf>,
     },
-    /// Poses could not be written.
-    PosesNotSaved {
-        /// The system's words.
-        message: String,
-    },
     /// A series of trials is over.
     SeriesEnded {
         /// Trials that were measured.
@@ -161,11 +156,6 @@ pub enum NoticeKind {
     DrawnWithoutOpenGl {
         /// The system's words.
         reason: String,
-    },
-    /// Settings could not be written.
-    SettingsNotSaved {
-        /// The system's words.
-        message: String,
     },
     /// The settings file could not be read; it is left as it was, under another name.
     SettingsIgnored {
@@ -196,11 +186,6 @@ pub enum NoticeKind {
         differences: Vec<FactDifference>,
         /// Day of last time.
         last_seen: String,
-    },
-    /// The quirk sheet could not be read or written.
-    SheetNotKept {
-        /// Why.
-        message: String,
     },
     /// The plan of trials of the last time cannot be taken.
     PlanIgnored {

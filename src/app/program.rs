@@ -205,13 +205,10 @@ impl App {
 
     fn save_changes(&mut self, now: Moment) {
         let at = now.since(Moment::ZERO);
-        if let Err(error) = self.settings_saver.tick(&self.state.settings, at) {
-            let message = error.to_string();
-            self.tell(NoticeKind::SettingsNotSaved { message }, now);
-        }
-        if let Err(error) = self.pose_saver.tick(&self.state.poses.library, at) {
-            let message = error.to_string();
-            self.tell(NoticeKind::PosesNotSaved { message }, now);
+        let settings = self.settings_saver.tick(&self.state.settings, at);
+        let poses = self.pose_saver.tick(&self.state.poses.library, at);
+        for (path, error) in [settings.err(), poses.err()].into_iter().flatten() {
+            self.tell(NoticeKind::not_saved(path, &error), now);
         }
     }
 

@@ -153,8 +153,6 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
             let why = told(poses::IGNORED, &errors::poses(look, error));
             format!("{why} {}", place(kept_as.as_deref()))
         }
-        NoticeKind::PosesNotSaved { message } => system(poses::NOT_SAVED, message),
-        NoticeKind::SettingsNotSaved { message } => system(panels::NOTICE_NOT_SAVED, message),
         NoticeKind::SettingsIgnored { message, kept_as } => {
             let why = system(panels::NOTICE_SETTINGS, message);
             format!("{why} {}", place(kept_as.as_deref()))
@@ -166,7 +164,6 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotSaved { path, message } => {
             of(window::NOT_SAVED, path, &errors::system(look, message))
         }
-        NoticeKind::SheetNotKept { message } => system(scan::NOT_KEPT, message),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),
     }

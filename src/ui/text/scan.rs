@@ -49,7 +49,6 @@ texts! {
     COPY: "Copy", "复制", "Copies this sheet as text, for a report or another computer.", "复制为文本。";
     COPY_OFF: "No hand has answered yet.", "灵巧手尚未应答。";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
-    NOT_KEPT: "What was found out about this hand could not be kept:", "本手识别结果无法写入：";
 
     /// What two sheets disagree about.
     fn fact(Fact) {
