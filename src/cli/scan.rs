@@ -17,16 +17,13 @@ use clap::builder::NonEmptyStringValueParser;
 use clap::error::ErrorKind;
 use serde_json::{Value, json};
 use std::fmt::Display;
-use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// How often the progress line of a terminal is redrawn.
-const SHOW_EACH: Duration = Duration::from_millis(200);
-/// How often a plain line is printed where there is no terminal.
-const SAY_EACH: Duration = Duration::from_secs(10);
+/// How often progress is printed.
+const SAY_EACH: Duration = Duration::from_secs(5);
 /// Ids asked by default: a bus seldom has more hands, and each id costs about half a second a port.
 const IDS_UP_TO: u8 = 10;
 
@@ -128,7 +125,6 @@ pub(crate) async fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
         out,
         args,
         handle: start(config, &Handle::current()),
-        progress: ProgressLine::new(),
         found: 0,
     };
     printer.run(interrupt).await
@@ -138,13 +134,12 @@ struct ScanPrinter<'a> {
     out: &'a mut Out,
     args: &'a ScanArgs,
     handle: ScanHandle,
-    progress: ProgressLine,
     found: usize,
 }
 
 impl ScanPrinter<'_> {
     async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
-        let mut tick = interval(self.progress.each());
+        let mut tick = interval(SAY_EACH);
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
         // The first tick comes at once, when nothing is known yet.
         tick.tick().await;
@@ -154,7 +149,7 @@ impl ScanPrinter<'_> {
                 () = interrupt.wished() => break None,
                 event = self.handle.event() => event,
                 _ = tick.tick() => {
-                    self.progress.show(&self.handle, self.found);
+                    say(&progress_text(self.handle.progress(), self.found));
                     continue;
                 }
             };
@@ -164,12 +159,10 @@ impl ScanPrinter<'_> {
                 None => break None,
             }
         };
-        self.progress.clear();
         self.end(summary)
     }
 
     fn take(&mut self, event: ScanEvent) -> anyhow::Result<()> {
-        self.progress.clear();
         match event {
             ScanEvent::Found(found) => {
                 self.found += 1;
@@ -221,54 +214,6 @@ impl ScanPrinter<'_> {
             }
         }
     }
-}
-
-/// The progress line on standard error.
-struct ProgressLine {
-    is_terminal: bool,
-    shown: bool,
-}
-
-impl ProgressLine {
-    fn new() -> Self {
-        Self {
-            is_terminal: io::stderr().is_terminal(),
-            shown: false,
-        }
-    }
-
-    const fn each(&self) -> Duration {
-        if self.is_terminal {
-            SHOW_EACH
-        } else {
-            SAY_EACH
-        }
-    }
-
-    fn show(&mut self, handle: &ScanHandle, found: usize) {
-        let words = progress_text(handle.progress(), found);
-        if self.is_terminal {
-            self.shown = true;
-            put(&format!("\r\x1b[K{words}"));
-        } else {
-            say(&words);
-        }
-    }
-
-    /// Clears the progress line, so that a line that stays can be printed.
-    fn clear(&mut self) {
-        if std::mem::take(&mut self.shown) {
-            put("\r\x1b[K");
-        }
-    }
-}
-
-fn put(text: &str) {
-    let mut terminal = io::stderr().lock();
-    // Where nobody can read, nobody can be told.
-    let _unread = terminal
-        .write_all(text.as_bytes())
-        .and_then(|()| terminal.flush());
 }
 
 fn progress_text(progress: ScanProgress, found: usize) -> String {
