@@ -6,7 +6,7 @@ use crate::app::hand::sequence::Play;
 use crate::app::layout::Layout;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::procedure::ProcedureAction;
-use crate::app::readings::fault_recorder::{PersonAct, RecordingId};
+use crate::app::readings::fault_recorder::PersonAct;
 use crate::app::readings::faults::FaultKind;
 use crate::app::scan::ScanTarget;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
@@ -85,8 +85,6 @@ pub enum Action {
     SeenFault(Dof, FaultKind),
     /// All faults were seen by a person.
     SeenFaults,
-    /// A recording was looked at.
-    OpenedRecording(RecordingId),
     /// Forget faults that are over and seen.
     ForgetFaults,
     /// Ask where a file should go, and write it.

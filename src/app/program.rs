@@ -285,7 +285,6 @@ impl App {
             Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
             Action::SeenFaults => hand.faults.see_all(),
             Action::ForgetFaults => hand.faults.forget(),
-            Action::OpenedRecording(id) => hand.recorder.opened(id),
             Action::Note(at, words) => {
                 if let Some(note) = MarkKind::note(&words) {
                     hand.history.mark(at, note);

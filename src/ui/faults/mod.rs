@@ -117,7 +117,7 @@ impl FaultsView {
                     false => Depth::Whole,
                 };
                 if let Some(id) = entry_ui(ui, pane, entry, depth) {
-                    self.recordings.open(id, pane);
+                    self.recordings.open(id);
                 }
             }
             if entries.iter().any(|entry| !entry.is_active() && entry.seen) {
