@@ -120,15 +120,6 @@ impl TrialSeries {
         }
     }
 
-    /// The recording of the current trial; `None` between two.
-    #[must_use]
-    pub fn recording(&self) -> Option<&TrialRecording> {
-        match &self.phase {
-            SeriesPhase::Running(runner, _) => Some(runner.recording()),
-            SeriesPhase::Waiting { .. } | SeriesPhase::Over => None,
-        }
-    }
-
     /// The next finished trial. Each is returned once.
     pub fn finished(&mut self) -> Option<Trial> {
         self.done.pop_front()
