@@ -14,8 +14,15 @@ use crate::ui::trials::PLOT_LEAST;
 use crate::ui::trials::plot::LEAST_S;
 use egui::{Color32, ProgressBar, Role, Stroke, Ui, WidgetInfo};
 
+/// The plot of one trial.
+#[derive(Debug, Default)]
+pub(crate) struct LiveChart {
+    trial: usize,
+    view: ChartView,
+}
+
 /// Draws it.
-pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
+pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut LiveChart) {
     let Some(run) = &pane.state.hand().series else {
         return;
     };
@@ -83,8 +90,13 @@ fn heat_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
 }
 
-fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut ChartView) {
+fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut LiveChart) {
     let look = pane.look;
+    if chart.trial != run.view.number {
+        chart.view.time.follow();
+        chart.trial = run.view.number;
+    }
+    let chart = &mut chart.view;
     ui.horizontal(|ui| levels_ui(ui, pane, run));
     let history = &pane.state.hand().history;
     let (from_s, to_s) = (run.since.secs(), pane.state.now.secs());
