@@ -25,7 +25,7 @@ use crate::poses::preview::Preview;
 use crate::store::calendar::{since_1970, stamp};
 use crate::store::{BackgroundJob, Saver, on_thread};
 use crate::transport::{Endpoint, PortFound, ports};
-use crate::trials::plan_settings::{from_settings, in_place_of};
+use crate::trials::plan_settings::from_settings;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -70,7 +70,6 @@ impl App {
             Ok(plan) => state.trials.plan = plan,
             Err(error) => {
                 let message = error.to_string();
-                state.trials.plan = in_place_of(state.settings.trial_plan.as_ref());
                 state
                     .notices
                     .push(Moment::ZERO, NoticeKind::PlanIgnored { message });

@@ -3,7 +3,7 @@
 use crate::hand::{Angle, Dof, Force, PerDof};
 use crate::trials::plan::MARGIN;
 use crate::trials::plan_settings::LIST_MAX;
-use crate::trials::{Approach, PlanError, TrialPlan, Until};
+use crate::trials::{Approach, TrialPlan, Until};
 
 /// How the object is approached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -53,52 +53,6 @@ impl ApproachKind {
             Self::Angle => Some(Until::Angle(Angle::nearest(600))),
             Self::Proximity => Some(Until::Proximity(8000)),
             Self::Touch => Some(Until::Touch(Force::nearest(20))),
-        }
-    }
-}
-
-/// A place in the form, to show there what is wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum PlanField {
-    /// The choice of joints.
-    Joints,
-    /// Start and target of a joint.
-    Way(Dof),
-    /// Speeds at the contact.
-    Speeds,
-    /// Force thresholds.
-    Forces,
-    /// Trials of each setting.
-    Repeats,
-    /// Time held.
-    Dwell,
-    /// Time between.
-    Rest,
-    /// Speed of the first stage.
-    Fast,
-    /// When the first stage ends.
-    Until,
-    /// The force that ends it.
-    Ceiling,
-    /// The temperatures.
-    Heat,
-}
-
-impl PlanField {
-    /// Where what is wrong with a plan stands.
-    #[must_use]
-    pub const fn of(error: &PlanError) -> Self {
-        match error {
-            PlanError::NoJoint => Self::Joints,
-            PlanError::NoWay { dof, .. } | PlanError::NoStart { dof } => Self::Way(*dof),
-            PlanError::Stage { .. } | PlanError::Until { .. } | PlanError::NoTouch => Self::Until,
-            PlanError::SlowApproach { .. } => Self::Fast,
-            PlanError::NoSpeed | PlanError::Empty => Self::Speeds,
-            PlanError::TooMany { .. } => Self::Repeats,
-            PlanError::Dwell { .. } => Self::Dwell,
-            PlanError::Rest { .. } => Self::Rest,
-            PlanError::Ceiling { .. } => Self::Ceiling,
-            PlanError::Temperature { .. } => Self::Heat,
         }
     }
 }
@@ -182,6 +136,7 @@ pub fn tags(words: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trials::plan::PlanField;
     use crate::hand::Speed;
     use std::time::Duration;
 
@@ -206,7 +161,7 @@ mod tests {
         let wrong = |change: fn(&mut TrialPlan)| {
             let mut plan = TrialPlan::default();
             change(&mut plan);
-            plan.check().map_err(|error| PlanField::of(&error))
+            plan.check().map_err(|error| error.field())
         };
         let dof = Dof::Index;
         for (change, field) in [

@@ -2,8 +2,9 @@
 
 use crate::app::action::Action;
 use crate::app::trials::form::{ListError, PlanSide, list, set_target, tags, take_pose};
-use crate::app::trials::{ApproachKind, PlanField, TrialAction};
+use crate::app::trials::{ApproachKind, TrialAction};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField};
 use crate::ui::text::{Text, main, tune, words};
@@ -67,7 +68,7 @@ impl TuneForm {
         let plan = pane.state.trials.plan.clone();
         self.remember(&plan);
         let error = plan.check().err();
-        let wrong = error.map(|error| (PlanField::of(&error), tune::plan_error(look, &error)));
+        let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
         let refused = self.refused;
         let refused = refused.map(|(field, why)| (field, tune::list_error(look, why)));
         let runs = pane.state.hand().runs_series();
