@@ -268,7 +268,7 @@ impl App {
                 hand.gesture(gesture, settings.gesture_route, env, notices);
             }
             Action::ClearErrors if hand.procedure.is_none() => hand.clear_errors(env, notices),
-            Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted, env),
+            Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted),
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
             Action::Procedure(action) => hand.procedure_action(action, env),

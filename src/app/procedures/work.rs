@@ -23,7 +23,7 @@ use tokio::sync::{mpsc, oneshot};
 
 impl HandState {
     /// Opens the card of a change. Where the wire could not follow the hand, there is none.
-    pub(crate) fn open_place_change(&mut self, id: ParamId, wanted: Value, env: &Env) {
+    pub(crate) fn open_place_change(&mut self, id: ParamId, wanted: Value) {
         let (Some(before), Some(old)) = (self.held_now(id), self.endpoint.clone()) else {
             return;
         };
