@@ -484,7 +484,11 @@ impl TrialPlan {
         self.check_grid()?;
         self.check_approach()?;
         let range = DWELL_MIN.as_secs_f64()..=WAIT_MAX.as_secs_f64();
-        within((PlanField::Dwell, "a dwell in s"), self.dwell.as_secs_f64(), range)?;
+        within(
+            (PlanField::Dwell, "a dwell in s"),
+            self.dwell.as_secs_f64(),
+            range,
+        )?;
         self.check_limits()
     }
 
@@ -496,13 +500,21 @@ impl TrialPlan {
         let cells = grid.speeds.len().saturating_mul(grid.forces.len());
         let trials = u32::try_from(cells.saturating_mul(grid.repeats)).unwrap_or(u32::MAX);
         let range = 1.0..=f64::from(TRIALS_MAX);
-        within((PlanField::Repeats, "a number of trials"), trials.into(), range)?;
+        within(
+            (PlanField::Repeats, "a number of trials"),
+            trials.into(),
+            range,
+        )?;
         for speed in &grid.speeds {
             let range = 1.0..=f64::from(Speed::MAX.get());
             within((PlanField::Speeds, "a speed"), speed.get().into(), range)?;
         }
         let range = 0.0..=WAIT_MAX.as_secs_f64();
-        within((PlanField::Rest, "a rest in s"), grid.rest.as_secs_f64(), range)
+        within(
+            (PlanField::Rest, "a rest in s"),
+            grid.rest.as_secs_f64(),
+            range,
+        )
     }
 
     fn check_approach(&self) -> Result<(), PlanError> {
@@ -548,7 +560,11 @@ impl TrialPlan {
         let least = self.grid.forces.iter().map(|force| force.get()).max();
         let least = least.unwrap_or_default().max(1);
         let range = f64::from(least)..=4000.0;
-        within((PlanField::Ceiling, "a force ceiling in g"), got.into(), range)?;
+        within(
+            (PlanField::Ceiling, "a force ceiling in g"),
+            got.into(),
+            range,
+        )?;
         if start >= stop || stop > TEMPERATURE_MAX {
             return Err(PlanError::Temperature { start, stop });
         }
@@ -656,13 +672,33 @@ mod tests {
                 1.0,
                 1000.0,
             ),
-            (|p| p.grid.speeds.push(Speed::MIN), PlanField::Speeds, 1.0, 1000.0),
+            (
+                |p| p.grid.speeds.push(Speed::MIN),
+                PlanField::Speeds,
+                1.0,
+                1000.0,
+            ),
             (|p| p.dwell = Duration::ZERO, PlanField::Dwell, 0.3, 600.0),
-            (|p| p.grid.rest = Duration::from_secs(601), PlanField::Rest, 0.0, 600.0),
-            (|p| p.limits.ceiling_g = 499, PlanField::Ceiling, 500.0, 4000.0),
+            (
+                |p| p.grid.rest = Duration::from_secs(601),
+                PlanField::Rest,
+                0.0,
+                600.0,
+            ),
+            (
+                |p| p.limits.ceiling_g = 499,
+                PlanField::Ceiling,
+                500.0,
+                4000.0,
+            ),
         ] {
             let error = wrong(change);
-            let PlanError::Range { least: low, most: high, .. } = error else {
+            let PlanError::Range {
+                least: low,
+                most: high,
+                ..
+            } = error
+            else {
                 unreachable!("{error}");
             };
             assert_eq!((error.field(), low, high), (field, least, most), "{error}");

@@ -42,7 +42,10 @@ pub fn from_settings(stored: Option<&Value>) -> Result<TrialPlan, PlanReadError>
     for (key, fits) in [
         ("speeds", is_list(plan.grid.speeds.len())),
         ("forces_g", is_list(plan.grid.forces.len())),
-        ("repeats", (1..=TRIALS_MAX.into()).contains(&plan.grid.repeats)),
+        (
+            "repeats",
+            (1..=TRIALS_MAX.into()).contains(&plan.grid.repeats),
+        ),
         ("note", words <= WORDS_MAX),
     ] {
         if !fits {

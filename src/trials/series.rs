@@ -5,7 +5,6 @@ use crate::hand::{ArmEpoch, Setpoints};
 use crate::trials::limits::{Abort, LinkView, warmest};
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, PlanError, TrialPlan, TrialSetting};
-use crate::trials::recording::TrialRecording;
 use crate::trials::runner::{Runner, Stage};
 use crate::trials::summary::{EarlyEnd, Trial, TrialKind, TrialSummary};
 use std::collections::VecDeque;

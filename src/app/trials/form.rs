@@ -136,8 +136,8 @@ pub fn tags(words: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trials::plan::PlanField;
     use crate::hand::Speed;
+    use crate::trials::plan::PlanField;
     use std::time::Duration;
 
     #[test]

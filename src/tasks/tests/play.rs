@@ -1,15 +1,12 @@
 //! What a sequence sends and what ends it, on a hand that only notes what it is told.
 
-use crate::hand::{
-    Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target, UserGesture,
-};
-use crate::link::RequestError;
+use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
 use crate::poses::library::PoseId;
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayView};
 use crate::record::LinkState;
+use crate::tasks::Hand;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
-use crate::tasks::tests::fake::{Asked, FakeHand, Fate, Said, WELL};
-use crate::tasks::{Hand, gesture};
+use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::sync::mpsc;

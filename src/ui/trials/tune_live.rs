@@ -120,7 +120,9 @@ fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut LiveChart
         empty: tune::LIVE_EMPTY,
         ..Chart::new(look, tune::LIVE_FORCE, ui.available_height())
     };
-    chart.time.advance((from_s, to_s), (to_s - from_s).max(LEAST_S));
+    chart
+        .time
+        .advance((from_s, to_s), (to_s - from_s).max(LEAST_S));
     force.ui(ui, chart);
 }
 

@@ -461,7 +461,7 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::{Angle, Dof, Gesture, PerDof};
+    use crate::hand::{Angle, Dof, Gesture};
     use crate::poses::library::{PoseId, SequenceId};
 
     #[test]

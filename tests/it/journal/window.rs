@@ -16,7 +16,7 @@ use handscope::app::program::App;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::app::trials::TrialAction;
-use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, PerDof, Speed};
+use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, Speed};
 use handscope::link::Clock;
 use handscope::params::backups::saved_name;
 use handscope::params::rows::{ParamId, Value};

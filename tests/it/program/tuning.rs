@@ -6,7 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::hand::Preset;
 use handscope::app::notices::NoticeKind;
 use handscope::app::trials::{SessionOrigin, StartRefusal, TrialAction};
-use handscope::hand::{Angle, Dof, PerDof, Speed};
+use handscope::hand::{Angle, Dof, Speed};
 use handscope::trials::Abort;
 use handscope::trials::plan::TrialPlan;
 use handscope::trials::session::load;

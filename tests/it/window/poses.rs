@@ -1,6 +1,6 @@
 //! Claims about poses: kept, taken, played, stored in the hand, read from files; and that none of it moves a hand unasked.
 
-use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, GESTURE, Role, SPEED_SET, Write};
+use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, Role, SPEED_SET, Write};
 use egui::Key;
 use handscope::app::notices::NoticeKind;
 use handscope::hand::Dof;
