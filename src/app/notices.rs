@@ -3,10 +3,9 @@
 use crate::app::readings::faults::FaultKind;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, RequestError};
-use crate::params::file::ParamsFileError;
-use crate::poses::file::PoseFileError;
 use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed};
+use crate::store::FileError;
 use crate::trials::Abort;
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -108,24 +107,17 @@ pub enum NoticeKind {
         /// Sequences in it.
         sequences: usize,
     },
-    /// A file of poses was not taken, not even in part.
-    PosesRefused {
+    /// A file that was chosen was not taken, not even in part.
+    FileRefused {
         /// The file.
         path: PathBuf,
         /// Where and why.
-        error: PoseFileError,
-    },
-    /// A file of parameters was not taken, not even in part.
-    ParamsRefused {
-        /// The file.
-        path: PathBuf,
-        /// The field and what is wrong with it.
-        error: ParamsFileError,
+        error: FileError,
     },
     /// The kept poses could not be read; their file is left as it was, under another name.
     PosesIgnored {
         /// Where and why.
-        error: PoseFileError,
+        error: FileError,
         /// Where it lies now; `None` if it could not be moved.
         kept_as: Option<PathBuf>,
     },
@@ -144,13 +136,6 @@ pub enum NoticeKind {
         path: PathBuf,
         /// Trials in it.
         trials: usize,
-    },
-    /// A session could not be read, not even in part.
-    SessionRefused {
-        /// The file that was chosen.
-        path: PathBuf,
-        /// Where and why.
-        message: String,
     },
     /// OpenGL did not start, so the program draws its window by itself.
     DrawnWithoutOpenGl {

@@ -4,9 +4,8 @@ use crate::app::env::Env;
 use crate::app::files::choose::place_of;
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
-use crate::poses::file::{PoseFileCause, PoseFileError};
 use crate::poses::library::PoseLibrary;
-use crate::store::{BackgroundJob, last_of, on_thread, read_text, set_aside};
+use crate::store::{BackgroundJob, FileError, last_of, on_thread, set_aside, toml_file};
 use std::path::{Path, PathBuf};
 
 /// Five hundred poses are a quarter of this; anything longer is not a file of poses.
@@ -23,13 +22,9 @@ pub fn path_beside(settings: &Path) -> PathBuf {
 /// Reads a file of poses.
 ///
 /// # Errors
-/// [`PoseFileError`]: what cannot be read, and where.
-pub fn read(path: &Path) -> Result<PoseLibrary, PoseFileError> {
-    let unreadable = |error: std::io::Error| PoseFileCause::Unreadable(error.to_string());
-    match read_text(path, FILE_LEN_MAX).map_err(unreadable)? {
-        Some(text) => file::read(&text),
-        None => Err(PoseFileCause::Unreadable("there is no such file".into()).into()),
-    }
+/// [`FileError`]: what cannot be read, and where.
+pub fn read(path: &Path) -> Result<PoseLibrary, FileError> {
+    toml_file::load(path, FILE_LEN_MAX, file::read)
 }
 
 /// The file's text.
@@ -66,11 +61,9 @@ pub(crate) fn import(
     BackgroundJob::start(&env.runtime, &env.wake, async move {
         let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
         let place = path.clone();
-        let unreadable =
-            |error: std::io::Error| Err(PoseFileCause::Unreadable(error.to_string()).into());
         let read = on_thread(move || Ok(read(&place))).await;
-        read.unwrap_or_else(unreadable)
-            .map_err(|error| NoticeKind::PosesRefused { path, error })
+        let read = read.unwrap_or_else(|error| Err(error.into()));
+        read.map_err(|error| NoticeKind::FileRefused { path, error })
     })
 }
 

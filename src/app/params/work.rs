@@ -14,7 +14,7 @@ use crate::link::LinkHandle;
 use crate::params::backups::{Backups, Known, folder_beside};
 use crate::params::changes;
 use crate::params::danger::Danger;
-use crate::params::file::{self, ParamsFile, ParamsFileError};
+use crate::params::file::{self, ParamsFile};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::store::{BackgroundJob, on_thread};
@@ -183,9 +183,9 @@ impl HandState {
             let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
             let place = path.clone();
             let read = on_thread(move || Ok(file::load(&place))).await;
-            match read.unwrap_or_else(|error| Err(unreadable(&error))) {
+            match read.unwrap_or_else(|error| Err(error.into())) {
                 Ok(file) => Ok((path, file)),
-                Err(error) => Err(NoticeKind::ParamsRefused { path, error }),
+                Err(error) => Err(NoticeKind::FileRefused { path, error }),
             }
         };
         self.params.opening = Some(BackgroundJob::start(&env.runtime, &env.wake, open));
@@ -339,7 +339,7 @@ impl ParamsState {
         }
         match read.backups {
             Ok(backups) => self.backups = backups,
-            Err(error) => self.unreadable = Some(unreadable(&error)),
+            Err(error) => self.unreadable = Some(error.into()),
         }
     }
 
@@ -348,8 +348,4 @@ impl ParamsState {
         let name = name.to_string_lossy().into_owned();
         self.compared = Some(Compared::new(name, file, &self.live_params()));
     }
-}
-
-fn unreadable(error: &std::io::Error) -> ParamsFileError {
-    ParamsFileError::Unreadable(error.to_string())
 }

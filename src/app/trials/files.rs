@@ -71,9 +71,9 @@ pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd>
         };
         match on_thread(move || read_session(&folder)).await {
             Ok(session) => Ok(FilesDone::Opened(path, Box::new(session))),
-            Err(error) => Err(NoticeKind::SessionRefused {
+            Err(error) => Err(NoticeKind::FileRefused {
                 path,
-                message: error.to_string(),
+                error: error.into(),
             }),
         }
     })

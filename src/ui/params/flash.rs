@@ -101,7 +101,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
         }
     });
     if let Some(error) = &book.unreadable {
-        let error = errors::params(look, error);
+        let error = errors::file(look, error);
         let words = look.told(device::UNREADABLE, error);
         lines.push((words, palette.warn));
     }
@@ -162,7 +162,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
             let name = backup.path.file_name().unwrap_or_default();
             (
                 name.to_string_lossy().into_owned(),
-                Some(errors::params(look, error)),
+                Some(errors::file(look, error)),
             )
         }
     };

@@ -8,7 +8,7 @@ use crate::record::Disarmed;
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{device, errors, main, panels, poses, scan, tune, window, words};
+use crate::ui::text::{errors, main, panels, poses, scan, tune, window, words};
 use std::path::Path;
 
 /// Title, cause and advice of what is wrong with a drive.
@@ -139,18 +139,12 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::SessionOpened { path, trials } => {
             look.fill(tune::OPENED, &[&path.display(), trials])
         }
-        NoticeKind::SessionRefused { path, message } => {
-            let why = errors::system(look, message);
-            look.fill(tune::REFUSED, &[&path.display(), &why])
-        }
-        NoticeKind::PosesRefused { path, error } => {
-            of(poses::REFUSED, path, &errors::poses(look, error))
-        }
-        NoticeKind::ParamsRefused { path, error } => {
-            of(device::REFUSED, path, &errors::params(look, error))
-        }
+        NoticeKind::FileRefused { path, error } => look.fill(
+            window::REFUSED,
+            &[&path.display(), &errors::file(look, error)],
+        ),
         NoticeKind::PosesIgnored { error, kept_as } => {
-            let why = told(poses::IGNORED, &errors::poses(look, error));
+            let why = told(poses::IGNORED, &errors::file(look, error));
             format!("{why} {}", place(kept_as.as_deref()))
         }
         NoticeKind::SettingsIgnored { message, kept_as } => {

@@ -15,7 +15,6 @@ texts! {
     ENDED: "Trials done: {}.", "已完成试验：{} 次。";
     ENDED_EARLY: "Trials ended early: {}. {}", "试验提前结束，共 {} 次。{}";
     OPENED: "Opened: {} ({} trials)", "已打开：{}（{} 次试验）";
-    REFUSED: "Nothing was opened. {}: {}", "未打开任何内容。{}：{}";
     BY_PERSON: "Ended by a person.", "由操作者结束。";
     DISARMED: "The hand is no longer armed for it.", "灵巧手的使能已取消。";
     LINK_LOST: "The link was lost.", "连接断开。";

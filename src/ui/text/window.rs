@@ -22,6 +22,7 @@ texts! {
     SIDE: "Fingertips and faults", "指尖与故障";
     ARM_FIRST: "Press Arm to move", "先点击“使能”再操作";
     SAVED: "Saved:", "已保存：";
+    REFUSED: "Nothing was taken of {}: {}", "未采用 {}：{}";
     NOT_SAVED: "Could not be written:", "无法写入：";
     NO_FILE: "No file was chosen. Where no dialog came up, this desktop has none.", "没有选择文件。如果没有出现对话框，说明此桌面不提供。";
     PATH: "Path of the file", "文件路径";

@@ -206,7 +206,7 @@ fn an_exported_file_comes_back_and_a_bad_one_changes_nothing() {
         .notices
         .iter()
         .find_map(|notice| match &notice.what {
-            NoticeKind::PosesRefused { error, .. } => Some(error.clone()),
+            NoticeKind::FileRefused { error, .. } => Some(error.clone()),
             _ => None,
         });
     assert_eq!(refused.unwrap().field.as_deref(), Some("ring"));
