@@ -85,8 +85,6 @@ pub enum Action {
     SeenFault(Dof, FaultKind),
     /// All faults were seen by a person.
     SeenFaults,
-    /// Forget faults that are over and seen.
-    ForgetFaults,
     /// Ask where a file should go, and write it.
     Save(Export),
     /// Make a picture of the plots in this size (width, height in points), and save it. Carried out by the shell, as

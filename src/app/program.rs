@@ -283,7 +283,6 @@ impl App {
             Action::TakeKeptTare => hand.take_kept_tare(notices),
             Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
             Action::SeenFaults => hand.faults.see_all(),
-            Action::ForgetFaults => hand.faults.forget(),
             Action::Note(at, words) => {
                 if let Some(note) = MarkKind::note(&words) {
                     hand.history.mark(at, note);

@@ -25,8 +25,6 @@ texts! {
     UNSEEN_BEFORE: "Faults:", "故障";
     UNSEEN: "unseen", "项未查看", "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
     UNSEEN_MARK: "unseen fault", "未查看的故障";
-    TIDY: "Tidy up", "整理列表";
-    FORGET: "Forget", "清空历史", "Takes faults that are over and seen from the list.", "从列表中移除已结束且已看的故障。";
 
     CLEAR_HELPS: "Clear errors can end it.", "可用“清除错误”结束。";
     CLEAR_CANNOT: "Clear errors cannot end it: it ends by itself when the drive is cool.", "不可清除：温度回落后自动结束。";
