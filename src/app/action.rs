@@ -16,7 +16,7 @@ use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Spee
 use crate::history::Mark;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
-use crate::poses::library::{PoseId, PoseLibrary};
+use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
@@ -51,6 +51,8 @@ pub enum Action {
     Recall(PoseId),
     /// Run a sequence, pause it, end it.
     Play(Play),
+    /// Show a sequence on the drawn hand, or none any more; nothing is sent.
+    DryRun(Option<SequenceId>),
     /// What is asked about grasp trials.
     Trial(TrialAction),
     /// Add what a file of poses holds: one at a place that was typed, else one that is asked for.
@@ -139,12 +141,12 @@ impl Action {
             | Self::Preset(_)
             | Self::Gesture(_)
             | Self::Recall(_)
+            | Self::Play(_)
             | Self::ClearErrors => true,
             Self::Param(action) => matches!(
                 action,
                 ParamAction::Apply | ParamAction::Undo | ParamAction::Save | ParamAction::Agree
             ),
-            Self::Play(play) => !matches!(play, Play::Dry(_) | Play::EndDry),
             _ => false,
         }
     }
@@ -167,9 +169,7 @@ impl Action {
             Self::Lock(dof, locked) => PersonAct::Lock(*dof, *locked),
             Self::Preset(preset) => PersonAct::Preset(*preset),
             Self::Recall(id) => PersonAct::Pose(library.pose(*id)?.name.as_str().into()),
-            Self::Play(
-                play @ (Play::Start(_) | Play::Step(_) | Play::Pause | Play::Resume | Play::End),
-            ) => PersonAct::Play(*play),
+            Self::Play(play) => PersonAct::Play(*play),
             _ => return None,
         })
     }

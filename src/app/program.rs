@@ -327,14 +327,14 @@ impl App {
                     poses.recalled = Some(id);
                 }
             }
-            Action::Play(Play::Dry(id)) => {
+            Action::DryRun(sequence) => {
                 let angle = hand.sample.angle;
                 let from = crate::hand::PerDof::from_fn(|dof| {
                     angle.and_then(|angle| angle.value[dof].documented())
                 });
-                poses.preview = Preview::of(&poses.library, id, from, now);
+                let preview = |id| Preview::of(&poses.library, id, from, now);
+                poses.preview = sequence.and_then(preview);
             }
-            Action::Play(Play::EndDry) => poses.preview = None,
             Action::Play(play) => {
                 if matches!(play, Play::Start(_) | Play::Step(_)) {
                     poses.preview = None;

@@ -237,7 +237,7 @@ pub enum UntilError {
     #[error("an approach in two stages needs fast_speed, until and until_value")]
     Incomplete,
     /// Nothing has this name.
-    #[error("'{0}' is no end of an approach")]
+    #[error("'{0}' is not an end of an approach: choose angle, proximity, touch or measured")]
     Name(String),
     /// An angle or a force outside its range.
     #[error(transparent)]

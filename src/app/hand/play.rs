@@ -34,7 +34,6 @@ impl HandState {
             Play::Pause => command(PlayCommand::Pause),
             Play::Resume => command(PlayCommand::Resume(PlayMode::Through)),
             Play::End => command(PlayCommand::End),
-            Play::Dry(_) | Play::EndDry => {}
         }
     }
 

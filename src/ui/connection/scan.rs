@@ -1,8 +1,8 @@
 //! Looking for hands: what to scan, how far it is, what was found. Asks for scans and connections; opens nothing.
 
 use crate::app::action::Action;
-use crate::app::scan::{IdRange, ScanRemark, ScanTarget};
-use crate::link::scan::Hosts;
+use crate::app::scan::{IdRange, ScanTarget};
+use crate::link::scan::{Hosts, ScanEvent};
 use crate::transport::Endpoint;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{Text, errors, scan};
@@ -152,8 +152,8 @@ fn results_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
     for remark in &state.scan.remarks {
         let color = match remark {
-            ScanRemark::Held { .. } => look.palette.muted,
-            ScanRemark::Trouble(_) | ScanRemark::Hint(_) => look.palette.warn,
+            ScanEvent::Held { .. } => look.palette.muted,
+            _ => look.palette.warn,
         };
         Label::new(&scan::remark(look, remark), color).wrap().ui(ui);
     }

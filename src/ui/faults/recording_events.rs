@@ -105,7 +105,7 @@ fn act_words(look: Look, act: &PersonAct) -> String {
                 Play::Step(_) => poses::STEP,
                 Play::Pause => poses::PAUSE,
                 Play::Resume => poses::RESUME,
-                Play::End | Play::Dry(_) | Play::EndDry => poses::END,
+                Play::End => poses::END,
             };
             look.pair(look.say(faults::ACT_SEQUENCE), look.say(verb))
         }

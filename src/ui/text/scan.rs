@@ -1,7 +1,8 @@
 //! Sentences of looking for hands. Decides nothing.
 
-use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanTarget};
+use crate::app::scan::{IdRange, ScanStage, ScanState, ScanTarget};
 use crate::hand::register::BytePacking;
+use crate::link::scan::ScanEvent;
 use crate::link::{GapRead, TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
 use crate::transport::{Endpoint, UsbFound};
@@ -85,11 +86,12 @@ texts! {
 }
 
 /// What else a scan has to say, as a sentence.
-pub(crate) fn remark(look: Look, remark: &ScanRemark) -> String {
+pub(crate) fn remark(look: Look, remark: &ScanEvent) -> String {
     match remark {
-        ScanRemark::Held { place } => format!("{place}: {}", look.say(HELD)),
-        ScanRemark::Trouble(error) => errors::transport(look, error),
-        ScanRemark::Hint(hint) => errors::hint(look, hint),
+        ScanEvent::Held { place } => format!("{place}: {}", look.say(HELD)),
+        ScanEvent::Trouble { error, .. } => errors::transport(look, error),
+        ScanEvent::Hint(hint) => errors::hint(look, hint),
+        ScanEvent::Begun { .. } | ScanEvent::Found(_) | ScanEvent::Done(_) => String::new(),
     }
 }
 

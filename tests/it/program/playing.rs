@@ -151,9 +151,9 @@ async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
 async fn a_dry_run_sends_nothing_even_while_armed() {
     let mut bench = Bench::armed().await;
     let (_, own) = library(&mut bench);
-    bench.act(Action::Play(Play::Dry(own)));
+    bench.act(Action::DryRun(Some(own)));
     assert!(bench.state().poses.preview.is_some());
     bench.run(5000).await;
-    bench.act(Action::Play(Play::EndDry));
+    bench.act(Action::DryRun(None));
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }

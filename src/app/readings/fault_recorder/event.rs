@@ -58,7 +58,7 @@ impl PersonAct {
             Self::Play(Play::Step(_)) => "sequence step".into(),
             Self::Play(Play::Pause) => "sequence pause".into(),
             Self::Play(Play::Resume) => "sequence resume".into(),
-            Self::Play(_) => "sequence end".into(),
+            Self::Play(Play::End) => "sequence end".into(),
             Self::ClearErrors => "clear errors".into(),
         }
     }
