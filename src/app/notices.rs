@@ -5,10 +5,10 @@ use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, RequestError};
 use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed};
-use crate::store::FileError;
+use crate::store::{FileError, set_aside};
 use crate::trials::Abort;
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Notices that ask for attention: more than a person reads. The oldest go first.
@@ -114,8 +114,10 @@ pub enum NoticeKind {
         /// Where and why.
         error: FileError,
     },
-    /// The kept poses could not be read; their file is left as it was, under another name.
-    PosesIgnored {
+    /// A file of this program's own could not be read; it is left as it was, under another name.
+    FileIgnored {
+        /// The file.
+        path: PathBuf,
         /// Where and why.
         error: FileError,
         /// Where it lies now; `None` if it could not be moved.
@@ -141,13 +143,6 @@ pub enum NoticeKind {
     DrawnWithoutOpenGl {
         /// The system's words.
         reason: String,
-    },
-    /// The settings file could not be read; it is left as it was, under another name.
-    SettingsIgnored {
-        /// Why.
-        message: String,
-        /// Where it lies now; `None` if it could not be moved.
-        kept_as: Option<PathBuf>,
     },
     /// A file was written.
     Saved {
@@ -189,6 +184,15 @@ impl NoticeKind {
     pub(crate) fn not_saved(path: PathBuf, error: &std::io::Error) -> Self {
         let message = error.to_string();
         Self::NotSaved { path, message }
+    }
+
+    /// Puts a file of this program's own aside that could not be read.
+    pub(crate) fn file_ignored(path: &Path, error: FileError) -> Self {
+        Self::FileIgnored {
+            path: path.to_owned(),
+            error,
+            kept_as: set_aside(path),
+        }
     }
 
     /// How much it matters.

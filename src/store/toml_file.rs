@@ -129,6 +129,12 @@ struct FileHead {
 pub struct FileText<'a>(&'a str);
 
 impl<'a> FileText<'a> {
+    /// A text that names no format.
+    #[must_use]
+    pub const fn plain(text: &'a str) -> Self {
+        Self(text)
+    }
+
     /// A text of this format and of the version that is read.
     ///
     /// # Errors

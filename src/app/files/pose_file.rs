@@ -5,7 +5,7 @@ use crate::app::files::choose::place_of;
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
 use crate::poses::library::PoseLibrary;
-use crate::store::{BackgroundJob, FileError, last_of, on_thread, set_aside, toml_file};
+use crate::store::{BackgroundJob, FileError, last_of, on_thread, toml_file};
 use std::path::{Path, PathBuf};
 
 /// Five hundred poses are a quarter of this; anything longer is not a file of poses.
@@ -46,8 +46,7 @@ pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
         Ok(library) => (library, None),
         Err(error) => {
             let library = read(&last_of(path)).unwrap_or_default();
-            let kept_as = set_aside(path);
-            (library, Some(NoticeKind::PosesIgnored { error, kept_as }))
+            (library, Some(NoticeKind::file_ignored(path, error)))
         }
     }
 }
@@ -97,7 +96,7 @@ angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_ro
         std::fs::write(&path, "half a fi").unwrap();
         let (library, notice) = load(&path);
         assert_eq!(library, good);
-        let Some(NoticeKind::PosesIgnored {
+        let Some(NoticeKind::FileIgnored {
             kept_as: Some(aside),
             ..
         }) = notice

@@ -143,13 +143,14 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
             window::REFUSED,
             &[&path.display(), &errors::file(look, error)],
         ),
-        NoticeKind::PosesIgnored { error, kept_as } => {
-            let why = told(poses::IGNORED, &errors::file(look, error));
-            format!("{why} {}", place(kept_as.as_deref()))
-        }
-        NoticeKind::SettingsIgnored { message, kept_as } => {
-            let why = system(panels::NOTICE_SETTINGS, message);
-            format!("{why} {}", place(kept_as.as_deref()))
+        NoticeKind::FileIgnored {
+            path,
+            error,
+            kept_as,
+        } => {
+            let why = errors::file(look, error);
+            let aside = place(kept_as.as_deref());
+            look.fill(window::IGNORED, &[&path.display(), &why, &aside])
         }
         NoticeKind::Saved { path, entries } => {
             let path = path.display().to_string();

@@ -92,7 +92,6 @@ texts! {
     NOTICE_ARM: "Not armed.", "未能使能。";
     NOTICE_ACKNOWLEDGED: "acknowledged by the hand.", "灵巧手已确认。";
     NOTICE_LOCKED: "Nothing was sent: a gesture moves all joints, and this one is locked:", "未发送：手势会移动所有自由度，而以下自由度已锁定：";
-    NOTICE_SETTINGS: "The settings file could not be read and was put aside.", "设置文件无法读取，已另存。";
     NOTICE_ENDPOINT: "The remembered hand means nothing:", "无法识别上次的连接地址：";
     NOTICE_WITHOUT_OPENGL: "OpenGL does not start on this computer, so the window is drawn without it.", "这台电脑无法启动 OpenGL，窗口改用软件绘制。";
     DISARMED_STOP: "Not armed any more: stop was pressed.", "已取消使能：按下了停止。";

@@ -27,7 +27,6 @@ texts! {
     IMPORTED: "Imported:", "已导入：";
     COUNT_POSES: "poses", "个姿态";
     COUNT_SEQUENCES: "sequences", "个序列";
-    IGNORED: "The kept poses could not be read; the file was put aside, the last good one is in use.", "保存的姿态无法读取，该文件已另存，现使用上一份完好的文件。";
 
     SELECT_TIP: "Shows this pose for editing. Nothing moves. Drag it, or press Alt and an arrow key, to change the order.", "显示该姿态以便编辑，不会运动。拖动或按 Alt + 方向键可调整顺序。";
     DRAG_TIP: "Drag this step, or press Alt and an arrow key, to change the order.", "拖动该步骤，或按 Alt + 方向键，可调整顺序。";
