@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::app::env::Env;
 use crate::app::files::export::{self, Export};
+use crate::app::files::open::open;
 use crate::app::files::pose_file;
 use crate::app::files::quirk_notes::QuirkNotes;
 use crate::app::files::settings_file;
@@ -431,7 +432,8 @@ impl App {
     fn import_poses(&mut self, typed: Option<PathBuf>) {
         if self.importing.is_none() {
             self.state.poses.refused = None;
-            self.importing = Some(pose_file::import(typed, &self.env));
+            let import = open(typed, pose_file::FILE_NAME, &self.env, pose_file::read);
+            self.importing = Some(import);
         }
     }
 

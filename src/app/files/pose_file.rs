@@ -1,11 +1,9 @@
 //! Files of poses on disk: read at start and for import, bounded, off the window's thread. Knows no setpoint.
 
-use crate::app::env::Env;
-use crate::app::files::choose::place_of;
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
 use crate::poses::library::PoseLibrary;
-use crate::store::{BackgroundJob, FileError, last_of, on_thread, toml_file};
+use crate::store::{FileError, last_of, toml_file};
 use std::path::{Path, PathBuf};
 
 /// Five hundred poses are a quarter of this; anything longer is not a file of poses.
@@ -49,21 +47,6 @@ pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
             (library, Some(NoticeKind::file_ignored(path, error)))
         }
     }
-}
-
-/// Reads the file at a place that was typed, else asks for one.
-pub(crate) fn import(
-    typed: Option<PathBuf>,
-    env: &Env,
-) -> BackgroundJob<Result<PoseLibrary, NoticeKind>> {
-    let chosen = place_of(typed, env.files.as_ref(), FILE_NAME);
-    BackgroundJob::start(&env.runtime, &env.wake, async move {
-        let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
-        let place = path.clone();
-        let read = on_thread(move || Ok(read(&place))).await;
-        let read = read.unwrap_or_else(|error| Err(error.into()));
-        read.map_err(|error| NoticeKind::FileRefused { path, error })
-    })
 }
 
 #[cfg(test)]
