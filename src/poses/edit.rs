@@ -42,12 +42,8 @@ pub enum SequenceEdit {
     Remove(usize),
     /// A step from one place to another; those between make room.
     Move(usize, usize),
-    /// Speed of a step.
-    Speed(usize, Speed),
-    /// Time at the pose of a step.
-    Dwell(usize, Millis),
-    /// Time to wait for arrival of a step.
-    Limit(usize, Millis),
+    /// Another speed and other times for a step.
+    Change(usize, SequenceStep),
     /// The whole sequence away.
     Delete,
 }
@@ -198,9 +194,11 @@ impl PoseLibrary {
                 sequence.steps.remove(at);
             }
             SequenceEdit::Move(from, to) => put(&mut sequence.steps, from, to),
-            SequenceEdit::Speed(at, speed) => change(sequence, at, |step| step.speed = speed),
-            SequenceEdit::Dwell(at, dwell) => change(sequence, at, |step| step.dwell = dwell),
-            SequenceEdit::Limit(at, limit) => change(sequence, at, |step| step.limit = limit),
+            SequenceEdit::Change(at, step) => {
+                if let Some(own) = sequence.steps.get_mut(at) {
+                    *own = step;
+                }
+            }
             SequenceEdit::Rename(_) | SequenceEdit::Remove(_) | SequenceEdit::Delete => {}
         }
     }
@@ -257,11 +255,5 @@ fn put<T>(row: &mut [T], from: usize, to: usize) {
         } else {
             between.rotate_right(1);
         }
-    }
-}
-
-fn change(sequence: &mut Sequence, at: usize, change: impl FnOnce(&mut SequenceStep)) {
-    if let Some(step) = sequence.steps.get_mut(at) {
-        change(step);
     }
 }

@@ -134,13 +134,15 @@ fn numbers_ui(
     let now = (f64::from(step.speed.get()), 1000.0);
     let speed = number(pane, poses::STEP_SPEED, poses::SPEED.tip(), now);
     let time = |typed: i64| Millis::try_from(typed).ok();
-    if let Some(limit) = limit.and_then(time) {
-        change(pane, sequence, SequenceEdit::Limit(at, limit));
-    }
-    if let Some(dwell) = dwell.and_then(time) {
-        change(pane, sequence, SequenceEdit::Dwell(at, dwell));
-    }
-    if let Some(speed) = speed.and_then(|typed| Speed::new(typed).ok()) {
-        change(pane, sequence, SequenceEdit::Speed(at, speed));
+    let new = SequenceStep {
+        limit: limit.and_then(time).unwrap_or(step.limit),
+        dwell: dwell.and_then(time).unwrap_or(step.dwell),
+        speed: speed
+            .and_then(|typed| Speed::new(typed).ok())
+            .unwrap_or(step.speed),
+        ..step.clone()
+    };
+    if new != *step {
+        change(pane, sequence, SequenceEdit::Change(at, new));
     }
 }

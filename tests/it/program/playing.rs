@@ -7,7 +7,7 @@ use handscope::app::hand::{Play, Preset};
 use handscope::app::notices::NoticeKind;
 use handscope::hand::{Angle, Dof, Fault, Force, PerDof, Speed};
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
-use handscope::poses::library::{Millis, PoseId, SequenceId};
+use handscope::poses::library::{Millis, PoseId, SequenceId, SequenceStep};
 use handscope::poses::player::{PlayEnd, PlayPhase};
 use tokio::time::Duration;
 
@@ -26,10 +26,14 @@ fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
     bench.act(Action::Library(LibraryEdit::NewSequence("S".into())));
     let own = bench.state().poses.newest_sequence.unwrap();
     for (at, pose) in ids.iter().enumerate() {
-        let dwell = Millis::try_from(50).unwrap();
-        for edit in [SequenceEdit::Add(*pose), SequenceEdit::Dwell(at, dwell)] {
-            bench.act(Action::Library(LibraryEdit::Sequence(own, edit)));
-        }
+        let edit = |edit| Action::Library(LibraryEdit::Sequence(own, edit));
+        bench.act(edit(SequenceEdit::Add(*pose)));
+        let sequence = bench.state().poses.library.sequence(own).unwrap();
+        let short = SequenceStep {
+            dwell: Millis::try_from(50).unwrap(),
+            ..sequence.steps[at].clone()
+        };
+        bench.act(edit(SequenceEdit::Change(at, short)));
     }
     (ids[0], own)
 }
