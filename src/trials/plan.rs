@@ -191,6 +191,17 @@ impl Default for TrialPlan {
     }
 }
 
+impl Approach {
+    /// When its slow stage begins; `None` if it has one speed.
+    #[must_use]
+    pub const fn until(self) -> Option<Until> {
+        match self {
+            Self::OneStage => None,
+            Self::TwoStage { until, .. } => Some(until),
+        }
+    }
+}
+
 /// How an approach stands in files: none of these keys for one stage.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct ApproachKeys {

@@ -1,12 +1,12 @@
 //! Sentences of the plan of grasp trials, its running, and what was measured.
 
 use crate::app::trials::SessionDifference;
+use crate::app::trials::TrialQuantity;
 use crate::app::trials::form::ListError;
-use crate::app::trials::{ApproachKind, TrialQuantity};
 use crate::hand::{Dof, Fault};
 use crate::trials::Stage;
 use crate::trials::plan::PlanField;
-use crate::trials::{Abort, EarlyEnd, PlanError};
+use crate::trials::{Abort, Approach, EarlyEnd, PlanError, Until};
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::texts;
 use crate::ui::text::words;
@@ -177,12 +177,12 @@ texts! {
     }
 
     /// How the object is reached.
-    fn approach(ApproachKind) {
-        ApproachKind::OneStage => "One speed all the way", "全程同一速度";
-        ApproachKind::Measured => "Fast to the measured contact", "快速到实测接触处";
-        ApproachKind::Angle => "Fast to an angle", "快速到指定角度";
-        ApproachKind::Proximity => "Fast until the fingertip is near", "快速到指尖接近物体";
-        ApproachKind::Touch => "Fast until first touch", "快速到首次触碰";
+    fn approach(Approach) {
+        Approach::OneStage => "One speed all the way", "全程同一速度";
+        Approach::TwoStage { until: Until::Measured { .. }, .. } => "Fast to the measured contact", "快速到实测接触处";
+        Approach::TwoStage { until: Until::Angle(_), .. } => "Fast to an angle", "快速到指定角度";
+        Approach::TwoStage { until: Until::Proximity(_), .. } => "Fast until the fingertip is near", "快速到指尖接近物体";
+        Approach::TwoStage { until: Until::Touch(_), .. } => "Fast until first touch", "快速到首次触碰";
     }
 
     /// What cannot be watched.
