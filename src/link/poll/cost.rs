@@ -53,6 +53,9 @@ pub(crate) struct WireCost {
     moving_max: u16,
     /// A window is read in pieces of this many bytes, each of which takes this long on the wire.
     piece: Option<(u16, Duration)>,
+    /// A read begins with a group of registers. What a hand makes of a Modbus address inside one is open (manual 2.5): it
+    /// may count on in words.
+    pub(crate) begins_groups: bool,
 }
 
 impl WireCost {
@@ -66,6 +69,7 @@ impl WireCost {
             window_max: 252,
             moving_max: MOVING_FRAME - 8,
             piece: None,
+            begins_groups: false,
         }
     }
 
@@ -80,6 +84,7 @@ impl WireCost {
             // An even number of bytes.
             moving_max: MOVING_FRAME - 6,
             piece: None,
+            begins_groups: true,
         }
     }
 
@@ -93,6 +98,7 @@ impl WireCost {
             window_max: 250,
             moving_max: 250,
             piece: None,
+            begins_groups: true,
         }
     }
 
@@ -107,6 +113,7 @@ impl WireCost {
             window_max: 250,
             moving_max: MOVING_FRAME - 8,
             piece: Some((CAN_PIECE, Duration::from_nanos(bits))),
+            begins_groups: false,
         }
     }
 

@@ -163,7 +163,7 @@ fn while_a_stop_is_confirmed_only_motion_and_faults_are_read() {
 
 #[test]
 fn the_motion_state_has_forms_enough_for_a_line_with_late_replies() {
-    for (cost, lens) in [(rs485(115_200), 8), (WireCost::rtu(115_200, MS), 8)] {
+    for (cost, forms, lens) in [(rs485(115_200), 14, 8), (WireCost::rtu(115_200, MS), 10, 8)] {
         let plan = PollPlan::new(PollRates::FULL, cost, Moment::ZERO);
         for tempo in [Tempo::Rest, Tempo::Motion, Tempo::Stopping] {
             let shapes = plan.motion(Moment::ZERO, tempo).shapes;
@@ -171,7 +171,7 @@ fn the_motion_state_has_forms_enough_for_a_line_with_late_replies() {
             seen.sort_unstable();
             seen.dedup();
             assert!(
-                shapes.len() >= 14 && seen.len() >= lens,
+                shapes.len() >= forms && seen.len() >= lens,
                 "{tempo:?} {shapes:?}"
             );
             assert!(
