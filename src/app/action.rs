@@ -17,6 +17,7 @@ use crate::hand::{
     UserGesture,
 };
 use crate::history::Mark;
+use crate::link::First;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::{PoseId, PoseLibrary};
@@ -121,6 +122,8 @@ pub enum Action {
     Layout(Layout),
     /// Draw everything so much larger than designed.
     Zoom(Zoom),
+    /// Read this first while something moves.
+    ReadFirst(First),
     /// How angles are written and typed.
     AngleUnit(AngleUnit),
     /// Seconds that the plots show.
