@@ -14,6 +14,7 @@ use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Speed};
 use crate::history::Mark;
+use crate::link::First;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
@@ -104,6 +105,8 @@ pub enum Action {
     Layout(Layout),
     /// Draw everything so much larger than designed.
     Zoom(Zoom),
+    /// Read this first while something moves.
+    ReadFirst(First),
     /// How angles are written and typed.
     AngleUnit(AngleUnit),
     /// Seconds that the plots show.

@@ -4,6 +4,7 @@ use crate::app::layout::Layout;
 use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute};
+use crate::link::First;
 use crate::poses::library::clean;
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
@@ -262,6 +263,8 @@ pub struct Settings {
     pub zoom: Zoom,
     /// What a person tared last, by the place and id of the hand.
     pub tares: BTreeMap<String, KeptTare>,
+    /// What is read first while something moves.
+    pub first: First,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,

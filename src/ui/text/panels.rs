@@ -137,6 +137,10 @@ texts! {
     ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
     MOVED_TO: "The adapter is now at", "适配器现位于";
     BUDGET: "The line's time", "线路时间分配";
+    FIRST: "While it moves, first", "运动时优先读取";
+    FIRST_FORCE: "Force", "力";
+    FIRST_TOUCH: "Fingertips", "指尖";
+    FIRST_TIP: "What is read more often while something moves, where the line is too slow for all. A stop is as quick either way.", "线路速度不足时，运动期间优先读取的内容。停止的速度不受影响。";
     BUDGET_NOW: "now", "当前";
     BUDGET_SHARE: "share", "占比";
     BUDGET_COULD: "alone", "独占可达";
