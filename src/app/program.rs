@@ -15,7 +15,7 @@ use crate::app::params::ParamAction;
 use crate::app::poses::PoseState;
 use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
-use crate::app::state::{PortChoice, State};
+use crate::app::state::State;
 use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
 use crate::hand::{Dof, Moment};
@@ -168,7 +168,7 @@ impl App {
 
     fn take_jobs(&mut self, now: Moment) {
         if let Some(found) = BackgroundJob::take_from(&mut self.finding_ports) {
-            self.state.ports = found.into_iter().map(choice).collect();
+            self.state.ports = found;
         }
         if let Some(end) = BackgroundJob::take_from(&mut self.exporting) {
             self.tell(end, now);
@@ -494,23 +494,4 @@ fn each(dof: Option<Dof>) -> impl Iterator<Item = Dof> {
     Dof::ALL
         .into_iter()
         .filter(move |own| dof.is_none_or(|dof| dof == *own))
-}
-
-fn choice(found: PortFound) -> PortChoice {
-    let about = found.usb.map(|usb| {
-        let words = [usb.maker, usb.product, usb.serial]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(" ");
-        if words.is_empty() {
-            format!("USB {:04x}:{:04x}", usb.vendor_id, usb.product_id)
-        } else {
-            words
-        }
-    });
-    PortChoice {
-        path: found.path,
-        about,
-    }
 }

@@ -11,7 +11,6 @@ use crate::link::scan::{
     FoundHand, HOSTS_MAX, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanPort, ScanProgress,
     ScanSummary, Speaks, start,
 };
-use crate::transport::UsbFound;
 use anyhow::bail;
 use clap::builder::NonEmptyStringValueParser;
 use clap::error::ErrorKind;
@@ -226,31 +225,16 @@ fn progress_text(progress: ScanProgress, found: usize) -> String {
 }
 
 fn found_text(found: &FoundHand) -> String {
-    let about = found.usb.as_ref().map(usb_text).unwrap_or_default();
+    let about = found.usb.as_ref().map(ToString::to_string);
     format!(
-        "{}  HAND_ID {}  {:.1} ms  {about}",
+        "{}  HAND_ID {}  {:.1} ms  {}",
         found.endpoint,
         found.hand_id,
-        found.round_trip.as_secs_f64() * 1e3
+        found.round_trip.as_secs_f64() * 1e3,
+        about.unwrap_or_default()
     )
     .trim_end()
     .to_owned()
-}
-
-/// Maker, product and serial number, then what the system knows it by.
-fn usb_text(usb: &UsbFound) -> String {
-    let words = [&usb.maker, &usb.product].into_iter().flatten();
-    let words: Vec<&str> = words.map(String::as_str).collect();
-    let serial = usb.serial.as_ref();
-    let serial = serial.map(|serial| format!(", serial {serial}"));
-    let text = format!(
-        "{} (USB {:04x}:{:04x}{})",
-        words.join(" "),
-        usb.vendor_id,
-        usb.product_id,
-        serial.unwrap_or_default()
-    );
-    text.trim_start().to_owned()
 }
 
 fn found_json(found: &FoundHand) -> Value {
@@ -284,6 +268,7 @@ fn summary_json(found: usize, summary: Option<ScanSummary>) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transport::UsbFound;
 
     fn found(usb: Option<UsbFound>) -> FoundHand {
         FoundHand {
@@ -317,10 +302,10 @@ mod tests {
         let line = "rs485:/dev/ttyUSB0?baud=115200&id=3  HAND_ID 3  9.9 ms";
         for (usb, words) in [
             (None, line.to_owned()),
-            (Some(bare), format!("{line}  (USB 0403:6001)")),
+            (Some(bare), format!("{line}  USB 0403:6001")),
             (
                 Some(adapter()),
-                format!("{line}  FTDI FT232R (USB 0403:6001, serial A50285BI)"),
+                format!("{line}  FTDI FT232R A50285BI USB 0403:6001"),
             ),
         ] {
             assert_eq!(found_text(&found(usb)), words);

@@ -75,14 +75,9 @@ fn port(facts: &PortFacts) -> Vec<String> {
 }
 
 fn adapter(usb: &UsbFound) -> String {
-    let names = [&usb.maker, &usb.product].into_iter().flatten().cloned();
-    let ids = format!("{:04x}:{:04x}", usb.vendor_id, usb.product_id);
-    let serial = usb.serial.as_ref();
-    let serial = serial.map(|serial| format!("serial number {serial}"));
     let location = usb.location.as_ref();
-    let location = location.map(|location| format!("at {location}"));
-    let words = names.chain([ids]).chain(serial).chain(location);
-    words.collect::<Vec<_>>().join(" ")
+    let location = location.map(|location| format!(" at {location}"));
+    format!("{usb}{}", location.unwrap_or_default())
 }
 
 fn route(way: &Route) -> String {

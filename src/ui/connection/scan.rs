@@ -145,7 +145,8 @@ fn stage_ui(ui: &mut Ui, pane: &Pane<'_>) {
 fn results_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     for found in &state.scan.found {
-        let usb = found.usb.as_ref().map(scan::usb).unwrap_or_default();
+        let usb = found.usb.as_ref().map(ToString::to_string);
+        let usb = usb.unwrap_or_default();
         let place = format!("{}  {usb}", found.endpoint.place());
         let title = scan::title(look, &found.endpoint, Some(found.hand_id.into()));
         hand_ui(ui, pane, &found.endpoint, (&title, place.trim_end()));

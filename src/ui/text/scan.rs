@@ -5,7 +5,7 @@ use crate::hand::register::BytePacking;
 use crate::link::scan::ScanEvent;
 use crate::link::{GapRead, TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
-use crate::transport::{Endpoint, UsbFound};
+use crate::transport::Endpoint;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::{Text, texts};
 use crate::ui::text::{errors, panels};
@@ -157,19 +157,4 @@ pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String 
     let speed = speed.map(|speed| format!(", {speed}")).unwrap_or_default();
     let id = id.map(|id| format!("ID {id}, ")).unwrap_or_default();
     format!("{id}{kind}{speed}")
-}
-
-pub(crate) fn usb(usb: &UsbFound) -> String {
-    let named = [&usb.maker, &usb.product, &usb.serial]
-        .into_iter()
-        .flatten();
-    let words: Vec<&str> = named.map(String::as_str).collect();
-    format!(
-        "{} USB {:04x}:{:04x}",
-        words.join(" "),
-        usb.vendor_id,
-        usb.product_id
-    )
-    .trim_start()
-    .to_owned()
 }
