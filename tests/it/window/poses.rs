@@ -7,6 +7,7 @@ use handscope::hand::Dof;
 use handscope::poses::player::{PlayEnd, PlayPhase};
 
 const LEAVE: i16 = -1;
+
 fn pose(bench: &mut Bench, angle: i16) {
     let bytes: Vec<u8> = [angle; 6].into_iter().flat_map(i16::to_le_bytes).collect();
     bench.hand(|hand, now| hand.write(ANGLE_SET, &bytes, now).unwrap());
