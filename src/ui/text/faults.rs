@@ -33,7 +33,7 @@ texts! {
     CLEAR_NO_FAULT: "Nothing is wrong that could be cleared.", "没有可清除的故障。";
     CLEAR_ONLY_HEAT: "Only over-temperature is left: it cannot be cleared and ends when the drive is cool.", "仅剩过温故障：不可清除，温度回落后自动结束。";
     CLEAR_UNREAD: "Faults were not read yet.", "尚未读取故障。";
-    WARMTH: "Temperature:", "温度：";
+    WARMTH: "Temperature now", "当前温度";
 
     MEANINGS: "What the words mean", "术语说明";
     MEANINGS_STATUS: "What a drive says it does", "驱动器状态";
