@@ -3,7 +3,7 @@
 use crate::app::layout::Layout;
 use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;
-use crate::hand::{Gesture, GestureRoute, GestureStore};
+use crate::hand::{Gesture, GestureRoute};
 use crate::link::First;
 use crate::poses::library::clean;
 use crate::transport::Endpoint;
@@ -255,8 +255,6 @@ pub struct Settings {
     pub plots: ShownPlots,
     /// How gestures are started.
     pub gesture_route: GestureRoute,
-    /// Where the poses of the user's gestures are stored.
-    pub gesture_store: GestureStore,
     /// Names that a person gave to gestures, by number.
     pub gesture_names: BTreeMap<String, String>,
     /// How the window is divided.

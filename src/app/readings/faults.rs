@@ -4,7 +4,7 @@
 //! list is not enough, and neither is clearing errors: a fault that ended before anybody read it is worth a word. What
 //! comes again is unseen again.
 
-use crate::hand::{Dof, Fault, Group, Groups, HandSample, Moment, PerDof, Status};
+use crate::hand::{Dof, Fault, Group, Groups, HandSample, Moment, Status};
 use std::time::Duration;
 
 /// Entries that can be: per joint eight fault bits and three protective codes. One entry each, so it cannot grow.
@@ -79,7 +79,6 @@ impl FaultEntry {
 #[derive(Debug, Clone, Default)]
 pub struct FaultList {
     entries: Vec<FaultEntry>,
-    worked_again_c: PerDof<Option<f32>>,
 }
 
 impl FaultList {
@@ -88,10 +87,6 @@ impl FaultList {
         let mut news = false;
         if let Some(faults) = sample.faults.filter(|_| fresh.contains(Group::Faults)) {
             for (dof, faults) in faults.value.iter() {
-                if self.is_hot(dof) && !faults.contains(Fault::OverTemperature) {
-                    let celsius = sample.temperature.map(|all| all.value[dof].documented());
-                    self.worked_again_c[dof] = celsius.flatten().map(f32::from);
-                }
                 news |= faults.iter().fold(false, |new, fault| {
                     self.see(dof, FaultKind::Fault(fault), now) | new
                 });
@@ -138,12 +133,6 @@ impl FaultList {
         self.iter().filter(|entry| !entry.seen)
     }
 
-    /// Forgets what is over and was seen. What lasts stays, and so does what nobody has seen.
-    pub fn forget(&mut self) {
-        self.entries
-            .retain(|entry| entry.is_active() || !entry.seen);
-    }
-
     /// Why CLEAR_ERROR would clear nothing; `None` if it clears something, or may.
     #[must_use]
     pub fn nothing_to_clear(&self) -> Option<NothingToClear> {
@@ -159,19 +148,6 @@ impl FaultList {
         } else {
             NothingToClear::NoFault
         })
-    }
-
-    /// True while this drive is too hot.
-    fn is_hot(&self, dof: Dof) -> bool {
-        let hot = FaultKind::Fault(Fault::OverTemperature);
-        let mut own = self.entries.iter().filter(|entry| entry.dof == dof);
-        own.any(|entry| entry.is_active() && entry.what == hot)
-    }
-
-    /// The temperature at which this drive's last over-temperature ended, °C; `None` if none did yet.
-    #[must_use]
-    pub fn worked_again_c(&self, dof: Dof) -> Option<f32> {
-        self.worked_again_c[dof]
     }
 
     /// What lasts first, then what is over and unseen, then the rest; the newest first within each.
@@ -272,12 +248,11 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_stays_until_it_is_over_and_forgotten() {
+    fn a_fault_that_comes_again_is_the_same_entry() {
         let mut book = FaultList::default();
         assert!(see(&mut book, 1, 1, 2));
         assert!(!see(&mut book, 2, 1, 2), "the same fault is no news");
-        book.forget();
-        assert_eq!(book.active().count(), 1, "what lasts is not forgotten");
+        assert_eq!(book.active().count(), 1);
         assert!(!see(&mut book, 3, 0, 2));
         let entry = *book.iter().next().expect("kept");
         assert_eq!(
@@ -289,12 +264,6 @@ mod tests {
             book.iter().next().map(|entry| (entry.count, entry.since)),
             Some((2, AT(4)))
         );
-        see(&mut book, 5, 0, 2);
-        book.forget();
-        assert_eq!(book.iter().count(), 1, "nobody has seen it");
-        book.see_all();
-        book.forget();
-        assert_eq!(book.iter().count(), 0);
     }
 
     #[test]

@@ -18,7 +18,7 @@ use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{faults, main, notices, panels, words};
 use crate::ui::theme;
 use crate::ui::window::message_log::MessageLog;
-use egui::{Align, CollapsingHeader, Layout, Ui};
+use egui::{Align, Layout, Ui};
 
 /// What the view remembers.
 #[derive(Debug, Default)]
@@ -117,11 +117,8 @@ impl FaultsView {
                     false => Depth::Whole,
                 };
                 if let Some(id) = entry_ui(ui, pane, entry, depth) {
-                    self.recordings.open(id, pane);
+                    self.recordings.open(id);
                 }
-            }
-            if entries.iter().any(|entry| !entry.is_active() && entry.seen) {
-                forget_ui(ui, pane);
             }
             meanings_ui(ui, pane);
         });
@@ -166,15 +163,6 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let button = Button::said(look, panels::CLEAR);
     let reason = reason.map(|reason| look.say(reason));
     button.disabled(reason).sends(ui, pane, Action::ClearErrors);
-}
-
-/// A drawer with what tidies the list.
-fn forget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    CollapsingHeader::new(look.say(faults::TIDY)).show_unindented(ui, |ui| {
-        let button = Button::said(look, faults::FORGET);
-        button.sends(ui, pane, Action::ForgetFaults);
-    });
 }
 
 /// That nothing is wrong, or that nobody knows.

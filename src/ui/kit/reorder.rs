@@ -1,10 +1,28 @@
 //! Things that a person puts in another order, by dragging one to the place of another or with Alt and the arrow keys.
 //! Knows nothing of what they are.
 
-use crate::poses::edit::ShiftDirection;
 use crate::ui::kit::look::Look;
 use crate::ui::theme;
 use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, Ui};
+
+/// To which side something moves in its row.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ShiftDirection {
+    /// Towards the first.
+    Earlier,
+    /// Towards the last.
+    Later,
+}
+
+impl ShiftDirection {
+    /// The place beside this one.
+    pub(crate) const fn from(self, at: usize) -> usize {
+        match self {
+            Self::Earlier => at.saturating_sub(1),
+            Self::Later => at + 1,
+        }
+    }
+}
 
 /// What is dragged.
 #[derive(Debug, Default)]

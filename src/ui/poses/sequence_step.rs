@@ -2,10 +2,11 @@
 
 use crate::app::action::Action;
 use crate::hand::Speed;
-use crate::poses::edit::{LibraryEdit, SequenceEdit, ShiftDirection};
+use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder};
+use crate::ui::kit::reorder::{self, ShiftDirection};
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
@@ -55,10 +56,8 @@ pub(crate) fn step_ui(
     let ui = &mut ui;
     ui.spacing_mut().item_spacing.x = theme::STEP;
     ui.set_min_height(ui.available_height());
-    let (earlier, later) = (
-        SequenceEdit::Shift(at, ShiftDirection::Earlier),
-        SequenceEdit::Shift(at, ShiftDirection::Later),
-    );
+    let [earlier, later] = [ShiftDirection::Earlier, ShiftDirection::Later]
+        .map(|way| SequenceEdit::Move(at, way.from(at)));
     for (icon, caption, tip, edit) in [
         (
             theme::CLOSE,
@@ -100,10 +99,7 @@ fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): 
         response.request_focus();
     }
     if let Some(way) = reorder::keyed(ui, &response) {
-        let to = match way {
-            ShiftDirection::Earlier => at.saturating_sub(1),
-            ShiftDirection::Later => (at + 1).min(sequence.steps.len().saturating_sub(1)),
-        };
+        let to = way.from(at).min(sequence.steps.len().saturating_sub(1));
         // The keyboard goes with the step.
         ui.memory_mut(|memory| memory.request_focus(id(to)));
         change(pane, sequence, SequenceEdit::Move(at, to));
@@ -138,13 +134,15 @@ fn numbers_ui(
     let now = (f64::from(step.speed.get()), 1000.0);
     let speed = number(pane, poses::STEP_SPEED, poses::SPEED.tip(), now);
     let time = |typed: i64| Millis::try_from(typed).ok();
-    if let Some(limit) = limit.and_then(time) {
-        change(pane, sequence, SequenceEdit::Limit(at, limit));
-    }
-    if let Some(dwell) = dwell.and_then(time) {
-        change(pane, sequence, SequenceEdit::Dwell(at, dwell));
-    }
-    if let Some(speed) = speed.and_then(|typed| Speed::new(typed).ok()) {
-        change(pane, sequence, SequenceEdit::Speed(at, speed));
+    let new = SequenceStep {
+        limit: limit.and_then(time).unwrap_or(step.limit),
+        dwell: dwell.and_then(time).unwrap_or(step.dwell),
+        speed: speed
+            .and_then(|typed| Speed::new(typed).ok())
+            .unwrap_or(step.speed),
+        ..step.clone()
+    };
+    if new != *step {
+        change(pane, sequence, SequenceEdit::Change(at, new));
     }
 }

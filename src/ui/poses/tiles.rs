@@ -71,8 +71,10 @@ pub(crate) fn tile_ui(
         // So that Alt and the arrow keys move it from here.
         response.request_focus();
     }
-    if let Some(way) = reorder::keyed(&ui, &response) {
-        let edit = LibraryEdit::Pose(pose.id, PoseEdit::Shift(way));
+    if let Some(way) = reorder::keyed(&ui, &response)
+        && let Some(at) = pane.state.poses.library.place(pose.id)
+    {
+        let edit = LibraryEdit::Pose(pose.id, PoseEdit::Move(way.from(at)));
         pane.actions.push(Action::Library(edit));
     }
     let (picture, words) = top.split_top_bottom_at_y(top.bottom() - 36.0);

@@ -92,8 +92,6 @@ texts! {
     NOTICE_ARM: "Not armed.", "未能使能。";
     NOTICE_ACKNOWLEDGED: "acknowledged by the hand.", "灵巧手已确认。";
     NOTICE_LOCKED: "Nothing was sent: a gesture moves all joints, and this one is locked:", "未发送：手势会移动所有自由度，而以下自由度已锁定：";
-    NOTICE_NOT_SAVED: "Settings could not be written.", "设置无法写入。";
-    NOTICE_SETTINGS: "The settings file could not be read and was put aside.", "设置文件无法读取，已另存。";
     NOTICE_ENDPOINT: "The remembered hand means nothing:", "无法识别上次的连接地址：";
     NOTICE_WITHOUT_OPENGL: "OpenGL does not start on this computer, so the window is drawn without it.", "这台电脑无法启动 OpenGL，窗口改用软件绘制。";
     DISARMED_STOP: "Not armed any more: stop was pressed.", "已取消使能：按下了停止。";
@@ -176,8 +174,8 @@ texts! {
     LAST_MINUTE: "1 min", "1 分钟";
     LAST_10_MIN: "10 min", "10 分钟";
     LAST_TIP: "How much time the channels show.", "通道曲线显示的时间长度。";
-    NOISE_HEAD: "change  noise, 1 s", "变化  噪声（1 秒）";
-    NOISE: "Change and noise of channel", "通道变化与噪声", "Over the last second: the mean, counted from the rest, and the standard deviation, in counts.", "最近 1 秒内：相对静止值的平均变化，以及标准差，单位为计数。";
+    SWING_HEAD: "change  swing, 1 s", "变化  波动（1 秒）";
+    SWING: "Change and swing of channel", "通道变化与波动", "Over the last second: the mean, counted from the rest, and the highest less the lowest, in counts.", "最近 1 秒内：相对静止值的平均变化，以及最大值与最小值之差，单位为计数。";
     CHECK: "Check word", "校验字", "The two check bytes against the sum of the first 54 bytes. What they cover is not documented for this hand: data is shown either way.", "两个校验字节与前 54 字节之和的比较。手册没有说明其范围，因此数据照常显示。";
     CHECK_OK: "right", "正确";
     CHECK_DIFFERS: "differs", "不符";

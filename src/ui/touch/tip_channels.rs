@@ -16,7 +16,7 @@ const WINDOWS: [(f64, Text); 3] = [
     (600.0, panels::LAST_10_MIN),
 ];
 /// Over this time mean and noise are taken, in seconds.
-const NOISE_S: f64 = 1.0;
+const SWING_S: f64 = 1.0;
 /// Counts that are always shown: what stays between them is noise.
 const LEAST: (f64, f64) = (-1000.0, 1000.0);
 
@@ -106,28 +106,28 @@ impl TipChannels {
     }
 }
 
-/// Each channel with its change from zero and its noise, over the last second.
+/// Each channel with its change from zero and how far it swings, over the last second.
 fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
     let look = pane.look;
     let hand = pane.state.hand();
     ui.spacing_mut().item_spacing.y = 0.0;
-    let head = Label::note(look, panels::NOISE_HEAD);
-    head.ui(ui).on_hover_text(look.tip(panels::NOISE));
+    let head = Label::note(look, panels::SWING_HEAD);
+    head.ui(ui).on_hover_text(look.tip(panels::SWING));
     let now = pane.state.now.secs();
     let zero = hand.tare.zero(finger);
     let row = (ui.available_height() / 8.0).min(20.0);
     for (channel, at) in (0..8u8).zip(0..) {
         let series = Series::Channel(channel, finger);
-        let spread = hand.history.spread(series, now - NOISE_S, now);
+        let last = hand.history.summary(series, now - SWING_S, now);
         let zero = zero.and_then(|zero| zero.raw.get(at).copied());
-        let change = spread.zip(zero);
-        let change = change.map(|(spread, zero)| whole(spread.mean - f64::from(zero)));
-        let noise = spread.map(|spread| whole(spread.deviation.round()));
+        let change = last.zip(zero);
+        let change = change.map(|(last, zero)| whole(last.mean - f64::from(zero)));
+        let swing = last.map(|last| whole(f64::from(last.max - last.min)));
         let place = vec2(ui.available_width(), row);
         ui.allocate_ui_with_layout(place, Layout::right_to_left(Align::Center), |ui| {
             ui.set_min_height(row);
-            let words = format!("{:>7} {:>6}", signed(change), format::counts(noise));
-            let name = look.told(panels::NOISE, channel + 1);
+            let words = format!("{:>7} {:>6}", signed(change), format::counts(swing));
+            let name = look.told(panels::SWING, channel + 1);
             let label = Label::new(&words, look.palette.text).font(theme::number_small());
             label.named(&name).ui(ui);
             kit::left_ui(ui, |ui| {

@@ -2,7 +2,7 @@
 
 use crate::app::settings::Language;
 use crate::app::trials::{ComparedRow, Comparison, RowKey, SessionId};
-use crate::trials::columns::{Better, COLUMNS, Metric};
+use crate::trials::columns::{COLUMNS, Metric};
 use crate::trials::{JointMetrics, TrialSetting};
 use crate::ui::kit::{self, Button, Label, Pane, dash};
 use crate::ui::text::{Text, tune, words};
@@ -29,14 +29,6 @@ enum By {
     Trial,
     Number(Metric),
     End,
-}
-
-impl By {
-    /// Which rows stand first when a person begins to sort by it.
-    fn better(self) -> Better {
-        let own = COLUMNS.iter().find(|own| Self::Number(own.metric) == self);
-        own.map_or(Better::Lower, |column| column.better)
-    }
 }
 
 /// Where the rows begin, and which way they go.
@@ -258,10 +250,7 @@ impl<'a> TrialSheet<'a, '_> {
         if response.clicked() {
             *sorting = Sorting {
                 by,
-                falling: match is_own {
-                    true => !sorting.falling,
-                    false => by.better() == Better::Higher,
-                },
+                falling: is_own && !sorting.falling,
             };
         }
     }

@@ -21,7 +21,7 @@ use egui::Ui;
 pub(crate) struct ResultView {
     seen: Option<(Comparison, ComparedLines)>,
     /// What is shown of the curves.
-    pub(crate) chart: ChartView,
+    chart: ChartView,
 }
 
 impl ResultView {

@@ -34,7 +34,7 @@ impl Twin {
     }
 
     pub(crate) fn pass(&mut self, time: Duration) {
-        self.driver.run_for(time, |_| ());
+        self.driver.run_for(time);
     }
 
     /// Does what the mouse did in the real window.

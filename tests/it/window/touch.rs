@@ -212,8 +212,8 @@ fn all_numbers_stand_there_on_demand() {
 }
 
 #[test]
-fn a_channel_tells_its_change_and_noise_and_a_taring_its_age() {
-    let change = gripping().reading("Change and noise of channel 4");
+fn a_channel_tells_its_change_and_swing_and_a_taring_its_age() {
+    let change = gripping().reading("Change and swing of channel 4");
     assert!(change.starts_with('+'), "{change}");
     let mut bench = free();
     let tared = |bench: &Bench| bench.reading("Taring of the chosen fingertip");
@@ -227,7 +227,7 @@ fn a_channel_tells_its_change_and_noise_and_a_taring_its_age() {
     bench.click("Raw");
     bench.click("10 min");
     bench.run(60);
-    assert_ne!(bench.reading("Change and noise of channel 4"), "-");
+    assert_ne!(bench.reading("Change and swing of channel 4"), "-");
 }
 
 #[test]
