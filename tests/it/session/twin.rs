@@ -48,6 +48,17 @@ impl Twin {
         self.driver.picture(view)
     }
 
+    /// Where each control stands. Some change their names.
+    pub(crate) fn places(&mut self) -> Vec<String> {
+        let view = self.view;
+        let labels = self.picture(view).labels;
+        let controls = labels.as_array().unwrap().iter();
+        let controls =
+            controls.filter(|label| label["role"] != "label" && label["role"] != "image");
+        let place = |label: &serde_json::Value| format!("{} {}", label["role"], label["rect"]);
+        controls.map(place).collect()
+    }
+
     /// Left, top, width and height of what has this name.
     pub(crate) fn place(&mut self, name: &str) -> [f64; 4] {
         let view = self.view;
