@@ -3,7 +3,7 @@
 
 use crate::app::connect::SimDial;
 use crate::cli::interrupt::Interrupt;
-use crate::cli::out::{AlreadyReported, Out, say};
+use crate::cli::out::{AlreadyReported, Out, WrongUsage, say};
 use crate::cli::parse::{HandIds, hand_ids};
 use crate::hand::HandId;
 use crate::link::Clock;
@@ -13,7 +13,6 @@ use crate::link::scan::{
 };
 use anyhow::bail;
 use clap::builder::NonEmptyStringValueParser;
-use clap::error::ErrorKind;
 use serde_json::{Value, json};
 use std::fmt::Display;
 use std::sync::Arc;
@@ -96,19 +95,20 @@ impl ScanArgs {
     }
 
     /// Several ranges together are bounded as one is.
-    fn refuse_too_many_hosts(&self) {
+    fn check_hosts(&self) -> anyhow::Result<()> {
         let hosts: usize = self.tcp.iter().map(Hosts::count).sum();
-        if hosts > HOSTS_MAX {
-            let words =
-                format!("--tcp names {hosts} addresses; at most {HOSTS_MAX} can be checked\n");
-            clap::Error::raw(ErrorKind::ValueValidation, words).exit();
+        match hosts <= HOSTS_MAX {
+            true => Ok(()),
+            false => Err(WrongUsage::error(format!(
+                "--tcp names {hosts} addresses; at most {HOSTS_MAX} can be checked"
+            ))),
         }
     }
 }
 
 /// Scans. Fails if nothing was found and a place could not be checked.
 pub(crate) async fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
-    args.refuse_too_many_hosts();
+    args.check_hosts()?;
     let interrupt = Interrupt::listen()?;
     let clock = Clock::start();
     let config = ScanConfig {

@@ -7,16 +7,14 @@ mod results;
 
 pub(crate) use args::TrialArgs;
 
-use crate::cli::args::Cli;
-use crate::cli::out::Out;
-use crate::trials::TrialPlan;
+use crate::cli::out::{Out, WrongUsage};
 use anyhow::bail;
-use clap::CommandFactory as _;
-use clap::error::ErrorKind;
 
 /// Runs the series. Fails if it ended early, or if no setting is what was wanted.
 pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
-    let plan = plan(args);
+    let plan = args.plan();
+    plan.check()
+        .map_err(|error| WrongUsage::error(error.to_string()))?;
     if !args.arm {
         bail!(
             "nothing was moved: these trials close {} on the hand at {}; when nothing but the object is in the way, add --arm",
@@ -34,15 +32,4 @@ pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
         bail!("no setting that was tried qualifies: {criterion}");
     }
     Ok(())
-}
-
-/// The plan. One that makes no sense is wrong usage, and ends the process as such.
-fn plan(args: &TrialArgs) -> TrialPlan {
-    let plan = args.plan();
-    if let Err(error) = plan.check() {
-        Cli::command()
-            .error(ErrorKind::ValueValidation, error)
-            .exit();
-    }
-    plan
 }

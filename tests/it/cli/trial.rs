@@ -67,7 +67,7 @@ fn a_plan_that_makes_no_sense_is_wrong_usage() {
         (&["--joint", "pinky"], "not a joint"),
         (&["--start", "10"], "would close"),
         (&["--force", "3001"], "3001"),
-        (&["--repeat", "5000"], "too many"),
+        (&["--repeat", "5000"], "5000 is not between 1 and 1000"),
     ] {
         let mut line = vec!["trial", "--hand", "sim:", "--joint", "index", "--arm"];
         line.extend(more);
