@@ -26,7 +26,7 @@ pub struct Loaded {
 /// Reads settings. A missing file means the defaults. A bad one too, and it is kept under another name.
 #[must_use]
 pub fn load(path: &Path) -> Loaded {
-    if !path.exists() {
+    if matches!(path.try_exists(), Ok(false)) {
         return Loaded::default();
     }
     match toml_file::load(path, FILE_LEN_MAX, |text| FileText::plain(text).parse()) {

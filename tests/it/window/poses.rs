@@ -1,4 +1,4 @@
-//! Claims about poses: kept, taken, played, stored in the hand, read from files; and that none of it moves a hand unasked.
+//! Claims about poses: kept, taken, played, read from files; and that none of it moves a hand unasked.
 
 use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, Role, SPEED_SET, Write};
 use egui::Key;
