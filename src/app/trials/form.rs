@@ -1,4 +1,4 @@
-//! The plan of a series as a form: its choices, the place of each mistake, lists that are typed. Sends nothing.
+//! The plan of a series as a form: the approaches there are, targets and poses, lists that are typed. Sends nothing.
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::MARGIN;
