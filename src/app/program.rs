@@ -13,7 +13,6 @@ use crate::app::hand::sequence::Play;
 use crate::app::notices::NoticeKind;
 use crate::app::params::ParamAction;
 use crate::app::poses::PoseState;
-use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::app::trials::TrialAction;
@@ -48,7 +47,6 @@ pub struct App {
     settings_saver: Saver<Settings>,
     pose_saver: Saver<PoseLibrary>,
     quirk_notes: QuirkNotes,
-    scanner: Scanner,
     closing: Option<Closing>,
     finding_ports: Option<BackgroundJob<Vec<PortFound>>>,
     exporting: Option<BackgroundJob<NoticeKind>>,
@@ -93,7 +91,6 @@ impl App {
             state,
             settings_saver,
             pose_saver,
-            scanner: Scanner::default(),
             closing: None,
             finding_ports: None,
             exporting: None,
@@ -161,7 +158,7 @@ impl App {
             hand.go_on_leaving(env, notices);
             self.quirk_notes.tick(hand, env, notices, now);
         }
-        self.scanner.drain(scan);
+        scan.drain();
         self.take_jobs(now);
         self.save_changes(now);
     }
@@ -239,10 +236,9 @@ impl App {
             Action::Disconnect => self.connect(None),
             Action::Scan(wish) => {
                 let held = self.state.hand().endpoint.clone();
-                self.scanner
-                    .begin(wish, held, &self.env, &mut self.state.scan);
+                self.state.scan.begin(wish, held, &self.env);
             }
-            Action::CancelScan => self.scanner.cancel(&mut self.state.scan),
+            Action::CancelScan => self.state.scan.cancel(),
             Action::Dismiss(id) => self.state.notices.dismiss(id),
             action => self.hand_action(action, now),
         }
@@ -370,7 +366,7 @@ impl App {
     fn connect(&mut self, to: Option<Endpoint>) {
         if let Some(endpoint) = &to {
             // A scan may still ask further ids on the port that is wanted.
-            self.scanner.cancel(&mut self.state.scan);
+            self.state.scan.cancel();
             self.state.settings.remember(endpoint);
         }
         let State { hands, notices, .. } = &mut self.state;

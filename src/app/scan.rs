@@ -56,7 +56,7 @@ pub enum ScanStage {
 }
 
 /// What the window shows of the newest scan.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Default)]
 pub struct ScanState {
     /// Where it stands.
     pub stage: ScanStage,
@@ -72,6 +72,8 @@ pub struct ScanState {
     pub remarks: Vec<ScanEvent>,
     /// Hands and remarks for which there was no room.
     pub left_out: usize,
+    /// The scan itself, while it runs.
+    handle: Option<ScanHandle>,
 }
 
 impl ScanState {
@@ -91,32 +93,13 @@ impl ScanState {
             _ => self.left_out += 1,
         }
     }
-}
 
-/// The scan behind the book, if one runs.
-#[derive(Debug, Default)]
-pub(crate) struct Scanner {
-    handle: Option<ScanHandle>,
-}
-
-impl Scanner {
     /// Begins a scan; one that runs goes on instead. `held` is the hand that is connected now.
-    pub(crate) fn begin(
-        &mut self,
-        wish: ScanTarget,
-        held: Option<Endpoint>,
-        env: &Env,
-        book: &mut ScanState,
-    ) {
+    pub(crate) fn begin(&mut self, wish: ScanTarget, held: Option<Endpoint>, env: &Env) {
         if self.handle.is_some() {
             return;
         }
-        *book = ScanState {
-            stage: ScanStage::Running,
-            wish: Some(wish.clone()),
-            ..ScanState::default()
-        };
-        let (local, hosts, ids) = match wish {
+        let (local, hosts, ids) = match wish.clone() {
             ScanTarget::Ports(ids) => (Local::Listed, Vec::new(), ids),
             ScanTarget::Port(port, ids) => {
                 let wish = ScanPort {
@@ -142,27 +125,32 @@ impl Scanner {
             dial: Arc::clone(&env.dial),
             wake: Arc::clone(&env.wake),
         };
-        self.handle = Some(start(config, &env.runtime));
+        *self = Self {
+            stage: ScanStage::Running,
+            wish: Some(wish),
+            handle: Some(start(config, &env.runtime)),
+            ..Self::default()
+        };
     }
 
     /// Ends the scan that runs; what it found stays.
-    pub(crate) fn cancel(&mut self, book: &mut ScanState) {
+    pub(crate) fn cancel(&mut self) {
         if self.handle.take().is_some() {
-            book.stage = ScanStage::Cancelled;
+            self.stage = ScanStage::Cancelled;
         }
     }
 
     /// Takes in what was found.
-    pub(crate) fn drain(&mut self, book: &mut ScanState) {
-        let Some(handle) = &mut self.handle else {
+    pub(crate) fn drain(&mut self) {
+        let Some(mut handle) = self.handle.take() else {
             return;
         };
-        book.progress = handle.progress();
+        self.progress = handle.progress();
         for event in std::iter::from_fn(|| handle.try_event()).take(EVENTS_PER_FRAME) {
-            book.take(event);
+            self.take(event);
         }
-        if !book.is_running() {
-            self.handle = None;
+        if self.is_running() {
+            self.handle = Some(handle);
         }
     }
 }
@@ -187,18 +175,18 @@ mod tests {
 
     #[test]
     fn what_has_no_room_is_counted() {
-        let mut book = ScanState::default();
+        let mut scan = ScanState::default();
         for _ in 0..=FOUND_MAX {
-            book.take(found(1));
+            scan.take(found(1));
         }
         for _ in 0..=REMARKS_MAX {
             let place = "/dev/x".to_owned();
-            book.take(ScanEvent::Held { place });
+            scan.take(ScanEvent::Held { place });
         }
         assert_eq!(
-            (book.found.len(), book.remarks.len()),
+            (scan.found.len(), scan.remarks.len()),
             (FOUND_MAX, REMARKS_MAX)
         );
-        assert_eq!(book.left_out, 2);
+        assert_eq!(scan.left_out, 2);
     }
 }
