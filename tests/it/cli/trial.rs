@@ -60,7 +60,7 @@ fn without_a_persons_word_nothing_moves() {
 #[test]
 fn a_plan_that_makes_no_sense_is_wrong_usage() {
     for (more, words) in [
-        (&["--speed", "0"][..], "speed 0"),
+        (&["--speed", "0"][..], "a speed of 0"),
         (&["--ceiling", "100"], "ceiling"),
         (&["--approach", "10", "--speed", "25"], "slower"),
         (&["--until", "proximity:8000"], "--approach"),

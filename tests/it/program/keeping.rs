@@ -117,6 +117,7 @@ async fn settings_are_kept_and_setpoints_never() {
         keys,
         [
             "angle_unit",
+            "first",
             "gesture_names",
             "gesture_route",
             "language",
