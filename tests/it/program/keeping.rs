@@ -6,6 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::env::Env;
 use handscope::app::files::settings_file::load;
 use handscope::app::notices::NoticeKind;
+use handscope::app::params::action::ParamAction;
 use handscope::app::program::App;
 use handscope::app::settings::{Settings, Theme};
 use handscope::app::trials::TrialAction;
@@ -250,4 +251,33 @@ async fn staged_rows_of_one_hand_are_not_those_of_another() {
     bench.act(Action::Connect("rs485:y".parse().unwrap()));
     bench.run(1000).await;
     assert!(bench.hand().params.all_staged().is_empty());
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_dialog_that_was_cancelled_changes_nothing_and_the_next_one_opens() {
+    let folder = tempfile::tempdir().unwrap();
+    let typed = folder.path().join("poses.toml");
+    let (mut app, clock) = begun(None, Settings::default()).await;
+    let before = app.state().settings.clone();
+    let opens = |path: Option<PathBuf>| {
+        [
+            Action::ImportPoses(path.clone()),
+            Action::Param(ParamAction::Open(path.clone())),
+            Action::Trial(TrialAction::Open(path)),
+        ]
+    };
+    for open in opens(None) {
+        app.act(open, clock.now());
+        run(&mut app, clock, 100).await;
+    }
+    assert_eq!(told(&app), vec![NoticeKind::NoFileChosen; 3]);
+    assert_eq!(app.state().settings, before);
+    assert!(app.state().trials.sessions.is_empty());
+    // What is typed then is looked for: nothing waits for the dialog that is gone.
+    for open in opens(Some(typed)) {
+        app.act(open, clock.now());
+        run(&mut app, clock, 100).await;
+    }
+    let refused = told(&app).len() - 3;
+    assert_eq!(refused, 3, "{:?}", told(&app));
 }
