@@ -152,7 +152,7 @@ impl App {
             hand.tick_params(env, notices);
             hand.tick_series(trials, notices);
             hand.tick_procedure(env, settings, notices);
-            hand.read_first(settings.first);
+            hand.read_first(settings.read_first);
             hand.offer_tare(settings);
             hand.record();
             hand.go_on_leaving(env, notices);
@@ -352,7 +352,7 @@ impl App {
             Action::Theme(theme) => settings.theme = theme,
             Action::Side(side) => settings.side = side,
             Action::Layout(layout) => settings.layout = layout,
-            Action::ReadFirst(first) => settings.first = first,
+            Action::ReadFirst(first) => settings.read_first = first,
             Action::Zoom(zoom) => settings.zoom = zoom,
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,

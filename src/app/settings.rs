@@ -264,7 +264,7 @@ pub struct Settings {
     /// What a person tared last, by the place and id of the hand.
     pub tares: BTreeMap<String, KeptTare>,
     /// What is read first while something moves.
-    pub first: First,
+    pub read_first: First,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,

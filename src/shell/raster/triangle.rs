@@ -197,14 +197,12 @@ impl Triangle {
             right,
             bottom,
         } = self.bounds;
-        for side in [left, top, right, bottom] {
-            hasher.write_i64(side);
-        }
+        hasher.write_u64(pair(left, top));
+        hasher.write_u64(pair(right, bottom));
         for (corner, vertex) in self.corners.iter().zip(&self.vertices) {
-            hasher.write_i64(corner.x);
-            hasher.write_i64(corner.y);
-            hasher.write_u32(vertex.uv.x.to_bits());
-            hasher.write_u32(vertex.uv.y.to_bits());
+            let [u, v] = [vertex.uv.x, vertex.uv.y].map(|at| u64::from(at.to_bits()));
+            hasher.write_u64(pair(corner.x, corner.y));
+            hasher.write_u64(u << 32 | v);
             hasher.write_u32(u32::from_le_bytes(vertex.color.to_array()));
         }
         hasher.finish()
@@ -243,6 +241,11 @@ impl Triangle {
             }
         }
     }
+}
+
+/// Two places on the screen as one number.
+const fn pair(x: i64, y: i64) -> u64 {
+    x.cast_unsigned().rotate_left(32) ^ y.cast_unsigned()
 }
 
 /// The pixels of a row, inside the bounds, whose centres are inside all edges.

@@ -147,7 +147,7 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// What is read first while something moves; another choice, if one was made.
 fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<First> {
     let look = pane.look;
-    let mut first = pane.state.settings.first;
+    let mut first = pane.state.settings.read_first;
     let all = [
         (First::Force, look.say(panels::FIRST_FORCE)),
         (First::Touch, look.say(panels::FIRST_TOUCH)),

@@ -5,9 +5,10 @@ use crate::setup::client::{Client, LinkEvent};
 use crate::setup::hand;
 use crate::setup::link;
 use handscope::hand::{Angle, Dof, Fault, Force, HandSample, PerDof, Speed};
-use handscope::link::{ArmRequest, Clock, LinkConfig, LinkStatus, PollRates};
+use handscope::link::{ArmRequest, Clock, LinkConfig, LinkStatus};
 use handscope::record::{Hold, LinkState};
 use handscope::sim::{Personality, Scenario, SharedHand, SimConfig};
+use handscope::tasks::series::RATES;
 use handscope::trials::best::{best, scores};
 use handscope::trials::{
     Abort, Approach, Criterion, EarlyEnd, Limits, LinkView, SeriesOrder, Trial, TrialEvent,
@@ -17,12 +18,6 @@ use tokio::time::{Duration, Instant, timeout};
 
 /// As a real hand on RS485 answers: 6 to 15 ms (see the table's source).
 const TURNAROUND: Duration = Duration::from_millis(6);
-/// The table was read 98 times a second.
-const RATES: PollRates = PollRates {
-    state_hz: 100.0,
-    tactile_hz: 50.0,
-    settings_hz: 5.0,
-};
 
 /// A hand, a link to it, and the trial's view of both.
 struct Bench {

@@ -171,9 +171,9 @@ fn the_list_of_labels_has_stop_the_badge_and_every_joint_with_its_value() {
 fn what_is_read_first_while_the_hand_moves_is_chosen_beside_the_lines_time_and_kept() {
     let mut bench = Bench::live();
     bench.show(View::Connection);
-    assert_eq!(bench.state().settings.first, First::Force);
+    assert_eq!(bench.state().settings.read_first, First::Force);
     bench.choose("While it moves, first", "Fingertips");
-    assert_eq!(bench.state().settings.first, First::Touch);
+    assert_eq!(bench.state().settings.read_first, First::Touch);
     let kept = toml::to_string(&bench.state().settings).unwrap();
     assert!(kept.contains("first = \"touch\""), "{kept}");
     assert_eq!(bench.writes(), []);
