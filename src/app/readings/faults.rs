@@ -79,7 +79,6 @@ impl FaultEntry {
 #[derive(Debug, Clone, Default)]
 pub struct FaultList {
     entries: Vec<FaultEntry>,
-    worked_again_c: PerDof<Option<f32>>,
 }
 
 impl FaultList {
@@ -88,10 +87,6 @@ impl FaultList {
         let mut news = false;
         if let Some(faults) = sample.faults.filter(|_| fresh.contains(Group::Faults)) {
             for (dof, faults) in faults.value.iter() {
-                if self.is_hot(dof) && !faults.contains(Fault::OverTemperature) {
-                    let celsius = sample.temperature.map(|all| all.value[dof].documented());
-                    self.worked_again_c[dof] = celsius.flatten().map(f32::from);
-                }
                 news |= faults.iter().fold(false, |new, fault| {
                     self.see(dof, FaultKind::Fault(fault), now) | new
                 });
@@ -159,19 +154,6 @@ impl FaultList {
         } else {
             NothingToClear::NoFault
         })
-    }
-
-    /// True while this drive is too hot.
-    fn is_hot(&self, dof: Dof) -> bool {
-        let hot = FaultKind::Fault(Fault::OverTemperature);
-        let mut own = self.entries.iter().filter(|entry| entry.dof == dof);
-        own.any(|entry| entry.is_active() && entry.what == hot)
-    }
-
-    /// The temperature at which this drive's last over-temperature ended, °C; `None` if none did yet.
-    #[must_use]
-    pub fn worked_again_c(&self, dof: Dof) -> Option<f32> {
-        self.worked_again_c[dof]
     }
 
     /// What lasts first, then what is over and unseen, then the rest; the newest first within each.

@@ -1,6 +1,5 @@
-//! Readers of what is heard of a hand: faults and what happened around them, peaks, taring, cooling, friction.
+//! Readers of what is heard of a hand: faults and what happened around them, peaks, taring, friction.
 
-pub mod cooling;
 pub mod fault_recorder;
 pub mod faults;
 pub(crate) mod friction;

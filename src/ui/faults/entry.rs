@@ -2,16 +2,13 @@
 
 use crate::app::action::Action;
 use crate::app::hand::Freshness;
-use crate::app::readings::cooling;
-use crate::app::readings::cooling::{CoolingGoal, Course, GoalSource};
 use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
-use crate::hand::{Dof, Fault};
+use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::theme;
 use egui::{Color32, CornerRadius, Frame, Margin, Rect, ScrollArea, Sense, Ui, vec2};
-use std::time::Duration;
 
 /// Size of the number on a tab.
 const FAULT_BADGE: f32 = 16.0;
@@ -72,9 +69,6 @@ pub(crate) fn entry_ui(
                 kit::say_ui(ui, said.cause, palette.muted);
                 let advice = look.told(faults::TODO, said.advice);
                 kit::say_ui(ui, &advice, palette.text);
-            }
-            if entry.is_active() {
-                clear_words_ui(ui, pane, entry);
             }
             match depth {
                 Depth::Short => None,
@@ -220,73 +214,6 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
         parts.push(format!("{came} {} {times}", entry.count));
     }
     parts.join(" · ")
-}
-
-/// Whether CLEAR_ERROR ends it; for heat, how long cooling takes.
-fn clear_words_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) {
-    let look = pane.look;
-    let (text, color) = match (entry.what.clearable(), entry.what) {
-        (Some(true), _) => (faults::CLEAR_HELPS, look.palette.muted),
-        (Some(false), _) => (faults::CLEAR_CANNOT, look.palette.warn),
-        (None, FaultKind::Status(_)) => (faults::CLEAR_FOLLOWS, look.palette.muted),
-        (None, FaultKind::Fault(_)) => (faults::CLEAR_UNSAID, look.palette.warn),
-    };
-    kit::say_ui(ui, look.say(text), color);
-    if entry.what == FaultKind::Fault(Fault::OverTemperature) {
-        let (text, rests_on) = cooling_words(pane, entry.dof);
-        kit::say_ui(ui, &text, look.palette.text);
-        kit::say_ui(ui, rests_on, look.palette.muted);
-    }
-}
-
-/// How warm the drive is and when it may work again; what that rests on.
-fn cooling_words(pane: &Pane<'_>, dof: Dof) -> (String, &'static str) {
-    let look = pane.look;
-    let state = pane.state;
-    let goal = CoolingGoal::of(state.hand().faults.worked_again_c(dof));
-    let celsius = state
-        .hand()
-        .sample
-        .temperature
-        .map(|all| all.value[dof].raw());
-    // Its course is of means over seconds, and may be older than what it has now.
-    let is_hot = celsius.is_some_and(|celsius| f32::from(celsius) > goal.celsius);
-    let celsius = format::whole(celsius.map(i64::from), 0);
-    let until = format!("{:.0} °C", goal.celsius);
-    let more = match cooling::course(&state.hand().history, dof, state.now.secs(), goal) {
-        Course::Falling { left } if left >= cooling::LONGEST => look.told(faults::COOL_LONG, until),
-        Course::Falling { left } => format!(
-            "{} {} {} {until}",
-            look.say(faults::COOL_IN),
-            rough(left),
-            look.say(faults::COOL_TO)
-        ),
-        Course::NotFalling => look.say(faults::COOL_NOT).into(),
-        Course::Reached if is_hot => look.say(faults::COOL_UNKNOWN).into(),
-        Course::Unknown => look.say(faults::COOL_UNKNOWN).into(),
-        // The temperature is read less often than the faults: whether it is cool enough, the hand has to say.
-        Course::Reached => format!(
-            "{} {until}{}",
-            look.say(faults::COOL_BELOW),
-            look.say(faults::COOL_STILL)
-        ),
-    };
-    let tip = match goal.source {
-        GoalSource::Assumed => faults::COOL_ASSUMED,
-        GoalSource::Observed => faults::COOL_OBSERVED,
-    };
-    let text = format!("{} {celsius} °C · {more}", look.say(faults::COOL_NOW));
-    (text, look.say(tip))
-}
-
-/// A time that is only estimated: no finer than it can be known.
-fn rough(left: Duration) -> String {
-    let seconds = left.as_secs_f64();
-    if seconds < 90.0 {
-        format!("{:.0} s", ((seconds / 5.0).ceil() * 5.0).max(5.0))
-    } else {
-        format!("{:.0} min", (seconds / 60.0).ceil())
-    }
 }
 
 /// How many faults nobody has seen, as a small badge with its right top corner here.

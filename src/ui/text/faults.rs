@@ -28,23 +28,9 @@ texts! {
     TIDY: "Tidy up", "整理列表";
     FORGET: "Forget", "清空历史", "Takes faults that are over and seen from the list.", "从列表中移除已结束且已看的故障。";
 
-    CLEAR_HELPS: "Clear errors can end it.", "可用“清除错误”结束。";
-    CLEAR_CANNOT: "Clear errors cannot end it: it ends by itself when the drive is cool.", "不可清除：温度回落后自动结束。";
-    CLEAR_UNSAID: "The manual does not say whether clear errors ends it.", "手册没有说明能否清除。";
-    CLEAR_FOLLOWS: "It follows from the drive's faults and from the next command.", "随该驱动器的故障与下一条指令而变。";
     CLEAR_NO_FAULT: "Nothing is wrong that could be cleared.", "没有可清除的故障。";
     CLEAR_ONLY_HEAT: "Only over-temperature is left: it cannot be cleared and ends when the drive is cool.", "仅剩过温故障：不可清除，温度回落后自动结束。";
     CLEAR_UNREAD: "Faults were not read yet.", "尚未读取故障。";
-    COOL_NOW: "It has", "当前";
-    COOL_IN: "about", "约";
-    COOL_TO: "more until", "后降至";
-    COOL_LONG: "more than an hour until", "一小时以上降至";
-    COOL_NOT: "no estimate yet: the temperature does not fall.", "尚无法估计：温度没有下降。";
-    COOL_UNKNOWN: "no estimate yet: too few readings.", "尚无法估计：读数太少。";
-    COOL_BELOW: "already below", "已低于";
-    COOL_STILL: "; the hand last said that the fault lasts.", "；灵巧手最近一次仍报告此故障。";
-    COOL_ASSUMED: "The manual gives no temperature at which a drive works again: 70 °C is assumed, and cooling towards 25 °C.", "手册没有给出恢复工作的温度：此处假定 70 °C，并向 25 °C 冷却。";
-    COOL_OBSERVED: "This drive worked again at this temperature before; cooling towards 25 °C is assumed.", "该驱动器曾在此温度恢复工作；假定向 25 °C 冷却。";
 
     MEANINGS: "What the words mean", "术语说明";
     MEANINGS_STATUS: "What a drive says it does", "驱动器状态";

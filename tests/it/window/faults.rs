@@ -99,26 +99,6 @@ fn the_list_stands_still_while_the_pointer_is_on_it() {
 }
 
 #[test]
-fn a_drive_that_is_cool_enough_is_not_promised_to_work_while_the_hand_reports_its_fault() {
-    let mut bench = Bench::live();
-    bench.hand(|hand, _| {
-        hand.inject_fault(Dof::Middle, Fault::OverTemperature);
-        hand.warm(Dof::Middle, 71.0);
-    });
-    bench.click_first_button("Faults");
-    let mut told = Vec::new();
-    for _ in 0..200 {
-        bench.run(40);
-        told.extend(bench.texts_with("It has "));
-    }
-    assert!(!told.is_empty());
-    assert!(
-        told.iter().all(|text| !text.contains("should end")),
-        "{told:?}"
-    );
-}
-
-#[test]
 fn the_status_of_a_joint_is_one_click_away_from_its_explanation() {
     let mut bench = Bench::live();
     bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
@@ -163,30 +143,6 @@ fn who_meets_a_word_for_the_first_time_finds_it_explained_without_any_fault() {
         bench.run(60);
     }
     assert_eq!(bench.writes(), []);
-}
-
-#[test]
-fn a_hot_drive_is_said_to_cool_with_a_time_once_it_falls() {
-    let mut bench = Bench::live();
-    bench.hand(|hand, _| {
-        hand.inject_fault(Dof::Middle, Fault::OverTemperature);
-        hand.warm(Dof::Middle, 99.0);
-    });
-    bench.wait(3000);
-    bench.click_button("Faults");
-    bench.run(60);
-    assert!(!bench.texts_with("no estimate yet").is_empty());
-    bench.wait(25_000);
-    let told = bench.texts_with("more until 70 °C");
-    assert_eq!(told.len(), 1, "{:?}", bench.texts_with("°C"));
-    assert!(!bench.texts_with("70 °C is assumed").is_empty());
-    // At 99 °C and towards 25 °C in 60 s, it needs 30 s in all.
-    assert!(
-        told[0].contains("about 5 s") || told[0].contains("about 10 s"),
-        "{told:?}"
-    );
-    bench.wait(12_000);
-    assert!(!bench.shows("FAULT"), "it ended by itself");
 }
 
 #[test]
