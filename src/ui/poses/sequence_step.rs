@@ -5,11 +5,11 @@ use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit, ShiftDirection};
 use crate::poses::library::{Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, reorder};
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, poses};
 use crate::ui::theme;
-use egui::{Align, CursorIcon, Id, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, CursorIcon, Layout, Ui, UiBuilder, vec2};
 
 /// Height of a row.
 pub(crate) const ROW: f32 = 44.0;
@@ -88,26 +88,13 @@ pub(crate) fn step_ui(
 /// The part of a row that takes the keyboard and the pointer for putting the step elsewhere.
 fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): (usize, &str)) {
     let look = pane.look;
-    let id = |at: usize| Id::unique((sequence.id, at, "handle"));
     let label = format!("{} {}: {name}", look.say(poses::STEP_NAME), at + 1);
     let text = format!("{}  {name}", at + 1);
-    let (_, rect) = ui.allocate_space(ui.available_size());
+    let (id, rect) = ui.allocate_space(ui.available_size());
     let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
-    let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id(at));
+    let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id);
     let words = rect.shrink2(vec2(theme::STEP, 0.0));
     Label::new(&text, look.palette.text).paint(ui, words);
-    if response.clicked() {
-        response.request_focus();
-    }
-    if let Some(way) = reorder::keyed(ui, &response) {
-        let to = match way {
-            ShiftDirection::Earlier => at.saturating_sub(1),
-            ShiftDirection::Later => (at + 1).min(sequence.steps.len().saturating_sub(1)),
-        };
-        // The keyboard goes with the step.
-        ui.memory_mut(|memory| memory.request_focus(id(to)));
-        change(pane, sequence, SequenceEdit::Move(at, to));
-    }
     response.on_hover_cursor(CursorIcon::Grab);
 }
 

@@ -33,8 +33,8 @@ texts! {
     STORE_ASKED: "Storing gesture", "写入手势";
     READ_ASKED: "Reading gesture", "读取手势";
 
-    SELECT_TIP: "Shows this pose for editing. Nothing moves. Drag it, or press Alt and an arrow key, to change the order.", "显示该姿态以便编辑，不会运动。拖动或按 Alt + 方向键可调整顺序。";
-    DRAG_TIP: "Drag this step, or press Alt and an arrow key, to change the order.", "拖动该步骤，或按 Alt + 方向键，可调整顺序。";
+    SELECT_TIP: "Shows this pose for editing. Nothing moves. Drag it to change the order.", "显示该姿态以便编辑，不会运动。拖动可调整顺序。";
+    DRAG_TIP: "Drag this step to change the order.", "拖动该步骤可调整顺序。";
     STEP_NAME: "Step", "步骤";
     RECALL: "Go", "执行", "Takes this pose within its speed and force. Locked and left joints stay.", "按该姿态的速度与力执行。已锁定或不参与的自由度不动。";
     RECALL_NAME: "Go to", "执行姿态";
