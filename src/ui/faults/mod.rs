@@ -1,7 +1,6 @@
 //! The view that explains the hand: six drives, what is and was wrong, what to do, and the log. Clears nothing by itself.
 pub(crate) mod entry;
 pub(crate) mod recording_events;
-pub(crate) mod recording_plot;
 pub(crate) mod recordings;
 
 use crate::app::action::Action;

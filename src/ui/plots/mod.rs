@@ -216,8 +216,8 @@ impl PlotView {
     }
 }
 
-/// Height of each of so many plots.
-fn room(ui: &Ui, count: usize) -> f32 {
+/// Height of each of so many plots above their time axis.
+pub(crate) fn room(ui: &Ui, count: usize) -> f32 {
     let count = f32::from(u8::try_from(count).unwrap_or(u8::MAX));
     ((ui.available_height() - theme::PLOT_TIME_AXIS) / count).floor()
 }

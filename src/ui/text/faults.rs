@@ -70,7 +70,6 @@ texts! {
     RECORDING_EVENTS: "What happened", "事件";
     RECORDING_EVENTS_LOST: "Events that were not kept:", "未保留的事件：";
     RECORDING_FAULT: "fault", "故障";
-    LANES: "Status of the drives", "驱动器状态";
 
     ACT_DISARM: "Disarmed", "取消使能";
     ACT_TARGET: "target", "目标";

@@ -279,7 +279,7 @@ fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
     bench.wait(1000);
     bench.click("Recording: Index: Stall");
     bench.run(60);
-    assert!(bench.shows("Status of the drives"));
+    assert!(bench.shows("What happened"));
     let listed: Vec<bool> = bench
         .state()
         .hand()
@@ -290,7 +290,7 @@ fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
     assert_eq!(listed, [true]);
     bench.click("Drive Ring");
     bench.run(60);
-    assert!(!bench.shows("Status of the drives"), "tiles lead back");
+    assert!(!bench.shows("What happened"), "tiles lead back");
 }
 
 #[test]
