@@ -15,7 +15,7 @@ pub(crate) mod trace;
 pub(crate) mod track;
 
 pub use crate::history::mark::{MARKS_MAX, Mark, MarkKind, NOTE_MAX};
-pub use crate::history::reading::{Reading, Spread, Summary};
+pub use crate::history::reading::{Reading, Summary};
 pub use crate::history::series::{CHANNEL_ROWS, HISTORY_ROWS, HISTORY_SECONDS, History, Series};
 pub use crate::history::table::Table;
 pub(crate) use crate::history::table::TableGroup;

@@ -21,29 +21,3 @@ pub struct Summary {
     /// Sum by count; each measurement counts once, however long it stood.
     pub mean: f64,
 }
-
-/// Mean and noise of a stretch of time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
-    /// Mean, in the line's unit.
-    pub mean: f64,
-    /// Standard deviation of the sample, in the same unit.
-    pub deviation: f64,
-}
-
-impl Spread {
-    /// Of some values; `None` below two. In one pass and without losing digits to large means (Welford).
-    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
-        let (mut count, mut mean, mut squares) = (0u32, 0.0, 0.0);
-        for value in values {
-            count += 1;
-            let apart = value - mean;
-            mean += apart / f64::from(count);
-            squares += apart * (value - mean);
-        }
-        (count >= 2).then(|| Self {
-            mean,
-            deviation: (squares / f64::from(count - 1)).sqrt(),
-        })
-    }
-}

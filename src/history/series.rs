@@ -6,7 +6,7 @@ use crate::hand::{
     Timed, Touch,
 };
 use crate::history::mark::{Mark, MarkKind, Marks};
-use crate::history::reading::{Reading, Spread, Summary};
+use crate::history::reading::{Reading, Summary};
 use crate::history::table::{Table, TableGroup};
 use crate::history::trace::Trace;
 use crate::history::track::{HistoryTrack, Slice};
@@ -264,15 +264,6 @@ impl History {
         let mark = |mark: &Mark| (mark.at.secs(), mark.kind.words());
         let marks = self.marks(from_s, to_s).map(mark);
         Table::new(groups.collect(), marks.collect())
-    }
-
-    /// Mean and standard deviation of a stretch of time; `None` below two values. The work grows with their number.
-    #[must_use]
-    pub fn spread(&self, series: Series, from_s: f64, to_s: f64) -> Option<Spread> {
-        let track = self.track(series)?;
-        let rows = track.rows_within(from_s, to_s);
-        let values = rows.filter_map(|row| track.value(series.place(), row));
-        Spread::of(values.filter(|value| !value.is_nan()).map(f64::from))
     }
 
     /// Memory held by the channels of the fingertips, in bytes.

@@ -380,7 +380,7 @@ fn an_hour_at_100_hz_with_fingertips_at_30_hz_fits_in_100_megabytes() {
 }
 
 #[test]
-fn channels_are_kept_for_ten_minutes_and_tell_their_mean_and_noise() {
+fn channels_are_kept_for_ten_minutes() {
     let mut history = History::new();
     let mut touch = Groups::NONE;
     touch.insert(Group::Tactile(Finger::Ring));
@@ -400,10 +400,4 @@ fn channels_are_kept_for_ten_minutes_and_tell_their_mean_and_noise() {
     let rows = history.rows(&[series], 0.0, 1000.0);
     assert_eq!(rows, CHANNEL_ROWS);
     assert!(history.reading(series, 290.0).is_none() && history.reading(series, 310.0).is_some());
-    let spread = history.spread(series, 898.0, 899.0).unwrap();
-    assert!((spread.mean - 3_000_050.0).abs() < 3.0, "{spread:?}");
-    assert!((spread.deviation - 50.0).abs() < 2.0, "{spread:?}");
-    let quiet = history.spread(Series::Channel(0, Finger::Ring), 898.0, 899.0);
-    assert_eq!(quiet.map(|quiet| quiet.deviation), Some(0.0));
-    assert_eq!(history.spread(series, 2000.0, 2001.0), None);
 }

@@ -172,12 +172,6 @@ texts! {
     LAST_MINUTE: "1 min", "1 分钟";
     LAST_10_MIN: "10 min", "10 分钟";
     LAST_TIP: "How much time the channels show.", "通道曲线显示的时间长度。";
-    NOISE_HEAD: "change  noise, 1 s", "变化  噪声（1 秒）";
-    NOISE: "Change and noise of channel", "通道变化与噪声", "Over the last second: the mean, counted from the rest, and the standard deviation, in counts.", "最近 1 秒内：相对静止值的平均变化，以及标准差，单位为计数。";
-    CHECK: "Check word", "校验字", "The two check bytes against the sum of the first 54 bytes. What they cover is not documented for this hand: data is shown either way.", "两个校验字节与前 54 字节之和的比较。手册没有说明其范围，因此数据照常显示。";
-    CHECK_OK: "right", "正确";
-    CHECK_DIFFERS: "differs", "不符";
-    DIRECTION: "Direction", "方向";
     NO_NUMBER: "not a number", "非数值";
     BEYOND: "out of range", "超出范围", "The manual ends at 20 N. The number is shown as the hand sent it.", "手册上限为 20 N。数值按灵巧手发送的原样显示。";
     SLIP: "Slip", "打滑";
