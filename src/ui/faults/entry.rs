@@ -222,10 +222,10 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
         return;
     };
     let count = pane.state.hand().faults.unseen().count().to_string();
-    let width = (kit::text_width(ui, &count, theme::tiny()) + theme::GAP).max(FAULT_BADGE);
+    let width = (kit::text_width(ui, &count, theme::small()) + theme::GAP).max(FAULT_BADGE);
     let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, FAULT_BADGE));
     ui.painter().rect_filled(place, FAULT_BADGE / 2.0, color);
-    let count = Label::new(&count, pane.look.palette.window).font(theme::tiny());
+    let count = Label::new(&count, pane.look.palette.window).small();
     count.center().paint(ui, place);
 }
 

@@ -267,7 +267,7 @@ fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::LIST_LINE);
         let time = format!("{:+7.1} s", line.at_s - fault_s);
-        let time = Label::new(&time, look.palette.muted).font(theme::number_small());
+        let time = Label::new(&time, look.palette.muted).number();
         time.ui(ui);
         let at = lamp_ui(ui, None);
         ui.painter().circle_filled(at, theme::HALO, line.color);

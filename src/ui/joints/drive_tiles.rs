@@ -90,7 +90,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
         (format!("{heat} °C"), heat_age),
         (format!("{current} mA"), current_age),
     ] {
-        if kit::text_width(ui, &text, theme::number_small()) > ui.available_width() {
+        if kit::text_width(ui, &text, theme::number()) > ui.available_width() {
             return;
         }
         figure_ui(ui, &text, pane.look.value(age, pane.look.palette.muted));
@@ -98,7 +98,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
 }
 
 fn figure_ui(ui: &mut Ui, text: &str, color: Color32) {
-    Label::new(text, color).font(theme::number_small()).ui(ui);
+    Label::new(text, color).number().ui(ui);
 }
 
 /// A ring for faults of this joint that nobody has seen yet.

@@ -65,7 +65,7 @@ impl JointRow {
         let text = format::with_unit(raw, 4, Quantity::Force.row().unit);
         let name = self.named(pane, main::NAME_FORCE_ACTUAL);
         let label = Label::new(&text, pane.look.value(freshness, live)).named(&name);
-        label.font(font_in(rect)).right().put(ui, rect);
+        label.number().right().put(ui, rect);
     }
 
     /// Current and temperature, each with its bar.
@@ -87,7 +87,7 @@ impl JointRow {
         };
         let name = self.named(pane, main::NAME_DRIVE);
         let label = Label::new(&text, look.value(age, live)).named(&name);
-        label.font(font_in(rect)).right().put(ui, rect);
+        label.number().right().put(ui, rect);
         let current = current.and_then(|current| current.documented());
         let level = current.map(|current| share(current.saturating_abs(), (0, CURRENT_END)));
         let color = look.value(current_age, self.color);
@@ -127,12 +127,5 @@ fn bar(ui: &Ui, rail: Rect, level: Option<f32>, color: Color32) {
     if let Some(level) = level {
         let filled = rail.with_max_x(rail.left() + rail.width() * level);
         ui.painter().rect_filled(filled, 1.0, color);
-    }
-}
-
-fn font_in(rect: Rect) -> egui::FontId {
-    match rect.width() < READING {
-        true => theme::number_small(),
-        false => theme::number(),
     }
 }

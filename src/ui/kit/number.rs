@@ -144,7 +144,7 @@ impl<'a> NumberField<'a> {
             .inner_margin(theme::NUMBER_INSET);
         let edit = TextEdit::singleline(text)
             .id(id)
-            .font(theme::number())
+            .number()
             .text_color(ink)
             .align(Align2::RIGHT_CENTER)
             .char_limit(TYPED_MAX)

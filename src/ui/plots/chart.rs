@@ -294,11 +294,11 @@ impl<'a> Chart<'a> {
                     (is_fixed, panels::RANGE_FIXED, panels::RANGE.tip()),
                     (is_decimated, panels::DECIMATED, panels::DECIMATED.tip()),
                 ] {
-                    let width = kit::text_width(ui, look.say(text), theme::tiny());
+                    let width = kit::text_width(ui, look.say(text), theme::small());
                     if is_said && width <= ui.available_width() {
                         let label = Label::muted(look, text);
                         label
-                            .font(theme::tiny())
+                            .small()
                             .ui(ui)
                             .on_hover_text(look.say(tip));
                     }
@@ -321,7 +321,7 @@ impl<'a> Chart<'a> {
                 .map(|reading| f64::from(reading.value));
             let value = value.map(|value| format!("{:.digits$}", value - curve.zero[1]));
             let text = value.unwrap_or_else(|| format::UNKNOWN.to_owned());
-            let format = TextFormat::simple(theme::number_small(), curve.stroke.color);
+            let format = TextFormat::simple(theme::number(), curve.stroke.color);
             job.append(&format!(" {text:>6}"), 0.0, format);
             texts.push(text);
         }
@@ -347,7 +347,7 @@ impl<'a> Chart<'a> {
             false => palette.muted,
         };
         let hints = |hints: AxisHints<'static>, color: Color32| {
-            let hints = hints.tick_label_font(theme::number_small());
+            let hints = hints.tick_label_font(theme::number());
             hints.tick_label_color(color).label_spacing(1.0..=2.0)
         };
         let values = hints(AxisHints::new_y(), color).min_thickness(theme::PLOT_AXIS);

@@ -136,7 +136,7 @@ impl TipDetail {
             egui::vec2(40.0, 12.0),
         );
         let text = look.say(panels::TIP_UP);
-        let label = Label::new(text, palette.faint).font(theme::tiny());
+        let label = Label::new(text, palette.faint).small();
         label.center().paint(ui, up);
         let (block, freshness) = self.block(pane);
         let (Grip::Ratio(ratio), Some(block)) = (Grip::of(block), block) else {

@@ -164,7 +164,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
         }
     });
     row.col(|ui| paint(ui, &said, font, color));
-    row.col(|ui| paint(ui, &frame.hex(), theme::number_small(), palette.muted));
+    row.col(|ui| paint(ui, &frame.hex(), theme::number(), palette.muted));
     clicked
 }
 

@@ -345,7 +345,7 @@ impl<'a> TrialSheet<'a, '_> {
                 ui.with_layout(Layout::top_down(Align::Max), |ui| {
                     number_ui(ui, &label, &mean, look.palette.text);
                     let range = Label::new(&range, look.palette.muted);
-                    range.font(theme::number_small()).ui(ui);
+                    range.number().ui(ui);
                 });
             });
         }

@@ -80,7 +80,7 @@ fn heat_ui(ui: &mut Ui, pane: &Pane<'_>) {
             Freshness::Live | Freshness::Stale => palette.dof[dof],
         };
         let label = look.told(words::dof(dof), name);
-        let text = Label::new(&text, color).font(theme::number_small());
+        let text = Label::new(&text, color).number();
         text.named(&label).ui(ui);
     }
 }

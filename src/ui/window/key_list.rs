@@ -132,6 +132,6 @@ fn cap_ui(ui: &mut Ui, look: Look, key: &str) {
         .fill(look.palette.control)
         .corner_radius(theme::ROUND_SMALL)
         .inner_margin(Margin::symmetric(6, 1));
-    let key = egui::RichText::new(key).font(theme::number());
+    let key = egui::RichText::new(key).monospace();
     frame.show(ui, |ui| ui.add(egui::Label::new(key).extend()));
 }
