@@ -1,6 +1,6 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
-use crate::ui::kit::{self, Button, Label, Look, Opens, Weight};
+use crate::ui::kit::{self, Button, Label, Look, Weight};
 use crate::ui::text::{Text, keys};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
@@ -59,42 +59,26 @@ impl KeyList {
     }
 }
 
-/// A title, and below it the names of keys with what they do.
-type KeyGroup = (Text, Vec<(String, Text)>);
+/// The groups of the list, column by column.
+const COLUMNS: [&[Text]; 3] = [
+    &[keys::MOTION, keys::MEASURING],
+    &[keys::JOINTS],
+    &[keys::WINDOW],
+];
 
-/// The columns of the list.
-fn columns() -> [Vec<KeyGroup>; 3] {
-    let part = |title: Text, wanted: fn(Wish) -> bool| -> KeyGroup {
-        let wishes = ROWS.iter().map(|row| row.wish);
-        let mut wishes: Vec<Wish> = wishes.filter(|wish| wanted(*wish)).collect();
-        wishes.dedup();
-        let named = |wish: Wish| (wish.keys(), wish.words());
-        (title, wishes.into_iter().map(named).collect())
-    };
-    let motion = part(keys::MOTION, |wish| {
-        matches!(
-            wish,
-            Wish::Stop | Wish::ArmOrNot | Wish::Open | Wish::Half | Wish::Close
-        )
-    });
-    let joints = part(keys::JOINTS, |wish| {
-        matches!(wish, Wish::Joint(_) | Wish::LinkFingers | Wish::AngleUnit)
-    });
-    let measuring = part(keys::MEASURING, |wish| {
-        matches!(
-            wish,
-            Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Opens(Opens::Note)
-        )
-    });
-    let mut window = part(keys::WINDOW, |wish| {
-        matches!(
-            wish,
-            Wish::Opens(Opens::View(_) | Opens::Keys) | Wish::Language | Wish::Theme
-        )
-    });
-    let zoom = ZOOM.map(|(key, words)| (key.to_owned(), words));
-    window.1.extend(zoom);
-    [vec![motion, measuring], vec![joints], vec![window]]
+/// The keys of a group, and what they do.
+fn rows(group: Text) -> Vec<(String, Text)> {
+    let wishes = ROWS.iter().map(|row| row.wish);
+    let mut wishes: Vec<Wish> = wishes.filter(|wish| wish.group() == group).collect();
+    wishes.dedup();
+    let mut rows: Vec<_> = wishes
+        .into_iter()
+        .map(|wish| (wish.keys(), wish.words()))
+        .collect();
+    if group == keys::WINDOW {
+        rows.extend(ZOOM.map(|(key, words)| (key.to_owned(), words)));
+    }
+    rows
 }
 
 /// True if it is to be hidden.
@@ -105,12 +89,12 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
         shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {
-        for (ui, parts) in all.iter_mut().zip(columns()) {
-            for (title, rows) in parts {
-                Label::new(look.say(title), palette.accent).small().ui(ui);
+        for (ui, parts) in all.iter_mut().zip(COLUMNS) {
+            for title in parts {
+                Label::new(look.say(*title), palette.accent).small().ui(ui);
                 let grid = Grid::new(title.en).num_columns(2).min_col_width(110.0);
                 grid.min_row_height(20.0).show(ui, |ui| {
-                    for (keys, words) in rows {
+                    for (keys, words) in rows(*title) {
                         ui.horizontal(|ui| {
                             keys.split(", ").for_each(|key| cap_ui(ui, look, key));
                         });

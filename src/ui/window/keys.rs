@@ -177,6 +177,16 @@ impl Wish {
         }
     }
 
+    /// Its group in the list of keys.
+    pub(crate) const fn group(self) -> Text {
+        match self {
+            Self::Stop | Self::ArmOrNot | Self::Open | Self::Half | Self::Close => keys::MOTION,
+            Self::Joint(_) | Self::LinkFingers | Self::AngleUnit => keys::JOINTS,
+            Self::Tare | Self::UndoTare | Self::Pause | Self::Opens(Opens::Note) => keys::MEASURING,
+            Self::Opens(_) | Self::Language | Self::Theme => keys::WINDOW,
+        }
+    }
+
     /// The names of its keys, for tips and the list.
     pub(crate) fn keys(self) -> String {
         let own = ROWS.iter().filter(|row| row.wish == self);
