@@ -4,13 +4,12 @@ mod card;
 #[cfg(test)]
 mod card_tests;
 mod controls;
+mod field;
 pub(crate) mod dash;
 pub(crate) mod format;
 mod look;
-mod number;
 pub(crate) mod path_field;
 pub(crate) mod reorder;
-mod text_field;
 
 pub(crate) use card::{Card, CardView, Choice, Manner};
 pub(crate) use controls::{
@@ -18,6 +17,6 @@ pub(crate) use controls::{
     head_ui, lamp, left_ui, named_field, pick_ui, pressed, right_ui, say_ui, sign, text_width,
     warning_sign, wide_ui,
 };
+pub(crate) use field::{NumberField, TextField, refused_ui};
 pub(crate) use look::{Look, Opens, Pane, Typing};
-pub(crate) use number::NumberField;
-pub(crate) use text_field::{TextField, refused_ui};
+

@@ -11,7 +11,6 @@ use crate::ui::text::{Text, device, panels};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
-use std::net::Ipv4Addr;
 
 /// Characters of an address.
 const ADDRESS_MAX: usize = 15;
@@ -364,9 +363,10 @@ fn address_ui(
     let text = value.map_or_else(String::new, |value| value.to_string());
     let words = pane.look.say(panels::ADDRESS_WRONG);
     let field = TextField::new(name, ADDRESS_MAX).hint(format::UNKNOWN);
-    let field = field.check(|text| text.parse::<Ipv4Addr>().is_ok(), words);
-    let typed = field.ui(ui, pane, &text)?;
-    typed.parse().ok().map(Value::Address)
+    field.read_ui(ui, pane, &text, |text| {
+        let address = text.parse().ok().map(Value::Address);
+        address.ok_or_else(|| words.to_owned())
+    })
 }
 
 /// A row that says where the hand is found is not written from the table: it is changed under a card, with a way back.

@@ -50,12 +50,14 @@ pub(crate) fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
 fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let tags = pose.tags.join(", ");
-    let name = TextField::new(look.say(poses::NAME), NAME_CHARS_MAX);
-    let words = TextField::new(look.say(poses::TAGS), TAGS_MAX).hint(look.tip(poses::TAGS));
     let rename: fn(String) -> PoseEdit = PoseEdit::Rename;
-    for (field, value, edit) in [(name, &pose.name, rename), (words, &tags, PoseEdit::Tags)] {
+    for (caption, max, value, edit) in [
+        (poses::NAME, NAME_CHARS_MAX, &pose.name, rename),
+        (poses::TAGS, TAGS_MAX, &tags, PoseEdit::Tags),
+    ] {
         ui.horizontal(|ui| {
-            caption_ui(ui, field.name, look.palette.muted);
+            caption_ui(ui, look.say(caption), look.palette.muted);
+            let field = TextField::new(look.say(caption), max).hint(look.tip(caption));
             if let Some(text) = field.ui(ui, pane, value) {
                 change(pane, pose, edit(text));
             }
