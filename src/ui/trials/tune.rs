@@ -36,7 +36,7 @@ impl TuneView {
             ui.set_min_height(ui.available_height());
             kit::head_ui(ui, look, look.say(tune::SERIES), |_| ());
             match pane.state.hand().runs_series() {
-                true => tune_live::live_ui(ui, pane, &mut self.result.chart),
+                true => tune_live::live_ui(ui, pane, &mut self.result.curves.chart),
                 false => self.rest_ui(ui, pane),
             }
         });
