@@ -10,7 +10,7 @@ use crate::link::traffic::frame::Frame;
 use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{Text, traffic};
 use crate::ui::theme;
-use crate::ui::traffic::filter::{Filter, Passed};
+use crate::ui::traffic::filter::Filter;
 use crate::ui::traffic::list::ChosenFrames;
 use egui::{Event, Ui, vec2};
 use std::collections::VecDeque;
@@ -31,7 +31,9 @@ struct Paused {
 #[derive(Debug, Default)]
 pub(crate) struct TrafficView {
     filter: Filter,
-    passed: Passed,
+    passed: VecDeque<Arc<Frame>>,
+    /// What passed is of: another filter, or another frame, makes it anew.
+    of: Option<(Filter, u64, u64)>,
     choice: ChosenFrames,
     paused: Option<Paused>,
     scrolls: bool,
@@ -61,18 +63,19 @@ impl TrafficView {
         if live.newest() < self.filter.cleared {
             self.filter.cleared = 0;
         }
-        match &self.paused {
-            Some(paused) => self
-                .passed
-                .update(&paused.frames, paused.changes, &self.filter),
-            None => self
-                .passed
-                .update(live.frames(), live.changes(), &self.filter),
+        let (frames, changes, newest) = match &self.paused {
+            Some(paused) => (&paused.frames, paused.changes, paused.newest),
+            None => (live.frames(), live.changes(), live.newest()),
+        };
+        let of = Some((self.filter.clone(), changes, newest));
+        if self.of != of {
+            self.passed = self.filter.passing(frames);
+            self.of = of;
         }
     }
 
     fn chosen(&self) -> impl Iterator<Item = &Frame> {
-        let frames = self.passed.frames().iter();
+        let frames = self.passed.iter();
         let chosen = frames.filter(|frame| self.choice.numbers.contains(&frame.number));
         chosen.map(AsRef::as_ref)
     }
@@ -89,13 +92,13 @@ impl TrafficView {
             ui.separator();
             self.buttons_ui(ui, pane);
         });
-        if self.passed.frames().is_empty() {
+        if self.passed.is_empty() {
             let text = Label::new(look.say(self.why_empty(pane)), look.palette.muted);
             ui.vertical_centered(|ui| text.wrap().ui(ui));
             return;
         }
         let follows = !self.scrolls && self.paused.is_none();
-        let frames = self.passed.frames();
+        let frames = &self.passed;
         if list::list_ui(ui, pane, frames, (&mut self.choice, follows)) {
             self.scrolls = true;
         }
@@ -114,7 +117,7 @@ impl TrafficView {
     fn count(&self, pane: &Pane<'_>) -> String {
         let look = pane.look;
         let live = &pane.state.hand().traffic;
-        let (shown, all) = (self.passed.frames().len(), live.frames().len());
+        let (shown, all) = (self.passed.len(), live.frames().len());
         let of = look.say(traffic::SHOWN_OF);
         let text = format!("{shown} {of} {all} {}", look.say(traffic::FRAMES));
         let Some(paused) = &self.paused else {
@@ -142,7 +145,6 @@ impl TrafficView {
                 newest: live.newest(),
             });
             // What is shown from now on has a history of its own.
-            self.passed = Passed::default();
             self.update(pane);
         }
         let follow = Button::said(look, traffic::FOLLOW);
@@ -152,7 +154,7 @@ impl TrafficView {
         if follow.ui(ui, look).clicked() {
             self.scrolls = !self.scrolls;
         }
-        let nothing = self.passed.frames().is_empty();
+        let nothing = self.passed.is_empty();
         let nothing = nothing.then(|| look.say(traffic::EXPORT_NONE));
         let clear = Button::said(look, traffic::CLEAR);
         let clear = clear.named(look.say(traffic::CLEAR_NAME)).disabled(nothing);
@@ -173,7 +175,7 @@ impl TrafficView {
         ] {
             let button = Button::said(look, text);
             if button.disabled(nothing).ui(ui, look).clicked() {
-                let frames = self.passed.frames().iter().cloned().collect();
+                let frames = self.passed.iter().cloned().collect();
                 let content = Export::Traffic(form, frames);
                 pane.actions.push(Action::Save(content));
             }
