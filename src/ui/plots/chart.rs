@@ -227,12 +227,13 @@ impl<'a> Chart<'a> {
             .with_min_x(frame.left() - theme::PLOT_AXIS);
         let id = shown.response.id.with("values");
         let shown = ChartResponse {
-            inner: ui.interact(axis, id, Sense::DRAG),
+            inner: ui.interact(axis, id, Sense::click_and_drag()),
             response: shown.response,
             transform: shown.transform,
             hovered_plot_item: None,
         };
-        view.scales.act(ui, &shown.inner, self.title, scale);
+        let of = (self.title, scale);
+        view.scales.axis_ui(ui, &shown.inner, self.look, of);
         view.act(ui, &shown, self.title, bounds);
         shown
     }
