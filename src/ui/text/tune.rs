@@ -92,7 +92,6 @@ texts! {
     STOP_SERIES: "End with a stop", "停止并结束", "Holds the hand and ends the series.", "保持灵巧手当前位置并结束试验。";
     TRIAL: "Trial {} of {}: {}", "第 {} 次，共 {} 次：{}";
     LEFT: "at most about {} left", "最多还剩约 {}";
-    TEMPS: "Temperatures, °C", "各自由度温度 °C";
     PROGRESS: "Progress", "进度";
     LIVE_FORCE: "Force now, g", "当前的力 g";
     LIVE_EMPTY: "Waits for the trial", "等待试验开始";
