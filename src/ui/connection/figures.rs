@@ -3,7 +3,7 @@
 use crate::link::PollGroup;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::kit::{self, Label, Pane, format};
-use crate::ui::text::{Text, errors, panels};
+use crate::ui::text::{Text, errors, faults, panels};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, vec2};
 
@@ -11,7 +11,7 @@ use egui::{Align, Color32, Layout, Ui, vec2};
 const BUDGET: [(Text, f32); 3] = [
     (panels::BUDGET_COULD, 56.0),
     (panels::BUDGET_SHARE, 46.0),
-    (panels::BUDGET_NOW, 52.0),
+    (faults::NOW, 52.0),
 ];
 
 /// Draws the card of the link.

@@ -16,7 +16,7 @@ use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, refused_ui};
-use crate::ui::text::{errors, panels, scan as scan_text};
+use crate::ui::text::{errors, main, panels, scan as scan_text};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 use std::collections::BTreeMap;
@@ -144,7 +144,7 @@ impl ConnectionForm {
     fn form_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         kit::card_ui(ui, look, |ui| {
-            kit::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
+            kit::head_ui(ui, look, look.say(main::TAB_CONNECTION), |_| ());
             self.kinds_ui(ui, look);
             ui.add_space(theme::STEP);
             for key in self.kind.1 {

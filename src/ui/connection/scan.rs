@@ -5,7 +5,7 @@ use crate::app::scan::{IdRange, ScanRemark, ScanTarget};
 use crate::link::scan::Hosts;
 use crate::transport::Endpoint;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
-use crate::ui::text::{Text, errors, scan};
+use crate::ui::text::{Text, errors, panels, scan};
 use crate::ui::theme;
 use egui::{Align, Layout, ProgressBar, Ui, vec2};
 
@@ -176,7 +176,7 @@ pub(crate) fn hand_ui(
     let (text, weight) = if is_now {
         (scan::CONNECTED, Weight::Chosen)
     } else {
-        (scan::USE, Weight::Normal)
+        (panels::CONNECT, Weight::Normal)
     };
     ui.horizontal(|ui| {
         let name = format!("{}: {endpoint}", look.say(text));

@@ -6,7 +6,7 @@ use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{Text, faults, notices, words};
+use crate::ui::text::{Text, device, faults, notices, words};
 use crate::ui::theme;
 use egui::{Color32, CornerRadius, Frame, Margin, Rect, ScrollArea, Sense, Ui, vec2};
 
@@ -203,7 +203,7 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
     let now = pane.state.now;
     let mut parts = Vec::new();
     if entry.until.is_some() {
-        let (began, ago) = (look.say(faults::BEGAN), look.say(faults::AGO));
+        let (began, ago) = (look.say(faults::BEGAN), look.say(device::AGO));
         let age = format::age(now.since(entry.since));
         let lasted = format::age(entry.lasted(now));
         parts.push(format!("{began} {age} {ago}"));

@@ -40,7 +40,7 @@ enum FaultSection {
 /// The card of the overview: what asks for attention, and nothing else.
 pub(crate) fn faults_card_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let title = look.say(panels::FAULTS);
+    let title = look.say(main::TAB_FAULTS);
     kit::full_card_ui(ui, look, |ui| {
         kit::head_ui(ui, look, title, |ui| clear_ui(ui, pane));
         scroll_ui(ui, |ui| {
@@ -95,7 +95,7 @@ impl FaultsView {
 
     fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        kit::head_ui(ui, look, look.say(panels::FAULTS), |ui| {
+        kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
         });
@@ -156,7 +156,7 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let hand = pane.state.hand();
     let reason = match hand.faults.nothing_to_clear() {
-        _ if !hand.link.state.is_live() => Some(panels::NOT_LIVE),
+        _ if !hand.link.state.is_live() => Some(main::REFUSED_OFFLINE),
         _ if hand.sample.faults.is_none() => Some(faults::CLEAR_UNREAD),
         Some(NothingToClear::NoFault) => Some(faults::CLEAR_NO_FAULT),
         Some(NothingToClear::OnlyHeat) => Some(faults::CLEAR_ONLY_HEAT),

@@ -13,7 +13,7 @@ use crate::ui::plots;
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::plots::panels::{self, PANELS, PanelLine};
 use crate::ui::plots::times::Times;
-use crate::ui::text::faults;
+use crate::ui::text::{device, faults};
 use crate::ui::theme;
 use egui::{Panel, ScrollArea, Stroke, Ui};
 use std::sync::Arc;
@@ -260,7 +260,7 @@ fn about(pane: &Pane<'_>, recording: &Recording) -> String {
         .fault()
         .map(|fault| pane.state.now.since(fault.at));
     let age = format::age(age.unwrap_or_default());
-    format!("{} · {age} {}", recording.hand, pane.look.say(faults::AGO))
+    format!("{} · {age} {}", recording.hand, pane.look.say(device::AGO))
 }
 
 fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {

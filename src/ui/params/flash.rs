@@ -96,7 +96,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
                 "confirmed" => look.say(device::BY_FRAME),
                 _ => look.say(device::BY_READING),
             };
-            let (saved, at) = (look.say(device::SAVED_ON), moment(&file.at));
+            let (saved, at) = (look.say(device::SAVED), moment(&file.at));
             (format!("{saved} {at} ({how})"), palette.text)
         }
     });

@@ -62,7 +62,7 @@ fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
 fn from_to(look: Look, change: &PlaceChange) -> String {
     let name = match change.id {
         ParamId::HandId => cards::FROM_TO_ID,
-        ParamId::IpAddress => cards::FROM_TO_IP,
+        ParamId::IpAddress => device::IP_ADDRESS,
         _ => cards::FROM_TO_BAUD,
     };
     let (from, to) = (change.before, change.wanted);

@@ -7,7 +7,7 @@ use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
-use crate::ui::text::{Text, device, panels};
+use crate::ui::text::{Text, device, panels, poses};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
@@ -81,7 +81,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
         table = table.column(Column::exact(width * part));
     }
     let heads = [
-        device::NAME,
+        poses::NAME,
         device::LIVE,
         device::STAGED,
         device::SAVED,

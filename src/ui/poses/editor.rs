@@ -7,7 +7,7 @@ use crate::poses::library::{LibraryPose, NAME_CHARS_MAX};
 use crate::ui::hand::panel;
 use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
 use crate::ui::poses::tiles::{go_ui, shares};
-use crate::ui::text::{Text, poses, words};
+use crate::ui::text::{Text, poses, tune, words};
 use crate::ui::theme;
 use egui::{Color32, Layout, ScrollArea, Ui, vec2};
 
@@ -53,7 +53,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let rename: fn(String) -> PoseEdit = PoseEdit::Rename;
     for (caption, max, value, edit) in [
         (poses::NAME, NAME_CHARS_MAX, &pose.name, rename),
-        (poses::TAGS, TAGS_MAX, &tags, PoseEdit::Tags),
+        (tune::TAGS, TAGS_MAX, &tags, PoseEdit::Tags),
     ] {
         ui.horizontal(|ui| {
             caption_ui(ui, look.say(caption), look.palette.muted);

@@ -6,7 +6,7 @@ use crate::hand::{Gesture, GestureRoute};
 use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight};
 use crate::ui::poses::gesture_editor::GestureEditor;
 use crate::ui::poses::tiles::gesture_ui;
-use crate::ui::text::{panels, poses};
+use crate::ui::text::{cards, panels, poses};
 use egui::{CollapsingHeader, Grid, ScrollArea, Ui};
 
 /// Characters that a name may have.
@@ -61,7 +61,7 @@ impl GestureView {
     fn naming_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
         let (text, weight) = match self.naming {
-            true => (panels::GESTURE_NAME_DONE, Weight::Strong),
+            true => (cards::CLOSE, Weight::Strong),
             false => (panels::GESTURE_NAME_EDIT, Weight::Normal),
         };
         let tip = look.tip(panels::GESTURE_NAME_EDIT);
@@ -100,7 +100,7 @@ fn route_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let routes = [
         (GestureRoute::Register1008, look.say(panels::ROUTE_1008)),
         (GestureRoute::ActionLibrary, look.say(panels::ROUTE_LIBRARY)),
-        (GestureRoute::Off, look.say(panels::ROUTE_OFF)),
+        (GestureRoute::Off, look.say(poses::STORE_OFF)),
     ];
     let mut route = pane.state.settings.gesture_route;
     let known = match route {

@@ -7,7 +7,7 @@ use crate::poses::library::{Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
-use crate::ui::text::{Text, poses};
+use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
 use egui::{Align, CursorIcon, Layout, Ui, UiBuilder, vec2};
 
@@ -123,7 +123,7 @@ fn numbers_ui(
     let limit = number(pane, poses::LIMIT, poses::LIMIT.tip(), millis(step.limit));
     let dwell = number(pane, poses::DWELL, poses::DWELL.tip(), millis(step.dwell));
     let now = (f64::from(step.speed.get()), 1000.0);
-    let speed = number(pane, poses::STEP_SPEED, poses::SPEED.tip(), now);
+    let speed = number(pane, main::NAME_SPEED, poses::SPEED.tip(), now);
     let time = |typed: i64| Millis::try_from(typed).ok();
     if let Some(limit) = limit.and_then(time) {
         change(pane, sequence, SequenceEdit::Limit(at, limit));

@@ -20,7 +20,6 @@ texts! {
     CHANGING_IP: "Change of the hand's IP address", "灵巧手 IP 地址的更改";
     FROM_TO_ID: "Id", "ID";
     FROM_TO_BAUD: "Serial speed, baud", "波特率";
-    FROM_TO_IP: "IP address", "IP 地址";
     NOW_AT: "Now at", "当前通信地址";
     THEN_AT: "Then at", "更改后通信地址";
     FOLLOWED: "A backup is kept first. Nothing is written if another hand answers at the new place. After the write the hand is looked for there, and unless you keep it within 15 s it goes back.", "先备份。若新位置已有其他灵巧手应答，则不写入。写入后到新位置寻找灵巧手；15 秒内不确认保留，就自动恢复。";

@@ -7,7 +7,7 @@ use crate::params::rows::ParamId;
 use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
 use crate::ui::kit::Look;
 use crate::ui::text::phrase::{Text, texts};
-use crate::ui::text::{errors, words};
+use crate::ui::text::{errors, main, words};
 
 texts! {
     REFUSED: "Nothing of the file was taken.", "文件未被采用。";
@@ -28,7 +28,6 @@ texts! {
 
     CHANGE_SIM: "The simulated hand is always found here.", "仿真手总在此处。";
 
-    NAME: "Name", "名称";
     LIVE: "Live", "实际值";
     STAGED: "Staged", "暂存值", "What this row is to hold once it is applied. Enter stages it; nothing is written by typing.", "应用后此行的值。按回车暂存，输入时不写入任何内容。";
     SAVED: "Last saved", "上次保存";
@@ -80,14 +79,11 @@ texts! {
     DANGER_SAVE: "Save defaults that hit hard?", "保存会造成冲击的默认值？";
     DANGER_LATE: "A drive stops late: closing at this speed, the finger presses far beyond its force threshold before it stops. Once in flash, the hand wakes up like this every time.", "电机停止有滞后：以此速度合拢时，手指会远超力阈值才停下。写入闪存后，灵巧手每次上电都将如此。";
     DANGER_RATED: "Above the rated grip of 2000 g:", "高于额定抓握力 2000 g：";
-    DANGER_SPEED: "Speed", "速度";
     DANGER_FORCE: "Threshold, g", "阈值 g";
     DANGER_OVER: "Overshoot, g", "超出 g";
-    DANGER_PEAK: "Peak, g", "峰值 g";
     DANGER_MEASURED: "Measured on one hand of the family: index finger on a rigid block, median of the peaks. Soft objects are pressed less.", "在同系列一只手上实测：食指接触刚性物体，取峰值的中位数。柔软物体受力较小。";
     DANGER_BEYOND: "Thresholds above 1000 g were not measured: the figure of 1000 g stands for them.", "1000 g 以上的阈值没有实测，按 1000 g 的数据给出。";
     DANGER_SLOWLY: "With speed 25 the same thresholds were passed by at most", "速度为 25 时，同样的阈值最多超出";
-    SPEED: "speed", "速度";
     FORCE: "force", "力";
     AGREE_APPLY: "Apply anyway", "仍然应用", "Goes on with what is listed here.", "按所列内容继续。";
     AGREE_SAVE: "Save anyway", "仍然保存", "Goes on with what is listed here.", "按所列内容继续。";
@@ -106,7 +102,6 @@ texts! {
     AGREE: "Save", "保存", "Goes on with what is listed here.", "按所列内容继续。";
     AGREE_APPLY_SAVE: "Apply and save", "应用并保存", "Goes on with what is listed here.", "按所列内容继续。";
     NEVER_SAVED: "This program saved nothing on this hand yet.", "本程序尚未在此灵巧手上保存过。";
-    SAVED_ON: "Last saved", "上次保存";
     BY_FRAME: "confirmed by the hand", "灵巧手已确认";
     BY_READING: "read back the same", "读回一致";
     DOUBTFUL: "Of a later SAVE it is not known what came:", "之后有一次保存结果未知：";
@@ -186,7 +181,7 @@ pub(crate) const fn name(id: ParamId) -> Text {
 pub(crate) fn whole_name(look: Look, id: ParamId) -> String {
     let own = look.say(name(id));
     match id {
-        ParamId::DefaultSpeed(_) => format!("{own} {}", look.say(SPEED)),
+        ParamId::DefaultSpeed(_) => format!("{own} {}", look.say(main::NAME_SPEED)),
         ParamId::DefaultForce(_) => format!("{own} {}", look.say(FORCE)),
         _ => own.to_owned(),
     }

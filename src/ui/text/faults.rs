@@ -15,7 +15,6 @@ texts! {
     OVER: "over", "已结束";
     WHEN_READ: "when last read", "上次读取时";
     BEGAN: "Began", "开始于";
-    AGO: "ago", "前";
     LASTED: "lasted", "持续";
     TIMES: "times", "次";
     CAME: "came", "共";
@@ -42,7 +41,6 @@ texts! {
     LOG_LOST: "older messages were dropped:", "已丢弃的较早消息：";
     LOG_FILTER: "Filter messages", "筛选消息", "words", "关键词";
     LEVEL: "Level", "级别", "Shows messages of this level and above.", "显示此级别及以上的消息。";
-    LEVEL_ALL: "All", "全部";
     LEVEL_WARN: "Warnings", "警告";
     LEVEL_ALARM: "Alarms", "报警";
     WORD_INFO: "info", "信息";
@@ -74,11 +72,8 @@ texts! {
     ACT_DISARM: "Disarmed", "取消使能";
     ACT_TARGET: "target", "目标";
     ACT_FORCE: "threshold, g", "力阈值 g";
-    ACT_SPEED: "speed", "速度";
-    ACT_ALL: "All", "全部";
     ACT_LOCK: "locked", "已锁定";
     ACT_UNLOCK: "unlocked", "已解锁";
     ACT_ANGLES: "Edited angles", "测试编辑的角度";
-    ACT_SEQUENCE: "Sequence", "序列";
     NO_FAULT_BITS: "no fault", "无故障";
 }

@@ -28,7 +28,6 @@ texts! {
     MARK_STOP_NOT_SENT: "Stop not sent", "停止未发出";
     MARK_FAULT: "Fault", "故障";
     MARK_RECONNECT: "Reconnected", "重新连接";
-    MARK_GESTURE: "Gesture", "手势";
     MARK_LOST: "Link lost", "断开";
     MARK_ARMED: "Armed", "使能";
     MARK_HELD: "At rest", "静止";
@@ -72,13 +71,11 @@ texts! {
     TIP_FRICTION: "Friction", "摩擦系数", "Friction between fingertip and object, from 0.01 to 1.5. The program cannot know it: choose it for your object. The ring shows it.", "指尖与物体间的摩擦系数，0.01 到 1.5。程序无法得知，请按物体选择；圆环表示该值。";
     TIP_FRICTION_NAME: "Friction, percent", "摩擦系数，百分比";
 
-    FAULTS: "Faults", "故障";
     FAULTS_NONE: "No faults", "没有故障";
     FAULTS_NONE_HINT: "Faults appear here with their cause and what to do.", "出现故障时，这里会列出原因与处理建议。";
     FAULTS_NONE_OLD: "No faults when last read", "上次读取时没有故障";
     FAULTS_UNKNOWN: "Faults not read yet", "尚未读取故障";
     CLEAR: "Clear errors", "清除错误", "Holds the pose, then clears stall, over-current, motor and communication faults. Over-temperature cannot be cleared: it ends by itself when cool.", "先保持姿态，再清除堵转、过流、电机异常和通讯故障。过温故障不可清除，温度回落后自动清除。";
-    NOT_LIVE: "There is no live hand.", "没有在线的灵巧手。";
     MESSAGES_NONE: "No messages", "没有消息";
     NOTICE_LOST: "Link lost.", "连接断开。";
     NOTICE_NO_LINK: "No hand reached.", "未连接到灵巧手。";
@@ -112,16 +109,13 @@ texts! {
     GESTURE_ROUTE: "Gesture route", "手势方式";
     ROUTE_1008: "Write 1008", "写 1008";
     ROUTE_LIBRARY: "Action library 2320", "动作库 2320";
-    ROUTE_OFF: "Off", "关闭";
     KNOWN_1008: "1008: not in the manual's table. Known: four drivers of this family write it. Not known: whether this firmware obeys.", "1008：手册寄存器表中没有。已知：同系列的四个驱动程序写此地址。未知：本固件是否执行。";
     KNOWN_LIBRARY: "2320, then 2322 = 1: not in the manual's table. Known: the maker's newer demos write it. Not known: whether this firmware moves.", "先写 2320，再写 2322 = 1：手册寄存器表中没有。已知：厂家较新的示例使用此方式。未知：本固件是否动作。";
     KNOWN_OFF: "Off: no address outside the manual's table is written, and no gesture can be started.", "关闭：不写手册寄存器表以外的地址，也无法启动手势。";
     GESTURES_OFF: "The gesture route is off.", "手势方式已关闭。";
     GESTURE_NAME_EDIT: "Name gestures", "命名手势", "Type names for the numbers. The hand does not tell what its gestures are.", "为编号输入名称。灵巧手不会给出手势名称。";
-    GESTURE_NAME_DONE: "Done", "完成";
     GESTURE_NAME: "Name of gesture", "手势名称";
 
-    CONNECTION: "Connection", "连接";
     CONNECTION_KIND: "Kind of link", "连接方式";
     PORTS_NONE: "None found. Type a name, or plug the adapter in and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
     PORTS_REFRESH: "Refresh", "刷新", "Looks for serial ports again.", "重新查找串口。";
@@ -139,7 +133,6 @@ texts! {
     ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
     MOVED_TO: "The adapter is now at", "适配器现位于";
     BUDGET: "The line's time", "线路时间分配";
-    BUDGET_NOW: "now", "当前";
     BUDGET_SHARE: "share", "占比";
     BUDGET_COULD: "alone", "独占可达";
     BUDGET_WRITES: "Writes", "写入";

@@ -39,7 +39,6 @@ texts! {
     RECALL: "Go", "执行", "Takes this pose within its speed and force. Locked and left joints stay.", "按该姿态的速度与力执行。已锁定或不参与的自由度不动。";
     RECALL_NAME: "Go to", "执行姿态";
     NAME: "Name", "名称";
-    TAGS: "Tags", "标签", "separated by commas", "用逗号分隔";
     ANGLE: "angle", "角度", "0 bent to 1000 open.", "0 弯曲，1000 张开。";
     LEAVE: "leave alone", "不参与", "This joint stays where it is when the pose is taken.", "执行该姿态时，此自由度保持不动。";
     SPEED: "Speed", "速度", "Speed of the joints on the way, 0 to 1000.", "运动速度，0 到 1000。";
@@ -57,7 +56,6 @@ texts! {
     NEEDS_POSES: "Save a pose first.", "请先记录姿态。";
     STEPS_EMPTY: "No steps yet: add a pose below.", "还没有步骤：请在下方添加姿态。";
     ADD: "Add", "添加", "Adds this pose as the last step.", "把该姿态添加为最后一步。";
-    STEP_SPEED: "speed", "速度";
     DWELL: "dwell, ms", "停留 ms", "Time at the pose before the next step, milliseconds.", "到达后停留的时间，毫秒。";
     LIMIT: "limit, ms", "限时 ms", "A pose that is not reached within this time counts as reached, milliseconds.", "超过此时间仍未到达时，视为到达，毫秒。";
     REMOVE: "Remove", "移除", "Takes this step away.", "移除该步骤。";

@@ -36,7 +36,6 @@ texts! {
     NOTHING_AT_ALL: "No hand answered to any id. Check power, cable and wiring.", "所有 ID 均无应答。请检查电源、线缆与接线。";
     NOWHERE: "Nothing could be scanned:", "无法扫描：";
     CANCELLED: "Cancelled.", "已取消。";
-    USE: "Connect", "连接", "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
     CONNECTED: "Connected", "已连接", "This is the hand of now.", "当前连接的灵巧手。";
     HELD: "left alone, the connection of now uses it. Disconnect first to scan it.", "已跳过，当前连接正在使用。请先断开再扫描。";
     MORE: "more", "更多";

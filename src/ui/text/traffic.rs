@@ -7,7 +7,6 @@ use crate::ui::kit::Look;
 use crate::ui::text::phrase::texts;
 
 texts! {
-    TITLE: "Traffic", "报文";
     SHOWN_OF: "of", "/";
     FRAMES: "frames", "条报文";
     PAUSE: "Pause", "暂停", "Lets the list stand still. Recording goes on.", "列表停止更新，记录继续进行。";

@@ -8,7 +8,7 @@ use crate::app::files::export::{Export, TrafficForm};
 use crate::link::tap::Direction;
 use crate::link::traffic::frame::Frame;
 use crate::ui::kit::{self, Button, Label, Pane};
-use crate::ui::text::{Text, traffic};
+use crate::ui::text::{Text, main, traffic};
 use crate::ui::theme;
 use crate::ui::traffic::filter::Filter;
 use crate::ui::traffic::list::ChosenFrames;
@@ -83,7 +83,7 @@ impl TrafficView {
     fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.spacing_mut().item_spacing.y = theme::STEP;
-        kit::head_ui(ui, look, look.say(traffic::TITLE), |ui| {
+        kit::head_ui(ui, look, look.say(main::TAB_TRAFFIC), |ui| {
             Label::new(&self.count(pane), look.palette.muted).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {

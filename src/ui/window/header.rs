@@ -157,7 +157,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (state, touch) = (rate(stats.state_hz), rate(stats.tactile_hz));
     let figures: [(Text, String, Text, Color32); 3] = [
         (main::RATE_STATE, state, main::RATES_TIP, color),
-        (main::RATE_TACTILE, touch, main::RATES_TIP, color),
+        (main::TAB_TOUCH, touch, main::RATES_TIP, color),
         (
             main::ERRORS,
             errors.to_string(),

@@ -1,7 +1,7 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
 use crate::ui::kit::{self, Button, Label, Look, Weight};
-use crate::ui::text::{Text, keys};
+use crate::ui::text::{Text, keys, main};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
 use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
@@ -38,7 +38,7 @@ impl KeyList {
         }
         let edge = Stroke::new(theme::LINE, look.palette.accent);
         let frame = Frame::window(ui.style()).stroke(edge);
-        let window = Window::new(look.say(keys::TITLE))
+        let window = Window::new(look.say(keys::BUTTON))
             .id(Id::unique("key list"))
             .title_bar(false)
             .resizable(false)
@@ -84,8 +84,8 @@ fn rows(group: Text) -> Vec<(String, Text)> {
 /// True if it is to be hidden.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    let shut = kit::head_ui(ui, look, look.say(keys::TITLE), |ui| {
-        let shut = Button::new(look.say(keys::SHUT), "").weight(Weight::Quiet);
+    let shut = kit::head_ui(ui, look, look.say(keys::BUTTON), |ui| {
+        let shut = Button::new(look.say(main::DISMISS), "").weight(Weight::Quiet);
         shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {

@@ -166,7 +166,7 @@ impl Wish {
             Self::AngleUnit => keys::UNIT,
             Self::Tare => panels::TARE_ALL,
             Self::UndoTare => keys::UNDO_TARE,
-            Self::Pause => keys::PAUSE,
+            Self::Pause => panels::PAUSE_NAME,
             Self::Language => keys::LANGUAGE,
             Self::Theme => keys::THEME,
             Self::Opens(Opens::View(view)) => view.title(),

@@ -4,7 +4,7 @@ use crate::app::notices::{Level, Notice};
 use crate::app::settings::Language;
 use crate::hand::Moment;
 use crate::ui::kit::{self, Button, Label, Look, Pane, format};
-use crate::ui::text::{Text, faults, notices};
+use crate::ui::text::{Text, faults, main, notices};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Sense, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
@@ -76,7 +76,7 @@ impl MessageLog {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = theme::STEP;
             for (text, least) in [
-                (faults::LEVEL_ALL, None),
+                (main::ALL, None),
                 (faults::LEVEL_WARN, Some(Level::Warn)),
                 (faults::LEVEL_ALARM, Some(Level::Alarm)),
             ] {

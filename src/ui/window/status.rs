@@ -11,7 +11,7 @@ use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
 use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, errors, main, notices, panels, window, words};
+use crate::ui::text::{Text, errors, main, notices, panels, poses, tune, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
@@ -188,21 +188,21 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
         Mover::Stop => (say(window::MOVES_STOP), None),
         Mover::Calibration => (say(window::MOVES_CALIBRATION), None),
         Mover::Series(number, total) => {
-            let words = format!("{} {number} / {total}", look.say(window::MOVES_SERIES));
+            let words = format!("{} {number} / {total}", look.say(tune::COLUMN_TRIAL));
             (words, Some(Action::Stop))
         }
         Mover::Sequence(id, step) => {
             let sequence = pane.state.poses.library.sequence(id);
             let name = sequence.map_or("", |sequence| sequence.name.as_str());
             let steps = sequence.map_or(0, |sequence| sequence.steps.len());
-            let title = look.say(window::MOVES_SEQUENCE);
+            let title = look.say(poses::SEQUENCE);
             let (of, step) = (look.say(window::MOVES_STEP), step + 1);
             let words = format!("{title} {name}: {of} {step} / {steps}");
             (words, Some(Action::Play(Play::End)))
         }
         Mover::Gesture(gesture) => {
             let name = pane.state.settings.gesture_name(gesture);
-            let (title, name) = (look.say(window::MOVES_GESTURE), name.unwrap_or_default());
+            let (title, name) = (look.say(panels::GESTURE), name.unwrap_or_default());
             let words = format!("{title} {} {name}", gesture.get());
             (words.trim().to_owned(), None)
         }
