@@ -9,7 +9,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
 use crate::ui::text::{Text, device, panels, poses};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, Color32, Layout, RichText, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
 
 /// Characters of an address.
@@ -217,25 +217,14 @@ pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
 
 /// A value, and beside or below it what is to be known of it.
 pub(crate) fn cell_ui(ui: &mut Ui, (name, value, color): (&str, &str, Color32), below: &str) {
-    let muted = ui.visuals().weak_text_color();
-    let fits = kit::text_width(ui, value, theme::number()) <= ui.available_width();
-    let label = Label::new(value, color).named(name);
-    let label = if fits { label.number() } else { label.small() };
-    if below.is_empty() {
-        label.ui(ui);
-        return;
-    }
-    let both =
-        kit::text_width(ui, value, theme::number()) + kit::text_width(ui, below, theme::small());
-    let add = |ui: &mut Ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
-        label.ui(ui);
-        Label::new(below, muted).small().ui(ui);
-    };
-    match both + theme::PAD <= ui.available_width() {
-        true => ui.horizontal_centered(add),
-        false => ui.vertical(add),
-    };
+        Label::new(value, color).number().named(name).ui(ui);
+        if !below.is_empty() {
+            let below = RichText::new(below).small().weak();
+            ui.add(egui::Label::new(below).extend());
+        }
+    });
 }
 
 fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
