@@ -4,7 +4,7 @@
 //! list is not enough, and neither is clearing errors: a fault that ended before anybody read it is worth a word. What
 //! comes again is unseen again.
 
-use crate::hand::{Dof, Fault, Group, Groups, HandSample, Moment, PerDof, Status};
+use crate::hand::{Dof, Fault, Group, Groups, HandSample, Moment, Status};
 use std::time::Duration;
 
 /// Entries that can be: per joint eight fault bits and three protective codes. One entry each, so it cannot grow.

@@ -24,9 +24,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
         let since = format::age(pane.state.now.since(link.since));
         let since = format!("{}{} {since}", look.say(word), look.say(panels::SINCE));
         ui.horizontal(|ui| {
-            let lamp = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
-            let (lamp, _) = ui.allocate_exact_size(lamp, egui::Sense::hover());
-            kit::lamp(ui, lamp.center(), color);
+            kit::lamp_ui(ui, Some(color));
             Label::new(&since, look.palette.text).wrap().ui(ui);
         });
         let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);

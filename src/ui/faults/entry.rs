@@ -8,7 +8,7 @@ use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, device, faults, notices, words};
 use crate::ui::theme;
-use egui::{Color32, CornerRadius, Frame, Margin, Rect, ScrollArea, Sense, Ui, vec2};
+use egui::{CornerRadius, Frame, Margin, Rect, ScrollArea, Ui, vec2};
 
 /// Size of the number on a tab.
 const FAULT_BADGE: f32 = 16.0;
@@ -103,23 +103,13 @@ pub(crate) fn scroll_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A lamp, or the room of one.
-pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> egui::Pos2 {
-    let size = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
-    let center = ui.allocate_exact_size(size, Sense::hover()).0.center();
-    if let Some(color) = color {
-        kit::lamp(ui, center, color);
-    }
-    center
-}
-
 /// Lamp, joint and fault; whether it lasts; the button of one who has seen it.
 fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
     let look = pane.look;
     let palette = look.palette;
     let (word, color) = stand(pane, entry);
     ui.horizontal_wrapped(|ui| {
-        let at = lamp_ui(ui, entry.is_active().then_some(color));
+        let at = kit::lamp_ui(ui, entry.is_active().then_some(color));
         if !entry.is_active() {
             mark(ui, at, color);
         }

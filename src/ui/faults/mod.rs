@@ -9,7 +9,7 @@ use crate::app::notices::Notice;
 use crate::app::readings::faults::NothingToClear;
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Status, Words};
-use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, lamp_ui, scroll_ui, seen_all_ui};
+use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui};
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::drive_tiles;
@@ -186,7 +186,7 @@ fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Freshness::Unknown => (panels::FAULTS_UNKNOWN, look.palette.faint),
     };
     ui.horizontal(|ui| {
-        lamp_ui(ui, Some(color));
+        kit::lamp_ui(ui, Some(color));
         Label::muted(look, text).ui(ui);
     });
     let hint = look.say(panels::FAULTS_NONE_HINT);
@@ -205,7 +205,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
     let joint = look.say(words::dof(dof));
     let title = format!("{joint} · {}: {}", look.say(verb), said.title);
     let closed = ui.horizontal_wrapped(|ui| {
-        lamp_ui(ui, Some(said.lamp));
+        kit::lamp_ui(ui, Some(said.lamp));
         Label::new(&title, palette.text).ui(ui);
         let close = look.say(faults::CHOSEN_CLOSE);
         let button = Button::new(close, look.tip(faults::DRIVE)).weight(Weight::Quiet);
@@ -283,7 +283,7 @@ fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
             let age = format::age(pane.state.now.since(notice.at));
             Label::new(&age, palette.muted).small().ui(ui);
             ui.with_layout(Layout::left_to_right(Align::TOP), |ui| {
-                lamp_ui(ui, Some(color));
+                kit::lamp_ui(ui, Some(color));
                 kit::say_ui(ui, &text, palette.text);
             });
         });

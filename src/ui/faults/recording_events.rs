@@ -87,7 +87,7 @@ fn act_words(look: Look, act: &PersonAct) -> String {
     let say = |text| look.say(text).to_owned();
     let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.say(what));
     let joint = |dof| look.say(words::dof(dof));
-    let all = look.say(main::ALL);
+    let all = look.say(main::EVERY);
     match act {
         PersonAct::Disarm => say(faults::ACT_DISARM),
         PersonAct::Target(dof, angle) => set(joint(*dof), faults::ACT_TARGET, angle.get()),

@@ -5,7 +5,7 @@ use crate::app::files::export::Export;
 use crate::app::readings::fault_recorder::{Listed, Recording, RecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
 use crate::hand::{Dof, PerDof};
-use crate::ui::faults::entry::{self as fault_entry, lamp_ui, scroll_ui};
+use crate::ui::faults::entry::{self as fault_entry, scroll_ui};
 use crate::ui::faults::recording_events;
 use crate::ui::faults::recording_events::EventLine;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, format};
@@ -113,7 +113,7 @@ impl RecordingsView {
                 let left = format::age(until.since(pane.state.now));
                 let text = look.told(faults::RECORDING_RUNS, left);
                 ui.horizontal(|ui| {
-                    lamp_ui(ui, Some(look.palette.bad));
+                    kit::lamp_ui(ui, Some(look.palette.bad));
                     kit::say_ui(ui, &text, look.palette.text);
                 });
             }
@@ -169,7 +169,11 @@ impl RecordingsView {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (n, panel) in shown.iter().enumerate() {
             let is_lowest = n + 1 == shown.len();
-            let axis = if is_lowest { theme::PLOT_TIME_AXIS } else { 0.0 };
+            let axis = if is_lowest {
+                theme::PLOT_TIME_AXIS
+            } else {
+                0.0
+            };
             let plot = Chart {
                 is_lowest,
                 ..chart(look, recording, panel, height + axis)
@@ -269,7 +273,7 @@ fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {
         let time = format!("{:+7.1} s", line.at_s - fault_s);
         let time = Label::new(&time, look.palette.muted).number();
         time.ui(ui);
-        let at = lamp_ui(ui, None);
+        let at = kit::lamp_ui(ui, None);
         ui.painter().circle_filled(at, theme::HALO, line.color);
         Label::new(&line.text, look.palette.text).small().ui(ui);
     });
@@ -290,7 +294,7 @@ fn row_ui(ui: &mut Ui, pane: &Pane<'_>, listed: &Listed) -> bool {
         let name = format!("{text}: {title}");
         let open = Button::new(text, look.tip(faults::RECORDING_OPEN)).named(&name);
         let pressed = open.ui(ui, look).clicked();
-        let at = lamp_ui(ui, None);
+        let at = kit::lamp_ui(ui, None);
         fault_entry::mark(ui, at, sign);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;

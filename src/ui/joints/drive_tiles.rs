@@ -55,7 +55,7 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
         });
     });
     ui.horizontal(|ui| {
-        fault_entry::lamp_ui(ui, Some(said.lamp));
+        kit::lamp_ui(ui, Some(said.lamp));
         kit::right_ui(ui, |ui| {
             let (status, _) = pane.newest(dof, pane.state.hand().sample.status);
             if let Some(status) = status {

@@ -57,8 +57,7 @@ fn joint_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
             let status = format!("{}: {}", row.named(pane, main::STATUS), drive.title);
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = theme::STEP;
-                let lamp = ui.allocate_space(vec2(theme::PAD, theme::PAD)).1;
-                kit::lamp(ui, lamp.center(), drive.lamp);
+                kit::lamp_ui(ui, Some(drive.lamp));
                 let name = Label::new(row.name, palette.text).small().ui(ui);
                 name.on_hover_text(status);
             });

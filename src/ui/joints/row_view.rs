@@ -136,8 +136,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     if is_gentle || pane.state.hand().runs_series() {
         return;
     }
-    let (sign, response) = ui.allocate_exact_size(vec2(16.0, 12.0), Sense::hover());
-    kit::warning_sign(ui, sign, pane.look.palette.warn);
+    let response = kit::warning_ui(ui, pane.look.palette.warn);
     let name = row.named(pane, main::NAME_IMPACT);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let (speed, force) = (joint.speed.get(), joint.force.get());

@@ -162,7 +162,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
 
 /// Force threshold and speed of all joints; what differs from joint to joint is not known here.
 pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let name = Label::said(pane.look, main::ALL);
+    let name = Label::said(pane.look, main::EVERY);
     ui.horizontal(|ui| {
         name.ui(ui);
         ui.columns(2, |columns| {
@@ -182,7 +182,7 @@ fn series(pane: &Pane<'_>) -> Option<&'static str> {
 }
 
 fn named(pane: &Pane<'_>, row: Option<&JointRow>, what: Text) -> String {
-    let all = pane.look.say(main::ALL);
+    let all = pane.look.say(main::EVERY);
     let name = row.map_or(all, |row| row.name);
     format!("{name} {}", pane.look.say(what))
 }

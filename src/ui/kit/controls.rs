@@ -614,6 +614,16 @@ pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
     went_down || response.clicked() && !by_pointer
 }
 
+/// The place of a lamp before a word, lit if it has a colour.
+pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> Pos2 {
+    let size = vec2(2.0 * theme::LAMP_AT, theme::TEXT_LINE);
+    let center = ui.allocate_space(size).1.center();
+    if let Some(color) = color {
+        lamp(ui, center, color);
+    }
+    center
+}
+
 /// A round lamp.
 pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
     let painter = ui.painter();
@@ -632,10 +642,12 @@ pub(crate) fn sign(ui: &Ui, rect: Rect, sign: Icon, color: Color32) {
         .text(rect.center(), center, sign, theme::icon(), color);
 }
 
-/// A warning sign of the given height.
-pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
-    let font = theme::icon_high(rect.height());
-    let center = Align2::CENTER_CENTER;
+/// A warning sign before a word.
+pub(crate) fn warning_ui(ui: &mut Ui, color: Color32) -> Response {
+    let size = Vec2::splat(theme::SIGN_SMALL);
+    let (place, response) = ui.allocate_exact_size(size, Sense::hover());
+    let (font, center) = (theme::icon_high(size.y), Align2::CENTER_CENTER);
     ui.painter()
-        .text(rect.center(), center, theme::WARNING, font, color);
+        .text(place.center(), center, theme::WARNING, font, color);
+    response
 }

@@ -8,7 +8,9 @@ use crate::ui::text::main;
 use crate::ui::theme;
 use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
-use egui::{Align2, Frame, Id, Key, Rect, Response, Stroke, TextEdit, Tooltip, Ui, UiBuilder, vec2};
+use egui::{
+    Align2, Frame, Id, Key, Rect, Response, Stroke, TextEdit, Tooltip, Ui, UiBuilder, vec2,
+};
 use std::ops::RangeInclusive;
 
 /// Characters that fit in a field for a number.
@@ -39,7 +41,10 @@ impl Field<'_> {
         read: impl FnOnce(&str) -> Read<T>,
     ) -> Option<T> {
         let (width, height) = match self.is_number {
-            true => (theme::FIELD, theme::CONTROL.min(ui.spacing().interact_size.y)),
+            true => (
+                theme::FIELD,
+                theme::CONTROL.min(ui.spacing().interact_size.y),
+            ),
             false => (ui.available_width(), theme::CONTROL),
         };
         let (id, rect) = ui.allocate_space(vec2(width, height));

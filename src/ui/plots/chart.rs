@@ -298,10 +298,7 @@ impl<'a> Chart<'a> {
                     let width = kit::text_width(ui, look.say(text), theme::small());
                     if is_said && width <= ui.available_width() {
                         let label = Label::muted(look, text);
-                        label
-                            .small()
-                            .ui(ui)
-                            .on_hover_text(look.say(tip));
+                        label.small().ui(ui).on_hover_text(look.say(tip));
                     }
                 }
             });

@@ -5,7 +5,7 @@ use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit, ShiftDirection};
 use crate::poses::library::{Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
@@ -80,14 +80,13 @@ pub(crate) fn step_ui(
         kit::left_ui(ui, |ui| {
             let (_, picture) = ui.allocate_space(vec2(36.0, 36.0));
             panel::pose_ui(ui, look, picture, &shares(&pose.angles));
-            handle_ui(ui, pane, sequence, (at, &pose.name));
+            handle_ui(ui, look, (at, &pose.name));
         });
     }
 }
 
 /// The part of a row that takes the keyboard and the pointer for putting the step elsewhere.
-fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): (usize, &str)) {
-    let look = pane.look;
+fn handle_ui(ui: &mut Ui, look: Look, (at, name): (usize, &str)) {
     let label = format!("{} {}: {name}", look.say(poses::STEP_NAME), at + 1);
     let text = format!("{}  {name}", at + 1);
     let (id, rect) = ui.allocate_space(ui.available_size());

@@ -57,7 +57,7 @@ impl TipChannels {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
         let look = pane.look;
         self.head_ui(ui, look);
-        let key = |number| LegendKey {
+        let key = |number: usize| LegendKey {
             words: (number + 1).to_string(),
             color: color(look, number),
             style: LineStyle::Solid,

@@ -45,9 +45,8 @@ impl Filter {
 }
 
 fn touches(frame: &Frame, row: &Span) -> bool {
-    let within = |span: Span| {
-        u32::from(row.address) < span.end() && u32::from(span.address) < row.end()
-    };
+    let within =
+        |span: Span| u32::from(row.address) < span.end() && u32::from(span.address) < row.end();
     frame.span.is_some_and(within)
 }
 
@@ -59,7 +58,9 @@ fn bytes_of(text: &str) -> Vec<u8> {
         .collect();
     let digits = digits.unwrap_or_default();
     let pairs = digits.chunks_exact(2);
-    pairs.map(|pair| pair.iter().fold(0, |byte, half| byte << 4 | half)).collect()
+    pairs
+        .map(|pair| pair.iter().fold(0, |byte, half| byte << 4 | half))
+        .collect()
 }
 
 #[cfg(test)]
@@ -120,5 +121,4 @@ mod tests {
         assert_eq!(with(|filter| filter.hide_polling = true).len(), 3);
         assert!(with(|filter| filter.wrong_only = true).contains(&noise));
     }
-
 }

@@ -159,8 +159,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
     row.col(|ui| paint(ui, kind, theme::body(), strong));
     row.col(|ui| {
         if frame.wrong.is_some() {
-            let sign = Rect::from_center_size(ui.max_rect().center(), egui::vec2(12.0, 11.0));
-            kit::warning_sign(ui, sign, strong);
+            kit::warning_ui(ui, strong);
         }
     });
     row.col(|ui| paint(ui, &said, font, color));

@@ -77,7 +77,8 @@ impl ResultView {
     /// Draws the curves over each other.
     pub(crate) fn curves_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, session: &TrialSession) {
         let comparison = self.comparison(pane, session);
-        self.curves.chart_ui(ui, pane, &comparison, &mut self.strong);
+        self.curves
+            .chart_ui(ui, pane, &comparison, &mut self.strong);
         self.comparison = Some(comparison);
     }
 

@@ -6,7 +6,7 @@ use crate::hand::Moment;
 use crate::ui::kit::{self, Button, Label, Look, Pane, format};
 use crate::ui::text::{Text, faults, main, notices};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Sense, Ui, vec2};
+use egui::{Align, Color32, Layout, Ui};
 use egui_extras::{Column, TableBuilder};
 use std::fmt::Write as _;
 
@@ -76,7 +76,7 @@ impl MessageLog {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = theme::STEP;
             for (text, least) in [
-                (main::ALL, None),
+                (main::EVERY, None),
                 (faults::LEVEL_WARN, Some(Level::Warn)),
                 (faults::LEVEL_ALARM, Some(Level::Alarm)),
             ] {
@@ -161,9 +161,7 @@ impl MessageLog {
                     return;
                 };
                 row.col(|ui| {
-                    let size = vec2(LAMP, theme::TEXT_LINE);
-                    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-                    kit::lamp(ui, place.center(), look.level(line.level));
+                    kit::lamp_ui(ui, Some(look.level(line.level)));
                 });
                 row.col(|ui| {
                     let label = Label::new(&line.text, look.palette.text);

@@ -15,7 +15,7 @@ use crate::ui::text::{Text, errors, main, notices, panels, poses, tune, window, 
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
-use egui::{Color32, Frame, Key, Rect, Stroke, TextEdit, Ui, vec2};
+use egui::{Color32, Frame, Key, Stroke, TextEdit, Ui, vec2};
 use std::fmt::Display;
 use std::time::Duration;
 
@@ -348,8 +348,7 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
             return;
         }
     };
-    let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-    kit::lamp(ui, lamp.center(), color);
+    kit::lamp_ui(ui, Some(color));
     Label::new(&words, palette.text).ui(ui);
 }
 
@@ -357,11 +356,9 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
 fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) {
     let look = pane.look;
     let palette = look.palette;
-    let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-    let sign = Rect::from_center_size(place.center(), vec2(theme::SIGN, 14.0));
     match worst.color == palette.accent {
-        true => kit::lamp(ui, sign.center(), worst.color),
-        false => kit::warning_sign(ui, sign, worst.color),
+        true => drop(kit::lamp_ui(ui, Some(worst.color))),
+        false => drop(kit::warning_ui(ui, worst.color)),
     }
     kit::right_ui(ui, |ui| {
         if let Some(help) = &worst.help {

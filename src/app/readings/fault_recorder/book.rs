@@ -316,10 +316,13 @@ mod tests {
             .expect("measured");
         assert_eq!((summary.min, summary.max), (55.0, 115.0));
         assert!((5990..=6010).contains(&summary.count), "{summary:?}");
-        let of_ring = recording.events.iter().filter_map(|event| match event.what {
-            EventKind::Status(Dof::Ring, status) => Some(status),
-            _ => None,
-        });
+        let of_ring = recording
+            .events
+            .iter()
+            .filter_map(|event| match event.what {
+                EventKind::Status(Dof::Ring, status) => Some(status),
+                _ => None,
+            });
         let (rest, stalled) = (Status::PositionReached, Status::Stalled);
         assert_eq!(recording.before[Dof::Ring].status, Some(rest));
         assert!(of_ring.eq([stalled, rest]));
