@@ -65,7 +65,7 @@ fn tile_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, chosen: bool) -> bool {
                 true => palette.text,
                 false => said.text,
             };
-            let title = Label::new(&said.title, ink).shorter(&said.short);
+            let title = Label::new(&said.title, ink);
             kit::left_ui(ui, |ui| title.ui(ui));
         });
     });

@@ -120,7 +120,7 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let name = row.named(pane, main::STATUS);
     let label = Label::new(&said.title, said.text).small().named(&name);
     let place = rect.with_min_x(rect.left() + 17.0);
-    label.shorter(&said.short).put(ui, place);
+    label.put(ui, place);
     let tip = pane.look.tip(faults::EXPLAIN);
     let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
     response

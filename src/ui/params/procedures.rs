@@ -113,7 +113,7 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let card = Card::new(look, titles(change)[1]);
     match &run.stage {
         ProcedureStage::Asking => ask_change(state, look, run),
-        ProcedureStage::Over(Ok(report)) => change_over(card, places, report),
+        ProcedureStage::Over(Ok(report)) => change_over(look, card, places, report),
         ProcedureStage::Over(Err(error)) => not_begun(look, card, error),
         ProcedureStage::Doing(step, since) => match step {
             PlaceStep::BackingUp | PlaceStep::BackedUp(..) => card.progress(0.1, cards::BACKING_UP),
@@ -171,7 +171,7 @@ fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
         .choice(step(text, manner, ProcedureAction::Save))
 }
 
-fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
+fn change_over(look: Look, card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
     let now_at = (cards::NOW_AT, &places.old);
     let card = card.choice(close());
     match &report.end {
@@ -193,7 +193,7 @@ fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
             let card = both(ways(card, places).warning(cards::OVER_UNSEEN), places);
             let card = match saved {
                 Saved::Unknown { .. } => card,
-                saved => save_end(card, places, Some(saved)),
+                saved => save_end(look, card, places, Some(saved)),
             };
             backup(card, &report.backup)
         }
@@ -203,7 +203,7 @@ fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
         }
         PlaceEnd::Kept { at: place, saved } => {
             let card = card.words((cards::OVER_KEPT, places.endpoint(*place)));
-            let mut card = save_end(card, places, saved.as_ref());
+            let mut card = save_end(look, card, places, saved.as_ref());
             let is_saved = saved.as_ref().is_some_and(Saved::may_be_in_flash);
             if is_saved && places.new != places.old {
                 if *place == WhichPlace::Old {
@@ -217,18 +217,12 @@ fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
 }
 
 /// What is known of the flash after a change was kept.
-fn save_end(card: Card, places: &PlacePair, saved: Option<&Saved>) -> Card {
-    let said = match saved {
-        None => cards::OVER_UNSAVED,
-        Some(Saved::Confirmed) => cards::SAVED_OK,
-        Some(Saved::ReadBack) => cards::SAVED_READ,
-        Some(Saved::Failed { .. }) => cards::SAVED_FAILED,
-        Some(Saved::Refused { .. } | Saved::NotSent(_)) => cards::SAVED_NOT_SENT,
-        Some(Saved::Unknown { .. }) => {
-            return both(card.warning(cards::SAVED_UNKNOWN), places);
-        }
-    };
-    card.words(said)
+fn save_end(look: Look, card: Card, places: &PlacePair, saved: Option<&Saved>) -> Card {
+    match saved {
+        None => card.words(cards::OVER_UNSAVED),
+        Some(Saved::Unknown { .. }) => both(card.warning(cards::SAVED_UNKNOWN), places),
+        Some(saved) => card.words(device::saved(look, saved)),
+    }
 }
 
 /// Both places where the hand may be.

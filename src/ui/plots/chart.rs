@@ -212,11 +212,7 @@ impl<'a> Chart<'a> {
             .add(mesh);
         if dense.is_empty() && sparse.is_empty() {
             let empty = Label::new(self.look.say(self.empty), self.look.palette.muted);
-            empty
-                .small()
-                .shorter(format::UNKNOWN)
-                .center()
-                .put(ui, frame);
+            empty.small().center().put(ui, frame);
         }
         view.traces = traces;
         let name = self.look.say(self.title);

@@ -56,11 +56,7 @@ texts! {
     OVER_NOWHERE: "No hand answers at either place. Nothing is in flash: switch the hand off and on, and it is found at the former place again. If not, look for it in the Connection view.", "两个位置都没有应答。未写入闪存：请断电再上电，灵巧手会回到原位置。若仍找不到，请在连接视图中扫描。";
     OVER_UNSEEN: "SAVE was sent, and no hand answers at either place. Switch it off and on: then it is at one of these places:", "已发送保存，两个位置都没有应答。请断电再上电，灵巧手在以下位置之一：";
     OVER_WAITS: "Switch the hand off and on; then it is found here:", "请断电再上电，之后灵巧手在：";
-    SAVED_OK: "The hand says that it is in flash.", "灵巧手确认已写入闪存。";
-    SAVED_READ: "The hand took SAVE and its parameters read the same. Only the next power-up shows what is in flash.", "灵巧手接受了保存，参数读回一致。是否写入闪存，下次上电才能确认。";
-    SAVED_FAILED: "The hand says that nothing was written to flash.", "灵巧手报告未写入闪存。";
     SAVED_UNKNOWN: "It is not known whether it is in flash. Switched off and on the hand is at one of these places:", "不确定是否已写入闪存。断电再上电后，灵巧手在以下位置之一：";
-    SAVED_NOT_SENT: "SAVE was not sent, or the hand refused it: it is not in flash.", "未发送保存或被拒绝：未写入闪存。";
     TO_OLD: "Connect: former place", "连接原位置", "Connects there. Nothing is written.", "连接到该位置，不写入任何内容。";
     TO_NEW: "Connect: new place", "连接新位置", "Connects there. Nothing is written.", "连接到该位置，不写入任何内容。";
 

@@ -264,7 +264,7 @@ pub(crate) const fn is_saved(end: &SaveEnd) -> bool {
     matches!(end, SaveEnd::Told(Saved::Confirmed | Saved::ReadBack))
 }
 
-fn saved(look: Look, saved: &Saved) -> String {
+pub(crate) fn saved(look: Look, saved: &Saved) -> String {
     let say = |text| look.say(text);
     match saved {
         Saved::Confirmed => say(SAVE_CONFIRMED).into(),

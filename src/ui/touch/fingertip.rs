@@ -275,16 +275,11 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
     };
     if tip.sense == Sense::NoNumber {
         let radius = (HALF_WIDTH_MM - 1.0) * 0.5 * scale.per_mm;
-        let ring: Vec<Pos2> = (0..=24u8)
-            .map(|step| f32::from(step) / 24.0 * std::f32::consts::TAU)
-            .map(|turn| scale.middle() + Vec2::angled(turn) * radius)
-            .collect();
-        painter.extend(Shape::dashed_line(
-            &ring,
+        painter.circle_stroke(
+            scale.middle(),
+            radius,
             Stroke::new(theme::FOCUS_LINE, arrow),
-            3.0,
-            3.0,
-        ));
+        );
     }
     if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
         // Area grows with force, so that twice the force looks twice as much.
@@ -300,18 +295,8 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
     if let Some(shear) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
         let by = scale.end(shear) - scale.middle();
         let stroke = Stroke::new(2.0, arrow);
-        arrow_shape(painter, scale.middle(), by, stroke);
+        painter.arrow(scale.middle(), by, stroke);
     }
-}
-
-fn arrow_shape(painter: &Painter, from: Pos2, by: Vec2, stroke: Stroke) {
-    let along = by.normalized();
-    let head = (by.length() * 0.4).clamp(3.0, 8.0);
-    let to = from + by;
-    let side = along.rot90() * head * 0.5;
-    painter.line_segment([from, to - along * head * 0.7], stroke);
-    let points = vec![to, to - along * head + side, to - along * head - side];
-    painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
 }
 
 #[cfg(test)]

@@ -49,7 +49,6 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     };
     Label::new(look.say(words), color)
         .small()
-        .shorter(look.say(panels::TOUCH_SCALE_SHORT))
         .ui(ui)
         .on_hover_text(look.tip(panels::TOUCH));
 }

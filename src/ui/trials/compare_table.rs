@@ -4,14 +4,16 @@ use crate::app::settings::Language;
 use crate::app::trials::{ComparedRow, Comparison, RowKey, SessionId};
 use crate::trials::columns::{Better, COLUMNS, Metric};
 use crate::trials::{JointMetrics, TrialSetting};
-use crate::ui::kit::{self, Button, Label, Pane, dash};
+use crate::ui::kit::{self, Label, Pane, dash};
 use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::{end_words, order, setting_words, shown, spread};
 use crate::ui::trials::compare_curves::color;
 use crate::ui::trials::compare_list;
-use egui::{Align, Color32, Layout, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{
+    Align, Color32, Layout, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2,
+};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 const ROW: f32 = 20.0;
@@ -229,32 +231,23 @@ impl<'a> TrialSheet<'a, '_> {
     /// The head of a column over its unit. A click sorts by it.
     fn head_cell_ui(&self, ui: &mut Ui, (by, title): (By, Text), sorting: &mut Sorting) {
         let look = self.pane.look;
-        let (text, place) = (look.say(title), ui.max_rect());
+        let text = look.say(title);
         let is_own = sorting.by == by;
-        let button = Button::new(text, look.say(tune::COLUMN_TIP)).choice(is_own);
-        let response = button.ground(ui, look, place.shrink(1.0), ui.scope_id().with(title.en));
-        let words = place.shrink2(vec2(theme::STEP, 2.0));
-        let (upper, lower) = words.split_top_bottom_at_fraction(0.5);
+        // The unit below its quantity, or nothing, so that all heads are of two lines.
         let unit = text.split_once(", ").or_else(|| text.split_once(' '));
-        let (text, unit) = unit.unwrap_or((text, ""));
-        for (place, text) in [(upper, text), (lower, unit)] {
-            let label = Label::new(text, look.palette.muted).small();
-            match by {
-                By::Number(_) => label.right().paint(ui, place),
-                _ => label.paint(ui, place),
-            };
-        }
-        if is_own {
-            let (arrow, way) = match sorting.falling {
-                true => (theme::TO_BOTTOM, tune::FALLING),
-                false => (theme::TO_TOP, tune::RISING),
-            };
-            let place = lower.with_max_x(lower.left() + theme::SIGN_SMALL);
-            kit::sign(ui, place, arrow, look.palette.accent);
-            ui.ctx().accesskit_node_builder(response.id, |node| {
-                node.set_value(look.say(way));
-            });
-        }
+        let (name, unit) = unit.unwrap_or((text, ""));
+        let (arrow, way) = match (is_own, sorting.falling) {
+            (false, _) => ("", ""),
+            (true, true) => (" \u{23f7}", look.say(tune::FALLING)),
+            (true, false) => (" \u{23f6}", look.say(tune::RISING)),
+        };
+        let words = RichText::new(format!("{name}\n{unit}{arrow}")).small();
+        let button = egui::Button::selectable(is_own, words.color(look.palette.muted));
+        let response = ui.add_sized(ui.available_size(), button);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_own, text));
+        ui.ctx()
+            .accesskit_node_builder(response.id, |node| node.set_value(way));
+        let response = response.on_hover_text(look.say(tune::COLUMN_TIP));
         if response.clicked() {
             *sorting = Sorting {
                 by,

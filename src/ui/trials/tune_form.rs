@@ -1,7 +1,7 @@
 //! The plan of a series as fields, each with what is wrong below it. Every change is one action with the whole plan.
 
 use crate::app::action::Action;
-use crate::app::trials::form::{ListError, PlanSide, list, set_target, tags, take_pose};
+use crate::app::trials::form::{PlanSide, list, set_target, tags, take_pose};
 use crate::app::trials::{ApproachKind, PlanField, TrialAction};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::{Approach, TrialPlan, Until};
@@ -24,7 +24,6 @@ const FAST: i16 = 250;
 /// What the form needs between frames.
 #[derive(Debug)]
 pub(crate) struct TuneForm {
-    refused: Option<(PlanField, ListError)>,
     /// Where each joint closed to when it took part last.
     targets: PerDof<Angle>,
     /// Speed of the fast part when there was one last.
@@ -34,7 +33,6 @@ pub(crate) struct TuneForm {
 impl Default for TuneForm {
     fn default() -> Self {
         Self {
-            refused: None,
             targets: PerDof::splat(Angle::MIN),
             fast: Speed::nearest(FAST),
         }
@@ -68,11 +66,9 @@ impl TuneForm {
         self.remember(&plan);
         let error = plan.check().err();
         let wrong = error.map(|error| (PlanField::of(&error), tune::plan_error(look, &error)));
-        let refused = self.refused;
-        let refused = refused.map(|(field, why)| (field, tune::list_error(look, why)));
         let runs = pane.state.hand().runs_series();
         let mut pass = Pass {
-            wrong: refused.or(wrong),
+            wrong,
             pane,
             form: self,
             plan,
@@ -236,16 +232,15 @@ impl Pass<'_, '_> {
         (caption, name): (Text, Text),
         (numbers, most): (Vec<i16>, i16),
     ) -> Option<Vec<i16>> {
+        let look = self.pane.look;
         let numbers: Vec<String> = numbers.iter().map(i16::to_string).collect();
-        let typed = self.text_ui(ui, (caption, name), (&numbers.join(", "), LIST_CHARS));
-        let read = typed.map(|text| list(&text, most));
-        match read {
-            Some(Err(why)) => self.form.refused = Some((field, why)),
-            Some(Ok(_)) => self.form.refused = None,
-            None => {}
-        }
+        let text = TextField::new(look.say(name), LIST_CHARS).hint(look.tip(name));
+        let read = |text: &str| list(text, most).map_err(|why| tune::list_error(look, why));
+        let read = self.row_ui(ui, caption, |ui, pane| {
+            text.read_ui(ui, pane, &numbers.join(", "), read)
+        });
         self.trouble_ui(ui, field);
-        read.and_then(Result::ok)
+        read
     }
 
     /// A field beside its caption.

@@ -118,9 +118,8 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
         let width = kit::text_width(ui, &text, theme::number()) + 1.0;
         ui.scope(|ui| {
             ui.set_max_width(width.min(most));
-            let scheme = text.split(':').next().unwrap_or_default();
             let label = Label::new(&text, palette.muted).number();
-            label.shorter(scheme).ui(ui)
+            label.ui(ui)
         })
         .inner
         .on_hover_text(format!("{text}\n{}", look.say(main::ENDPOINT_TIP)));
