@@ -8,7 +8,7 @@ use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, device, faults, notices, words};
 use crate::ui::theme;
-use egui::{CornerRadius, Frame, Margin, Rect, ScrollArea, Ui, vec2};
+use egui::{CornerRadius, Frame, Margin, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 /// Size of the number on a tab.
 const FAULT_BADGE: f32 = 16.0;
@@ -185,6 +185,24 @@ pub(crate) fn mark(ui: &Ui, center: egui::Pos2, color: egui::Color32) {
     let stroke = egui::Stroke::new(1.6, color);
     ui.painter()
         .circle_stroke(center, theme::LAMP - 0.5, stroke);
+}
+
+/// A ring for faults of this joint that nobody has seen yet.
+pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
+    let mut unseen = pane.state.hand().faults.unseen();
+    let Some(first) = unseen.find(|entry| entry.dof == dof) else {
+        return;
+    };
+    let palette = pane.look.palette;
+    let is_active = first.is_active();
+    let (place, response) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+    let color = if is_active { palette.bad } else { palette.warn };
+    mark(ui, place.center(), color);
+    let joint = pane.look.say(words::dof(dof));
+    let name = format!("{joint} {}", pane.look.say(faults::UNSEEN_MARK));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+    let tip = title(pane, dof, first.what);
+    response.on_hover_text(format!("{tip}\n{}", pane.look.say(faults::OVER_UNSEEN)));
 }
 
 /// When it began, how long it lasted, how often it came: what the title does not say already.

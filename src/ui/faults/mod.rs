@@ -12,7 +12,6 @@ use crate::hand::{Dof, Fault, Status, Words};
 use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui};
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::joints::drive_tiles;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::text::{faults, main, notices, panels, words};
 use crate::ui::theme;
@@ -71,10 +70,6 @@ impl FaultsView {
 
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        if let Some(pressed) = drive_tiles::tiles_ui(ui, pane, self.chosen) {
-            self.chosen = (self.chosen != Some(pressed)).then_some(pressed);
-            self.recordings.close();
-        }
         if let Some(recording) = self.recordings.opened(pane) {
             kit::full_card_ui(ui, pane.look, |ui| {
                 self.recordings.recording_ui(ui, pane, &recording);
@@ -208,7 +203,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         kit::lamp_ui(ui, Some(said.lamp));
         Label::new(&title, palette.text).ui(ui);
         let close = look.say(faults::CHOSEN_CLOSE);
-        let button = Button::new(close, look.tip(faults::DRIVE)).weight(Weight::Quiet);
+        let button = Button::new(close, "").weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
     let sample = &pane.state.hand().sample;

@@ -3,15 +3,15 @@
 use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::hand::{Dof, impact};
+use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::joints::drive_tiles;
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
 use crate::ui::kit::{self, Button, Label, Opens, Pane};
 use crate::ui::text::{faults, main};
 use crate::ui::theme;
-use egui::{Color32, CursorIcon, Frame, Margin, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, CursorIcon, Frame, Margin, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// How a row is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -99,15 +99,30 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
             row.drive_reading_ui(ui, place, pane);
         }
         impact_ui(ui, pane, row);
-        drive_tiles::unseen_mark_ui(ui, pane, row.dof);
+        unseen_mark_ui(ui, pane, row.dof);
         status_ui(ui, pane, row);
     });
 }
 
-/// Lamp and words of the drive; a click explains them.
+/// Lamp and words of the drive: a click explains them.
 fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let rect = cell(ui, ui.available_width());
     let said = DriveWords::of(pane, row.dof);
+    explain_ui(ui, pane, row, (rect, &said));
+    let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
+    kit::lamp(ui, lamp, said.lamp);
+    let name = row.named(pane, main::STATUS);
+    let label = Label::new(&said.title, said.text).small().named(&name);
+    label.put(ui, rect.with_min_x(rect.left() + 17.0));
+}
+
+/// The place of a drive's words as a button that opens their explanation.
+pub(crate) fn explain_ui(
+    ui: &Ui,
+    pane: &mut Pane<'_>,
+    row: &JointRow,
+    (rect, said): (Rect, &DriveWords),
+) {
     let name = row.named(pane, faults::EXPLAIN);
     let response = ui.interact(rect, row.id("explain"), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
@@ -115,12 +130,6 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     if response.clicked() {
         pane.open(Opens::Drive(row.dof));
     }
-    let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
-    kit::lamp(ui, lamp, said.lamp);
-    let name = row.named(pane, main::STATUS);
-    let label = Label::new(&said.title, said.text).small().named(&name);
-    let place = rect.with_min_x(rect.left() + 17.0);
-    label.put(ui, place);
     let tip = pane.look.tip(faults::EXPLAIN);
     let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
     response

@@ -3,7 +3,6 @@
 use crate::ui::text::phrase::texts;
 
 texts! {
-    DRIVE: "Drive", "驱动器", "Shows what this drive says, and its faults first.", "查看该驱动器的状态说明，并把其故障排在最前。";
     EXPLAIN: "status, explained", "状态说明", "Click: what this means and what to do.", "点击：查看含义与处理建议。";
     SAYS_NOW: "says now", "当前状态";
     SAID_LAST: "said last", "上次状态";

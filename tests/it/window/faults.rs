@@ -120,7 +120,7 @@ fn the_status_of_a_joint_is_one_click_away_from_its_explanation() {
         top("Index: Stall") < top("Ring: Motor abnormal"),
         "the asked one first"
     );
-    bench.click("Drive Ring");
+    bench.click("Ring status, explained");
     bench.run(60);
     assert!(bench.shows("Ring · says now: Motor abnormal"));
     bench.click("Show all drives");
@@ -288,9 +288,9 @@ fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
         .map(|one| one.opened)
         .collect();
     assert_eq!(listed, [true]);
-    bench.click("Drive Ring");
+    bench.click("Ring status, explained");
     bench.run(60);
-    assert!(!bench.shows("What happened"), "tiles lead back");
+    assert!(!bench.shows("What happened"), "a joint leads back");
 }
 
 #[test]
