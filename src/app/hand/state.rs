@@ -17,7 +17,7 @@ use crate::hand::{Angle, AngleReading, Finger, HandSample, Moment, PerDof, PerFi
 use crate::history::History;
 use crate::link::session::motion::arm_refusal;
 use crate::link::{LinkStats, LinkStatus, Traffic};
-use crate::record::{ArmRefusal, LinkState, QuirkSheet};
+use crate::record::{ArmRefusal, LinkState};
 use crate::transport::Endpoint;
 use tokio::sync::mpsc;
 
@@ -73,8 +73,6 @@ pub struct HandState {
     pub series: Option<SeriesRun>,
     /// What went over the wire, as far as it was looked at.
     pub traffic: Traffic,
-    /// What is kept about this hand; `None` for the built-in one, and until it was kept.
-    pub sheet: Option<QuirkSheet>,
     /// Where the task under the card wants the link.
     pub(crate) requested: Option<mpsc::UnboundedReceiver<GoRequest>>,
     /// The open link.

@@ -1,9 +1,11 @@
 //! How the link goes: state, rates, round trips, counts, and what the line's time goes to. Asks for nothing.
 
 use crate::link::PollGroup;
+use crate::record::quirk_sheet::Fact;
+use crate::transport::Endpoint;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::kit::{self, Label, Pane, format};
-use crate::ui::text::{Text, errors, faults, panels};
+use crate::ui::text::{Text, errors, faults, panels, scan};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, vec2};
 
@@ -57,7 +59,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
 
 type Figures = Vec<(Text, String, Color32)>;
 
-fn figures(pane: &Pane<'_>) -> [Figures; 3] {
+fn figures(pane: &Pane<'_>) -> [Figures; 4] {
     let palette = pane.look.palette;
     let stats = &pane.state.hand().stats;
     let live = pane.state.hand().link.state.is_live();
@@ -71,7 +73,23 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
         0 => count(text, 0),
         value => (text, value.to_string(), palette.warn),
     };
+    let (look, quirks) = (pane.look, &pane.state.hand().link.quirks);
+    let said = |text: Option<Text>| {
+        text.map_or(format::UNKNOWN, |text| look.say(text))
+            .to_owned()
+    };
+    let id = quirks.hand_id.map(i64::from);
+    let mut hand = vec![
+        measured(scan::fact(Fact::HandId), format::whole(id, 0)),
+        measured(scan::fact(Fact::Touch), said(quirks.touch.map(scan::touch))),
+    ];
+    let endpoint = pane.state.hand().endpoint.as_ref();
+    if matches!(endpoint, Some(Endpoint::Tcp { .. } | Endpoint::Rtu(_))) {
+        let packing = quirks.packing.map_or(scan::PACKING_UNKNOWN, scan::packing);
+        hand.push(measured(scan::fact(Fact::Packing), said(Some(packing))));
+    }
     [
+        hand,
         vec![
             measured(panels::STATE_RATE, format::hertz(stats.state_hz)),
             measured(

@@ -1,7 +1,6 @@
 //! The connection: which hand, over what, and how well it goes. Asks to connect and to scan; opens nothing.
 pub(crate) mod figures;
 pub(crate) mod link_words;
-pub(crate) mod quirk_sheet;
 mod rows;
 pub(crate) mod scan;
 
@@ -322,7 +321,6 @@ fn scroll_ui(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
 fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     figures::link_ui(ui, pane);
     figures::budget_ui(ui, pane);
-    quirk_sheet::sheet_ui(ui, pane);
 }
 
 /// Hands of before, one click each.

@@ -2,7 +2,7 @@
 
 use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanTarget};
 use crate::hand::register::BytePacking;
-use crate::link::{GapRead, TouchDoubt, TouchVariant};
+use crate::link::{TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
 use crate::transport::{Endpoint, UsbFound};
 use crate::ui::kit::{Look, format};
@@ -39,14 +39,8 @@ texts! {
     CONNECTED: "Connected", "已连接", "This is the hand of now.", "当前连接的灵巧手。";
     HELD: "left alone, the connection of now uses it. Disconnect first to scan it.", "已跳过，当前连接正在使用。请先断开再扫描。";
     MORE: "more", "更多";
-    SHEET: "About this hand", "此手的特性";
-    SEEN: "Seen", "连接日期";
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
-    CHOSEN: "as you chose", "手动";
-    BAUD_NONE: "unknown", "未知";
-    COPY: "Copy", "复制", "Copies this sheet as text, for a report or another computer.", "复制为文本。";
-    COPY_OFF: "No hand has answered yet.", "灵巧手尚未应答。";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
     NOT_KEPT: "What was found out about this hand could not be kept:", "本手识别结果无法写入：";
 
@@ -59,11 +53,6 @@ texts! {
         Fact::Touch => "Fingertips", "指尖";
     }
 
-    /// Its words.
-    fn gap(GapRead) {
-        GapRead::Through => "read through", "可读";
-        GapRead::Split => "refused", "拒绝";
-    }
 
     /// Its words.
     fn touch(TouchVariant) {
