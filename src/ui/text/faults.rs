@@ -38,10 +38,7 @@ texts! {
     LOG_NONE: "Nothing has happened yet.", "还没有消息。";
     LOG_NONE_PASS: "No message passes the filter.", "没有符合条件的消息。";
     LOG_LOST: "older messages were dropped:", "已丢弃的较早消息：";
-    LOG_FILTER: "Filter messages", "筛选消息", "words", "关键词";
-    LEVEL: "Level", "级别", "Shows messages of this level and above.", "显示此级别及以上的消息。";
-    LEVEL_WARN: "Warnings", "警告";
-    LEVEL_ALARM: "Alarms", "报警";
+    LOG_FILTER: "Filter messages", "筛选消息", "words, or info, warning, alarm", "关键词，或：信息、警告、报警";
     WORD_INFO: "info", "信息";
     WORD_WARN: "warning", "警告";
     WORD_ALARM: "alarm", "报警";

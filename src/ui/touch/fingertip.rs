@@ -216,7 +216,7 @@ fn halo(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
 fn skin(painter: &Painter, look: Look, scale: &Scale) {
     let (rect, round) = outline(scale, 0.0);
     let edge = Stroke::new(1.0, look.palette.edge);
-    painter.rect(rect, round, look.palette.skin, edge, StrokeKind::Inside);
+    painter.rect(rect, round, look.palette.control, edge, StrokeKind::Inside);
 }
 
 fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
@@ -270,7 +270,7 @@ fn crossed(painter: &Painter, pad: &[Pos2], color: Color32) {
 fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
     let fade = tip.fade();
     let arrow = match tip.sense {
-        Sense::Fine => look.palette.arrow.gamma_multiply(fade),
+        Sense::Fine => look.palette.text.gamma_multiply(fade),
         Sense::NoNumber | Sense::Beyond => look.palette.warn.gamma_multiply(fade),
     };
     if tip.sense == Sense::NoNumber {

@@ -100,7 +100,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let palette = look.palette;
     let simulated = pane.state.hand().is_simulated();
     let (text, fill, color) = match (&pane.state.hand().endpoint, simulated) {
-        (_, true) => (main::SIMULATED, palette.simulated, palette.on_simulated),
+        (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
         (None, _) => (main::NO_HAND, palette.control, palette.muted),
     };

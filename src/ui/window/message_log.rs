@@ -1,4 +1,4 @@
-//! The log of messages: filtered by level and words, copied as text. Its lines are measured once and not for each frame.
+//! The log of messages: filtered by words, of which the level is one, and copied as text. Its lines are measured once and not for each frame.
 
 use crate::app::notices::{Level, Notice};
 use crate::app::settings::Language;
@@ -19,7 +19,6 @@ const AGE: f32 = 52.0;
 struct LogKey {
     newest: Option<(u64, Moment)>,
     language: Language,
-    least: Option<Level>,
     words: String,
     width: f32,
 }
@@ -37,7 +36,6 @@ struct LogLine {
 #[derive(Debug, Default)]
 pub(crate) struct MessageLog {
     /// Messages of less weight are left out.
-    least: Option<Level>,
     words: String,
     key: Option<LogKey>,
     lines: Vec<LogLine>,
@@ -57,8 +55,7 @@ impl MessageLog {
     /// Draws the tools and the list.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        self.tools_ui(ui, look);
-        kit::edit_ui(ui, look.both(faults::LOG_FILTER), &mut self.words);
+        ui.horizontal(|ui| kit::right_ui(ui, |ui| self.tools_ui(ui, look)));
         self.update(ui, pane);
         if !self.lines.is_empty() {
             self.lines_ui(ui, pane);
@@ -71,40 +68,20 @@ impl MessageLog {
         Label::muted(look, text).ui(ui);
     }
 
-    /// Levels and copying.
+    /// Copying, and words to look for.
     fn tools_ui(&mut self, ui: &mut Ui, look: Look) {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = theme::STEP;
-            for (text, least) in [
-                (main::EVERY, None),
-                (faults::LEVEL_WARN, Some(Level::Warn)),
-                (faults::LEVEL_ALARM, Some(Level::Alarm)),
-            ] {
-                let name = look.pair(look.say(faults::LEVEL), look.say(text));
-                let button = Button::said(look, text)
-                    .tip(look.tip(faults::LEVEL))
-                    .named(&name);
-                if button.choice(self.least == least).ui(ui, look).clicked() {
-                    self.least = least;
-                }
-            }
-            kit::right_ui(ui, |ui| {
-                let text = match self.copied {
-                    None => look.say(faults::COPY).to_owned(),
-                    Some(lines) => format!("{} ({lines})", look.say(faults::COPIED)),
-                };
-                let name = look.pair(look.say(faults::COPY), look.say(faults::LOG));
-                let copy = Button::new(&text, look.tip(faults::COPY)).named(&name);
-                if copy
-                    .disabled_if(self.lines.is_empty(), look.say(faults::LOG_NONE))
-                    .ui(ui, look)
-                    .clicked()
-                {
-                    ui.ctx().copy_text(self.text(look));
-                    self.copied = Some(self.lines.len());
-                }
-            });
-        });
+        let text = match self.copied {
+            None => look.say(faults::COPY).to_owned(),
+            Some(lines) => format!("{} ({lines})", look.say(faults::COPIED)),
+        };
+        let name = look.pair(look.say(faults::COPY), look.say(faults::LOG));
+        let copy = Button::new(&text, look.tip(faults::COPY)).named(&name);
+        let copy = copy.disabled_if(self.lines.is_empty(), look.say(faults::LOG_NONE));
+        if copy.ui(ui, look).clicked() {
+            ui.ctx().copy_text(self.text(look));
+            self.copied = Some(self.lines.len());
+        }
+        kit::edit_ui(ui, look.both(faults::LOG_FILTER), &mut self.words);
     }
 
     /// Measures the lines anew if anything about them has changed.
@@ -113,7 +90,6 @@ impl MessageLog {
         let key = LogKey {
             newest: log.log().next().map(|newest| (newest.id, newest.at)),
             language: pane.look.language,
-            least: self.least,
             words: self.words.trim().to_lowercase(),
             width: ui.available_width() - LAMP - AGE - 3.0 * theme::GAP,
         };
@@ -121,16 +97,18 @@ impl MessageLog {
             return;
         }
         self.copied = None;
-        let passing = log.log().filter(|notice| Some(notice.level) >= key.least);
         let line = |notice: &Notice| LogLine {
             at: notice.at,
             level: notice.level,
             text: words(pane.look, notice),
             height: 0.0,
         };
-        self.lines = passing.map(line).collect();
-        self.lines
-            .retain(|line| line.text.to_lowercase().contains(&key.words));
+        self.lines = log.log().map(line).collect();
+        self.lines.retain(|line| {
+            let level = pane.look.say(level_word(line.level));
+            let said = format!("{level} {}", line.text);
+            said.to_lowercase().contains(&key.words)
+        });
         for line in &mut self.lines {
             let (text, ink) = (line.text.clone(), Color32::PLACEHOLDER);
             let galley = ui.painter().layout(text, theme::small(), ink, key.width);
