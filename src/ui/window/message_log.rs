@@ -4,7 +4,7 @@ use crate::app::notices::{Level, Notice};
 use crate::app::settings::Language;
 use crate::hand::Moment;
 use crate::ui::kit::{self, Button, Label, Look, Pane, format};
-use crate::ui::text::{Text, faults, main, notices};
+use crate::ui::text::{Text, faults, notices};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui};
 use egui_extras::{Column, TableBuilder};
