@@ -3,7 +3,7 @@
 use crate::app::hand::Freshness;
 use crate::hand::{Dof, Status, Words};
 use crate::ui::kit::{Pane, format};
-use crate::ui::text::words;
+use crate::ui::text::{main, words};
 use egui::Color32;
 
 /// What stands beside a drive's lamp.
@@ -14,6 +14,8 @@ pub(crate) struct DriveWords {
     pub(crate) text: Color32,
     /// In two or three words, or "-".
     pub(crate) title: String,
+    /// The same where room is short.
+    pub(crate) short: String,
     /// Title, cause and advice, if anything is known.
     pub(crate) words: Option<Words>,
     /// How fresh it is.
@@ -52,6 +54,11 @@ impl DriveWords {
             (None, Some(Status::Unknown(code))) => format!("{title} ({code})"),
             _ => title.to_owned(),
         };
+        let short = match (fault, status) {
+            (Some(fault), _) => words::fault_short(fault, look.language).into(),
+            (None, Some(Status::ForceReached)) => look.say(main::AT_FORCE).into(),
+            _ => title.clone(),
+        };
         let lamp = look.value(freshness, live);
         let text = if live == palette.bad {
             lamp
@@ -62,6 +69,7 @@ impl DriveWords {
             lamp,
             text,
             title,
+            short,
             words,
             freshness,
         }

@@ -62,7 +62,7 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof) {
             unseen_mark_ui(ui, pane, dof);
         });
         let name = row.named(pane, main::STATUS);
-        let status = Label::new(&drive.title, drive.text).small();
+        let status = Label::new(&drive.short, drive.text).small();
         status.named(&name).ui(ui);
         let line = vec2(ui.available_width(), theme::TEXT_LINE);
         let (_, place) = ui.allocate_space(line);

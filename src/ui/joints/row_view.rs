@@ -95,24 +95,25 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     kit::right_ui(ui, |ui| {
         lock_ui(ui, pane, row);
         if !each {
-            let place = cell(ui, 104.0);
+            let place = cell(ui, 96.0);
             row.drive_reading_ui(ui, place, pane);
         }
         impact_ui(ui, pane, row);
         unseen_mark_ui(ui, pane, row.dof);
-        status_ui(ui, pane, row);
+        status_ui(ui, pane, row, each);
     });
 }
 
 /// Lamp and words of the drive: a click explains them.
-fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
+fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     let rect = cell(ui, ui.available_width());
     let said = DriveWords::of(pane, row.dof);
     explain_ui(ui, pane, row, (rect, &said));
     let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
     kit::lamp(ui, lamp, said.lamp);
     let name = row.named(pane, main::STATUS);
-    let label = Label::new(&said.title, said.text).small().named(&name);
+    let title = if each { &said.title } else { &said.short };
+    let label = Label::new(title, said.text).small().named(&name);
     label.put(ui, rect.with_min_x(rect.left() + 17.0));
 }
 

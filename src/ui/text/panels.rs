@@ -33,8 +33,8 @@ texts! {
     MARK_HELD: "At rest", "静止";
 
     TOUCH: "Fingertips", "指尖触觉", "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
-    TOUCH_SCALE: "Heat: counts above zero", "热度：相对零点的增量";
-    TOUCH_NO_ZERO: "No zero yet: let go of the fingertips", "尚无零点：请松开指尖";
+    TOUCH_SCALE: "Heat", "热度";
+    TOUCH_NO_ZERO: "No zero", "无零点", "No zero yet: let go of the fingertips.", "尚无零点：请松开指尖。";
     TOUCH_NORMAL: "Normal", "法向";
     TOUCH_SHEAR: "Tangential", "切向";
     TOUCH_DIRECTION: "Direction", "方向";

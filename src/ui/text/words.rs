@@ -57,6 +57,18 @@ pub(crate) const fn fault(fault: Fault, language: Language) -> Words {
     }
 }
 
+/// A fault's title where room is short.
+pub(crate) const fn fault_short(fault: Fault, language: Language) -> &'static str {
+    match (language, fault) {
+        (Language::En, Fault::OverTemperature) => "Too hot",
+        (Language::En, Fault::Motor) => "Motor",
+        (Language::En, Fault::Communication) => "No contact",
+        (Language::En, Fault::Unknown(_)) => "Unknown",
+        (Language::Zh, Fault::Unknown(_)) => "未知故障",
+        _ => self::fault(fault, language).title,
+    }
+}
+
 /// Writes a table of titles, causes and advice as the function that says them in Chinese.
 macro_rules! chinese {
     ($(fn $name:ident($of:ty) { $($case:pat => $title:literal, $cause:literal, $advice:literal;)* })*) => {$(

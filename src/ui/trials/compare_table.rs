@@ -238,8 +238,8 @@ impl<'a> TrialSheet<'a, '_> {
         let (name, unit) = unit.unwrap_or((text, ""));
         let (arrow, way) = match (is_own, sorting.falling) {
             (false, _) => ("", ""),
-            (true, true) => (" \u{23f7}", look.say(tune::FALLING)),
-            (true, false) => (" \u{23f6}", look.say(tune::RISING)),
+            (true, true) => (" ▼", look.say(tune::FALLING)),
+            (true, false) => (" ▲", look.say(tune::RISING)),
         };
         let words = RichText::new(format!("{name}\n{unit}{arrow}")).small();
         let button = egui::Button::selectable(is_own, words.color(look.palette.muted));
