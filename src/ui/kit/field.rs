@@ -67,7 +67,8 @@ impl Field<'_> {
         }
         let key = |key| ui.input(|input| input.key_pressed(key));
         let mut new = None;
-        if is_typed && response.lost_focus() {
+        // The second pass of a frame sees the focus lost again, and no key: what was refused stays refused.
+        if is_typed && refused.is_none() && response.lost_focus() {
             is_typed = match self.is_number {
                 true => key(Key::Enter),
                 false => !key(Key::Escape),
