@@ -6,7 +6,7 @@ use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{Text, device, faults, notices, words};
+use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::theme;
 use egui::{CornerRadius, Frame, Margin, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
@@ -211,15 +211,13 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
     let now = pane.state.now;
     let mut parts = Vec::new();
     if entry.until.is_some() {
-        let (began, ago) = (look.say(faults::BEGAN), look.say(device::AGO));
         let age = format::age(now.since(entry.since));
         let lasted = format::age(entry.lasted(now));
-        parts.push(format!("{began} {age} {ago}"));
+        parts.push(look.fill(faults::BEGAN, &[&age]));
         parts.push(look.told(faults::LASTED, lasted));
     }
     if entry.count > 1 {
-        let (came, times) = (look.say(faults::CAME), look.say(faults::TIMES));
-        parts.push(format!("{came} {} {times}", entry.count));
+        parts.push(look.fill(faults::CAME, &[&entry.count]));
     }
     parts.join(" · ")
 }

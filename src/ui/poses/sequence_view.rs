@@ -221,7 +221,10 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let paused = own.is_some_and(|run| run.is_paused());
     let preview = pane.state.poses.preview.as_ref();
     let dry = preview.is_some_and(|preview| preview.sequence == id);
-    let empty = sequence.steps.is_empty().then(|| look.say(poses::NO_STEPS));
+    let empty = sequence
+        .steps
+        .is_empty()
+        .then(|| look.say(poses::STEPS_EMPTY));
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
     let cannot = empty.or(pane.unready());
     let go_on = match paused {

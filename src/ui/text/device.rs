@@ -72,7 +72,6 @@ texts! {
     WANTED: "wanted", "期望";
     DOUBT_NOT_READ: "it could not be read back", "无法读回";
     DOUBT_AMBIGUOUS: "a late answer could be mistaken for it", "可能与迟到的应答混淆";
-    DOUBT_LINK: "the link was lost", "连接断开";
     TOO_SOON: "The last SAVE was just now: wait", "刚刚保存过：请等待";
 
     DANGER_APPLY: "Apply defaults that hit hard?", "应用会造成冲击的默认值？";
@@ -216,7 +215,7 @@ pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
             let why = match doubt {
                 Doubt::NotReadBack => DOUBT_NOT_READ,
                 Doubt::Ambiguous => DOUBT_AMBIGUOUS,
-                Doubt::LinkLost => DOUBT_LINK,
+                Doubt::LinkLost => SAVE_LINK,
             };
             format!("{}: {}", say(UNVERIFIED), say(why))
         }

@@ -60,7 +60,6 @@ texts! {
     TARE_ONE: "Tare", "去皮", "Counts the channels of the chosen fingertip from now on.", "所选指尖的通道从当前读数起算。";
     TARE_UNDO: "Undo", "撤销", "Takes the last taring back.", "撤销最近一次去皮。";
     TARE_NOTHING: "Nothing was tared.", "还没有去皮。";
-    TARE_OFFLINE: "No live hand.", "没有在线的手。";
     TIP: "Fingertip", "指尖";
     TIP_UP: "tip", "指尖";
     TIP_NORMAL: "Normal", "法向力";

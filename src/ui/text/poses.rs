@@ -68,7 +68,6 @@ texts! {
     RESUME: "Resume", "继续", "Goes on where it was paused.", "从暂停处继续。";
     END: "End", "结束", "Ends the sequence and holds where the hand is.", "结束序列，并在当前位置保持。";
     NOT_RUNNING: "No sequence runs.", "没有序列在运行。";
-    NO_STEPS: "The sequence has no steps.", "该序列没有步骤。";
     SAY_IDLE: "Ready", "就绪";
     SAY_MOVING: "On the way to step", "正在前往第几步：";
     SAY_DWELLING: "At step", "停留在第几步：";

@@ -28,8 +28,7 @@ texts! {
     ASKED: "questions", "次查询";
     TIME_LEFT: "time left about", "约剩";
     LISTING: "Looking for ports", "正在查找端口";
-    FOUND_ONE: "hand answered", "只灵巧手有应答";
-    FOUND_MANY: "hands answered", "只灵巧手有应答";
+    FOUND: "Hands that answered: {}", "有应答的灵巧手：{} 只";
     NO_PLACES: "There is nothing to scan: this computer has no serial port and no CAN interface. Plug the adapter in, or scan an address.", "没有可扫描的端口：本机没有串口，也没有 CAN 接口。请插入适配器，或扫描地址。";
     NOTHING: "No hand answered. Check power and cable; a hand may have an id above 10.", "没有灵巧手应答。请检查电源与线缆；ID 也可能大于 10。";
     NOTHING_THERE: "No hand answered. Check power, cable and address; this computer needs an address in the same network.", "没有灵巧手应答。请检查电源、线缆与地址；本机需要同一网段的地址。";
@@ -104,13 +103,13 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
         ScanStage::Never | ScanStage::Running => return Err(NEVER),
         ScanStage::Cancelled if book.found.is_empty() => return Err(CANCELLED),
         ScanStage::Cancelled => {
-            let found = found_words(look, book.found.len());
+            let found = look.fill(FOUND, &[&book.found.len()]);
             return Ok(look.told(CANCELLED, found));
         }
         ScanStage::Done(summary) => summary,
     };
     if !book.found.is_empty() {
-        let found = found_words(look, book.found.len());
+        let found = look.fill(FOUND, &[&book.found.len()]);
         return Ok(format!("{found}, {}", format::age(summary.took)));
     }
     Err(match &book.wish {
@@ -124,11 +123,6 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
         }
         Some(_) | None => NOTHING,
     })
-}
-
-fn found_words(look: Look, found: usize) -> String {
-    let words = if found == 1 { FOUND_ONE } else { FOUND_MANY };
-    format!("{found} {}", look.say(words))
 }
 
 /// The id where it is known, the way of speaking, and its speed.

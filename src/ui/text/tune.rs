@@ -79,7 +79,6 @@ texts! {
     BAD_HEAT: "Begin must be below stop, and stop at most 75 °C.", "开始温度须低于停止温度，停止温度最高 75 °C。";
 
     START_BUTTON: "Start trials", "开始试验", "Runs the plan while armed now. Any key, STOP, a fault, heat, the force limit or a lost link end it.", "在当前使能下运行计划。按任意键、停止、故障、过热、超过力上限或断线都会结束。";
-    NEED_HAND: "Connect a hand first.", "请先连接灵巧手。";
     NEED_ARM: "Press Arm first: each series needs a person who arms it.", "请先点击“使能”：每轮试验都需由人使能。";
     NEED_FREE: "{} is locked and would have to move.", "{}已锁定，但试验需要它运动。";
     PLAN_WRONG: "Correct the plan first.", "请先修正计划。";

@@ -10,7 +10,7 @@ use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
 use crate::ui::hand::panel::HandPanel;
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{panels, words};
+use crate::ui::text::{main, panels, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
 use crate::ui::touch::tip_detail::TipDetail;
@@ -235,7 +235,7 @@ impl TouchView {
     fn tare_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let hand = pane.state.hand();
-        let offline = (!hand.link.state.is_live()).then(|| look.say(panels::TARE_OFFLINE));
+        let offline = (!hand.link.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
         let finger = self.detail.finger;
         let name = look.say(words::finger(finger));
         let one = look.told(panels::TARE_ONE, name);

@@ -35,7 +35,7 @@ fn on_a_line(personality: Personality) -> Bench {
 fn change_id(bench: &mut Bench, id: i32) {
     bench.act(Action::ChangePlace(ParamId::HandId, Value::Number(id)));
     bench.run(100);
-    assert!(bench.shows("Change the id of the hand?"));
+    assert!(bench.shows("Change where the hand is found?"));
     bench.click_button("Change");
 }
 
@@ -73,7 +73,7 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
     let mut bench = on_a_line(Personality::default());
     change_id(&mut bench, 7);
     bench.until(20_000, |bench| bench.shows("Keep the change?"));
-    assert!(!bench.shows("Change the id of the hand?"));
+    assert!(!bench.shows("Change where the hand is found?"));
     assert_eq!((id_of(&bench), backups(&bench)), (7, 1));
     assert_eq!(
         bench.state().settings.endpoint.as_deref(),
@@ -86,7 +86,7 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
         bench.shows("Saved: the hand says that its parameters are in flash.")
     });
     assert!(
-        bench.shows("Change of the hand's id"),
+        bench.shows("Change of where the hand is found"),
         "it is no question any more"
     );
     assert_eq!(count(&bench, SAVE), 1);
@@ -178,7 +178,7 @@ fn with_speed(effect: &str) -> Bench {
     let mut bench = on_a_line(personality);
     bench.act(Action::ChangePlace(ParamId::ReduRatio, Value::Number(2)));
     bench.run(100);
-    assert!(bench.shows("Change the serial speed of the hand?"));
+    assert!(bench.shows("Change where the hand is found?"));
     bench.click_button("Change");
     bench.until(30_000, |bench| bench.shows("Keep the change?"));
     bench
