@@ -62,8 +62,17 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof) {
             unseen_mark_ui(ui, pane, dof);
         });
         let name = row.named(pane, main::STATUS);
-        let status = Label::new(&drive.short, drive.text).small();
-        status.named(&name).ui(ui);
+        ui.horizontal(|ui| {
+            let status = Label::new(&drive.short, drive.text).small();
+            status.named(&name).ui(ui);
+            // The code is there also where the word is of a fault, or of no code that is known.
+            let (status, freshness) = pane.newest(dof, pane.state.hand().sample.status);
+            if let Some(status) = status.filter(|_| !drive.title.ends_with(')')) {
+                let color = look.value(freshness, look.palette.muted);
+                let code = status.raw().to_string();
+                kit::right_ui(ui, |ui| Label::new(&code, color).number().ui(ui));
+            }
+        });
         let line = vec2(ui.available_width(), theme::TEXT_LINE);
         let (_, place) = ui.allocate_space(line);
         row.short_reading_ui(ui, place, pane);
