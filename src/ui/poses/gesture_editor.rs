@@ -2,7 +2,6 @@
 
 use crate::app::action::Action;
 use crate::app::hand::gestures::StoreVerdict;
-use crate::hand::command::stored_gesture;
 use crate::hand::{Angle, GestureStore, PerDof, UserGesture};
 use crate::ui::hand::panel;
 use crate::ui::kit::{Button, Label, NumberField, Pane, Weight};
@@ -96,12 +95,6 @@ impl GestureEditor {
             button
                 .choice(now == store)
                 .sends(ui, pane, Action::GestureStore(store));
-        }
-        if now == GestureStore::Register1066 {
-            let span = stored_gesture(self.gesture);
-            let last = span.end().saturating_sub(1);
-            let text = format!("{} {}..{last}", look.say(poses::STORE_AT), span.address);
-            Label::new(&text, look.palette.muted).small().ui(ui);
         }
     }
 

@@ -91,7 +91,6 @@ texts! {
     STORE_TIP: "The manual describes gestures 14 to 40 but lists no address for their angles. Off: none is read or written.", "手册说明了手势 14 至 40，但没有列出其角度的地址。选择关闭则不读写这些地址。";
     STORE_1066: "From 1066", "自 1066 起";
     STORE_OFF: "Off", "关闭", "Storing gestures is off: addresses outside the manual's table are not touched.", "手势存储已关闭：不读写手册寄存器表以外的地址。";
-    STORE_AT: "bytes", "字节";
     STORE_KNOWN: "Known: three drivers of this family keep gesture K at 1066 + 12 x (K - 14), six angles each.", "已知：同系列的三个驱动程序把手势 K 存于 1066 + 12 × (K - 14)，每个六个角度。";
     STORE_UNKNOWN: "Not known: whether this firmware keeps and plays it, and whether it outlives power-off. Upload, see it read back, start it, and look again after power-off.", "未知：本固件是否保存并执行，断电后是否保留。请写入、读回、执行，并在断电后再次确认。";
     READ_HAND: "Read", "读取", "Reads what the hand has stored under this number.", "读取灵巧手中该编号的内容。";

@@ -128,7 +128,6 @@ texts! {
     COLUMN_CURRENT: "Peak, mA", "峰值 mA";
     COLUMN_HEAT: "Heat, °C", "温升 °C";
     COLUMN_END: "End", "结束";
-    REPEATED: "Mean of {}: {}", "{} 次平均：{}";
     MAP: "Overshoot, g, by speed and threshold", "各速度与力阈值的超出量 g";
     BEST: "Best", "最佳", "What the best setting is chosen by, judged by the worst of its trials.", "最佳设置的选择标准，以最差的一次为准。";
     BEST_NONE: "No setting will do.", "没有满足要求的设置。";
@@ -160,7 +159,6 @@ texts! {
     FORGET_LOSES: "It is in no file: what was measured and recorded is gone then. Trials: {}", "尚未保存到文件：移除后测量结果与数据将丢失。试验次数：{}";
     FORGET_NOT: "Leave it", "保留", "Closes this card. The session stays.", "关闭此卡片，保留该轮次。";
     FORGET_SURE: "Forget it", "确定移除", "Takes this session out of the list. Its files, if any, stay.", "把该轮次从列表移除，已有文件不受影响。";
-    COLUMN_SESSION: "Session", "轮次";
     RISING: "rising", "升序";
     FALLING: "falling", "降序";
     OF_ALL: "curves of", "条曲线，共";

@@ -168,9 +168,6 @@ fn sessions_lie_over_each_other_and_their_trials_are_told_apart() {
         "2: 2  250 / 500 g  Index",
     ];
     assert_eq!(rows(&bench), both);
-    for (label, text) in [("1: 2 Session", "1"), ("2: 2 Session", "2")] {
-        assert_eq!(bench.reading(label), text);
-    }
     assert_eq!(bench.reading("1: 2 Over, g"), bench.reading("2: 2 Over, g"));
     for key in ["25 / 500 g", "250 / 500 g"] {
         assert!(bench.shows(key), "the legend names {key}");
