@@ -12,11 +12,11 @@ use crate::hand::{Dof, Fault, Status, Words};
 use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui};
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::text::{faults, main, notices, panels, words};
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::text::{faults, main, panels, words};
 use crate::ui::theme;
-use crate::ui::window::message_log::MessageLog;
-use egui::{Align, CollapsingHeader, Layout, Ui};
+use crate::ui::window::message_log::{MessageLog, message_ui};
+use egui::{CollapsingHeader, Ui};
 
 /// What the view remembers.
 #[derive(Debug, Default)]
@@ -261,26 +261,12 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {
     });
 }
 
+/// A message, with a button that takes it away.
 fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
-    let look = pane.look;
-    let palette = look.palette;
-    let color = look.level(notice.level);
-    let mut text = notices::notice(look, &notice.what);
-    if notice.count > 1 {
-        text = format!("{text} ({} ×)", notice.count);
-    }
-    ui.horizontal(|ui| {
-        ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
-            let name = format!("{}: {text}", look.say(main::DISMISS));
-            let button = Button::said(look, main::DISMISS);
-            let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
-            button.sends(ui, pane, Action::Dismiss(notice.id));
-            let age = format::age(pane.state.now.since(notice.at));
-            Label::new(&age, palette.muted).small().ui(ui);
-            ui.with_layout(Layout::left_to_right(Align::TOP), |ui| {
-                kit::lamp_ui(ui, Some(color));
-                kit::say_ui(ui, &text, palette.text);
-            });
-        });
+    message_ui(ui, pane, notice, |ui, pane, text| {
+        let name = format!("{}: {text}", pane.look.say(main::DISMISS));
+        let button = Button::said(pane.look, main::DISMISS);
+        let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
+        button.sends(ui, pane, Action::Dismiss(notice.id));
     });
 }

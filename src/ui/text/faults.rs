@@ -37,6 +37,7 @@ texts! {
     LOG_NONE: "Nothing has happened yet.", "还没有消息。";
     LOG_NONE_PASS: "No message passes the filter.", "没有符合条件的消息。";
     LOG_LOST: "older messages were dropped:", "已丢弃的较早消息：";
+    LOG_MORE: "Older messages are found by their words, and copied with the rest.", "较早的消息可按关键词查找，复制时一并包含。";
     LOG_FILTER: "Filter messages", "筛选消息", "words, or info, warning, alarm", "关键词，或：信息、警告、报警";
     WORD_INFO: "info", "信息";
     WORD_WARN: "warning", "警告";
