@@ -21,8 +21,6 @@ use egui::{ScrollArea, Ui};
 use std::collections::BTreeMap;
 use std::net::Ipv4Addr;
 
-/// Width from which the scan has a column of its own.
-const THREE_COLUMNS: f32 = 1400.0;
 /// What stands in the fields at first, as the hand is delivered (manual 1.3.2, 2.2, 2.3, 2.6.1).
 const FIRST: [&str; 5] = [
     "rtu:?baud=115200&id=1",
@@ -84,7 +82,7 @@ impl ConnectionForm {
             self.fields.remove("packing");
             self.fill(&endpoint.to_string());
         }
-        let is_wide = ui.available_width() >= THREE_COLUMNS;
+        let is_wide = ui.available_width() >= 1400.0;
         ui.columns(if is_wide { 3 } else { 2 }, |columns| match columns {
             [left, middle, right] => {
                 scroll_ui(left, "form", |ui| self.form_ui(ui, pane));

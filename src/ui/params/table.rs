@@ -16,7 +16,6 @@ use egui_extras::{Column, TableBody, TableBuilder, TableRow};
 const ADDRESS_MAX: usize = 15;
 /// Height of a row, and of one that has a button below its field.
 const ROW: f32 = 28.0;
-const ROW_HIGH: f32 = 62.0;
 /// Parts of the width for live, staged, saved and range; the name has the rest.
 const COLUMNS: [f32; 4] = [0.16, 0.23, 0.16, 0.16];
 /// Which rows are in a group, its title, and what they are.
@@ -105,7 +104,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
                 Label::note(look, about).ui(ui);
             });
             for id in own {
-                let height = if id.is_place() { ROW_HIGH } else { ROW };
+                let height = if id.is_place() { 62.0 } else { ROW };
                 body.row(height, |row| row_ui(row, pane, id));
                 if has_trouble(pane, id) {
                     line_ui(&mut body, theme::LIST_LINE, |ui| verdict_ui(ui, pane, id));

@@ -20,12 +20,8 @@ use egui_plot::LineStyle;
 const FRICTION_PERCENT: i16 = 50;
 /// The largest friction that can be chosen, in percent.
 const FRICTION_MAX: i16 = 150;
-/// Seconds of force shown.
-const SECONDS: f64 = 10.0;
 /// The compass ends at this many times the chosen friction.
 const COMPASS_END_RATIO: f32 = 1.5;
-/// Smallest end of the force axis, in newtons.
-const FORCE_END: f64 = 1.0;
 
 /// Which fingertip, and what friction is reckoned with.
 #[derive(Debug)]
@@ -229,7 +225,7 @@ impl TipDetail {
         legend_ui(ui, look, &lines.map(key));
         let now = pane.state.now.secs();
         let first = history.first_secs().unwrap_or(now);
-        self.chart.time.advance((first.min(now), now), SECONDS);
+        self.chart.time.advance((first.min(now), now), 10.0);
         let curve = |(touch, _, color): (Touch, Text, Color32)| {
             let points = Points::Measured(history, Series::Tip(touch, self.finger));
             ChartCurve {
@@ -239,7 +235,7 @@ impl TipDetail {
         };
         let chart = Chart {
             curves: lines.map(curve).to_vec(),
-            least: (0.0, FORCE_END),
+            least: (0.0, 1.0),
             times: Times::From(now, look.say(panels::NOW)),
             ..Chart::new(look, panels::FORCES, ui.available_height())
         };

@@ -16,9 +16,6 @@ use egui::{Event, Ui, vec2};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// The list's part of the height; the rest is the chosen frame's.
-const LIST_PART: f32 = 0.64;
-
 /// The frames as they were when the list was paused.
 #[derive(Debug)]
 struct Paused {
@@ -44,7 +41,7 @@ impl TrafficView {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.update(pane);
         let whole = ui.available_size();
-        let detail = (whole.y * (1.0 - LIST_PART)).max(150.0);
+        let detail = (whole.y * 0.36).max(150.0);
         ui.spacing_mut().item_spacing.y = theme::GAP;
         let size = vec2(whole.x, whole.y - detail.round() - theme::GAP);
         ui.allocate_ui(size, |ui| {

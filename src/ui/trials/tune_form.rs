@@ -17,7 +17,6 @@ const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
 /// Width of a joint's button, of what stands before each other field, and of a head over a field.
 const JOINT: f32 = 104.0;
-const CAPTION: f32 = 156.0;
 /// Speed of a fast part unless a person says otherwise: fast, and not rough yet.
 const FAST: i16 = 250;
 
@@ -251,7 +250,7 @@ impl Pass<'_, '_> {
         field: impl FnOnce(&mut Ui, &mut Pane<'_>) -> R,
     ) -> R {
         let row = ui.horizontal(|ui| {
-            self.caption_ui(ui, caption, CAPTION);
+            self.caption_ui(ui, caption, 156.0);
             field(ui, self.pane)
         });
         row.inner

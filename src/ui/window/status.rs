@@ -23,8 +23,6 @@ use std::time::Duration;
 const ANNOUNCE_AFTER: Duration = Duration::from_millis(500);
 /// How long the newest message is shown.
 const NEWS_FOR: Duration = Duration::from_secs(10);
-/// Width of the note being written, of the field in it, and of what stays for a warning beside it.
-const NOTE_WIDTH: f32 = 440.0;
 
 /// What helps against a warning.
 enum Help {
@@ -287,7 +285,7 @@ impl StatusLine {
             .char_limit(NOTE_MAX)
             .hint_text(look.say(hint))
             .margin(theme::FIELD_INSET)
-            .desired_width((NOTE_WIDTH - words).max(theme::FIELD));
+            .desired_width((440.0 - words).max(theme::FIELD));
         let response = ui.add(edit);
         kit::named_field(&response, look.say(panels::NOTE_FIELD), true, &self.note);
         Label::new(&title, look.palette.text).ui(ui);
