@@ -129,7 +129,7 @@ impl Scales {
             ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
         }
         let name = look.pair(look.say(panels::RANGE), look.say(title));
-        axis.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
+        axis.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
         ui.ctx().accesskit_node_builder(axis.id, |node| {
             node.set_value(format!("{low} to {high}"));
         });

@@ -429,12 +429,12 @@ fn escape_stops_an_armed_hand_while_a_note_is_written_and_a_letter_in_another_fi
 
 /// The numbers beside the plot of force; what a wheel or a drag does to them.
 fn force_scale(harness: &Harness<'static, Shown>) -> Rect {
-    rect(harness, Role::Label, "Value scale: Force, g")
+    rect(harness, Role::Image, "Value scale: Force, g")
 }
 
 /// The upper and the lower end of the scale of force, as it tells.
 fn force_ends(harness: &Harness<'static, Shown>) -> [f64; 2] {
-    let axis = harness.get_by_role_and_label(Role::Label, "Value scale: Force, g");
+    let axis = harness.get_by_role_and_label(Role::Image, "Value scale: Force, g");
     let ends = axis.value().unwrap();
     let (low, high) = ends.split_once(" to ").unwrap();
     [high, low].map(|end| end.parse().unwrap())
