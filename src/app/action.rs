@@ -6,20 +6,18 @@ use crate::app::hand::sequence::Play;
 use crate::app::layout::Layout;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::procedure::ProcedureAction;
-use crate::app::readings::fault_recorder::{PersonAct, RecordingId};
+use crate::app::readings::fault_recorder::PersonAct;
 use crate::app::readings::faults::FaultKind;
 use crate::app::scan::ScanTarget;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
-use crate::hand::{
-    Angle, Dof, Finger, Force, Gesture, GestureRoute, GestureStore, Moment, PerDof, Speed,
-    UserGesture,
-};
+use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Speed};
 use crate::history::Mark;
+use crate::link::First;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
-use crate::poses::library::{PoseId, PoseLibrary};
+use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
@@ -34,24 +32,16 @@ pub enum Action {
     Disarm,
     /// Where a joint should go. Ignored unless armed and the joint is not locked.
     Target(Dof, Angle),
-    /// Force threshold of a joint: sent when armed, kept for arming otherwise.
-    Force(Dof, Force),
-    /// Speed of a joint: sent when armed, kept for arming otherwise.
-    Speed(Dof, Speed),
+    /// Force threshold of one joint or of all: sent when armed, kept for arming otherwise.
+    Force(Option<Dof>, Force),
+    /// Speed of one joint or of all: sent when armed, kept for arming otherwise.
+    Speed(Option<Dof>, Speed),
     /// Leave a joint alone, or not.
     Lock(Dof, bool),
     /// All joints that are not locked towards open or bent, at the speeds that are set. Needs arming.
     Preset(Preset),
-    /// Force threshold of all joints.
-    ForceOfAll(Force),
-    /// Speed of all joints.
-    SpeedOfAll(Speed),
     /// Take a stored pose. Needs arming.
     Gesture(Gesture),
-    /// Store six angles under a number of the user's, and read them back.
-    StoreGesture(UserGesture, PerDof<Angle>),
-    /// Read what is stored under a number of the user's.
-    ReadGesture(UserGesture),
     /// Keep the pose that the hand has now, by this name or the next free one.
     Capture(String),
     /// Put the pose that the hand has now in the place of this one.
@@ -60,10 +50,10 @@ pub enum Action {
     Library(LibraryEdit),
     /// Take a pose of the library, within its speed and force. Needs arming.
     Recall(PoseId),
-    /// Go to six angles at the speeds that are set. Needs arming.
-    TryAngles(PerDof<Angle>),
     /// Run a sequence, pause it, end it.
     Play(Play),
+    /// Show a sequence on the drawn hand, or none any more; nothing is sent.
+    DryRun(Option<SequenceId>),
     /// What is asked about grasp trials.
     Trial(TrialAction),
     /// Add what a file of poses holds: one at a place that was typed, else one that is asked for.
@@ -74,8 +64,6 @@ pub enum Action {
     NameGesture(Gesture, String),
     /// How gestures are started.
     GestureRoute(GestureRoute),
-    /// Where the poses of the user's gestures are stored.
-    GestureStore(GestureStore),
     /// Clear what can be cleared; the pose is held first.
     ClearErrors,
     /// Change what the hand is found by: its id, serial speed or IP address. Asks first, under a card.
@@ -100,10 +88,6 @@ pub enum Action {
     SeenFault(Dof, FaultKind),
     /// All faults were seen by a person.
     SeenFaults,
-    /// A recording was looked at.
-    OpenedRecording(RecordingId),
-    /// Forget faults that are over and seen.
-    ForgetFaults,
     /// Ask where a file should go, and write it.
     Save(Export),
     /// Make a picture of the plots in this size (width, height in points), and save it. Carried out by the shell, as
@@ -121,6 +105,8 @@ pub enum Action {
     Layout(Layout),
     /// Draw everything so much larger than designed.
     Zoom(Zoom),
+    /// Read this first while something moves.
+    ReadFirst(First),
     /// How angles are written and typed.
     AngleUnit(AngleUnit),
     /// Seconds that the plots show.
@@ -156,19 +142,14 @@ impl Action {
             | Self::Speed(..)
             | Self::Lock(..)
             | Self::Preset(_)
-            | Self::ForceOfAll(_)
-            | Self::SpeedOfAll(_)
             | Self::Gesture(_)
-            | Self::StoreGesture(..)
-            | Self::ReadGesture(_)
             | Self::Recall(_)
-            | Self::TryAngles(_)
+            | Self::Play(_)
             | Self::ClearErrors => true,
             Self::Param(action) => matches!(
                 action,
                 ParamAction::Apply | ParamAction::Undo | ParamAction::Save | ParamAction::Agree
             ),
-            Self::Play(play) => !matches!(play, Play::Dry(_) | Play::EndDry),
             _ => false,
         }
     }
@@ -188,15 +169,10 @@ impl Action {
             Self::Target(dof, angle) => PersonAct::Target(*dof, *angle),
             Self::Force(dof, force) => PersonAct::Force(*dof, *force),
             Self::Speed(dof, speed) => PersonAct::Speed(*dof, *speed),
-            Self::ForceOfAll(force) => PersonAct::ForceOfAll(*force),
-            Self::SpeedOfAll(speed) => PersonAct::SpeedOfAll(*speed),
             Self::Lock(dof, locked) => PersonAct::Lock(*dof, *locked),
             Self::Preset(preset) => PersonAct::Preset(*preset),
             Self::Recall(id) => PersonAct::Pose(library.pose(*id)?.name.as_str().into()),
-            Self::TryAngles(_) => PersonAct::Angles,
-            Self::Play(
-                play @ (Play::Start(_) | Play::Step(_) | Play::Pause | Play::Resume | Play::End),
-            ) => PersonAct::Play(*play),
+            Self::Play(play) => PersonAct::Play(*play),
             _ => return None,
         })
     }

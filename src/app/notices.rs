@@ -1,15 +1,14 @@
 //! What a person should read, as typed causes. The words, in every language, are the views'.
 
 use crate::app::readings::faults::FaultKind;
-use crate::hand::{Dof, Finger, Gesture, Moment, UserGesture};
+use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, RequestError};
-use crate::params::file::ParamsFileError;
-use crate::poses::file::PoseFileError;
 use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed};
+use crate::store::{FileError, set_aside};
 use crate::trials::Abort;
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Notices that ask for attention: more than a person reads. The oldest go first.
@@ -33,10 +32,6 @@ pub enum Level {
 pub enum RequestKind {
     /// A stored pose.
     Gesture(Gesture),
-    /// To store a pose in the hand.
-    StoreGesture(UserGesture),
-    /// To read a pose that is stored in the hand.
-    ReadGesture(UserGesture),
     /// To clear errors.
     ClearErrors,
 }
@@ -103,8 +98,6 @@ pub enum NoticeKind {
     },
     /// Gestures are switched off. Nothing was sent.
     GesturesOff,
-    /// Storing gestures is switched off. Nothing was sent.
-    GestureStoreOff,
     /// A pose cannot be kept while an angle is unknown or old.
     PoseUnknown,
     /// A file of poses was added.
@@ -114,31 +107,21 @@ pub enum NoticeKind {
         /// Sequences in it.
         sequences: usize,
     },
-    /// A file of poses was not taken, not even in part.
-    PosesRefused {
+    /// A file that was chosen was not taken, not even in part.
+    FileRefused {
         /// The file.
         path: PathBuf,
         /// Where and why.
-        error: PoseFileError,
+        error: FileError,
     },
-    /// A file of parameters was not taken, not even in part.
-    ParamsRefused {
+    /// A file of this program's own could not be read; it is left as it was, under another name.
+    FileIgnored {
         /// The file.
         path: PathBuf,
-        /// The field and what is wrong with it.
-        error: ParamsFileError,
-    },
-    /// The kept poses could not be read; their file is left as it was, under another name.
-    PosesIgnored {
         /// Where and why.
-        error: PoseFileError,
+        error: FileError,
         /// Where it lies now; `None` if it could not be moved.
         kept_as: Option<PathBuf>,
-    },
-    /// Poses could not be written.
-    PosesNotSaved {
-        /// The system's words.
-        message: String,
     },
     /// A series of trials is over.
     SeriesEnded {
@@ -156,29 +139,10 @@ pub enum NoticeKind {
         /// Trials in it.
         trials: usize,
     },
-    /// A session could not be read, not even in part.
-    SessionRefused {
-        /// The file that was chosen.
-        path: PathBuf,
-        /// Where and why.
-        message: String,
-    },
     /// OpenGL did not start, so the program draws its window by itself.
     DrawnWithoutOpenGl {
         /// The system's words.
         reason: String,
-    },
-    /// Settings could not be written.
-    SettingsNotSaved {
-        /// The system's words.
-        message: String,
-    },
-    /// The settings file could not be read; it is left as it was, under another name.
-    SettingsIgnored {
-        /// Why.
-        message: String,
-        /// Where it lies now; `None` if it could not be moved.
-        kept_as: Option<PathBuf>,
     },
     /// A file was written.
     Saved {
@@ -203,11 +167,6 @@ pub enum NoticeKind {
         /// Day of last time.
         last_seen: String,
     },
-    /// The quirk sheet could not be read or written.
-    SheetNotKept {
-        /// Why.
-        message: String,
-    },
     /// The plan of trials of the last time cannot be taken.
     PlanIgnored {
         /// Why.
@@ -225,6 +184,15 @@ impl NoticeKind {
     pub(crate) fn not_saved(path: PathBuf, error: &std::io::Error) -> Self {
         let message = error.to_string();
         Self::NotSaved { path, message }
+    }
+
+    /// Puts a file of this program's own aside that could not be read.
+    pub(crate) fn file_ignored(path: &Path, error: FileError) -> Self {
+        Self::FileIgnored {
+            path: path.to_owned(),
+            error,
+            kept_as: set_aside(path),
+        }
     }
 
     /// How much it matters.

@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::app::env::Env;
 use crate::app::files::export::{self, Export};
+use crate::app::files::open::open;
 use crate::app::files::pose_file;
 use crate::app::files::quirk_notes::QuirkNotes;
 use crate::app::files::settings_file;
@@ -14,10 +15,10 @@ use crate::app::params::ParamAction;
 use crate::app::poses::PoseState;
 use crate::app::scan::Scanner;
 use crate::app::settings::Settings;
-use crate::app::state::{PortChoice, State};
+use crate::app::state::State;
 use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
-use crate::hand::Moment;
+use crate::hand::{Dof, Moment};
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
 use crate::poses::library::{LibraryPose, PoseLibrary};
@@ -25,7 +26,7 @@ use crate::poses::preview::Preview;
 use crate::store::calendar::{since_1970, stamp};
 use crate::store::{BackgroundJob, Saver, on_thread};
 use crate::transport::{Endpoint, PortFound, ports};
-use crate::trials::plan_settings::{from_settings, in_place_of};
+use crate::trials::plan_settings::from_settings;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -70,7 +71,6 @@ impl App {
             Ok(plan) => state.trials.plan = plan,
             Err(error) => {
                 let message = error.to_string();
-                state.trials.plan = in_place_of(state.settings.trial_plan.as_ref());
                 state
                     .notices
                     .push(Moment::ZERO, NoticeKind::PlanIgnored { message });
@@ -155,6 +155,7 @@ impl App {
             hand.tick_params(env, notices);
             hand.tick_series(trials, notices);
             hand.tick_procedure(env, settings, notices);
+            hand.read_first(settings.first);
             hand.offer_tare(settings);
             hand.record();
             hand.go_on_leaving(env, notices);
@@ -167,7 +168,7 @@ impl App {
 
     fn take_jobs(&mut self, now: Moment) {
         if let Some(found) = BackgroundJob::take_from(&mut self.finding_ports) {
-            self.state.ports = found.into_iter().map(choice).collect();
+            self.state.ports = found;
         }
         if let Some(end) = BackgroundJob::take_from(&mut self.exporting) {
             self.tell(end, now);
@@ -205,13 +206,10 @@ impl App {
 
     fn save_changes(&mut self, now: Moment) {
         let at = now.since(Moment::ZERO);
-        if let Err(error) = self.settings_saver.tick(&self.state.settings, at) {
-            let message = error.to_string();
-            self.tell(NoticeKind::SettingsNotSaved { message }, now);
-        }
-        if let Err(error) = self.pose_saver.tick(&self.state.poses.library, at) {
-            let message = error.to_string();
-            self.tell(NoticeKind::PosesNotSaved { message }, now);
+        let settings = self.settings_saver.tick(&self.state.settings, at);
+        let poses = self.pose_saver.tick(&self.state.poses.library, at);
+        for (path, error) in [settings.err(), poses.err()].into_iter().flatten() {
+            self.tell(NoticeKind::not_saved(path, &error), now);
         }
     }
 
@@ -264,32 +262,15 @@ impl App {
             Action::Arm => hand.arm(notices),
             Action::Disarm => hand.disarm(),
             Action::Target(dof, angle) => hand.target(dof, angle),
-            Action::Force(dof, force) => hand.force(dof, force),
-            Action::Speed(dof, speed) => hand.speed(dof, speed),
+            Action::Force(dof, force) => each(dof).for_each(|dof| hand.force(dof, force)),
+            Action::Speed(dof, speed) => each(dof).for_each(|dof| hand.speed(dof, speed)),
             Action::Lock(dof, locked) => hand.lock(dof, locked),
             Action::Preset(preset) => hand.preset(preset),
-            Action::ForceOfAll(force) => {
-                for dof in crate::hand::Dof::ALL {
-                    hand.force(dof, force);
-                }
-            }
-            Action::SpeedOfAll(speed) => {
-                for dof in crate::hand::Dof::ALL {
-                    hand.speed(dof, speed);
-                }
-            }
-            Action::TryAngles(angles) => hand.try_angles(angles),
             Action::Gesture(gesture) => {
                 hand.gesture(gesture, settings.gesture_route, env, notices);
             }
             Action::ClearErrors if hand.procedure.is_none() => hand.clear_errors(env, notices),
-            Action::StoreGesture(gesture, angles) => {
-                hand.store_gesture((gesture, angles), settings.gesture_store, env, notices);
-            }
-            Action::ReadGesture(gesture) => {
-                hand.read_gesture(gesture, settings.gesture_store, env, notices);
-            }
-            Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted, env),
+            Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted),
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
             Action::Procedure(action) => hand.procedure_action(action, env),
@@ -304,8 +285,6 @@ impl App {
             Action::TakeKeptTare => hand.take_kept_tare(notices),
             Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
             Action::SeenFaults => hand.faults.see_all(),
-            Action::ForgetFaults => hand.faults.forget(),
-            Action::OpenedRecording(id) => hand.recorder.opened(id),
             Action::Note(at, words) => {
                 if let Some(note) = MarkKind::note(&words) {
                     hand.history.mark(at, note);
@@ -350,14 +329,14 @@ impl App {
                     poses.recalled = Some(id);
                 }
             }
-            Action::Play(Play::Dry(id)) => {
+            Action::DryRun(sequence) => {
                 let angle = hand.sample.angle;
                 let from = crate::hand::PerDof::from_fn(|dof| {
                     angle.and_then(|angle| angle.value[dof].documented())
                 });
-                poses.preview = Preview::of(&poses.library, id, from, now);
+                let preview = |id| Preview::of(&poses.library, id, from, now);
+                poses.preview = sequence.and_then(preview);
             }
-            Action::Play(Play::EndDry) => poses.preview = None,
             Action::Play(play) => {
                 if matches!(play, Play::Start(_) | Play::Step(_)) {
                     poses.preview = None;
@@ -374,10 +353,10 @@ impl App {
         match action {
             Action::NameGesture(gesture, name) => settings.name_gesture(gesture, &name),
             Action::GestureRoute(route) => settings.gesture_route = route,
-            Action::GestureStore(store) => settings.gesture_store = store,
             Action::Theme(theme) => settings.theme = theme,
             Action::Side(side) => settings.side = side,
             Action::Layout(layout) => settings.layout = layout,
+            Action::ReadFirst(first) => settings.first = first,
             Action::Zoom(zoom) => settings.zoom = zoom,
             Action::Language(language) => settings.language = language,
             Action::AngleUnit(unit) => settings.angle_unit = unit,
@@ -455,7 +434,8 @@ impl App {
     fn import_poses(&mut self, typed: Option<PathBuf>) {
         if self.importing.is_none() {
             self.state.poses.refused = None;
-            self.importing = Some(pose_file::import(typed, &self.env));
+            let import = open(typed, pose_file::FILE_NAME, &self.env, pose_file::read);
+            self.importing = Some(import);
         }
     }
 
@@ -509,21 +489,9 @@ impl App {
     }
 }
 
-fn choice(found: PortFound) -> PortChoice {
-    let about = found.usb.map(|usb| {
-        let words = [usb.maker, usb.product, usb.serial]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(" ");
-        if words.is_empty() {
-            format!("USB {:04x}:{:04x}", usb.vendor_id, usb.product_id)
-        } else {
-            words
-        }
-    });
-    PortChoice {
-        path: found.path,
-        about,
-    }
+/// One joint, or all.
+fn each(dof: Option<Dof>) -> impl Iterator<Item = Dof> {
+    Dof::ALL
+        .into_iter()
+        .filter(move |own| dof.is_none_or(|dof| dof == *own))
 }

@@ -3,10 +3,10 @@
 use crate::app::env::Env;
 use crate::hand::HandId;
 use crate::link::scan::{
-    FoundHand, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanHint, ScanPort, ScanProgress,
+    FoundHand, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanPort, ScanProgress,
     ScanSummary, Speaks, start,
 };
-use crate::transport::{Endpoint, TransportError};
+use crate::transport::Endpoint;
 use std::sync::Arc;
 
 /// Hands kept: every id on one bus, and some more.
@@ -55,20 +55,6 @@ pub enum ScanStage {
     Cancelled,
 }
 
-/// Something worth a word that is no hand.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ScanRemark {
-    /// A place could not be looked at.
-    Trouble(TransportError),
-    /// Something talks there, and is no hand that answers.
-    Hint(ScanHint),
-    /// The connected hand's own port, left alone.
-    Held {
-        /// Port or address.
-        place: String,
-    },
-}
-
 /// What the window shows of the newest scan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ScanState {
@@ -82,8 +68,8 @@ pub struct ScanState {
     pub places: usize,
     /// Hands, in the order in which they answered.
     pub found: Vec<FoundHand>,
-    /// What else there is to say.
-    pub remarks: Vec<ScanRemark>,
+    /// What else there is to say: troubles, hints, and places that are held.
+    pub remarks: Vec<ScanEvent>,
     /// Hands and remarks for which there was no room.
     pub left_out: usize,
 }
@@ -100,18 +86,9 @@ impl ScanState {
             ScanEvent::Begun { places, .. } => self.places = places,
             ScanEvent::Found(found) if self.found.len() < FOUND_MAX => self.found.push(found),
             ScanEvent::Found(_) => self.left_out += 1,
-            ScanEvent::Trouble { error, .. } => self.remark(ScanRemark::Trouble(error)),
-            ScanEvent::Hint(hint) => self.remark(ScanRemark::Hint(hint)),
-            ScanEvent::Held { place } => self.remark(ScanRemark::Held { place }),
             ScanEvent::Done(summary) => self.stage = ScanStage::Done(summary),
-        }
-    }
-
-    fn remark(&mut self, remark: ScanRemark) {
-        if self.remarks.len() < REMARKS_MAX {
-            self.remarks.push(remark);
-        } else {
-            self.left_out += 1;
+            remark if self.remarks.len() < REMARKS_MAX => self.remarks.push(remark),
+            _ => self.left_out += 1,
         }
     }
 }

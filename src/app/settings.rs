@@ -3,7 +3,8 @@
 use crate::app::layout::Layout;
 use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;
-use crate::hand::{Gesture, GestureRoute, GestureStore};
+use crate::hand::{Gesture, GestureRoute};
+use crate::link::First;
 use crate::poses::library::clean;
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
@@ -254,8 +255,6 @@ pub struct Settings {
     pub plots: ShownPlots,
     /// How gestures are started.
     pub gesture_route: GestureRoute,
-    /// Where the poses of the user's gestures are stored.
-    pub gesture_store: GestureStore,
     /// Names that a person gave to gestures, by number.
     pub gesture_names: BTreeMap<String, String>,
     /// How the window is divided.
@@ -264,6 +263,8 @@ pub struct Settings {
     pub zoom: Zoom,
     /// What a person tared last, by the place and id of the hand.
     pub tares: BTreeMap<String, KeptTare>,
+    /// What is read first while something moves.
+    pub first: First,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,

@@ -7,6 +7,7 @@ use crate::app::scan::ScanState;
 use crate::app::settings::Settings;
 use crate::app::trials::TrialsState;
 use crate::hand::Moment;
+use crate::transport::PortFound;
 
 /// Everything the window shows.
 #[derive(Debug, Default)]
@@ -22,7 +23,7 @@ pub struct State {
     /// Grasp trials: the plan, and the sessions.
     pub trials: TrialsState,
     /// Serial ports found when last looked.
-    pub ports: Vec<PortChoice>,
+    pub ports: Vec<PortFound>,
     /// The newest scan for hands.
     pub scan: ScanState,
     /// What is kept from one start to the next.
@@ -63,15 +64,6 @@ impl HandList {
     pub fn iter(&self) -> impl Iterator<Item = &HandState> {
         std::iter::once(&self.first).chain(&self.more)
     }
-}
-
-/// One serial port that was found.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PortChoice {
-    /// Path or name to open.
-    pub path: String,
-    /// Maker, product and serial number, if it is a USB adapter.
-    pub about: Option<String>,
 }
 
 impl State {

@@ -11,22 +11,18 @@ use crate::link::scan::{
     FoundHand, HOSTS_MAX, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanPort, ScanProgress,
     ScanSummary, Speaks, start,
 };
-use crate::transport::UsbFound;
 use anyhow::bail;
 use clap::builder::NonEmptyStringValueParser;
 use clap::error::ErrorKind;
 use serde_json::{Value, json};
 use std::fmt::Display;
-use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// How often the progress line of a terminal is redrawn.
-const SHOW_EACH: Duration = Duration::from_millis(200);
-/// How often a plain line is printed where there is no terminal.
-const SAY_EACH: Duration = Duration::from_secs(10);
+/// How often progress is printed.
+const SAY_EACH: Duration = Duration::from_secs(5);
 /// Ids asked by default: a bus seldom has more hands, and each id costs about half a second a port.
 const IDS_UP_TO: u8 = 10;
 
@@ -128,7 +124,6 @@ pub(crate) async fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
         out,
         args,
         handle: start(config, &Handle::current()),
-        progress: ProgressLine::new(),
         found: 0,
     };
     printer.run(interrupt).await
@@ -138,13 +133,12 @@ struct ScanPrinter<'a> {
     out: &'a mut Out,
     args: &'a ScanArgs,
     handle: ScanHandle,
-    progress: ProgressLine,
     found: usize,
 }
 
 impl ScanPrinter<'_> {
     async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
-        let mut tick = interval(self.progress.each());
+        let mut tick = interval(SAY_EACH);
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
         // The first tick comes at once, when nothing is known yet.
         tick.tick().await;
@@ -154,7 +148,7 @@ impl ScanPrinter<'_> {
                 () = interrupt.wished() => break None,
                 event = self.handle.event() => event,
                 _ = tick.tick() => {
-                    self.progress.show(&self.handle, self.found);
+                    say(&progress_text(self.handle.progress(), self.found));
                     continue;
                 }
             };
@@ -164,12 +158,10 @@ impl ScanPrinter<'_> {
                 None => break None,
             }
         };
-        self.progress.clear();
         self.end(summary)
     }
 
     fn take(&mut self, event: ScanEvent) -> anyhow::Result<()> {
-        self.progress.clear();
         match event {
             ScanEvent::Found(found) => {
                 self.found += 1;
@@ -223,54 +215,6 @@ impl ScanPrinter<'_> {
     }
 }
 
-/// The progress line on standard error.
-struct ProgressLine {
-    is_terminal: bool,
-    shown: bool,
-}
-
-impl ProgressLine {
-    fn new() -> Self {
-        Self {
-            is_terminal: io::stderr().is_terminal(),
-            shown: false,
-        }
-    }
-
-    const fn each(&self) -> Duration {
-        if self.is_terminal {
-            SHOW_EACH
-        } else {
-            SAY_EACH
-        }
-    }
-
-    fn show(&mut self, handle: &ScanHandle, found: usize) {
-        let words = progress_text(handle.progress(), found);
-        if self.is_terminal {
-            self.shown = true;
-            put(&format!("\r\x1b[K{words}"));
-        } else {
-            say(&words);
-        }
-    }
-
-    /// Clears the progress line, so that a line that stays can be printed.
-    fn clear(&mut self) {
-        if std::mem::take(&mut self.shown) {
-            put("\r\x1b[K");
-        }
-    }
-}
-
-fn put(text: &str) {
-    let mut terminal = io::stderr().lock();
-    // Where nobody can read, nobody can be told.
-    let _unread = terminal
-        .write_all(text.as_bytes())
-        .and_then(|()| terminal.flush());
-}
-
 fn progress_text(progress: ScanProgress, found: usize) -> String {
     format!(
         "scan: {} of {} questions, {found} found, about {} s left",
@@ -281,31 +225,16 @@ fn progress_text(progress: ScanProgress, found: usize) -> String {
 }
 
 fn found_text(found: &FoundHand) -> String {
-    let about = found.usb.as_ref().map(usb_text).unwrap_or_default();
+    let about = found.usb.as_ref().map(ToString::to_string);
     format!(
-        "{}  HAND_ID {}  {:.1} ms  {about}",
+        "{}  HAND_ID {}  {:.1} ms  {}",
         found.endpoint,
         found.hand_id,
-        found.round_trip.as_secs_f64() * 1e3
+        found.round_trip.as_secs_f64() * 1e3,
+        about.unwrap_or_default()
     )
     .trim_end()
     .to_owned()
-}
-
-/// Maker, product and serial number, then what the system knows it by.
-fn usb_text(usb: &UsbFound) -> String {
-    let words = [&usb.maker, &usb.product].into_iter().flatten();
-    let words: Vec<&str> = words.map(String::as_str).collect();
-    let serial = usb.serial.as_ref();
-    let serial = serial.map(|serial| format!(", serial {serial}"));
-    let text = format!(
-        "{} (USB {:04x}:{:04x}{})",
-        words.join(" "),
-        usb.vendor_id,
-        usb.product_id,
-        serial.unwrap_or_default()
-    );
-    text.trim_start().to_owned()
 }
 
 fn found_json(found: &FoundHand) -> Value {
@@ -339,6 +268,7 @@ fn summary_json(found: usize, summary: Option<ScanSummary>) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transport::UsbFound;
 
     fn found(usb: Option<UsbFound>) -> FoundHand {
         FoundHand {
@@ -372,10 +302,10 @@ mod tests {
         let line = "rs485:/dev/ttyUSB0?baud=115200&id=3  HAND_ID 3  9.9 ms";
         for (usb, words) in [
             (None, line.to_owned()),
-            (Some(bare), format!("{line}  (USB 0403:6001)")),
+            (Some(bare), format!("{line}  USB 0403:6001")),
             (
                 Some(adapter()),
-                format!("{line}  FTDI FT232R (USB 0403:6001, serial A50285BI)"),
+                format!("{line}  FTDI FT232R A50285BI USB 0403:6001"),
             ),
         ] {
             assert_eq!(found_text(&found(usb)), words);

@@ -202,7 +202,7 @@ async fn live(hands: &SimHands) {
 async fn serve_tcp(hands: &SimHands, address: SocketAddr) -> anyhow::Result<ServedWire> {
     let listener = TcpListener::bind(address)
         .await
-        .map_err(|error| anyhow!("cannot serve on {address}: {}", bind_words(&error)))?;
+        .with_context(|| format!("cannot serve on {address}; choose another address or port"))?;
     let bound = listener
         .local_addr()
         .context("cannot read back the address that is served")?;
@@ -214,21 +214,6 @@ async fn serve_tcp(hands: &SimHands, address: SocketAddr) -> anyhow::Result<Serv
     let closed = format!("the server on {bound} ended");
     let served = modbus_tcp::serve(hands.clone(), listener);
     Ok(ServedWire::new("tcp", bound.to_string(), closed, served))
-}
-
-fn bind_words(error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::AddrInUse => {
-            "another program listens there already; end it or choose another port".into()
-        }
-        io::ErrorKind::AddrNotAvailable => {
-            "this computer does not have that address; 127.0.0.1 is always there".into()
-        }
-        io::ErrorKind::PermissionDenied => {
-            "the system does not allow it; choose a port from 1024 up".into()
-        }
-        _ => error.to_string(),
-    }
 }
 
 #[cfg(unix)]

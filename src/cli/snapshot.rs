@@ -1,7 +1,7 @@
 //! `snapshot`: pictures of the window, and lists of what they show, as files.
 
 use crate::app::settings::{Language, Theme};
-use crate::cli::out::{Out, WrongUsage, say};
+use crate::cli::out::{Out, WrongUsage};
 use crate::cli::parse::{number, seconds};
 use crate::shell::headless::canvas::Picture;
 use crate::shell::headless::cards::SceneCard;
@@ -13,10 +13,7 @@ use crate::ui::View;
 use anyhow::Context as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-
-/// How often progress is printed.
-const TELL_EACH: Duration = Duration::from_secs(1);
+use std::time::Duration;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct SnapshotArgs {
@@ -92,7 +89,7 @@ pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
     let card = CARDS.into_iter().find(named).map(|(_, card)| card);
     let mut driver = start(args, card)?;
     driver.connect()?;
-    driver.run_for(args.at, progress(args.at));
+    driver.run_for(args.at);
     if args.hand.is_none() && shows_trials(args) {
         driver.try_grasps();
     }
@@ -167,18 +164,6 @@ fn pictures(views: Views) -> Vec<(&'static str, View)> {
         Views::All => {
             let each = View::ALL.map(|view| (view.name(), view));
             each.into_iter().chain([window]).collect()
-        }
-    }
-}
-
-/// Prints progress every second.
-fn progress(whole: Duration) -> impl FnMut(Duration) {
-    let mut told = Instant::now();
-    move |done| {
-        if told.elapsed() >= TELL_EACH {
-            told = Instant::now();
-            let (done_s, whole_s) = (done.as_secs_f64(), whole.as_secs_f64());
-            say(&format!("{done_s:.0} of {whole_s:.0} s"));
         }
     }
 }

@@ -46,50 +46,26 @@ fn elements(row: &Register, bytes: &[u8]) -> Vec<Value> {
 
 /// One line of text: name, address, values, unit.
 pub(crate) fn value_text(row: &Register, bytes: &[u8]) -> String {
-    let value = words(&value_json(row, bytes));
+    let value = words(&value_json(row, bytes), " ");
     let line = format!("{:<18} {:>5}  {value} {}", row.name, row.address, row.unit);
     line.trim_end().to_owned()
 }
 
-/// The fields of a fingertip, most useful first.
-const FIELDS: [&str; 9] = [
-    "finger",
-    "normal_n",
-    "tangential_n",
-    "direction_deg",
-    "proximity",
-    "normal_delta",
-    "tangential_delta",
-    "raw",
-    "check_ok",
-];
-
 /// Elements stand apart; the faults of one joint stand together.
-fn words(value: &Value) -> String {
-    match value {
-        Value::Array(all) => all.iter().map(element_words).collect::<Vec<_>>().join(" "),
-        Value::Object(fields) => {
-            let field = |name: &&str| Some(format!("{name} {}", words(fields.get(*name)?)));
-            FIELDS
-                .iter()
-                .filter_map(field)
-                .collect::<Vec<_>>()
-                .join(", ")
-        }
-        one => element_words(one),
-    }
-}
-
-fn element_words(value: &Value) -> String {
+fn words(value: &Value, between: &str) -> String {
     match value {
         Value::Null => "-".into(),
         Value::String(word) => word.clone(),
-        Value::Array(faults) if faults.is_empty() => "none".into(),
-        Value::Array(faults) => faults
-            .iter()
-            .map(element_words)
-            .collect::<Vec<_>>()
-            .join("+"),
+        Value::Array(all) if all.is_empty() => "none".into(),
+        Value::Array(all) => {
+            let all: Vec<String> = all.iter().map(|one| words(one, "+")).collect();
+            all.join(between)
+        }
+        Value::Object(fields) => {
+            let fields = fields.iter();
+            let fields = fields.map(|(name, value)| format!("{name} {}", words(value, " ")));
+            fields.collect::<Vec<_>>().join(", ")
+        }
         other => other.to_string(),
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::hand::dof::{Dof, PerDof};
 use crate::hand::register::{self, Register, Span};
-use crate::hand::units::{Angle, Force, Gesture, HandId, SerialSpeed, Speed, Target, UserGesture};
+use crate::hand::units::{Force, Gesture, HandId, SerialSpeed, Speed, Target};
 use arrayvec::ArrayVec;
 use std::net::Ipv4Addr;
 
@@ -26,20 +26,6 @@ pub enum GestureRoute {
     Off,
 }
 
-/// Where the poses of the user's gestures are stored, because the manual gives USER_DEF_ANGLE no address (protocol
-/// choice 11).
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum GestureStore {
-    /// At 1066 + (K - 14) * 12, as three independent drivers have it.
-    #[default]
-    Register1066,
-    /// Nowhere: addresses that the manual does not list are neither read nor written.
-    Off,
-}
-
 /// One thing that a person can ask of a hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HandCommand {
@@ -51,8 +37,6 @@ pub enum HandCommand {
     Speeds(PerDof<Option<Speed>>),
     /// Take a stored pose (manual 2.6.7); no write at all if the route is off.
     Gesture(Gesture, GestureRoute),
-    /// Store a pose under a number of the user's (manual 2.6.7, protocol choice 11).
-    StoreGesture(UserGesture, PerDof<Angle>),
     /// Clear what can be cleared (manual 2.6.3).
     ClearErrors,
     /// Write the parameters to flash (manual 2.6.4).
@@ -170,12 +154,6 @@ impl HandCommand {
                 out.push(RegisterWrite::byte(&register::ACTION_SEQ_RUN, 1));
             }
             Self::Gesture(_, GestureRoute::Off) => {}
-            Self::StoreGesture(number, angles) => {
-                let bytes = angles
-                    .iter()
-                    .flat_map(|(_, angle)| angle.get().to_le_bytes());
-                out.push(RegisterWrite::run(stored_gesture(*number).address, bytes));
-            }
             Self::ClearErrors => out.push(RegisterWrite::byte(&register::CLEAR_ERROR, 1)),
             Self::Save => out.push(RegisterWrite::byte(&register::SAVE, 1)),
             Self::ResetParameters => out.push(RegisterWrite::byte(&register::RESET_PARA, 1)),
@@ -188,14 +166,6 @@ impl HandCommand {
         }
         out
     }
-}
-
-/// Where the pose of one of the user's gestures lies: six shorts in register order.
-// Manual: 2.6.7 mentions USER_DEF_ANGLE without an address; the field has 1066 + (K - 14) * 12 (protocol choice 11).
-#[must_use]
-pub const fn stored_gesture(gesture: UserGesture) -> Span {
-    let number = gesture.get() - UserGesture::MIN.get();
-    Span::new(register::USER_DEF_ANGLE.address + 12 * number as u16, 12)
 }
 
 fn angles(targets: &PerDof<Target>) -> RegisterWrite {
@@ -278,20 +248,6 @@ mod tests {
         assert!(gesture.writes().is_empty());
     }
 
-    #[test]
-    fn a_stored_gesture_lies_where_the_field_has_it() {
-        for (number, address) in [(14, 1066), (15, 1078), (35, 1318), (40, 1378)] {
-            let pose = PerDof::splat(Angle::nearest(0x0102));
-            let writes =
-                HandCommand::StoreGesture(UserGesture::new(number).unwrap(), pose).writes();
-            assert_eq!(writes.len(), 1);
-            assert_eq!(writes[0].span(), Span::new(address, 12));
-            assert_eq!(writes[0].bytes(), [2, 1].repeat(6));
-            assert!(!writes[0].is_motion());
-        }
-        assert!(UserGesture::new(13).is_err() && UserGesture::new(41).is_err());
-    }
-
     fn target() -> impl Strategy<Value = Target> {
         prop_oneof![
             Just(Target::Leave),
@@ -317,12 +273,6 @@ mod tests {
                     GestureRoute::Off
                 ][route]
             )),
-            (any::<u8>(), prop::array::uniform6(any::<i16>())).prop_map(|(number, angles)| {
-                HandCommand::StoreGesture(
-                    UserGesture::nearest(number),
-                    PerDof::new(angles.map(Angle::nearest)),
-                )
-            }),
             Just(HandCommand::ClearErrors),
             Just(HandCommand::Save),
             Just(HandCommand::ResetParameters),

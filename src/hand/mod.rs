@@ -19,7 +19,7 @@ pub mod status;
 pub mod tactile;
 pub mod units;
 
-pub use command::{GestureRoute, GestureStore, HandCommand, RegisterWrite, Writes};
+pub use command::{GestureRoute, HandCommand, RegisterWrite, Writes};
 pub use dof::{Dof, Finger, PerDof, PerFinger};
 pub use fault::{Fault, Faults};
 pub use moment::{Moment, Timed};

@@ -103,20 +103,6 @@ impl Gesture {
     pub fn all() -> impl Iterator<Item = Self> {
         (Self::MIN.0..=Self::MAX.0).map(Self)
     }
-
-    /// True for those of the maker; the others are the person's own (manual 2.6.7).
-    #[must_use]
-    pub const fn is_fixed(self) -> bool {
-        self.0 < UserGesture::MIN.0
-    }
-}
-
-impl UserGesture {
-    /// The number by which it is started.
-    #[must_use]
-    pub fn gesture(self) -> Gesture {
-        Gesture::nearest(self.0)
-    }
 }
 
 impl HandId {

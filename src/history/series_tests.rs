@@ -380,7 +380,7 @@ fn an_hour_at_100_hz_with_fingertips_at_30_hz_fits_in_100_megabytes() {
 }
 
 #[test]
-fn channels_are_kept_for_ten_minutes() {
+fn channels_are_kept_for_ten_minutes_and_tell_their_mean_and_swing() {
     let mut history = History::new();
     let mut touch = Groups::NONE;
     touch.insert(Group::Tactile(Finger::Ring));
@@ -400,4 +400,10 @@ fn channels_are_kept_for_ten_minutes() {
     let rows = history.rows(&[series], 0.0, 1000.0);
     assert_eq!(rows, CHANNEL_ROWS);
     assert!(history.reading(series, 290.0).is_none() && history.reading(series, 310.0).is_some());
+    let last = history.summary(series, 898.0, 899.0).unwrap();
+    assert!((last.mean - 3_000_050.0).abs() < 3.0, "{last:?}");
+    assert!((last.max - last.min - 100.0).abs() < 1.0, "{last:?}");
+    let quiet = history.summary(Series::Channel(0, Finger::Ring), 898.0, 899.0);
+    assert_eq!(quiet.map(|quiet| quiet.max - quiet.min), Some(0.0));
+    assert_eq!(history.summary(series, 2000.0, 2001.0), None);
 }

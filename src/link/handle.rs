@@ -2,7 +2,7 @@
 
 use crate::hand::{HandCommand, Setpoints, Setting, Span};
 use crate::link::config::LinkConfig;
-use crate::link::poll::plan::PollRates;
+use crate::link::poll::plan::{First, PollRates};
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::Session;
 use crate::link::stats::LinkStats;
@@ -146,6 +146,15 @@ impl LinkHandle {
         self.0
             .wanted
             .send_modify(|wanted| wanted.rates = Some(rates));
+    }
+
+    /// Reads this first while something moves, reconnects included.
+    pub fn read_first(&self, first: First) {
+        // Looked at before each read, so that nobody has to be woken for it.
+        self.0.wanted.send_if_modified(|wanted| {
+            wanted.first = first;
+            false
+        });
     }
 
     /// Writes, and waits until the hand acknowledged. It does not say that the value is in force.

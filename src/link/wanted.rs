@@ -1,7 +1,7 @@
 //! What the program wants of a session, and the session's ends of the channels between them.
 
 use crate::hand::Setpoints;
-use crate::link::poll::plan::PollRates;
+use crate::link::poll::plan::{First, PollRates};
 use crate::link::request::Request;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
@@ -22,6 +22,8 @@ pub(crate) struct PendingControl {
     pub(crate) closed: bool,
     /// Who may set targets: only the newest turn.
     pub(crate) turn: u64,
+    /// What is read first while something moves.
+    pub(crate) first: First,
 }
 
 impl PendingControl {
@@ -36,6 +38,7 @@ impl PendingControl {
         let rest = Self {
             closed: self.closed,
             turn: self.turn,
+            first: self.first,
             ..Self::default()
         };
         std::mem::replace(self, rest)

@@ -2,11 +2,11 @@
 //! all in the form of [`crate::params::file`]. Writes to no hand.
 
 use crate::params::file;
-use crate::params::file::{ParamsFile, ParamsFileError};
+use crate::params::file::ParamsFile;
 use crate::params::values::Params;
 use crate::record::{SaveDoubt, Saved};
 use crate::store::calendar::stamp;
-use crate::store::replace_keeping_last;
+use crate::store::{FileError, replace_keeping_last};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub struct Backup {
     /// Its path.
     pub path: PathBuf,
     /// What is in it, with when, where and why it was made; or why it cannot be read.
-    pub file: Result<ParamsFile, ParamsFileError>,
+    pub file: Result<ParamsFile, FileError>,
 }
 
 /// What is known of the flash.
@@ -244,7 +244,7 @@ impl Backups {
     ///
     /// # Errors
     /// What is wrong with the files; a missing one is no error.
-    pub fn known(&self) -> Result<Known, ParamsFileError> {
+    pub fn known(&self) -> Result<Known, FileError> {
         let optional = |path: PathBuf| match path.exists() {
             true => file::load(&path).map(Some),
             false => Ok(None),

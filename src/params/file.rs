@@ -3,7 +3,8 @@
 
 use crate::params::rows::{DEFAULT_FORCE, DEFAULT_SPEED, ParamId};
 use crate::params::values::Params;
-use crate::store::read_text;
+use crate::store::toml_file::{self, VERSION};
+use crate::store::{FileCause, FileError, FileText};
 use std::path::Path;
 use toml::Table;
 
@@ -12,55 +13,11 @@ pub const FILE_NAME: &str = "handscope-params.toml";
 
 /// The format that a parameter file names.
 pub const FORMAT: &str = "handscope-params";
-/// The version that is written, and the only one that is read.
-pub const VERSION: i64 = 1;
 /// A parameter file is a page of text; anything longer is not one.
 pub const FILE_LEN_MAX: u64 = 64 * 1024;
 
 /// The tables with a line for each joint.
 const GROUPS: [&str; 2] = [DEFAULT_SPEED, DEFAULT_FORCE];
-
-/// Why a parameter file was rejected, as a whole.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ParamsFileError {
-    /// Not TOML.
-    #[error("{0}")]
-    Toml(String),
-    /// A field is missing.
-    #[error("`{field}` is missing")]
-    Missing {
-        /// Its name.
-        field: &'static str,
-    },
-    /// Another kind of file.
-    #[error("this is not a parameter file: its `format` is {got}, not \"{FORMAT}\"")]
-    Format {
-        /// What it says it is.
-        got: String,
-    },
-    /// Written by another version.
-    #[error("`version` is {got}: only {VERSION} can be read")]
-    Version {
-        /// What it says.
-        got: String,
-    },
-    /// A value that may not be written to a hand.
-    #[error("`{field}` is {got}: it must be {allowed}")]
-    Value {
-        /// The field.
-        field: String,
-        /// What stands there.
-        got: String,
-        /// What may.
-        allowed: String,
-    },
-    /// A file without a single parameter.
-    #[error("it holds no parameters")]
-    Empty,
-    /// The system could not read it.
-    #[error("it cannot be read: {0}")]
-    Unreadable(String),
-}
 
 /// A file of parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -130,12 +87,11 @@ impl ParamsFile {
 ///
 /// # Errors
 /// The first thing that is wrong, with the field's name.
-pub fn read(text: &str) -> Result<ParamsFile, ParamsFileError> {
-    let mut table: Table = text.parse().map_err(|error: toml::de::Error| {
-        let line = error.span().map_or(1, |span| line_of(text, span.start));
-        ParamsFileError::Toml(format!("line {line}: {}", error.message()))
-    })?;
-    head(&mut table)?;
+pub fn read(text: &str) -> Result<ParamsFile, FileError> {
+    let mut table: Table = FileText::of(text, FORMAT)?.parse()?;
+    for head in ["format", "version"] {
+        table.remove(head);
+    }
     let mut file = ParamsFile {
         hand: word(&mut table, "hand")?,
         at: word(&mut table, "at")?,
@@ -160,7 +116,7 @@ pub fn read(text: &str) -> Result<ParamsFile, ParamsFileError> {
         file.params.put(id, value);
     }
     if file.params.is_empty() {
-        return Err(ParamsFileError::Empty);
+        return Err(FileCause::Empty.into());
     }
     table.retain(|name, value| {
         let is_empty = value.as_table().is_some_and(Table::is_empty);
@@ -174,34 +130,11 @@ pub fn read(text: &str) -> Result<ParamsFile, ParamsFileError> {
 ///
 /// # Errors
 /// The first thing that is wrong.
-pub fn load(path: &Path) -> Result<ParamsFile, ParamsFileError> {
-    let unreadable = |error: std::io::Error| ParamsFileError::Unreadable(error.to_string());
-    let missing = || std::io::Error::other("there is no such file");
-    let text = read_text(path, FILE_LEN_MAX).and_then(|text| text.ok_or_else(missing));
-    read(&text.map_err(unreadable)?)
+pub fn load(path: &Path) -> Result<ParamsFile, FileError> {
+    toml_file::load(path, FILE_LEN_MAX, read)
 }
 
-fn line_of(text: &str, at: usize) -> usize {
-    let before = text.get(..at).unwrap_or(text);
-    before.matches('\n').count() + 1
-}
-
-fn head(table: &mut Table) -> Result<(), ParamsFileError> {
-    let mut required = |field| take(table, field).ok_or(ParamsFileError::Missing { field });
-    let got = required("format")?;
-    if got.as_str() != Some(FORMAT) {
-        let got = got.to_string();
-        return Err(ParamsFileError::Format { got });
-    }
-    let got = required("version")?;
-    if got.as_integer() != Some(VERSION) {
-        let got = got.to_string();
-        return Err(ParamsFileError::Version { got });
-    }
-    Ok(())
-}
-
-fn word(table: &mut Table, field: &str) -> Result<String, ParamsFileError> {
+fn word(table: &mut Table, field: &str) -> Result<String, FileError> {
     match take(table, field) {
         None => Ok(String::new()),
         Some(toml::Value::String(text)) => Ok(text),
@@ -209,11 +142,14 @@ fn word(table: &mut Table, field: &str) -> Result<String, ParamsFileError> {
     }
 }
 
-fn bad_value(field: &str, got: &toml::Value, allowed: String) -> ParamsFileError {
-    ParamsFileError::Value {
-        field: field.into(),
-        got: got.to_string(),
-        allowed,
+fn bad_value(field: &str, got: &toml::Value, allowed: String) -> FileError {
+    FileError {
+        line: None,
+        field: Some(field.into()),
+        cause: FileCause::Value {
+            got: got.to_string(),
+            allowed,
+        },
     }
 }
 
@@ -285,44 +221,40 @@ thumb_bend = 800
             (
                 "index = 300",
                 "index = 1001",
-                "`default_speed.index` is 1001: it must be a whole number from 0 to 1000",
+                "`default_speed.index`: 1001 is not a whole number from 0 to 1000",
             ),
-            ("index = 300", "index = 3.5", "`default_speed.index` is 3.5"),
+            ("index = 300", "index = 3.5", "`default_speed.index`: 3.5"),
             (
                 "index = 300",
                 "index = \"300\"",
-                "`default_speed.index` is \"300\"",
+                "`default_speed.index`: \"300\"",
             ),
-            ("index = 300", "index = nan", "`default_speed.index` is nan"),
+            ("index = 300", "index = nan", "`default_speed.index`: nan"),
             (
                 "hand_id = 7",
                 "hand_id = 0",
-                "`hand_id` is 0: it must be a whole number from 1 to 254",
+                "`hand_id`: 0 is not a whole number from 1 to 254",
             ),
-            ("hand_id = 7", "redu_ratio = 4", "`redu_ratio` is 4"),
+            ("hand_id = 7", "redu_ratio = 4", "`redu_ratio`: 4"),
             (
                 "10.0.0.9",
                 "10.0.0.255",
-                "`ip_address` is \"10.0.0.255\": it must be an address of one computer",
+                "`ip_address`: \"10.0.0.255\" is not an address of one computer",
             ),
             ("[default_force]", "[default_force.more]", "it holds"),
             (
                 "version = 1",
                 "version = 2",
-                "`version` is 2: only 1 can be read",
+                "line 2, `version`: version 2 cannot be read, only version 1",
             ),
-            ("version = 1\n", "", "`version` is missing"),
+            ("version = 1\n", "", "`version`: missing field"),
             (
                 "handscope-params",
                 "handscope-poses",
-                "not a parameter file",
+                "another kind of file",
             ),
             ("crew = 3", "crew = ", "line 3"),
-            (
-                "crew = 3",
-                "why = 3",
-                "`why` is 3: it must be text in quotes",
-            ),
+            ("crew = 3", "why = 3", "`why`: 3 is not text in quotes"),
             ("crew = 3", "default_force = 3", "line 11"),
         ] {
             let text = TEXT.replace(from, to);
@@ -339,18 +271,19 @@ thumb_bend = 800
             }
         }
         let empty = "format = \"handscope-params\"\nversion = 1\n";
-        assert_eq!(read(empty), Err(ParamsFileError::Empty));
+        assert_eq!(read(empty), Err(FileCause::Empty.into()));
     }
 
     #[test]
     fn a_folder_a_long_file_and_none_are_told() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.toml");
-        assert!(matches!(load(&path), Err(ParamsFileError::Unreadable(_))));
-        assert!(matches!(
-            load(folder.path()),
-            Err(ParamsFileError::Unreadable(_))
-        ));
+        let is_unreadable = |path: &Path| {
+            let error = load(path).unwrap_err();
+            matches!(error.cause, FileCause::Unreadable(_))
+        };
+        assert!(is_unreadable(&path));
+        assert!(is_unreadable(folder.path()));
         std::fs::write(&path, " ".repeat(70_000)).unwrap();
         let long = load(&path).unwrap_err().to_string();
         assert!(long.contains("70000") && long.contains("65536"), "{long}");

@@ -6,15 +6,6 @@ use crate::poses::library::{
     SequenceStep, TAGS_MAX, clean, free_name,
 };
 
-/// To which side something moves in its row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ShiftDirection {
-    /// Towards the first.
-    Earlier,
-    /// Towards the last.
-    Later,
-}
-
 /// One change of a pose.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PoseEdit {
@@ -30,8 +21,6 @@ pub enum PoseEdit {
     Speed(Speed),
     /// Force threshold of recalling.
     Force(Force),
-    /// Another place in the order.
-    Shift(ShiftDirection),
     /// To this place in the order, 0 for the first; those between make room.
     Move(usize),
     /// A copy behind it.
@@ -51,16 +40,10 @@ pub enum SequenceEdit {
     Add(PoseId),
     /// A step away.
     Remove(usize),
-    /// Another place for a step.
-    Shift(usize, ShiftDirection),
     /// A step from one place to another; those between make room.
     Move(usize, usize),
-    /// Speed of a step.
-    Speed(usize, Speed),
-    /// Time at the pose of a step.
-    Dwell(usize, Millis),
-    /// Time to wait for arrival of a step.
-    Limit(usize, Millis),
+    /// Another speed and other times for a step.
+    Change(usize, SequenceStep),
     /// The whole sequence away.
     Delete,
 }
@@ -142,7 +125,7 @@ impl PoseLibrary {
 
     /// Changes one pose.
     pub fn edit_pose(&mut self, id: PoseId, edit: PoseEdit) {
-        let Some(at) = self.poses.iter().position(|pose| pose.id == id) else {
+        let Some(at) = self.place(id) else {
             return;
         };
         let Some(pose) = self.poses.get_mut(at) else {
@@ -154,7 +137,6 @@ impl PoseLibrary {
             PoseEdit::Leave(dof, leave) => pose.leave[dof] = leave,
             PoseEdit::Speed(speed) => pose.speed = speed,
             PoseEdit::Force(force) => pose.force = force,
-            PoseEdit::Shift(way) => shift(&mut self.poses, at, way),
             PoseEdit::Move(to) => put(&mut self.poses, at, to),
             PoseEdit::Duplicate => self.duplicate(at),
             PoseEdit::Delete => {
@@ -178,12 +160,9 @@ impl PoseLibrary {
         let Some(copy) = self.poses.get(at).cloned() else {
             return;
         };
-        let name = copy.name.clone();
-        if self.add_pose(&name, copy).is_some()
-            && let Some(copy) = self.poses.pop()
-        {
-            self.poses.insert(at + 1, copy);
-        }
+        let last = self.poses.len();
+        self.add_pose(&copy.name.clone(), copy);
+        put(&mut self.poses, last, at + 1);
     }
 
     /// Changes one sequence.
@@ -214,11 +193,12 @@ impl PoseLibrary {
             SequenceEdit::Remove(at) if at < sequence.steps.len() => {
                 sequence.steps.remove(at);
             }
-            SequenceEdit::Shift(at, way) => shift(&mut sequence.steps, at, way),
             SequenceEdit::Move(from, to) => put(&mut sequence.steps, from, to),
-            SequenceEdit::Speed(at, speed) => change(sequence, at, |step| step.speed = speed),
-            SequenceEdit::Dwell(at, dwell) => change(sequence, at, |step| step.dwell = dwell),
-            SequenceEdit::Limit(at, limit) => change(sequence, at, |step| step.limit = limit),
+            SequenceEdit::Change(at, step) => {
+                if let Some(own) = sequence.steps.get_mut(at) {
+                    *own = step;
+                }
+            }
             SequenceEdit::Rename(_) | SequenceEdit::Remove(_) | SequenceEdit::Delete => {}
         }
     }
@@ -266,16 +246,6 @@ pub(crate) fn tags(text: &str) -> Vec<String> {
     tags
 }
 
-fn shift<T>(row: &mut [T], at: usize, way: ShiftDirection) {
-    let other = match way {
-        ShiftDirection::Earlier => at.checked_sub(1),
-        ShiftDirection::Later => Some(at + 1),
-    };
-    if let Some(other) = other.filter(|other| (*other).max(at) < row.len()) {
-        row.swap(at, other);
-    }
-}
-
 /// Takes one out and puts it in elsewhere. A place that does not exist changes nothing.
 fn put<T>(row: &mut [T], from: usize, to: usize) {
     let between = from.min(to)..=from.max(to);
@@ -285,11 +255,5 @@ fn put<T>(row: &mut [T], from: usize, to: usize) {
         } else {
             between.rotate_right(1);
         }
-    }
-}
-
-fn change(sequence: &mut Sequence, at: usize, change: impl FnOnce(&mut SequenceStep)) {
-    if let Some(step) = sequence.steps.get_mut(at) {
-        change(step);
     }
 }

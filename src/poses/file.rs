@@ -2,102 +2,16 @@
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
-    ENTRIES_MAX, LibraryPose, Millis, PoseId, PoseLibrary, STEPS_MAX, Sequence, SequenceId,
-    SequenceStep, TAGS_MAX, clean,
+    ENTRIES_MAX, LibraryPose, Millis, NAME_CHARS_MAX, PoseId, PoseLibrary, STEPS_MAX, Sequence,
+    SequenceId, SequenceStep, TAGS_MAX, clean,
 };
+use crate::store::toml_file::VERSION;
+use crate::store::{FileCause, FileError, FileText};
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 use toml::Spanned;
 
 /// The format that a pose file names.
 pub const FORMAT: &str = "handscope-poses";
-/// The version that is written, and the only one that is read.
-pub const VERSION: i64 = 1;
-
-/// Why a pose file was rejected, as a whole.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}{cause}", place(*.line, .field.as_ref()))]
-pub struct PoseFileError {
-    /// Line, 1 the first, where one is to blame.
-    pub line: Option<usize>,
-    /// Field, where one is to blame.
-    pub field: Option<String>,
-    /// What is wrong.
-    pub cause: PoseFileCause,
-}
-
-/// What is wrong with a pose file.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum PoseFileCause {
-    /// Not TOML, or a value that does not fit its field.
-    #[error("{0}")]
-    Toml(String),
-    /// Another kind of file.
-    #[error("this is not a pose file: its format is \"{got}\", not \"{FORMAT}\"")]
-    Format {
-        /// What it says it is.
-        got: String,
-    },
-    /// Written by another version.
-    #[error("version {got} cannot be read, only version {VERSION}")]
-    Version {
-        /// What it says.
-        got: i64,
-    },
-    /// A name that is empty, too long, or has a line break.
-    #[error("\"{name}\" is not a valid name: use 1 to 32 characters on one line")]
-    Name {
-        /// The name.
-        name: String,
-    },
-    /// Two entries with one name.
-    #[error("the name \"{name}\" is used twice")]
-    Twice {
-        /// The name.
-        name: String,
-    },
-    /// A step names a pose that the file does not have.
-    #[error("there is no pose \"{name}\" in this file")]
-    NoSuchPose {
-        /// The name.
-        name: String,
-    },
-    /// More than a library holds.
-    #[error("{got} are too many: at most {limit}")]
-    TooMany {
-        /// How many there are.
-        got: usize,
-        /// How many there may be.
-        limit: usize,
-    },
-    /// The system could not read it.
-    #[error("it cannot be read: {0}")]
-    Unreadable(String),
-}
-
-/// Line and field, as they stand before the cause.
-fn place(line: Option<usize>, field: Option<&String>) -> String {
-    let line = line.map(|line| format!("line {line}, "));
-    let field = field.map(|field| format!("`{field}`: "));
-    line.unwrap_or_default() + &field.unwrap_or_default()
-}
-
-impl From<PoseFileCause> for PoseFileError {
-    fn from(cause: PoseFileCause) -> Self {
-        Self {
-            line: None,
-            field: None,
-            cause,
-        }
-    }
-}
-
-#[derive(Deserialize)]
-struct FileHead {
-    format: Spanned<String>,
-    version: Spanned<i64>,
-}
-
 #[derive(Serialize, Deserialize)]
 struct FileRow {
     format: String,
@@ -220,68 +134,18 @@ fn unplaced(text: &str) -> Spanned<String> {
 /// The library that a text holds.
 ///
 /// # Errors
-/// [`PoseFileError`] with line and field; nothing is taken of such a text.
-pub fn read(text: &str) -> Result<PoseLibrary, PoseFileError> {
-    let source = FileText(text);
-    let head: FileHead = source.parse()?;
-    if head.format.get_ref() != FORMAT {
-        let got = head.format.get_ref().chars().take(40).collect();
-        return Err(source.blame(head.format.span(), "format", PoseFileCause::Format { got }));
-    }
-    let got = *head.version.get_ref();
-    if got != VERSION {
-        let cause = PoseFileCause::Version { got };
-        return Err(source.blame(head.version.span(), "version", cause));
-    }
-    source.library(source.parse()?)
+/// [`FileError`] with line and field; nothing is taken of such a text.
+pub fn read(text: &str) -> Result<PoseLibrary, FileError> {
+    let source = FileText::of(text, FORMAT)?;
+    PoseReader(source).library(source.parse()?)
 }
 
-/// The text that is being read, to say where in it something is wrong.
+/// Makes a library of what a text holds.
 #[derive(Clone, Copy)]
-struct FileText<'a>(&'a str);
+struct PoseReader<'a>(FileText<'a>);
 
-impl FileText<'_> {
-    fn parse<T: serde::de::DeserializeOwned>(self) -> Result<T, PoseFileError> {
-        toml::from_str(self.0).map_err(|error| self.toml_error(&error))
-    }
-
-    fn toml_error(self, error: &toml::de::Error) -> PoseFileError {
-        let said = error.message().trim().replace('\n', " ");
-        let named = ["missing field `", "unknown field `"]
-            .iter()
-            .find_map(|start| {
-                let rest = said.strip_prefix(start)?;
-                rest.split('`').next().map(str::to_owned)
-            });
-        let span = error.span().unwrap_or(0..0);
-        PoseFileError {
-            field: named.or_else(|| self.key_before(span.start)),
-            line: error.span().map(|span| self.line(span.start)),
-            cause: PoseFileCause::Toml(said),
-        }
-    }
-
-    fn blame(self, at: Range<usize>, field: &str, cause: PoseFileCause) -> PoseFileError {
-        PoseFileError {
-            line: Some(self.line(at.start)),
-            field: Some(field.into()),
-            cause,
-        }
-    }
-
-    fn line(self, at: usize) -> usize {
-        let before = self.0.bytes().take(at);
-        1 + before.filter(|byte| *byte == b'\n').count()
-    }
-
-    /// The key whose value begins here.
-    fn key_before(self, at: usize) -> Option<String> {
-        let (before, _) = self.0.get(..at)?.rsplit_once('=')?;
-        let key = before.rsplit(['\n', '{', ',']).next()?.trim();
-        (!key.is_empty() && key.len() <= 40).then(|| key.to_owned())
-    }
-
-    fn library(self, file: FileRow) -> Result<PoseLibrary, PoseFileError> {
+impl PoseReader<'_> {
+    fn library(self, file: FileRow) -> Result<PoseLibrary, FileError> {
         few(file.poses.len(), ENTRIES_MAX)?;
         few(file.sequences.len(), ENTRIES_MAX)?;
         let mut library = PoseLibrary::default();
@@ -295,21 +159,19 @@ impl FileText<'_> {
         Ok(library)
     }
 
-    fn name(self, name: &Spanned<String>, taken: bool) -> Result<String, PoseFileError> {
+    fn name(self, name: &Spanned<String>, taken: bool) -> Result<String, FileError> {
         let text = name.get_ref().clone();
         if text.is_empty() || clean(&text) != text {
-            let name_start = text.chars().take(40).collect();
-            let cause = PoseFileCause::Name { name: name_start };
-            return Err(self.blame(name.span(), "name", cause));
+            return Err(self.0.blame(name.span(), "name", bad_name(&text)));
         }
         if taken {
-            let cause = PoseFileCause::Twice { name: text };
-            return Err(self.blame(name.span(), "name", cause));
+            let cause = FileCause::Twice { name: text };
+            return Err(self.0.blame(name.span(), "name", cause));
         }
         Ok(text)
     }
 
-    fn pose(self, library: &mut PoseLibrary, row: PoseRow) -> Result<(), PoseFileError> {
+    fn pose(self, library: &mut PoseLibrary, row: PoseRow) -> Result<(), FileError> {
         let name = self.name(&row.name, library.pose_named(row.name.get_ref()).is_some())?;
         few(row.tags.len(), TAGS_MAX)?;
         if let Some(bad) = row
@@ -317,8 +179,7 @@ impl FileText<'_> {
             .iter()
             .find(|tag| tag.is_empty() || clean(tag) != **tag)
         {
-            let cause = PoseFileCause::Name { name: bad.clone() };
-            return Err(self.blame(row.name.span(), "tags", cause));
+            return Err(self.0.blame(row.name.span(), "tags", bad_name(bad)));
         }
         let angles = row.angles;
         let angles = PerDof::new([
@@ -343,13 +204,13 @@ impl FileText<'_> {
         Ok(())
     }
 
-    fn sequence(self, library: &mut PoseLibrary, row: SequenceRow) -> Result<(), PoseFileError> {
+    fn sequence(self, library: &mut PoseLibrary, row: SequenceRow) -> Result<(), FileError> {
         let mut known = library.sequences.iter();
         let taken = known.any(|sequence| sequence.name == *row.name.get_ref());
         let name = self.name(&row.name, taken)?;
         few(row.steps.len(), STEPS_MAX)?;
         let steps = row.steps.into_iter().map(|step| self.step(library, step));
-        let steps = steps.collect::<Result<Vec<SequenceStep>, PoseFileError>>()?;
+        let steps = steps.collect::<Result<Vec<SequenceStep>, FileError>>()?;
         let id = SequenceId(library.fresh());
         library.sequences.push(Sequence {
             id,
@@ -361,11 +222,11 @@ impl FileText<'_> {
         Ok(())
     }
 
-    fn step(self, library: &PoseLibrary, row: StepRow) -> Result<SequenceStep, PoseFileError> {
+    fn step(self, library: &PoseLibrary, row: StepRow) -> Result<SequenceStep, FileError> {
         let Some(pose) = library.pose_named(row.pose.get_ref()) else {
             let name = row.pose.get_ref().chars().take(40).collect();
-            let cause = PoseFileCause::NoSuchPose { name };
-            return Err(self.blame(row.pose.span(), "pose", cause));
+            let cause = FileCause::Absent { name };
+            return Err(self.0.blame(row.pose.span(), "pose", cause));
         };
         Ok(SequenceStep {
             pose: pose.id,
@@ -377,9 +238,17 @@ impl FileText<'_> {
     }
 }
 
-fn few(got: usize, limit: usize) -> Result<(), PoseFileError> {
+fn bad_name(name: &str) -> FileCause {
+    let start: String = name.chars().take(40).collect();
+    FileCause::Value {
+        got: format!("\"{start}\""),
+        allowed: format!("a name of 1 to {NAME_CHARS_MAX} characters on one line"),
+    }
+}
+
+fn few(got: usize, limit: usize) -> Result<(), FileError> {
     if got > limit {
-        return Err(PoseFileCause::TooMany { got, limit }.into());
+        return Err(FileCause::TooMany { got, limit }.into());
     }
     Ok(())
 }

@@ -159,6 +159,12 @@ impl PoseLibrary {
         self.poses.iter().find(|pose| pose.id == id)
     }
 
+    /// The place of a pose among all, 0 the first.
+    #[must_use]
+    pub fn place(&self, id: PoseId) -> Option<usize> {
+        self.poses.iter().position(|pose| pose.id == id)
+    }
+
     /// The pose with this name.
     #[must_use]
     pub fn pose_named(&self, name: &str) -> Option<&LibraryPose> {

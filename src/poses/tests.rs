@@ -139,8 +139,10 @@ proptest! {
         library.edit_sequence(own, SequenceEdit::Loop(looped));
         for (at, (pose, dwell, speed)) in steps.into_iter().filter(|(pose, ..)| *pose < ids.len()).enumerate() {
             library.edit_sequence(own, SequenceEdit::Add(ids[pose]));
-            library.edit_sequence(own, SequenceEdit::Dwell(at, Millis::try_from(i64::from(dwell.min(Millis::MAX))).unwrap()));
-            library.edit_sequence(own, SequenceEdit::Speed(at, Speed::nearest(speed)));
+            let mut step = library.sequence(own).unwrap().steps[at].clone();
+            step.dwell = Millis::try_from(i64::from(dwell.min(Millis::MAX))).unwrap();
+            step.speed = Speed::nearest(speed);
+            library.edit_sequence(own, SequenceEdit::Change(at, step));
         }
         let text = write(&library).unwrap();
         prop_assert_eq!(read(&text).unwrap(), library);

@@ -17,7 +17,9 @@ use std::time::Duration;
 /// News come faster than a display shows them: one frame serves all that come within this time.
 const FRAME_WITHIN: Duration = Duration::from_millis(16);
 /// The same while no hand moves: only curves go on then, a pixel or two.
-const FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(40);
+const FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(50);
+/// The same where the processor draws the pixels.
+const FRAME_AT_REST_IN_SOFTWARE_WITHIN: Duration = Duration::from_millis(100);
 
 /// Draws what `ui` draws at a time in seconds, in a size in points, into the bytes of a PNG file; `None` if it cannot.
 pub type Snap =
@@ -28,6 +30,7 @@ pub struct Cockpit {
     app: App,
     window: Window,
     snap: Option<Snap>,
+    is_software: bool,
 }
 
 impl Cockpit {
@@ -38,7 +41,13 @@ impl Cockpit {
             app,
             window: Window::new(),
             snap: None,
+            is_software: false,
         }
+    }
+
+    /// Whether the processor draws the pixels. Less often, then, while no hand moves.
+    pub const fn set_software(&mut self, is_software: bool) {
+        self.is_software = is_software;
     }
 
     /// With something that makes pictures of parts of the window.
@@ -87,6 +96,7 @@ impl Cockpit {
         let mut hands = self.app.state().hands.iter();
         match hands.any(|hand| hand.link.rest == Rest::Moving || hand.mover().is_some()) {
             true => FRAME_WITHIN,
+            false if self.is_software => FRAME_AT_REST_IN_SOFTWARE_WITHIN,
             false => FRAME_AT_REST_WITHIN,
         }
     }

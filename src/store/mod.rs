@@ -1,11 +1,13 @@
 //! Files: replaced whole or not at all, read within a limit, written when what they hold changed; and work off the window's
-//! thread. Knows no format.
+//! thread. Knows the head of our formats and nothing of what they hold.
 
 pub mod calendar;
 pub mod file;
 pub mod job;
 pub mod saver;
+pub mod toml_file;
 
 pub use crate::store::file::{last_of, read_text, replace, replace_keeping_last, set_aside};
 pub use crate::store::job::{BackgroundJob, on_thread};
 pub use crate::store::saver::Saver;
+pub use crate::store::toml_file::{FileCause, FileError, FileText};

@@ -10,6 +10,9 @@ use std::time::Duration;
 /// A typed name or a dragged window changes settings many times a second; the disk sees one of them.
 const SAVE_EVERY: Duration = Duration::from_secs(1);
 
+/// A file that could not be written, and what the system says.
+pub type NotSaved = (PathBuf, io::Error);
+
 /// Keeps a file up to date. Without a path, nothing is kept.
 #[derive(Debug)]
 pub struct Saver<K> {
@@ -18,7 +21,7 @@ pub struct Saver<K> {
     text: fn(&K) -> io::Result<String>,
     kept: K,
     begun: Option<Duration>,
-    under_way: Option<BackgroundJob<io::Result<()>>>,
+    under_way: Option<BackgroundJob<Result<(), NotSaved>>>,
 }
 
 impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
@@ -43,8 +46,8 @@ impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
     /// again before something changes again.
     ///
     /// # Errors
-    /// What the system says.
-    pub fn tick(&mut self, newest: &K, now: Duration) -> io::Result<()> {
+    /// [`NotSaved`].
+    pub fn tick(&mut self, newest: &K, now: Duration) -> Result<(), NotSaved> {
         let ended = self.ended();
         let waits = self
             .begun
@@ -71,13 +74,15 @@ impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
         }
         self.kept = newest.clone();
         let (kept, text) = (newest.clone(), self.text);
-        let write = on_thread(move || replace_keeping_last(&path, &text(&kept)?));
+        let place = path.clone();
+        let write = on_thread(move || replace_keeping_last(&place, &text(&kept)?));
+        let write = async move { write.await.map_err(|error| (path, error)) };
         let nobody: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
         self.under_way = Some(BackgroundJob::start(&self.runtime, &nobody, write));
         self.begun = Some(now);
     }
 
-    fn ended(&mut self) -> io::Result<()> {
+    fn ended(&mut self) -> Result<(), NotSaved> {
         BackgroundJob::take_from(&mut self.under_way).unwrap_or(Ok(()))
     }
 }

@@ -3,7 +3,6 @@
 
 pub mod apply;
 pub mod calibrate;
-pub mod gesture;
 pub mod hand;
 pub mod place;
 pub mod play;

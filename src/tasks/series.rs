@@ -7,7 +7,6 @@ use crate::record::{Hold, Record};
 use crate::tasks::hand::Hand;
 use crate::trials::limits::{Abort, LinkView};
 use crate::trials::plan::{PlanError, TrialPlan};
-use crate::trials::recording::TrialMark;
 use crate::trials::series::{SeriesOrder, SeriesView, TrialSeries};
 use crate::trials::summary::Trial;
 use std::pin::pin;
@@ -30,8 +29,6 @@ const REST_WITHIN: Duration = Duration::from_secs(3);
 pub enum SeriesStep {
     /// It stands elsewhere now.
     View(SeriesView),
-    /// Something happened in the trial that runs.
-    Mark(TrialMark),
     /// A trial is over.
     Trial(Box<Trial>),
 }
@@ -91,7 +88,7 @@ pub async fn series<H: Hand>(
     hand.read_at(RATES);
     let mut sample = start.seen;
     let mut ended = pin!(ended);
-    let mut shown = AlreadyTold::default();
+    let mut shown = None;
     let mut stop = None;
     while !series.is_over() {
         let mut order = None;
@@ -110,14 +107,14 @@ pub async fn series<H: Hand>(
         if let Some(SeriesOrder::Set(setpoints)) = &order {
             hand.set(turn, setpoints);
         }
-        if !shown.tell(&mut series, &mut tell) {
+        if !tell_news(&mut series, &mut shown, &mut tell) {
             order = series.end(Abort::NotKept, clock.now()).or(order);
         }
         if order == Some(SeriesOrder::Stop) {
             stop = Some(hold(hand, &mut records).await);
         }
     }
-    shown.tell(&mut series, &mut tell);
+    tell_news(&mut series, &mut shown, &mut tell);
     hand.read_at(PollRates::default());
     if stop.is_none() {
         hand.disarm();
@@ -128,41 +125,21 @@ pub async fn series<H: Hand>(
     })
 }
 
-/// What was told already.
-#[derive(Default)]
-struct AlreadyTold {
-    view: Option<SeriesView>,
-    marks: usize,
-}
-
-impl AlreadyTold {
-    /// Tells what is new: marks before the trial that they belong to, and where the series stands last.
-    fn tell(
-        &mut self,
-        series: &mut TrialSeries,
-        tell: &mut impl FnMut(SeriesStep) -> bool,
-    ) -> bool {
-        let mut is_kept = true;
-        let mut also = |step| is_kept &= tell(step);
-        while let Some(trial) = series.finished() {
-            for mark in trial.recording.marks().iter().skip(self.marks) {
-                also(SeriesStep::Mark(*mark));
-            }
-            self.marks = 0;
-            also(SeriesStep::Trial(Box::new(trial)));
-        }
-        if let Some(recording) = series.recording() {
-            for mark in recording.marks().iter().skip(self.marks) {
-                also(SeriesStep::Mark(*mark));
-            }
-            self.marks = recording.marks().len();
-        }
-        let view = series.view();
-        if self.view.replace(view) != Some(view) {
-            also(SeriesStep::View(view));
-        }
-        is_kept
+/// Tells what is new: trials that are over, and where the series stands. False if something could not be kept.
+fn tell_news(
+    series: &mut TrialSeries,
+    shown: &mut Option<SeriesView>,
+    tell: &mut impl FnMut(SeriesStep) -> bool,
+) -> bool {
+    let mut is_kept = true;
+    while let Some(trial) = series.finished() {
+        is_kept &= tell(SeriesStep::Trial(Box::new(trial)));
     }
+    let view = series.view();
+    if shown.replace(view) != Some(view) {
+        is_kept &= tell(SeriesStep::View(view));
+    }
+    is_kept
 }
 
 /// Holds, and waits for what feedback says of it.

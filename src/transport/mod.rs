@@ -2,6 +2,7 @@
 
 #[cfg(target_os = "linux")]
 pub mod can;
+pub mod can_facts;
 pub mod dial;
 pub mod endpoint;
 #[cfg(target_os = "linux")]

@@ -31,15 +31,6 @@ pub enum Metric {
     Rate,
 }
 
-/// Which values of a column are the better ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Better {
-    /// The smaller.
-    Lower,
-    /// The larger.
-    Higher,
-}
-
 /// One column.
 #[derive(Debug, Clone, Copy)]
 pub struct TrialColumn {
@@ -53,8 +44,6 @@ pub struct TrialColumn {
     pub unit: &'static str,
     /// Digits after the point.
     pub decimals: usize,
-    /// Which values are the better ones.
-    pub better: Better,
     /// How to get it.
     pub value: fn(&JointMetrics) -> Option<f64>,
 }
@@ -71,8 +60,7 @@ pub static COLUMNS: [TrialColumn; 12] = [
         .word("peak"),
     column(Metric::Steady, "Steady", |own| own.steady_force_g)
         .unit("g", 0)
-        .word("steady")
-        .higher(),
+        .word("steady"),
     column(Metric::Contact, "To contact", |own| own.time_to_contact_s)
         .unit("s", 3)
         .word("contact"),
@@ -90,7 +78,7 @@ pub static COLUMNS: [TrialColumn; 12] = [
     }),
     column(Metric::Current, "Current", |own| own.peak_current_ma).unit("mA", 0),
     column(Metric::Heat, "Warmer", |own| own.temperature_rise_c).unit("°C", 0),
-    column(Metric::Rate, "Reads/s", |own| own.rate_hz).higher(),
+    column(Metric::Rate, "Reads/s", |own| own.rate_hz),
 ];
 
 const fn column(
@@ -104,7 +92,6 @@ const fn column(
         word: None,
         unit: "",
         decimals: 0,
-        better: Better::Lower,
         value,
     }
 }
@@ -121,13 +108,6 @@ impl TrialColumn {
     const fn word(self, word: &'static str) -> Self {
         Self {
             word: Some(word),
-            ..self
-        }
-    }
-
-    const fn higher(self) -> Self {
-        Self {
-            better: Better::Higher,
             ..self
         }
     }

@@ -11,8 +11,7 @@ const COUNTS_PER_SPEED: f64 = 3.04;
 const BESIDES: Duration = Duration::from_millis(1500);
 
 /// About how long one trial takes with the rest after it, if nothing is met on the way: the longest.
-#[must_use]
-pub fn trial(plan: &TrialPlan, setting: TrialSetting) -> Duration {
+fn trial(plan: &TrialPlan, setting: TrialSetting) -> Duration {
     let way = longest_way(plan);
     let fast_way = match plan.approach {
         Approach::OneStage => 0.0,

@@ -3,10 +3,11 @@
 use crate::hand::impact::{overshoot_g, two_stage_overshoot_g};
 use crate::hand::{Angle, Dof, Force, OutOfRange, PerDof, Speed};
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// Trials in one series: a day of them.
-pub const TRIALS_MAX: usize = 1000;
+pub const TRIALS_MAX: u16 = 1000;
 /// Longest dwell, rest or wait that a plan may ask for.
 pub const WAIT_MAX: Duration = Duration::from_secs(600);
 /// Shortest dwell: less leaves no steady force to measure.
@@ -190,6 +191,17 @@ impl Default for TrialPlan {
     }
 }
 
+impl Approach {
+    /// When its slow stage begins; `None` if it has one speed.
+    #[must_use]
+    pub const fn until(self) -> Option<Until> {
+        match self {
+            Self::OneStage => None,
+            Self::TwoStage { until, .. } => Some(until),
+        }
+    }
+}
+
 /// How an approach stands in files: none of these keys for one stage.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct ApproachKeys {
@@ -236,7 +248,7 @@ pub enum UntilError {
     #[error("an approach in two stages needs fast_speed, until and until_value")]
     Incomplete,
     /// Nothing has this name.
-    #[error("'{0}' is no end of an approach")]
+    #[error("'{0}' is not an end of an approach: choose angle, proximity, touch or measured")]
     Name(String),
     /// An angle or a force outside its range.
     #[error(transparent)]
@@ -330,8 +342,35 @@ mod by_joint {
     }
 }
 
+/// A part of a plan that a person may have to change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PlanField {
+    /// The choice of joints.
+    Joints,
+    /// Start and target of a joint.
+    Way(Dof),
+    /// Speeds at the contact.
+    Speeds,
+    /// Force thresholds.
+    Forces,
+    /// Trials of each setting.
+    Repeats,
+    /// Time held.
+    Dwell,
+    /// Time between.
+    Rest,
+    /// Speed of the first stage.
+    Fast,
+    /// When the first stage ends.
+    Until,
+    /// The force that ends it.
+    Ceiling,
+    /// The temperatures.
+    Heat,
+}
+
 /// Why a plan cannot be run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PlanError {
     /// No joint closes.
     #[error("no joint takes part: name at least one")]
@@ -374,50 +413,24 @@ pub enum PlanError {
         /// Of the second.
         speed: i16,
     },
-    /// A proximity or a margin out of range.
-    #[error("the approach ends at {got}, which is not between 1 and {most}")]
-    Until {
-        /// The value given.
-        got: i32,
-        /// The largest.
-        most: i32,
-    },
-    /// A touch of 0 g.
-    #[error("a touch of 0 g is reached before anything is touched")]
-    NoTouch,
     /// No cell in the grid.
     #[error(
         "there is nothing to try: name a speed and a force threshold, and try them at least once"
     )]
     Empty,
-    /// Speed 0 never arrives.
-    #[error("speed 0 does not move")]
-    NoSpeed,
-    /// More than a series holds.
-    #[error("{got} trials are too many: at most {TRIALS_MAX}")]
-    TooMany {
-        /// How many.
-        got: usize,
-    },
-    /// A dwell that is too short or too long.
-    #[error("a dwell of {ms} ms is not between 300 and 600000")]
-    Dwell {
-        /// Milliseconds.
-        ms: u128,
-    },
-    /// A rest that is too long.
-    #[error("a rest of {ms} ms is longer than 600000")]
-    Rest {
-        /// Milliseconds.
-        ms: u128,
-    },
-    /// A force ceiling that is below the threshold, or that the sensor cannot show.
-    #[error("a force ceiling of {got} g is not between {least} (the largest threshold) and 4000")]
-    Ceiling {
+    /// A number that is out of its range.
+    #[error("{what} of {got} is not between {least} and {most}")]
+    Range {
+        /// Where it stands.
+        field: PlanField,
+        /// What it is, for a sentence.
+        what: &'static str,
         /// The value given.
-        got: i16,
-        /// The smallest allowed.
-        least: i16,
+        got: f64,
+        /// The smallest.
+        least: f64,
+        /// The largest.
+        most: f64,
     },
     /// Temperatures in the wrong order.
     #[error("the temperatures {start} and {stop} must rise and stay at or below {TEMPERATURE_MAX}")]
@@ -427,6 +440,40 @@ pub enum PlanError {
         /// At which they end.
         stop: u8,
     },
+}
+
+impl PlanError {
+    /// What has to be changed.
+    #[must_use]
+    pub const fn field(&self) -> PlanField {
+        match self {
+            Self::NoJoint => PlanField::Joints,
+            Self::NoWay { dof, .. } | Self::NoStart { dof } => PlanField::Way(*dof),
+            Self::Stage { .. } => PlanField::Until,
+            Self::SlowApproach { .. } => PlanField::Fast,
+            Self::Empty => PlanField::Speeds,
+            Self::Range { field, .. } => *field,
+            Self::Temperature { .. } => PlanField::Heat,
+        }
+    }
+}
+
+fn within(
+    (field, what): (PlanField, &'static str),
+    got: f64,
+    range: RangeInclusive<f64>,
+) -> Result<(), PlanError> {
+    let (least, most) = range.into_inner();
+    match (least..=most).contains(&got) {
+        true => Ok(()),
+        false => Err(PlanError::Range {
+            field,
+            what,
+            got,
+            least,
+            most,
+        }),
+    }
 }
 
 impl TrialPlan {
@@ -447,10 +494,12 @@ impl TrialPlan {
         }
         self.check_grid()?;
         self.check_approach()?;
-        let ms = self.dwell.as_millis();
-        if !(DWELL_MIN..=WAIT_MAX).contains(&self.dwell) {
-            return Err(PlanError::Dwell { ms });
-        }
+        let range = DWELL_MIN.as_secs_f64()..=WAIT_MAX.as_secs_f64();
+        within(
+            (PlanField::Dwell, "a dwell in s"),
+            self.dwell.as_secs_f64(),
+            range,
+        )?;
         self.check_limits()
     }
 
@@ -460,18 +509,23 @@ impl TrialPlan {
             return Err(PlanError::Empty);
         }
         let cells = grid.speeds.len().saturating_mul(grid.forces.len());
-        let got = cells.saturating_mul(grid.repeats);
-        if got > TRIALS_MAX {
-            return Err(PlanError::TooMany { got });
+        let trials = u32::try_from(cells.saturating_mul(grid.repeats)).unwrap_or(u32::MAX);
+        let range = 1.0..=f64::from(TRIALS_MAX);
+        within(
+            (PlanField::Repeats, "a number of trials"),
+            trials.into(),
+            range,
+        )?;
+        for speed in &grid.speeds {
+            let range = 1.0..=f64::from(Speed::MAX.get());
+            within((PlanField::Speeds, "a speed"), speed.get().into(), range)?;
         }
-        if grid.speeds.contains(&Speed::MIN) {
-            return Err(PlanError::NoSpeed);
-        }
-        if grid.rest > WAIT_MAX {
-            let ms = grid.rest.as_millis();
-            return Err(PlanError::Rest { ms });
-        }
-        Ok(())
+        let range = 0.0..=WAIT_MAX.as_secs_f64();
+        within(
+            (PlanField::Rest, "a rest in s"),
+            grid.rest.as_secs_f64(),
+            range,
+        )
     }
 
     fn check_approach(&self) -> Result<(), PlanError> {
@@ -483,17 +537,14 @@ impl TrialPlan {
             let (fast, speed) = (fast.get(), speed.get());
             return Err(PlanError::SlowApproach { fast, speed });
         }
-        let within = |got: i32, most: i32| match (1..=most).contains(&got) {
-            true => Ok(()),
-            false => Err(PlanError::Until { got, most }),
+        let most = match until {
+            Until::Angle(at) => return self.check_stage(at),
+            Until::Measured { .. } => 500.0,
+            Until::Proximity(_) => 16e6,
+            Until::Touch(_) => f64::from(Force::MAX.get()),
         };
-        match until {
-            Until::Angle(at) => self.check_stage(at),
-            Until::Measured { margin } => within(margin.into(), 500),
-            Until::Proximity(counts) => within(counts, 16_000_000),
-            Until::Touch(Force::MIN) => Err(PlanError::NoTouch),
-            Until::Touch(_) => Ok(()),
-        }
+        let at = (PlanField::Until, "an end of the approach");
+        within(at, until.value().into(), 1.0..=most)
     }
 
     fn check_stage(&self, at: Angle) -> Result<(), PlanError> {
@@ -519,9 +570,12 @@ impl TrialPlan {
         } = self.limits;
         let least = self.grid.forces.iter().map(|force| force.get()).max();
         let least = least.unwrap_or_default().max(1);
-        if !(least..=4000).contains(&got) {
-            return Err(PlanError::Ceiling { got, least });
-        }
+        let range = f64::from(least)..=4000.0;
+        within(
+            (PlanField::Ceiling, "a force ceiling in g"),
+            got.into(),
+            range,
+        )?;
         if start >= stop || stop > TEMPERATURE_MAX {
             return Err(PlanError::Temperature { start, stop });
         }
@@ -622,25 +676,44 @@ mod tests {
         assert_eq!(near, PlanError::NoWay { dof, start, close });
         assert_eq!(wrong(|p| p.grid.repeats = 0), PlanError::Empty);
         assert_eq!(wrong(|p| p.grid.forces.clear()), PlanError::Empty);
-        let got = 1001;
-        assert_eq!(wrong(|p| p.grid.repeats = 1001), PlanError::TooMany { got });
-        assert_eq!(
-            wrong(|p| p.grid.speeds.push(Speed::MIN)),
-            PlanError::NoSpeed
-        );
-        assert!(matches!(
-            wrong(|p| p.dwell = Duration::ZERO),
-            PlanError::Dwell { ms: 0 }
-        ));
-        assert!(matches!(
-            wrong(|p| p.grid.rest = Duration::from_secs(601)),
-            PlanError::Rest { .. }
-        ));
-        let (got, least) = (499, 500);
-        assert_eq!(
-            wrong(|p| p.limits.ceiling_g = 499),
-            PlanError::Ceiling { got, least }
-        );
+        for (change, field, least, most) in [
+            (
+                (|p| p.grid.repeats = 1001) as fn(&mut TrialPlan),
+                PlanField::Repeats,
+                1.0,
+                1000.0,
+            ),
+            (
+                |p| p.grid.speeds.push(Speed::MIN),
+                PlanField::Speeds,
+                1.0,
+                1000.0,
+            ),
+            (|p| p.dwell = Duration::ZERO, PlanField::Dwell, 0.3, 600.0),
+            (
+                |p| p.grid.rest = Duration::from_secs(601),
+                PlanField::Rest,
+                0.0,
+                600.0,
+            ),
+            (
+                |p| p.limits.ceiling_g = 499,
+                PlanField::Ceiling,
+                500.0,
+                4000.0,
+            ),
+        ] {
+            let error = wrong(change);
+            let PlanError::Range {
+                least: low,
+                most: high,
+                ..
+            } = error
+            else {
+                unreachable!("{error}");
+            };
+            assert_eq!((error.field(), low, high), (field, least, most), "{error}");
+        }
         assert!(matches!(
             wrong(|p| p.limits.stop_c = 76),
             PlanError::Temperature { .. }

@@ -9,31 +9,6 @@ pub const LIST_MAX: usize = 20;
 /// Characters of the note and of all tags.
 const WORDS_MAX: usize = 2000;
 
-/// What this version knows of a plan, and what the first ones knew.
-const KEYS: [&str; 21] = [
-    "speeds",
-    "forces_g",
-    "repeats",
-    "rest_s",
-    "dwell_s",
-    "ceiling_g",
-    "stop_c",
-    "start_c",
-    "fast_speed",
-    "until",
-    "until_value",
-    "start",
-    "close",
-    "note",
-    "tags",
-    "joints",
-    "approach",
-    "until_angle",
-    "until_margin",
-    "until_proximity",
-    "until_touch_g",
-];
-
 /// Why a table is not a plan of this version.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanReadError {
@@ -67,7 +42,10 @@ pub fn from_settings(stored: Option<&Value>) -> Result<TrialPlan, PlanReadError>
     for (key, fits) in [
         ("speeds", is_list(plan.grid.speeds.len())),
         ("forces_g", is_list(plan.grid.forces.len())),
-        ("repeats", (1..=TRIALS_MAX).contains(&plan.grid.repeats)),
+        (
+            "repeats",
+            (1..=TRIALS_MAX.into()).contains(&plan.grid.repeats),
+        ),
         ("note", words <= WORDS_MAX),
     ] {
         if !fits {
@@ -75,19 +53,6 @@ pub fn from_settings(stored: Option<&Value>) -> Result<TrialPlan, PlanReadError>
         }
     }
     Ok(plan)
-}
-
-/// The first plan of all in place of one that cannot be read. What this version does not know of that one survives.
-#[must_use]
-pub fn in_place_of(stored: Option<&Value>) -> TrialPlan {
-    let mut plan = TrialPlan::default();
-    let unknown = |(key, _): &(&String, &Value)| !KEYS.contains(&key.as_str());
-    let table = stored.and_then(Value::as_table).into_iter().flatten();
-    let others = table.filter(unknown);
-    plan.others = others
-        .map(|(key, value)| (key.clone(), value.clone()))
-        .collect();
-    plan
 }
 
 /// The plan as a table of the settings.
@@ -227,13 +192,6 @@ mod tests {
         assert_eq!(from_settings(Some(&stored)), Ok(plan));
         let unreadable = table("until = \"by_ear\"\nstop_c = 300\nwobble = 3");
         assert!(from_settings(Some(&unreadable)).is_err());
-        let stored = to_settings(&in_place_of(Some(&unreadable))).unwrap();
-        assert_eq!(stored.get("wobble").and_then(Value::as_integer), Some(3));
-        assert!(from_settings(Some(&stored)).is_ok());
-        let mut all = to_settings(&written()).unwrap();
-        let known = all.as_table_mut().unwrap();
-        known.retain(|key, _| !KEYS.contains(&key));
-        assert!(known.is_empty(), "{known:?}");
     }
 
     #[test]

@@ -5,7 +5,6 @@ use crate::hand::{ArmEpoch, Setpoints};
 use crate::trials::limits::{Abort, LinkView, warmest};
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, PlanError, TrialPlan, TrialSetting};
-use crate::trials::recording::TrialRecording;
 use crate::trials::runner::{Runner, Stage};
 use crate::trials::summary::{EarlyEnd, Trial, TrialKind, TrialSummary};
 use std::collections::VecDeque;
@@ -117,15 +116,6 @@ impl TrialSeries {
             setting,
             is_probing,
             stage,
-        }
-    }
-
-    /// The recording of the current trial; `None` between two.
-    #[must_use]
-    pub fn recording(&self) -> Option<&TrialRecording> {
-        match &self.phase {
-            SeriesPhase::Running(runner, _) => Some(runner.recording()),
-            SeriesPhase::Waiting { .. } | SeriesPhase::Over => None,
         }
     }
 

@@ -48,10 +48,10 @@ fn pictures(report: &mut Report) -> Result<(), Failure> {
         language: Language::En,
     })?;
     driver.connect()?;
-    driver.run_for(Duration::from_secs(3), |_| {});
+    driver.run_for(Duration::from_secs(3));
     let (mut drawn, mut encoded, mut cpu) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..PICTURES {
-        driver.run_for(Duration::from_millis(20), |_| {});
+        driver.run_for(Duration::from_millis(20));
         let ([wall, drawing], picture) = wall_and_cpu_ms(|| driver.picture(View::Live));
         drawn.push(wall);
         let ([wall, encoding], bytes) =

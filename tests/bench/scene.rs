@@ -156,11 +156,13 @@ impl Scene {
         // Its textures come with the first frame of a context.
         self.context = Context::default();
         self.raster = Some(Raster::new(width.into(), height.into()));
+        self.cockpit.set_software(true);
     }
 
     /// From now on they are not.
     pub(crate) fn paint_not(&mut self) {
         self.raster = None;
+        self.cockpit.set_software(false);
     }
 
     /// One frame, as far as the processor draws it. Gives processor milliseconds of logic, layout and triangles.

@@ -138,7 +138,7 @@ fn an_unknown_word_is_wrong_usage_with_one_sentence_and_the_nearest_names() {
     for (words, said) in [
         (&["wirring"][..], "nearest are wiring"),
         (&["whatch"], "nearest are watch"),
-        (&["params", "sav"], "nearest are save"),
+        (&["doktor"], "nearest are doctor"),
         (
             &["wiring", "can"],
             "'wiring' is a topic: 'handscope help wiring'",
@@ -151,6 +151,11 @@ fn an_unknown_word_is_wrong_usage_with_one_sentence_and_the_nearest_names() {
             err.starts_with("handscope: ") && err.contains(said),
             "{err}"
         );
+    }
+    for words in [&["params", "sav"], &["watch", "tv"]] {
+        let (code, out, err) = handscope(&[&["help"][..], words].concat());
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{words:?}");
+        assert!(err.contains(words[1]), "{err}");
     }
 }
 

@@ -15,18 +15,6 @@ pub trait ChooseFile: Send + Sync + 'static {
     fn folder(&self) -> BoxFuture<'static, Option<PathBuf>>;
 }
 
-/// Where a file that is to be read is: at a place that a person typed, else asked for.
-pub(crate) fn place_of(
-    typed: Option<PathBuf>,
-    files: &dyn ChooseFile,
-    suggested: &str,
-) -> BoxFuture<'static, Option<PathBuf>> {
-    match typed {
-        Some(path) => Box::pin(std::future::ready(Some(path))),
-        None => files.open(suggested),
-    }
-}
-
 /// Where nobody can be asked: nothing is ever chosen.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoChoice;

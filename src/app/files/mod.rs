@@ -3,6 +3,7 @@
 pub mod choose;
 pub mod day_folder;
 pub mod export;
+pub(crate) mod open;
 pub mod pose_file;
 pub(crate) mod quirk_notes;
 pub mod settings_file;

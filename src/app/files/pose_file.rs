@@ -1,12 +1,9 @@
 //! Files of poses on disk: read at start and for import, bounded, off the window's thread. Knows no setpoint.
 
-use crate::app::env::Env;
-use crate::app::files::choose::place_of;
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
-use crate::poses::file::{PoseFileCause, PoseFileError};
 use crate::poses::library::PoseLibrary;
-use crate::store::{BackgroundJob, last_of, on_thread, read_text, set_aside};
+use crate::store::{FileError, last_of, toml_file};
 use std::path::{Path, PathBuf};
 
 /// Five hundred poses are a quarter of this; anything longer is not a file of poses.
@@ -23,13 +20,9 @@ pub fn path_beside(settings: &Path) -> PathBuf {
 /// Reads a file of poses.
 ///
 /// # Errors
-/// [`PoseFileError`]: what cannot be read, and where.
-pub fn read(path: &Path) -> Result<PoseLibrary, PoseFileError> {
-    let unreadable = |error: std::io::Error| PoseFileCause::Unreadable(error.to_string());
-    match read_text(path, FILE_LEN_MAX).map_err(unreadable)? {
-        Some(text) => file::read(&text),
-        None => Err(PoseFileCause::Unreadable("there is no such file".into()).into()),
-    }
+/// [`FileError`]: what cannot be read, and where.
+pub fn read(path: &Path) -> Result<PoseLibrary, FileError> {
+    toml_file::load(path, FILE_LEN_MAX, file::read)
 }
 
 /// The file's text.
@@ -51,27 +44,9 @@ pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
         Ok(library) => (library, None),
         Err(error) => {
             let library = read(&last_of(path)).unwrap_or_default();
-            let kept_as = set_aside(path);
-            (library, Some(NoticeKind::PosesIgnored { error, kept_as }))
+            (library, Some(NoticeKind::file_ignored(path, error)))
         }
     }
-}
-
-/// Reads the file at a place that was typed, else asks for one.
-pub(crate) fn import(
-    typed: Option<PathBuf>,
-    env: &Env,
-) -> BackgroundJob<Result<PoseLibrary, NoticeKind>> {
-    let chosen = place_of(typed, env.files.as_ref(), FILE_NAME);
-    BackgroundJob::start(&env.runtime, &env.wake, async move {
-        let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
-        let place = path.clone();
-        let unreadable =
-            |error: std::io::Error| Err(PoseFileCause::Unreadable(error.to_string()).into());
-        let read = on_thread(move || Ok(read(&place))).await;
-        read.unwrap_or_else(unreadable)
-            .map_err(|error| NoticeKind::PosesRefused { path, error })
-    })
 }
 
 #[cfg(test)]
@@ -104,7 +79,7 @@ angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_ro
         std::fs::write(&path, "half a fi").unwrap();
         let (library, notice) = load(&path);
         assert_eq!(library, good);
-        let Some(NoticeKind::PosesIgnored {
+        let Some(NoticeKind::FileIgnored {
             kept_as: Some(aside),
             ..
         }) = notice

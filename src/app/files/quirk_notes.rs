@@ -53,8 +53,8 @@ impl QuirkNotes {
         match BackgroundJob::take_from(&mut self.under_way) {
             None => {}
             Some(Err(error)) => {
-                let message = error.to_string();
-                notices.push(now, NoticeKind::SheetNotKept { message });
+                let path = self.path.clone().unwrap_or_default();
+                notices.push(now, NoticeKind::not_saved(path, &error));
             }
             Some(Ok((before, sheet))) => {
                 if let Some(differs) = self.difference(before.as_ref(), &sheet) {

@@ -2,7 +2,7 @@
 
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
-use crate::store::{read_text, set_aside};
+use crate::store::toml_file::{self, FileText};
 use std::path::{Path, PathBuf};
 
 /// A settings file is a page of text; anything longer is not ours.
@@ -26,23 +26,18 @@ pub struct Loaded {
 /// Reads settings. A missing file means the defaults. A bad one too, and it is kept under another name.
 #[must_use]
 pub fn load(path: &Path) -> Loaded {
-    let read = match read_text(path, FILE_LEN_MAX) {
-        Ok(None) => return Loaded::default(),
-        Ok(Some(text)) => toml::from_str(&text).map_err(|error| error.to_string()),
-        Err(error) => Err(error.to_string()),
-    };
-    match read {
+    if !path.exists() {
+        return Loaded::default();
+    }
+    match toml_file::load(path, FILE_LEN_MAX, |text| FileText::plain(text).parse()) {
         Ok(settings) => Loaded {
             settings,
             notice: None,
         },
-        Err(message) => {
-            let kept_as = set_aside(path);
-            Loaded {
-                settings: Settings::default(),
-                notice: Some(NoticeKind::SettingsIgnored { message, kept_as }),
-            }
-        }
+        Err(error) => Loaded {
+            settings: Settings::default(),
+            notice: Some(NoticeKind::file_ignored(path, error)),
+        },
     }
 }
 
@@ -117,7 +112,7 @@ mod tests {
             std::fs::write(&path, bad).unwrap();
             let loaded = load(&path);
             assert_eq!(loaded.settings, Settings::default());
-            let Some(NoticeKind::SettingsIgnored {
+            let Some(NoticeKind::FileIgnored {
                 kept_as: Some(aside),
                 ..
             }) = loaded.notice

@@ -6,7 +6,7 @@ use crate::app::hand::open::{Leaving, OpenLink};
 use crate::app::notices::{NoticeKind, Notices};
 use crate::hand::Moment;
 use crate::history::History;
-use crate::link::{self, LinkConfig, LinkStatus, PollRates, Traffic};
+use crate::link::{self, First, LinkConfig, LinkStatus, PollRates, Traffic};
 use crate::record::{Hold, LinkState};
 use crate::transport::Endpoint;
 use std::sync::Arc;
@@ -102,6 +102,13 @@ impl HandState {
         self.history.gap(self.now);
         notices.withdraw(|what| matches!(what, NoticeKind::LinkLost(_) | NoticeKind::NoLink(_)));
         self.follow();
+    }
+
+    /// Reads this first while something moves.
+    pub(crate) fn read_first(&self, first: First) {
+        if let Some(open) = &self.open {
+            open.link.read_first(first);
+        }
     }
 
     /// True if closing or leaving now could leave a hand in motion that this program set in motion.

@@ -1,6 +1,6 @@
-//! One joint as a person sets it, a move of several, and the poses that every hand knows.
+//! One joint as a person sets it, and the poses that every hand knows.
 
-use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::hand::{Angle, Dof, Force, Speed};
 
 /// One joint as a person sets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,14 +24,6 @@ impl Default for JointControl {
             locked: false,
         }
     }
-}
-
-/// Where joints go and within which limits; what is `None` stays as it is.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Move {
-    pub(crate) to: PerDof<Option<Angle>>,
-    pub(crate) speed: PerDof<Option<Speed>>,
-    pub(crate) force: PerDof<Option<Force>>,
 }
 
 /// Poses that need no library.

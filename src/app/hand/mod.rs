@@ -1,7 +1,6 @@
 //! One hand: everything about it in one value, and what a person asks of it.
 
 pub mod connection;
-pub mod gestures;
 pub mod joint;
 pub mod motion;
 pub mod mover;

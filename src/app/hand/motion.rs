@@ -1,7 +1,7 @@
 //! What a person asks of the hand, and the rules that stand before it. Opens no link, writes no file.
 
 use crate::app::hand::HandState;
-use crate::app::hand::joint::{Move, Preset};
+use crate::app::hand::joint::Preset;
 use crate::app::notices::{NoticeKind, Notices};
 use crate::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use crate::history::MarkKind;
@@ -109,64 +109,56 @@ impl HandState {
 
     /// All joints that are not locked to where the preset has them, in one step, at the speeds that are set.
     pub(crate) fn preset(&mut self, preset: Preset) {
-        self.take_over_for(&Move {
-            to: PerDof::from_fn(|dof| preset.angle(dof)),
-            ..Move::default()
+        self.go_to(|setpoints| {
+            setpoints.angle = PerDof::from_fn(|dof| preset.angle(dof).map(Target::Go));
         });
     }
 
     /// Takes a pose: speed and force first, then the angles of joints that are free. Arms nothing; true if something was sent.
     pub(crate) fn recall(&mut self, pose: &LibraryPose) -> bool {
-        self.take_over_for(&Move {
-            to: pose.targets(),
-            speed: PerDof::splat(Some(pose.speed)),
-            force: PerDof::splat(Some(pose.force)),
+        self.go_to(|setpoints| {
+            setpoints.angle = pose.targets().map(|to| to.map(Target::Go));
+            setpoints.speed = PerDof::splat(Some(pose.speed));
+            setpoints.force = PerDof::splat(Some(pose.force));
         })
     }
 
-    /// Goes to six angles that are being edited, at the speeds that are set.
-    pub(crate) fn try_angles(&mut self, angles: PerDof<Angle>) {
-        self.take_over_for(&Move {
-            to: angles.map(Some),
-            ..Move::default()
-        });
-    }
-
-    /// A person moves the hand in another way than what moves it now; true if something was sent.
-    fn take_over_for(&mut self, way: &Move) -> bool {
-        if !Dof::ALL.into_iter().any(|dof| self.is_free(dof)) {
+    /// Sends the joints that are free and have a target; true if there are such. What moved the hand before does not any more.
+    fn go_to(&mut self, fill: impl FnOnce(&mut Setpoints)) -> bool {
+        let Some(epoch) = self.link.armed else {
+            return false;
+        };
+        let mut wanted = Setpoints::none(epoch);
+        fill(&mut wanted);
+        let mut setpoints = Setpoints::none(epoch);
+        for dof in Dof::ALL.into_iter().filter(|dof| self.is_free(*dof)) {
+            if wanted.angle[dof].is_some() {
+                setpoints.angle[dof] = wanted.angle[dof];
+                setpoints.speed[dof] = wanted.speed[dof];
+                setpoints.force[dof] = wanted.force[dof];
+            }
+        }
+        if setpoints.is_empty() {
             return false;
         }
         self.take_over();
-        let sent = self.shown(way);
-        let free = |dof: Dof| way.to[dof].filter(|_| self.is_free(dof));
-        let to = PerDof::from_fn(free);
-        self.send(|setpoints| {
-            for (dof, to) in to.iter() {
-                let Some(to) = *to else { continue };
-                setpoints.speed[dof] = way.speed[dof];
-                setpoints.force[dof] = way.force[dof];
-                setpoints.angle[dof] = Some(Target::Go(to));
-            }
-        });
-        sent
+        self.show(&setpoints);
+        self.send(|all| *all = setpoints);
+        true
     }
 
-    /// The sliders stand where free joints were sent; true if there are such.
-    pub(crate) fn shown(&mut self, way: &Move) -> bool {
-        let mut any = false;
+    /// The sliders of free joints stand where these were sent.
+    pub(crate) fn show(&mut self, sent: &Setpoints) {
         for dof in Dof::ALL {
-            let Some(to) = way.to[dof].filter(|_| self.is_free(dof)) else {
+            let Some(Target::Go(to)) = sent.angle[dof].filter(|_| self.is_free(dof)) else {
                 continue;
             };
             let joint = &mut self.joints[dof];
             joint.target = Some(to);
-            joint.speed = way.speed[dof].unwrap_or(joint.speed);
-            joint.force = way.force[dof].unwrap_or(joint.force);
+            joint.speed = sent.speed[dof].unwrap_or(joint.speed);
+            joint.force = sent.force[dof].unwrap_or(joint.force);
             self.steered[dof] = true;
-            any = true;
         }
-        any
     }
 
     /// A person moves the hand: what moved it before does not any more.

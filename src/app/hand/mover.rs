@@ -1,6 +1,5 @@
 //! What moves the hand now, so that every view can tell it.
 
-use crate::app::hand::gestures::GestureProgress;
 use crate::app::hand::{Freshness, HandState};
 use crate::app::procedures::procedure::Procedure;
 use crate::hand::Gesture;
@@ -52,11 +51,10 @@ impl HandState {
         }
         // A gesture lets all sliders follow the hand; whatever else is sent takes its own joints from it.
         let follows = self.steered.iter().all(|(_, steered)| !steered);
-        let gesture = self.gestures.last.filter(|_| follows);
-        let gesture = gesture.filter(|last| last.progress != GestureProgress::Failed);
+        let gesture = self.gesture.filter(|_| follows);
         Some(match gesture {
             _ if !self.commanded => Mover::Unknown,
-            Some(last) => Mover::Gesture(last.gesture),
+            Some(gesture) => Mover::Gesture(gesture),
             None => Mover::Setpoints,
         })
     }

@@ -48,9 +48,6 @@ impl HandState {
                 notices.push(*at, NoticeKind::ArmRefused(*reason));
             }
         }
-        if let Some(run) = &mut self.series {
-            run.take(record);
-        }
     }
 
     fn take_reading(&mut self, sample: &HandSample, fresh: Groups, notices: &mut Notices) {

@@ -1,7 +1,7 @@
 //! An open link, a hand that is being left, and requests whose end is awaited.
 
 use crate::app::notices::RequestKind;
-use crate::hand::{Moment, PerDof};
+use crate::hand::Moment;
 use crate::link::{LinkHandle, MotionTurn, Records, RequestError};
 use crate::store::BackgroundJob;
 use crate::transport::Endpoint;
@@ -34,12 +34,9 @@ pub(crate) struct Leaving {
     pub(crate) told: Moment,
 }
 
-/// How a request ended.
-pub(crate) type RequestEnd = Result<Option<PerDof<i16>>, RequestError>;
-
 /// A request whose end is awaited.
 #[derive(Debug)]
 pub(crate) struct Pending {
     pub(crate) what: RequestKind,
-    pub(crate) end: Option<BackgroundJob<RequestEnd>>,
+    pub(crate) end: Option<BackgroundJob<Result<(), RequestError>>>,
 }

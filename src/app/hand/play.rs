@@ -2,10 +2,9 @@
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
-use crate::app::hand::joint::Move;
 use crate::app::hand::sequence::{Play, SequenceRun};
 use crate::app::running::Running;
-use crate::hand::{PerDof, Setpoints, Target};
+use crate::hand::PerDof;
 use crate::history::MarkKind;
 use crate::poses::library::{PoseLibrary, SequenceId};
 use crate::poses::player::{PlayMode, PlayPhase, PlayView, cues};
@@ -35,7 +34,6 @@ impl HandState {
             Play::Pause => command(PlayCommand::Pause),
             Play::Resume => command(PlayCommand::Resume(PlayMode::Through)),
             Play::End => command(PlayCommand::End),
-            Play::Dry(_) | Play::EndDry => {}
         }
     }
 
@@ -106,7 +104,7 @@ impl HandState {
         }
         for setpoints in sent {
             self.commanded = true;
-            self.shown(&moved(&setpoints));
+            self.show(&setpoints);
         }
     }
 
@@ -115,16 +113,5 @@ impl HandState {
         self.history.mark(self.now, MarkKind::Gesture(number));
         self.commanded = true;
         self.steered = PerDof::default();
-    }
-}
-
-fn moved(setpoints: &Setpoints) -> Move {
-    Move {
-        to: setpoints.angle.map(|target| match target {
-            Some(Target::Go(to)) => Some(to),
-            Some(Target::Leave) | None => None,
-        }),
-        speed: setpoints.speed,
-        force: setpoints.force,
     }
 }

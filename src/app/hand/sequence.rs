@@ -19,10 +19,6 @@ pub enum Play {
     Resume,
     /// End it and hold where the hand is.
     End,
-    /// Show it on the drawn hand; nothing is sent.
-    Dry(SequenceId),
-    /// Show it no more.
-    EndDry,
 }
 
 /// A sequence that runs, or ran last.

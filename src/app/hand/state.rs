@@ -1,6 +1,5 @@
 //! Everything about one hand in one value: its link, the newest readings, what was measured, faults, setpoints, tasks.
 
-use crate::app::hand::gestures::GestureState;
 use crate::app::hand::joint::JointControl;
 use crate::app::hand::open::{Leaving, OpenLink, Pending};
 use crate::app::hand::sequence::SequenceRun;
@@ -13,7 +12,7 @@ use crate::app::readings::pace::ReadingPace;
 use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
 use crate::app::trials::run::SeriesRun;
-use crate::hand::{Angle, AngleReading, Finger, HandSample, Moment, PerDof, PerFinger};
+use crate::hand::{Angle, AngleReading, Finger, Gesture, HandSample, Moment, PerDof, PerFinger};
 use crate::history::History;
 use crate::link::session::motion::arm_refusal;
 use crate::link::{LinkStats, LinkStatus, Traffic};
@@ -61,8 +60,8 @@ pub struct HandState {
     pub faults: FaultList,
     /// What happened around them.
     pub recorder: FaultRecorder,
-    /// Stored gestures: the last one, and what was read and written of them.
-    pub gestures: GestureState,
+    /// The stored gesture that was started last, unless it failed.
+    pub gesture: Option<Gesture>,
     /// The sequence that runs, or ran last.
     pub sequence: Option<SequenceRun>,
     /// What the hand keeps, and what of it is to be changed.

@@ -24,10 +24,8 @@ pub enum ParamAction {
     UnstageAll,
     /// Ask for a path, and write a parameter file there.
     Dump,
-    /// Ask for a parameter file and compare it with the hand. Writes nothing.
-    Open,
-    /// Compare a backup, or a file whose path was typed, with the hand. Writes nothing.
-    OpenBackup(PathBuf),
+    /// Compare a parameter file with the hand: a backup or one whose path was typed, else one that is asked for. Writes nothing.
+    Open(Option<PathBuf>),
     /// Tick a row of the file, or not.
     Tick(ParamId),
     /// Stage the rows that are ticked. Writes nothing.

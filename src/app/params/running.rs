@@ -1,8 +1,8 @@
 //! What tasks and files give for what a hand keeps.
 
 use crate::params::backups::{Backup, Backups, Known};
-use crate::params::file::ParamsFileError;
 use crate::params::values::Params;
+use crate::store::FileError;
 use crate::tasks::TaskError;
 use crate::tasks::apply::Applied;
 use crate::tasks::read::ReadRows;
@@ -21,7 +21,7 @@ pub(crate) enum ParamsEnd {
 #[derive(Debug)]
 pub(crate) struct FilesRead {
     pub(crate) files: Backups,
-    pub(crate) known: Result<Known, ParamsFileError>,
+    pub(crate) known: Result<Known, FileError>,
     pub(crate) backups: io::Result<Vec<Backup>>,
 }
 

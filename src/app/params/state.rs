@@ -9,11 +9,11 @@ use crate::link::RequestError;
 use crate::params::backups::{Backup, Backups, Known};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::danger::{Danger, worse};
-use crate::params::file::{ParamsFile, ParamsFileError};
+use crate::params::file::ParamsFile;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{ParamDifference, Params};
 use crate::record::Saved;
-use crate::store::BackgroundJob;
+use crate::store::{BackgroundJob, FileError};
 use crate::tasks::ParamStep;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -108,7 +108,7 @@ pub struct ParamsState {
     /// What this program saved last.
     pub known: Known,
     /// Why that could not be read.
-    pub unreadable: Option<ParamsFileError>,
+    pub unreadable: Option<FileError>,
     /// Backups, oldest first.
     pub backups: Vec<Backup>,
     /// A file that is compared with the hand.

@@ -2,8 +2,9 @@
 //! could hurt.
 
 use crate::app::env::Env;
+use crate::app::files::open::open;
 use crate::app::hand::HandState;
-use crate::app::notices::{NoticeKind, Notices};
+use crate::app::notices::Notices;
 use crate::app::params::action::ParamAction;
 use crate::app::params::compared::Compared;
 use crate::app::params::running::{FilesRead, ParamsEnd};
@@ -14,7 +15,7 @@ use crate::link::LinkHandle;
 use crate::params::backups::{Backups, Known, folder_beside};
 use crate::params::changes;
 use crate::params::danger::Danger;
-use crate::params::file::{self, ParamsFile, ParamsFileError};
+use crate::params::file::{self, ParamsFile};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::store::{BackgroundJob, on_thread};
@@ -22,8 +23,7 @@ use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
 use crate::tasks::read::{ReadRows, rows};
 use crate::tasks::save::{Save, SaveReport, save};
 use crate::tasks::{Consent, ParamStep, TaskError};
-use futures::future::BoxFuture;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Speed and force in force are read all the time; older ones are not copied.
@@ -61,10 +61,7 @@ impl HandState {
             ParamAction::Decline => self.params.question = None,
             ParamAction::CopyLive => self.copy_live(),
             ParamAction::UnstageAll => self.params.unstage_all(),
-            ParamAction::Open => self.open_params(env.files.open(file::FILE_NAME), env),
-            ParamAction::OpenBackup(path) => {
-                self.open_params(Box::pin(std::future::ready(Some(path))), env);
-            }
+            ParamAction::Open(typed) => self.open_params(typed, env),
             ParamAction::Tick(id) => {
                 if let Some(compared) = &mut self.params.compared {
                     compared.tick(id);
@@ -174,21 +171,12 @@ impl HandState {
         });
     }
 
-    fn open_params(&mut self, chosen: BoxFuture<'static, Option<PathBuf>>, env: &Env) {
-        if self.params.opening.is_some() {
-            return;
+    fn open_params(&mut self, typed: Option<PathBuf>, env: &Env) {
+        if self.params.opening.is_none() {
+            self.params.file_refused = None;
+            let read = |path: &Path| Ok((path.to_owned(), file::load(path)?));
+            self.params.opening = Some(open(typed, file::FILE_NAME, env, read));
         }
-        self.params.file_refused = None;
-        let open = async move {
-            let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
-            let place = path.clone();
-            let read = on_thread(move || Ok(file::load(&place))).await;
-            match read.unwrap_or_else(|error| Err(unreadable(&error))) {
-                Ok(file) => Ok((path, file)),
-                Err(error) => Err(NoticeKind::ParamsRefused { path, error }),
-            }
-        };
-        self.params.opening = Some(BackgroundJob::start(&env.runtime, &env.wake, open));
     }
 
     /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
@@ -339,17 +327,13 @@ impl ParamsState {
         }
         match read.backups {
             Ok(backups) => self.backups = backups,
-            Err(error) => self.unreadable = Some(unreadable(&error)),
+            Err(error) => self.unreadable = Some(error.into()),
         }
     }
 
-    fn show_file(&mut self, path: &std::path::Path, file: ParamsFile) {
+    fn show_file(&mut self, path: &Path, file: ParamsFile) {
         let name = path.file_name().unwrap_or_default();
         let name = name.to_string_lossy().into_owned();
         self.compared = Some(Compared::new(name, file, &self.live_params()));
     }
-}
-
-fn unreadable(error: &std::io::Error) -> ParamsFileError {
-    ParamsFileError::Unreadable(error.to_string())
 }

@@ -2,7 +2,7 @@
 
 use crate::app::poses::PoseState;
 use crate::hand::{Angle, PerDof};
-use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit, ShiftDirection};
+use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use crate::poses::library::{LibraryPose, NAME_CHARS_MAX, PoseId, PoseLibrary, SequenceId};
 
 fn two() -> (PoseState, PoseId, PoseId, SequenceId) {
@@ -36,11 +36,8 @@ fn edits_keep_names_apart_and_steps_whole_and_a_deletion_can_be_undone() {
     book.edit(LibraryEdit::Pose(b, PoseEdit::Rename("A".into())));
     assert_eq!(names(&book), ["A", "A 2", "A 3"]);
     book.edit(LibraryEdit::Pose(b, PoseEdit::Rename("  \n ".into())));
-    book.edit(LibraryEdit::Pose(b, PoseEdit::Shift(ShiftDirection::Later)));
-    book.edit(LibraryEdit::Pose(
-        b,
-        PoseEdit::Shift(ShiftDirection::Earlier),
-    ));
+    book.edit(LibraryEdit::Pose(b, PoseEdit::Move(3)));
+    book.edit(LibraryEdit::Pose(b, PoseEdit::Move(1)));
     assert_eq!(names(&book), ["A", "A 3", "A 2"]);
     book.edit(LibraryEdit::Pose(b, PoseEdit::Rename("长".repeat(99))));
     assert_eq!(

@@ -6,5 +6,4 @@ pub(crate) mod work;
 
 pub use crate::app::procedures::procedure::{
     CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, ResetProcedure,
-    WayTo,
 };

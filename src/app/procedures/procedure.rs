@@ -4,12 +4,10 @@ use crate::app::running::Running;
 use crate::hand::Moment;
 use crate::params::danger::Danger;
 use crate::params::place::{PlacePair, WhichPlace};
-use crate::store::BackgroundJob;
 use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Checks, Offsets};
 use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep};
 use crate::tasks::reset::{ResetReport, ResetStep};
-use crate::transport::endpoint::route::Route;
 use std::path::PathBuf;
 use tokio::sync::oneshot;
 
@@ -80,17 +78,6 @@ impl<S, E> ProcedureStage<S, E> {
     }
 }
 
-/// The way to an address, as far as it was found out.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum WayTo {
-    /// It is asked for.
-    Asked,
-    /// This.
-    Known(Route),
-    /// None.
-    None,
-}
-
 /// One card.
 #[derive(Debug)]
 pub enum Procedure {
@@ -111,14 +98,11 @@ pub struct PlaceProcedure {
     pub stage: ProcedureStage<PlaceStep, Result<PlaceReport, TaskError>>,
     /// The backup.
     pub backup: Option<PathBuf>,
-    /// This computer's way to a new address.
-    pub way: Option<WayTo>,
     /// What a SAVE would make last besides: it writes all that the hand holds.
     pub dangers: Vec<Danger>,
     pub(crate) run: Option<Running<PlaceStep, Result<PlaceReport, TaskError>>>,
     pub(crate) keeps: Option<oneshot::Sender<bool>>,
     pub(crate) saves: Option<oneshot::Sender<bool>>,
-    pub(crate) looking: Option<BackgroundJob<Option<Route>>>,
 }
 
 /// A return to the factory's parameters.

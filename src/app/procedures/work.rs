@@ -5,7 +5,6 @@ use crate::app::hand::HandState;
 use crate::app::notices::Notices;
 use crate::app::procedures::procedure::{
     CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, ResetProcedure,
-    WayTo,
 };
 use crate::app::procedures::reach::{Asking, decided};
 use crate::app::running::Running;
@@ -14,20 +13,17 @@ use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
 use crate::params::place::{PlacePair, WhichPlace, command, new_place};
 use crate::params::rows::{ParamId, Value};
-use crate::store::BackgroundJob;
 use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateStep, Checks, calibrate};
 use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, PlaceStep, change_place};
 use crate::tasks::reset::{self, ResetStep, reset};
 use crate::transport::Endpoint;
-use crate::transport::endpoint::DEFAULT_TCP_PORT;
-use crate::transport::endpoint::route::route;
 use std::sync::Arc;
 use tokio::sync::{mpsc, oneshot};
 
 impl HandState {
     /// Opens the card of a change. Where the wire could not follow the hand, there is none.
-    pub(crate) fn open_place_change(&mut self, id: ParamId, wanted: Value, env: &Env) {
+    pub(crate) fn open_place_change(&mut self, id: ParamId, wanted: Value) {
         let (Some(before), Some(old)) = (self.held_now(id), self.endpoint.clone()) else {
             return;
         };
@@ -40,12 +36,6 @@ impl HandState {
         }
         let is_followed = followed.is_some();
         let new = followed.unwrap_or_else(|| at_address(&old, wanted));
-        let (mut way, mut looking) = (None, None);
-        if let Value::Address(address) = wanted {
-            way = Some(WayTo::Asked);
-            let look = async move { route(&address.to_string(), DEFAULT_TCP_PORT).await.ok() };
-            looking = Some(BackgroundJob::start(&env.runtime, &env.wake, look));
-        }
         self.procedure = Some(Procedure::Place(PlaceProcedure {
             change: PlaceChange {
                 id,
@@ -56,12 +46,10 @@ impl HandState {
             },
             stage: ProcedureStage::Asking,
             backup: None,
-            way,
             dangers: Vec::new(),
             run: None,
             keeps: None,
             saves: None,
-            looking,
         }));
     }
 
@@ -133,8 +121,9 @@ impl HandState {
             return;
         }
         let now = self.now;
-        let backups = |hand: &Endpoint| match env.settings_path.as_deref().map(folder_beside) {
-            Some(folder) => Ok(Backups::new(&folder, hand)),
+        let folder = env.settings_path.as_deref().map(folder_beside);
+        let backups = |hand: &Endpoint| match &folder {
+            Some(folder) => Ok(Backups::new(folder, hand)),
             None => Err(TaskError::NoBackup {
                 message: "there is no folder for backups".into(),
             }),
@@ -147,10 +136,7 @@ impl HandState {
         match &mut self.procedure {
             Some(Procedure::Place(card)) if card.stage == ProcedureStage::Asking => {
                 let change = card.change.clone();
-                let backups = match backups(&change.places.old) {
-                    Ok(backups) => backups,
-                    Err(error) => return card.stage = ProcedureStage::Over(Err(error)),
-                };
+                let backups = backups(&change.places.old);
                 let (keeps, kept) = oneshot::channel();
                 let (saves, saved) = oneshot::channel();
                 (card.keeps, card.saves) = (Some(keeps), Some(saves));
@@ -161,18 +147,15 @@ impl HandState {
                 card.stage = ProcedureStage::Doing(PlaceStep::BackingUp, now);
                 card.run = Some(Running::start(env, |steps| async move {
                     let tell = |step| steps.tell(step);
-                    change_place(&mut reach, &change, &backups, decisions, tell).await
+                    change_place(&mut reach, &change, &backups?, decisions, tell).await
                 }));
             }
             Some(Procedure::Reset(card)) if card.stage == ProcedureStage::Asking => {
                 let places = card.places.clone();
-                let backups = match backups(&places.old) {
-                    Ok(backups) => backups,
-                    Err(error) => return card.stage = ProcedureStage::Over(Err(error)),
-                };
+                let backups = backups(&places.old);
                 card.stage = ProcedureStage::Doing(ResetStep::BackingUp, now);
                 card.run = Some(Running::start(env, |steps| async move {
-                    reset(&mut reach, &places, &backups, |step| steps.tell(step)).await
+                    reset(&mut reach, &places, &backups?, |step| steps.tell(step)).await
                 }));
             }
             Some(Procedure::Calibrate(card)) if card.stage == ProcedureStage::Asking => {
@@ -224,9 +207,6 @@ impl HandState {
         match &mut self.procedure {
             None => false,
             Some(Procedure::Place(card)) => {
-                if let Some(found) = BackgroundJob::take_from(&mut card.looking) {
-                    card.way = Some(found.map_or(WayTo::None, WayTo::Known));
-                }
                 let is_over = card.stage.take_news(&mut card.run, |step, at| {
                     match step {
                         PlaceStep::BackedUp(path, held) => {

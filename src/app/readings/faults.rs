@@ -133,12 +133,6 @@ impl FaultList {
         self.iter().filter(|entry| !entry.seen)
     }
 
-    /// Forgets what is over and was seen. What lasts stays, and so does what nobody has seen.
-    pub fn forget(&mut self) {
-        self.entries
-            .retain(|entry| entry.is_active() || !entry.seen);
-    }
-
     /// Why CLEAR_ERROR would clear nothing; `None` if it clears something, or may.
     #[must_use]
     pub fn nothing_to_clear(&self) -> Option<NothingToClear> {
@@ -254,12 +248,11 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_stays_until_it_is_over_and_forgotten() {
+    fn a_fault_that_comes_again_is_the_same_entry() {
         let mut book = FaultList::default();
         assert!(see(&mut book, 1, 1, 2));
         assert!(!see(&mut book, 2, 1, 2), "the same fault is no news");
-        book.forget();
-        assert_eq!(book.active().count(), 1, "what lasts is not forgotten");
+        assert_eq!(book.active().count(), 1);
         assert!(!see(&mut book, 3, 0, 2));
         let entry = *book.iter().next().expect("kept");
         assert_eq!(
@@ -271,12 +264,6 @@ mod tests {
             book.iter().next().map(|entry| (entry.count, entry.since)),
             Some((2, AT(4)))
         );
-        see(&mut book, 5, 0, 2);
-        book.forget();
-        assert_eq!(book.iter().count(), 1, "nobody has seen it");
-        book.see_all();
-        book.forget();
-        assert_eq!(book.iter().count(), 0);
     }
 
     #[test]

@@ -95,21 +95,28 @@ impl Tare {
         fingers: impl IntoIterator<Item = Finger>,
         sample: &HandSample,
     ) -> Result<(), (Finger, f32)> {
+        self.count_from(fingers, sample, |finger| {
+            reading(sample, finger, Source::Person)
+        })
+    }
+
+    fn count_from(
+        &mut self,
+        fingers: impl IntoIterator<Item = Finger>,
+        sample: &HandSample,
+        zero: impl Fn(Finger) -> Option<TareZero>,
+    ) -> Result<(), (Finger, f32)> {
         let mut zeros = self.zeros;
         for finger in fingers {
             if let Some(newtons) = load(sample, finger) {
                 return Err((finger, newtons));
             }
-            zeros[finger] = reading(sample, finger, Source::Person).or(zeros[finger]);
+            zeros[finger] = zero(finger).or(zeros[finger]);
         }
-        self.put(zeros);
-        Ok(())
-    }
-
-    fn put(&mut self, zeros: PerFinger<Option<TareZero>>) {
         if self.zeros != zeros {
             self.before = Some(std::mem::replace(&mut self.zeros, zeros));
         }
+        Ok(())
     }
 
     /// True once it was looked for what is kept of the hand.
@@ -145,22 +152,14 @@ impl Tare {
         let (Some(Some(offer)), Some(age)) = (&self.offer, self.offered(now)) else {
             return Ok(());
         };
-        let mut zeros = self.zeros;
-        for finger in fingers {
-            if let Some(newtons) = load(sample, finger) {
-                return Err((finger, newtons));
-            }
-            let raw = offer.kept.tips.get(finger.name());
-            let source = Source::Kept(age);
-            let zero = raw.map(|raw| TareZero {
-                raw: *raw,
+        let tips = offer.kept.tips.clone();
+        self.count_from(fingers, sample, |finger| {
+            Some(TareZero {
+                raw: *tips.get(finger.name())?,
                 at: now,
-                source,
-            });
-            zeros[finger] = zero.or(zeros[finger]);
-        }
-        self.put(zeros);
-        Ok(())
+                source: Source::Kept(age),
+            })
+        })
     }
 
     /// What a person chose, to be kept; else what was kept before. `since_1970` and `now` are the same moment.

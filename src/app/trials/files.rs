@@ -1,8 +1,8 @@
 //! Sessions in folders: asked for, written and read away from the window's thread. The formats are in [`crate::trials::session`].
 
 use crate::app::env::Env;
-use crate::app::files::choose::place_of;
 use crate::app::files::day_folder;
+use crate::app::files::open::open as open_file;
 use crate::app::notices::NoticeKind;
 use crate::app::trials::state::{
     SessionId, SessionOrigin, SessionTrial, TrialSession, TrialsState,
@@ -62,20 +62,13 @@ pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BackgroundJob<Fi
 
 /// Reads the folder of a session whose place was typed, else asks for its `session.toml`.
 pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd> {
-    let chosen = place_of(typed, env.files.as_ref(), SESSION_FILE);
-    BackgroundJob::start(&env.runtime, &env.wake, async move {
-        let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
+    open_file(typed, SESSION_FILE, env, |path| {
         let folder = match path.is_dir() {
-            true => path.clone(),
-            false => path.parent().unwrap_or(Path::new(".")).to_owned(),
+            true => path,
+            false => path.parent().unwrap_or(Path::new(".")),
         };
-        match on_thread(move || read_session(&folder)).await {
-            Ok(session) => Ok(FilesDone::Opened(path, Box::new(session))),
-            Err(error) => Err(NoticeKind::SessionRefused {
-                path,
-                message: error.to_string(),
-            }),
-        }
+        let session = Box::new(read_session(folder)?);
+        Ok(FilesDone::Opened(path.to_owned(), session))
     })
 }
 

@@ -1,106 +1,21 @@
 //! The plan of a series as a form: its choices, the place of each mistake, lists that are typed. Sends nothing.
 
-use crate::hand::{Angle, Dof, Force, PerDof};
+use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::MARGIN;
 use crate::trials::plan_settings::LIST_MAX;
-use crate::trials::{Approach, PlanError, TrialPlan, Until};
+use crate::trials::{Approach, TrialPlan, Until};
 
-/// How the object is approached.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ApproachKind {
-    /// At the setting's speed all the way.
-    OneStage,
-    /// Fast to a distance before the contact that a first, slow trial measures.
-    Measured,
-    /// Fast to an angle.
-    Angle,
-    /// Fast until the fingertip feels it come near.
-    Proximity,
-    /// Fast until the fingertip or the force sensor feels it.
-    Touch,
-}
-
-impl ApproachKind {
-    /// All, the plain one first.
-    pub const ALL: [Self; 5] = [
-        Self::OneStage,
-        Self::Measured,
-        Self::Angle,
-        Self::Proximity,
-        Self::Touch,
-    ];
-
-    /// The kind of an approach.
-    #[must_use]
-    pub const fn of(approach: Approach) -> Self {
-        match approach {
-            Approach::OneStage => Self::OneStage,
-            Approach::TwoStage { until, .. } => match until {
-                Until::Measured { .. } => Self::Measured,
-                Until::Angle(_) => Self::Angle,
-                Until::Proximity(_) => Self::Proximity,
-                Until::Touch(_) => Self::Touch,
-            },
-        }
-    }
-
-    /// Where its fast stage ends unless a person says otherwise; `None` if it has none.
-    #[must_use]
-    pub fn usual(self) -> Option<Until> {
-        match self {
-            Self::OneStage => None,
-            Self::Measured => Some(Until::Measured { margin: MARGIN }),
-            Self::Angle => Some(Until::Angle(Angle::nearest(600))),
-            Self::Proximity => Some(Until::Proximity(8000)),
-            Self::Touch => Some(Until::Touch(Force::nearest(20))),
-        }
-    }
-}
-
-/// A place in the form, to show there what is wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum PlanField {
-    /// The choice of joints.
-    Joints,
-    /// Start and target of a joint.
-    Way(Dof),
-    /// Speeds at the contact.
-    Speeds,
-    /// Force thresholds.
-    Forces,
-    /// Trials of each setting.
-    Repeats,
-    /// Time held.
-    Dwell,
-    /// Time between.
-    Rest,
-    /// Speed of the first stage.
-    Fast,
-    /// When the first stage ends.
-    Until,
-    /// The force that ends it.
-    Ceiling,
-    /// The temperatures.
-    Heat,
-}
-
-impl PlanField {
-    /// Where what is wrong with a plan stands.
-    #[must_use]
-    pub const fn of(error: &PlanError) -> Self {
-        match error {
-            PlanError::NoJoint => Self::Joints,
-            PlanError::NoWay { dof, .. } | PlanError::NoStart { dof } => Self::Way(*dof),
-            PlanError::Stage { .. } | PlanError::Until { .. } | PlanError::NoTouch => Self::Until,
-            PlanError::SlowApproach { .. } => Self::Fast,
-            PlanError::NoSpeed | PlanError::Empty => Self::Speeds,
-            PlanError::TooMany { .. } => Self::Repeats,
-            PlanError::Dwell { .. } => Self::Dwell,
-            PlanError::Rest { .. } => Self::Rest,
-            PlanError::Ceiling { .. } => Self::Ceiling,
-            PlanError::Temperature { .. } => Self::Heat,
-        }
-    }
+/// How the object may be approached, with the ends that fast stages usually have.
+#[must_use]
+pub fn approaches(fast: Speed) -> [Approach; 5] {
+    let two = |until| Approach::TwoStage { fast, until };
+    [
+        Approach::OneStage,
+        two(Until::Measured { margin: MARGIN }),
+        two(Until::Angle(Angle::nearest(600))),
+        two(Until::Proximity(8000)),
+        two(Until::Touch(Force::nearest(20))),
+    ]
 }
 
 /// Lets a joint close to an angle, from open if it has no start yet; without an angle it stays where it is.
@@ -183,6 +98,7 @@ pub fn tags(words: &str) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::hand::Speed;
+    use crate::trials::plan::PlanField;
     use std::time::Duration;
 
     #[test]
@@ -206,7 +122,7 @@ mod tests {
         let wrong = |change: fn(&mut TrialPlan)| {
             let mut plan = TrialPlan::default();
             change(&mut plan);
-            plan.check().map_err(|error| PlanField::of(&error))
+            plan.check().map_err(|error| error.field())
         };
         let dof = Dof::Index;
         for (change, field) in [

@@ -16,7 +16,6 @@ pub use crate::app::trials::action::TrialAction;
 pub use crate::app::trials::comparison::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, SessionDifference,
 };
-pub use crate::app::trials::form::{ApproachKind, PlanField};
 pub use crate::app::trials::lines::{JointLines, TrialQuantity};
 pub use crate::app::trials::run::SeriesRun;
 pub use crate::app::trials::state::{

@@ -1,14 +1,12 @@
-//! A series on its way, as the window sees it: where it stands, and what was read in the trial that runs.
+//! A series on its way, as the window sees it: where it stands.
 
 use crate::app::running::Running;
 use crate::app::trials::state::SessionId;
 use crate::hand::{ArmEpoch, Moment};
-use crate::record::Record;
 use crate::tasks::series::{SeriesReport, SeriesStep};
-use crate::trials::plan::{PlanError, TrialPlan, TrialSetting};
-use crate::trials::recording::TrialRecording;
+use crate::trials::Abort;
+use crate::trials::plan::{PlanError, TrialPlan};
 use crate::trials::series::SeriesView;
-use crate::trials::{Abort, estimate};
 use std::time::Duration;
 use tokio::sync::oneshot;
 
@@ -25,8 +23,10 @@ pub struct SeriesRun {
     pub plan: TrialPlan,
     /// When the trial of now began, or the wait for it.
     pub since: Moment,
-    /// What was read in the trial of now.
-    pub recording: TrialRecording,
+    /// What times of the trial of now are counted from: the closing command, and its beginning before that.
+    pub zero: Moment,
+    /// About how long one trial takes with the rest after it.
+    pub(crate) each: Duration,
     pub(crate) end: Option<oneshot::Sender<Abort>>,
     pub(crate) task: Option<Running<SeriesStep, Result<SeriesReport, PlanError>>>,
 }
@@ -35,21 +35,9 @@ impl SeriesRun {
     /// About how long the rest of it takes, if nothing ends it.
     #[must_use]
     pub fn left(&self, now: Moment) -> Duration {
-        let all = self.plan.grid.settings();
-        let ahead = all
-            .iter()
-            .skip(self.view.number.saturating_sub(self.probes()));
-        let ahead: Duration = ahead.map(|own| estimate::trial(&self.plan, *own)).sum();
-        let of_now = |own: TrialSetting| estimate::trial(&self.plan, own);
-        let of_now = self.view.setting.map_or(Duration::ZERO, of_now);
-        ahead + of_now.saturating_sub(now.since(self.since))
-    }
-
-    /// Trials that only look for the contact.
-    fn probes(&self) -> usize {
-        self.view
-            .total
-            .saturating_sub(self.plan.grid.settings().len())
+        let ahead = self.view.total.saturating_sub(self.view.number);
+        let ahead = self.each * u32::try_from(ahead).unwrap_or(u32::MAX);
+        ahead + self.each.saturating_sub(now.since(self.since))
     }
 
     /// Ends it early. The stop itself is the caller's, and the task sees to it.
@@ -57,15 +45,6 @@ impl SeriesRun {
         if let Some(end) = self.end.take() {
             // One that is over hears it no more.
             let _heard = end.send(why);
-        }
-    }
-
-    /// Takes a sample.
-    pub(crate) fn take(&mut self, record: &Record) {
-        if let Record::Reading { sample, fresh } = record
-            && self.view.setting.is_some()
-        {
-            self.recording.push(sample, *fresh);
         }
     }
 }

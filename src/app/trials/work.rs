@@ -14,10 +14,9 @@ use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{SeriesStart, SeriesStep, series};
 use crate::trials::plan_settings::to_settings;
-use crate::trials::recording::TrialRecording;
 use crate::trials::series::SeriesView;
 use crate::trials::session::SessionHead;
-use crate::trials::{Abort, EarlyEnd, Stage, TrialPlan};
+use crate::trials::{Abort, EarlyEnd, Stage, TrialPlan, estimate};
 use tokio::sync::oneshot;
 
 /// Why a series cannot begin, besides its plan.
@@ -132,10 +131,11 @@ impl HandState {
         let head = self.session_head(plan.clone());
         let session = trials.add(head, SessionOrigin::Unsaved, Vec::new());
         (trials.last, trials.running) = (Some(session), Some(session));
+        let (count, whole) = estimate::series(&plan);
         self.series = Some(SeriesRun {
             view: SeriesView {
                 number: 0,
-                total: plan.grid.settings().len(),
+                total: count,
                 setting: None,
                 is_probing: false,
                 stage: Stage::Resting,
@@ -144,7 +144,8 @@ impl HandState {
             session,
             plan,
             since: self.now,
-            recording: TrialRecording::default(),
+            zero: self.now,
+            each: whole / u32::try_from(count.max(1)).unwrap_or(u32::MAX),
             end: Some(end),
             task: Some(task),
         });
@@ -180,12 +181,13 @@ impl HandState {
             match step {
                 SeriesStep::View(view) => {
                     if view.number != run.view.number {
-                        run.since = at;
-                        run.recording = TrialRecording::default();
+                        (run.since, run.zero) = (at, at);
+                    }
+                    if view.stage == Stage::Closing {
+                        run.zero = at;
                     }
                     run.view = view;
                 }
-                SeriesStep::Mark(mark) => run.recording.mark(mark.at, mark.what),
                 SeriesStep::Trial(trial) => trials.add_trial(run.session, *trial),
             }
         }

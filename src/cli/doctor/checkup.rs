@@ -2,8 +2,7 @@
 
 use crate::hand::Span;
 use crate::link::{LinkStats, LinkStatus, line_time};
-#[cfg(target_os = "linux")]
-use crate::transport::can::facts::CanFacts;
+use crate::transport::can_facts::CanFacts;
 use crate::transport::{Endpoint, PortFacts, Route};
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -30,11 +29,7 @@ pub(crate) enum ConnectionFacts {
     /// In a network; `None` where the system has no route.
     Net(Option<Route>),
     /// On a CAN interface.
-    #[cfg(target_os = "linux")]
     Can(CanFacts),
-    /// On a CAN interface, on a system without CAN.
-    #[cfg(not(target_os = "linux"))]
-    NoCan,
 }
 
 /// What the hand's answers showed.

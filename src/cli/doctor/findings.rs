@@ -1,6 +1,7 @@
 //! What is wrong with a hand or the connection to it, and what to do, in words.
 
 use crate::cli::doctor::checkup::{Checkup, ConnectionFacts, Measured};
+use crate::transport::can_facts::{CanFacts, QUEUE_LEN_USUAL};
 use crate::transport::{PortFacts, Route};
 use serde::Serialize;
 use std::time::Duration;
@@ -54,10 +55,7 @@ pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     match &checkup.connection {
         ConnectionFacts::Port(facts) => port(&endpoint.place(), facts, measured, &mut found),
         ConnectionFacts::Net(way) => net(way.as_ref(), measured.is_some(), &mut found),
-        #[cfg(target_os = "linux")]
         ConnectionFacts::Can(facts) => can(&endpoint.place(), facts, &mut found),
-        #[cfg(not(target_os = "linux"))]
-        ConnectionFacts::NoCan => {}
         ConnectionFacts::BuiltIn => {}
     }
     found.sort_by_key(|finding| !finding.is_wrong);
@@ -183,9 +181,7 @@ fn neighbour(way: &Route) -> String {
     }
 }
 
-#[cfg(target_os = "linux")]
-fn can(interface: &str, facts: &crate::transport::can::facts::CanFacts, found: &mut Vec<Finding>) {
-    use crate::transport::can::facts::QUEUE_LEN_USUAL;
+fn can(interface: &str, facts: &CanFacts, found: &mut Vec<Finding>) {
     let is_well = |state: &&str| matches!(*state, "ERROR-ACTIVE" | "STOPPED");
     if let Some(state) = facts.state.as_deref().filter(|state| !is_well(state)) {
         found.push(wrong(

@@ -9,7 +9,7 @@ use std::time::Duration;
 /// The whole object. What is not known is null.
 pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     let measured = checkup.answer.as_ref().ok();
-    let (mut port, mut network, mut can) = (None, None, None::<Value>);
+    let (mut port, mut network, mut can) = (None, None, None);
     match &checkup.connection {
         ConnectionFacts::Port(facts) => {
             let timer = facts.usb.as_ref().and_then(|usb| usb.latency_timer_ms);
@@ -19,10 +19,7 @@ pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
             let route = route.as_ref();
             network = route.map(|route| with(route, "direct", json!(route.is_direct())));
         }
-        #[cfg(target_os = "linux")]
-        ConnectionFacts::Can(facts) => can = Some(json!(facts)),
-        #[cfg(not(target_os = "linux"))]
-        ConnectionFacts::NoCan => can = None,
+        ConnectionFacts::Can(facts) => can = Some(facts),
         ConnectionFacts::BuiltIn => {}
     }
     let status = measured.map(|measured| &measured.status);

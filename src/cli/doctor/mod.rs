@@ -12,8 +12,10 @@ use crate::cli::parse::seconds;
 use crate::cli::session;
 use crate::hand::{Span, register};
 use crate::link::{Clock, LinkHandle, PollRates, RequestError, Ticks};
+use crate::transport::can_facts::can_facts;
 use crate::transport::{Endpoint, Sysfs, port_facts, route};
 use anyhow::bail;
+use std::path::Path;
 use std::time::Duration;
 use tokio::time::{Instant, sleep, sleep_until};
 
@@ -77,12 +79,9 @@ async fn connection(endpoint: &Endpoint) -> ConnectionFacts {
         }
         // A name that cannot be resolved is told again, with its reason, when it is dialled.
         Endpoint::Tcp { host, port, .. } => ConnectionFacts::Net(route(host, *port).await.ok()),
-        #[cfg(target_os = "linux")]
-        Endpoint::Can { interface, .. } => ConnectionFacts::Can(
-            crate::transport::can::facts::can_facts(interface, std::path::Path::new("/sys")),
-        ),
-        #[cfg(not(target_os = "linux"))]
-        Endpoint::Can { .. } => ConnectionFacts::NoCan,
+        Endpoint::Can { interface, .. } => {
+            ConnectionFacts::Can(can_facts(interface, Path::new("/sys")))
+        }
     }
 }
 

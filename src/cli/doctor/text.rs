@@ -1,7 +1,8 @@
 //! A check-up as lines of text.
 
-use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, EDGES_MS, Measured};
+use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, Measured};
 use crate::cli::doctor::findings::Finding;
+use crate::transport::can_facts::CanFacts;
 use crate::transport::{PortFacts, Route, UsbFound};
 use std::fmt::Display;
 use std::time::Duration;
@@ -51,10 +52,7 @@ fn connection(facts: &ConnectionFacts) -> Vec<String> {
             let none = "none: this computer has no route to it";
             vec![known("route", way.as_ref().map(route), none)]
         }
-        #[cfg(target_os = "linux")]
         ConnectionFacts::Can(facts) => can(facts),
-        #[cfg(not(target_os = "linux"))]
-        ConnectionFacts::NoCan => Vec::new(),
     }
 }
 
@@ -77,14 +75,9 @@ fn port(facts: &PortFacts) -> Vec<String> {
 }
 
 fn adapter(usb: &UsbFound) -> String {
-    let names = [&usb.maker, &usb.product].into_iter().flatten().cloned();
-    let ids = format!("{:04x}:{:04x}", usb.vendor_id, usb.product_id);
-    let serial = usb.serial.as_ref();
-    let serial = serial.map(|serial| format!("serial number {serial}"));
     let location = usb.location.as_ref();
-    let location = location.map(|location| format!("at {location}"));
-    let words = names.chain([ids]).chain(serial).chain(location);
-    words.collect::<Vec<_>>().join(" ")
+    let location = location.map(|location| format!(" at {location}"));
+    format!("{usb}{}", location.unwrap_or_default())
 }
 
 fn route(way: &Route) -> String {
@@ -100,8 +93,7 @@ fn route(way: &Route) -> String {
     format!("from {from}{prefix} on {interface} to {to}{words}")
 }
 
-#[cfg(target_os = "linux")]
-fn can(facts: &crate::transport::can::facts::CanFacts) -> Vec<String> {
+fn can(facts: &CanFacts) -> Vec<String> {
     if !facts.exists {
         return vec![row("interface", "missing")];
     }
@@ -132,24 +124,22 @@ fn answer(measured: &Measured) -> Vec<String> {
         row("others", if others { "another controller" } else { "none" }),
         row("errors", errors(measured)),
     ]);
-    let edges = EDGES_MS.map(|edge| format!("<{edge}"));
-    let edges = edges.map(|edge| format!("{edge:>6}")).concat();
     lines.extend([
         String::new(),
         format!(
-            "{:<17}{:>5}{:>8}{:>8}{:>8}{:>8}{:>8} |{edges}{:>6}",
-            "round trips, ms", "bytes", "reads", "min", "50 %", "99 %", "max", "more"
+            "{:<17}{:>5}{:>8}{:>8}{:>8}{:>8}{:>8}{:>16}{:>16}",
+            "round trips, ms",
+            "bytes",
+            "reads",
+            "min",
+            "50 %",
+            "99 %",
+            "max",
+            "reads a second",
+            "the line alone"
         ),
     ]);
     lines.extend(measured.windows.iter().map(trips));
-    lines.extend([
-        String::new(),
-        format!(
-            "{:<17}{:>12}{:>18}{:>9}",
-            "reads a second", "reached", "the line alone", "share"
-        ),
-    ]);
-    lines.extend(measured.windows.iter().map(rate));
     lines
 }
 
@@ -172,9 +162,9 @@ fn trips(window: &BlockTiming) -> String {
         let trip = window.percentile(percent);
         trip.map_or_else(|| "-".into(), millis)
     };
-    let counts = window.histogram().map(|count| format!("{count:>6}"));
+    let hz = |value: Option<f64>| value.map_or_else(|| "-".into(), |hz| format!("{hz:.1}"));
     format!(
-        "{:<17}{:>5}{:>8}{:>8}{:>8}{:>8}{:>8} |{}",
+        "{:<17}{:>5}{:>8}{:>8}{:>8}{:>8}{:>8}{:>16}{:>16}",
         window.name,
         window.span.len,
         window.reads,
@@ -182,21 +172,9 @@ fn trips(window: &BlockTiming) -> String {
         at(50),
         at(99),
         at(100),
-        counts.concat()
+        hz(window.hz()),
+        hz(window.line_hz())
     )
-}
-
-fn rate(window: &BlockTiming) -> String {
-    let (reached, line) = (window.hz(), window.line_hz());
-    let hz = |value: Option<f64>| value.map_or_else(|| "-".into(), |hz| format!("{hz:.1}"));
-    let share = match reached.zip(line).map(|(reached, line)| reached / line) {
-        // No real line: a pseudo-terminal takes no time.
-        Some(share) if share > 1.0 => "> 100 %".into(),
-        Some(share) => format!("{:.0} %", 100.0 * share),
-        None => "-".into(),
-    };
-    let name = window.name;
-    format!("{name:<17}{:>12}{:>18}{share:>9}", hz(reached), hz(line))
 }
 
 fn millis(value: Duration) -> String {

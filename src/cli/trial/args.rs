@@ -154,15 +154,10 @@ fn place(text: &str) -> Result<(Dof, Angle), String> {
 
 fn until(text: &str) -> Result<Until, String> {
     let (kind, value) = text.split_once(':').unwrap_or((text, ""));
-    let name = match (kind, value) {
-        ("measured", "") => return Ok(Until::Measured { margin: MARGIN }),
-        ("measured" | "angle" | "proximity", _) => kind,
-        ("touch", _) => "touch_g",
-        _ => {
-            return Err(format!(
-                "'{text}' is not an end of an approach: write angle:520, proximity:8000, touch:20 or measured:40"
-            ));
-        }
+    let value = match (kind, value) {
+        ("measured", "") => MARGIN.into(),
+        (_, value) => whole(value)?,
     };
-    Until::new(name, whole(value)?).map_err(|error| error.to_string())
+    let name = if kind == "touch" { "touch_g" } else { kind };
+    Until::new(name, value).map_err(|error| error.to_string())
 }

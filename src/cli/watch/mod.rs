@@ -9,6 +9,7 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session::{self, ANSWER_WITHIN};
 use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
+use crate::cli::watch::wire::FramePrinter;
 use crate::hand::{Group, Moment};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Records};
 use crate::record::Record;
@@ -25,10 +26,7 @@ const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
 /// Watches until the time is up or a person ends it. Fails if the hand never answered.
 pub(crate) async fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
     let interrupt = Interrupt::listen()?;
-    match args.wire {
-        true => wire::watch(out, args, interrupt).await,
-        false => Watch::new(out, args).run(interrupt).await,
-    }
+    Watch::new(out, args).run(interrupt).await
 }
 
 struct Watch<'a> {
@@ -37,6 +35,8 @@ struct Watch<'a> {
     clock: Clock,
     link: LinkHandle,
     records: Records,
+    /// Frames are printed in place of values.
+    frames: Option<FramePrinter>,
     /// State reads taken so far; each of them is a line of JSON.
     taken: u64,
     last_text: Option<Moment>,
@@ -49,6 +49,7 @@ impl<'a> Watch<'a> {
         let clock = Clock::start();
         let (link, records) = session::open_with_records(&args.hand, args.rates(), clock);
         Self {
+            frames: args.wire.then(|| FramePrinter::new(args, &link)),
             link,
             records,
             args,
@@ -90,6 +91,9 @@ impl<'a> Watch<'a> {
 
     /// Flushes the output, and reports what happened to the link.
     fn tick(&mut self) -> anyhow::Result<()> {
+        if let Some(frames) = &mut self.frames {
+            frames.print(self.out, self.clock.now())?;
+        }
         self.out.flush()?;
         let status = self.link.status();
         if status.state.is_live() {
@@ -142,6 +146,9 @@ impl<'a> Watch<'a> {
             return Ok(());
         };
         self.answered = true;
+        if self.frames.is_some() {
+            return Ok(());
+        }
         self.taken += 1;
         let at = angle.received;
         if self.args.json {
@@ -169,6 +176,9 @@ impl<'a> Watch<'a> {
 
     /// The last line. Samples that still wait are shown first, so that lines and count agree.
     fn statistics(&mut self) -> anyhow::Result<()> {
+        if let Some(frames) = &mut self.frames {
+            return frames.print_rest(self.out, self.clock.now());
+        }
         let elapsed = self.elapsed();
         let mut stats = self.link.stats();
         while self.taken < stats.state_reads

@@ -8,8 +8,10 @@ use std::time::Duration;
 
 /// Bits of a byte on a serial line: start, eight, stop.
 const BITS: u64 = 10;
-/// Longest reply frame of a serial line while something may move: one fingertip in the private framing.
+/// Longest reply frame of a serial line while a stop waits to be confirmed: one fingertip in the private framing.
 const MOVING_FRAME: u16 = 66;
+/// Most data bytes of a read while something may move: three fingertips, between which the motion state comes often.
+const MOVING_DATA: u16 = 3 * 58;
 /// Slowest turnaround seen in a hand: assumed until one is known, and the most that is ever assumed. What an adapter adds
 /// to it cannot be won back by shorter replies.
 const TURNAROUND_MAX: Duration = Duration::from_millis(15);
@@ -49,10 +51,13 @@ pub(crate) struct WireCost {
     gap: Duration,
     /// Most data bytes that one read may ask for.
     window_max: u16,
-    /// Most of them while something may move.
+    /// Most of them that are always in time.
     moving_max: u16,
     /// A window is read in pieces of this many bytes, each of which takes this long on the wire.
     piece: Option<(u16, Duration)>,
+    /// A read begins with a group of registers. What a hand makes of a Modbus address inside one is open (manual 2.5): it
+    /// may count on in words.
+    pub(crate) begins_groups: bool,
 }
 
 impl WireCost {
@@ -66,6 +71,7 @@ impl WireCost {
             window_max: 252,
             moving_max: MOVING_FRAME - 8,
             piece: None,
+            begins_groups: false,
         }
     }
 
@@ -80,6 +86,7 @@ impl WireCost {
             // An even number of bytes.
             moving_max: MOVING_FRAME - 6,
             piece: None,
+            begins_groups: true,
         }
     }
 
@@ -93,6 +100,7 @@ impl WireCost {
             window_max: 250,
             moving_max: 250,
             piece: None,
+            begins_groups: true,
         }
     }
 
@@ -107,6 +115,7 @@ impl WireCost {
             window_max: 250,
             moving_max: MOVING_FRAME - 8,
             piece: Some((CAN_PIECE, Duration::from_nanos(bits))),
+            begins_groups: false,
         }
     }
 
@@ -172,8 +181,18 @@ impl WireCost {
         most.clamp(self.moving_max, self.window_max)
     }
 
-    /// Most data bytes of a read while something may move.
-    pub(crate) const fn window_moving(&self) -> u16 {
+    /// Most data bytes of a read while something may move: some fingertips at once, if a stop is in time behind them.
+    /// Pieces of a CAN bus let a stop pass, but come one by one.
+    pub(crate) fn window_moving(&self, longest_turnaround: Duration) -> u16 {
+        if self.byte.is_zero() {
+            return self.moving_max;
+        }
+        let most = self.window(longest_turnaround).min(MOVING_DATA);
+        most.max(self.moving_max)
+    }
+
+    /// Most data bytes of a read while a stop waits to be confirmed.
+    pub(crate) const fn window_stopping(&self) -> u16 {
         self.moving_max
     }
 }
@@ -262,8 +281,9 @@ mod tests {
                         took <= MS * limit,
                         "{baud} {turnaround:?} {window} {took:?}"
                     );
-                    let moving = stop(&cost, cost.window_moving(), turnaround);
-                    assert!(moving <= took && cost.window_moving() + cost.around <= MOVING_FRAME);
+                    let moving = stop(&cost, cost.window_moving(turnaround), turnaround);
+                    let stopping = cost.window_stopping() + cost.around;
+                    assert!(moving <= took && stopping <= MOVING_FRAME);
                 }
             }
         }

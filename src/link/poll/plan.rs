@@ -2,8 +2,9 @@
 //!
 //! Each part of memory has its own rate. The part that waited longest, measured in its own periods, opens a window,
 //! and others that are wanted too join it where that is cheaper (`link::poll::window`). How long a window may be
-//! follows from the stop (`link::poll::cost`): at rest so long that a stop is still in time behind it, while
-//! something moves no longer than one fingertip, and then the motion state has every second turn at least.
+//! follows from the stop (`link::poll::cost`): so long that a stop is still in time behind it. While something moves
+//! and nobody asks for more states than usual, some fingertips come at once. The motion state then has every second turn
+//! at least, or every third where fingertips come first, and brings what the drives say along where there is room.
 
 use crate::hand::{Moment, Span};
 use crate::link::poll::cost::{Turnaround, WireCost};
@@ -11,6 +12,7 @@ use crate::link::poll::window::{Gaps, Joining, ReadPart, SHAPES_MAX};
 use crate::link::quirks::GapRead;
 use crate::link::stats::PollGroup;
 use arrayvec::ArrayVec;
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// Parts that are wanted without limit count as this fast when they are weighed against slow ones …
@@ -35,6 +37,17 @@ pub struct PollRates {
     pub tactile_hz: f64,
     /// Reads of the setpoints that the hand holds, a second.
     pub settings_hz: f64,
+}
+
+/// What comes first while something moves on a line that is too slow for all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum First {
+    /// Angles and forces: every second read.
+    #[default]
+    Force,
+    /// Fingertips: angles and forces are every third read.
+    Touch,
 }
 
 impl Default for PollRates {
@@ -104,8 +117,9 @@ pub(crate) struct PollPlan {
     turnaround: Turnaround,
     gaps: Gaps,
     recent: ArrayVec<Span, RECENT>,
-    /// The last question was no motion state.
-    motion_turn: bool,
+    first: First,
+    /// Questions since the last motion state.
+    since_motion: u8,
 }
 
 impl PollPlan {
@@ -122,7 +136,8 @@ impl PollPlan {
             turnaround: Turnaround::default(),
             gaps: Gaps::default(),
             recent: ArrayVec::new(),
-            motion_turn: true,
+            first: First::Force,
+            since_motion: u8::MAX,
         }
     }
 
@@ -132,6 +147,11 @@ impl PollPlan {
             due.period = period(rates.of(due.part));
             due.next = due.next.min(now.plus(due.period));
         }
+    }
+
+    /// What comes first from now on while something moves.
+    pub(crate) const fn prefer(&mut self, first: First) {
+        self.first = first;
     }
 
     /// The wire's cost model.
@@ -177,15 +197,24 @@ impl PollPlan {
     }
 
     fn joining(&self, tempo: Tempo) -> Joining {
-        let longest = match tempo {
-            Tempo::Rest => self.cost.window(self.turnaround.longest()),
-            Tempo::Motion | Tempo::Stopping => self.cost.window_moving(),
-        };
         Joining {
             cost: self.cost,
             turnaround: self.turnaround.typical().unwrap_or(TURNAROUND),
-            longest,
+            longest: self.longest(tempo),
             gaps: self.gaps,
+        }
+    }
+
+    /// Most data bytes of a read. Who asks for more states than usual, as trials do, wants no long reads between them.
+    fn longest(&self, tempo: Tempo) -> u16 {
+        let usual = period(PollRates::default().state_hz);
+        let mut parts = self.parts.iter();
+        let is_usual = parts.all(|due| !due.part.is_motion() || due.period >= usual);
+        let turnaround = self.turnaround.longest();
+        match tempo {
+            Tempo::Rest => self.cost.window(turnaround),
+            Tempo::Motion if is_usual => self.cost.window_moving(turnaround),
+            Tempo::Motion | Tempo::Stopping => self.cost.window_stopping(),
         }
     }
 
@@ -200,15 +229,27 @@ impl PollPlan {
         let any = || due().reduce(|a, b| a.later(b, now));
         let others = || {
             due()
-                .filter(|due| !due.part.is_motion())
+                .filter(|due| !self.tells_motion(due.part, tempo))
                 .reduce(|a, b| a.later(b, now))
         };
-        let first = match (tempo, self.motion_turn) {
+        let between = match self.first {
+            First::Force => 1,
+            First::Touch if tempo == Tempo::Motion => 2,
+            First::Touch => 1,
+        };
+        let first = match (tempo, self.since_motion >= between) {
             (Tempo::Rest, _) => any(),
             (_, true) => motion().or_else(any),
             (_, false) => others().or_else(any),
         };
         first.map(|first| self.question(first, now, tempo))
+    }
+
+    /// True for what is read as part of the motion state: while something moves what the drives say too, if there is room.
+    fn tells_motion(&self, part: ReadPart, tempo: Tempo) -> bool {
+        let whole = ReadPart::Drives.span().end() - u32::from(ReadPart::Angle.span().address);
+        let has_room = || u32::from(self.longest(tempo)) >= whole;
+        part.is_motion() || part == ReadPart::Drives && tempo == Tempo::Motion && has_room()
     }
 
     /// The motion state, due or not.
@@ -227,7 +268,7 @@ impl PollPlan {
     /// What is read between two rounds of setpoints, so that a drag starves nothing; due or not it is no motion state.
     pub(crate) fn others(&self, now: Moment) -> Option<NextRead> {
         let due = self.parts.iter().filter(|due| due.at() <= now);
-        due.filter(|due| !due.part.is_motion())
+        due.filter(|due| !self.tells_motion(due.part, Tempo::Motion))
             .reduce(|a, b| a.later(b, now))
             .map(|first| self.question(first, now, Tempo::Motion))
     }
@@ -263,7 +304,7 @@ impl PollPlan {
 
     /// No form of this window could be asked for: its parts wait until `until`, and are as late as they were.
     pub(crate) fn failed_to_ask(&mut self, window: Span, until: Moment) {
-        self.motion_turn = true;
+        self.since_motion = u8::MAX;
         for due in &mut self.parts {
             if window.covers(due.part.span()) {
                 due.held_until = until;
@@ -276,13 +317,15 @@ impl PollPlan {
             self.recent.remove(0);
         }
         self.recent.push(window);
-        self.motion_turn = true;
+        self.since_motion = self.since_motion.saturating_add(1);
         for due in &mut self.parts {
             if window.covers(due.part.span()) {
                 // A part that came along in company before its time is not put off for all the times it did.
                 due.next = due.next.plus(due.period).clamp(at, at.plus(due.period));
                 due.asked = at;
-                self.motion_turn &= !due.part.is_motion();
+                if due.part.is_motion() {
+                    self.since_motion = 0;
+                }
             }
         }
     }
@@ -296,9 +339,11 @@ impl PollPlan {
     /// The question about a part and what goes well with it.
     fn question(&self, first: &Due, now: Moment, tempo: Tempo) -> NextRead {
         let joining = self.joining(tempo);
+        let tells = |due: &Due| self.tells_motion(due.part, tempo);
         let joins = self
             .wanted(tempo)
-            .filter(|due| due.joins(first, now, tempo));
+            .filter(|due| tempo == Tempo::Rest || tells(due) == tells(first))
+            .filter(|due| due.joins(first, now));
         // What belongs together goes first, so that chance neighbours do not take its place.
         let alike = joins.clone().filter(|due| due.period == first.period);
         let narrow = joining.window(first.part.span(), alike.map(|due| due.part));
@@ -354,10 +399,7 @@ impl Due {
     }
 
     /// True if it may be read with `first`, being wanted now or so soon that this read serves as well.
-    fn joins(&self, first: &Self, now: Moment, tempo: Tempo) -> bool {
-        if tempo != Tempo::Rest && self.part.is_motion() != first.part.is_motion() {
-            return false;
-        }
+    fn joins(&self, first: &Self, now: Moment) -> bool {
         match self.part {
             // Fingertips that were read just now wait for their turn, else the last of them would take them along.
             ReadPart::Tip(_) => now.since(self.asked) * 3 >= now.since(first.asked) * 2,

@@ -2,7 +2,7 @@
 //! two, through a gap between registers where the hand allows it. Pure; when a part is wanted is not decided here.
 
 use crate::hand::Span;
-use crate::hand::register::{ANGLE_SET, POS_SET, STATE, TOUCH};
+use crate::hand::register::{ANGLE_SET, POS_SET, STATE, TOUCH, by_address};
 use crate::link::poll::cost::WireCost;
 use crate::link::quirks::GapRead;
 use crate::link::stats::PollGroup;
@@ -199,6 +199,10 @@ impl Joining {
             let before = (all > 0 && all <= room.before).then_some((all, 0));
             let both = (all > room.behind && all > room.before && all <= room.behind + room.before)
                 .then(|| (all - room.behind, room.behind));
+            let begins = |ends: &(u16, u16)| {
+                !self.cost.begins_groups || begins_group(window.address - ends.0)
+            };
+            let (before, both) = (before.filter(begins), both.filter(begins));
             behind.into_iter().chain(before).chain(both)
         });
         ends.map(|(before, behind)| {
@@ -230,6 +234,10 @@ fn room(window: Span) -> Margins {
         before: u16::try_from(u32::from(window.address).saturating_sub(start)).unwrap_or(0) / 2 * 2,
         behind: u16::try_from(end.saturating_sub(window.end())).unwrap_or(0) / 2 * 2,
     }
+}
+
+fn begins_group(address: u16) -> bool {
+    by_address(address).is_some_and(|group| group.address == address)
 }
 
 fn overlap(a: Span, b: Span) -> bool {
@@ -342,15 +350,20 @@ mod tests {
 
     #[test]
     fn the_forms_of_a_window_differ_cover_it_and_stay_within_registers() {
-        for (part, others, longest, least) in [
-            (ReadPart::Angle, &STATE_PARTS[..2], 58, 6),
-            (ReadPart::Angle, &STATE_PARTS[..3], 252, 12),
-            (ReadPart::Drives, &STATE_PARTS[2..], 58, 7),
-            (ReadPart::Tip(0), &[][..], 58, 1),
-            (ReadPart::Tip(4), &[][..], 60, 2),
-            (ReadPart::Targets, &[ReadPart::Speeds][..], 58, 6),
+        let (rs485, rtu) = (WireCost::rs485(Some(115_200)), WireCost::rtu(115_200, MS));
+        for (cost, part, others, longest, least) in [
+            (rs485, ReadPart::Angle, &STATE_PARTS[..2], 58, 6),
+            (rs485, ReadPart::Angle, &STATE_PARTS[..3], 252, 12),
+            (rs485, ReadPart::Drives, &STATE_PARTS[2..], 58, 7),
+            (rs485, ReadPart::Tip(0), &[][..], 58, 1),
+            (rs485, ReadPart::Tip(4), &[][..], 60, 2),
+            (rs485, ReadPart::Targets, &[ReadPart::Speeds][..], 58, 6),
+            (rtu, ReadPart::Angle, &STATE_PARTS[..3], 250, 6),
+            (rtu, ReadPart::Drives, &STATE_PARTS[2..], 60, 2),
+            (rtu, ReadPart::Tip(4), &[][..], 116, 2),
+            (WireCost::tcp(), ReadPart::Angle, &STATE_PARTS[..3], 250, 6),
         ] {
-            let joining = joining(WireCost::rs485(Some(115_200)), MS * 3, longest);
+            let joining = joining(cost, MS * 3, longest);
             let window = joining.window(part.span(), others.iter().copied());
             let shapes = joining.shapes(window);
             assert!(shapes.len() >= least, "{part:?}: {shapes:?}");
@@ -361,6 +374,10 @@ mod tests {
                     "{part:?} {shape:?}"
                 );
                 assert!(!shapes[..n].contains(shape), "{part:?} {shape:?}");
+                assert!(
+                    begins_group(shape.address) || !cost.begins_groups,
+                    "{part:?} {shape:?}"
+                );
                 assert!(
                     REGIONS.iter().any(|region| region.covers(*shape)),
                     "{shape:?}"

@@ -252,6 +252,7 @@ impl Session {
                 stop: stop(wanted),
                 rates: wanted.rates,
                 turn: wanted.turn,
+                first: wanted.first,
                 ..PendingControl::default()
             };
             false

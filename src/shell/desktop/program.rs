@@ -103,6 +103,7 @@ impl Program {
             documents: documents(),
         };
         let mut app = App::new(env, start.loaded.settings);
+        let is_software = start.drawing != Drawing::OpenGl;
         let without = match start.drawing {
             Drawing::InPlaceOfOpenGl(reason) => Some(NoticeKind::DrawnWithoutOpenGl { reason }),
             Drawing::OpenGl | Drawing::Software => None,
@@ -111,8 +112,10 @@ impl Program {
             app.tell(notice, clock.now());
         }
         app.open(start.endpoint, clock.now());
+        let mut cockpit = Cockpit::new(app).with_snap(start.snap);
+        cockpit.set_software(is_software);
         Self {
-            cockpit: Cockpit::new(app).with_snap(start.snap),
+            cockpit,
             clock,
             frame_within_ms,
             titled: None,

@@ -75,7 +75,7 @@ impl Driver {
             SceneCard::Keep => self.change_id(),
             SceneCard::Danger => self.apply_hard_defaults(),
         }
-        self.run_for(CHECKED_WITHIN, |_| ());
+        self.run_for(CHECKED_WITHIN);
         self.hold_still();
     }
 

@@ -223,12 +223,11 @@ impl Driver {
         Ok(())
     }
 
-    /// Lets `time` pass in steps, and calls `passed` after each with the time passed so far.
-    pub fn run_for(&mut self, time: Duration, mut passed: impl FnMut(Duration)) {
+    /// Lets `time` pass in steps.
+    pub fn run_for(&mut self, time: Duration) {
         let begun = self.now();
         loop {
             let done = self.now().since(begun);
-            passed(done);
             if done >= time {
                 return;
             }
@@ -287,7 +286,7 @@ impl Driver {
         ];
         for wish in wishes {
             self.act(wish);
-            self.run_for(ARM_WITHIN, |_| ());
+            self.run_for(ARM_WITHIN);
         }
         self.until(GRASPS_WITHIN, |state| !state.hand().runs_series());
     }

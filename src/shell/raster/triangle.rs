@@ -210,10 +210,14 @@ impl Triangle {
         hasher.finish()
     }
 
-    /// Paints it where strip and scissors allow. Each pixel gets the same colour, however much of the triangle is painted.
+    /// Paints it where strip and scissors allow, which lie row by row from the top. Each pixel gets the same colour, however
+    /// much of the triangle is painted.
     pub(crate) fn paint(&self, strip: &mut Strip<'_>, texture: &Texture, scissors: &[Scissor]) {
+        let above = scissors.partition_point(|scissor| scissor.bottom <= self.bounds.top);
+        let beside = scissors.iter().skip(above);
+        let beside = beside.take_while(|scissor| scissor.top < self.bounds.bottom);
         let here = |scissor: &Scissor| self.bounds.within(*scissor);
-        let mut places = scissors.iter().filter_map(here).peekable();
+        let mut places = beside.filter_map(here).peekable();
         if places.peek().is_none() {
             return;
         }

@@ -1,16 +1,12 @@
 //! What a sequence sends and what ends it, on a hand that only notes what it is told.
 
-use crate::hand::command::stored_gesture;
-use crate::hand::{
-    Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target, UserGesture,
-};
-use crate::link::RequestError;
+use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
 use crate::poses::library::PoseId;
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayView};
 use crate::record::LinkState;
+use crate::tasks::Hand;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
-use crate::tasks::tests::fake::{Asked, FakeHand, Fate, Said, WELL};
-use crate::tasks::{Hand, gesture};
+use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -211,24 +207,4 @@ async fn one_step_pauses_after_one_pose() {
     bench.at(690, 50).await;
     assert_eq!(bench.sent(), [Some(700)]);
     assert_eq!(bench.view().phase, PlayPhase::Paused);
-}
-
-#[tokio::test(start_paused = true)]
-async fn a_stored_gesture_is_written_and_read_back() {
-    let to = UserGesture::nearest(14);
-    let angles = PerDof::splat(Angle::nearest(300));
-    let hand = FakeHand::new();
-    let held = gesture::store(&hand, to, angles).await.unwrap();
-    assert_eq!(held, Some(PerDof::splat(300)));
-    let write = crate::hand::HandCommand::StoreGesture(to, angles);
-    let read = Asked::Read(stored_gesture(to));
-    assert_eq!(hand.asked(), [Asked::Write(write), read]);
-
-    let refused = RequestError::Refused {
-        address: 1066,
-        reason: "0x02".into(),
-    };
-    let fate = Fate::Fails(refused.clone());
-    hand.script(move |_| fate.clone());
-    assert_eq!(gesture::store(&hand, to, angles).await, Err(refused));
 }

@@ -1,6 +1,4 @@
 //! Linux's CAN sockets as a wire: each 16 bytes are one `struct can_frame`. What frames mean is not known here.
-#[cfg(target_os = "linux")]
-pub mod facts;
 
 use crate::transport::wire::TransportError;
 use socketcan::tokio::CanSocket;

@@ -1,6 +1,7 @@
 //! Serial ports that the system lists.
 
 use serde::Serialize;
+use std::fmt;
 
 /// Vendor and product of USB adapters that bring CAN frames as text: CANable and its likes, CANtact, Lawicel's CANUSB.
 const CAN_ADAPTERS: [(u16, u16); 4] = [
@@ -30,6 +31,17 @@ pub struct UsbFound {
     /// How long it may keep what it got, milliseconds, where its driver tells (Linux).
     #[serde(skip)]
     pub latency_timer_ms: Option<u16>,
+}
+
+/// Maker, product and serial number as far as they are told, and the ids.
+impl fmt::Display for UsbFound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = [&self.maker, &self.product, &self.serial].into_iter();
+        for name in named.flatten() {
+            write!(f, "{name} ")?;
+        }
+        write!(f, "USB {:04x}:{:04x}", self.vendor_id, self.product_id)
+    }
 }
 
 impl UsbFound {

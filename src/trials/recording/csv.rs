@@ -182,7 +182,7 @@ impl Cells<'_> {
             recording.push_row(row);
         } else {
             let what = what(event).ok_or_else(|| self.wrong(self.at))?;
-            recording.push_mark(TrialMark { at, what });
+            recording.mark(at, what);
         }
         Ok(())
     }

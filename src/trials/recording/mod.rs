@@ -120,12 +120,7 @@ impl TrialRecording {
 
     /// Keeps what happened.
     pub fn mark(&mut self, at: Moment, what: TrialEvent) {
-        self.push_mark(TrialMark { at, what });
-    }
-
-    /// Keeps what happened then.
-    pub(crate) fn push_mark(&mut self, mark: TrialMark) {
-        self.marks.push(mark);
+        self.marks.push(TrialMark { at, what });
     }
 
     /// The same with its events and without its rows, which count as lost.

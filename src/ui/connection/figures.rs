@@ -1,6 +1,7 @@
-//! How the link goes: state, rates, round trips, counts, and what the line's time goes to. Asks for nothing.
+//! How the link goes: state, rates, round trips, counts, and what the line's time goes to.
 
-use crate::link::PollGroup;
+use crate::app::action::Action;
+use crate::link::{First, PollGroup};
 use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
 use crate::ui::connection::link_words::link_words;
@@ -117,7 +118,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
 }
 
 /// Draws the card of the line's time: each group of reads, what it gets and what the wire could give.
-pub(crate) fn budget_ui(ui: &mut Ui, pane: &Pane<'_>) {
+pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let line = &pane.state.hand().stats.line;
     let live = pane.state.hand().link.state.is_live();
@@ -138,7 +139,7 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &Pane<'_>) {
             }
         });
     };
-    kit::card_ui(ui, look, |ui| {
+    let first = kit::card_ui(ui, look, |ui| {
         kit::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
         figure_ui(ui, pane, "", |ui| {
             for (head, width) in BUDGET {
@@ -154,7 +155,30 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &Pane<'_>) {
         row(ui, panels::BUDGET_WRITES, share(line.writes));
         ui.separator();
         row(ui, panels::LINE_USED, share(line.utilisation));
+        first_ui(ui, pane)
     });
+    pane.actions.extend(first.map(Action::ReadFirst));
+}
+
+/// What is read first while something moves; another choice, if one was made.
+fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<First> {
+    let look = pane.look;
+    let mut first = pane.state.settings.first;
+    let all = [
+        (First::Force, look.say(panels::FIRST_FORCE)),
+        (First::Touch, look.say(panels::FIRST_TOUCH)),
+    ];
+    let caption = look.say(panels::FIRST);
+    let chosen = ui.horizontal(|ui| {
+        let label = Label::new(caption, look.palette.muted).ui(ui);
+        label.on_hover_text(look.say(panels::FIRST_TIP));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().combo_width = 120.0;
+            kit::choose_ui(ui, caption, &mut first, &all)
+        })
+        .inner
+    });
+    chosen.inner.then_some(first)
 }
 
 /// A caption, and values from the right end.

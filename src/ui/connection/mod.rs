@@ -198,7 +198,8 @@ impl ConnectionForm {
             }
         });
         for port in &pane.state.ports {
-            let about = port.about.as_deref().unwrap_or_default();
+            let about = port.usb.as_ref().map(ToString::to_string);
+            let about = about.unwrap_or_default();
             let name = format!("{}  {about}", port.path);
             row_ui(ui, look, "", |ui| {
                 let button = Button::new(&port.path, look.say(panels::PORT_PICK_TIP));
@@ -208,7 +209,7 @@ impl ConnectionForm {
                 if button.ui(ui, look).clicked() {
                     self.fields.insert("port", port.path.clone());
                 }
-                Label::new(about, look.palette.muted).small().wrap().ui(ui);
+                Label::new(&about, look.palette.muted).small().wrap().ui(ui);
             });
         }
     }

@@ -1,8 +1,8 @@
 //! Looking for hands: what to scan, how far it is, what was found. Asks for scans and connections; opens nothing.
 
 use crate::app::action::Action;
-use crate::app::scan::{IdRange, ScanRemark, ScanTarget};
-use crate::link::scan::Hosts;
+use crate::app::scan::{IdRange, ScanTarget};
+use crate::link::scan::{Hosts, ScanEvent};
 use crate::transport::Endpoint;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{Text, errors, panels, scan};
@@ -145,15 +145,16 @@ fn stage_ui(ui: &mut Ui, pane: &Pane<'_>) {
 fn results_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     for found in &state.scan.found {
-        let usb = found.usb.as_ref().map(scan::usb).unwrap_or_default();
+        let usb = found.usb.as_ref().map(ToString::to_string);
+        let usb = usb.unwrap_or_default();
         let place = format!("{}  {usb}", found.endpoint.place());
         let title = scan::title(look, &found.endpoint, Some(found.hand_id.into()));
         hand_ui(ui, pane, &found.endpoint, (&title, place.trim_end()));
     }
     for remark in &state.scan.remarks {
         let color = match remark {
-            ScanRemark::Held { .. } => look.palette.muted,
-            ScanRemark::Trouble(_) | ScanRemark::Hint(_) => look.palette.warn,
+            ScanEvent::Held { .. } => look.palette.muted,
+            _ => look.palette.warn,
         };
         Label::new(&scan::remark(look, remark), color).wrap().ui(ui);
     }

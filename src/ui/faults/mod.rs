@@ -16,7 +16,7 @@ use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{faults, main, panels, words};
 use crate::ui::theme;
 use crate::ui::window::message_log::{MessageLog, message_ui};
-use egui::{CollapsingHeader, Ui};
+use egui::Ui;
 
 /// What the view remembers.
 #[derive(Debug, Default)]
@@ -111,11 +111,8 @@ impl FaultsView {
                     false => Depth::Whole,
                 };
                 if let Some(id) = entry_ui(ui, pane, entry, depth) {
-                    self.recordings.open(id, pane);
+                    self.recordings.open(id);
                 }
-            }
-            if entries.iter().any(|entry| !entry.is_active() && entry.seen) {
-                forget_ui(ui, pane);
             }
             meanings_ui(ui, pane);
         });
@@ -160,15 +157,6 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let button = Button::said(look, panels::CLEAR);
     let reason = reason.map(|reason| look.say(reason));
     button.disabled(reason).sends(ui, pane, Action::ClearErrors);
-}
-
-/// A drawer with what tidies the list.
-fn forget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    CollapsingHeader::new(look.say(faults::TIDY)).show_unindented(ui, |ui| {
-        let button = Button::said(look, faults::FORGET);
-        button.sends(ui, pane, Action::ForgetFaults);
-    });
 }
 
 /// That nothing is wrong, or that nobody knows.

@@ -2,7 +2,7 @@
 
 use crate::app::hand::{Play, Preset};
 use crate::app::readings::fault_recorder::{EventKind, PersonAct, Recording};
-use crate::hand::Faults;
+use crate::hand::{Dof, Faults};
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::Look;
 use crate::ui::plots::marks;
@@ -87,28 +87,25 @@ fn act_words(look: Look, act: &PersonAct) -> String {
     let say = |text| look.say(text).to_owned();
     let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.say(what));
     let joint = |dof| look.say(words::dof(dof));
-    let all = look.say(main::EVERY);
+    let joints = |dof: &Option<Dof>| dof.map_or_else(|| look.say(main::EVERY), joint);
     match act {
         PersonAct::Disarm => say(faults::ACT_DISARM),
         PersonAct::Target(dof, angle) => set(joint(*dof), faults::ACT_TARGET, angle.get()),
-        PersonAct::Force(dof, force) => set(joint(*dof), faults::ACT_FORCE, force.get()),
-        PersonAct::Speed(dof, speed) => set(joint(*dof), main::NAME_SPEED, speed.get()),
-        PersonAct::ForceOfAll(force) => set(all, faults::ACT_FORCE, force.get()),
-        PersonAct::SpeedOfAll(speed) => set(all, main::NAME_SPEED, speed.get()),
+        PersonAct::Force(dof, force) => set(joints(dof), faults::ACT_FORCE, force.get()),
+        PersonAct::Speed(dof, speed) => set(joints(dof), main::NAME_SPEED, speed.get()),
         PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(faults::ACT_LOCK)),
         PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(faults::ACT_UNLOCK)),
         PersonAct::Preset(Preset::Open) => say(main::OPEN),
         PersonAct::Preset(Preset::Half) => say(main::HALF),
         PersonAct::Preset(Preset::Close) => say(main::CLOSE),
         PersonAct::Pose(name) => format!("{} {name}", say(poses::RECALL_NAME)),
-        PersonAct::Angles => say(faults::ACT_ANGLES),
         PersonAct::Play(play) => {
             let verb = match play {
                 Play::Start(_) => poses::START,
                 Play::Step(_) => poses::STEP,
                 Play::Pause => poses::PAUSE,
                 Play::Resume => poses::RESUME,
-                Play::End | Play::Dry(_) | Play::EndDry => poses::END,
+                Play::End => poses::END,
             };
             look.pair(look.say(poses::SEQUENCE), look.say(verb))
         }

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::files::export::Export;
-use crate::app::readings::fault_recorder::{Listed, Recording, RecordingId};
+use crate::app::readings::fault_recorder::{Recording, RecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
 use crate::hand::{Dof, PerDof};
 use crate::ui::faults::entry::{self as fault_entry, scroll_ui};
@@ -86,11 +86,10 @@ fn title(pane: &Pane<'_>, recording: &Recording) -> String {
 
 impl RecordingsView {
     /// Opens one.
-    pub(crate) fn open(&mut self, id: RecordingId, pane: &mut Pane<'_>) {
+    pub(crate) fn open(&mut self, id: RecordingId) {
         self.open = Some(id);
         self.near = false;
         self.chart = ChartView::default();
-        pane.actions.push(Action::OpenedRecording(id));
     }
 
     /// Closes the open one.
@@ -117,9 +116,9 @@ impl RecordingsView {
                     kit::say_ui(ui, &text, look.palette.text);
                 });
             }
-            for listed in recorder.iter() {
-                if row_ui(ui, pane, listed) {
-                    pressed = Some(listed.recording.id);
+            for recording in recorder.iter() {
+                if row_ui(ui, pane, recording) {
+                    pressed = Some(recording.id);
                 }
             }
             let kept = match recorder.iter().next() {
@@ -127,14 +126,13 @@ impl RecordingsView {
                 Some(_) => faults::RECORDINGS_KEPT,
             };
             kit::say_ui(ui, look.say(kept), look.palette.muted);
-            if recorder.lost_unopened() > 0 {
-                let lost = recorder.lost_unopened();
-                let text = look.told(faults::RECORDINGS_LOST, lost);
+            if recorder.lost() > 0 {
+                let text = look.told(faults::RECORDINGS_LOST, recorder.lost());
                 kit::say_ui(ui, &text, look.palette.warn);
             }
         });
         if let Some(id) = pressed {
-            self.open(id, pane);
+            self.open(id);
         }
     }
 
@@ -280,14 +278,9 @@ fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {
 }
 
 /// One recording of the list. True if it is to be opened.
-fn row_ui(ui: &mut Ui, pane: &Pane<'_>, listed: &Listed) -> bool {
+fn row_ui(ui: &mut Ui, pane: &Pane<'_>, recording: &Recording) -> bool {
     let look = pane.look;
     let palette = look.palette;
-    let recording = &listed.recording;
-    let (sign, ink) = match listed.opened {
-        true => (palette.faint, palette.muted),
-        false => (palette.warn, palette.text),
-    };
     let row = ui.horizontal(|ui| {
         let title = title(pane, recording);
         let text = look.say(faults::RECORDING_OPEN);
@@ -295,14 +288,11 @@ fn row_ui(ui: &mut Ui, pane: &Pane<'_>, listed: &Listed) -> bool {
         let open = Button::new(text, look.tip(faults::RECORDING_OPEN)).named(&name);
         let pressed = open.ui(ui, look).clicked();
         let at = kit::lamp_ui(ui, None);
-        fault_entry::mark(ui, at, sign);
+        fault_entry::mark(ui, at, palette.warn);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            Label::new(&title, ink).wrap().ui(ui);
+            Label::new(&title, palette.text).wrap().ui(ui);
             kit::say_ui(ui, &about(pane, recording), palette.muted);
-            if !listed.opened {
-                kit::say_ui(ui, look.say(faults::RECORDING_NEW), palette.muted);
-            }
         });
         pressed
     });

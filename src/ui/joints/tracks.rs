@@ -123,9 +123,8 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     };
     if let Some(value) = setting.ui(ui, pane) {
         let force = Force::nearest(value);
-        let all = Action::ForceOfAll(force);
-        let action = row.map_or(all, |row| Action::Force(row.dof, force));
-        pane.actions.push(action);
+        let dof = row.map(|row| row.dof);
+        pane.actions.push(Action::Force(dof, force));
     }
 }
 
@@ -154,9 +153,8 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     };
     if let Some(value) = setting.ui(ui, pane) {
         let speed = Speed::nearest(value);
-        let all = Action::SpeedOfAll(speed);
-        let action = row.map_or(all, |row| Action::Speed(row.dof, speed));
-        pane.actions.push(action);
+        let dof = row.map(|row| row.dof);
+        pane.actions.push(Action::Speed(dof, speed));
     }
 }
 

@@ -101,7 +101,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
         }
     });
     if let Some(error) = &book.unreadable {
-        let error = errors::params(look, error);
+        let error = errors::file(look, error);
         let words = look.told(device::UNREADABLE, error);
         lines.push((words, palette.warn));
     }
@@ -123,14 +123,14 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let open = Button::said(look, device::OPEN);
         dump.disabled(nothing)
             .sends(ui, pane, Action::Param(ParamAction::Dump));
-        open.sends(ui, pane, Action::Param(ParamAction::Open));
+        open.sends(ui, pane, Action::Param(ParamAction::Open(None)));
     });
     if let Some(refused) = &pane.state.hand().params.file_refused {
         let words = notices::notice(look, refused);
         Label::new(&words, look.palette.warn).small().wrap().ui(ui);
         if let Some(path) = path_ui(ui, look, "parameters") {
             pane.actions
-                .push(Action::Param(ParamAction::OpenBackup(path)));
+                .push(Action::Param(ParamAction::Open(Some(path))));
         }
     }
     let title = Label::said(look, device::BACKUPS);
@@ -162,13 +162,13 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
             let name = backup.path.file_name().unwrap_or_default();
             (
                 name.to_string_lossy().into_owned(),
-                Some(errors::params(look, error)),
+                Some(errors::file(look, error)),
             )
         }
     };
     let button = Button::new(&words, look.say(device::BACKUP_TIP)).disabled(unreadable.as_deref());
     if button.ui(ui, look).clicked() {
-        let wish = ParamAction::OpenBackup(backup.path.clone());
+        let wish = ParamAction::Open(Some(backup.path.clone()));
         pane.actions.push(Action::Param(wish));
     }
     if let Ok(file) = &backup.file {

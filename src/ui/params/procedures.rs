@@ -3,7 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::procedures::{
-    PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, ResetProcedure, WayTo,
+    PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, ResetProcedure,
 };
 use crate::app::state::State;
 use crate::hand::Moment;
@@ -72,8 +72,8 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let (change, places) = (&run.change, &run.change.places);
     let card = Card::new(look, cards::CHANGE_ASKED).words(from_to(look, change));
     let mut card = now_and_then(card, places);
-    if let Some(way) = &run.way {
-        card = way_to(card, way);
+    if change.id == ParamId::IpAddress {
+        card = card.warning(cards::SAME_NETWORK);
     }
     let card = card.words(match change.id {
         ParamId::IpAddress => cards::POWERED,
@@ -81,19 +81,6 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
         _ => cards::FOLLOWED,
     });
     asking(state, card, (cards::CHANGE, Manner::Danger), None)
-}
-
-/// Whether this computer reaches the new address, before anything is written.
-fn way_to(card: Card, way: &WayTo) -> Card {
-    match way {
-        WayTo::Asked => card.note(cards::WAY_ASKED),
-        WayTo::None => card.warning(cards::WAY_NONE),
-        WayTo::Known(route) => match route.is_direct() {
-            Some(true) => card.note((cards::WAY_DIRECT, route.from)),
-            Some(false) => card.warning((cards::WAY_ROUTED, route.from)),
-            None => card.note((cards::WAY_UNSURE, route.from)),
-        },
-    }
 }
 
 fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {

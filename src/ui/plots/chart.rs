@@ -176,7 +176,8 @@ impl<'a> Chart<'a> {
     pub(crate) fn ui(&self, ui: &mut Ui, view: &mut ChartView) -> ChartResponse {
         let mut traces = std::mem::take(&mut view.traces);
         let (from_s, to_s) = view.time.span();
-        let columns = (ui.available_width() - theme::PLOT_AXIS) * ui.pixels_per_point();
+        let width = ui.available_width() - theme::PLOT_END;
+        let columns = (width - theme::PLOT_AXIS) * ui.pixels_per_point();
         let columns = columns.clamp(1.0, COLUMNS_MOST);
         let (extent, is_decimated) = self.fetch(&mut traces, (from_s, to_s), columns);
         let room = self.height - theme::PLOT_CAPTION;
@@ -189,7 +190,8 @@ impl<'a> Chart<'a> {
         let per_s = f64::from(columns) / (to_s - from_s);
         let (dense, sparse): (Vec<_>, Vec<_>) = pieces.partition(|piece| is_dense(*piece, per_s));
         let marks = ui.input(|input| input.modifiers.shift);
-        let plot = self.plot(chosen.is_some()).allow_drag([!marks, false]);
+        let plot = self.plot(chosen.is_some()).width(width);
+        let plot = plot.allow_drag([!marks, false]);
         let plot = plot.boxed_zoom_pointer_button(match marks {
             true => PointerButton::Primary,
             false => PointerButton::Secondary,

@@ -1,8 +1,8 @@
 //! One pose of the library, large: its picture, name, tags, angles, speed and force. Every change is an action.
 
 use crate::app::action::Action;
-use crate::hand::{Angle, Dof, Force, PerDof, Speed};
-use crate::poses::edit::{LibraryEdit, PoseEdit, ShiftDirection};
+use crate::hand::{Angle, Dof, Force, Speed};
+use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{LibraryPose, NAME_CHARS_MAX};
 use crate::ui::hand::panel;
 use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
@@ -38,7 +38,7 @@ fn change(pane: &mut Pane<'_>, pose: &LibraryPose, edit: PoseEdit) {
 }
 
 /// A word before its field, as wide as all such words.
-pub(crate) fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
+fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
     let size = vec2(88.0, theme::CONTROL);
     let left = Layout::left_to_right(egui::Align::Center);
     ui.allocate_ui_with_layout(size, left, |ui| {
@@ -67,7 +67,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
 
 fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
     let look = pane.look;
-    if let Some(angle) = angle_ui(ui, pane, ("pose", dof), Some(pose.angles[dof])) {
+    if let Some(angle) = angle_ui(ui, pane, dof, pose.angles[dof]) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
     }
     let text = look.say(poses::LEAVE);
@@ -80,18 +80,13 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
 }
 
 /// One joint's angle as a number behind its name; the number that was confirmed.
-pub(crate) fn angle_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    (of, dof): (&'static str, Dof),
-    angle: Option<Angle>,
-) -> Option<Angle> {
+fn angle_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, angle: Angle) -> Option<Angle> {
     let look = pane.look;
     let name = look.say(words::dof(dof));
     caption_ui(ui, name, look.palette.dof[dof]);
-    let label = format!("{name} {of} {}", look.say(poses::ANGLE));
+    let label = format!("{name} pose {}", look.say(poses::ANGLE));
     let field = NumberField::new(&label, look.tip(poses::ANGLE), 0.0..=1000.0);
-    let typed = field.whole_ui(ui, pane, angle.map(Angle::get))?;
+    let typed = field.whole_ui(ui, pane, Some(angle.get()))?;
     Angle::new(typed).ok()
 }
 
@@ -118,8 +113,8 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let unknown = pane.state.hand().pose_now().is_none();
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
-    let [earlier, later] =
-        [ShiftDirection::Earlier, ShiftDirection::Later].map(|way| edit(PoseEdit::Shift(way)));
+    let at = pane.state.poses.library.place(pose.id).unwrap_or_default();
+    let [earlier, later] = [at.saturating_sub(1), at + 1].map(|to| edit(PoseEdit::Move(to)));
     let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
     let again = Action::Recapture(pose.id);
     let [left, right] = [
@@ -144,20 +139,5 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
                 button.sends(ui, pane, action.clone());
             }
         });
-    }
-}
-
-/// Six angles under each other, each to be typed.
-pub(crate) fn six_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    of: &'static str,
-    angles: &mut PerDof<Option<Angle>>,
-) {
-    for dof in Dof::ALL {
-        let typed = ui.horizontal(|ui| angle_ui(ui, pane, (of, dof), angles[dof]));
-        if let Some(angle) = typed.inner {
-            angles[dof] = Some(angle);
-        }
     }
 }

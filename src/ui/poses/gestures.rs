@@ -1,10 +1,9 @@
-//! The stored gestures as tiles, the names a person gives them, and in a drawer how they are started and stored. Starts
-//! nothing by itself.
+//! The stored gestures as tiles, the names a person gives them, and in a drawer how they are started. Starts nothing by
+//! itself.
 
 use crate::app::action::Action;
 use crate::hand::{Gesture, GestureRoute};
 use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight};
-use crate::ui::poses::gesture_editor::GestureEditor;
 use crate::ui::poses::tiles::gesture_ui;
 use crate::ui::text::{cards, panels, poses};
 use egui::{CollapsingHeader, Grid, ScrollArea, Ui};
@@ -19,7 +18,6 @@ const NAMES: usize = 4;
 pub(crate) struct GestureView {
     /// True while names are typed instead of gestures started.
     naming: bool,
-    editor: GestureEditor,
 }
 
 impl GestureView {
@@ -50,11 +48,7 @@ impl GestureView {
             ui.separator();
             CollapsingHeader::new(look.say(poses::EXPERT))
                 .id_salt("expert gestures")
-                .show(ui, |ui| {
-                    route_ui(ui, pane);
-                    ui.separator();
-                    self.editor.ui(ui, pane);
-                });
+                .show(ui, |ui| route_ui(ui, pane));
         });
     }
 
@@ -100,7 +94,7 @@ fn route_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let routes = [
         (GestureRoute::Register1008, look.say(panels::ROUTE_1008)),
         (GestureRoute::ActionLibrary, look.say(panels::ROUTE_LIBRARY)),
-        (GestureRoute::Off, look.say(poses::STORE_OFF)),
+        (GestureRoute::Off, look.say(panels::ROUTE_OFF)),
     ];
     let mut route = pane.state.settings.gesture_route;
     let known = match route {

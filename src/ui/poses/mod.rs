@@ -1,6 +1,5 @@
 //! The view of poses: the person's own, sequences of them, and the gestures in the hand. Holds what is chosen, no pose.
 pub(crate) mod editor;
-pub(crate) mod gesture_editor;
 pub(crate) mod gestures;
 pub(crate) mod sequence_step;
 pub(crate) mod sequence_view;

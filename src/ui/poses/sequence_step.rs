@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::hand::Speed;
-use crate::poses::edit::{LibraryEdit, SequenceEdit, ShiftDirection};
+use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
@@ -55,10 +55,7 @@ pub(crate) fn step_ui(
     let ui = &mut ui;
     ui.spacing_mut().item_spacing.x = theme::STEP;
     ui.set_min_height(ui.available_height());
-    let (earlier, later) = (
-        SequenceEdit::Shift(at, ShiftDirection::Earlier),
-        SequenceEdit::Shift(at, ShiftDirection::Later),
-    );
+    let [earlier, later] = [at.saturating_sub(1), at + 1].map(|to| SequenceEdit::Move(at, to));
     for (icon, caption, tip, edit) in [
         (
             theme::CLOSE,
@@ -124,13 +121,15 @@ fn numbers_ui(
     let now = (f64::from(step.speed.get()), 1000.0);
     let speed = number(pane, main::NAME_SPEED, poses::SPEED.tip(), now);
     let time = |typed: i64| Millis::try_from(typed).ok();
-    if let Some(limit) = limit.and_then(time) {
-        change(pane, sequence, SequenceEdit::Limit(at, limit));
-    }
-    if let Some(dwell) = dwell.and_then(time) {
-        change(pane, sequence, SequenceEdit::Dwell(at, dwell));
-    }
-    if let Some(speed) = speed.and_then(|typed| Speed::new(typed).ok()) {
-        change(pane, sequence, SequenceEdit::Speed(at, speed));
+    let new = SequenceStep {
+        limit: limit.and_then(time).unwrap_or(step.limit),
+        dwell: dwell.and_then(time).unwrap_or(step.dwell),
+        speed: speed
+            .and_then(|typed| Speed::new(typed).ok())
+            .unwrap_or(step.speed),
+        ..step.clone()
+    };
+    if new != *step {
+        change(pane, sequence, SequenceEdit::Change(at, new));
     }
 }

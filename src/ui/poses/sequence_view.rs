@@ -228,28 +228,26 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
     let cannot = empty.or(pane.unready());
     let go_on = match paused {
-        true => (poses::RESUME, idle, Play::Resume),
-        false => (poses::PAUSE, idle, Play::Pause),
+        true => (poses::RESUME, idle, Action::Play(Play::Resume)),
+        false => (poses::PAUSE, idle, Action::Play(Play::Pause)),
     };
     let dry_run = match dry {
-        true => (poses::DRY_END, None, Play::EndDry),
-        false => (poses::DRY, empty, Play::Dry(id)),
+        true => (poses::DRY_END, None, Action::DryRun(None)),
+        false => (poses::DRY, empty, Action::DryRun(Some(id))),
     };
     let all = [
         dry_run,
-        (poses::START, cannot, Play::Start(id)),
-        (poses::STEP, cannot, Play::Step(id)),
+        (poses::START, cannot, Action::Play(Play::Start(id))),
+        (poses::STEP, cannot, Action::Play(Play::Step(id))),
         go_on,
-        (poses::END, idle, Play::End),
+        (poses::END, idle, Action::Play(Play::End)),
     ];
-    for (ui, (text, disabled, play)) in columns.iter_mut().zip(all) {
+    for (ui, (text, disabled, action)) in columns.iter_mut().zip(all) {
         let weight = match text == poses::START {
             true => Weight::Strong,
             false => Weight::Normal,
         };
         let button = Button::said(look, text).weight(weight).large();
-        button
-            .disabled(disabled)
-            .sends(ui, pane, Action::Play(play));
+        button.disabled(disabled).sends(ui, pane, action);
     }
 }

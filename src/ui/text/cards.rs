@@ -16,11 +16,7 @@ texts! {
     THEN_AT: "Then at", "更改后通信地址";
     FOLLOWED: "A backup is kept first. Nothing is written if another hand answers at the new place. After the write the hand is looked for there, and unless you keep it within 15 s it goes back.", "先备份。若新位置已有其他灵巧手应答，则不写入。写入后到新位置寻找灵巧手；15 秒内不确认保留，就自动恢复。";
     POWERED: "A backup is kept first. The new value acts only after SAVE and power off and on; until then the hand answers where it is. Unless you keep it within 15 s it goes back.", "先备份。新值在保存并重新上电后才生效，在此之前灵巧手仍在原位置应答；15 秒内不确认保留，就自动恢复。";
-    WAY_ASKED: "Looking which way this computer would take to the new address.", "正在查询本机到新地址的路由。";
-    WAY_DIRECT: "This computer reaches the new address directly, from", "本机可直接到达新地址，本机地址为";
-    WAY_ROUTED: "Not in one network with this computer: give it an address in the network of the new one before power off and on. It would be reached through a router, from", "与本机不在同一网段：重新上电前，请给本机设置同一网段的地址。否则要经过路由器，本机地址为";
-    WAY_UNSURE: "This computer would reach the new address from", "本机将从此地址到达新地址：";
-    WAY_NONE: "This computer has no way to the new address: give it an address in the same network before power off and on.", "本机没有到新地址的路由：重新上电前，请给本机设置同一网段的地址。";
+    SAME_NETWORK: "At the new address this computer reaches it only from an address in the same network.", "更改后，本机须有同一网段的地址才能连接。";
     CHANGE: "Change", "更改", "Keeps a backup, then writes the new value.", "先备份，再写入新值。";
     LOOKING: "Looking for a hand at", "正在寻找灵巧手：";
     WRITING: "Writing at", "正在写入：";

@@ -10,7 +10,6 @@ use crate::ui::text::phrase::{Text, texts};
 use crate::ui::text::{errors, main, words};
 
 texts! {
-    REFUSED: "Nothing of the file was taken.", "文件未被采用。";
 
     FIND: "Find parameters", "查找参数", "Filter", "筛选";
     FIND_NONE: "No row has these words.", "没有符合的行。";

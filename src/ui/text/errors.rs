@@ -5,8 +5,7 @@ use crate::app::settings::Language;
 use crate::hand::OutOfRange;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
 use crate::link::{LinkTrouble, RequestError};
-use crate::params::file::ParamsFileError;
-use crate::poses::file::{PoseFileCause, PoseFileError};
+use crate::store::{FileCause, FileError};
 use crate::tasks::TaskError;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::{Remedy, TransportError};
@@ -133,25 +132,16 @@ chinese! {
         TaskError::NotAsked(error) => "{}", request_zh(error);
     }
 
-    fn pose_cause_zh(&PoseFileCause) {
-        PoseFileCause::Toml(_) => "格式不对";
-        PoseFileCause::Format { got } => "这不是姿态文件，其格式为 {got}";
-        PoseFileCause::Version { got } => "无法读取版本 {got}";
-        PoseFileCause::Name { name } => "名称“{name}”无效：请用一行 1 至 32 个字符";
-        PoseFileCause::Twice { name } => "名称“{name}”使用了两次";
-        PoseFileCause::NoSuchPose { name } => "文件中没有姿态“{name}”";
-        PoseFileCause::TooMany { got, limit } => "{got} 个过多：最多 {limit} 个";
-        PoseFileCause::Unreadable(message) => "{}", system_zh(message);
-    }
-
-    fn params_zh(&ParamsFileError) {
-        ParamsFileError::Toml(message) => "{}。", system_zh(message);
-        ParamsFileError::Missing { field } => "缺少 {field}。";
-        ParamsFileError::Format { got } => "这不是参数文件，其格式为 {got}。";
-        ParamsFileError::Version { got } => "无法读取版本 {got}。";
-        ParamsFileError::Value { field, got, .. } => "{field} 的值 {got} 不允许。";
-        ParamsFileError::Empty => "文件中没有参数。";
-        ParamsFileError::Unreadable(message) => "{}。", system_zh(message);
+    fn file_cause_zh(&FileCause) {
+        FileCause::Toml(_) => "格式不对";
+        FileCause::Format { got, wanted } => "文件类型不对，其格式为 {got}，应为 {wanted}";
+        FileCause::Version { got } => "无法读取版本 {got}";
+        FileCause::Value { got, .. } => "值 {got} 不允许";
+        FileCause::Twice { name } => "名称“{name}”使用了两次";
+        FileCause::Absent { name } => "文件中没有“{name}”";
+        FileCause::TooMany { got, limit } => "{got} 个过多：最多 {limit} 个";
+        FileCause::Empty => "文件中没有内容";
+        FileCause::Unreadable(message) => "{}", system_zh(message);
     }
 }
 
@@ -215,19 +205,14 @@ pub(crate) fn task(look: Look, error: &TaskError) -> String {
     told(look, error, task_zh)
 }
 
-/// Why a file of poses was not taken.
-pub(crate) fn poses(look: Look, error: &PoseFileError) -> String {
+/// Why a file was not taken.
+pub(crate) fn file(look: Look, error: &FileError) -> String {
     told(look, error, |error| {
         let line = error.line.map(|line| format!("第 {line} 行，"));
         let field = error.field.as_ref().map(|field| format!("{field}："));
         let (line, field) = (line.unwrap_or_default(), field.unwrap_or_default());
-        format!("{line}{field}{}。", pose_cause_zh(&error.cause))
+        format!("{line}{field}{}。", file_cause_zh(&error.cause))
     })
-}
-
-/// Why a file of parameters was not taken.
-pub(crate) fn params(look: Look, error: &ParamsFileError) -> String {
-    told(look, error, params_zh)
 }
 
 /// What the system said of a file or a device.
@@ -551,46 +536,33 @@ mod tests {
         check(&wrong, (source, "HostsError"), |error| {
             hosts(chinese(), error)
         });
-        let at = |cause| PoseFileError {
+        let at = |cause| FileError {
             line: Some(3),
             field: Some("name".into()),
             cause,
         };
         let name = || "fist".to_owned();
         let denied = || std::io::Error::from_raw_os_error(13).to_string();
-        let causes = [
-            PoseFileCause::Toml("invalid type".into()),
-            PoseFileCause::Format { got: name() },
-            PoseFileCause::Version { got: 9 },
-            PoseFileCause::TooMany { got: 9, limit: 1 },
-            PoseFileCause::Unreadable(denied()),
-        ];
-        let source = include_str!("../../poses/file.rs");
-        let named = [
-            PoseFileCause::Name { name: name() },
-            PoseFileCause::Twice { name: name() },
-            PoseFileCause::NoSuchPose { name: name() },
-        ];
-        let all: Vec<PoseFileCause> = causes.into_iter().chain(named).collect();
-        check(&all, (source, "PoseFileCause"), |cause| {
-            poses(chinese(), &at(cause.clone()))
-        });
         let all = [
-            ParamsFileError::Toml("line 3: expected `=`".into()),
-            ParamsFileError::Missing { field: "format" },
-            ParamsFileError::Format { got: name() },
-            ParamsFileError::Version { got: "9".into() },
-            ParamsFileError::Value {
-                field: "hand_id".into(),
+            FileCause::Toml("invalid type".into()),
+            FileCause::Format {
+                got: name(),
+                wanted: "handscope-poses",
+            },
+            FileCause::Version { got: 9 },
+            FileCause::Value {
                 got: "0".into(),
                 allowed: "1 to 254".into(),
             },
-            ParamsFileError::Empty,
-            ParamsFileError::Unreadable(denied()),
+            FileCause::Twice { name: name() },
+            FileCause::Absent { name: name() },
+            FileCause::TooMany { got: 9, limit: 1 },
+            FileCause::Empty,
+            FileCause::Unreadable(denied()),
         ];
-        let source = include_str!("../../params/file.rs");
-        check(&all, (source, "ParamsFileError"), |error| {
-            params(chinese(), error)
+        let source = include_str!("../../store/toml_file.rs");
+        check(&all, (source, "FileCause"), |cause| {
+            file(chinese(), &at(cause.clone()))
         });
     }
 

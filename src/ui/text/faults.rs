@@ -22,8 +22,6 @@ texts! {
     UNSEEN_BEFORE: "Faults:", "故障";
     UNSEEN: "unseen", "项未查看", "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
     UNSEEN_MARK: "unseen fault", "未查看的故障";
-    TIDY: "Tidy up", "整理列表";
-    FORGET: "Forget", "清空历史", "Takes faults that are over and seen from the list.", "从列表中移除已结束且已看的故障。";
 
     CLEAR_NO_FAULT: "Nothing is wrong that could be cleared.", "没有可清除的故障。";
     CLEAR_ONLY_HEAT: "Only over-temperature is left: it cannot be cleared and ends when the drive is cool.", "仅剩过温故障：不可清除，温度回落后自动结束。";
@@ -49,12 +47,11 @@ texts! {
     RECORDINGS: "Recordings", "故障记录";
     SECTION_TIP: "Shows this list.", "显示此列表。";
     RECORDINGS_NONE: "No recordings yet. Around each fault, 45 s before and 15 s after are kept here: everything that was measured, and what was done.", "还没有记录。每次故障前 45 s 与后 15 s 的全部测量与操作会保存在这里。";
-    RECORDINGS_KEPT: "Kept in memory until the program ends, 12 at most: the oldest that was looked at goes first.", "记录保存在内存中，程序退出即清除，最多 12 份；先移除已看过的最早记录。";
-    RECORDINGS_LOST: "Recordings that went unseen:", "未看过即被移除的记录：";
+    RECORDINGS_KEPT: "Kept in memory until the program ends, 12 at most: the oldest goes first.", "记录保存在内存中，程序退出即清除，最多 12 份；先移除最早的记录。";
+    RECORDINGS_LOST: "Older recordings that went:", "已移除的较早记录：";
     RECORDING_RUNS: "Recording a fault, ends in", "正在记录故障，剩余";
     RECORDING_OPEN: "Open", "打开", "Shows what was measured and done around this fault. Nothing is sent to the hand.", "查看该故障前后的测量与操作，不会向灵巧手发送任何内容。";
     RECORDING: "Recording", "记录";
-    RECORDING_NEW: "not opened yet", "未看过";
     RECORDING_MORE: "more", "项其他故障";
     RECORDING_BACK: "Back", "返回", "Back to the faults and the lists.", "返回故障与列表。";
     RECORDING_SAVE: "Save CSV", "保存 CSV", "Saves everything of this recording as comma-separated values.", "把该记录的全部内容保存为 CSV。";
@@ -70,6 +67,5 @@ texts! {
     ACT_FORCE: "threshold, g", "力阈值 g";
     ACT_LOCK: "locked", "已锁定";
     ACT_UNLOCK: "unlocked", "已解锁";
-    ACT_ANGLES: "Edited angles", "测试编辑的角度";
     NO_FAULT_BITS: "no fault", "无故障";
 }

@@ -8,7 +8,7 @@ use crate::record::Disarmed;
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{device, errors, main, panels, poses, scan, tune, window, words};
+use crate::ui::text::{errors, main, panels, poses, scan, tune, window, words};
 use std::path::Path;
 
 /// Title, cause and advice of what is wrong with a drive.
@@ -22,8 +22,6 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
 fn asked(look: Look, what: RequestKind) -> String {
     match what {
         RequestKind::Gesture(gesture) => look.told(panels::GESTURE, gesture.get()),
-        RequestKind::StoreGesture(gesture) => look.told(poses::STORE_ASKED, gesture.get()),
-        RequestKind::ReadGesture(gesture) => look.told(poses::READ_ASKED, gesture.get()),
         RequestKind::ClearErrors => look.say(panels::CLEAR).into(),
     }
 }
@@ -106,7 +104,6 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),
         },
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
-        NoticeKind::GestureStoreOff => said(poses::STORE_OFF.tip()),
         // The words of the graphics driver help whoever mends it.
         NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
             Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),
@@ -142,25 +139,18 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::SessionOpened { path, trials } => {
             look.fill(tune::OPENED, &[&path.display(), trials])
         }
-        NoticeKind::SessionRefused { path, message } => {
-            let why = errors::system(look, message);
-            look.fill(tune::REFUSED, &[&path.display(), &why])
-        }
-        NoticeKind::PosesRefused { path, error } => {
-            of(poses::REFUSED, path, &errors::poses(look, error))
-        }
-        NoticeKind::ParamsRefused { path, error } => {
-            of(device::REFUSED, path, &errors::params(look, error))
-        }
-        NoticeKind::PosesIgnored { error, kept_as } => {
-            let why = told(poses::IGNORED, &errors::poses(look, error));
-            format!("{why} {}", place(kept_as.as_deref()))
-        }
-        NoticeKind::PosesNotSaved { message } => system(poses::NOT_SAVED, message),
-        NoticeKind::SettingsNotSaved { message } => system(panels::NOTICE_NOT_SAVED, message),
-        NoticeKind::SettingsIgnored { message, kept_as } => {
-            let why = system(panels::NOTICE_SETTINGS, message);
-            format!("{why} {}", place(kept_as.as_deref()))
+        NoticeKind::FileRefused { path, error } => look.fill(
+            window::REFUSED,
+            &[&path.display(), &errors::file(look, error)],
+        ),
+        NoticeKind::FileIgnored {
+            path,
+            error,
+            kept_as,
+        } => {
+            let why = errors::file(look, error);
+            let aside = place(kept_as.as_deref());
+            look.fill(window::IGNORED, &[&path.display(), &why, &aside])
         }
         NoticeKind::Saved { path, entries } => {
             let path = path.display().to_string();
@@ -169,7 +159,6 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotSaved { path, message } => {
             of(window::NOT_SAVED, path, &errors::system(look, message))
         }
-        NoticeKind::SheetNotKept { message } => system(scan::NOT_KEPT, message),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),
     }

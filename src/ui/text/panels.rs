@@ -87,8 +87,6 @@ texts! {
     NOTICE_ARM: "Not armed.", "未能使能。";
     NOTICE_ACKNOWLEDGED: "acknowledged by the hand.", "灵巧手已确认。";
     NOTICE_LOCKED: "Nothing was sent: a gesture moves all joints, and this one is locked:", "未发送：手势会移动所有自由度，而以下自由度已锁定：";
-    NOTICE_NOT_SAVED: "Settings could not be written.", "设置无法写入。";
-    NOTICE_SETTINGS: "The settings file could not be read and was put aside.", "设置文件无法读取，已另存。";
     NOTICE_ENDPOINT: "The remembered hand means nothing:", "无法识别上次的连接地址：";
     NOTICE_WITHOUT_OPENGL: "OpenGL does not start on this computer, so the window is drawn without it.", "这台电脑无法启动 OpenGL，窗口改用软件绘制。";
     DISARMED_STOP: "Not armed any more: stop was pressed.", "已取消使能：按下了停止。";
@@ -107,6 +105,7 @@ texts! {
     GESTURE_ROUTE: "Gesture route", "手势方式";
     ROUTE_1008: "Write 1008", "写 1008";
     ROUTE_LIBRARY: "Action library 2320", "动作库 2320";
+    ROUTE_OFF: "Off", "关闭";
     KNOWN_1008: "1008: not in the manual's table. Known: four drivers of this family write it. Not known: whether this firmware obeys.", "1008：手册寄存器表中没有。已知：同系列的四个驱动程序写此地址。未知：本固件是否执行。";
     KNOWN_LIBRARY: "2320, then 2322 = 1: not in the manual's table. Known: the maker's newer demos write it. Not known: whether this firmware moves.", "先写 2320，再写 2322 = 1：手册寄存器表中没有。已知：厂家较新的示例使用此方式。未知：本固件是否动作。";
     KNOWN_OFF: "Off: no address outside the manual's table is written, and no gesture can be started.", "关闭：不写手册寄存器表以外的地址，也无法启动手势。";
@@ -131,6 +130,10 @@ texts! {
     ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
     MOVED_TO: "The adapter is now at", "适配器现位于";
     BUDGET: "The line's time", "线路时间分配";
+    FIRST: "While it moves, first", "运动时优先读取";
+    FIRST_FORCE: "Force", "力";
+    FIRST_TOUCH: "Fingertips", "指尖";
+    FIRST_TIP: "What is read more often while something moves, where the line is too slow for all. A stop is as quick either way.", "线路速度不足时，运动期间优先读取的内容。停止的速度不受影响。";
     BUDGET_SHARE: "share", "占比";
     BUDGET_COULD: "alone", "独占可达";
     BUDGET_WRITES: "Writes", "写入";

@@ -27,11 +27,6 @@ texts! {
     IMPORTED: "Imported:", "已导入：";
     COUNT_POSES: "poses", "个姿态";
     COUNT_SEQUENCES: "sequences", "个序列";
-    REFUSED: "Nothing was imported.", "未导入任何内容。";
-    IGNORED: "The kept poses could not be read; the file was put aside, the last good one is in use.", "保存的姿态无法读取，该文件已另存，现使用上一份完好的文件。";
-    NOT_SAVED: "The poses could not be written.", "姿态无法写入。";
-    STORE_ASKED: "Storing gesture", "写入手势";
-    READ_ASKED: "Reading gesture", "读取手势";
 
     SELECT_TIP: "Shows this pose for editing. Nothing moves. Drag it to change the order.", "显示该姿态以便编辑，不会运动。拖动可调整顺序。";
     DRAG_TIP: "Drag this step to change the order.", "拖动该步骤可调整顺序。";
@@ -82,24 +77,7 @@ texts! {
     END_TAKEN: "Ended: moved in another way", "已结束：改为其他操作";
     PICTURE: "Picture of the pose", "姿态图";
 
-    USER_GESTURE: "User gesture", "用户手势", "The number whose pose is edited, 14 to 40.", "要编辑的手势编号，14 到 40。";
-    EXPERT: "For experts: gesture numbers 14 to 40, and the register that starts a gesture", "高级：手势 14 至 40 的编辑与启动方式";
-    STORE_NAME: "Where gestures are stored", "手势存储位置";
-    STORE_CAPTION: "Register", "寄存器";
+    EXPERT: "For experts: the register that starts a gesture", "高级：手势的启动方式";
     FIND: "Find poses", "查找姿态", "name or tag", "名称或标签";
     FIND_NONE: "No pose has these words in its name or tags.", "没有名称或标签含这些字的姿态。";
-    STORE_TIP: "The manual describes gestures 14 to 40 but lists no address for their angles. Off: none is read or written.", "手册说明了手势 14 至 40，但没有列出其角度的地址。选择关闭则不读写这些地址。";
-    STORE_1066: "From 1066", "自 1066 起";
-    STORE_OFF: "Off", "关闭", "Storing gestures is off: addresses outside the manual's table are not touched.", "手势存储已关闭：不读写手册寄存器表以外的地址。";
-    STORE_KNOWN: "Known: three drivers of this family keep gesture K at 1066 + 12 x (K - 14), six angles each.", "已知：同系列的三个驱动程序把手势 K 存于 1066 + 12 × (K - 14)，每个六个角度。";
-    STORE_UNKNOWN: "Not known: whether this firmware keeps and plays it, and whether it outlives power-off. Upload, see it read back, start it, and look again after power-off.", "未知：本固件是否保存并执行，断电后是否保留。请写入、读回、执行，并在断电后再次确认。";
-    READ_HAND: "Read", "读取", "Reads what the hand has stored under this number.", "读取灵巧手中该编号的内容。";
-    TEST: "Test", "测试", "Goes to these angles at the set speeds. Nothing is stored.", "按设定的速度到达这些角度，不写入。";
-    UPLOAD: "Upload", "写入", "Writes these six angles into the hand and reads them back. Nothing moves.", "把六个角度写入灵巧手并读回。不会运动。";
-    FIRST_ANGLES: "Take angles first: from the hand, or by reading.", "请先取得角度：取当前姿态或读取。";
-    VERDICT_WRITING: "Sent, not acknowledged yet", "已发送，尚未确认";
-    VERDICT_SAME: "Read back the same: the hand holds it", "读回一致：灵巧手已保存";
-    VERDICT_DIFFERS: "Read back differently: this hand does not keep it there", "读回不一致：此灵巧手没有保存";
-    VERDICT_FAILED: "Did not work: see the messages", "未成功：请查看消息";
-    STORED_NONE: "This number holds no pose.", "该编号没有姿态。";
 }

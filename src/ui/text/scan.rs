@@ -1,10 +1,11 @@
 //! Sentences of looking for hands. Decides nothing.
 
-use crate::app::scan::{IdRange, ScanRemark, ScanStage, ScanState, ScanTarget};
+use crate::app::scan::{IdRange, ScanStage, ScanState, ScanTarget};
 use crate::hand::register::BytePacking;
+use crate::link::scan::ScanEvent;
 use crate::link::{TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
-use crate::transport::{Endpoint, UsbFound};
+use crate::transport::Endpoint;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::{Text, texts};
 use crate::ui::text::{errors, panels};
@@ -41,7 +42,6 @@ texts! {
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
-    NOT_KEPT: "What was found out about this hand could not be kept:", "本手识别结果无法写入：";
 
     /// What two sheets disagree about.
     fn fact(Fact) {
@@ -73,11 +73,12 @@ texts! {
 }
 
 /// What else a scan has to say, as a sentence.
-pub(crate) fn remark(look: Look, remark: &ScanRemark) -> String {
+pub(crate) fn remark(look: Look, remark: &ScanEvent) -> String {
     match remark {
-        ScanRemark::Held { place } => format!("{place}: {}", look.say(HELD)),
-        ScanRemark::Trouble(error) => errors::transport(look, error),
-        ScanRemark::Hint(hint) => errors::hint(look, hint),
+        ScanEvent::Held { place } => format!("{place}: {}", look.say(HELD)),
+        ScanEvent::Trouble { error, .. } => errors::transport(look, error),
+        ScanEvent::Hint(hint) => errors::hint(look, hint),
+        ScanEvent::Begun { .. } | ScanEvent::Found(_) | ScanEvent::Done(_) => String::new(),
     }
 }
 
@@ -138,19 +139,4 @@ pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String 
     let speed = speed.map(|speed| format!(", {speed}")).unwrap_or_default();
     let id = id.map(|id| format!("ID {id}, ")).unwrap_or_default();
     format!("{id}{kind}{speed}")
-}
-
-pub(crate) fn usb(usb: &UsbFound) -> String {
-    let named = [&usb.maker, &usb.product, &usb.serial]
-        .into_iter()
-        .flatten();
-    let words: Vec<&str> = named.map(String::as_str).collect();
-    format!(
-        "{} USB {:04x}:{:04x}",
-        words.join(" "),
-        usb.vendor_id,
-        usb.product_id
-    )
-    .trim_start()
-    .to_owned()
 }

@@ -1,11 +1,12 @@
 //! Sentences of the plan of grasp trials, its running, and what was measured.
 
 use crate::app::trials::SessionDifference;
+use crate::app::trials::TrialQuantity;
 use crate::app::trials::form::ListError;
-use crate::app::trials::{ApproachKind, TrialQuantity};
 use crate::hand::{Dof, Fault};
 use crate::trials::Stage;
-use crate::trials::{Abort, EarlyEnd, PlanError};
+use crate::trials::plan::PlanField;
+use crate::trials::{Abort, Approach, EarlyEnd, PlanError, Until};
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::texts;
 use crate::ui::text::words;
@@ -14,7 +15,6 @@ texts! {
     ENDED: "Trials done: {}.", "已完成试验：{} 次。";
     ENDED_EARLY: "Trials ended early: {}. {}", "试验提前结束，共 {} 次。{}";
     OPENED: "Opened: {} ({} trials)", "已打开：{}（{} 次试验）";
-    REFUSED: "Nothing was opened. {}: {}", "未打开任何内容。{}：{}";
     BY_PERSON: "Ended by a person.", "由操作者结束。";
     DISARMED: "The hand is no longer armed for it.", "灵巧手的使能已取消。";
     LINK_LOST: "The link was lost.", "连接断开。";
@@ -68,14 +68,9 @@ texts! {
     NO_START: "{} takes part and has no start.", "{}参与试验但没有起点。";
     BAD_STAGE: "The speed would change outside the way of {} ({} to {}).", "速度切换处不在{}的行程之内（{} 到 {}）。";
     SLOW_APPROACH: "The fast speed is below a speed to try: {}.", "快速段速度低于试验速度 {}。";
-    BAD_UNTIL: "Choose a number between 1 and {}.", "请选择 1 到 {} 之间的数。";
-    NO_TOUCH: "A touch of 0 g is there before anything is touched.", "触碰 0 g 在接触之前就已成立。";
-    NOTHING_TO_TRY: "There is nothing to try.", "没有可试验的设置。";
-    SPEED_ZERO: "Speed 0 does not move.", "速度 0 不会运动。";
     TOO_MANY: "Too many trials: {}, at most 1000.", "试验次数过多：{} 次，最多 1000 次。";
-    BAD_DWELL: "Hold between 0.3 and 600 s.", "保持时间须在 0.3 至 600 s 之间。";
-    BAD_REST: "Rest no longer than 600 s.", "间隔不能超过 600 s。";
-    BAD_CEILING: "The force limit must be {} to 4000 g.", "力上限须在 {} g 到 4000 g 之间。";
+    BAD_NUMBER: "Choose between {} and {}.", "请选择 {} 到 {} 之间的数。";
+    NOTHING_TO_TRY: "There is nothing to try.", "没有可试验的设置。";
     BAD_HEAT: "Begin must be below stop, and stop at most 75 °C.", "开始温度须低于停止温度，停止温度最高 75 °C。";
 
     START_BUTTON: "Start trials", "开始试验", "Runs the plan while armed now. Any key, STOP, a fault, heat, the force limit or a lost link end it.", "在当前使能下运行计划。按任意键、停止、故障、过热、超过力上限或断线都会结束。";
@@ -178,12 +173,12 @@ texts! {
     }
 
     /// How the object is reached.
-    fn approach(ApproachKind) {
-        ApproachKind::OneStage => "One speed all the way", "全程同一速度";
-        ApproachKind::Measured => "Fast to the measured contact", "快速到实测接触处";
-        ApproachKind::Angle => "Fast to an angle", "快速到指定角度";
-        ApproachKind::Proximity => "Fast until the fingertip is near", "快速到指尖接近物体";
-        ApproachKind::Touch => "Fast until first touch", "快速到首次触碰";
+    fn approach(Approach) {
+        Approach::OneStage => "One speed all the way", "全程同一速度";
+        Approach::TwoStage { until: Until::Measured { .. }, .. } => "Fast to the measured contact", "快速到实测接触处";
+        Approach::TwoStage { until: Until::Angle(_), .. } => "Fast to an angle", "快速到指定角度";
+        Approach::TwoStage { until: Until::Proximity(_), .. } => "Fast until the fingertip is near", "快速到指尖接近物体";
+        Approach::TwoStage { until: Until::Touch(_), .. } => "Fast until first touch", "快速到首次触碰";
     }
 
     /// What cannot be watched.
@@ -266,14 +261,13 @@ pub(crate) fn plan_error(look: Look, error: &PlanError) -> String {
             dof, start, close, ..
         } => look.fill(BAD_STAGE, &[&joint(dof), &start, &close]),
         PlanError::SlowApproach { speed, .. } => look.fill(SLOW_APPROACH, &[&speed]),
-        PlanError::Until { most, .. } => look.fill(BAD_UNTIL, &[&most]),
-        PlanError::NoTouch => look.say(NO_TOUCH).into(),
         PlanError::Empty => look.say(NOTHING_TO_TRY).into(),
-        PlanError::NoSpeed => look.say(SPEED_ZERO).into(),
-        PlanError::TooMany { got } => look.fill(TOO_MANY, &[&got]),
-        PlanError::Dwell { .. } => look.say(BAD_DWELL).into(),
-        PlanError::Rest { .. } => look.say(BAD_REST).into(),
-        PlanError::Ceiling { least, .. } => look.fill(BAD_CEILING, &[&least]),
+        PlanError::Range {
+            field: PlanField::Repeats,
+            got,
+            ..
+        } => look.fill(TOO_MANY, &[&got]),
+        PlanError::Range { least, most, .. } => look.fill(BAD_NUMBER, &[&least, &most]),
         PlanError::Temperature { .. } => look.say(BAD_HEAT).into(),
     }
 }

@@ -19,6 +19,8 @@ texts! {
     SIDE: "Fingertips and faults", "指尖与故障";
     ARM_FIRST: "Press Arm to move", "先点击“使能”再操作";
     SAVED: "Saved:", "已保存：";
+    IGNORED: "{} could not be read: {} It was put aside, and the last good one or none is in use. {}", "{} 无法读取：{}该文件已另存，现使用上一份完好的文件或默认值。{}";
+    REFUSED: "Nothing was taken of {}: {}", "未采用 {}：{}";
     NOT_SAVED: "Could not be written:", "无法写入：";
     NO_FILE: "No file was chosen. Where no dialog came up, this desktop has none.", "没有选择文件。如果没有出现对话框，说明此桌面不提供。";
     PATH: "Path of the file", "文件路径";

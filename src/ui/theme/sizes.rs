@@ -71,6 +71,8 @@ pub(crate) const FIELD_INSET: Margin = Margin::symmetric(8, 2);
 pub(crate) const PLOT_WHEEL: f32 = 180.0;
 /// Room for the numbers of the vertical axis.
 pub(crate) const PLOT_AXIS: f32 = 46.0;
+/// Room for the half of a word below the right edge.
+pub(crate) const PLOT_END: f32 = 12.0;
 /// Room for the numbers of the time axis.
 pub(crate) const PLOT_TIME_AXIS: f32 = 20.0;
 /// Room for a plot's title.

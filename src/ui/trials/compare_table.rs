@@ -2,7 +2,7 @@
 
 use crate::app::settings::Language;
 use crate::app::trials::{ComparedRow, Comparison, RowKey};
-use crate::trials::columns::{Better, COLUMNS, Metric};
+use crate::trials::columns::{COLUMNS, Metric};
 use crate::ui::kit::{self, Label, Pane, dash};
 use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
@@ -22,14 +22,6 @@ enum By {
     Trial,
     Number(Metric),
     End,
-}
-
-impl By {
-    /// Which rows stand first when a person begins to sort by it.
-    fn better(self) -> Better {
-        let own = COLUMNS.iter().find(|own| Self::Number(own.metric) == self);
-        own.map_or(Better::Lower, |column| column.better)
-    }
 }
 
 /// Where the rows begin, and which way they go.
@@ -201,10 +193,7 @@ impl<'a> TrialSheet<'a, '_> {
         if response.clicked() {
             *sorting = Sorting {
                 by,
-                falling: match is_own {
-                    true => !sorting.falling,
-                    false => by.better() == Better::Higher,
-                },
+                falling: is_own && !sorting.falling,
             };
         }
     }

@@ -6,7 +6,7 @@ use crate::ui::plots::times::Times;
 use egui::Ui;
 
 /// The shortest time that is shown, s.
-const LEAST_S: f64 = 0.1;
+pub(crate) const LEAST_S: f64 = 0.1;
 
 /// Draws a chart over all the time of its lines; what was drawn, and the line at the pointer by its place in the list.
 pub(crate) fn trial_chart_ui(

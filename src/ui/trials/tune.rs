@@ -10,7 +10,7 @@ use crate::ui::text::{main, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::PLOT_LEAST;
 use crate::ui::trials::tune_form::TuneForm;
-use crate::ui::trials::tune_live;
+use crate::ui::trials::tune_live::{self, LiveChart};
 use crate::ui::trials::tune_result::ResultView;
 use egui::{Margin, Panel, ScrollArea, Ui};
 
@@ -18,6 +18,7 @@ use egui::{Margin, Panel, ScrollArea, Ui};
 #[derive(Debug, Default)]
 pub(crate) struct TuneView {
     form: TuneForm,
+    live: LiveChart,
     result: ResultView,
 }
 
@@ -36,7 +37,7 @@ impl TuneView {
             ui.set_min_height(ui.available_height());
             kit::head_ui(ui, look, look.say(tune::SERIES), |_| ());
             match pane.state.hand().runs_series() {
-                true => tune_live::live_ui(ui, pane, &mut self.result.curves.chart),
+                true => tune_live::live_ui(ui, pane, &mut self.live),
                 false => self.rest_ui(ui, pane),
             }
         });

@@ -1,9 +1,10 @@
 //! The plan of a series as fields, each with what is wrong below it. Every change is one action with the whole plan.
 
 use crate::app::action::Action;
-use crate::app::trials::form::{PlanSide, list, set_target, tags, take_pose};
-use crate::app::trials::{ApproachKind, PlanField, TrialAction};
+use crate::app::trials::TrialAction;
+use crate::app::trials::form::{PlanSide, approaches, list, set_target, tags, take_pose};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField};
 use crate::ui::text::{Text, main, tune, words};
@@ -64,7 +65,7 @@ impl TuneForm {
         let plan = pane.state.trials.plan.clone();
         self.remember(&plan);
         let error = plan.check().err();
-        let wrong = error.map(|error| (PlanField::of(&error), tune::plan_error(look, &error)));
+        let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
         let runs = pane.state.hand().runs_series();
         let mut pass = Pass {
             wrong,
@@ -303,18 +304,16 @@ impl Pass<'_, '_> {
 
     fn approach_ui(&mut self, ui: &mut Ui) {
         let look = self.pane.look;
-        let mut kind = ApproachKind::of(self.plan.approach);
-        let all = ApproachKind::ALL.map(|kind| (kind, look.say(tune::approach(kind))));
+        let now = self.plan.approach;
+        let name = |approach: Approach| approach.until().map(Until::name);
+        let all = approaches(self.form.fast).map(|usual| match name(usual) == name(now) {
+            true => (now, look.say(tune::approach(now))),
+            false => (usual, look.say(tune::approach(usual))),
+        });
         ui.horizontal(|ui| {
             self.caption_ui(ui, tune::APPROACH, 64.0);
             ui.spacing_mut().combo_width = ui.available_width();
-            if kit::choose_ui(ui, look.say(tune::APPROACH), &mut kind, &all) {
-                let fast = self.form.fast;
-                self.plan.approach = match kind.usual() {
-                    None => Approach::OneStage,
-                    Some(until) => Approach::TwoStage { fast, until },
-                };
-            }
+            kit::choose_ui(ui, look.say(tune::APPROACH), &mut self.plan.approach, &all);
         });
         let Approach::TwoStage { fast, until } = self.plan.approach else {
             return;

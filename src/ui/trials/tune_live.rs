@@ -2,21 +2,26 @@
 
 use crate::app::action::Action;
 use crate::app::trials::SeriesRun;
-use crate::hand::Dof;
-use crate::trials::recording::{TrialRecording, seconds};
+use crate::hand::{Dof, Quantity};
+use crate::history::Series;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::times::Times;
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::PLOT_LEAST;
-use crate::ui::trials::plot::trial_chart_ui;
+use crate::ui::trials::plot::LEAST_S;
 use egui::{Color32, ProgressBar, Role, Stroke, Ui, WidgetInfo};
 
-/// Readings of the newest part that are drawn: more than a plot has pixels, and some twenty seconds.
-const READINGS_DRAWN: usize = 2400;
+/// The plot of one trial.
+#[derive(Debug, Default)]
+pub(crate) struct LiveChart {
+    trial: usize,
+    view: ChartView,
+}
 
 /// Draws it.
-pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut ChartView) {
+pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut LiveChart) {
     let Some(run) = &pane.state.hand().series else {
         return;
     };
@@ -63,31 +68,40 @@ fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
 }
 
-fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut ChartView) {
+fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut LiveChart) {
     let look = pane.look;
+    if chart.trial != run.view.number {
+        chart.view.time.follow();
+        chart.trial = run.view.number;
+    }
+    let chart = &mut chart.view;
     ui.horizontal(|ui| levels_ui(ui, pane, run));
-    let lines: Vec<(Dof, Vec<[f64; 2]>)> = match run.view.setting {
-        Some(_) => run
-            .plan
-            .joints()
-            .map(|dof| (dof, force(&run.recording, dof)))
-            .collect(),
-        None => Vec::new(),
-    };
-    let all = lines.iter().flat_map(|(_, points)| points);
-    let highest = all.map(|[_, grams]| *grams).fold(0.0, f64::max);
-    let curves = lines.iter().map(|(dof, points)| {
+    let history = &pane.state.hand().history;
+    let (from_s, to_s) = (run.since.secs(), pane.state.now.secs());
+    let joints = run.plan.joints().filter(|_| run.view.setting.is_some());
+    let lines: Vec<(Dof, Series)> = joints
+        .map(|dof| (dof, Series::Joint(Quantity::Force, dof)))
+        .collect();
+    let all = lines
+        .iter()
+        .filter_map(|(_, series)| history.summary(*series, from_s, to_s));
+    let highest = all.map(|all| f64::from(all.max)).fold(0.0, f64::max);
+    let curves = lines.iter().map(|(dof, series)| {
         let stroke = Stroke::new(theme::LINE, look.palette.dof[*dof]);
-        ChartCurve::new(Points::Own(points), stroke)
+        ChartCurve::new(Points::Measured(history, *series), stroke)
     });
     let force = Chart {
         curves: curves.collect(),
         levels: levels(pane, run, highest),
         least: (0.0, 100.0),
+        times: Times::From(run.zero.secs(), "0 s"),
         empty: tune::LIVE_EMPTY,
         ..Chart::new(look, tune::LIVE_FORCE, ui.available_height())
     };
-    trial_chart_ui(ui, force, chart);
+    chart
+        .time
+        .advance((from_s, to_s), (to_s - from_s).max(LEAST_S));
+    force.ui(ui, chart);
 }
 
 /// What lines and levels are.
@@ -115,18 +129,4 @@ fn levels(pane: &Pane<'_>, run: &SeriesRun, highest: f64) -> Vec<(f64, Color32)>
     let ceiling = near.then_some((ceiling, palette.bad));
     let threshold = threshold.map(|level| (level, palette.muted));
     threshold.into_iter().chain(ceiling).collect()
-}
-
-/// The newest forces of a joint, as they came.
-fn force(recording: &TrialRecording, dof: Dof) -> Vec<[f64; 2]> {
-    let zero = recording.zero();
-    let rows = recording.rows();
-    let read = rows
-        .iter()
-        .rev()
-        .filter_map(|row| Some((row.at, row.force?[dof])));
-    let point = |(at, grams)| [seconds(zero, at), f64::from(grams)];
-    let mut points: Vec<[f64; 2]> = read.take(READINGS_DRAWN).map(point).collect();
-    points.reverse();
-    points
 }

@@ -20,7 +20,7 @@ pub(crate) struct ResultView {
     comparison: Option<Comparison>,
     strong: Option<TrialKey>,
     /// What is shown of the curves.
-    pub(crate) curves: CurvesView,
+    curves: CurvesView,
 }
 
 impl ResultView {

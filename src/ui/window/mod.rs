@@ -446,7 +446,6 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
                 | Action::Preset(_)
                 | Action::Gesture(_)
                 | Action::Recall(_)
-                | Action::TryAngles(_)
                 | Action::Param(
                     ParamAction::Apply | ParamAction::Undo | ParamAction::Save | ParamAction::Agree
                 )
@@ -462,7 +461,7 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::{Angle, Dof, Gesture, PerDof};
+    use crate::hand::{Angle, Dof, Gesture};
     use crate::poses::library::{PoseId, SequenceId};
 
     #[test]
@@ -475,7 +474,6 @@ mod tests {
                 Action::Gesture(Gesture::MIN),
                 Action::Recall(PoseId(1)),
                 Action::Procedure(ProcedureAction::Begin),
-                Action::TryAngles(PerDof::splat(Angle::MAX)),
                 Action::Trial(TrialAction::Start),
                 Action::Play(Play::Start(SequenceId(1))),
                 Action::Play(Play::Step(SequenceId(1))),

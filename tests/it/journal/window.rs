@@ -16,7 +16,7 @@ use handscope::app::program::App;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::app::trials::TrialAction;
-use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, PerDof, Speed, UserGesture};
+use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, Speed};
 use handscope::link::Clock;
 use handscope::params::backups::saved_name;
 use handscope::params::rows::{ParamId, Value};
@@ -248,8 +248,6 @@ impl Program {
                 .as_ref()
                 .map(|of| format!("card {}", card(of))),
         );
-        let upload = state.hand().gestures.upload.as_ref();
-        said.extend(upload.map(|upload| format!("stored {:?}", upload.verdict)));
         let player = state.hand().sequence.as_ref().map(|run| &run.view);
         said.extend(player.map(|it| format!("sequence {} {}", it.at, word(it.phase))));
         let trials = state
@@ -371,10 +369,6 @@ fn number(word: &str) -> i64 {
     word.parse().unwrap()
 }
 
-fn angles(words: &[&str]) -> PerDof<Angle> {
-    PerDof::from_fn(|dof| Angle::nearest(number(words[dof.index()])))
-}
-
 /// A row and a value for it.
 fn value(name: &str, word: &str) -> (ParamId, Value) {
     match ParamId::named(name)[0] {
@@ -417,10 +411,10 @@ fn action(words: &[&str], state: &State) -> Action {
         ["connect", place] => Action::Connect(place.parse().unwrap()),
         ["disconnect"] => Action::Disconnect,
         ["target", dof, angle] => Action::Target(named(dof), Angle::nearest(number(angle))),
-        ["speed", "all", word] => Action::SpeedOfAll(speed(word)),
-        ["speed", dof, word] => Action::Speed(named(dof), speed(word)),
-        ["force", "all", word] => Action::ForceOfAll(force(word)),
-        ["force", dof, word] => Action::Force(named(dof), force(word)),
+        ["speed", "all", word] => Action::Speed(None, speed(word)),
+        ["speed", dof, word] => Action::Speed(Some(named(dof)), speed(word)),
+        ["force", "all", word] => Action::Force(None, force(word)),
+        ["force", dof, word] => Action::Force(Some(named(dof)), force(word)),
         ["lock", dof] => Action::Lock(named(dof), true),
         ["free", dof] => Action::Lock(named(dof), false),
         ["preset", "open"] => Action::Preset(Preset::Open),
@@ -429,11 +423,6 @@ fn action(words: &[&str], state: &State) -> Action {
         ["gesture", of] => Action::Gesture(Gesture::nearest(number(of))),
         ["route", "library"] => Action::GestureRoute(GestureRoute::ActionLibrary),
         ["route", "off"] => Action::GestureRoute(GestureRoute::Off),
-        ["store", of, all @ ..] => {
-            Action::StoreGesture(UserGesture::nearest(number(of)), angles(all))
-        }
-        ["read", of] => Action::ReadGesture(UserGesture::nearest(number(of))),
-        ["try", all @ ..] => Action::TryAngles(angles(all)),
         ["recall", name] => Action::Recall(pose(name)),
         ["play", "start"] => Action::Play(Play::Start(sequence())),
         ["play", "step"] => Action::Play(Play::Step(sequence())),

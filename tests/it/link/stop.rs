@@ -23,8 +23,8 @@ const SEEDS: u64 = 12;
 /// Presses in one run.
 const PRESSES: u32 = 4;
 const ANGLE_SET: u16 = 1486;
-/// Longest reply frame on a serial line while something moves.
-const MOVING_FRAME: usize = 66;
+/// Longest reply frame on a serial line while something moves: three fingertips.
+const MOVING_FRAME: usize = 182;
 
 /// What is spoken, and how fast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -372,7 +372,7 @@ impl Stage {
         last.asked - pressed
     }
 
-    /// While a person drags or something moved just now, no reply on a serial line is longer than 66 bytes.
+    /// While a person drags or something moved just now, no reply on a serial line is longer than three fingertips.
     fn check_moving(&self, before: usize) {
         if self.scene == Scene::Dragged && self.has_line_time {
             let journal = self.journal.lock().unwrap();
@@ -438,6 +438,40 @@ fn check(protocol: Protocol, limit_ms: u64, slowest_ms: u64) {
         assert!(
             worst > limit / 8,
             "{protocol:?}: nothing was ever in flight"
+        );
+    }
+}
+
+/// Motion states and sweeps over all fingertips a second while something moves.
+async fn rates(scene: Scene, rates: PollRates) -> (f64, f64) {
+    let protocol = Protocol::Rs485(115_200);
+    let mut stage = Stage::live(protocol, scene, 6000..=6000, 1).await;
+    stage.link.read_at(rates);
+    stage.pass(Duration::from_secs(3)).await;
+    if scene == Scene::Dragged {
+        stage.arm().await;
+    }
+    let mut least = (f64::INFINITY, f64::INFINITY);
+    for second in 0..8 {
+        stage.pass(Duration::from_secs(1)).await;
+        let stats = stage.link.stats();
+        if second > 2 {
+            least.0 = least.0.min(stats.state_hz);
+            least.1 = least.1.min(stats.tactile_hz);
+        }
+    }
+    least
+}
+
+#[test]
+fn while_the_hand_moves_at_115200_baud_touch_comes_at_10_hz_and_the_state_at_25() {
+    // Setpoints as fast as the line takes them are a third of what a drag asks for.
+    for (scene, state_hz, touch_hz) in [(Scene::Moved, 25.0, 10.0), (Scene::Dragged, 24.0, 9.0)] {
+        let (state, touch) = in_virtual_time(rates(scene, PollRates::default()));
+        println!("{scene:?}: state {state:.1} Hz, touch {touch:.1} Hz");
+        assert!(
+            state >= state_hz && touch >= touch_hz,
+            "{scene:?}: {state} {touch}"
         );
     }
 }

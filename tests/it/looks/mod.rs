@@ -152,7 +152,7 @@ fn draw(
         None => Driver::start(&scene).unwrap(),
     };
     driver.connect().unwrap();
-    driver.run_for(Duration::from_secs(stage.at_s), |_| ());
+    driver.run_for(Duration::from_secs(stage.at_s));
     if stage.trials {
         driver.try_grasps();
     }

@@ -100,8 +100,8 @@ async fn settings_are_kept_and_setpoints_never() {
     run(&mut app, clock, 100).await;
     for action in [
         Action::Target(Dof::Index, Angle::nearest(777)),
-        Action::Force(Dof::Index, Force::nearest(888)),
-        Action::Speed(Dof::Index, Speed::nearest(111)),
+        Action::Force(Some(Dof::Index), Force::nearest(888)),
+        Action::Speed(Some(Dof::Index), Speed::nearest(111)),
         Action::Lock(Dof::Ring, true),
         Action::Theme(Theme::Light),
     ] {
@@ -119,7 +119,6 @@ async fn settings_are_kept_and_setpoints_never() {
             "angle_unit",
             "gesture_names",
             "gesture_route",
-            "gesture_store",
             "language",
             "layout",
             "plot_window",
@@ -188,7 +187,7 @@ async fn settings_are_written_when_they_change_and_a_failure_is_told() {
     block(&path);
     app.act(Action::Theme(Theme::Dark), clock.now());
     run(&mut app, clock, 2000).await;
-    let failed = |what: &NoticeKind| matches!(what, NoticeKind::SettingsNotSaved { .. });
+    let failed = |what: &NoticeKind| matches!(what, NoticeKind::NotSaved { .. });
     assert!(told(&app).iter().any(failed), "{:?}", told(&app));
     assert_eq!(
         load(&path).settings.theme,
@@ -213,7 +212,7 @@ async fn another_hand_at_the_same_address_is_said_and_a_simulated_one_is_not_kep
     let (_app, _) = begun(Some(path.clone()), Settings::default()).await;
     assert!(!book.exists());
     let differs = |what: &NoticeKind| matches!(what, NoticeKind::HandDiffers { .. });
-    let not_kept = |what: &NoticeKind| matches!(what, NoticeKind::SheetNotKept { .. });
+    let not_kept = |what: &NoticeKind| matches!(what, NoticeKind::NotSaved { .. });
     for (id, expected) in [(1, false), (1, false), (2, true), (2, false)] {
         // Over Modbus TCP any id answers.
         let env = Env {

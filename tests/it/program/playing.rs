@@ -3,12 +3,11 @@
 use crate::program::{ANGLE_SET, Bench, shorts, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
-use handscope::app::hand::gestures::StoreVerdict;
 use handscope::app::hand::{Play, Preset};
 use handscope::app::notices::NoticeKind;
-use handscope::hand::{Angle, Dof, Fault, Force, GestureStore, PerDof, Speed, UserGesture};
+use handscope::hand::{Angle, Dof, Fault, Force, PerDof, Speed};
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
-use handscope::poses::library::{Millis, PoseId, SequenceId};
+use handscope::poses::library::{Millis, PoseId, SequenceId, SequenceStep};
 use handscope::poses::player::{PlayEnd, PlayPhase};
 use tokio::time::Duration;
 
@@ -27,10 +26,14 @@ fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
     bench.act(Action::Library(LibraryEdit::NewSequence("S".into())));
     let own = bench.state().poses.newest_sequence.unwrap();
     for (at, pose) in ids.iter().enumerate() {
-        let dwell = Millis::try_from(50).unwrap();
-        for edit in [SequenceEdit::Add(*pose), SequenceEdit::Dwell(at, dwell)] {
-            bench.act(Action::Library(LibraryEdit::Sequence(own, edit)));
-        }
+        let edit = |edit| Action::Library(LibraryEdit::Sequence(own, edit));
+        bench.act(edit(SequenceEdit::Add(*pose)));
+        let sequence = bench.state().poses.library.sequence(own).unwrap();
+        let short = SequenceStep {
+            dwell: Millis::try_from(50).unwrap(),
+            ..sequence.steps[at].clone()
+        };
+        bench.act(edit(SequenceEdit::Change(at, short)));
     }
     (ids[0], own)
 }
@@ -66,7 +69,6 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
         bench.act(Action::Play(play));
     }
     bench.act(Action::Recall(a));
-    bench.act(Action::TryAngles(PerDof::splat(Angle::MAX)));
     bench.run(300).await;
     assert_eq!(bench.addresses(), [0_u16; 0]);
     assert!(!bench.hand().is_armed() && bench.hand().sequence.is_none());
@@ -153,32 +155,9 @@ async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
 async fn a_dry_run_sends_nothing_even_while_armed() {
     let mut bench = Bench::armed().await;
     let (_, own) = library(&mut bench);
-    bench.act(Action::Play(Play::Dry(own)));
+    bench.act(Action::DryRun(Some(own)));
     assert!(bench.state().poses.preview.is_some());
     bench.run(5000).await;
-    bench.act(Action::Play(Play::EndDry));
+    bench.act(Action::DryRun(None));
     assert_eq!(bench.addresses(), [0_u16; 0]);
-}
-
-#[tokio::test(start_paused = true)]
-async fn a_gesture_is_stored_and_judged_and_not_even_read_while_that_is_off() {
-    let gesture = UserGesture::nearest(14);
-    let angles = PerDof::splat(Angle::nearest(300));
-    let mut bench = Bench::live().await;
-    bench.act(Action::GestureStore(GestureStore::Off));
-    bench.act(Action::StoreGesture(gesture, angles));
-    bench.act(Action::ReadGesture(gesture));
-    bench.run(300).await;
-    assert_eq!(bench.addresses(), [0_u16; 0]);
-    assert!(bench.hand().gestures.upload.is_none());
-    let notices = bench.state().notices.iter();
-    let off: Vec<_> = notices.map(|one| (one.what.clone(), one.count)).collect();
-    assert_eq!(off, [(NoticeKind::GestureStoreOff, 2)]);
-    bench.act(Action::GestureStore(GestureStore::Register1066));
-    bench.act(Action::StoreGesture(gesture, angles));
-    let verdict = |bench: &Bench| bench.hand().gestures.upload.unwrap().verdict;
-    assert_eq!(verdict(&bench), StoreVerdict::Writing);
-    bench.run(300).await;
-    assert_eq!(bench.addresses(), [1066]);
-    assert_eq!(verdict(&bench), StoreVerdict::Same);
 }

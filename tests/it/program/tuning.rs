@@ -6,7 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::hand::Preset;
 use handscope::app::notices::NoticeKind;
 use handscope::app::trials::{SessionOrigin, StartRefusal, TrialAction};
-use handscope::hand::{Angle, Dof, PerDof, Speed};
+use handscope::hand::{Angle, Dof, Speed};
 use handscope::trials::Abort;
 use handscope::trials::plan::TrialPlan;
 use handscope::trials::session::load;
@@ -77,8 +77,7 @@ async fn nothing_else_moves_the_hand_while_a_series_runs() {
     for action in [
         Action::Target(Dof::Ring, Angle::MIN),
         Action::Preset(Preset::Close),
-        Action::TryAngles(PerDof::splat(Angle::MIN)),
-        Action::Speed(Dof::Index, Speed::MAX),
+        Action::Speed(Some(Dof::Index), Speed::MAX),
     ] {
         bench.act(action);
     }

@@ -101,6 +101,25 @@ impl Display {
         self.move_to([4.0, f64::from(SIZE.1) - 4.0]);
     }
 
+    /// Gives the window the keyboard, as a window manager does.
+    pub(crate) fn focus(&self, title: &str) {
+        self.tool(&[
+            "search",
+            "--onlyvisible",
+            "--name",
+            title,
+            "windowfocus",
+            "--sync",
+        ]);
+    }
+
+    /// Types on the keyboard, and Enter.
+    pub(crate) fn enter(&self, text: &str) {
+        self.tool(&["type", "--delay", "60", text]);
+        self.tool(&["key", "Return"]);
+        sleep(FRAME);
+    }
+
     /// Asks the window to close, as a window manager does when its cross is pressed.
     pub(crate) fn close(&self, title: &str) {
         let windows = self.tool(&["search", "--onlyvisible", "--name", title]);

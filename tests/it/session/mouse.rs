@@ -9,6 +9,7 @@ use handscope::app::action::Action;
 use handscope::app::settings::Language;
 use handscope::hand::{Angle, Dof};
 use handscope::ui::View;
+use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
 /// Share of pixels that may differ: lines in plots run on, live numbers flicker, a list of frames scrolls. Which
@@ -68,19 +69,21 @@ impl Session {
         self.display.click(at);
     }
 
-    /// The setpoints after the index was dragged. On a machine with other work the feedback may have grown old and the
-    /// hand be disarmed, as it should; then a person arms it again.
-    fn arm_and_drag(&mut self) -> Vec<i16> {
+    /// The setpoints after a step that sends the index here. On a machine with other work the feedback may have grown old
+    /// and the hand be disarmed, as it should; then a person arms it again.
+    fn armed(&mut self, to: &RangeInclusive<i16>, mut step: impl FnMut(&mut Self)) -> Vec<i16> {
         for _ in 0..ATTEMPTS {
+            step(self);
+            if let Some(asked) = self.hand.is_soon_set_to(Dof::Index, to) {
+                let index = Angle::new(asked[Dof::Index.index()]).unwrap();
+                self.twin.act(Action::Target(Dof::Index, index));
+                return asked;
+            }
             self.click("Arm the hand");
             self.twin.act(Action::Arm);
             self.looks("armed", View::Live, Language::En);
-            self.drag("Index angle target", 0.95, 0.6);
-            if let Some(asked) = self.hand.is_soon_set_to(Dof::Index, 700) {
-                return asked;
-            }
         }
-        panic!("the index does not follow the mouse");
+        panic!("the index does not follow");
     }
 
     /// Drags the handle of a track, which stands at `from`, to `to`; both are shares of the track.
@@ -105,6 +108,7 @@ fn session(more: &[&str]) {
     };
     let mut session = Session::start(display, more);
     session.looks("start", View::Live, Language::En);
+    session.display.focus("Handscope");
     let open = session.hand.read("ANGLE_SET");
     assert_eq!(
         open,
@@ -118,11 +122,10 @@ fn session(more: &[&str]) {
         open,
         "not armed: nothing moves"
     );
-    let asked = session.arm_and_drag();
+    let asked = session.armed(&(0..=700), |session| {
+        session.drag("Index angle target", 0.95, 0.6);
+    });
     let index = asked[Dof::Index.index()];
-    session
-        .twin
-        .act(Action::Target(Dof::Index, Angle::new(index).unwrap()));
     session
         .hand
         .reads_at_most("ANGLE_ACT", Dof::Index, index + 20);
@@ -134,7 +137,14 @@ fn session(more: &[&str]) {
         );
     }
     session.looks("dragged", View::Live, Language::En);
+    // A click selects the number that stands in the field, and what is typed takes its place.
+    session.armed(&(820..=820), |session| {
+        session.click("Index angle number");
+        session.display.enter("820");
+    });
+    session.looks("typed", View::Live, Language::En);
 
+    let places = session.twin.places();
     session.drag("Middle angle target", 0.95, 0.05);
     session.click("STOP");
     let held = session.hand.rests_where_it_stands();
@@ -148,6 +158,11 @@ fn session(more: &[&str]) {
     ));
     session.twin.pass(Duration::from_secs(3));
     session.twin.act(Action::Stop);
+    session.looks("stopped", View::Live, Language::En);
+    let now = session.twin.places();
+    for place in places {
+        assert!(now.contains(&place), "{place} is not in {now:#?}");
+    }
 
     session.click("Language");
     session.twin.act(Action::Language(Language::Zh));
@@ -165,6 +180,12 @@ fn session(more: &[&str]) {
         session.click(name);
         session.looks(name, view, Language::En);
         session.twin.view = view;
+        if view == View::Traffic {
+            session.click("Export CSV");
+            let (path, text) = session.window.saves();
+            assert_eq!(path.extension(), Some("csv".as_ref()), "{path:?}");
+            assert!(text.lines().count() > 10, "{text}");
+        }
     }
     let stands = session.hand.rests_where_it_stands();
     let moved = held

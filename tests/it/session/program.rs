@@ -2,6 +2,8 @@
 
 use crate::setup::process::{Running, handscope, listen, run, sim_on_tcp};
 use handscope::hand::Dof;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -62,10 +64,10 @@ impl Hand {
         }
     }
 
-    /// The setpoints, if this joint's comes down to `most` soon.
-    pub(crate) fn is_soon_set_to(&self, dof: Dof, most: i16) -> Option<Vec<i16>> {
-        let down = |values: &[i16]| (0..=most).contains(&values[dof.index()]);
-        self.read_within(SOON, "ANGLE_SET", down).ok()
+    /// The setpoints, if this joint's comes to lie in this range soon.
+    pub(crate) fn is_soon_set_to(&self, dof: Dof, range: &RangeInclusive<i16>) -> Option<Vec<i16>> {
+        let there = |values: &[i16]| range.contains(&values[dof.index()]);
+        self.read_within(SOON, "ANGLE_SET", there).ok()
     }
 
     /// Waits until this joint's value has come down to `most`.
@@ -86,7 +88,7 @@ impl Hand {
 /// The real window, with settings of its own. Dropping it ends it.
 pub(crate) struct Window {
     process: Running,
-    _home: TempDir,
+    home: TempDir,
 }
 
 impl Window {
@@ -112,11 +114,25 @@ impl Window {
             .env("DISPLAY", display)
             .envs(around.iter().copied())
             .env("HOME", home.path())
-            .env("XDG_CONFIG_HOME", home.path());
+            .env("XDG_CONFIG_HOME", home.path())
+            .env("HANDSCOPE_DOCUMENTS", home.path());
         let process = listen(command);
-        Self {
-            process,
-            _home: home,
+        Self { process, home }
+    }
+
+    /// The first file that it saves in the folder of the day, with what is in it.
+    pub(crate) fn saves(&self) -> (PathBuf, String) {
+        let begun = Instant::now();
+        loop {
+            let days = std::fs::read_dir(self.home.path().join("Handscope"));
+            let days = days.into_iter().flatten().flatten();
+            let files = days.flat_map(|day| std::fs::read_dir(day.path()).into_iter().flatten());
+            if let Some(file) = files.flatten().next() {
+                let text = std::fs::read_to_string(file.path()).unwrap();
+                return (file.path(), text);
+            }
+            assert!(begun.elapsed() < WITHIN, "nothing was saved");
+            sleep(AGAIN);
         }
     }
 

@@ -34,7 +34,7 @@ impl Twin {
     }
 
     pub(crate) fn pass(&mut self, time: Duration) {
-        self.driver.run_for(time, |_| ());
+        self.driver.run_for(time);
     }
 
     /// Does what the mouse did in the real window.
@@ -46,6 +46,17 @@ impl Twin {
 
     pub(crate) fn picture(&mut self, view: View) -> Picture {
         self.driver.picture(view)
+    }
+
+    /// Where each control stands. Some change their names.
+    pub(crate) fn places(&mut self) -> Vec<String> {
+        let view = self.view;
+        let labels = self.picture(view).labels;
+        let controls = labels.as_array().unwrap().iter();
+        let controls =
+            controls.filter(|label| label["role"] != "label" && label["role"] != "image");
+        let place = |label: &serde_json::Value| format!("{} {}", label["role"], label["rect"]);
+        controls.map(place).collect()
     }
 
     /// Left, top, width and height of what has this name.

@@ -1,12 +1,13 @@
 //! Hand-made states for tests of the window.
 
 use handscope::app::notices::NoticeKind;
-use handscope::app::state::{PortChoice, State};
+use handscope::app::state::State;
 use handscope::hand::*;
 use handscope::history::{History, MarkKind};
 use handscope::link::*;
 use handscope::record::*;
 use handscope::transport::Endpoint;
+use handscope::transport::{PortFound, UsbFound};
 use std::time::Duration;
 
 fn timed<T>(value: T, asked: Moment) -> Option<Timed<T>> {
@@ -211,9 +212,16 @@ pub(crate) fn lost() -> State {
         attempt: 3,
         until: Moment::from_micros(63_000_000),
     };
-    state.ports = vec![PortChoice {
+    state.ports = vec![PortFound {
         path: "/dev/ttyUSB0".into(),
-        about: Some("FTDI FT232R A50285BI".into()),
+        usb: Some(UsbFound {
+            vendor_id: 0x0403,
+            product_id: 0x6001,
+            serial: Some("A50285BI".into()),
+            maker: Some("FTDI".into()),
+            product: Some("FT232R".into()),
+            ..UsbFound::default()
+        }),
     }];
     state
 }

@@ -241,7 +241,7 @@ fn a_typed_number_counts_only_with_enter() {
     retype(&mut harness, "750");
     assert_eq!(actions(&mut harness), [], "nothing before Enter");
     harness.key_press(Key::Enter);
-    let want = Action::Force(Dof::Ring, Force::nearest(750));
+    let want = Action::Force(Some(Dof::Ring), Force::nearest(750));
     assert_eq!(actions(&mut harness), [want]);
     for wrong in ["9000", "1,5", "-1", ""] {
         field(&harness);
@@ -263,7 +263,7 @@ fn force_and_speed_are_staged_while_not_armed() {
     harness.get_by_label("Little speed").focus();
     harness.run_steps(2);
     harness.key_press(Key::ArrowRight);
-    let want = Action::Speed(Dof::Little, Speed::nearest(210));
+    let want = Action::Speed(Some(Dof::Little), Speed::nearest(210));
     assert_eq!(actions(&mut harness), [want]);
 }
 

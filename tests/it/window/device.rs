@@ -634,10 +634,10 @@ fn a_bad_file_is_refused_whole_with_the_name_of_the_field() {
         .notices
         .iter()
         .find_map(|notice| match &notice.what {
-            NoticeKind::ParamsRefused { error, .. } => Some(error.to_string()),
+            NoticeKind::FileRefused { error, .. } => Some(error.to_string()),
             _ => None,
         });
-    assert!(refused.unwrap().contains("`default_force.ring` is 3001"));
+    assert!(refused.unwrap().contains("`default_force.ring`: 3001"));
 }
 
 #[test]

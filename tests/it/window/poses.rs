@@ -1,15 +1,12 @@
 //! Claims about poses: kept, taken, played, stored in the hand, read from files; and that none of it moves a hand unasked.
 
-use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, GESTURE, Role, SPEED_SET, Write};
+use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, Role, SPEED_SET, Write};
 use egui::Key;
-use handscope::app::hand::gestures::StoreVerdict;
 use handscope::app::notices::NoticeKind;
 use handscope::hand::Dof;
 use handscope::poses::player::{PlayEnd, PlayPhase};
 
 const LEAVE: i16 = -1;
-/// Where gesture 20 lies, as the field has it.
-const GESTURE_20: u16 = 1138;
 
 fn pose(bench: &mut Bench, angle: i16) {
     let bytes: Vec<u8> = [angle; 6].into_iter().flat_map(i16::to_le_bytes).collect();
@@ -20,16 +17,6 @@ fn pose(bench: &mut Bench, angle: i16) {
 fn open(bench: &mut Bench) {
     bench.click_first_button("Poses");
     bench.run(60);
-}
-
-/// The drawer of what only an expert wants.
-fn open_expert(bench: &mut Bench) {
-    bench.click("Stored in the hand");
-    bench.run(60);
-    let drawer = "For experts: gesture numbers 14 to 40, and the register that starts a gesture";
-    assert!(!bench.shows("Upload") && !bench.shows("Gesture route"));
-    bench.click(drawer);
-    bench.run(400);
 }
 
 fn enter(bench: &mut Bench, field: &str, text: &str) {
@@ -118,42 +105,6 @@ fn a_captured_pose_is_renamed_and_taken_with_speed_and_force_first() {
     for dof in [Dof::Little, Dof::Ring] {
         assert!((bench.angle(dof) - 1000).abs() <= 5, "{dof:?}");
     }
-}
-
-#[test]
-fn a_gesture_is_stored_read_back_judged_and_then_plays() {
-    let mut bench = Bench::live();
-    open(&mut bench);
-    open_expert(&mut bench);
-    assert!(bench.is_disabled(Role::Button, "Upload"), "no angles yet");
-    enter(&mut bench, "User gesture", "20");
-    pose(&mut bench, 600);
-    bench.click("From the hand");
-    bench.run(60);
-    enter(&mut bench, "Index gesture angle", "850");
-    pose(&mut bench, 1000);
-    let before = bench.writes().len();
-    assert!(bench.is_disabled(Role::Button, "Test"), "not armed");
-    bench.click("Upload");
-    bench.wait(600);
-    let writes = bench.writes().split_off(before);
-    assert_eq!(writes.len(), 1, "{writes:?}");
-    assert_eq!(writes[0].address, GESTURE_20);
-    assert_eq!(writes[0].shorts()[Dof::Index.index()], 850);
-    let upload = bench.state().hand().gestures.upload.unwrap();
-    assert_eq!(upload.verdict, StoreVerdict::Same);
-    assert!(bench.shows("Read back the same: the hand holds it"));
-    assert!(
-        (bench.angle(Dof::Index) - 1000).abs() <= 5,
-        "storing moves nothing"
-    );
-    bench.click("Arm the hand");
-    bench.run(300);
-    bench.click("Gesture 20");
-    bench.wait(4000);
-    assert_eq!(bench.addresses().last(), Some(&GESTURE));
-    assert!((bench.angle(Dof::Index) - 850).abs() <= 5);
-    assert!((bench.angle(Dof::Ring) - 600).abs() <= 5);
 }
 
 #[test]
@@ -254,7 +205,7 @@ fn an_exported_file_comes_back_and_a_bad_one_changes_nothing() {
         .notices
         .iter()
         .find_map(|notice| match &notice.what {
-            NoticeKind::PosesRefused { error, .. } => Some(error.clone()),
+            NoticeKind::FileRefused { error, .. } => Some(error.clone()),
             _ => None,
         });
     assert_eq!(refused.unwrap().field.as_deref(), Some("ring"));
@@ -371,33 +322,6 @@ fn a_drag_that_is_stopped_by_esc_leaves_the_order() {
     );
     bench.drag_and_press(from.center(), to.center(), Key::Escape);
     assert_eq!(pose_names(&bench), ["Pose", "Pose 2"]);
-}
-
-#[test]
-fn storing_gestures_can_be_switched_off_and_what_is_known_is_said_beside_it() {
-    let mut bench = Bench::live();
-    open(&mut bench);
-    open_expert(&mut bench);
-    enter(&mut bench, "User gesture", "20");
-    assert!(bench.shows("bytes 1138..1149"));
-    assert!(
-        !bench
-            .texts_with("Not known: whether this firmware keeps")
-            .is_empty()
-    );
-    bench.click("Where gestures are stored: Off");
-    bench.run(60);
-    for button in ["Upload", "Read"] {
-        assert!(bench.is_disabled(Role::Button, button), "{button}");
-    }
-    assert!(bench.texts_with("1138").is_empty());
-    bench.click("From the hand");
-    bench.run(60);
-    assert!(bench.is_disabled(Role::Button, "Upload"));
-    bench.click("Where gestures are stored: From 1066");
-    bench.run(60);
-    assert!(!bench.is_disabled(Role::Button, "Upload"));
-    assert_eq!(bench.writes(), []);
 }
 
 #[test]

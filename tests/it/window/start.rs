@@ -5,9 +5,11 @@ use crate::setup::time::Time;
 use crate::setup::window::{Bench, LARGE, Role};
 use handscope::app::settings::Settings;
 use handscope::hand::Dof;
+use handscope::link::First;
 use handscope::record::LinkState;
 use handscope::shell::headless::canvas::Canvas;
 use handscope::sim::SimConfig;
+use handscope::ui::View;
 use std::time::Duration;
 
 const JOINTS: [&str; 6] = [
@@ -163,4 +165,16 @@ fn the_list_of_labels_has_stop_the_badge_and_every_joint_with_its_value() {
         assert_eq!(actual.as_str().map(str::trim), Some("1000"), "{joint}");
         find("label", &format!("{joint} live force"));
     }
+}
+
+#[test]
+fn what_is_read_first_while_the_hand_moves_is_chosen_beside_the_lines_time_and_kept() {
+    let mut bench = Bench::live();
+    bench.show(View::Connection);
+    assert_eq!(bench.state().settings.first, First::Force);
+    bench.choose("While it moves, first", "Fingertips");
+    assert_eq!(bench.state().settings.first, First::Touch);
+    let kept = toml::to_string(&bench.state().settings).unwrap();
+    assert!(kept.contains("first = \"touch\""), "{kept}");
+    assert_eq!(bench.writes(), []);
 }

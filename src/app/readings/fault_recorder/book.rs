@@ -26,15 +26,6 @@ const FAULTS_MAX: usize = 256;
 /// Turns of one knob within this time are one event.
 const KNOB: Duration = Duration::from_millis(250);
 
-/// One recording of the list.
-#[derive(Debug, Clone)]
-pub struct Listed {
-    /// What was recorded.
-    pub recording: Arc<Recording>,
-    /// A person has looked at it.
-    pub opened: bool,
-}
-
 /// A recording under way.
 #[derive(Debug, Clone)]
 struct OpenRecording {
@@ -52,9 +43,8 @@ pub struct FaultRecorder {
     now: PerDof<DriveState>,
     events_lost: u64,
     running: Option<OpenRecording>,
-    kept: VecDeque<Listed>,
-    next: u64,
-    lost_unopened: u64,
+    kept: VecDeque<Arc<Recording>>,
+    made: u64,
 }
 
 impl FaultRecorder {
@@ -158,7 +148,7 @@ impl FaultRecorder {
         let first = running.first.since(Moment::ZERO);
         let from = Moment::from_duration(first.saturating_sub(BEFORE));
         let recording = Recording {
-            id: RecordingId(self.next),
+            id: RecordingId(self.made),
             hand: hand.to_owned(),
             faults: running.faults,
             from,
@@ -168,51 +158,29 @@ impl FaultRecorder {
             events: self.events.iter().cloned().collect(),
             events_lost: std::mem::take(&mut self.events_lost),
         };
-        self.next += 1;
-        self.make_room();
-        self.kept.push_back(Listed {
-            recording: Arc::new(recording),
-            opened: false,
-        });
-    }
-
-    /// The oldest that was looked at goes first; if there is none, the oldest of all, and that is counted.
-    fn make_room(&mut self) {
-        if self.kept.len() < RECORDINGS_MAX {
-            return;
+        self.made += 1;
+        if self.kept.len() >= RECORDINGS_MAX {
+            self.kept.pop_front();
         }
-        let opened = self.kept.iter().position(|listed| listed.opened);
-        self.lost_unopened += u64::from(opened.is_none());
-        self.kept.remove(opened.unwrap_or(0));
-    }
-
-    /// A person looks at it.
-    pub(crate) fn opened(&mut self, id: RecordingId) {
-        for listed in &mut self.kept {
-            listed.opened |= listed.recording.id == id;
-        }
+        self.kept.push_back(Arc::new(recording));
     }
 
     /// All that are kept, newest first.
-    pub fn iter(&self) -> impl Iterator<Item = &Listed> {
+    pub fn iter(&self) -> impl Iterator<Item = &Arc<Recording>> {
         self.kept.iter().rev()
     }
 
     /// The recording with this id, if it is still kept.
     #[must_use]
     pub fn get(&self, id: RecordingId) -> Option<&Arc<Recording>> {
-        let mut all = self.kept.iter();
-        let found = all.find(|listed| listed.recording.id == id)?;
-        Some(&found.recording)
+        self.kept.iter().find(|recording| recording.id == id)
     }
 
     /// The newest recording of this fault, come at this moment.
     #[must_use]
     pub fn of(&self, dof: Dof, what: FaultKind, since: Moment) -> Option<&Arc<Recording>> {
-        let recordings = self.iter().map(|listed| &listed.recording);
-        recordings
-            .into_iter()
-            .find(|recording| recording.holds(dof, what, since))
+        let mut recordings = self.iter();
+        recordings.find(|recording| recording.holds(dof, what, since))
     }
 
     /// When the recording under way ends; `None` if none is.
@@ -221,10 +189,11 @@ impl FaultRecorder {
         self.running.as_ref().map(|running| running.until)
     }
 
-    /// Recordings that went although nobody had looked at them.
+    /// Recordings that went because there were too many.
     #[must_use]
-    pub const fn lost_unopened(&self) -> u64 {
-        self.lost_unopened
+    pub fn lost(&self) -> u64 {
+        let kept = u64::try_from(self.kept.len()).unwrap_or(u64::MAX);
+        self.made.saturating_sub(kept)
     }
 }
 
@@ -291,7 +260,7 @@ mod tests {
 
         fn newest(&self) -> Arc<Recording> {
             let newest = self.recorder.iter().next().expect("a recording");
-            Arc::clone(&newest.recording)
+            Arc::clone(newest)
         }
     }
 
@@ -383,28 +352,18 @@ mod tests {
     }
 
     #[test]
-    fn recordings_are_bounded_and_one_that_nobody_saw_goes_last_and_is_counted() {
+    fn recordings_are_bounded_and_the_oldest_goes_first_and_is_counted() {
         let mut bench = Bench::new();
-        let record = |bench: &mut Bench| {
+        for _ in 0..=RECORDINGS_MAX {
+            assert_eq!(bench.recorder.lost(), 0);
             bench.fault(Dof::Ring);
             bench.run(16, Status::Stalled);
-        };
-        for _ in 0..RECORDINGS_MAX {
-            record(&mut bench);
         }
-        bench.recorder.opened(RecordingId(3));
-        record(&mut bench);
-        assert_eq!(bench.recorder.lost_unopened(), 0);
-        assert!(bench.recorder.get(RecordingId(3)).is_none());
-        assert!(bench.recorder.get(RecordingId(0)).is_some());
-        record(&mut bench);
-        assert_eq!(bench.recorder.lost_unopened(), 1);
+        assert_eq!(bench.recorder.lost(), 1);
         assert!(bench.recorder.get(RecordingId(0)).is_none());
+        assert!(bench.recorder.get(RecordingId(1)).is_some());
         assert_eq!(bench.recorder.iter().count(), RECORDINGS_MAX);
-        let held = bench
-            .recorder
-            .iter()
-            .map(|own| own.recording.history.bytes());
+        let held = bench.recorder.iter().map(|own| own.history.bytes());
         let bytes: usize = held.sum();
         assert!(bytes < 48_000_000, "{bytes}");
     }

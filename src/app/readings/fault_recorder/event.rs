@@ -12,22 +12,16 @@ pub enum PersonAct {
     Disarm,
     /// A joint was sent somewhere.
     Target(Dof, Angle),
-    /// A joint's force threshold.
-    Force(Dof, Force),
-    /// A joint's speed.
-    Speed(Dof, Speed),
-    /// The force threshold of all joints.
-    ForceOfAll(Force),
-    /// The speed of all joints.
-    SpeedOfAll(Speed),
+    /// The force threshold of one joint or of all.
+    Force(Option<Dof>, Force),
+    /// The speed of one joint or of all.
+    Speed(Option<Dof>, Speed),
     /// A joint was locked, or freed.
     Lock(Dof, bool),
     /// Open, half or close.
     Preset(Preset),
     /// A pose of the library, by name.
     Pose(Arc<str>),
-    /// Six angles that were being edited.
-    Angles,
     /// A sequence was started, stepped, paused or ended.
     Play(Play),
     /// Errors were to be cleared.
@@ -38,11 +32,9 @@ impl PersonAct {
     /// True if both turn the same knob, so that the later one of a quick row stands for it.
     pub(crate) fn is_same_knob(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Target(one, _), Self::Target(two, _))
-            | (Self::Force(one, _), Self::Force(two, _))
+            (Self::Target(one, _), Self::Target(two, _)) => one == two,
+            (Self::Force(one, _), Self::Force(two, _))
             | (Self::Speed(one, _), Self::Speed(two, _)) => one == two,
-            (Self::ForceOfAll(_), Self::ForceOfAll(_))
-            | (Self::SpeedOfAll(_), Self::SpeedOfAll(_)) => true,
             _ => false,
         }
     }
@@ -50,25 +42,23 @@ impl PersonAct {
     /// Stable lower-case words for files.
     #[must_use]
     pub fn words(&self) -> String {
+        let joints = |dof: &Option<Dof>| dof.map_or("of all", Dof::name);
         match self {
             Self::Disarm => "disarmed".into(),
             Self::Target(dof, angle) => format!("target {} {}", dof.name(), angle.get()),
-            Self::Force(dof, force) => format!("force threshold {} {}", dof.name(), force.get()),
-            Self::Speed(dof, speed) => format!("speed {} {}", dof.name(), speed.get()),
-            Self::ForceOfAll(force) => format!("force threshold of all {}", force.get()),
-            Self::SpeedOfAll(speed) => format!("speed of all {}", speed.get()),
+            Self::Force(dof, force) => format!("force threshold {} {}", joints(dof), force.get()),
+            Self::Speed(dof, speed) => format!("speed {} {}", joints(dof), speed.get()),
             Self::Lock(dof, true) => format!("lock {}", dof.name()),
             Self::Lock(dof, false) => format!("unlock {}", dof.name()),
             Self::Preset(Preset::Open) => "open all".into(),
             Self::Preset(Preset::Half) => "half".into(),
             Self::Preset(Preset::Close) => "close".into(),
             Self::Pose(name) => format!("pose {name}"),
-            Self::Angles => "edited angles".into(),
             Self::Play(Play::Start(_)) => "sequence start".into(),
             Self::Play(Play::Step(_)) => "sequence step".into(),
             Self::Play(Play::Pause) => "sequence pause".into(),
             Self::Play(Play::Resume) => "sequence resume".into(),
-            Self::Play(_) => "sequence end".into(),
+            Self::Play(Play::End) => "sequence end".into(),
             Self::ClearErrors => "clear errors".into(),
         }
     }

@@ -1,0 +1,27 @@
+//! Opening a file that a person chooses, away from the window's thread.
+
+use crate::app::env::Env;
+use crate::app::notices::NoticeKind;
+use crate::store::{BackgroundJob, FileError, on_thread};
+use std::future::ready;
+use std::path::{Path, PathBuf};
+
+/// Reads a file: at a place that was typed, else one that is asked for by this name.
+pub(crate) fn open<T: Send + 'static>(
+    typed: Option<PathBuf>,
+    suggested: &str,
+    env: &Env,
+    read: impl FnOnce(&Path) -> Result<T, FileError> + Send + 'static,
+) -> BackgroundJob<Result<T, NoticeKind>> {
+    let chosen = match typed {
+        Some(path) => Box::pin(ready(Some(path))),
+        None => env.files.open(suggested),
+    };
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
+        let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
+        let place = path.clone();
+        let read = on_thread(move || Ok(read(&place))).await;
+        let read = read.unwrap_or_else(|error| Err(error.into()));
+        read.map_err(|error| NoticeKind::FileRefused { path, error })
+    })
+}
