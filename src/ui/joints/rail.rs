@@ -56,6 +56,7 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof) {
     };
     let shown = Frame::new().inner_margin(margin).show(ui, |ui| {
         ui.spacing_mut().item_spacing = vec2(theme::STEP, 0.0);
+        ui.spacing_mut().interact_size.y = theme::TEXT_LINE;
         ui.horizontal(|ui| {
             kit::lamp_ui(ui, Some(drive.lamp));
             Label::new(row.name, look.palette.text).small().ui(ui);
