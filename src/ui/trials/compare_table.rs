@@ -185,6 +185,7 @@ impl<'a> TrialSheet<'a, '_> {
         };
         let words = RichText::new(format!("{name}\n{unit}{arrow}")).small();
         let button = egui::Button::selectable(is_own, words.color(look.palette.muted));
+        let button = button.wrap_mode(egui::TextWrapMode::Extend);
         let response = ui.add_sized(ui.available_size(), button);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_own, text));
         ui.ctx()
