@@ -43,16 +43,24 @@ impl View {
     /// Stable lower-case name for the command line and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
+        self.names().0
+    }
+
+    pub(crate) const fn title(self) -> Text {
+        self.names().1
+    }
+
+    const fn names(self) -> (&'static str, Text) {
         match self {
-            Self::Live => "live",
-            Self::Touch => "touch",
-            Self::Tune => "tune",
-            Self::Compare => "compare",
-            Self::Faults => "faults",
-            Self::Poses => "poses",
-            Self::Device => "device",
-            Self::Connection => "connection",
-            Self::Traffic => "traffic",
+            Self::Live => ("live", main::TAB_LIVE),
+            Self::Touch => ("touch", main::TAB_TOUCH),
+            Self::Tune => ("tune", main::TAB_TUNE),
+            Self::Compare => ("compare", main::TAB_COMPARE),
+            Self::Faults => ("faults", main::TAB_FAULTS),
+            Self::Poses => ("poses", main::TAB_POSES),
+            Self::Device => ("device", main::TAB_DEVICE),
+            Self::Connection => ("connection", main::TAB_CONNECTION),
+            Self::Traffic => ("traffic", main::TAB_TRAFFIC),
         }
     }
 
@@ -62,19 +70,5 @@ impl View {
         // What this view was called before poses were added.
         let name = if name == "gestures" { "poses" } else { name };
         Self::ALL.into_iter().find(|view| view.name() == name)
-    }
-
-    pub(crate) const fn title(self) -> Text {
-        match self {
-            Self::Live => main::TAB_LIVE,
-            Self::Touch => main::TAB_TOUCH,
-            Self::Tune => main::TAB_TUNE,
-            Self::Compare => main::TAB_COMPARE,
-            Self::Faults => main::TAB_FAULTS,
-            Self::Poses => main::TAB_POSES,
-            Self::Device => main::TAB_DEVICE,
-            Self::Connection => main::TAB_CONNECTION,
-            Self::Traffic => main::TAB_TRAFFIC,
-        }
     }
 }

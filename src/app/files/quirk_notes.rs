@@ -60,7 +60,6 @@ impl QuirkNotes {
                 if let Some(differs) = self.difference(before.as_ref(), &sheet) {
                     notices.push(now, differs);
                 }
-                hand.sheet = Some(sheet);
             }
         }
         if let Some(Procedure::Place(card)) = &hand.procedure

@@ -16,7 +16,7 @@ use crate::hand::{Angle, AngleReading, Finger, Gesture, HandSample, Moment, PerD
 use crate::history::History;
 use crate::link::session::motion::arm_refusal;
 use crate::link::{LinkStats, LinkStatus, Traffic};
-use crate::record::{ArmRefusal, LinkState, QuirkSheet};
+use crate::record::{ArmRefusal, LinkState};
 use crate::transport::Endpoint;
 use tokio::sync::mpsc;
 
@@ -72,8 +72,6 @@ pub struct HandState {
     pub series: Option<SeriesRun>,
     /// What went over the wire, as far as it was looked at.
     pub traffic: Traffic,
-    /// What is kept about this hand; `None` for the built-in one, and until it was kept.
-    pub sheet: Option<QuirkSheet>,
     /// Where the task under the card wants the link.
     pub(crate) requested: Option<mpsc::UnboundedReceiver<GoRequest>>,
     /// The open link.

@@ -202,35 +202,42 @@ impl Comparison {
         LineGroup::Setting(at.unwrap_or_default())
     }
 
-    /// The lines of a quantity: spread evenly over all there are, and none with more points than the eye sees.
+    /// The lines of a quantity: spread evenly over all there are, and none with more points than the eye sees. Those of
+    /// the trial that stands out are among them whatever their number, last and with all their points.
     #[must_use]
-    pub fn lines(&self, trials: &TrialsState, quantity: TrialQuantity) -> ComparedLines {
-        let lines: Vec<(RowKey, &JointLines)> = self
+    pub fn lines(
+        &self,
+        trials: &TrialsState,
+        quantity: TrialQuantity,
+        strong: Option<(SessionId, usize)>,
+    ) -> ComparedLines {
+        let line = |key: &RowKey| {
+            let (session, trial) = self.trial(trials, *key)?;
+            let line = trial.lines.get(key.joint)?;
+            let is_strong = strong == Some((session.id, trial.summary.number));
+            Some((is_strong, *key, line)).filter(|_| !line.points(quantity).is_empty())
+        };
+        let (strong, others): (Vec<_>, Vec<_>) = self
             .rows
             .iter()
-            .filter_map(|key| Some((*key, self.line(trials, *key)?)))
-            .filter(|(_, line)| !line.points(quantity).is_empty())
-            .collect();
-        let all = lines.len();
-        let count = all.min(LINES_MAX);
+            .filter_map(line)
+            .partition(|(is_strong, ..)| *is_strong);
+        let all = strong.len() + others.len();
+        let count = others.len().min(LINES_MAX);
         let most = POINTS_MAX / count.max(1);
-        let chosen = (0..count).filter_map(|at| lines.get(at * all / count));
-        let drawn = |(key, line): &(RowKey, &JointLines)| ComparedLine {
+        let chosen = (0..count).filter_map(|at| others.get(at * others.len() / count));
+        let drawn = |(is_strong, key, line): &(bool, RowKey, &JointLines)| ComparedLine {
             key: *key,
             contact_s: line.contact_s,
-            points: decimated(line.points(quantity), most),
+            points: match is_strong {
+                true => line.points(quantity).to_vec(),
+                false => decimated(line.points(quantity), most),
+            },
         };
         ComparedLines {
-            lines: chosen.map(drawn).collect(),
+            lines: chosen.chain(&strong).map(drawn).collect(),
             all,
         }
-    }
-
-    /// The lines of a row, if samples of it are there.
-    #[must_use]
-    pub fn line<'a>(&self, trials: &'a TrialsState, key: RowKey) -> Option<&'a JointLines> {
-        let (_, trial) = self.trial(trials, key)?;
-        trial.lines.get(key.joint)
     }
 }
 

@@ -192,7 +192,7 @@ fn however_many_trials_there_are_little_is_drawn_and_every_peak_of_it() {
     let all = Comparison::of(&trials, &ids, ids[0]);
     assert_eq!(all.sessions().len(), SHOWN_MAX);
     assert_eq!(all.rows.len(), SHOWN_MAX * 40 * 6);
-    let picture = all.lines(&trials, TrialQuantity::Force);
+    let picture = all.lines(&trials, TrialQuantity::Force, None);
     assert_eq!(picture.all, SHOWN_MAX * 40 * 6);
     assert_eq!(picture.lines.len(), LINES_MAX);
     let points: usize = picture.lines.iter().map(|line| line.points.len()).sum();

@@ -23,16 +23,6 @@ pub enum FrameFormat {
 }
 
 impl FrameFormat {
-    /// All, in the order of the endpoints.
-    pub const ALL: [Self; 6] = [
-        Self::Rs485,
-        Self::Rtu,
-        Self::Tcp,
-        Self::Can,
-        Self::Slcan,
-        Self::UsbCan,
-    ];
-
     /// What an endpoint speaks; the built-in hand speaks RS485.
     #[must_use]
     pub const fn of(endpoint: &Endpoint) -> Self {
@@ -43,19 +33,6 @@ impl FrameFormat {
             Endpoint::Can { .. } => Self::Can,
             Endpoint::Slcan { .. } => Self::Slcan,
             Endpoint::UsbCan { .. } => Self::UsbCan,
-        }
-    }
-
-    /// Its usual name, the same in all languages.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rs485 => "RS485",
-            Self::Rtu => "Modbus RTU",
-            Self::Tcp => "Modbus TCP",
-            Self::Can => "CAN",
-            Self::Slcan => "slcan",
-            Self::UsbCan => "USB-CAN",
         }
     }
 }

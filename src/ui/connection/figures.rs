@@ -2,9 +2,11 @@
 
 use crate::app::action::Action;
 use crate::link::{First, PollGroup};
+use crate::record::quirk_sheet::Fact;
+use crate::transport::Endpoint;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::kit::{self, Label, Pane, format};
-use crate::ui::text::{Text, errors, panels};
+use crate::ui::text::{Text, errors, faults, panels, scan};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, vec2};
 
@@ -12,7 +14,7 @@ use egui::{Align, Color32, Layout, Ui, vec2};
 const BUDGET: [(Text, f32); 3] = [
     (panels::BUDGET_COULD, 56.0),
     (panels::BUDGET_SHARE, 46.0),
-    (panels::BUDGET_NOW, 52.0),
+    (faults::NOW, 52.0),
 ];
 
 /// Draws the card of the link.
@@ -25,9 +27,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
         let since = format::age(pane.state.now.since(link.since));
         let since = format!("{}{} {since}", look.say(word), look.say(panels::SINCE));
         ui.horizontal(|ui| {
-            let lamp = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
-            let (lamp, _) = ui.allocate_exact_size(lamp, egui::Sense::hover());
-            kit::lamp(ui, lamp.center(), color);
+            kit::lamp_ui(ui, Some(color));
             Label::new(&since, look.palette.text).wrap().ui(ui);
         });
         let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
@@ -60,7 +60,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
 
 type Figures = Vec<(Text, String, Color32)>;
 
-fn figures(pane: &Pane<'_>) -> [Figures; 3] {
+fn figures(pane: &Pane<'_>) -> [Figures; 4] {
     let palette = pane.look.palette;
     let stats = &pane.state.hand().stats;
     let live = pane.state.hand().link.state.is_live();
@@ -74,7 +74,23 @@ fn figures(pane: &Pane<'_>) -> [Figures; 3] {
         0 => count(text, 0),
         value => (text, value.to_string(), palette.warn),
     };
+    let (look, quirks) = (pane.look, &pane.state.hand().link.quirks);
+    let said = |text: Option<Text>| {
+        text.map_or(format::UNKNOWN, |text| look.say(text))
+            .to_owned()
+    };
+    let id = quirks.hand_id.map(i64::from);
+    let mut hand = vec![
+        measured(scan::fact(Fact::HandId), format::whole(id, 0)),
+        measured(scan::fact(Fact::Touch), said(quirks.touch.map(scan::touch))),
+    ];
+    let endpoint = pane.state.hand().endpoint.as_ref();
+    if matches!(endpoint, Some(Endpoint::Tcp { .. } | Endpoint::Rtu(_))) {
+        let packing = quirks.packing.map_or(scan::PACKING_UNKNOWN, scan::packing);
+        hand.push(measured(scan::fact(Fact::Packing), said(Some(packing))));
+    }
     [
+        hand,
         vec![
             measured(panels::STATE_RATE, format::hertz(stats.state_hz)),
             measured(

@@ -1,7 +1,6 @@
 //! The connection: which hand, over what, and how well it goes. Asks to connect and to scan; opens nothing.
 pub(crate) mod figures;
 pub(crate) mod link_words;
-pub(crate) mod quirk_sheet;
 mod rows;
 pub(crate) mod scan;
 
@@ -16,14 +15,12 @@ use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, refused_ui};
-use crate::ui::text::{errors, panels, scan as scan_text};
+use crate::ui::text::{errors, main, panels, scan as scan_text};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 use std::collections::BTreeMap;
 use std::net::Ipv4Addr;
 
-/// Width from which the scan has a column of its own.
-const THREE_COLUMNS: f32 = 1400.0;
 /// What stands in the fields at first, as the hand is delivered (manual 1.3.2, 2.2, 2.3, 2.6.1).
 const FIRST: [&str; 5] = [
     "rtu:?baud=115200&id=1",
@@ -85,7 +82,7 @@ impl ConnectionForm {
             self.fields.remove("packing");
             self.fill(&endpoint.to_string());
         }
-        let is_wide = ui.available_width() >= THREE_COLUMNS;
+        let is_wide = ui.available_width() >= 1400.0;
         ui.columns(if is_wide { 3 } else { 2 }, |columns| match columns {
             [left, middle, right] => {
                 scroll_ui(left, "form", |ui| self.form_ui(ui, pane));
@@ -144,7 +141,7 @@ impl ConnectionForm {
     fn form_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         kit::card_ui(ui, look, |ui| {
-            kit::head_ui(ui, look, look.say(panels::CONNECTION), |_| ());
+            kit::head_ui(ui, look, look.say(main::TAB_CONNECTION), |_| ());
             self.kinds_ui(ui, look);
             ui.add_space(theme::STEP);
             for key in self.kind.1 {
@@ -323,7 +320,6 @@ fn scroll_ui(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
 fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     figures::link_ui(ui, pane);
     figures::budget_ui(ui, pane);
-    quirk_sheet::sheet_ui(ui, pane);
 }
 
 /// Hands of before, one click each.

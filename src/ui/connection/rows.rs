@@ -5,9 +5,6 @@ use crate::ui::text::panels;
 use crate::ui::theme;
 use egui::{CollapsingHeader, Ui, vec2};
 
-/// Width of the captions.
-const CAPTION: f32 = 104.0;
-
 /// A drawer for what hardly anybody needs.
 pub(crate) fn expert_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
     CollapsingHeader::new(look.say(panels::EXPERT)).show_unindented(ui, add);
@@ -21,7 +18,7 @@ pub(crate) fn row_ui<R>(
     add: impl FnOnce(&mut Ui) -> R,
 ) -> R {
     ui.horizontal(|ui| {
-        kit::cell_ui(ui, vec2(CAPTION, theme::CONTROL), |ui| {
+        kit::cell_ui(ui, vec2(104.0, theme::CONTROL), |ui| {
             Label::new(caption, look.palette.muted).ui(ui);
         });
         add(ui)

@@ -5,9 +5,9 @@ use crate::app::scan::{IdRange, ScanTarget};
 use crate::link::scan::{Hosts, ScanEvent};
 use crate::transport::Endpoint;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
-use crate::ui::text::{Text, errors, scan};
+use crate::ui::text::{Text, errors, panels, scan};
 use crate::ui::theme;
-use egui::{Align, Layout, ProgressBar, Ui, vec2};
+use egui::{ProgressBar, Ui, vec2};
 
 /// Addresses that hands were delivered with: the manual's (1.3.2), and two seen in the field. None is asked unasked.
 const PRESETS: [(&str, Text); 3] = [
@@ -177,17 +177,13 @@ pub(crate) fn hand_ui(
     let (text, weight) = if is_now {
         (scan::CONNECTED, Weight::Chosen)
     } else {
-        (scan::USE, Weight::Normal)
+        (panels::CONNECT, Weight::Normal)
     };
     ui.horizontal(|ui| {
         let name = format!("{}: {endpoint}", look.say(text));
         let button = Button::said(look, text).named(&name);
-        let size = vec2(96.0, theme::CONTROL_LARGE);
-        let justified = Layout::top_down_justified(Align::Center);
-        let button = ui.allocate_ui_with_layout(size, justified, |ui| {
-            button.weight(weight).large().ui(ui, look)
-        });
-        if button.inner.clicked() && !is_now {
+        let button = button.weight(weight).large().ui(ui, look);
+        if button.clicked() && !is_now {
             pane.actions.push(Action::Connect(endpoint.clone()));
         }
         ui.vertical(|ui| {

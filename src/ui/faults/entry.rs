@@ -4,11 +4,11 @@ use crate::app::action::Action;
 use crate::app::hand::Freshness;
 use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
-use crate::hand::{Dof, Fault};
+use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::theme;
-use egui::{Color32, CornerRadius, Frame, Margin, Rect, ScrollArea, Sense, Ui, vec2};
+use egui::{CornerRadius, Frame, Margin, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 /// Size of the number on a tab.
 const FAULT_BADGE: f32 = 16.0;
@@ -70,9 +70,6 @@ pub(crate) fn entry_ui(
                 let advice = look.told(faults::TODO, said.advice);
                 kit::say_ui(ui, &advice, palette.text);
             }
-            if entry.is_active() {
-                clear_words_ui(ui, pane, entry);
-            }
             match depth {
                 Depth::Short => None,
                 _ => foot_ui(ui, pane, entry),
@@ -106,23 +103,13 @@ pub(crate) fn scroll_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A lamp, or the room of one.
-pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> egui::Pos2 {
-    let size = vec2(2.0 * theme::LAMP_AT, theme::TITLE_LINE);
-    let center = ui.allocate_exact_size(size, Sense::hover()).0.center();
-    if let Some(color) = color {
-        kit::lamp(ui, center, color);
-    }
-    center
-}
-
 /// Lamp, joint and fault; whether it lasts; the button of one who has seen it.
 fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
     let look = pane.look;
     let palette = look.palette;
     let (word, color) = stand(pane, entry);
     ui.horizontal_wrapped(|ui| {
-        let at = lamp_ui(ui, entry.is_active().then_some(color));
+        let at = kit::lamp_ui(ui, entry.is_active().then_some(color));
         if !entry.is_active() {
             mark(ui, at, color);
         }
@@ -200,46 +187,39 @@ pub(crate) fn mark(ui: &Ui, center: egui::Pos2, color: egui::Color32) {
         .circle_stroke(center, theme::LAMP - 0.5, stroke);
 }
 
+/// A ring for faults of this joint that nobody has seen yet.
+pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
+    let mut unseen = pane.state.hand().faults.unseen();
+    let Some(first) = unseen.find(|entry| entry.dof == dof) else {
+        return;
+    };
+    let palette = pane.look.palette;
+    let is_active = first.is_active();
+    let (place, response) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+    let color = if is_active { palette.bad } else { palette.warn };
+    mark(ui, place.center(), color);
+    let joint = pane.look.say(words::dof(dof));
+    let name = format!("{joint} {}", pane.look.say(faults::UNSEEN_MARK));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+    let tip = title(pane, dof, first.what);
+    response.on_hover_text(format!("{tip}\n{}", pane.look.say(faults::OVER_UNSEEN)));
+}
+
 /// When it began, how long it lasted, how often it came: what the title does not say already.
 fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
     let look = pane.look;
     let now = pane.state.now;
     let mut parts = Vec::new();
     if entry.until.is_some() {
-        let (began, ago) = (look.say(faults::BEGAN), look.say(faults::AGO));
         let age = format::age(now.since(entry.since));
         let lasted = format::age(entry.lasted(now));
-        parts.push(format!("{began} {age} {ago}"));
+        parts.push(look.fill(faults::BEGAN, &[&age]));
         parts.push(look.told(faults::LASTED, lasted));
     }
     if entry.count > 1 {
-        let (came, times) = (look.say(faults::CAME), look.say(faults::TIMES));
-        parts.push(format!("{came} {} {times}", entry.count));
+        parts.push(look.fill(faults::CAME, &[&entry.count]));
     }
     parts.join(" · ")
-}
-
-/// Whether CLEAR_ERROR ends it; for heat, how warm the drive is.
-fn clear_words_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) {
-    let look = pane.look;
-    let (text, color) = match (entry.what.clearable(), entry.what) {
-        (Some(true), _) => (faults::CLEAR_HELPS, look.palette.muted),
-        (Some(false), _) => (faults::CLEAR_CANNOT, look.palette.warn),
-        (None, FaultKind::Status(_)) => (faults::CLEAR_FOLLOWS, look.palette.muted),
-        (None, FaultKind::Fault(_)) => (faults::CLEAR_UNSAID, look.palette.warn),
-    };
-    kit::say_ui(ui, look.say(text), color);
-    if entry.what == FaultKind::Fault(Fault::OverTemperature) {
-        kit::say_ui(ui, &warmth_words(pane, entry.dof), look.palette.text);
-    }
-}
-
-/// How warm the drive is.
-fn warmth_words(pane: &Pane<'_>, dof: Dof) -> String {
-    let temperature = pane.state.hand().sample.temperature;
-    let celsius = temperature.map(|all| all.value[dof].raw());
-    let celsius = format::whole(celsius.map(i64::from), 0);
-    pane.look.told(faults::WARMTH, format!("{celsius} °C"))
 }
 
 /// How many faults nobody has seen, as a small badge with its right top corner here.
@@ -248,10 +228,10 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
         return;
     };
     let count = pane.state.hand().faults.unseen().count().to_string();
-    let width = (kit::text_width(ui, &count, theme::tiny()) + theme::GAP).max(FAULT_BADGE);
+    let width = (kit::text_width(ui, &count, theme::small()) + theme::GAP).max(FAULT_BADGE);
     let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, FAULT_BADGE));
     ui.painter().rect_filled(place, FAULT_BADGE / 2.0, color);
-    let count = Label::new(&count, pane.look.palette.window).font(theme::tiny());
+    let count = Label::new(&count, pane.look.palette.window).small();
     count.center().paint(ui, place);
 }
 

@@ -1,7 +1,6 @@
 //! The view that explains the hand: six drives, what is and was wrong, what to do, and the log. Clears nothing by itself.
 pub(crate) mod entry;
 pub(crate) mod recording_events;
-pub(crate) mod recording_plot;
 pub(crate) mod recordings;
 
 use crate::app::action::Action;
@@ -10,15 +9,14 @@ use crate::app::notices::Notice;
 use crate::app::readings::faults::NothingToClear;
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Status, Words};
-use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, lamp_ui, scroll_ui, seen_all_ui};
+use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui};
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::joints::drive_tiles;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::text::{faults, main, notices, panels, words};
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::text::{faults, main, panels, words};
 use crate::ui::theme;
-use crate::ui::window::message_log::MessageLog;
-use egui::{Align, Layout, Ui};
+use crate::ui::window::message_log::{MessageLog, message_ui};
+use egui::Ui;
 
 /// What the view remembers.
 #[derive(Debug, Default)]
@@ -41,7 +39,7 @@ enum FaultSection {
 /// The card of the overview: what asks for attention, and nothing else.
 pub(crate) fn faults_card_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let title = look.say(panels::FAULTS);
+    let title = look.say(main::TAB_FAULTS);
     kit::full_card_ui(ui, look, |ui| {
         kit::head_ui(ui, look, title, |ui| clear_ui(ui, pane));
         scroll_ui(ui, |ui| {
@@ -72,10 +70,6 @@ impl FaultsView {
 
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        if let Some(pressed) = drive_tiles::tiles_ui(ui, pane, self.chosen) {
-            self.chosen = (self.chosen != Some(pressed)).then_some(pressed);
-            self.recordings.close();
-        }
         if let Some(recording) = self.recordings.opened(pane) {
             kit::full_card_ui(ui, pane.look, |ui| {
                 self.recordings.recording_ui(ui, pane, &recording);
@@ -96,7 +90,7 @@ impl FaultsView {
 
     fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        kit::head_ui(ui, look, look.say(panels::FAULTS), |ui| {
+        kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
         });
@@ -154,7 +148,7 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let hand = pane.state.hand();
     let reason = match hand.faults.nothing_to_clear() {
-        _ if !hand.link.state.is_live() => Some(panels::NOT_LIVE),
+        _ if !hand.link.state.is_live() => Some(main::REFUSED_OFFLINE),
         _ if hand.sample.faults.is_none() => Some(faults::CLEAR_UNREAD),
         Some(NothingToClear::NoFault) => Some(faults::CLEAR_NO_FAULT),
         Some(NothingToClear::OnlyHeat) => Some(faults::CLEAR_ONLY_HEAT),
@@ -175,7 +169,7 @@ fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Freshness::Unknown => (panels::FAULTS_UNKNOWN, look.palette.faint),
     };
     ui.horizontal(|ui| {
-        lamp_ui(ui, Some(color));
+        kit::lamp_ui(ui, Some(color));
         Label::muted(look, text).ui(ui);
     });
     let hint = look.say(panels::FAULTS_NONE_HINT);
@@ -194,10 +188,10 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
     let joint = look.say(words::dof(dof));
     let title = format!("{joint} · {}: {}", look.say(verb), said.title);
     let closed = ui.horizontal_wrapped(|ui| {
-        lamp_ui(ui, Some(said.lamp));
+        kit::lamp_ui(ui, Some(said.lamp));
         Label::new(&title, palette.text).ui(ui);
         let close = look.say(faults::CHOSEN_CLOSE);
-        let button = Button::new(close, look.tip(faults::DRIVE)).weight(Weight::Quiet);
+        let button = Button::new(close, "").weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
     let sample = &pane.state.hand().sample;
@@ -255,26 +249,12 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {
     });
 }
 
+/// A message, with a button that takes it away.
 fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
-    let look = pane.look;
-    let palette = look.palette;
-    let color = look.level(notice.level);
-    let mut text = notices::notice(look, &notice.what);
-    if notice.count > 1 {
-        text = format!("{text} ({} ×)", notice.count);
-    }
-    ui.horizontal(|ui| {
-        ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
-            let name = format!("{}: {text}", look.say(main::DISMISS));
-            let button = Button::said(look, main::DISMISS);
-            let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
-            button.sends(ui, pane, Action::Dismiss(notice.id));
-            let age = format::age(pane.state.now.since(notice.at));
-            Label::new(&age, palette.muted).small().ui(ui);
-            ui.with_layout(Layout::left_to_right(Align::TOP), |ui| {
-                lamp_ui(ui, Some(color));
-                kit::say_ui(ui, &text, palette.text);
-            });
-        });
+    message_ui(ui, pane, notice, |ui, pane, text| {
+        let name = format!("{}: {text}", pane.look.say(main::DISMISS));
+        let button = Button::said(pane.look, main::DISMISS);
+        let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
+        button.sends(ui, pane, Action::Dismiss(notice.id));
     });
 }

@@ -87,12 +87,12 @@ fn act_words(look: Look, act: &PersonAct) -> String {
     let say = |text| look.say(text).to_owned();
     let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.say(what));
     let joint = |dof| look.say(words::dof(dof));
-    let joints = |dof: &Option<Dof>| dof.map_or_else(|| look.say(faults::ACT_ALL), joint);
+    let joints = |dof: &Option<Dof>| dof.map_or_else(|| look.say(main::EVERY), joint);
     match act {
         PersonAct::Disarm => say(faults::ACT_DISARM),
         PersonAct::Target(dof, angle) => set(joint(*dof), faults::ACT_TARGET, angle.get()),
         PersonAct::Force(dof, force) => set(joints(dof), faults::ACT_FORCE, force.get()),
-        PersonAct::Speed(dof, speed) => set(joints(dof), faults::ACT_SPEED, speed.get()),
+        PersonAct::Speed(dof, speed) => set(joints(dof), main::NAME_SPEED, speed.get()),
         PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(faults::ACT_LOCK)),
         PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(faults::ACT_UNLOCK)),
         PersonAct::Preset(Preset::Open) => say(main::OPEN),
@@ -107,7 +107,7 @@ fn act_words(look: Look, act: &PersonAct) -> String {
                 Play::Resume => poses::RESUME,
                 Play::End => poses::END,
             };
-            look.pair(look.say(faults::ACT_SEQUENCE), look.say(verb))
+            look.pair(look.say(poses::SEQUENCE), look.say(verb))
         }
         PersonAct::ClearErrors => say(panels::CLEAR),
     }

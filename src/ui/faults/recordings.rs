@@ -4,15 +4,18 @@ use crate::app::action::Action;
 use crate::app::files::export::Export;
 use crate::app::readings::fault_recorder::{Recording, RecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
-use crate::ui::faults::entry::{self as fault_entry, lamp_ui, scroll_ui};
+use crate::hand::{Dof, PerDof};
+use crate::ui::faults::entry::{self as fault_entry, scroll_ui};
 use crate::ui::faults::recording_events;
 use crate::ui::faults::recording_events::EventLine;
-use crate::ui::faults::recording_plot::{RecordingCharts, RecordingPlot, panel_height};
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, format};
-use crate::ui::plots::panels::{PANELS, Panel};
-use crate::ui::text::faults;
+use crate::ui::plots;
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::panels::{self, PANELS, PanelLine};
+use crate::ui::plots::times::Times;
+use crate::ui::text::{device, faults};
 use crate::ui::theme;
-use egui::{ScrollArea, Ui, UiBuilder};
+use egui::{Panel, ScrollArea, Stroke, Ui};
 use std::sync::Arc;
 
 /// Seconds shown on both sides of the fault when only its surroundings are.
@@ -24,9 +27,48 @@ pub(crate) struct RecordingsView {
     open: Option<RecordingId>,
     shown: ShownPlots,
     near: bool,
-    charts: RecordingCharts,
+    chart: ChartView,
     /// The events of the open one, in the language they were worded in.
     lines: Option<((RecordingId, Language, Theme), Vec<EventLine>)>,
+}
+
+/// One plot of a recording: the joints with the fault are strong and come last, over the others.
+fn chart<'a>(
+    look: Look,
+    recording: &'a Recording,
+    panel: &panels::Panel,
+    height: f32,
+) -> Chart<'a> {
+    let is_of_fault = |dof: Dof| recording.faults.iter().any(|fault| fault.dof == dof);
+    let mut lines = panel.lines(&PerDof::splat(false));
+    lines.sort_by_key(|line| is_of_fault(line.dof));
+    let curve = |line: PanelLine| {
+        let is_of_fault = is_of_fault(line.dof);
+        let (width, share) = match (is_of_fault, line.wished) {
+            (true, false) => (theme::STRONG, 1.0),
+            (true, true) => (1.0, 0.6),
+            (false, false) => (1.0, 0.35),
+            (false, true) => (1.0, 0.15),
+        };
+        let color = look.palette.dof[line.dof].gamma_multiply(share);
+        let points = Points::Measured(&recording.history, line.series);
+        ChartCurve {
+            steps: line.wished,
+            told: (is_of_fault && !line.wished).then_some(panel.row.decimals),
+            ..ChartCurve::new(points, Stroke::new(width, color))
+        }
+    };
+    let fault = recording.fault().map_or(recording.to, |fault| fault.at);
+    let moments = recording.faults.iter();
+    Chart {
+        curves: lines.into_iter().map(curve).collect(),
+        moments: moments
+            .map(|fault| (fault.at.secs(), look.palette.bad))
+            .collect(),
+        least: panel.row.least_scale,
+        times: Times::From(fault.secs(), look.say(faults::RECORDING_FAULT)),
+        ..Chart::new(look, panel.title, height)
+    }
 }
 
 /// Its first fault, and how many more.
@@ -44,9 +86,10 @@ fn title(pane: &Pane<'_>, recording: &Recording) -> String {
 
 impl RecordingsView {
     /// Opens one.
-    pub(crate) const fn open(&mut self, id: RecordingId) {
+    pub(crate) fn open(&mut self, id: RecordingId) {
         self.open = Some(id);
         self.near = false;
+        self.chart = ChartView::default();
     }
 
     /// Closes the open one.
@@ -69,7 +112,7 @@ impl RecordingsView {
                 let left = format::age(until.since(pane.state.now));
                 let text = look.told(faults::RECORDING_RUNS, left);
                 ui.horizontal(|ui| {
-                    lamp_ui(ui, Some(look.palette.bad));
+                    kit::lamp_ui(ui, Some(look.palette.bad));
                     kit::say_ui(ui, &text, look.palette.text);
                 });
             }
@@ -97,35 +140,44 @@ impl RecordingsView {
     pub(crate) fn recording_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) {
         self.head_ui(ui, pane, recording);
         self.tools_ui(ui, pane.look);
-        let mut body = ui.available_rect_before_wrap();
-        let width = (body.width() * 0.3).clamp(168.0, 300.0);
-        let (plots, events) = body.split_left_right_at_x(body.right() - width);
-        body = plots.with_max_x(plots.right() - theme::GAP);
         let fault = recording.fault();
         let fault_s = fault.map_or(recording.to, |fault| fault.at).secs();
+        let width = (ui.available_width() * 0.3).clamp(168.0, 300.0);
+        let events = kit::bare(Panel::right("events"), width, theme::GAP_LEFT);
+        events.show(ui, |ui| self.events_ui(ui, pane, recording, fault_s));
         // The history may have begun within the time before.
         let from = recording.from.secs();
         let from = recording.history.first_secs().unwrap_or(from).max(from);
-        let span = match self.near {
+        let (from, to) = match self.near {
             true => (fault_s - NEAR_S, fault_s + NEAR_S),
             false => (from, recording.to.secs()),
         };
-        let mut shown: Vec<&Panel> = PANELS
-            .iter()
-            .filter(|panel| self.shown.shows(panel.kind))
-            .collect();
-        while shown.len() > 1 && panel_height(body, shown.len()) < 46.0 {
+        self.chart.time.advance((from, to), to - from);
+        self.plots_ui(ui, pane.look, recording);
+    }
+
+    /// The plots that are shown, as many of them as have room.
+    fn plots_ui(&mut self, ui: &mut Ui, look: Look, recording: &Recording) {
+        let shown = PANELS.iter().filter(|panel| self.shown.shows(panel.kind));
+        let mut shown: Vec<_> = shown.collect();
+        while shown.len() > 1 && plots::room(ui, shown.len()) < 46.0 {
             shown.pop();
         }
-        let plot = RecordingPlot {
-            look: pane.look,
-            recording,
-            span,
-            fault_s,
-        };
-        plot.ui(ui, body, &shown, &mut self.charts);
-        let place = UiBuilder::new().max_rect(events);
-        ui.scope_builder(place, |ui| self.events_ui(ui, pane, recording, fault_s));
+        let height = plots::room(ui, shown.len());
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for (n, panel) in shown.iter().enumerate() {
+            let is_lowest = n + 1 == shown.len();
+            let axis = if is_lowest {
+                theme::PLOT_TIME_AXIS
+            } else {
+                0.0
+            };
+            let plot = Chart {
+                is_lowest,
+                ..chart(look, recording, panel, height + axis)
+            };
+            plot.ui(ui, &mut self.chart);
+        }
     }
 
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) {
@@ -172,12 +224,10 @@ impl RecordingsView {
                 (true, faults::RECORDING_NEAR),
                 (false, faults::RECORDING_WHOLE),
             ];
-            kit::pick_ui(
-                ui,
-                look,
-                (&mut self.near, faults::RECORDING_NEAR.tip()),
-                near,
-            );
+            let chosen = (&mut self.near, faults::RECORDING_NEAR.tip());
+            if kit::pick_ui(ui, look, chosen, near) {
+                self.chart = ChartView::default();
+            }
         });
     }
 
@@ -212,16 +262,16 @@ fn about(pane: &Pane<'_>, recording: &Recording) -> String {
         .fault()
         .map(|fault| pane.state.now.since(fault.at));
     let age = format::age(age.unwrap_or_default());
-    format!("{} · {age} {}", recording.hand, pane.look.say(faults::AGO))
+    format!("{} · {age} {}", recording.hand, pane.look.say(device::AGO))
 }
 
 fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::LIST_LINE);
         let time = format!("{:+7.1} s", line.at_s - fault_s);
-        let time = Label::new(&time, look.palette.muted).font(theme::number_small());
+        let time = Label::new(&time, look.palette.muted).number();
         time.ui(ui);
-        let at = lamp_ui(ui, None);
+        let at = kit::lamp_ui(ui, None);
         ui.painter().circle_filled(at, theme::HALO, line.color);
         Label::new(&line.text, look.palette.text).small().ui(ui);
     });
@@ -237,7 +287,7 @@ fn row_ui(ui: &mut Ui, pane: &Pane<'_>, recording: &Recording) -> bool {
         let name = format!("{text}: {title}");
         let open = Button::new(text, look.tip(faults::RECORDING_OPEN)).named(&name);
         let pressed = open.ui(ui, look).clicked();
-        let at = lamp_ui(ui, None);
+        let at = kit::lamp_ui(ui, None);
         fault_entry::mark(ui, at, palette.warn);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;

@@ -1,7 +1,5 @@
 //! The six joint rows: target over actual, threshold over force, speed, lamp, lock. Sends nothing by itself.
 pub(crate) mod drive_lamp;
-pub(crate) mod drive_tiles;
-pub(crate) mod frame_menu;
 pub(crate) mod rail;
 pub(crate) mod readings;
 pub(crate) mod row;

@@ -1,16 +1,18 @@
-//! The joints where they are not set: name, lamp, actual angle and force of each. Sets nothing.
+//! The joints where they are not set: what each drive says and measures. Sets nothing.
 
 use crate::app::action::Action;
 use crate::app::layout::WindowRoom;
-use crate::hand::{Dof, Quantity};
+use crate::hand::Dof;
+use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::joints::age_ui;
 use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::row::JointRow;
-use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{Text, main, window};
+use crate::ui::joints::row_view::explain_ui;
+use crate::ui::kit::{self, Button, Label, Pane};
+use crate::ui::text::{main, window};
 use crate::ui::theme;
 use crate::ui::window::rooms::toggled;
-use egui::{Align, Layout, Ui, vec2};
+use egui::{Align, Frame, Layout, Margin, Ui, vec2};
 
 /// Draws the rail. Where joints can be set, its head opens their column.
 pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
@@ -40,45 +42,46 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
         });
         for dof in Dof::ALL {
             joint_ui(ui, pane, dof);
-            ui.add_space(theme::GAP);
+            ui.add_space(theme::STEP);
         }
     });
 }
 
-fn joint_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
-    let look = pane.look;
-    let palette = look.palette;
-    let row = JointRow::new(dof, pane);
-    let shown = ui.horizontal(|ui| {
-        ui.add_space(theme::BAR + theme::STEP);
-        ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            let drive = DriveWords::of(pane, dof);
-            let status = format!("{}: {}", row.named(pane, main::STATUS), drive.title);
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = theme::STEP;
-                let lamp = ui.allocate_space(vec2(theme::PAD, theme::PAD)).1;
-                kit::lamp(ui, lamp.center(), drive.lamp);
-                let name = Label::new(row.name, palette.text).small().ui(ui);
-                name.on_hover_text(status);
-            });
-            ui.with_layout(Layout::top_down(Align::Max), |ui| {
-                let number_ui = |ui: &mut Ui, text: &str, name: Text, freshness| {
-                    let color = look.value(freshness, palette.text);
-                    let name = row.named(pane, name);
-                    Label::new(text, color).number().named(&name).ui(ui);
-                };
-                let (angle, freshness) = pane.newest(dof, pane.state.hand().sample.angle);
-                let text = format::whole(angle.map(|angle| i64::from(angle.raw())), 4);
-                number_ui(ui, &text, main::NAME_ANGLE_ACTUAL, freshness);
-                let (force, freshness) = pane.newest(dof, pane.state.hand().sample.force);
-                let force = force.map(|force| i64::from(force.raw()));
-                let text = format::with_unit(force, 4, Quantity::Force.row().unit);
-                number_ui(ui, &text, main::NAME_FORCE_ACTUAL, freshness);
-            });
+fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof) {
+    let (look, row) = (pane.look, JointRow::new(dof, pane));
+    let drive = DriveWords::of(pane, dof);
+    let margin = Margin {
+        left: 8,
+        ..Margin::ZERO
+    };
+    let shown = Frame::new().inner_margin(margin).show(ui, |ui| {
+        ui.spacing_mut().item_spacing = vec2(theme::STEP, 0.0);
+        ui.spacing_mut().interact_size.y = theme::TEXT_LINE;
+        ui.horizontal(|ui| {
+            kit::lamp_ui(ui, Some(drive.lamp));
+            Label::new(row.name, look.palette.text).small().ui(ui);
+            unseen_mark_ui(ui, pane, dof);
         });
+        let name = row.named(pane, main::STATUS);
+        ui.horizontal(|ui| {
+            let status = Label::new(&drive.short, drive.text).small();
+            status.named(&name).ui(ui);
+            // The code is there also where the word is of a fault, or of no code that is known.
+            let (status, freshness) = pane.newest(dof, pane.state.hand().sample.status);
+            if let Some(status) = status.filter(|_| !drive.title.ends_with(')')) {
+                let color = look.value(freshness, look.palette.muted);
+                let code = status.raw().to_string();
+                kit::right_ui(ui, |ui| Label::new(&code, color).number().ui(ui));
+            }
+        });
+        let line = vec2(ui.available_width(), theme::TEXT_LINE);
+        let (_, place) = ui.allocate_space(line);
+        row.short_reading_ui(ui, place, pane);
+        let (_, place) = ui.allocate_space(line);
+        row.drive_reading_ui(ui, place, pane);
     });
     let place = shown.response.rect;
     let bar = place.with_max_x(place.left() + theme::BAR);
     ui.painter().rect_filled(bar, theme::ROUND_TINY, row.color);
+    explain_ui(ui, pane, &row, (place, &drive));
 }

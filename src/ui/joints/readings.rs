@@ -1,4 +1,4 @@
-//! What a joint measures, as numbers with small bars: angle, force, current, temperature. Moves nothing.
+//! What a joint measures, as numbers: angle, force, current, temperature. Moves nothing.
 
 use crate::app::hand::Freshness;
 use crate::app::settings::AngleUnit;
@@ -7,12 +7,8 @@ use crate::ui::joints::row::{JointRow, READING};
 use crate::ui::kit::{Label, Pane, format};
 use crate::ui::text::main;
 use crate::ui::theme;
-use egui::{Color32, Rect, Ui, pos2};
+use egui::{Rect, Ui};
 
-/// The end of the current's bar: the documented range of the register, mA.
-const CURRENT_END: i16 = 2000;
-/// The temperature's bar: from a cool room to what the register can say, °C.
-const HEAT: (i16, i16) = (20, 100);
 /// From here a drive is warm; the figure is ours, the manual has none.
 const WARM: u8 = 60;
 /// From here a drive is hot; see [`WARM`].
@@ -65,10 +61,10 @@ impl JointRow {
         let text = format::with_unit(raw, 4, Quantity::Force.row().unit);
         let name = self.named(pane, main::NAME_FORCE_ACTUAL);
         let label = Label::new(&text, pane.look.value(freshness, live)).named(&name);
-        label.font(font_in(rect)).right().put(ui, rect);
+        label.number().right().put(ui, rect);
     }
 
-    /// Current and temperature, each with its bar.
+    /// Current and temperature, in another colour where the drive is warm or hot.
     pub(crate) fn drive_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (look, palette) = (pane.look, pane.look.palette);
         let (current, current_age) = pane.newest(self.dof, pane.state.hand().sample.current);
@@ -78,61 +74,19 @@ impl JointRow {
         let degrees = format::whole(heat.map(|heat| i64::from(heat.raw())), 3);
         let unit = if rect.width() < READING { "°" } else { " °C" };
         let text = format!("{milliamps} {degrees}{unit}");
-        let is_odd = current.is_some_and(|current| current.documented().is_none())
-            || heat.is_some_and(|heat| heat.documented().is_none());
-        let live = if is_odd { palette.warn } else { palette.text };
+        let is_odd = current.is_some_and(|current| current.documented().is_none());
+        let live = match heat.map(|heat| heat.documented()) {
+            Some(Some(HOT..)) => palette.bad,
+            Some(None | Some(WARM..)) => palette.warn,
+            _ if is_odd => palette.warn,
+            _ => palette.text,
+        };
         let age = match heat_age {
             Freshness::Live => current_age,
             _ => heat_age,
         };
         let name = self.named(pane, main::NAME_DRIVE);
         let label = Label::new(&text, look.value(age, live)).named(&name);
-        label.font(font_in(rect)).right().put(ui, rect);
-        let current = current.and_then(|current| current.documented());
-        let level = current.map(|current| share(current.saturating_abs(), (0, CURRENT_END)));
-        let color = look.value(current_age, self.color);
-        bar(ui, part(rect, 0.18, 0.60), level, color);
-        let heat = heat.and_then(|heat| heat.documented());
-        let color = match heat {
-            Some(HOT..) => palette.bad,
-            Some(WARM..) => palette.warn,
-            _ => palette.ok,
-        };
-        let level = heat.map(|heat| share(heat.into(), HEAT));
-        bar(
-            ui,
-            part(rect, 0.68, 1.0),
-            level,
-            look.value(heat_age, color),
-        );
-    }
-}
-
-/// Where a value stands between two ends, 0..=1.
-fn share(value: i16, (low, high): (i16, i16)) -> f32 {
-    (f32::from(value - low) / f32::from(high - low)).clamp(0.0, 1.0)
-}
-
-/// The place of a bar below a part of a number, in shares of its width.
-fn part(rect: Rect, from: f32, to: f32) -> Rect {
-    let x = |part: f32| rect.left() + rect.width() * part;
-    let top = rect.center().y + 8.0;
-    Rect::from_min_max(pos2(x(from), top), pos2(x(to), top + 2.0))
-}
-
-/// A thin bar; an empty one where the value is not known.
-fn bar(ui: &Ui, rail: Rect, level: Option<f32>, color: Color32) {
-    let ground = ui.visuals().window_stroke.color;
-    ui.painter().rect_filled(rail, 1.0, ground);
-    if let Some(level) = level {
-        let filled = rail.with_max_x(rail.left() + rail.width() * level);
-        ui.painter().rect_filled(filled, 1.0, color);
-    }
-}
-
-fn font_in(rect: Rect) -> egui::FontId {
-    match rect.width() < READING {
-        true => theme::number_small(),
-        false => theme::number(),
+        label.number().right().put(ui, rect);
     }
 }

@@ -3,15 +3,15 @@
 use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::hand::{Dof, impact};
+use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::drive_lamp::DriveWords;
-use crate::ui::joints::drive_tiles;
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
 use crate::ui::kit::{self, Button, Label, Opens, Pane};
 use crate::ui::text::{faults, main};
 use crate::ui::theme;
-use egui::{Color32, CursorIcon, Frame, Margin, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, CursorIcon, Frame, Margin, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 /// How a row is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -95,19 +95,35 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     kit::right_ui(ui, |ui| {
         lock_ui(ui, pane, row);
         if !each {
-            let place = cell(ui, 104.0);
+            let place = cell(ui, 96.0);
             row.drive_reading_ui(ui, place, pane);
         }
         impact_ui(ui, pane, row);
-        drive_tiles::unseen_mark_ui(ui, pane, row.dof);
-        status_ui(ui, pane, row);
+        unseen_mark_ui(ui, pane, row.dof);
+        status_ui(ui, pane, row, each);
     });
 }
 
-/// Lamp and words of the drive; a click explains them.
-fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
+/// Lamp and words of the drive: a click explains them.
+fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     let rect = cell(ui, ui.available_width());
     let said = DriveWords::of(pane, row.dof);
+    explain_ui(ui, pane, row, (rect, &said));
+    let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
+    kit::lamp(ui, lamp, said.lamp);
+    let name = row.named(pane, main::STATUS);
+    let title = if each { &said.title } else { &said.short };
+    let label = Label::new(title, said.text).small().named(&name);
+    label.put(ui, rect.with_min_x(rect.left() + 17.0));
+}
+
+/// The place of a drive's words as a button that opens their explanation.
+pub(crate) fn explain_ui(
+    ui: &Ui,
+    pane: &mut Pane<'_>,
+    row: &JointRow,
+    (rect, said): (Rect, &DriveWords),
+) {
     let name = row.named(pane, faults::EXPLAIN);
     let response = ui.interact(rect, row.id("explain"), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
@@ -115,12 +131,6 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     if response.clicked() {
         pane.open(Opens::Drive(row.dof));
     }
-    let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
-    kit::lamp(ui, lamp, said.lamp);
-    let name = row.named(pane, main::STATUS);
-    let label = Label::new(&said.title, said.text).small().named(&name);
-    let place = rect.with_min_x(rect.left() + 17.0);
-    label.shorter(&said.short).put(ui, place);
     let tip = pane.look.tip(faults::EXPLAIN);
     let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
     response
@@ -136,8 +146,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     if is_gentle || pane.state.hand().runs_series() {
         return;
     }
-    let (sign, response) = ui.allocate_exact_size(vec2(16.0, 12.0), Sense::hover());
-    kit::warning_sign(ui, sign, pane.look.palette.warn);
+    let response = kit::warning_ui(ui, pane.look.palette.warn);
     let name = row.named(pane, main::NAME_IMPACT);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let (speed, force) = (joint.speed.get(), joint.force.get());

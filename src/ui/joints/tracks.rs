@@ -2,8 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::settings::AngleUnit;
-use crate::hand::{Angle, Dof, Force, HandCommand, PerDof, Speed, Target, impact};
-use crate::ui::joints::frame_menu::frame_menu_ui;
+use crate::hand::{Angle, Dof, Force, PerDof, Speed, impact};
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::track::{Actual, SlideTrack};
 use crate::ui::kit::{Label, NumberField, Pane};
@@ -21,8 +20,6 @@ struct TrackRow<'a> {
     id: Id,
     track: SlideTrack<'a>,
     scale: NumberScale,
-    /// What the control sends as it stands.
-    command: Option<HandCommand>,
     /// What stands after it in the row.
     after: f32,
 }
@@ -37,9 +34,6 @@ impl TrackRow<'_> {
         let width = ui.available_width() - theme::FIELD - theme::GAP - self.after;
         let place = cell(ui, width);
         let moved = self.track.put(ui, look, place, self.id);
-        if let Some(command) = &self.command {
-            frame_menu_ui(ui, pane, self.id, command);
-        }
         let (scale, tip) = (self.scale, look.say(main::NUMBER_TIP));
         let number = NumberField::new(self.number_name, tip, scale.low..=scale.high)
             .disabled(self.track.disabled)
@@ -71,11 +65,6 @@ impl JointRow {
                 ..SlideTrack::new(&name, Angle::MAX.get(), look.value(freshness, self.color))
             },
             scale: NumberScale::of_angle(pane.state.settings.angle_unit, self.dof),
-            command: joint.target.map(|target| {
-                let mut targets = PerDof::splat(Target::Leave);
-                targets[self.dof] = Target::Go(target);
-                HandCommand::Angles(targets)
-            }),
             after: READING + theme::GAP,
         };
         if let Some(value) = setting.ui(ui, pane) {
@@ -130,7 +119,6 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
         id: id_of(row, "force"),
         scale: NumberScale::whole(track.max),
         track,
-        command: Some(HandCommand::Forces(only(row, joints.map(|it| it.force)))),
         after: after(row),
     };
     if let Some(value) = setting.ui(ui, pane) {
@@ -161,7 +149,6 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
             ..SlideTrack::new(&name, Speed::MAX.get(), pane.look.palette.faint)
         },
         scale: NumberScale::whole(Speed::MAX.get()),
-        command: Some(HandCommand::Speeds(only(row, joints.map(|it| it.speed)))),
         after: after(row),
     };
     if let Some(value) = setting.ui(ui, pane) {
@@ -173,7 +160,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
 
 /// Force threshold and speed of all joints; what differs from joint to joint is not known here.
 pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let name = Label::said(pane.look, main::ALL_JOINTS);
+    let name = Label::said(pane.look, main::EVERY);
     ui.horizontal(|ui| {
         name.ui(ui);
         ui.columns(2, |columns| {
@@ -193,7 +180,7 @@ fn series(pane: &Pane<'_>) -> Option<&'static str> {
 }
 
 fn named(pane: &Pane<'_>, row: Option<&JointRow>, what: Text) -> String {
-    let all = pane.look.say(main::ALL_JOINTS);
+    let all = pane.look.say(main::EVERY);
     let name = row.map_or(all, |row| row.name);
     format!("{name} {}", pane.look.say(what))
 }
@@ -204,11 +191,6 @@ fn id_of(row: Option<&JointRow>, part: &'static str) -> Id {
 
 fn after(row: Option<&JointRow>) -> f32 {
     row.map_or(0.0, |_| READING + theme::GAP)
-}
-
-/// The values of one joint alone, or of all.
-fn only<T: Copy>(row: Option<&JointRow>, values: PerDof<T>) -> PerDof<Option<T>> {
-    PerDof::from_fn(|dof| row.is_none_or(|row| row.dof == dof).then_some(values[dof]))
 }
 
 /// The value of one joint, or the one that all joints share, if they do.

@@ -367,19 +367,19 @@ fn line_ui(ui: &mut Ui, look: Look, line: &CardLine) {
     match line {
         CardLine::Words(text) => words(ui, text, palette.text),
         CardLine::Note(text) => words(ui, text, palette.muted),
-        CardLine::Warning(text) => signed_ui(ui, |ui, sign| {
-            controls::warning_sign(ui, sign, palette.warn);
+        CardLine::Warning(text) => drop(ui.horizontal_top(|ui| {
+            controls::warning_ui(ui, palette.warn);
             words(ui, text, palette.warn);
-        }),
-        CardLine::Check(known, text) => signed_ui(ui, |ui, sign| {
+        })),
+        CardLine::Check(known, text) => drop(ui.horizontal_top(|ui| {
             let (lamp, color) = match known {
                 Some(true) => (palette.ok, palette.muted),
                 Some(false) => (palette.bad, palette.text),
                 None => (palette.faint, palette.text),
             };
-            controls::lamp(ui, sign.center(), lamp);
+            controls::lamp_ui(ui, Some(lamp));
             words(ui, text, color);
-        }),
+        })),
         CardLine::Head(cells) => {
             cells_ui(ui, cells, |text, _| Label::new(text, palette.muted).small())
         }
@@ -388,14 +388,6 @@ fn line_ui(ui: &mut Ui, look: Look, line: &CardLine) {
             None => Label::new(text, palette.muted),
         }),
     }
-}
-
-/// A line with a sign before it.
-fn signed_ui(ui: &mut Ui, line: impl FnOnce(&mut Ui, Rect)) {
-    ui.horizontal_top(|ui| {
-        let (_, sign) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-        line(ui, sign);
-    });
 }
 
 /// Cells in columns of one width, the numbers against the right edge; `label` gets a cell and, but for the first, the

@@ -24,7 +24,6 @@ pub(crate) struct Label<'a> {
     color: Color32,
     align: Align2,
     name: Option<&'a str>,
-    shorter: Option<&'a str>,
     wraps: bool,
 }
 
@@ -37,7 +36,6 @@ impl<'a> Label<'a> {
             color,
             align: Align2::LEFT_CENTER,
             name: None,
-            shorter: None,
             wraps: false,
         }
     }
@@ -91,12 +89,6 @@ impl<'a> Label<'a> {
         self
     }
 
-    /// What is drawn where there is no room for the whole text; the whole is told on demand.
-    pub(crate) fn shorter(mut self, text: &'a str) -> Self {
-        self.shorter = Some(text);
-        self
-    }
-
     /// Over as many lines as it needs.
     pub(crate) fn wrap(mut self) -> Self {
         self.wraps = true;
@@ -105,8 +97,7 @@ impl<'a> Label<'a> {
 
     /// Draws it where `ui` is.
     pub(crate) fn ui(self, ui: &mut Ui) -> Response {
-        let text = self.fitting(ui, ui.available_width());
-        let rich = RichText::new(text).font(self.font).color(self.color);
+        let rich = RichText::new(self.text).font(self.font).color(self.color);
         let label = egui::Label::new(rich);
         let response = ui.add(if self.wraps {
             label.wrap()
@@ -114,23 +105,10 @@ impl<'a> Label<'a> {
             label.truncate()
         });
         if let Some(name) = self.name {
-            ui.ctx().accesskit_node_builder(response.id, |node| {
-                node.set_label(name);
-            });
+            ui.ctx()
+                .accesskit_node_builder(response.id, |node| node.set_label(name));
         }
-        if text == self.text {
-            return response;
-        }
-        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
-        response.on_hover_text(self.text)
-    }
-
-    /// The text that is drawn in this much room.
-    fn fitting(&self, ui: &Ui, width: f32) -> &'a str {
-        match self.shorter {
-            Some(shorter) if text_width(ui, self.text, self.font.clone()) > width => shorter,
-            _ => self.text,
-        }
+        response
     }
 
     /// Draws it.
@@ -139,7 +117,6 @@ impl<'a> Label<'a> {
         let id = ui.next_auto_id();
         ui.skip_ahead_auto_ids(1);
         let mut response = ui.interact(rect, id, Sense::hover());
-        let drawn = self.fitting(ui, rect.width());
         let elided = self.paint(ui, rect);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
         if let Some(name) = self.name {
@@ -147,7 +124,7 @@ impl<'a> Label<'a> {
                 node.set_label(name);
             });
         }
-        if elided || drawn != self.text {
+        if elided {
             response = response.on_hover_text(self.text);
         }
         response
@@ -155,7 +132,7 @@ impl<'a> Label<'a> {
 
     /// Paints it and nothing else: no node, no tooltip. True if it was cut.
     pub(crate) fn paint(&self, ui: &Ui, rect: Rect) -> bool {
-        let text = self.fitting(ui, rect.width()).to_owned();
+        let text = self.text.to_owned();
         let mut job = LayoutJob::simple_singleline(text, self.font.clone(), self.color);
         job.wrap = TextWrapping::truncate_at_width(rect.width().max(0.0));
         let galley = ui.painter().layout_job(job);
@@ -614,6 +591,16 @@ pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
     went_down || response.clicked() && !by_pointer
 }
 
+/// The place of a lamp before a word, lit if it has a colour.
+pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> Pos2 {
+    let size = vec2(2.0 * theme::LAMP_AT, theme::TEXT_LINE);
+    let center = ui.allocate_space(size).1.center();
+    if let Some(color) = color {
+        lamp(ui, center, color);
+    }
+    center
+}
+
 /// A round lamp.
 pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
     let painter = ui.painter();
@@ -626,16 +613,18 @@ pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
 }
 
 /// A sign in the middle of a place.
-pub(crate) fn sign(ui: &Ui, rect: Rect, sign: Icon, color: Color32) {
+fn sign(ui: &Ui, rect: Rect, sign: Icon, color: Color32) {
     let center = Align2::CENTER_CENTER;
     ui.painter()
         .text(rect.center(), center, sign, theme::icon(), color);
 }
 
-/// A warning sign of the given height.
-pub(crate) fn warning_sign(ui: &Ui, rect: Rect, color: Color32) {
-    let font = theme::icon_high(rect.height());
-    let center = Align2::CENTER_CENTER;
+/// A warning sign before a word.
+pub(crate) fn warning_ui(ui: &mut Ui, color: Color32) -> Response {
+    let size = Vec2::splat(theme::SIGN_SMALL);
+    let (place, response) = ui.allocate_exact_size(size, Sense::hover());
+    let (font, center) = (theme::icon_high(size.y), Align2::CENTER_CENTER);
     ui.painter()
-        .text(rect.center(), center, theme::WARNING, font, color);
+        .text(place.center(), center, theme::WARNING, font, color);
+    response
 }

@@ -153,15 +153,11 @@ impl Pane<'_> {
     }
 }
 
-/// The one field that is being typed into. Nothing in it counts before Enter.
+/// The one field that is being typed into, or whose text was refused.
 #[derive(Debug, Default)]
 pub(crate) struct Typing {
-    /// The line of text that is typed into, and what stands in it.
-    pub(crate) written: Option<(Id, String)>,
-    /// Which field.
-    pub(crate) field: Option<Id>,
-    /// What was typed so far.
-    pub(crate) text: String,
-    /// The field whose text was refused at the last Enter.
-    pub(crate) refused: Option<Id>,
+    /// Which, and what was typed so far.
+    pub(crate) field: Option<(Id, String)>,
+    /// Why that was refused.
+    pub(crate) refused: Option<String>,
 }

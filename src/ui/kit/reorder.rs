@@ -1,28 +1,9 @@
-//! Things that a person puts in another order, by dragging one to the place of another or with Alt and the arrow keys.
+//! Things that a person puts in another order, by dragging one to the place of another.
 //! Knows nothing of what they are.
 
 use crate::ui::kit::look::Look;
 use crate::ui::theme;
-use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, Ui};
-
-/// To which side something moves in its row.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum ShiftDirection {
-    /// Towards the first.
-    Earlier,
-    /// Towards the last.
-    Later,
-}
-
-impl ShiftDirection {
-    /// The place beside this one.
-    pub(crate) const fn from(self, at: usize) -> usize {
-        match self {
-            Self::Earlier => at.saturating_sub(1),
-            Self::Later => at + 1,
-        }
-    }
-}
+use egui::{CursorIcon, Id, Key, Rect, Sense, Stroke, StrokeKind, Ui};
 
 /// What is dragged.
 #[derive(Debug, Default)]
@@ -65,21 +46,4 @@ impl Reorder {
             .rect_stroke(rect, round, stroke, StrokeKind::Outside);
         (released && from != at).then_some((from, at))
     }
-}
-
-/// Which way Alt and an arrow key move the thing that has the keyboard.
-pub(crate) fn keyed(ui: &Ui, response: &Response) -> Option<ShiftDirection> {
-    if !response.has_focus() {
-        return None;
-    }
-    ui.input_mut(|input| {
-        let mut pressed = |key| input.consume_key(Modifiers::ALT, key);
-        if pressed(Key::ArrowLeft) || pressed(Key::ArrowUp) {
-            Some(ShiftDirection::Earlier)
-        } else if pressed(Key::ArrowRight) || pressed(Key::ArrowDown) {
-            Some(ShiftDirection::Later)
-        } else {
-            None
-        }
-    })
 }

@@ -9,7 +9,7 @@ use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::params::danger::Danger;
 use crate::ui::kit::{Card, Choice, Look, Manner};
 use crate::ui::params::table::value_text;
-use crate::ui::text::{cards, device, words};
+use crate::ui::text::{cards, device, main, poses, tune, words};
 
 /// The card of what waits for a yes, if something does.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
@@ -46,7 +46,7 @@ fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
 fn changes(state: &State, look: Look, card: Card) -> Card {
     let book = &state.hand().params;
     let card = card.words(device::SAVE_CHANGES).head([
-        device::NAME,
+        poses::NAME,
         device::SAVE_FROM,
         device::LIVE,
         device::SAVE_TO,
@@ -82,10 +82,10 @@ pub(crate) fn dangers(look: Look, mut card: Card, dangers: &[Danger]) -> Card {
     }
     card = card.head([
         cards::JOINT,
-        device::DANGER_SPEED,
+        main::SPEED,
         device::DANGER_FORCE,
         device::DANGER_OVER,
-        device::DANGER_PEAK,
+        tune::COLUMN_PEAK,
     ]);
     card = dangers.iter().fold(card, row).note(device::DANGER_MEASURED);
     if dangers.iter().any(|danger| danger.is_beyond_measured()) {

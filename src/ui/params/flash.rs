@@ -7,7 +7,7 @@ use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
 use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
-use crate::ui::text::{cards, device, errors, notices};
+use crate::ui::text::{cards, device, errors, main, notices};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui};
 
@@ -96,7 +96,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
                 "confirmed" => look.say(device::BY_FRAME),
                 _ => look.say(device::BY_READING),
             };
-            let (saved, at) = (look.say(device::SAVED_ON), moment(&file.at));
+            let (saved, at) = (look.say(device::SAVED), moment(&file.at));
             (format!("{saved} {at} ({how})"), palette.text)
         }
     });
@@ -186,7 +186,7 @@ pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (cards::RESET_ENTRY, Action::FactoryReset),
         (cards::CALIBRATE_ENTRY, Action::CalibrateForce),
     ] {
-        let button = Button::said(look, text).disabled_if(!live, look.say(cards::NO_HAND));
+        let button = Button::said(look, text).disabled_if(!live, look.say(main::REFUSED_OFFLINE));
         button.sends(ui, pane, action);
     }
 }

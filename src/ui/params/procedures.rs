@@ -21,7 +21,7 @@ use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
 use crate::ui::params::choices::{asking, close, step};
 use crate::ui::params::table::value_text;
-use crate::ui::text::{Text, cards, device, errors};
+use crate::ui::text::{cards, device, errors, main};
 use std::path::Path;
 
 /// The word that a return to the factory's parameters wants typed, in every language.
@@ -34,15 +34,6 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
         Procedure::Place(run) => place_card(state, look, run),
         Procedure::Reset(run) => reset_card(state, look, run),
     })
-}
-
-/// The title as a question, and once it was answered.
-const fn titles(change: &PlaceChange) -> [Text; 2] {
-    match change.id {
-        ParamId::HandId => [cards::CHANGE_ID, cards::CHANGING_ID],
-        ParamId::IpAddress => [cards::CHANGE_IP, cards::CHANGING_IP],
-        _ => [cards::CHANGE_BAUD, cards::CHANGING_BAUD],
-    }
 }
 
 /// Nothing was written: why.
@@ -60,14 +51,12 @@ fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
 
 /// From which value to which.
 fn from_to(look: Look, change: &PlaceChange) -> String {
-    let name = match change.id {
-        ParamId::HandId => cards::FROM_TO_ID,
-        ParamId::IpAddress => cards::FROM_TO_IP,
-        _ => cards::FROM_TO_BAUD,
-    };
     let (from, to) = (change.before, change.wanted);
     let [from, to] = [from, to].map(|value| value_text(change.id, Some(value)));
-    format!("{}: {from} -> {to}", look.say(name))
+    look.pair(
+        look.say(device::name(change.id)),
+        &format!("{from} -> {to}"),
+    )
 }
 
 /// Where the hand is now, and where it will be if that is elsewhere.
@@ -81,7 +70,7 @@ fn now_and_then(card: Card, places: &PlacePair) -> Card {
 
 fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let (change, places) = (&run.change, &run.change.places);
-    let card = Card::new(look, titles(change)[0]).words(from_to(look, change));
+    let card = Card::new(look, cards::CHANGE_ASKED).words(from_to(look, change));
     let mut card = now_and_then(card, places);
     if change.id == ParamId::IpAddress {
         card = card.warning(cards::SAME_NETWORK);
@@ -97,13 +86,15 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
 fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let change = &run.change;
     let places = &change.places;
-    let card = Card::new(look, titles(change)[1]);
+    let card = Card::new(look, cards::CHANGING);
     match &run.stage {
         ProcedureStage::Asking => ask_change(state, look, run),
-        ProcedureStage::Over(Ok(report)) => change_over(card, places, report),
+        ProcedureStage::Over(Ok(report)) => change_over(look, card, places, report),
         ProcedureStage::Over(Err(error)) => not_begun(look, card, error),
         ProcedureStage::Doing(step, since) => match step {
-            PlaceStep::BackingUp | PlaceStep::BackedUp(..) => card.progress(0.1, cards::BACKING_UP),
+            PlaceStep::BackingUp | PlaceStep::BackedUp(..) => {
+                card.progress(0.1, device::BACKING_UP)
+            }
             PlaceStep::Looking(place) => {
                 card.progress(0.6, (cards::LOOKING, places.endpoint(*place)))
             }
@@ -114,7 +105,7 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
             PlaceStep::Returning => Card::new(look, cards::GOING_BACK).progress(0.9, String::new()),
             PlaceStep::Offering(_) => offer_card(look, run),
             PlaceStep::Saving(_) => {
-                Card::new(look, cards::OFFER_TITLE).progress(0.8, cards::SAVING)
+                Card::new(look, cards::OFFER_TITLE).progress(0.8, device::SAVING)
             }
         },
     }
@@ -128,7 +119,7 @@ fn keep_card(
 ) -> Card {
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
     let left = format!("{:.0} s", seconds.ceil());
-    let lost = (!state.hand().link.state.is_live()).then_some(cards::NO_HAND);
+    let lost = (!state.hand().link.state.is_live()).then_some(main::REFUSED_OFFLINE);
     let keep = step(cards::KEEP, Manner::Main, ProcedureAction::Keep);
     Card::new(look, cards::KEEP_TITLE)
         .words(from_to(look, change))
@@ -158,7 +149,7 @@ fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
         .choice(step(text, manner, ProcedureAction::Save))
 }
 
-fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
+fn change_over(look: Look, card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
     let now_at = (cards::NOW_AT, &places.old);
     let card = card.choice(close());
     match &report.end {
@@ -180,7 +171,7 @@ fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
             let card = both(ways(card, places).warning(cards::OVER_UNSEEN), places);
             let card = match saved {
                 Saved::Unknown { .. } => card,
-                saved => save_end(card, places, Some(saved)),
+                saved => save_end(look, card, places, Some(saved)),
             };
             backup(card, &report.backup)
         }
@@ -190,7 +181,7 @@ fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
         }
         PlaceEnd::Kept { at: place, saved } => {
             let card = card.words((cards::OVER_KEPT, places.endpoint(*place)));
-            let mut card = save_end(card, places, saved.as_ref());
+            let mut card = save_end(look, card, places, saved.as_ref());
             let is_saved = saved.as_ref().is_some_and(Saved::may_be_in_flash);
             if is_saved && places.new != places.old {
                 if *place == WhichPlace::Old {
@@ -204,18 +195,12 @@ fn change_over(card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
 }
 
 /// What is known of the flash after a change was kept.
-fn save_end(card: Card, places: &PlacePair, saved: Option<&Saved>) -> Card {
-    let said = match saved {
-        None => cards::OVER_UNSAVED,
-        Some(Saved::Confirmed) => cards::SAVED_OK,
-        Some(Saved::ReadBack) => cards::SAVED_READ,
-        Some(Saved::Failed { .. }) => cards::SAVED_FAILED,
-        Some(Saved::Refused { .. } | Saved::NotSent(_)) => cards::SAVED_NOT_SENT,
-        Some(Saved::Unknown { .. }) => {
-            return both(card.warning(cards::SAVED_UNKNOWN), places);
-        }
-    };
-    card.words(said)
+fn save_end(look: Look, card: Card, places: &PlacePair, saved: Option<&Saved>) -> Card {
+    match saved {
+        None => card.words(cards::OVER_UNSAVED),
+        Some(Saved::Unknown { .. }) => both(card.warning(cards::SAVED_UNKNOWN), places),
+        Some(saved) => card.words(device::saved(look, saved)),
+    }
 }
 
 /// Both places where the hand may be.
@@ -248,7 +233,7 @@ fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
             let card = now_and_then(card, places).typed(RESET_WORD);
             asking(state, card, (cards::RESET, Manner::Danger), None)
         }
-        ProcedureStage::Doing(ResetStep::BackingUp, _) => card.progress(0.1, cards::BACKING_UP),
+        ProcedureStage::Doing(ResetStep::BackingUp, _) => card.progress(0.1, device::BACKING_UP),
         ProcedureStage::Doing(ResetStep::Sending, _) => card.progress(0.4, cards::RESET_SENDING),
         ProcedureStage::Doing(ResetStep::Looking(place), _) => {
             card.progress(0.7, (cards::LOOKING, places.endpoint(*place)))

@@ -7,17 +7,15 @@ use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
-use crate::ui::text::{Text, device, panels};
+use crate::ui::text::{Text, device, panels, poses};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, Color32, Layout, RichText, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
-use std::net::Ipv4Addr;
 
 /// Characters of an address.
 const ADDRESS_MAX: usize = 15;
 /// Height of a row, and of one that has a button below its field.
 const ROW: f32 = 28.0;
-const ROW_HIGH: f32 = 62.0;
 /// Parts of the width for live, staged, saved and range; the name has the rest.
 const COLUMNS: [f32; 4] = [0.16, 0.23, 0.16, 0.16];
 /// Which rows are in a group, its title, and what they are.
@@ -82,7 +80,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
         table = table.column(Column::exact(width * part));
     }
     let heads = [
-        device::NAME,
+        poses::NAME,
         device::LIVE,
         device::STAGED,
         device::SAVED,
@@ -106,7 +104,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
                 Label::note(look, about).ui(ui);
             });
             for id in own {
-                let height = if id.is_place() { ROW_HIGH } else { ROW };
+                let height = if id.is_place() { 62.0 } else { ROW };
                 body.row(height, |row| row_ui(row, pane, id));
                 if has_trouble(pane, id) {
                     line_ui(&mut body, theme::LIST_LINE, |ui| verdict_ui(ui, pane, id));
@@ -218,25 +216,14 @@ pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
 
 /// A value, and beside or below it what is to be known of it.
 pub(crate) fn cell_ui(ui: &mut Ui, (name, value, color): (&str, &str, Color32), below: &str) {
-    let muted = ui.visuals().weak_text_color();
-    let fits = kit::text_width(ui, value, theme::number()) <= ui.available_width();
-    let label = Label::new(value, color).named(name);
-    let label = if fits { label.number() } else { label.small() };
-    if below.is_empty() {
-        label.ui(ui);
-        return;
-    }
-    let both =
-        kit::text_width(ui, value, theme::number()) + kit::text_width(ui, below, theme::small());
-    let add = |ui: &mut Ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
-        label.ui(ui);
-        Label::new(below, muted).small().ui(ui);
-    };
-    match both + theme::PAD <= ui.available_width() {
-        true => ui.horizontal_centered(add),
-        false => ui.vertical(add),
-    };
+        Label::new(value, color).number().named(name).ui(ui);
+        if !below.is_empty() {
+            let below = RichText::new(below).small().weak();
+            ui.add(egui::Label::new(below).extend());
+        }
+    });
 }
 
 fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
@@ -364,9 +351,10 @@ fn address_ui(
     let text = value.map_or_else(String::new, |value| value.to_string());
     let words = pane.look.say(panels::ADDRESS_WRONG);
     let field = TextField::new(name, ADDRESS_MAX).hint(format::UNKNOWN);
-    let field = field.check(|text| text.parse::<Ipv4Addr>().is_ok(), words);
-    let typed = field.ui(ui, pane, &text)?;
-    typed.parse().ok().map(Value::Address)
+    field.read_ui(ui, pane, &text, |text| {
+        let address = text.parse().ok().map(Value::Address);
+        address.ok_or_else(|| words.to_owned())
+    })
 }
 
 /// A row that says where the hand is found is not written from the table: it is changed under a card, with a way back.

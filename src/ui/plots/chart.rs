@@ -214,11 +214,7 @@ impl<'a> Chart<'a> {
             .add(mesh);
         if dense.is_empty() && sparse.is_empty() {
             let empty = Label::new(self.look.say(self.empty), self.look.palette.muted);
-            empty
-                .small()
-                .shorter(format::UNKNOWN)
-                .center()
-                .put(ui, frame);
+            empty.small().center().put(ui, frame);
         }
         view.traces = traces;
         let name = self.look.say(self.title);
@@ -229,12 +225,13 @@ impl<'a> Chart<'a> {
             .with_min_x(frame.left() - theme::PLOT_AXIS);
         let id = shown.response.id.with("values");
         let shown = ChartResponse {
-            inner: ui.interact(axis, id, Sense::DRAG),
+            inner: ui.interact(axis, id, Sense::click_and_drag()),
             response: shown.response,
             transform: shown.transform,
             hovered_plot_item: None,
         };
-        view.scales.act(ui, &shown.inner, self.title, scale);
+        let of = (self.title, scale);
+        view.scales.axis_ui(ui, &shown.inner, self.look, of);
         view.act(ui, &shown, self.title, bounds);
         shown
     }
@@ -296,13 +293,10 @@ impl<'a> Chart<'a> {
                     (is_fixed, panels::RANGE_FIXED, panels::RANGE.tip()),
                     (is_decimated, panels::DECIMATED, panels::DECIMATED.tip()),
                 ] {
-                    let width = kit::text_width(ui, look.say(text), theme::tiny());
+                    let width = kit::text_width(ui, look.say(text), theme::small());
                     if is_said && width <= ui.available_width() {
                         let label = Label::muted(look, text);
-                        label
-                            .font(theme::tiny())
-                            .ui(ui)
-                            .on_hover_text(look.say(tip));
+                        label.small().ui(ui).on_hover_text(look.say(tip));
                     }
                 }
             });
@@ -323,7 +317,7 @@ impl<'a> Chart<'a> {
                 .map(|reading| f64::from(reading.value));
             let value = value.map(|value| format!("{:.digits$}", value - curve.zero[1]));
             let text = value.unwrap_or_else(|| format::UNKNOWN.to_owned());
-            let format = TextFormat::simple(theme::number_small(), curve.stroke.color);
+            let format = TextFormat::simple(theme::number(), curve.stroke.color);
             job.append(&format!(" {text:>6}"), 0.0, format);
             texts.push(text);
         }
@@ -349,7 +343,7 @@ impl<'a> Chart<'a> {
             false => palette.muted,
         };
         let hints = |hints: AxisHints<'static>, color: Color32| {
-            let hints = hints.tick_label_font(theme::number_small());
+            let hints = hints.tick_label_font(theme::number());
             hints.tick_label_color(color).label_spacing(1.0..=2.0)
         };
         let values = hints(AxisHints::new_y(), color).min_thickness(theme::PLOT_AXIS);

@@ -82,7 +82,7 @@ impl Cursors {
             ui.painter()
                 .rect_filled(flag, theme::ROUND_SMALL, look.palette.accent);
             let label = Label::new(short, look.palette.on_accent).center();
-            label.font(theme::number_small()).paint(ui, flag);
+            label.number().paint(ui, flag);
             let pointer = response.interact_pointer_pos();
             if let Some(pointer) = pointer.filter(|_| response.dragged()) {
                 let to_s = lowest.transform.value_from_position(pointer).x;
@@ -113,7 +113,7 @@ impl Cursors {
                 .ui(ui, look)
                 .clicked();
             let apart = format!("B - A = {:.3} s", at[1] - at[0]);
-            let label = Label::new(&apart, look.palette.muted).font(theme::number_small());
+            let label = Label::new(&apart, look.palette.muted).number();
             label.named(look.say(panels::APART)).ui(ui);
             pressed
         });
@@ -127,7 +127,7 @@ impl Cursors {
                     Some(_) => look.palette.text,
                     None => look.palette.muted,
                 };
-                let label = Label::new(text, color).font(theme::number_small());
+                let label = Label::new(text, color).number();
                 label.named(name.unwrap_or(text)).ui(ui);
             });
         };

@@ -13,9 +13,6 @@ use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Color32, Popup, PopupCloseBehavior, Role, Ui, WidgetInfo};
 
-/// Rows that go to the clipboard at once: they are made into text within one frame.
-const COPY_ROWS_MAX: usize = 20_000;
-
 /// Title and switches.
 pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
@@ -50,7 +47,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         .icon(theme::MORE)
         .ui(ui, look);
     let menu = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let shown = menu.show(|ui| {
+    menu.show(|ui| {
         ui.label(look.say(panels::SHOWN));
         shown_ui(ui, pane);
         ui.separator();
@@ -70,9 +67,6 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         let hint = egui::RichText::new(look.say(panels::AREA_TIP));
         ui.label(hint.small().color(look.palette.muted));
     });
-    if shown.is_none() {
-        view.copied = None;
-    }
 }
 
 fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
@@ -98,25 +92,10 @@ fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let (from_s, to_s) = view.view.time.span();
-    let series = view.shown_series(pane);
-    let history = &pane.state.hand().history;
-    let fits = history.rows(&series, from_s, to_s) <= COPY_ROWS_MAX;
-    let copy = ui.add_enabled(fits, egui::Button::new(look.say(panels::COPY)));
-    let copy = copy.on_hover_text(look.tip(panels::COPY));
-    if copy
-        .on_disabled_hover_text(look.say(panels::COPY_LONG))
-        .clicked()
-    {
-        let table = history.table(&series, from_s, to_s);
-        ui.copy_text(table.csv());
-        view.copied = Some(table.rows());
-    }
-    if let Some(rows) = view.copied {
-        ui.label(look.told(panels::COPIED, rows));
-    }
     let save = entry_ui(ui, look, panels::SAVE_CSV).then(|| {
-        let table = history.table(&series, from_s, to_s);
-        Action::Save(Export::Plots(table))
+        let history = &pane.state.hand().history;
+        let series = view.shown_series(pane);
+        Action::Save(Export::Plots(history.table(&series, from_s, to_s)))
     });
     let picture = entry_ui(ui, look, panels::SAVE_PNG);
     let picture = picture.then(|| Action::SavePicture(view.pixels()));

@@ -15,15 +15,6 @@ pub(crate) struct LegendKey {
     pub(crate) style: LineStyle,
 }
 
-/// True if all of them have room in one row.
-pub(crate) fn fits(ui: &Ui, keys: &[LegendKey]) -> bool {
-    let widths = keys.iter().map(|key| {
-        let words = kit::text_width(ui, &key.words, theme::small());
-        words + theme::KEY_SIGN + 2.0 * theme::GAP
-    });
-    widths.sum::<f32>() <= ui.available_width()
-}
-
 /// Keys in one row, as many as it has room for, and how many more there are.
 pub(crate) fn legend_ui(ui: &mut Ui, look: Look, keys: &[LegendKey]) {
     ui.horizontal(|ui| {

@@ -64,7 +64,7 @@ pub(crate) fn told(look: Look, kind: &MarkKind) -> (String, Color32) {
         MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
         MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
         MarkKind::Gesture(number) => {
-            let text = look.told(panels::MARK_GESTURE, number);
+            let text = look.told(panels::GESTURE, number);
             return (text, palette.accent);
         }
         MarkKind::Note(words) => return (words.to_string(), palette.text),

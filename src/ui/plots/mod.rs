@@ -47,8 +47,6 @@ pub(crate) struct PlotView {
     pub(crate) large: bool,
     /// Width and height of the card in points, for a picture of it.
     size: (f32, f32),
-    /// Rows that were copied last, while the menu is open.
-    copied: Option<usize>,
     /// The hand that is shown.
     hand: Option<Endpoint>,
 }
@@ -177,12 +175,7 @@ impl PlotView {
             is_lowest: place.1,
             ..Chart::new(look, panel.title, place.0)
         };
-        let shown = chart.ui(ui, &mut self.view);
-        let scale = shown.transform.bounds().range_y().into_inner();
-        self.view
-            .scales
-            .ends_ui(&shown.inner, pane, panel.title, scale);
-        shown
+        chart.ui(ui, &mut self.view)
     }
 
     fn stroke(&self, look: Look, line: &PanelLine) -> Stroke {
@@ -216,8 +209,8 @@ impl PlotView {
     }
 }
 
-/// Height of each of so many plots.
-fn room(ui: &Ui, count: usize) -> f32 {
+/// Height of each of so many plots above their time axis.
+pub(crate) fn room(ui: &Ui, count: usize) -> f32 {
     let count = f32::from(u8::try_from(count).unwrap_or(u8::MAX));
     ((ui.available_height() - theme::PLOT_TIME_AXIS) / count).floor()
 }

@@ -10,8 +10,6 @@ use egui::{ScrollArea, Ui};
 
 /// Characters of a note in the list; the rest is in the tooltip.
 const SHOWN: usize = 28;
-/// About six notes; the others are scrolled to.
-const HEIGHT: f32 = 180.0;
 
 /// Draws the list, the newest first, if there are any. The moment that is to be shown, seconds.
 pub(crate) fn notes_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
@@ -30,7 +28,7 @@ pub(crate) fn notes_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
     let look = pane.look;
     ui.label(look.say(panels::NOTES));
     let mut asked = None;
-    let list = ScrollArea::vertical().id_salt("notes").max_height(HEIGHT);
+    let list = ScrollArea::vertical().id_salt("notes").max_height(180.0);
     list.show(ui, |ui| {
         for (mark, words) in notes {
             ui.horizontal(|ui| {

@@ -1,9 +1,9 @@
-//! Value scales: round by themselves, or as a person set them by dragging, by the wheel or by typing the ends.
+//! Value scales: round by themselves, or as a person set them by dragging or by the wheel.
 
-use crate::ui::kit::{NumberField, Pane};
+use crate::ui::kit::Look;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
-use egui::{CursorIcon, Popup, PopupCloseBehavior, Response, Role, Sense, Ui, WidgetInfo};
+use egui::{CursorIcon, Response, Role, Ui, WidgetInfo};
 use std::collections::BTreeMap;
 
 /// No end lies beyond: more than the counts of a fingertip.
@@ -104,11 +104,19 @@ impl Scales {
         self.0.remove(title.en);
     }
 
-    /// Drag moves, the wheel zooms around the pointer.
-    pub(crate) fn act(&mut self, ui: &Ui, axis: &Response, title: Text, (low, high): (f64, f64)) {
+    /// The numbers beside a plot: drag moves, the wheel zooms around the pointer, a double click fits the values again.
+    pub(crate) fn axis_ui(
+        &mut self,
+        ui: &Ui,
+        axis: &Response,
+        look: Look,
+        (title, (low, high)): (Text, (f64, f64)),
+    ) {
         let per_point = (high - low) / f64::from(axis.rect.height().max(1.0));
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);
-        if axis.dragged() && axis.drag_delta().y != 0.0 {
+        if axis.double_clicked() {
+            self.forget(title);
+        } else if axis.dragged() && axis.drag_delta().y != 0.0 {
             let by = f64::from(axis.drag_delta().y) * per_point;
             self.choose(title, low + by, high + by);
         } else if let Some(at) = axis.hover_pos().filter(|_| scroll != 0.0) {
@@ -120,71 +128,12 @@ impl Scales {
         if axis.hovered() {
             ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
         }
+        let name = look.pair(look.say(panels::RANGE), look.say(title));
+        axis.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+        ui.ctx().accesskit_node_builder(axis.id, |node| {
+            node.set_value(format!("{low} to {high}"));
+        });
     }
-
-    /// What the numbers beside a plot do beyond [`Self::act`]: pressed, they show the ends as fields; pressed twice,
-    /// they follow the values again.
-    pub(crate) fn ends_ui(
-        &mut self,
-        axis: &Response,
-        pane: &mut Pane<'_>,
-        title: Text,
-        (low, high): (f64, f64),
-    ) {
-        let look = pane.look;
-        let axis = axis.interact(Sense::click());
-        let name = format!("{}: {}", look.say(panels::RANGE), look.say(title));
-        axis.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-        let popup = Popup::from_toggle_button_response(&axis);
-        popup
-            .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
-            .show(|ui| {
-                ui.label(look.say(title));
-                if let Some(typed) = end_ui(ui, pane, (title, panels::RANGE_HIGH), high) {
-                    // An end that passes the other one takes it along.
-                    let low = if typed > low {
-                        low
-                    } else {
-                        typed - (high - low)
-                    };
-                    self.choose(title, low, typed);
-                }
-                if let Some(typed) = end_ui(ui, pane, (title, panels::RANGE_LOW), low) {
-                    let high = if typed < high {
-                        high
-                    } else {
-                        typed + (high - low)
-                    };
-                    self.choose(title, typed, high);
-                }
-                let automatic = ui.button(look.say(panels::RANGE_AUTO));
-                if automatic
-                    .on_hover_text(look.tip(panels::RANGE_AUTO))
-                    .clicked()
-                {
-                    self.forget(title);
-                    Popup::close_all(ui.ctx());
-                }
-            });
-        if axis.double_clicked() {
-            self.forget(title);
-            Popup::close_all(&axis.ctx);
-        }
-        axis.on_hover_text(look.tip(panels::RANGE));
-    }
-}
-
-fn end_ui(ui: &mut Ui, pane: &mut Pane<'_>, (title, end): (Text, Text), value: f64) -> Option<f64> {
-    let look = pane.look;
-    let name = format!("{}: {}", look.say(end), look.say(title));
-    let row = ui.horizontal(|ui| {
-        let tip = look.say(panels::RANGE_END_TIP);
-        let field = NumberField::new(&name, tip, -MOST..=MOST).decimals(2);
-        let typed = ui.scope(|ui| field.ui(ui, pane, Some(value))).inner;
-        ui.label(look.say(end));
-        typed
-    });
-    row.inner
 }
 
 #[cfg(test)]

@@ -5,10 +5,9 @@ use crate::hand::{Angle, Dof, Force, Speed};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{LibraryPose, NAME_CHARS_MAX};
 use crate::ui::hand::panel;
-use crate::ui::kit::reorder::ShiftDirection;
 use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
 use crate::ui::poses::tiles::{go_ui, shares};
-use crate::ui::text::{Text, poses, words};
+use crate::ui::text::{Text, poses, tune, words};
 use crate::ui::theme;
 use egui::{Color32, Layout, ScrollArea, Ui, vec2};
 
@@ -51,12 +50,14 @@ fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
 fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let tags = pose.tags.join(", ");
-    let name = TextField::new(look.say(poses::NAME), NAME_CHARS_MAX);
-    let words = TextField::new(look.say(poses::TAGS), TAGS_MAX).hint(look.tip(poses::TAGS));
     let rename: fn(String) -> PoseEdit = PoseEdit::Rename;
-    for (field, value, edit) in [(name, &pose.name, rename), (words, &tags, PoseEdit::Tags)] {
+    for (caption, max, value, edit) in [
+        (poses::NAME, NAME_CHARS_MAX, &pose.name, rename),
+        (tune::TAGS, TAGS_MAX, &tags, PoseEdit::Tags),
+    ] {
         ui.horizontal(|ui| {
-            caption_ui(ui, field.name, look.palette.muted);
+            caption_ui(ui, look.say(caption), look.palette.muted);
+            let field = TextField::new(look.say(caption), max).hint(look.tip(caption));
             if let Some(text) = field.ui(ui, pane, value) {
                 change(pane, pose, edit(text));
             }
@@ -113,8 +114,7 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let unknown = pane.state.hand().pose_now().is_none();
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
     let at = pane.state.poses.library.place(pose.id).unwrap_or_default();
-    let [earlier, later] = [ShiftDirection::Earlier, ShiftDirection::Later]
-        .map(|way| edit(PoseEdit::Move(way.from(at))));
+    let [earlier, later] = [at.saturating_sub(1), at + 1].map(|to| edit(PoseEdit::Move(to)));
     let (copy, delete) = (edit(PoseEdit::Duplicate), edit(PoseEdit::Delete));
     let again = Action::Recapture(pose.id);
     let [left, right] = [

@@ -5,7 +5,7 @@ use crate::app::action::Action;
 use crate::hand::{Gesture, GestureRoute};
 use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight};
 use crate::ui::poses::tiles::gesture_ui;
-use crate::ui::text::{panels, poses};
+use crate::ui::text::{cards, panels, poses};
 use egui::{CollapsingHeader, Grid, ScrollArea, Ui};
 
 /// Characters that a name may have.
@@ -55,7 +55,7 @@ impl GestureView {
     fn naming_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
         let (text, weight) = match self.naming {
-            true => (panels::GESTURE_NAME_DONE, Weight::Strong),
+            true => (cards::CLOSE, Weight::Strong),
             false => (panels::GESTURE_NAME_EDIT, Weight::Normal),
         };
         let tip = look.tip(panels::GESTURE_NAME_EDIT);

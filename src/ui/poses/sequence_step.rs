@@ -5,12 +5,11 @@ use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
-use crate::ui::kit::reorder::{self, ShiftDirection};
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
-use crate::ui::text::{Text, poses};
+use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
-use egui::{Align, CursorIcon, Id, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, CursorIcon, Layout, Ui, UiBuilder, vec2};
 
 /// Height of a row.
 pub(crate) const ROW: f32 = 44.0;
@@ -56,8 +55,7 @@ pub(crate) fn step_ui(
     let ui = &mut ui;
     ui.spacing_mut().item_spacing.x = theme::STEP;
     ui.set_min_height(ui.available_height());
-    let [earlier, later] = [ShiftDirection::Earlier, ShiftDirection::Later]
-        .map(|way| SequenceEdit::Move(at, way.from(at)));
+    let [earlier, later] = [at.saturating_sub(1), at + 1].map(|to| SequenceEdit::Move(at, to));
     for (icon, caption, tip, edit) in [
         (
             theme::CLOSE,
@@ -79,31 +77,20 @@ pub(crate) fn step_ui(
         kit::left_ui(ui, |ui| {
             let (_, picture) = ui.allocate_space(vec2(36.0, 36.0));
             panel::pose_ui(ui, look, picture, &shares(&pose.angles));
-            handle_ui(ui, pane, sequence, (at, &pose.name));
+            handle_ui(ui, look, (at, &pose.name));
         });
     }
 }
 
 /// The part of a row that takes the keyboard and the pointer for putting the step elsewhere.
-fn handle_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, (at, name): (usize, &str)) {
-    let look = pane.look;
-    let id = |at: usize| Id::unique((sequence.id, at, "handle"));
+fn handle_ui(ui: &mut Ui, look: Look, (at, name): (usize, &str)) {
     let label = format!("{} {}: {name}", look.say(poses::STEP_NAME), at + 1);
     let text = format!("{}  {name}", at + 1);
-    let (_, rect) = ui.allocate_space(ui.available_size());
+    let (id, rect) = ui.allocate_space(ui.available_size());
     let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
-    let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id(at));
+    let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id);
     let words = rect.shrink2(vec2(theme::STEP, 0.0));
     Label::new(&text, look.palette.text).paint(ui, words);
-    if response.clicked() {
-        response.request_focus();
-    }
-    if let Some(way) = reorder::keyed(ui, &response) {
-        let to = way.from(at).min(sequence.steps.len().saturating_sub(1));
-        // The keyboard goes with the step.
-        ui.memory_mut(|memory| memory.request_focus(id(to)));
-        change(pane, sequence, SequenceEdit::Move(at, to));
-    }
     response.on_hover_cursor(CursorIcon::Grab);
 }
 
@@ -132,7 +119,7 @@ fn numbers_ui(
     let limit = number(pane, poses::LIMIT, poses::LIMIT.tip(), millis(step.limit));
     let dwell = number(pane, poses::DWELL, poses::DWELL.tip(), millis(step.dwell));
     let now = (f64::from(step.speed.get()), 1000.0);
-    let speed = number(pane, poses::STEP_SPEED, poses::SPEED.tip(), now);
+    let speed = number(pane, main::NAME_SPEED, poses::SPEED.tip(), now);
     let time = |typed: i64| Millis::try_from(typed).ok();
     let new = SequenceStep {
         limit: limit.and_then(time).unwrap_or(step.limit),

@@ -1,17 +1,17 @@
-//! Sequences: a timeline of poses, the dry run on the drawn hand, and the real one. Every change and start is an action.
+//! Sequences: their steps, the dry run on the drawn hand, and the real one. Every change and start is an action.
 
 use crate::app::action::Action;
 use crate::app::hand::Play;
 use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
-use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId, SequenceStep};
+use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
 use crate::poses::player::{PlayEnd, PlayPhase};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
-use crate::ui::poses::sequence_step::{ROW, change, step_now, step_ui};
+use crate::ui::poses::sequence_step::{ROW, change, step_ui};
 use crate::ui::text::poses;
 use crate::ui::theme;
-use egui::{Align, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
+use egui::{Align, Layout, Panel, ScrollArea, Ui, UiBuilder, vec2};
 use std::time::Duration;
 
 /// Time between two pictures of a dry run while nothing else is new.
@@ -80,7 +80,6 @@ impl SequenceView {
 
     fn sequence_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
         ui.horizontal(|ui| kit::right_ui(ui, |ui| head_ui(ui, pane, sequence)));
-        timeline_ui(ui, pane, sequence);
         picture_ui(ui, pane, sequence);
         let foot = theme::CONTROL + theme::CONTROL_LARGE + 4.0 * theme::STEP;
         let most = ui.available_height() - foot;
@@ -159,33 +158,6 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
     }
 }
 
-/// One piece for each step, as long as it stays there, the one of now lit.
-fn timeline_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
-    let palette = pane.look.palette;
-    let (_, rect) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
-    let now = step_now(pane, sequence);
-    // A step without dwell is still seen; its way takes time as well.
-    let length = |step: &SequenceStep| Duration::from_millis(600 + u64::from(step.dwell.get()));
-    let whole: Duration = sequence.steps.iter().map(length).sum();
-    let mut x = rect.left();
-    for (at, step) in sequence.steps.iter().enumerate() {
-        let width = rect.width() * length(step).div_duration_f32(whole);
-        let piece = Rect::from_min_size(pos2(x, rect.top()), vec2(width, rect.height()));
-        let inner = piece.shrink2(vec2(1.0, 0.0));
-        let (fill, color) = match now == Some(at) {
-            true => (palette.accent, palette.on_accent),
-            false => (palette.control, palette.muted),
-        };
-        ui.painter().rect_filled(inner, theme::ROUND_SMALL, fill);
-        let pose = pane.state.poses.library.pose(step.pose);
-        let name = pose.map_or("", |pose| pose.name.as_str());
-        let text = format!("{} {name}", at + 1);
-        let label = Label::new(&text, color).small().center();
-        label.paint(ui, inner.shrink2(vec2(theme::STEP, 0.0)));
-        x += width;
-    }
-}
-
 fn picture_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
     let (look, state) = (pane.look, pane.state);
     let preview = state.poses.preview.as_ref();
@@ -249,7 +221,10 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let paused = own.is_some_and(|run| run.is_paused());
     let preview = pane.state.poses.preview.as_ref();
     let dry = preview.is_some_and(|preview| preview.sequence == id);
-    let empty = sequence.steps.is_empty().then(|| look.say(poses::NO_STEPS));
+    let empty = sequence
+        .steps
+        .is_empty()
+        .then(|| look.say(poses::STEPS_EMPTY));
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
     let cannot = empty.or(pane.unready());
     let go_on = match paused {

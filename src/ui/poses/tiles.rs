@@ -2,10 +2,9 @@
 
 use crate::app::action::Action;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
-use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::LibraryPose;
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, reorder};
+use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight};
 use crate::ui::text::{main, panels, poses};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -67,16 +66,6 @@ pub(crate) fn tile_ui(
     let (_, top) = ui.allocate_space(vec2(rect.width(), high));
     let id = Id::unique(("pose", pose.id));
     let response = button.ground(&mut ui, look, top, id);
-    if response.clicked() {
-        // So that Alt and the arrow keys move it from here.
-        response.request_focus();
-    }
-    if let Some(way) = reorder::keyed(&ui, &response)
-        && let Some(at) = pane.state.poses.library.place(pose.id)
-    {
-        let edit = LibraryEdit::Pose(pose.id, PoseEdit::Move(way.from(at)));
-        pane.actions.push(Action::Library(edit));
-    }
     let (picture, words) = top.split_top_bottom_at_y(top.bottom() - 36.0);
     panel::pose_ui(
         &ui,

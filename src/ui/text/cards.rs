@@ -7,20 +7,11 @@ texts! {
     CANCEL: "Cancel", "取消", "Closes this card. Nothing is written.", "关闭此卡片，不写入任何内容。";
     CLOSE: "Done", "完成", "Closes this card.", "关闭此卡片。";
     TYPE: "To go on, type", "要继续，请输入";
-    NO_HAND: "No hand answers.", "没有灵巧手应答。";
     BACKUP: "Backup:", "备份：";
-    BACKING_UP: "Keeping a backup of what the hand holds", "正在备份灵巧手的参数";
     NO_BACKUP: "No backup could be made, and nothing was written.", "无法备份，未写入任何内容。";
 
-    CHANGE_ID: "Change the id of the hand?", "更改灵巧手的 ID？";
-    CHANGE_BAUD: "Change the serial speed of the hand?", "更改灵巧手的波特率？";
-    CHANGE_IP: "Change the IP address of the hand?", "更改灵巧手的 IP 地址？";
-    CHANGING_ID: "Change of the hand's id", "灵巧手 ID 的更改";
-    CHANGING_BAUD: "Change of the hand's serial speed", "灵巧手波特率的更改";
-    CHANGING_IP: "Change of the hand's IP address", "灵巧手 IP 地址的更改";
-    FROM_TO_ID: "Id", "ID";
-    FROM_TO_BAUD: "Serial speed, baud", "波特率";
-    FROM_TO_IP: "IP address", "IP 地址";
+    CHANGE_ASKED: "Change where the hand is found?", "更改灵巧手的通信地址？";
+    CHANGING: "Change of where the hand is found", "灵巧手通信地址的更改";
     NOW_AT: "Now at", "当前通信地址";
     THEN_AT: "Then at", "更改后通信地址";
     FOLLOWED: "A backup is kept first. Nothing is written if another hand answers at the new place. After the write the hand is looked for there, and unless you keep it within 15 s it goes back.", "先备份。若新位置已有其他灵巧手应答，则不写入。写入后到新位置寻找灵巧手；15 秒内不确认保留，就自动恢复。";
@@ -40,7 +31,6 @@ texts! {
     OFFER_ALL: "SAVE writes everything that the hand holds, these defaults too:", "保存会写入灵巧手的全部参数，包括以下默认值：";
     UNSAVED: "Until power off", "断电前有效", "Writes nothing into flash.", "不写入闪存。";
     SAVE: "Save", "保存", "Writes all parameters of the hand into its flash.", "把灵巧手的全部参数写入闪存。";
-    SAVING: "The hand writes its flash", "灵巧手正在写入闪存";
     GOING_BACK: "Going back", "正在恢复";
     OVER_OCCUPIED: "Another hand answers there. Nothing was written.", "另一只灵巧手已在该位置应答，未写入任何内容。";
     OVER_NOT_WRITTEN: "The hand was not reached. Nothing was written.", "未能联系灵巧手，未写入任何内容。";
@@ -53,11 +43,7 @@ texts! {
     OVER_NOWHERE: "No hand answers at either place. Nothing is in flash: switch the hand off and on, and it is found at the former place again. If not, look for it in the Connection view.", "两个位置都没有应答。未写入闪存：请断电再上电，灵巧手会回到原位置。若仍找不到，请在连接视图中扫描。";
     OVER_UNSEEN: "SAVE was sent, and no hand answers at either place. Switch it off and on: then it is at one of these places:", "已发送保存，两个位置都没有应答。请断电再上电，灵巧手在以下位置之一：";
     OVER_WAITS: "Switch the hand off and on; then it is found here:", "请断电再上电，之后灵巧手在：";
-    SAVED_OK: "The hand says that it is in flash.", "灵巧手确认已写入闪存。";
-    SAVED_READ: "The hand took SAVE and its parameters read the same. Only the next power-up shows what is in flash.", "灵巧手接受了保存，参数读回一致。是否写入闪存，下次上电才能确认。";
-    SAVED_FAILED: "The hand says that nothing was written to flash.", "灵巧手报告未写入闪存。";
     SAVED_UNKNOWN: "It is not known whether it is in flash. Switched off and on the hand is at one of these places:", "不确定是否已写入闪存。断电再上电后，灵巧手在以下位置之一：";
-    SAVED_NOT_SENT: "SAVE was not sent, or the hand refused it: it is not in flash.", "未发送保存或被拒绝：未写入闪存。";
     TO_OLD: "Connect: former place", "连接原位置", "Connects there. Nothing is written.", "连接到该位置，不写入任何内容。";
     TO_NEW: "Connect: new place", "连接新位置", "Connects there. Nothing is written.", "连接到该位置，不写入任何内容。";
 

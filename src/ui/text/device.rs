@@ -7,7 +7,7 @@ use crate::params::rows::ParamId;
 use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
 use crate::ui::kit::Look;
 use crate::ui::text::phrase::{Text, texts};
-use crate::ui::text::{errors, words};
+use crate::ui::text::{errors, main, words};
 
 texts! {
 
@@ -27,7 +27,6 @@ texts! {
 
     CHANGE_SIM: "The simulated hand is always found here.", "仿真手总在此处。";
 
-    NAME: "Name", "名称";
     LIVE: "Live", "实际值";
     STAGED: "Staged", "暂存值", "What this row is to hold once it is applied. Enter stages it; nothing is written by typing.", "应用后此行的值。按回车暂存，输入时不写入任何内容。";
     SAVED: "Last saved", "上次保存";
@@ -72,21 +71,17 @@ texts! {
     WANTED: "wanted", "期望";
     DOUBT_NOT_READ: "it could not be read back", "无法读回";
     DOUBT_AMBIGUOUS: "a late answer could be mistaken for it", "可能与迟到的应答混淆";
-    DOUBT_LINK: "the link was lost", "连接断开";
     TOO_SOON: "The last SAVE was just now: wait", "刚刚保存过：请等待";
 
     DANGER_APPLY: "Apply defaults that hit hard?", "应用会造成冲击的默认值？";
     DANGER_SAVE: "Save defaults that hit hard?", "保存会造成冲击的默认值？";
     DANGER_LATE: "A drive stops late: closing at this speed, the finger presses far beyond its force threshold before it stops. Once in flash, the hand wakes up like this every time.", "电机停止有滞后：以此速度合拢时，手指会远超力阈值才停下。写入闪存后，灵巧手每次上电都将如此。";
     DANGER_RATED: "Above the rated grip of 2000 g:", "高于额定抓握力 2000 g：";
-    DANGER_SPEED: "Speed", "速度";
     DANGER_FORCE: "Threshold, g", "阈值 g";
     DANGER_OVER: "Overshoot, g", "超出 g";
-    DANGER_PEAK: "Peak, g", "峰值 g";
     DANGER_MEASURED: "Measured on one hand of the family: index finger on a rigid block, median of the peaks. Soft objects are pressed less.", "在同系列一只手上实测：食指接触刚性物体，取峰值的中位数。柔软物体受力较小。";
     DANGER_BEYOND: "Thresholds above 1000 g were not measured: the figure of 1000 g stands for them.", "1000 g 以上的阈值没有实测，按 1000 g 的数据给出。";
     DANGER_SLOWLY: "With speed 25 the same thresholds were passed by at most", "速度为 25 时，同样的阈值最多超出";
-    SPEED: "speed", "速度";
     FORCE: "force", "力";
     AGREE_APPLY: "Apply anyway", "仍然应用", "Goes on with what is listed here.", "按所列内容继续。";
     AGREE_SAVE: "Save anyway", "仍然保存", "Goes on with what is listed here.", "按所列内容继续。";
@@ -105,7 +100,6 @@ texts! {
     AGREE: "Save", "保存", "Goes on with what is listed here.", "按所列内容继续。";
     AGREE_APPLY_SAVE: "Apply and save", "应用并保存", "Goes on with what is listed here.", "按所列内容继续。";
     NEVER_SAVED: "This program saved nothing on this hand yet.", "本程序尚未在此灵巧手上保存过。";
-    SAVED_ON: "Last saved", "上次保存";
     BY_FRAME: "confirmed by the hand", "灵巧手已确认";
     BY_READING: "read back the same", "读回一致";
     DOUBTFUL: "Of a later SAVE it is not known what came:", "之后有一次保存结果未知：";
@@ -185,7 +179,7 @@ pub(crate) const fn name(id: ParamId) -> Text {
 pub(crate) fn whole_name(look: Look, id: ParamId) -> String {
     let own = look.say(name(id));
     match id {
-        ParamId::DefaultSpeed(_) => format!("{own} {}", look.say(SPEED)),
+        ParamId::DefaultSpeed(_) => format!("{own} {}", look.say(main::NAME_SPEED)),
         ParamId::DefaultForce(_) => format!("{own} {}", look.say(FORCE)),
         _ => own.to_owned(),
     }
@@ -220,7 +214,7 @@ pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
             let why = match doubt {
                 Doubt::NotReadBack => DOUBT_NOT_READ,
                 Doubt::Ambiguous => DOUBT_AMBIGUOUS,
-                Doubt::LinkLost => DOUBT_LINK,
+                Doubt::LinkLost => SAVE_LINK,
             };
             format!("{}: {}", say(UNVERIFIED), say(why))
         }
@@ -268,7 +262,7 @@ pub(crate) const fn is_saved(end: &SaveEnd) -> bool {
     matches!(end, SaveEnd::Told(Saved::Confirmed | Saved::ReadBack))
 }
 
-fn saved(look: Look, saved: &Saved) -> String {
+pub(crate) fn saved(look: Look, saved: &Saved) -> String {
     let say = |text| look.say(text);
     match saved {
         Saved::Confirmed => say(SAVE_CONFIRMED).into(),

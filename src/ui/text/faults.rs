@@ -3,7 +3,6 @@
 use crate::ui::text::phrase::texts;
 
 texts! {
-    DRIVE: "Drive", "驱动器", "Shows what this drive says, and its faults first.", "查看该驱动器的状态说明，并把其故障排在最前。";
     EXPLAIN: "status, explained", "状态说明", "Click: what this means and what to do.", "点击：查看含义与处理建议。";
     SAYS_NOW: "says now", "当前状态";
     SAID_LAST: "said last", "上次状态";
@@ -14,11 +13,9 @@ texts! {
     OVER_UNSEEN: "over, not seen yet", "已结束，未查看";
     OVER: "over", "已结束";
     WHEN_READ: "when last read", "上次读取时";
-    BEGAN: "Began", "开始于";
-    AGO: "ago", "前";
+    BEGAN: "Began {} ago", "{}前开始";
     LASTED: "lasted", "持续";
-    TIMES: "times", "次";
-    CAME: "came", "共";
+    CAME: "came {} times", "共 {} 次";
     SEEN: "Seen", "已看", "You have seen this fault. It stays in the list until it is forgotten, and is unseen again if it comes again.", "表示已查看该故障。它仍留在列表中；再次出现时会重新标为未查看。";
     SEEN_ALL: "All seen", "全部已看", "You have seen all faults of the list.", "表示已查看列表中的全部故障。";
     SEEN_NONE: "Every fault was seen.", "没有未查看的故障。";
@@ -26,14 +23,9 @@ texts! {
     UNSEEN: "unseen", "项未查看", "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
     UNSEEN_MARK: "unseen fault", "未查看的故障";
 
-    CLEAR_HELPS: "Clear errors can end it.", "可用“清除错误”结束。";
-    CLEAR_CANNOT: "Clear errors cannot end it: it ends by itself when the drive is cool.", "不可清除：温度回落后自动结束。";
-    CLEAR_UNSAID: "The manual does not say whether clear errors ends it.", "手册没有说明能否清除。";
-    CLEAR_FOLLOWS: "It follows from the drive's faults and from the next command.", "随该驱动器的故障与下一条指令而变。";
     CLEAR_NO_FAULT: "Nothing is wrong that could be cleared.", "没有可清除的故障。";
     CLEAR_ONLY_HEAT: "Only over-temperature is left: it cannot be cleared and ends when the drive is cool.", "仅剩过温故障：不可清除，温度回落后自动结束。";
     CLEAR_UNREAD: "Faults were not read yet.", "尚未读取故障。";
-    WARMTH: "Temperature now", "当前温度";
 
     MEANINGS: "What the words mean", "术语说明";
     MEANINGS_STATUS: "What a drive says it does", "驱动器状态";
@@ -43,11 +35,8 @@ texts! {
     LOG_NONE: "Nothing has happened yet.", "还没有消息。";
     LOG_NONE_PASS: "No message passes the filter.", "没有符合条件的消息。";
     LOG_LOST: "older messages were dropped:", "已丢弃的较早消息：";
-    LOG_FILTER: "Filter messages", "筛选消息", "words", "关键词";
-    LEVEL: "Level", "级别", "Shows messages of this level and above.", "显示此级别及以上的消息。";
-    LEVEL_ALL: "All", "全部";
-    LEVEL_WARN: "Warnings", "警告";
-    LEVEL_ALARM: "Alarms", "报警";
+    LOG_MORE: "Older messages are found by their words, and copied with the rest.", "较早的消息可按关键词查找，复制时一并包含。";
+    LOG_FILTER: "Filter messages", "筛选消息", "words, or info, warning, alarm", "关键词，或：信息、警告、报警";
     WORD_INFO: "info", "信息";
     WORD_WARN: "warning", "警告";
     WORD_ALARM: "alarm", "报警";
@@ -72,15 +61,11 @@ texts! {
     RECORDING_EVENTS: "What happened", "事件";
     RECORDING_EVENTS_LOST: "Events that were not kept:", "未保留的事件：";
     RECORDING_FAULT: "fault", "故障";
-    LANES: "Status of the drives", "驱动器状态";
 
     ACT_DISARM: "Disarmed", "取消使能";
     ACT_TARGET: "target", "目标";
     ACT_FORCE: "threshold, g", "力阈值 g";
-    ACT_SPEED: "speed", "速度";
-    ACT_ALL: "All", "全部";
     ACT_LOCK: "locked", "已锁定";
     ACT_UNLOCK: "unlocked", "已解锁";
-    ACT_SEQUENCE: "Sequence", "序列";
     NO_FAULT_BITS: "no fault", "无故障";
 }

@@ -3,17 +3,14 @@
 use crate::ui::text::phrase::texts;
 
 texts! {
-    TITLE: "Keys", "快捷键";
     BUTTON: "Keys", "快捷键", "Shows what each key does.", "显示各个按键的作用。";
     CLOSE: "Close the list of keys", "关闭快捷键列表";
-    SHUT: "Close", "关闭";
     STOP: "STOP, from everywhere", "停止（任何时候）";
     ARM: "Arm or disarm", "使能或取消使能";
     LINK: "Link the fingers", "四指联动";
     UNIT: "Unit of angles", "角度单位";
     UNDO_TARE: "Take taring back", "撤销去皮";
     NOTE: "Write a note", "写备注";
-    PAUSE: "Pause the plots", "暂停曲线";
     LANGUAGE: "English or Chinese", "中文或英文";
     THEME: "Dark or light", "深色或浅色";
     LIST: "This list", "本列表";

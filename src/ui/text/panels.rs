@@ -28,15 +28,13 @@ texts! {
     MARK_STOP_NOT_SENT: "Stop not sent", "停止未发出";
     MARK_FAULT: "Fault", "故障";
     MARK_RECONNECT: "Reconnected", "重新连接";
-    MARK_GESTURE: "Gesture", "手势";
     MARK_LOST: "Link lost", "断开";
     MARK_ARMED: "Armed", "使能";
     MARK_HELD: "At rest", "静止";
 
     TOUCH: "Fingertips", "指尖触觉", "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
-    TOUCH_SCALE: "Heat: counts above zero", "热度：相对零点的增量";
-    TOUCH_NO_ZERO: "No zero yet: let go of the fingertips", "尚无零点：请松开指尖";
-    TOUCH_SCALE_SHORT: "Heat", "热度";
+    TOUCH_SCALE: "Heat", "热度";
+    TOUCH_NO_ZERO: "No zero", "无零点", "No zero yet: let go of the fingertips.", "尚无零点：请松开指尖。";
     TOUCH_NORMAL: "Normal", "法向";
     TOUCH_SHEAR: "Tangential", "切向";
     TOUCH_DIRECTION: "Direction", "方向";
@@ -62,7 +60,6 @@ texts! {
     TARE_ONE: "Tare", "去皮", "Counts the channels of the chosen fingertip from now on.", "所选指尖的通道从当前读数起算。";
     TARE_UNDO: "Undo", "撤销", "Takes the last taring back.", "撤销最近一次去皮。";
     TARE_NOTHING: "Nothing was tared.", "还没有去皮。";
-    TARE_OFFLINE: "No live hand.", "没有在线的手。";
     TIP: "Fingertip", "指尖";
     TIP_UP: "tip", "指尖";
     TIP_NORMAL: "Normal", "法向力";
@@ -72,13 +69,11 @@ texts! {
     TIP_FRICTION: "Friction", "摩擦系数", "Friction between fingertip and object, from 0.01 to 1.5. The program cannot know it: choose it for your object. The ring shows it.", "指尖与物体间的摩擦系数，0.01 到 1.5。程序无法得知，请按物体选择；圆环表示该值。";
     TIP_FRICTION_NAME: "Friction, percent", "摩擦系数，百分比";
 
-    FAULTS: "Faults", "故障";
     FAULTS_NONE: "No faults", "没有故障";
     FAULTS_NONE_HINT: "Faults appear here with their cause and what to do.", "出现故障时，这里会列出原因与处理建议。";
     FAULTS_NONE_OLD: "No faults when last read", "上次读取时没有故障";
     FAULTS_UNKNOWN: "Faults not read yet", "尚未读取故障";
     CLEAR: "Clear errors", "清除错误", "Holds the pose, then clears stall, over-current, motor and communication faults. Over-temperature cannot be cleared: it ends by itself when cool.", "先保持姿态，再清除堵转、过流、电机异常和通讯故障。过温故障不可清除，温度回落后自动清除。";
-    NOT_LIVE: "There is no live hand.", "没有在线的灵巧手。";
     MESSAGES_NONE: "No messages", "没有消息";
     NOTICE_LOST: "Link lost.", "连接断开。";
     NOTICE_NO_LINK: "No hand reached.", "未连接到灵巧手。";
@@ -116,10 +111,8 @@ texts! {
     KNOWN_OFF: "Off: no address outside the manual's table is written, and no gesture can be started.", "关闭：不写手册寄存器表以外的地址，也无法启动手势。";
     GESTURES_OFF: "The gesture route is off.", "手势方式已关闭。";
     GESTURE_NAME_EDIT: "Name gestures", "命名手势", "Type names for the numbers. The hand does not tell what its gestures are.", "为编号输入名称。灵巧手不会给出手势名称。";
-    GESTURE_NAME_DONE: "Done", "完成";
     GESTURE_NAME: "Name of gesture", "手势名称";
 
-    CONNECTION: "Connection", "连接";
     CONNECTION_KIND: "Kind of link", "连接方式";
     PORTS_NONE: "None found. Type a name, or plug the adapter in and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
     PORTS_REFRESH: "Refresh", "刷新", "Looks for serial ports again.", "重新查找串口。";
@@ -141,7 +134,6 @@ texts! {
     FIRST_FORCE: "Force", "力";
     FIRST_TOUCH: "Fingertips", "指尖";
     FIRST_TIP: "What is read more often while something moves, where the line is too slow for all. A stop is as quick either way.", "线路速度不足时，运动期间优先读取的内容。停止的速度不受影响。";
-    BUDGET_NOW: "now", "当前";
     BUDGET_SHARE: "share", "占比";
     BUDGET_COULD: "alone", "独占可达";
     BUDGET_WRITES: "Writes", "写入";
@@ -174,12 +166,6 @@ texts! {
     LAST_MINUTE: "1 min", "1 分钟";
     LAST_10_MIN: "10 min", "10 分钟";
     LAST_TIP: "How much time the channels show.", "通道曲线显示的时间长度。";
-    SWING_HEAD: "change  swing, 1 s", "变化  波动（1 秒）";
-    SWING: "Change and swing of channel", "通道变化与波动", "Over the last second: the mean, counted from the rest, and the highest less the lowest, in counts.", "最近 1 秒内：相对静止值的平均变化，以及最大值与最小值之差，单位为计数。";
-    CHECK: "Check word", "校验字", "The two check bytes against the sum of the first 54 bytes. What they cover is not documented for this hand: data is shown either way.", "两个校验字节与前 54 字节之和的比较。手册没有说明其范围，因此数据照常显示。";
-    CHECK_OK: "right", "正确";
-    CHECK_DIFFERS: "differs", "不符";
-    DIRECTION: "Direction", "方向";
     NO_NUMBER: "not a number", "非数值";
     BEYOND: "out of range", "超出范围", "The manual ends at 20 N. The number is shown as the hand sent it.", "手册上限为 20 N。数值按灵巧手发送的原样显示。";
     SLIP: "Slip", "打滑";
@@ -191,22 +177,15 @@ texts! {
     NORMAL: "Normal force at the tips, N", "指尖法向力 N";
     TANGENTIAL: "Tangential force at the tips, N", "指尖切向力 N";
     DECIMATED: "min and max", "最小最大值", "Decimated: there are more measurements than pixels, so each column of pixels shows the smallest and the largest of several. No extreme is lost. The figures of the cursors come from all measurements.", "已抽取：数据点多于像素，每列像素显示其中的最小值和最大值，不会丢失极值。游标数值由全部数据计算。";
-    RANGE: "Value scale", "数值范围", "Drag: move. Wheel: zoom. Click: type the ends. Double-click: automatic again.", "拖动：平移。滚轮：缩放。单击：输入上下限。双击：恢复自动。";
+    RANGE: "Value scale", "数值范围", "Drag: move. Wheel: zoom. Double-click: automatic again.", "拖动：平移。滚轮：缩放。双击：恢复自动。";
     RANGE_FIXED: "fixed scale", "固定范围";
-    RANGE_HIGH: "Upper end", "上限";
-    RANGE_LOW: "Lower end", "下限";
-    RANGE_END_TIP: "Enter takes it. From and to:", "按 Enter 生效。可输入范围：";
-    RANGE_AUTO: "Automatic", "自动", "The scale fits the values again.", "重新根据数据自动调整范围。";
     UNDER_POINTER: "under the pointer", "指针处数值";
     MORE: "More", "更多", "Which plots are shown, copying and saving.", "选择显示的曲线、复制和保存。";
     MORE_NAME: "More for the plots", "曲线更多选项";
     SHOWN: "Plots shown", "显示的曲线";
     ENLARGE: "Fill the view", "放大显示";
-    COPY: "Copy as CSV", "复制为 CSV", "All measurements of the shown time, plots and joints, as they were received.", "复制当前时间范围内所示曲线的全部原始数据。";
-    COPY_LONG: "Too much for the clipboard: zoom in, or save it as a file.", "数据过多：请缩小范围，或保存为文件。";
-    SAVE_CSV: "Save as CSV", "保存为 CSV", "The same into a file, however long the time is. The window goes on meanwhile.", "保存到文件，时间长度不限。保存期间窗口照常工作。";
+    SAVE_CSV: "Save as CSV", "保存为 CSV", "All measurements of the shown time, plots and joints, as they were received, into a file. The window goes on meanwhile.", "把当前时间范围内所示曲线的全部原始数据保存到文件。保存期间窗口照常工作。";
     SAVE_PNG: "Save as PNG", "保存为 PNG", "A picture of these plots as they stand, twice as fine as on the screen.", "将当前曲线保存为图片，分辨率为屏幕的两倍。";
-    COPIED: "Copied, rows:", "已复制行数：";
     CURSORS: "A|B", "A|B", "Two cursors with values, difference, slope, and smallest, largest and mean value between them.", "两个游标：数值、差值、斜率，以及区间最小、最大和平均值。";
     CURSORS_NAME: "Cursors", "游标";
     CURSOR_A: "Cursor A", "游标 A";

@@ -28,13 +28,12 @@ texts! {
     COUNT_POSES: "poses", "个姿态";
     COUNT_SEQUENCES: "sequences", "个序列";
 
-    SELECT_TIP: "Shows this pose for editing. Nothing moves. Drag it, or press Alt and an arrow key, to change the order.", "显示该姿态以便编辑，不会运动。拖动或按 Alt + 方向键可调整顺序。";
-    DRAG_TIP: "Drag this step, or press Alt and an arrow key, to change the order.", "拖动该步骤，或按 Alt + 方向键，可调整顺序。";
+    SELECT_TIP: "Shows this pose for editing. Nothing moves. Drag it to change the order.", "显示该姿态以便编辑，不会运动。拖动可调整顺序。";
+    DRAG_TIP: "Drag this step to change the order.", "拖动该步骤可调整顺序。";
     STEP_NAME: "Step", "步骤";
     RECALL: "Go", "执行", "Takes this pose within its speed and force. Locked and left joints stay.", "按该姿态的速度与力执行。已锁定或不参与的自由度不动。";
     RECALL_NAME: "Go to", "执行姿态";
     NAME: "Name", "名称";
-    TAGS: "Tags", "标签", "separated by commas", "用逗号分隔";
     ANGLE: "angle", "角度", "0 bent to 1000 open.", "0 弯曲，1000 张开。";
     LEAVE: "leave alone", "不参与", "This joint stays where it is when the pose is taken.", "执行该姿态时，此自由度保持不动。";
     SPEED: "Speed", "速度", "Speed of the joints on the way, 0 to 1000.", "运动速度，0 到 1000。";
@@ -52,7 +51,6 @@ texts! {
     NEEDS_POSES: "Save a pose first.", "请先记录姿态。";
     STEPS_EMPTY: "No steps yet: add a pose below.", "还没有步骤：请在下方添加姿态。";
     ADD: "Add", "添加", "Adds this pose as the last step.", "把该姿态添加为最后一步。";
-    STEP_SPEED: "speed", "速度";
     DWELL: "dwell, ms", "停留 ms", "Time at the pose before the next step, milliseconds.", "到达后停留的时间，毫秒。";
     LIMIT: "limit, ms", "限时 ms", "A pose that is not reached within this time counts as reached, milliseconds.", "超过此时间仍未到达时，视为到达，毫秒。";
     REMOVE: "Remove", "移除", "Takes this step away.", "移除该步骤。";
@@ -65,7 +63,6 @@ texts! {
     RESUME: "Resume", "继续", "Goes on where it was paused.", "从暂停处继续。";
     END: "End", "结束", "Ends the sequence and holds where the hand is.", "结束序列，并在当前位置保持。";
     NOT_RUNNING: "No sequence runs.", "没有序列在运行。";
-    NO_STEPS: "The sequence has no steps.", "该序列没有步骤。";
     SAY_IDLE: "Ready", "就绪";
     SAY_MOVING: "On the way to step", "正在前往第几步：";
     SAY_DWELLING: "At step", "停留在第几步：";

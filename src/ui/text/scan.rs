@@ -3,7 +3,7 @@
 use crate::app::scan::{IdRange, ScanStage, ScanState, ScanTarget};
 use crate::hand::register::BytePacking;
 use crate::link::scan::ScanEvent;
-use crate::link::{GapRead, TouchDoubt, TouchVariant};
+use crate::link::{TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
 use crate::ui::kit::{Look, format};
@@ -29,26 +29,18 @@ texts! {
     ASKED: "questions", "次查询";
     TIME_LEFT: "time left about", "约剩";
     LISTING: "Looking for ports", "正在查找端口";
-    FOUND_ONE: "hand answered", "只灵巧手有应答";
-    FOUND_MANY: "hands answered", "只灵巧手有应答";
+    FOUND: "Hands that answered: {}", "有应答的灵巧手：{} 只";
     NO_PLACES: "There is nothing to scan: this computer has no serial port and no CAN interface. Plug the adapter in, or scan an address.", "没有可扫描的端口：本机没有串口，也没有 CAN 接口。请插入适配器，或扫描地址。";
     NOTHING: "No hand answered. Check power and cable; a hand may have an id above 10.", "没有灵巧手应答。请检查电源与线缆；ID 也可能大于 10。";
     NOTHING_THERE: "No hand answered. Check power, cable and address; this computer needs an address in the same network.", "没有灵巧手应答。请检查电源、线缆与地址；本机需要同一网段的地址。";
     NOTHING_AT_ALL: "No hand answered to any id. Check power, cable and wiring.", "所有 ID 均无应答。请检查电源、线缆与接线。";
     NOWHERE: "Nothing could be scanned:", "无法扫描：";
     CANCELLED: "Cancelled.", "已取消。";
-    USE: "Connect", "连接", "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
     CONNECTED: "Connected", "已连接", "This is the hand of now.", "当前连接的灵巧手。";
     HELD: "left alone, the connection of now uses it. Disconnect first to scan it.", "已跳过，当前连接正在使用。请先断开再扫描。";
     MORE: "more", "更多";
-    SHEET: "About this hand", "此手的特性";
-    SEEN: "Seen", "连接日期";
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
-    CHOSEN: "as you chose", "手动";
-    BAUD_NONE: "unknown", "未知";
-    COPY: "Copy", "复制", "Copies this sheet as text, for a report or another computer.", "复制为文本。";
-    COPY_OFF: "No hand has answered yet.", "灵巧手尚未应答。";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
 
     /// What two sheets disagree about.
@@ -60,11 +52,6 @@ texts! {
         Fact::Touch => "Fingertips", "指尖";
     }
 
-    /// Its words.
-    fn gap(GapRead) {
-        GapRead::Through => "read through", "可读";
-        GapRead::Split => "refused", "拒绝";
-    }
 
     /// Its words.
     fn touch(TouchVariant) {
@@ -117,13 +104,13 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
         ScanStage::Never | ScanStage::Running => return Err(NEVER),
         ScanStage::Cancelled if book.found.is_empty() => return Err(CANCELLED),
         ScanStage::Cancelled => {
-            let found = found_words(look, book.found.len());
+            let found = look.fill(FOUND, &[&book.found.len()]);
             return Ok(look.told(CANCELLED, found));
         }
         ScanStage::Done(summary) => summary,
     };
     if !book.found.is_empty() {
-        let found = found_words(look, book.found.len());
+        let found = look.fill(FOUND, &[&book.found.len()]);
         return Ok(format!("{found}, {}", format::age(summary.took)));
     }
     Err(match &book.wish {
@@ -137,11 +124,6 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
         }
         Some(_) | None => NOTHING,
     })
-}
-
-fn found_words(look: Look, found: usize) -> String {
-    let words = if found == 1 { FOUND_ONE } else { FOUND_MANY };
-    format!("{found} {}", look.say(words))
 }
 
 /// The id where it is known, the way of speaking, and its speed.

@@ -7,7 +7,6 @@ use crate::ui::kit::Look;
 use crate::ui::text::phrase::texts;
 
 texts! {
-    TITLE: "Traffic", "报文";
     SHOWN_OF: "of", "/";
     FRAMES: "frames", "条报文";
     PAUSE: "Pause", "暂停", "Lets the list stand still. Recording goes on.", "列表停止更新，记录继续进行。";
@@ -19,6 +18,7 @@ texts! {
     CLEAR: "Clear", "清除", "Takes all frames from the list. New ones appear as they pass.", "清空列表，之后的报文会继续显示。";
     CLEAR_NAME: "Clear the list", "清除列表";
     COPY: "Copy hex", "复制十六进制", "Puts the bytes of the chosen frames on the clipboard, one frame a line. Ctrl+C does the same.", "将所选报文的字节复制到剪贴板，每条一行。Ctrl+C 作用相同。";
+    COPY_AS: "Copy as", "复制为";
     COPY_NONE: "No frame is chosen.", "没有选择报文。";
     EXPORT_CSV: "Export CSV", "导出 CSV", "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";
     EXPORT_JSON: "Export JSON", "导出 JSON", "Writes the frames that the list shows to a file.", "将列表中显示的报文写入文件。";

@@ -74,7 +74,6 @@ texts! {
     BAD_HEAT: "Begin must be below stop, and stop at most 75 °C.", "开始温度须低于停止温度，停止温度最高 75 °C。";
 
     START_BUTTON: "Start trials", "开始试验", "Runs the plan while armed now. Any key, STOP, a fault, heat, the force limit or a lost link end it.", "在当前使能下运行计划。按任意键、停止、故障、过热、超过力上限或断线都会结束。";
-    NEED_HAND: "Connect a hand first.", "请先连接灵巧手。";
     NEED_ARM: "Press Arm first: each series needs a person who arms it.", "请先点击“使能”：每轮试验都需由人使能。";
     NEED_FREE: "{} is locked and would have to move.", "{}已锁定，但试验需要它运动。";
     PLAN_WRONG: "Correct the plan first.", "请先修正计划。";
@@ -87,7 +86,6 @@ texts! {
     STOP_SERIES: "End with a stop", "停止并结束", "Holds the hand and ends the series.", "保持灵巧手当前位置并结束试验。";
     TRIAL: "Trial {} of {}: {}", "第 {} 次，共 {} 次：{}";
     LEFT: "at most about {} left", "最多还剩约 {}";
-    TEMPS: "Temperatures, °C", "各自由度温度 °C";
     PROGRESS: "Progress", "进度";
     LIVE_FORCE: "Force now, g", "当前的力 g";
     LIVE_EMPTY: "Waits for the trial", "等待试验开始";
@@ -125,7 +123,6 @@ texts! {
     COLUMN_CURRENT: "Peak, mA", "峰值 mA";
     COLUMN_HEAT: "Heat, °C", "温升 °C";
     COLUMN_END: "End", "结束";
-    REPEATED: "Mean of {}: {}", "{} 次平均：{}";
     MAP: "Overshoot, g, by speed and threshold", "各速度与力阈值的超出量 g";
     BEST: "Best", "最佳", "What the best setting is chosen by, judged by the worst of its trials.", "最佳设置的选择标准，以最差的一次为准。";
     BEST_NONE: "No setting will do.", "没有满足要求的设置。";
@@ -157,7 +154,6 @@ texts! {
     FORGET_LOSES: "It is in no file: what was measured and recorded is gone then. Trials: {}", "尚未保存到文件：移除后测量结果与数据将丢失。试验次数：{}";
     FORGET_NOT: "Leave it", "保留", "Closes this card. The session stays.", "关闭此卡片，保留该轮次。";
     FORGET_SURE: "Forget it", "确定移除", "Takes this session out of the list. Its files, if any, stay.", "把该轮次从列表移除，已有文件不受影响。";
-    COLUMN_SESSION: "Session", "轮次";
     RISING: "rising", "升序";
     FALLING: "falling", "降序";
     OF_ALL: "curves of", "条曲线，共";

@@ -9,10 +9,7 @@ texts! {
     NO_HAND: "No hand is connected.", "未连接灵巧手。";
     MOVES_STOP: "Stopping: waiting for feedback that the hand rests", "正在停止：等待反馈确认静止";
     MOVES_CALIBRATION: "Force calibration moves the hand", "力传感器校准正在驱动灵巧手";
-    MOVES_SERIES: "Trial", "试验";
-    MOVES_SEQUENCE: "Sequence", "序列";
     MOVES_STEP: "step", "第";
-    MOVES_GESTURE: "Gesture", "手势";
     MOVES_SETPOINTS: "The hand moves to your setpoints", "灵巧手正在移向设定值";
     MOVES_UNKNOWN: "The hand moves, and not because of this window", "灵巧手正在运动，但并非由本窗口发起";
     END: "End", "结束", "Ends it and holds the hand where it is.", "结束并保持灵巧手当前位置。";

@@ -2,13 +2,8 @@
 
 use egui::{FontFamily, FontId};
 
-/// Labels, hints.
+/// Labels, hints, where room is short.
 pub(crate) const fn small() -> FontId {
-    FontId::proportional(13.0)
-}
-
-/// Hints inside a button.
-pub(crate) const fn tiny() -> FontId {
     FontId::proportional(13.0)
 }
 
@@ -29,11 +24,6 @@ pub(crate) const fn large() -> FontId {
 
 /// Numbers, all digits of one width.
 pub(crate) const fn number() -> FontId {
-    FontId::monospace(13.0)
-}
-
-/// Numbers where room is short.
-pub(crate) const fn number_small() -> FontId {
     FontId::monospace(13.0)
 }
 
@@ -112,16 +102,15 @@ mod tests {
         let mut all = Fonts::new(TextOptions::default(), fonts::fonts());
         for scale in [1.0, 1.5, 3.0] {
             let mut view = all.with_pixels_per_point(scale);
-            for font in [fonts::number(), fonts::number_small()] {
-                let zero = view.glyph_width(&font, '0');
-                assert!(zero > 0.0);
-                for sign in "123456789-+. ".chars() {
-                    let width = view.glyph_width(&font, sign);
-                    assert!(
-                        (width - zero).abs() < 1e-3,
-                        "{sign} at {scale}: {width}, {zero}"
-                    );
-                }
+            let font = fonts::number();
+            let zero = view.glyph_width(&font, '0');
+            assert!(zero > 0.0);
+            for sign in "123456789-+. ".chars() {
+                let width = view.glyph_width(&font, sign);
+                assert!(
+                    (width - zero).abs() < 1e-3,
+                    "{sign} at {scale}: {width}, {zero}"
+                );
             }
         }
     }
@@ -130,12 +119,10 @@ mod tests {
     fn no_text_is_smaller_than_thirteen_points() {
         for font in [
             fonts::small(),
-            fonts::tiny(),
             fonts::body(),
             fonts::title(),
             fonts::large(),
             fonts::number(),
-            fonts::number_small(),
         ] {
             assert!(font.size >= 13.0, "{font:?}");
         }

@@ -42,8 +42,6 @@ pub(crate) struct Palette {
     pub(crate) bad: Color32,
     /// The built-in hand, and nothing else.
     pub(crate) simulated: Color32,
-    /// Text on [`Self::simulated`].
-    pub(crate) on_simulated: Color32,
     /// Setpoints pass.
     pub(crate) armed: Color32,
     /// Text on [`Self::armed`].
@@ -58,12 +56,8 @@ pub(crate) struct Palette {
     pub(crate) handle: Color32,
     /// The dot in a handle.
     pub(crate) handle_dot: Color32,
-    /// The skin of a drawn fingertip.
-    pub(crate) skin: Color32,
     /// Lamps and materials of the drawn hand.
     pub(crate) studio: &'static Studio,
-    /// The shear arrow over the heat.
-    pub(crate) arrow: Color32,
     /// The six joints; told apart by all common kinds of colour blindness.
     pub(crate) dof: PerDof<Color32>,
     /// The theme it belongs to.
@@ -89,7 +83,6 @@ static DARK: Palette = Palette {
     warn: Color32::from_rgb(0xF2, 0xB5, 0x3A),
     bad: Color32::from_rgb(0xFF, 0x65, 0x69),
     simulated: Color32::from_rgb(0xB5, 0x8C, 0xFF),
-    on_simulated: Color32::from_rgb(0x1A, 0x10, 0x2E),
     armed: Color32::from_rgb(0xF2, 0xB5, 0x3A),
     on_armed: Color32::from_rgb(0x24, 0x1A, 0x04),
     stop: Color32::from_rgb(0xD6, 0x2D, 0x3A),
@@ -97,9 +90,7 @@ static DARK: Palette = Palette {
     stop_edge: Color32::from_rgb(0xFF, 0x7A, 0x80),
     handle: Color32::from_rgb(0xE8, 0xEC, 0xF2),
     handle_dot: Color32::from_rgb(0x16, 0x1A, 0x20),
-    skin: Color32::from_rgb(0x1E, 0x24, 0x2D),
     studio: &DARK_STUDIO,
-    arrow: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     dof: PerDof::new([
         Color32::from_rgb(0x5A, 0xB4, 0xE8),
         Color32::from_rgb(0xE8, 0xA0, 0x20),
@@ -130,7 +121,6 @@ static LIGHT: Palette = Palette {
     warn: Color32::from_rgb(0x85, 0x54, 0x00),
     bad: Color32::from_rgb(0xC8, 0x22, 0x2E),
     simulated: Color32::from_rgb(0x76, 0x42, 0xD0),
-    on_simulated: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     armed: Color32::from_rgb(0xF0, 0xA8, 0x1E),
     on_armed: Color32::from_rgb(0x24, 0x1A, 0x04),
     stop: Color32::from_rgb(0xD0, 0x22, 0x30),
@@ -138,9 +128,7 @@ static LIGHT: Palette = Palette {
     stop_edge: Color32::from_rgb(0x96, 0x10, 0x1C),
     handle: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     handle_dot: Color32::from_rgb(0x4E, 0x5A, 0x69),
-    skin: Color32::from_rgb(0xE4, 0xE9, 0xEF),
     studio: &LIGHT_STUDIO,
-    arrow: Color32::from_rgb(0x10, 0x14, 0x1A),
     dof: PerDof::new([
         Color32::from_rgb(0x00, 0x67, 0xA1),
         Color32::from_rgb(0x8A, 0x56, 0x00),
@@ -259,7 +247,7 @@ mod tests {
                 (palette.on_accent, palette.accent),
                 (palette.on_strong, palette.stop),
                 (palette.on_strong, palette.stop_hover),
-                (palette.on_simulated, palette.simulated),
+                (palette.on_accent, palette.simulated),
                 (palette.on_armed, palette.armed),
             ] {
                 let found = contrast(text, ground);

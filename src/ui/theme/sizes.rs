@@ -48,8 +48,6 @@ pub(crate) const STRONG: f32 = 2.0;
 pub(crate) const FOCUS_LINE: f32 = 1.5;
 /// What a lamp shines beyond its edge; the dot in a handle.
 pub(crate) const HALO: f32 = 2.5;
-/// Width of a sign.
-pub(crate) const SIGN: f32 = 16.0;
 /// Height of a sign in a row.
 pub(crate) const SIGN_SMALL: f32 = 12.0;
 /// Where a lamp's middle is in its row.

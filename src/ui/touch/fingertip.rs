@@ -216,7 +216,7 @@ fn halo(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
 fn skin(painter: &Painter, look: Look, scale: &Scale) {
     let (rect, round) = outline(scale, 0.0);
     let edge = Stroke::new(1.0, look.palette.edge);
-    painter.rect(rect, round, look.palette.skin, edge, StrokeKind::Inside);
+    painter.rect(rect, round, look.palette.control, edge, StrokeKind::Inside);
 }
 
 fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
@@ -270,21 +270,16 @@ fn crossed(painter: &Painter, pad: &[Pos2], color: Color32) {
 fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
     let fade = tip.fade();
     let arrow = match tip.sense {
-        Sense::Fine => look.palette.arrow.gamma_multiply(fade),
+        Sense::Fine => look.palette.text.gamma_multiply(fade),
         Sense::NoNumber | Sense::Beyond => look.palette.warn.gamma_multiply(fade),
     };
     if tip.sense == Sense::NoNumber {
         let radius = (HALF_WIDTH_MM - 1.0) * 0.5 * scale.per_mm;
-        let ring: Vec<Pos2> = (0..=24u8)
-            .map(|step| f32::from(step) / 24.0 * std::f32::consts::TAU)
-            .map(|turn| scale.middle() + Vec2::angled(turn) * radius)
-            .collect();
-        painter.extend(Shape::dashed_line(
-            &ring,
+        painter.circle_stroke(
+            scale.middle(),
+            radius,
             Stroke::new(theme::FOCUS_LINE, arrow),
-            3.0,
-            3.0,
-        ));
+        );
     }
     if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
         // Area grows with force, so that twice the force looks twice as much.
@@ -300,18 +295,8 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
     if let Some(shear) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
         let by = scale.end(shear) - scale.middle();
         let stroke = Stroke::new(2.0, arrow);
-        arrow_shape(painter, scale.middle(), by, stroke);
+        painter.arrow(scale.middle(), by, stroke);
     }
-}
-
-fn arrow_shape(painter: &Painter, from: Pos2, by: Vec2, stroke: Stroke) {
-    let along = by.normalized();
-    let head = (by.length() * 0.4).clamp(3.0, 8.0);
-    let to = from + by;
-    let side = along.rot90() * head * 0.5;
-    painter.line_segment([from, to - along * head * 0.7], stroke);
-    let points = vec![to, to - along * head + side, to - along * head - side];
-    painter.add(Shape::convex_polygon(points, stroke.color, Stroke::NONE));
 }
 
 #[cfg(test)]

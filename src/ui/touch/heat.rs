@@ -43,15 +43,16 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let touched = Finger::ALL
         .into_iter()
         .any(|finger| hand.sample.tactile[finger].is_some() && hand.tare.zero(finger).is_none());
-    let (words, color) = match touched {
-        true => (panels::TOUCH_NO_ZERO, look.palette.warn),
-        false => (panels::TOUCH_SCALE, look.palette.muted),
+    let (words, tip, color) = match touched {
+        true => (
+            panels::TOUCH_NO_ZERO,
+            panels::TOUCH_NO_ZERO,
+            look.palette.warn,
+        ),
+        false => (panels::TOUCH_SCALE, panels::TOUCH, look.palette.muted),
     };
-    Label::new(look.say(words), color)
-        .small()
-        .shorter(look.say(panels::TOUCH_SCALE_SHORT))
-        .ui(ui)
-        .on_hover_text(look.tip(panels::TOUCH));
+    let label = Label::new(look.say(words), color).small().ui(ui);
+    label.on_hover_text(look.tip(tip));
 }
 
 fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock) -> Tip {

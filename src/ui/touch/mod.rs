@@ -10,7 +10,7 @@ use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
 use crate::ui::hand::panel::HandPanel;
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::text::{panels, words};
+use crate::ui::text::{main, panels, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense, Tip};
 use crate::ui::touch::tip_detail::TipDetail;
@@ -20,10 +20,6 @@ use egui::{
 
 /// Lines of figures under a fingertip of the overview.
 const FIGURES: f32 = 3.0 * theme::LIST_LINE;
-/// The least height of the drawn hand.
-const HAND_LEAST: f32 = 150.0;
-/// Part of the view's height that the hand and the large fingertips take.
-const UPPER_PART: f32 = 0.48;
 
 /// What the person chose for the fingertips.
 #[derive(Debug, Default)]
@@ -46,7 +42,7 @@ impl TouchView {
             });
             let width = ui.available_width();
             let picture = (width / 5.0 - theme::GAP) * fingertip::HEIGHT_TO_WIDTH * 0.8;
-            let room = ui.available_height() - HAND_LEAST - theme::GAP;
+            let room = ui.available_height() - 150.0 - theme::GAP;
             let below = [picture + FIGURES, FIGURES, 0.0];
             let below = below
                 .into_iter()
@@ -106,7 +102,7 @@ impl TouchView {
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         self.detail.follow(pane);
-        let height = (ui.available_height() * UPPER_PART).round();
+        let height = (ui.available_height() * 0.48).round();
         let upper = Panel::top("touch, upper");
         kit::bare(upper, height, Margin::ZERO).show(ui, |ui| {
             let width = (height * 0.96).min(ui.available_width() * 0.36).round();
@@ -235,7 +231,7 @@ impl TouchView {
     fn tare_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let hand = pane.state.hand();
-        let offline = (!hand.link.state.is_live()).then(|| look.say(panels::TARE_OFFLINE));
+        let offline = (!hand.link.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
         let finger = self.detail.finger;
         let name = look.say(words::finger(finger));
         let one = look.told(panels::TARE_ONE, name);

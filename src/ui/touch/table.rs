@@ -3,7 +3,6 @@
 use crate::hand::{Finger, TactileBlock};
 use crate::ui::kit::{Label, Look, Pane, format};
 use crate::ui::text::{Text, panels, words};
-use crate::ui::touch::tip_channels::signed;
 use egui::{Grid, Ui};
 
 /// One row of numbers.
@@ -59,7 +58,7 @@ pub(crate) const LINES: [TouchRow; 7] = [
 ];
 
 /// The direction in degrees, or why there is none.
-pub(crate) fn direction(block: &TactileBlock, look: Look) -> String {
+fn direction(block: &TactileBlock, look: Look) -> String {
     match (block.direction_deg(), block.direction_raw) {
         (Some(degrees), _) => format!("{degrees}°"),
         (None, u16::MAX) => look.say(panels::TOUCH_NO_CONTACT).into(),
@@ -126,9 +125,7 @@ fn channel_text(pane: &Pane<'_>, finger: Finger, channel: usize) -> Option<Strin
     let zero = hand.tare.zero(finger);
     let zero = zero.and_then(|zero| zero.raw.get(channel).copied());
     let change = zero.map(|zero| raw - i64::from(zero));
-    Some(format!(
-        "{:>6} {:>7}",
-        format::counts(Some(raw)),
-        signed(change)
-    ))
+    let sign = if change > Some(0) { "+" } else { "" };
+    let change = format!("{sign}{}", format::counts(change));
+    Some(format!("{:>6} {change:>7}", format::counts(Some(raw))))
 }

@@ -1,13 +1,15 @@
-//! The eight channels of one fingertip over time, as sent or from their zero, each with its change and noise.
+//! The eight channels of one fingertip over time, as sent or from their zero.
 
 use crate::hand::Finger;
 use crate::history::Series;
-use crate::ui::kit::{self, Label, Look, Pane, format};
+use crate::ui::kit::{self, Look, Pane};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Stroke, Ui, vec2};
+use egui::{Color32, Stroke, Ui};
+use egui_plot::LineStyle;
 
 /// What can be shown, in seconds, with its name.
 const WINDOWS: [(f64, Text); 3] = [
@@ -15,8 +17,6 @@ const WINDOWS: [(f64, Text); 3] = [
     (60.0, panels::LAST_MINUTE),
     (600.0, panels::LAST_10_MIN),
 ];
-/// Over this time mean and noise are taken, in seconds.
-const SWING_S: f64 = 1.0;
 /// Counts that are always shown: what stays between them is noise.
 const LEAST: (f64, f64) = (-1000.0, 1000.0);
 
@@ -53,18 +53,17 @@ fn color(look: Look, channel: usize) -> Color32 {
 }
 
 impl TipChannels {
-    /// Draws choice, plot and list.
+    /// Draws choice, legend and plot.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
-        self.head_ui(ui, pane.look);
-        ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
-            if ui.available_width() >= 330.0 {
-                let place = vec2(176.0, ui.available_height());
-                let down = Layout::top_down(Align::Max);
-                ui.allocate_ui_with_layout(place, down, |ui| list_ui(ui, pane, finger));
-            }
-            let down = Layout::top_down(Align::Min);
-            ui.with_layout(down, |ui| self.plot_ui(ui, pane, finger));
-        });
+        let look = pane.look;
+        self.head_ui(ui, look);
+        let key = |number: usize| LegendKey {
+            words: (number + 1).to_string(),
+            color: color(look, number),
+            style: LineStyle::Solid,
+        };
+        legend_ui(ui, look, &std::array::from_fn::<_, 8, _>(key));
+        self.plot_ui(ui, pane, finger);
     }
 
     fn head_ui(&mut self, ui: &mut Ui, look: Look) {
@@ -103,65 +102,5 @@ impl TipChannels {
             ..Chart::new(look, panels::CHANNELS, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);
-    }
-}
-
-/// Each channel with its change from zero and how far it swings, over the last second.
-fn list_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
-    let look = pane.look;
-    let hand = pane.state.hand();
-    ui.spacing_mut().item_spacing.y = 0.0;
-    let head = Label::note(look, panels::SWING_HEAD);
-    head.ui(ui).on_hover_text(look.tip(panels::SWING));
-    let now = pane.state.now.secs();
-    let zero = hand.tare.zero(finger);
-    let row = (ui.available_height() / 8.0).min(20.0);
-    for (channel, at) in (0..8u8).zip(0..) {
-        let series = Series::Channel(channel, finger);
-        let last = hand.history.summary(series, now - SWING_S, now);
-        let zero = zero.and_then(|zero| zero.raw.get(at).copied());
-        let change = last.zip(zero);
-        let change = change.map(|(last, zero)| whole(last.mean - f64::from(zero)));
-        let swing = last.map(|last| whole(f64::from(last.max - last.min)));
-        let place = vec2(ui.available_width(), row);
-        ui.allocate_ui_with_layout(place, Layout::right_to_left(Align::Center), |ui| {
-            ui.set_min_height(row);
-            let words = format!("{:>7} {:>6}", signed(change), format::counts(swing));
-            let name = look.told(panels::SWING, channel + 1);
-            let label = Label::new(&words, look.palette.text).font(theme::number_small());
-            label.named(&name).ui(ui);
-            kit::left_ui(ui, |ui| {
-                let (_, sign) = ui.allocate_space(vec2(theme::PAD, row));
-                let stroke = Stroke::new(theme::BAR, color(look, at));
-                ui.painter().hline(sign.x_range(), sign.center().y, stroke);
-                let number = (channel + 1).to_string();
-                Label::new(&number, look.palette.muted).small().ui(ui);
-            });
-        });
-    }
-}
-
-/// A change with its sign, shortened like counts.
-pub(crate) fn signed(value: Option<i64>) -> String {
-    match value {
-        Some(value) if value > 0 => format!("+{}", format::counts(Some(value))),
-        other => format::counts(other),
-    }
-}
-
-fn whole(value: f64) -> i64 {
-    #[expect(clippy::cast_possible_truncation, reason = "counts are far below 2^53")]
-    let whole = value as i64;
-    whole
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_change_has_its_sign() {
-        let words = [Some(1234), Some(-5), Some(0), None].map(signed);
-        assert_eq!(words, ["+1234", "-5", "0", "-"]);
     }
 }

@@ -12,7 +12,6 @@ use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
-use crate::ui::touch::table as touch_table;
 use crate::ui::touch::tip_channels::TipChannels;
 use egui::{Color32, Id, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use egui_plot::LineStyle;
@@ -21,12 +20,8 @@ use egui_plot::LineStyle;
 const FRICTION_PERCENT: i16 = 50;
 /// The largest friction that can be chosen, in percent.
 const FRICTION_MAX: i16 = 150;
-/// Seconds of force shown.
-const SECONDS: f64 = 10.0;
 /// The compass ends at this many times the chosen friction.
 const COMPASS_END_RATIO: f32 = 1.5;
-/// Smallest end of the force axis, in newtons.
-const FORCE_END: f64 = 1.0;
 
 /// Which fingertip, and what friction is reckoned with.
 #[derive(Debug)]
@@ -137,7 +132,7 @@ impl TipDetail {
             egui::vec2(40.0, 12.0),
         );
         let text = look.say(panels::TIP_UP);
-        let label = Label::new(text, palette.faint).font(theme::tiny());
+        let label = Label::new(text, palette.faint).small();
         label.center().paint(ui, up);
         let (block, freshness) = self.block(pane);
         let (Grip::Ratio(ratio), Some(block)) = (Grip::of(block), block) else {
@@ -157,42 +152,24 @@ impl TipDetail {
         let (block, freshness) = self.block(pane);
         let grip = Grip::of(block);
         let unknown = || format::UNKNOWN.to_owned();
-        let newtons = |value: Option<f32>| format!("{} N", format::newtons(value));
         let ratio = match grip {
             Grip::Ratio(ratio) => format!("{ratio:.2}"),
             Grip::Unknown | Grip::Loose => unknown(),
         };
         let margin = grip.margin(self.friction());
         let margin = margin.map_or_else(unknown, |margin| format!("{:.0} %", margin * 100.0));
-        let direction = block.map_or_else(unknown, |block| touch_table::direction(block, look));
-        let plain = look.palette.text;
-        let (check, check_color) = match block.map(TactileBlock::check_ok) {
-            None => (format::UNKNOWN, plain),
-            Some(true) => (look.say(panels::CHECK_OK), plain),
-            Some(false) => (look.say(panels::CHECK_DIFFERS), look.palette.warn),
-        };
         let hold = self.hold(self.finger);
-        let normal = newtons(block.map(|block| block.normal_n));
-        let shear = newtons(block.map(|block| block.tangential_n));
-        let row = (ui.available_height() / 8.0).min(theme::CONTROL);
-        let size = vec2(ui.available_width(), row);
+        let size = vec2(ui.available_width(), theme::CONTROL);
         ui.spacing_mut().item_spacing.y = 0.0;
         for (caption, value, color) in [
-            (panels::TIP_NORMAL, normal, plain),
-            (panels::TIP_SHEAR, shear, plain),
-            (panels::DIRECTION, direction, plain),
-            (panels::TIP_RATIO, ratio, plain),
-            (panels::CHECK, check.to_owned(), check_color),
+            (panels::TIP_RATIO, ratio, look.palette.text),
             (panels::TIP_MARGIN, margin, color_of(hold, look.palette)),
         ] {
             kit::cell_ui(ui, size, |ui| {
                 Label::note(look, caption).ui(ui);
                 kit::right_ui(ui, |ui| {
                     let label = Label::new(&value, look.value(freshness, color)).number();
-                    let response = label.named(look.say(caption)).ui(ui);
-                    if caption == panels::CHECK {
-                        response.on_hover_text(look.tip(panels::CHECK));
-                    }
+                    label.named(look.say(caption)).ui(ui);
                 });
             });
         }
@@ -248,7 +225,7 @@ impl TipDetail {
         legend_ui(ui, look, &lines.map(key));
         let now = pane.state.now.secs();
         let first = history.first_secs().unwrap_or(now);
-        self.chart.time.advance((first.min(now), now), SECONDS);
+        self.chart.time.advance((first.min(now), now), 10.0);
         let curve = |(touch, _, color): (Touch, Text, Color32)| {
             let points = Points::Measured(history, Series::Tip(touch, self.finger));
             ChartCurve {
@@ -258,7 +235,7 @@ impl TipDetail {
         };
         let chart = Chart {
             curves: lines.map(curve).to_vec(),
-            least: (0.0, FORCE_END),
+            least: (0.0, 1.0),
             times: Times::From(now, look.say(panels::NOW)),
             ..Chart::new(look, panels::FORCES, ui.available_height())
         };

@@ -4,8 +4,7 @@ use crate::link::traffic::fields::Field;
 use crate::link::traffic::frame::{Frame, hex};
 use crate::ui::kit::{self, Label, Look, format};
 use crate::ui::text::traffic;
-use crate::ui::theme;
-use egui::{Sense, Ui, vec2};
+use egui::Ui;
 use egui_extras::{Column, TableBuilder, TableRow};
 
 /// Bytes of a field that are shown; the list shows the whole frame.
@@ -54,17 +53,11 @@ fn verdict_ui(ui: &mut Ui, look: Look, frame: &Frame) {
         false => look.palette.warn,
     };
     ui.horizontal(|ui| {
-        sign_ui(ui, color);
+        kit::warning_ui(ui, color);
         Label::new(&traffic::wrong(look, wrong), color)
             .wrap()
             .ui(ui);
     });
-}
-
-fn sign_ui(ui: &mut Ui, color: egui::Color32) {
-    let size = vec2(theme::SIGN_SMALL, theme::SIGN_SMALL);
-    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-    kit::warning_sign(ui, place, color);
 }
 
 fn fields_ui(ui: &mut Ui, look: Look, frame: &Frame) {
@@ -111,7 +104,7 @@ fn field_ui(row: &mut TableRow<'_, '_>, look: Look, frame: &Frame, field: &Field
     row.col(|ui| drop(Label::new(&shown, color).number().ui(ui)));
     row.col(|ui| {
         if field.wrong.is_some() {
-            sign_ui(ui, color);
+            kit::warning_ui(ui, color);
         }
         if !field.value.is_empty() {
             Label::new(&field.value, color).number().named(name).ui(ui);

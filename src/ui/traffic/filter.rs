@@ -1,14 +1,10 @@
-//! Which frames of the traffic view pass, and the list of those that do, kept up to date without going through all of
-//! them for each frame of the window. Draws nothing.
+//! Which frames of the traffic view pass. Draws nothing.
 
 use crate::hand::{REGISTERS, Span};
 use crate::link::tap::Direction;
 use crate::link::traffic::frame::Frame;
 use std::collections::VecDeque;
 use std::sync::Arc;
-
-/// The newest frames may still change, or be sorted in: as many as the reader looks back, and some.
-const UNSETTLED: u64 = 128;
 
 /// What a person wants to see.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -25,134 +21,46 @@ pub(crate) struct Filter {
     pub(crate) cleared: u64,
 }
 
-/// A filter that was looked through once, for thousands of frames.
-struct Test<'a> {
-    filter: &'a Filter,
-    /// The registers whose name has the text in it.
-    spans: Vec<Span>,
-    /// The text as hex digits, if it is.
-    digits: Vec<u8>,
-    any: bool,
-}
-
-impl<'a> Test<'a> {
-    fn new(filter: &'a Filter) -> Self {
-        let text = filter.text.trim().to_ascii_uppercase();
-        let digits: Vec<u8> = text.bytes().filter(|sign| *sign != b' ').collect();
-        let is_hex = digits.len() >= 2 && digits.iter().all(u8::is_ascii_hexdigit);
+impl Filter {
+    /// The frames that pass, in their order.
+    pub(crate) fn passing(&self, frames: &VecDeque<Arc<Frame>>) -> VecDeque<Arc<Frame>> {
+        let text = self.text.trim().to_ascii_uppercase();
         let named = REGISTERS.iter().filter(|row| row.name.contains(&text));
-        Self {
-            filter,
-            spans: named.map(|row| row.span()).collect(),
-            digits: if is_hex { digits } else { Vec::new() },
-            any: text.is_empty(),
-        }
-    }
-
-    fn passes(&self, frame: &Frame) -> bool {
-        let filter = self.filter;
-        frame.number > filter.cleared
-            && filter.direction.is_none_or(|way| way == frame.direction)
-            && !(filter.wrong_only && frame.wrong.is_none())
-            && !(filter.hide_polling && frame.is_polling())
-            && (self.any || self.has_name(frame) || self.has_bytes(frame))
-    }
-
-    fn has_name(&self, frame: &Frame) -> bool {
-        frame.span.is_some_and(|span| {
-            let touches = |row: &Span| {
-                u32::from(row.address) < span.end() && u32::from(span.address) < row.end()
-            };
-            self.spans.iter().any(touches)
-        })
-    }
-
-    fn has_bytes(&self, frame: &Frame) -> bool {
-        let half = |at: usize| {
-            let byte = frame.bytes.get(at / 2).copied().unwrap_or_default();
-            let half = if at.is_multiple_of(2) {
-                byte >> 4
-            } else {
-                byte & 15
-            };
-            if half < 10 {
-                b'0' + half
-            } else {
-                b'A' + half - 10
-            }
+        let spans: Vec<Span> = named.map(|row| row.span()).collect();
+        let bytes = bytes_of(&text);
+        let has_text = |frame: &Frame| {
+            let named = spans.iter().any(|row| touches(frame, row));
+            let len = bytes.len();
+            named || len > 0 && frame.bytes.windows(len).any(|own| own == bytes)
         };
-        let len = self.digits.len();
-        let last = (frame.bytes.len() * 2).checked_sub(len);
-        // Hex is searched byte by byte, as it is shown.
-        !self.digits.is_empty()
-            && last.is_some_and(|last| {
-                (0..=last).step_by(2).any(|from| {
-                    (from..)
-                        .zip(&self.digits)
-                        .all(|(at, digit)| half(at) == *digit)
-                })
-            })
+        let passes = |frame: &&Arc<Frame>| {
+            frame.number > self.cleared
+                && self.direction.is_none_or(|way| way == frame.direction)
+                && !(self.wrong_only && frame.wrong.is_none())
+                && !(self.hide_polling && frame.is_polling())
+                && (text.is_empty() || has_text(frame))
+        };
+        frames.iter().filter(passes).cloned().collect()
     }
 }
 
-/// The frames that pass, oldest first.
-#[derive(Debug, Default)]
-pub(crate) struct Passed {
-    frames: VecDeque<Arc<Frame>>,
-    filter: Filter,
-    changes: u64,
-    newest: u64,
+fn touches(frame: &Frame, row: &Span) -> bool {
+    let within =
+        |span: Span| u32::from(row.address) < span.end() && u32::from(span.address) < row.end();
+    frame.span.is_some_and(within)
 }
 
-impl Passed {
-    /// Brings the list up to date with `all`, which have seen so many changes.
-    pub(crate) fn update(&mut self, all: &VecDeque<Arc<Frame>>, changes: u64, filter: &Filter) {
-        let newest = all.iter().rev().take(64).map(|frame| frame.number).max();
-        let newest = newest.unwrap_or_default();
-        let same = self.filter == *filter && newest >= self.newest && changes >= self.changes;
-        if same && changes == self.changes {
-            return;
-        }
-        let test = Test::new(filter);
-        if same {
-            self.go_on(all, newest, &test);
-        } else {
-            let passing = all.iter().filter(|frame| test.passes(frame));
-            self.frames = passing.cloned().collect();
-            self.filter.clone_from(filter);
-        }
-        self.changes = changes;
-        self.newest = newest;
-    }
-
-    fn go_on(&mut self, all: &VecDeque<Arc<Frame>>, newest: u64, test: &Test<'_>) {
-        let settled = self.newest.saturating_sub(UNSETTLED);
-        while self
-            .frames
-            .back()
-            .is_some_and(|frame| frame.number > settled)
-        {
-            self.frames.pop_back();
-        }
-        let oldest = all.front().map_or(0, |frame| frame.number);
-        while self
-            .frames
-            .front()
-            .is_some_and(|frame| frame.number < oldest)
-        {
-            self.frames.pop_front();
-        }
-        let behind = usize::try_from(newest - settled + UNSETTLED).unwrap_or(usize::MAX);
-        let from = all.len().saturating_sub(behind);
-        let fresh = all.range(from..).filter(|frame| frame.number > settled);
-        self.frames
-            .extend(fresh.filter(|frame| test.passes(frame)).cloned());
-    }
-
-    /// Oldest first.
-    pub(crate) const fn frames(&self) -> &VecDeque<Arc<Frame>> {
-        &self.frames
-    }
+/// The bytes that pairs of hex digits stand for; none if the text is anything else. A digit without its pair waits for it.
+fn bytes_of(text: &str) -> Vec<u8> {
+    let digits = text.bytes().filter(|sign| *sign != b' ');
+    let digits: Option<Vec<u8>> = digits
+        .map(|sign| u8::try_from(char::from(sign).to_digit(16)?).ok())
+        .collect();
+    let digits = digits.unwrap_or_default();
+    let pairs = digits.chunks_exact(2);
+    pairs
+        .map(|pair| pair.iter().fold(0, |byte, half| byte << 4 | half))
+        .collect()
 }
 
 #[cfg(test)]
@@ -161,14 +69,9 @@ mod tests {
     use crate::hand::Moment;
     use crate::link::tap::{PieceKind, WireTap};
     use crate::link::traffic::Traffic;
-    use crate::link::traffic::frame::Wrong;
 
     const ASK: [u8; 9] = [0xEB, 0x90, 1, 4, 0x11, 0x0A, 0x06, 12, 0x32];
     const SAVE: [u8; 9] = [0xEB, 0x90, 1, 4, 0x12, 0xED, 3, 1, 0x08];
-
-    fn numbers(passed: &Passed) -> Vec<u64> {
-        passed.frames().iter().map(|frame| frame.number).collect()
-    }
 
     fn traffic() -> (WireTap, Traffic) {
         let tap = WireTap::default();
@@ -194,10 +97,8 @@ mod tests {
         let with = |change: fn(&mut Filter)| {
             let mut filter = Filter::default();
             change(&mut filter);
-            let mut passed = Passed::default();
-            passed.update(traffic.frames(), traffic.changes(), &filter);
-            let frames = passed.frames().iter();
-            frames.map(|frame| frame.hex()).collect::<Vec<_>>()
+            let frames = filter.passing(traffic.frames());
+            frames.iter().map(|frame| frame.hex()).collect::<Vec<_>>()
         };
         let [ask, noise, save] =
             [&ASK[..], &[1, 2, 3], &SAVE].map(crate::link::traffic::frame::hex);
@@ -212,41 +113,12 @@ mod tests {
         );
         assert_eq!(with(|filter| filter.text = "eb90".into()).len(), 2);
         assert_eq!(with(|filter| filter.text = "b901".into()).len(), 0);
+        assert_eq!(with(|filter| filter.text = "eb 90 0".into()).len(), 2);
         let out = |filter: &mut Filter| filter.direction = Some(Direction::ToHand);
         assert_eq!(with(out), [ask.clone(), save.clone()]);
         assert_eq!(with(|filter| filter.cleared = 1).len(), 2);
         // The read that got no answer is not plain polling.
         assert_eq!(with(|filter| filter.hide_polling = true).len(), 3);
         assert!(with(|filter| filter.wrong_only = true).contains(&noise));
-    }
-
-    #[test]
-    fn a_list_that_is_kept_up_to_date_equals_one_made_anew() {
-        for change in [
-            |_: &mut Filter| {},
-            |filter: &mut Filter| filter.wrong_only = true,
-            |filter: &mut Filter| filter.text = "save".into(),
-        ] {
-            let mut filter = Filter::default();
-            change(&mut filter);
-            let (tap, mut traffic) = traffic();
-            let mut kept = Passed::default();
-            for n in 0..13_000 {
-                record(&tap, n);
-                if n % 37 == 0 {
-                    traffic.read_on(Moment::from_micros(n * 9_000));
-                    kept.update(traffic.frames(), traffic.changes(), &filter);
-                }
-                if n % 1480 == 0 {
-                    let mut anew = Passed::default();
-                    anew.update(traffic.frames(), traffic.changes(), &filter);
-                    assert_eq!(numbers(&kept), numbers(&anew));
-                    let wrongs = |passed: &Passed| -> Vec<Option<Wrong>> {
-                        passed.frames().iter().map(|frame| frame.wrong).collect()
-                    };
-                    assert_eq!(wrongs(&kept), wrongs(&anew));
-                }
-            }
-        }
     }
 }

@@ -1,9 +1,9 @@
 //! The table of frames: only the rows in sight are drawn. Which frames they are is decided elsewhere.
 
-use crate::link::traffic::compose::{FrameSnippet, SnippetFormat};
+use crate::link::traffic::compose::SnippetFormat;
 use crate::link::traffic::frame::{Frame, Kind};
 use crate::ui::kit::{self, Label, Look, Pane};
-use crate::ui::text::{main, traffic};
+use crate::ui::text::traffic;
 use crate::ui::theme;
 use egui::{
     Align, Color32, FontId, Id, Key, Modifiers, Rect, Response, Role, Sense, Ui, WidgetInfo,
@@ -159,12 +159,11 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
     row.col(|ui| paint(ui, kind, theme::body(), strong));
     row.col(|ui| {
         if frame.wrong.is_some() {
-            let sign = Rect::from_center_size(ui.max_rect().center(), egui::vec2(12.0, 11.0));
-            kit::warning_sign(ui, sign, strong);
+            kit::warning_ui(ui, strong);
         }
     });
     row.col(|ui| paint(ui, &said, font, color));
-    row.col(|ui| paint(ui, &frame.hex(), theme::number_small(), palette.muted));
+    row.col(|ui| paint(ui, &frame.hex(), theme::number(), palette.muted));
     clicked
 }
 
@@ -186,16 +185,10 @@ fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
 
 /// Copies one frame, also as lines of a program.
 fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
-    ui.label(pane.look.say(main::FRAME_COPY));
+    ui.label(pane.look.say(traffic::COPY_AS));
     let endpoint = pane.state.hand().endpoint.as_ref();
     for form in SnippetFormat::ALL {
-        let text = match form {
-            SnippetFormat::Hex => Some(frame.hex()),
-            form => endpoint
-                .and_then(|endpoint| FrameSnippet::passed(&frame.bytes, endpoint))
-                .map(|snippet| snippet.text(form)),
-        };
-        if let Some(text) = text
+        if let Some(text) = form.text(&frame.bytes, endpoint)
             && ui.button(form.name()).clicked()
         {
             ui.ctx().copy_text(text);

@@ -8,16 +8,13 @@ use crate::app::files::export::{Export, TrafficForm};
 use crate::link::tap::Direction;
 use crate::link::traffic::frame::Frame;
 use crate::ui::kit::{self, Button, Label, Pane};
-use crate::ui::text::{Text, traffic};
+use crate::ui::text::{Text, main, traffic};
 use crate::ui::theme;
-use crate::ui::traffic::filter::{Filter, Passed};
+use crate::ui::traffic::filter::Filter;
 use crate::ui::traffic::list::ChosenFrames;
 use egui::{Event, Ui, vec2};
 use std::collections::VecDeque;
 use std::sync::Arc;
-
-/// The list's part of the height; the rest is the chosen frame's.
-const LIST_PART: f32 = 0.64;
 
 /// The frames as they were when the list was paused.
 #[derive(Debug)]
@@ -31,7 +28,9 @@ struct Paused {
 #[derive(Debug, Default)]
 pub(crate) struct TrafficView {
     filter: Filter,
-    passed: Passed,
+    passed: VecDeque<Arc<Frame>>,
+    /// What passed is of: another filter, or another frame, makes it anew.
+    of: Option<(Filter, u64, u64)>,
     choice: ChosenFrames,
     paused: Option<Paused>,
     scrolls: bool,
@@ -42,7 +41,7 @@ impl TrafficView {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.update(pane);
         let whole = ui.available_size();
-        let detail = (whole.y * (1.0 - LIST_PART)).max(150.0);
+        let detail = (whole.y * 0.36).max(150.0);
         ui.spacing_mut().item_spacing.y = theme::GAP;
         let size = vec2(whole.x, whole.y - detail.round() - theme::GAP);
         ui.allocate_ui(size, |ui| {
@@ -61,18 +60,19 @@ impl TrafficView {
         if live.newest() < self.filter.cleared {
             self.filter.cleared = 0;
         }
-        match &self.paused {
-            Some(paused) => self
-                .passed
-                .update(&paused.frames, paused.changes, &self.filter),
-            None => self
-                .passed
-                .update(live.frames(), live.changes(), &self.filter),
+        let (frames, changes, newest) = match &self.paused {
+            Some(paused) => (&paused.frames, paused.changes, paused.newest),
+            None => (live.frames(), live.changes(), live.newest()),
+        };
+        let of = Some((self.filter.clone(), changes, newest));
+        if self.of != of {
+            self.passed = self.filter.passing(frames);
+            self.of = of;
         }
     }
 
     fn chosen(&self) -> impl Iterator<Item = &Frame> {
-        let frames = self.passed.frames().iter();
+        let frames = self.passed.iter();
         let chosen = frames.filter(|frame| self.choice.numbers.contains(&frame.number));
         chosen.map(AsRef::as_ref)
     }
@@ -80,7 +80,7 @@ impl TrafficView {
     fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.spacing_mut().item_spacing.y = theme::STEP;
-        kit::head_ui(ui, look, look.say(traffic::TITLE), |ui| {
+        kit::head_ui(ui, look, look.say(main::TAB_TRAFFIC), |ui| {
             Label::new(&self.count(pane), look.palette.muted).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {
@@ -89,13 +89,13 @@ impl TrafficView {
             ui.separator();
             self.buttons_ui(ui, pane);
         });
-        if self.passed.frames().is_empty() {
+        if self.passed.is_empty() {
             let text = Label::new(look.say(self.why_empty(pane)), look.palette.muted);
             ui.vertical_centered(|ui| text.wrap().ui(ui));
             return;
         }
         let follows = !self.scrolls && self.paused.is_none();
-        let frames = self.passed.frames();
+        let frames = &self.passed;
         if list::list_ui(ui, pane, frames, (&mut self.choice, follows)) {
             self.scrolls = true;
         }
@@ -114,7 +114,7 @@ impl TrafficView {
     fn count(&self, pane: &Pane<'_>) -> String {
         let look = pane.look;
         let live = &pane.state.hand().traffic;
-        let (shown, all) = (self.passed.frames().len(), live.frames().len());
+        let (shown, all) = (self.passed.len(), live.frames().len());
         let of = look.say(traffic::SHOWN_OF);
         let text = format!("{shown} {of} {all} {}", look.say(traffic::FRAMES));
         let Some(paused) = &self.paused else {
@@ -142,7 +142,6 @@ impl TrafficView {
                 newest: live.newest(),
             });
             // What is shown from now on has a history of its own.
-            self.passed = Passed::default();
             self.update(pane);
         }
         let follow = Button::said(look, traffic::FOLLOW);
@@ -152,7 +151,7 @@ impl TrafficView {
         if follow.ui(ui, look).clicked() {
             self.scrolls = !self.scrolls;
         }
-        let nothing = self.passed.frames().is_empty();
+        let nothing = self.passed.is_empty();
         let nothing = nothing.then(|| look.say(traffic::EXPORT_NONE));
         let clear = Button::said(look, traffic::CLEAR);
         let clear = clear.named(look.say(traffic::CLEAR_NAME)).disabled(nothing);
@@ -173,7 +172,7 @@ impl TrafficView {
         ] {
             let button = Button::said(look, text);
             if button.disabled(nothing).ui(ui, look).clicked() {
-                let frames = self.passed.frames().iter().cloned().collect();
+                let frames = self.passed.iter().cloned().collect();
                 let content = Export::Traffic(form, frames);
                 pane.actions.push(Action::Save(content));
             }

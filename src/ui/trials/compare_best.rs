@@ -156,7 +156,7 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, scores: &[Score], best: Option<TrialSett
     let size = vec2(width.clamp(44.0, 84.0), 24.0);
     let head_ui = |ui: &mut Ui, size: Vec2, text: String| {
         let (_, place) = ui.allocate_space(size);
-        let (middle, font) = (Align2::CENTER_CENTER, theme::number_small());
+        let (middle, font) = (Align2::CENTER_CENTER, theme::number());
         ui.painter().text(place.center(), middle, text, font, muted);
     };
     let area = ScrollArea::horizontal().auto_shrink([false, true]);
@@ -206,6 +206,6 @@ fn cell_ui(ui: &mut Ui, pane: &Pane<'_>, (score, size): (&Score, Vec2), best: bo
     let edge = Stroke::new(edge, palette.accent);
     ui.painter()
         .rect(cell, round, ground, edge, StrokeKind::Inside);
-    let (middle, font) = (Align2::CENTER_CENTER, theme::number_small());
+    let (middle, font) = (Align2::CENTER_CENTER, theme::number());
     ui.painter().text(cell.center(), middle, text, font, ink);
 }

@@ -2,7 +2,7 @@
 
 use crate::hand::Status;
 use crate::trials::TrialSetting;
-use crate::trials::columns::{COLUMNS, Metric, TrialColumn, number};
+use crate::trials::columns::{COLUMNS, Metric, TrialColumn};
 use crate::ui::kit::{Look, format};
 use crate::ui::text::{Text, tune, words};
 use std::cmp::Ordering;
@@ -56,30 +56,4 @@ pub(crate) fn end_words(look: Look, name: Option<&str>) -> String {
 /// Speed and threshold.
 pub(crate) fn setting_words(setting: TrialSetting) -> String {
     format!("{} / {} g", setting.speed.get(), setting.force.get())
-}
-
-/// Mean, and lowest to highest; of nothing nothing.
-pub(crate) fn spread(values: &[f64], digits: usize) -> (String, String) {
-    let count = u32::try_from(values.len()).unwrap_or(u32::MAX);
-    let low = values.iter().copied().reduce(f64::min);
-    let high = values.iter().copied().reduce(f64::max);
-    let (Some(low), Some(high)) = (low, high) else {
-        return ("-".into(), String::new());
-    };
-    let mean = values.iter().sum::<f64>() / f64::from(count);
-    let range = format!("{low:.digits$}..{high:.digits$}");
-    (number(Some(mean), digits), range)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_spread_is_the_mean_and_the_ends_and_of_nothing_nothing() {
-        let said = |mean: &str, range: &str| (mean.to_owned(), range.to_owned());
-        assert_eq!(spread(&[10.0, 40.0, 25.0], 0), said("25", "10..40"));
-        assert_eq!(spread(&[0.125, 0.5], 2), said("0.31", "0.12..0.50"));
-        assert_eq!(spread(&[], 2), said("-", ""));
-    }
 }

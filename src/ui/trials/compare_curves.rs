@@ -6,7 +6,7 @@ use crate::app::trials::{
 };
 use crate::ui::kit::{Button, Label, Pane, dash};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
-use crate::ui::plots::legend::{LegendKey, fits, legend_ui};
+use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
@@ -16,9 +16,6 @@ use crate::ui::trials::plot::trial_chart_ui;
 use egui::{Color32, Stroke, Ui};
 use egui_plot::LineStyle;
 
-/// More lines are never named one by one.
-const LINES_NAMED: usize = 12;
-
 /// Where the time of the curves begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Align {
@@ -27,27 +24,29 @@ enum Align {
     Contact,
 }
 
+/// What the curves are of: another choice is thinned anew.
+type Drawn = (TrialQuantity, Option<TrialKey>);
+
 /// What the curves need between frames.
 #[derive(Debug, Default)]
 pub(crate) struct CurvesView {
     shown: TrialQuantity,
     align: Align,
     /// Thinned once, not each frame.
-    picture: Option<(TrialQuantity, ComparedLines)>,
+    picture: Option<(Drawn, ComparedLines)>,
     /// The line at the pointer.
     pointed: Option<RowKey>,
-    chart: ChartView,
+    pub(crate) chart: ChartView,
 }
 
 /// Lines of trials, and what they are of.
 #[derive(Clone, Copy)]
-pub(crate) struct DrawnTrials<'a> {
-    /// How they look.
-    pub(crate) pane: &'a Pane<'a>,
-    /// Of these sessions.
-    pub(crate) comparison: &'a Comparison,
-    /// What is drawn.
-    pub(crate) picture: &'a ComparedLines,
+struct DrawnTrials<'a> {
+    pane: &'a Pane<'a>,
+    comparison: &'a Comparison,
+    picture: &'a ComparedLines,
+    /// The trial that stands out.
+    strong: Option<TrialKey>,
 }
 
 impl CurvesView {
@@ -57,7 +56,7 @@ impl CurvesView {
         self.chart = ChartView::default();
     }
 
-    /// Draws what is chosen. A pressed line stands out.
+    /// Draws what is chosen, and the choices. A pressed line stands out.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -65,61 +64,60 @@ impl CurvesView {
         comparison: &Comparison,
         strong: &mut Option<TrialKey>,
     ) {
-        let look = pane.look;
         self.choices_ui(ui, pane);
+        self.chart_ui(ui, pane, comparison, strong);
+    }
+
+    /// Draws what is chosen. A pressed line stands out.
+    pub(crate) fn chart_ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &Pane<'_>,
+        comparison: &Comparison,
+        strong: &mut Option<TrialKey>,
+    ) {
+        let look = pane.look;
         let trials = &pane.state.trials;
-        let shown = self.shown;
-        let picture = self.picture.take().filter(|(own, _)| *own == shown);
-        let picture = picture.map_or_else(|| comparison.lines(trials, shown), |(_, own)| own);
-        let drawn = DrawnTrials {
+        let drawn = (self.shown, *strong);
+        let picture = self.picture.take().filter(|(own, _)| *own == drawn);
+        let lines = || comparison.lines(trials, self.shown, *strong);
+        let picture = picture.map_or_else(lines, |(_, own)| own);
+        let trial = DrawnTrials {
             pane,
             comparison,
             picture: &picture,
+            strong: *strong,
         };
-        legend_ui(ui, look, &drawn.legend(ui, self.pointed, *strong));
-        let whole = drawn.whole(shown, *strong);
-        let whole = ComparedLines {
-            all: whole.len(),
-            lines: whole,
-        };
-        let strongs = DrawnTrials {
-            picture: &whole,
-            ..drawn
-        };
-        let (keys, curves): (Vec<_>, Vec<_>) = self.curves(drawn, strongs).into_iter().unzip();
+        legend_ui(ui, look, &trial.legend(self.pointed));
+        let (keys, curves): (Vec<_>, Vec<_>) = self.curves(trial).into_iter().unzip();
         let chart = Chart {
             curves,
-            levels: match shown {
-                TrialQuantity::Force => drawn.levels(),
+            levels: match self.shown {
+                TrialQuantity::Force => trial.levels(),
                 _ => Vec::new(),
             },
             empty: tune::CURVES_EMPTY,
-            ..Chart::new(look, tune::quantity(shown), ui.available_height())
+            ..Chart::new(look, tune::quantity(self.shown), ui.available_height())
         };
         let (response, near) = trial_chart_ui(ui, chart, &mut self.chart);
         self.pointed = near.and_then(|at| keys.get(at)).copied();
         if response.response.clicked() {
-            let seen = self.pointed.and_then(|place| comparison.row(trials, place));
-            let chosen = seen.map(|seen| (seen.session.id, seen.trial.number));
+            let chosen = self.pointed.and_then(|key| trial.trial(key));
             *strong = chosen.filter(|_| chosen != *strong);
         }
-        self.picture = Some((shown, picture));
+        self.picture = Some((drawn, picture));
     }
 
-    /// The lines of all, with those of the trial that stands out over them.
-    fn curves<'a>(
-        &self,
-        all: DrawnTrials<'a>,
-        strong: DrawnTrials<'a>,
-    ) -> Vec<(RowKey, ChartCurve<'a>)> {
-        let is_strong = |key: RowKey| strong.picture.lines.iter().any(|own| own.key == key);
-        let back = all.curves().filter(|(own, _)| !is_strong(own.key));
-        let styled = back.chain(strong.curves()).filter_map(|(own, mut curve)| {
-            let is_strong = is_strong(own.key);
+    fn curves<'a>(&self, all: DrawnTrials<'a>) -> Vec<(RowKey, ChartCurve<'a>)> {
+        let lines = &all.picture.lines;
+        let any = lines.iter().any(|own| all.is_strong(own.key));
+        let styled = lines.iter().filter_map(|own| {
+            let mut curve = all.curve(own)?;
+            let is_strong = all.is_strong(own.key);
             if is_strong || self.pointed == Some(own.key) {
                 curve.stroke.width = theme::STRONG;
             }
-            if strong.picture.all > 0 && !is_strong {
+            if any && !is_strong {
                 curve.stroke.color = dash::behind(curve.stroke.color);
             }
             curve.zero[0] = match self.align {
@@ -172,29 +170,31 @@ impl<'a> DrawnTrials<'a> {
         self.comparison.row(&self.pane.state.trials, key)
     }
 
-    fn is_of(&self, key: RowKey, trial: Option<TrialKey>) -> bool {
-        let seen = self.row(key).filter(|_| trial.is_some());
-        seen.is_some_and(|seen| trial == Some((seen.session.id, seen.trial.number)))
+    fn trial(&self, key: RowKey) -> Option<TrialKey> {
+        let seen = self.row(key)?;
+        Some((seen.session.id, seen.trial.number))
+    }
+
+    fn is_strong(&self, key: RowKey) -> bool {
+        self.strong.is_some() && self.trial(key) == self.strong
     }
 
     fn style(&self, seen: ComparedRow<'_>) -> LineStyle {
         compare_list::style(self.comparison.sessions(), seen.session.id)
     }
 
-    /// The lines with the colours of their settings, joints or sessions.
-    pub(crate) fn curves(self) -> impl Iterator<Item = (&'a ComparedLine, ChartCurve<'a>)> {
-        self.picture.lines.iter().filter_map(move |own| {
-            let seen = self.row(own.key)?;
-            let color = color(self.pane, self.comparison, own.key, seen);
-            let mut curve =
-                ChartCurve::new(Points::Own(&own.points), Stroke::new(theme::LINE, color));
-            curve.style = self.style(seen);
-            Some((own, curve))
+    /// A line with the colour of its setting, joint or session.
+    fn curve(&self, own: &'a ComparedLine) -> Option<ChartCurve<'a>> {
+        let seen = self.row(own.key)?;
+        let color = color(self.pane, self.comparison, own.key, seen);
+        Some(ChartCurve {
+            style: self.style(seen),
+            ..ChartCurve::new(Points::Own(&own.points), Stroke::new(theme::LINE, color))
         })
     }
 
     /// The thresholds that were tried.
-    pub(crate) fn levels(&self) -> Vec<(f64, Color32)> {
+    fn levels(&self) -> Vec<(f64, Color32)> {
         let forces = self.comparison.settings.iter();
         let mut levels: Vec<f64> = forces.map(|own| f64::from(own.force.get())).collect();
         levels.sort_by(f64::total_cmp);
@@ -203,62 +203,27 @@ impl<'a> DrawnTrials<'a> {
         levels.into_iter().map(|level| (level, color)).collect()
     }
 
-    /// The trial that stands out, with all its points: it may not be among the lines, or thinned.
-    fn whole(&self, shown: TrialQuantity, strong: Option<TrialKey>) -> Vec<ComparedLine> {
-        let line = |key: &RowKey| {
-            let line = self.comparison.line(&self.pane.state.trials, *key)?;
-            Some(ComparedLine {
-                key: *key,
-                contact_s: line.contact_s,
-                points: line.points(shown).to_vec(),
-            })
-        };
-        let keys = self.comparison.rows.iter();
-        keys.filter(|key| self.is_of(**key, strong))
-            .filter_map(line)
-            .collect()
-    }
-
-    /// The trial that is meant, or every line if few are drawn, or what colours and strokes stand for.
-    fn legend(&self, ui: &Ui, pointed: Option<RowKey>, strong: Option<TrialKey>) -> Vec<LegendKey> {
+    /// The trial that is meant, or what colours and strokes stand for.
+    fn legend(&self, pointed: Option<RowKey>) -> Vec<LegendKey> {
         let mut drawn = self.picture.lines.iter().map(|line| line.key);
-        let meant = pointed.or_else(|| drawn.find(|key| self.is_of(*key, strong)));
-        let look = self.pane.look;
-        let key = |key: RowKey, is_meant: bool| {
-            let seen = self.row(key)?;
-            let setting = setting_words(seen.trial.setting);
-            let (session, number) = (seen.session.id, seen.trial.number);
-            let words = if is_meant {
-                let (name, trial) = (
-                    compare_list::name(look, session),
-                    look.say(tune::COLUMN_TRIAL),
-                );
-                let joint = look.say(words::dof(seen.joint.dof));
-                format!("{name}  {trial} {number}  {setting}  {joint}")
-            } else if self.comparison.sessions().len() > 1 {
-                format!("{}: {number}  {setting}", session.0)
-            } else {
-                format!("{number}  {setting}")
-            };
-            Some(LegendKey {
-                words,
-                color: color(self.pane, self.comparison, key, seen),
-                style: self.style(seen),
-            })
+        let meant = pointed.or_else(|| drawn.find(|key| self.is_strong(*key)));
+        let Some((meant, seen)) = meant.and_then(|key| Some((key, self.row(key)?))) else {
+            return self.keys();
         };
-        if let Some(meant) = meant.and_then(|meant| key(meant, true)) {
-            return vec![meant];
-        }
-        let few = self.picture.lines.iter().take(LINES_NAMED + 1);
-        let every: Vec<LegendKey> = few.filter_map(|line| key(line.key, false)).collect();
-        match every.len() <= LINES_NAMED && !every.is_empty() && fits(ui, &every) {
-            true => every,
-            false => self.keys(),
-        }
+        let look = self.pane.look;
+        let name = compare_list::name(look, seen.session.id);
+        let (trial, number) = (look.say(tune::COLUMN_TRIAL), seen.trial.number);
+        let setting = setting_words(seen.trial.setting);
+        let joint = look.say(words::dof(seen.joint.dof));
+        vec![LegendKey {
+            words: format!("{name}  {trial} {number}  {setting}  {joint}"),
+            color: color(self.pane, self.comparison, meant, seen),
+            style: self.style(seen),
+        }]
     }
 
     /// A key for each stroke, then for each colour.
-    pub(crate) fn keys(&self) -> Vec<LegendKey> {
+    fn keys(&self) -> Vec<LegendKey> {
         let look = self.pane.look;
         let mut keys = Vec::new();
         if self.comparison.sessions().len() > 1 {

@@ -11,8 +11,6 @@ use egui_extras::{Column, TableBuilder, TableRow};
 use egui_plot::LineStyle;
 
 const ROW: f32 = 24.0;
-/// Sessions that are seen without scrolling; the last is cut, so that a person sees that there are more.
-const ROWS: f32 = 3.4;
 /// Width of tick, stroke and name, and of how many trials there are and whether they lie in files.
 const LEFT: [f32; 3] = [20.0, 26.0, 92.0];
 const RIGHT: [f32; 2] = [72.0, 128.0];
@@ -49,7 +47,7 @@ pub(crate) fn list_ui(ui: &mut Ui, sheet: SessionSheet<'_>, chosen: &mut ShownSe
             .id_salt("sessions")
             .cell_layout(Layout::left_to_right(Align::Center))
             .auto_shrink([false, true])
-            .max_scroll_height(ROWS * ROW);
+            .max_scroll_height(3.4 * ROW);
         for width in LEFT {
             table = table.column(Column::exact(width));
         }

@@ -73,7 +73,7 @@ impl TuneView {
 fn refusal(pane: &Pane<'_>) -> Option<String> {
     let (look, hand, plan) = (pane.look, pane.state.hand(), &pane.state.trials.plan);
     if !hand.link.state.is_live() {
-        return Some(look.say(tune::NEED_HAND).into());
+        return Some(look.say(main::REFUSED_OFFLINE).into());
     }
     if plan.check().is_err() {
         return Some(look.say(tune::PLAN_WRONG).into());

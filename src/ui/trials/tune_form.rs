@@ -2,9 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::trials::TrialAction;
-use crate::app::trials::form::{
-    ListError, PlanSide, approaches, list, set_target, tags, take_pose,
-};
+use crate::app::trials::form::{PlanSide, approaches, list, set_target, tags, take_pose};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
@@ -20,14 +18,12 @@ const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
 /// Width of a joint's button, of what stands before each other field, and of a head over a field.
 const JOINT: f32 = 104.0;
-const CAPTION: f32 = 156.0;
 /// Speed of a fast part unless a person says otherwise: fast, and not rough yet.
 const FAST: i16 = 250;
 
 /// What the form needs between frames.
 #[derive(Debug)]
 pub(crate) struct TuneForm {
-    refused: Option<(PlanField, ListError)>,
     /// Where each joint closed to when it took part last.
     targets: PerDof<Angle>,
     /// Speed of the fast part when there was one last.
@@ -37,7 +33,6 @@ pub(crate) struct TuneForm {
 impl Default for TuneForm {
     fn default() -> Self {
         Self {
-            refused: None,
             targets: PerDof::splat(Angle::MIN),
             fast: Speed::nearest(FAST),
         }
@@ -71,11 +66,9 @@ impl TuneForm {
         self.remember(&plan);
         let error = plan.check().err();
         let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
-        let refused = self.refused;
-        let refused = refused.map(|(field, why)| (field, tune::list_error(look, why)));
         let runs = pane.state.hand().runs_series();
         let mut pass = Pass {
-            wrong: refused.or(wrong),
+            wrong,
             pane,
             form: self,
             plan,
@@ -239,16 +232,15 @@ impl Pass<'_, '_> {
         (caption, name): (Text, Text),
         (numbers, most): (Vec<i16>, i16),
     ) -> Option<Vec<i16>> {
+        let look = self.pane.look;
         let numbers: Vec<String> = numbers.iter().map(i16::to_string).collect();
-        let typed = self.text_ui(ui, (caption, name), (&numbers.join(", "), LIST_CHARS));
-        let read = typed.map(|text| list(&text, most));
-        match read {
-            Some(Err(why)) => self.form.refused = Some((field, why)),
-            Some(Ok(_)) => self.form.refused = None,
-            None => {}
-        }
+        let text = TextField::new(look.say(name), LIST_CHARS).hint(look.tip(name));
+        let read = |text: &str| list(text, most).map_err(|why| tune::list_error(look, why));
+        let read = self.row_ui(ui, caption, |ui, pane| {
+            text.read_ui(ui, pane, &numbers.join(", "), read)
+        });
         self.trouble_ui(ui, field);
-        read.and_then(Result::ok)
+        read
     }
 
     /// A field beside its caption.
@@ -259,7 +251,7 @@ impl Pass<'_, '_> {
         field: impl FnOnce(&mut Ui, &mut Pane<'_>) -> R,
     ) -> R {
         let row = ui.horizontal(|ui| {
-            self.caption_ui(ui, caption, CAPTION);
+            self.caption_ui(ui, caption, 156.0);
             field(ui, self.pane)
         });
         row.inner

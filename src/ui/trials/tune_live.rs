@@ -1,7 +1,6 @@
-//! The series that runs: how far it is, what the hand does, the force as it comes, temperatures. Changes nothing.
+//! The series that runs: how far it is, what the hand does, the force as it comes. Changes nothing.
 
 use crate::app::action::Action;
-use crate::app::hand::Freshness;
 use crate::app::trials::SeriesRun;
 use crate::hand::{Dof, Quantity};
 use crate::history::Series;
@@ -36,7 +35,6 @@ pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut LiveChart) {
         }
     });
     head_ui(ui, pane, run);
-    ui.horizontal(|ui| heat_ui(ui, pane));
     if ui.available_height() >= PLOT_LEAST {
         force_ui(ui, pane, run, chart);
     }
@@ -68,26 +66,6 @@ fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
         }
     });
     kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
-}
-
-fn heat_ui(ui: &mut Ui, pane: &Pane<'_>) {
-    let (look, palette) = (pane.look, pane.look.palette);
-    let name = look.say(tune::TEMPS);
-    Label::new(name, palette.muted).small().ui(ui);
-    let read = pane.state.hand().sample.temperature;
-    let freshness = pane.freshness(read.map(|read| read.asked));
-    for dof in Dof::ALL {
-        let celsius = read.and_then(|read| read.value[dof].documented());
-        let text = celsius.map_or_else(|| "-".to_owned(), |celsius| celsius.to_string());
-        // Temperatures are read some times a second only.
-        let color = match freshness {
-            Freshness::Unknown => palette.faint,
-            Freshness::Live | Freshness::Stale => palette.dof[dof],
-        };
-        let label = look.told(words::dof(dof), name);
-        let text = Label::new(&text, color).font(theme::number_small());
-        text.named(&label).ui(ui);
-    }
 }
 
 fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut LiveChart) {

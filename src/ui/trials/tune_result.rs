@@ -1,27 +1,26 @@
 //! What came out of the last series: how it ended, the gentlest setting, its curves, and what to do next. Writes nothing.
 
-use crate::app::trials::{ComparedLines, Comparison, TrialQuantity, TrialSession};
-use crate::params::rows::{ParamId, Value};
+use crate::app::action::Action;
+use crate::app::trials::{Comparison, TrialSession};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
 use crate::ui::kit::{self, Button, Opens, Pane, Weight};
-use crate::ui::plots::chart::{Chart, ChartView};
-use crate::ui::plots::legend::legend_ui;
 use crate::ui::text::tune;
 use crate::ui::trials::compare;
 use crate::ui::trials::compare_best::staging;
+use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::setting_words;
-use crate::ui::trials::compare_curves::DrawnTrials;
-use crate::ui::trials::plot::trial_chart_ui;
+use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::view::View;
 use egui::Ui;
 
 /// What is kept between frames: figures and curves are not reckoned for each of them.
 #[derive(Debug, Default)]
 pub(crate) struct ResultView {
-    seen: Option<(Comparison, ComparedLines)>,
+    comparison: Option<Comparison>,
+    strong: Option<TrialKey>,
     /// What is shown of the curves.
-    chart: ChartView,
+    curves: CurvesView,
 }
 
 impl ResultView {
@@ -35,21 +34,22 @@ impl ResultView {
         kit::say_ui(ui, &look.fill(tune::LAST, &[&ended]), color);
         let (told, color) = compare::told(pane.state, look, Some(session));
         kit::say_ui(ui, &told, color);
-        let (comparison, _) = self.seen(pane, session);
+        let comparison = self.comparison(pane, session);
         let gentlest = Criterion::LeastOvershoot { steady_g: 0.0 };
         let score = best(&comparison.scores, gentlest);
         let none = || look.say(tune::BEST_NONE).to_owned();
         let words = score.map_or_else(none, |score| best_words(pane, score));
         kit::say_ui(ui, &words, palette.text);
         let device = &pane.state.hand().params;
-        let is_staged = score.is_some_and(|score| {
-            let number = |number: i16| Some(Value::Number(number.into()));
-            let (speed, force) = (score.setting.speed.get(), score.setting.force.get());
-            comparison.joints.iter().all(|dof| {
-                device.staged(ParamId::DefaultSpeed(*dof)) == number(speed)
-                    && device.staged(ParamId::DefaultForce(*dof)) == number(force)
-            })
+        let staged = score.map(|score| {
+            let joints = comparison.joints.iter();
+            let staged = joints.flat_map(|dof| staging(*dof, score.setting));
+            staged.collect::<Vec<Action>>()
         });
+        let is_staged = staged.iter().flatten().all(
+            |action| matches!(action, Action::Stage(id, value) if device.staged(*id) == *value),
+        );
+        let is_staged = is_staged && staged.is_some();
         if is_staged {
             kit::say_ui(ui, look.say(tune::STAGED_NEXT), palette.ok);
         }
@@ -65,53 +65,33 @@ impl ResultView {
                 if button_ui(ui, tune::SEE_DEVICE, Weight::Strong) {
                     pane.open(Opens::View(View::Device));
                 }
-            } else if let Some(score) = score
+            } else if let Some(staged) = staged
                 && button_ui(ui, tune::PROMOTE, Weight::Normal)
             {
-                let joints = comparison.joints.iter();
-                let all = joints.flat_map(|dof| staging(*dof, score.setting));
-                pane.actions.extend(all);
+                pane.actions.extend(staged);
             }
         });
+        self.comparison = Some(comparison);
     }
 
-    /// The force of all its trials over each other, and what their colours stand for.
+    /// Draws the curves over each other.
     pub(crate) fn curves_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, session: &TrialSession) {
-        let look = pane.look;
-        let mut chart = std::mem::take(&mut self.chart);
-        let (comparison, picture) = self.seen(pane, session);
-        let drawn = DrawnTrials {
-            pane,
-            comparison,
-            picture,
-        };
-        legend_ui(ui, look, &drawn.keys());
-        let force = Chart {
-            curves: drawn.curves().map(|(_, curve)| curve).collect(),
-            levels: drawn.levels(),
-            empty: tune::CURVES_EMPTY,
-            ..Chart::new(
-                look,
-                tune::quantity(TrialQuantity::Force),
-                ui.available_height(),
-            )
-        };
-        trial_chart_ui(ui, force, &mut chart);
-        self.chart = chart;
+        let comparison = self.comparison(pane, session);
+        self.curves
+            .chart_ui(ui, pane, &comparison, &mut self.strong);
+        self.comparison = Some(comparison);
     }
 
-    fn seen(&mut self, pane: &Pane<'_>, session: &TrialSession) -> &(Comparison, ComparedLines) {
+    /// The series alone, judged once.
+    fn comparison(&mut self, pane: &Pane<'_>, session: &TrialSession) -> Comparison {
         let trials = &pane.state.trials;
         let own = [session.id];
-        let stands = |seen: &(Comparison, ComparedLines)| seen.0.stands(trials, &own, session.id);
-        if !self.seen.as_ref().is_some_and(stands) {
-            self.seen = None;
+        let former = self.comparison.take();
+        if let Some(former) = former.filter(|seen| seen.stands(trials, &own, session.id)) {
+            return former;
         }
-        self.seen.get_or_insert_with(|| {
-            let comparison = Comparison::of(trials, &own, session.id);
-            let picture = comparison.lines(trials, TrialQuantity::Force);
-            (comparison, picture)
-        })
+        self.curves.forget();
+        Comparison::of(trials, &own, session.id)
     }
 }
 

@@ -100,7 +100,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let palette = look.palette;
     let simulated = pane.state.hand().is_simulated();
     let (text, fill, color) = match (&pane.state.hand().endpoint, simulated) {
-        (_, true) => (main::SIMULATED, palette.simulated, palette.on_simulated),
+        (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
         (None, _) => (main::NO_HAND, palette.control, palette.muted),
     };
@@ -118,9 +118,8 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
         let width = kit::text_width(ui, &text, theme::number()) + 1.0;
         ui.scope(|ui| {
             ui.set_max_width(width.min(most));
-            let scheme = text.split(':').next().unwrap_or_default();
             let label = Label::new(&text, palette.muted).number();
-            label.shorter(scheme).ui(ui)
+            label.ui(ui)
         })
         .inner
         .on_hover_text(format!("{text}\n{}", look.say(main::ENDPOINT_TIP)));
@@ -157,7 +156,7 @@ fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (state, touch) = (rate(stats.state_hz), rate(stats.tactile_hz));
     let figures: [(Text, String, Text, Color32); 3] = [
         (main::RATE_STATE, state, main::RATES_TIP, color),
-        (main::RATE_TACTILE, touch, main::RATES_TIP, color),
+        (main::TAB_TOUCH, touch, main::RATES_TIP, color),
         (
             main::ERRORS,
             errors.to_string(),

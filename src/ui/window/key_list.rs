@@ -1,7 +1,7 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
-use crate::ui::kit::{self, Button, Label, Look, Opens, Weight};
-use crate::ui::text::{Text, keys};
+use crate::ui::kit::{self, Button, Label, Look, Weight};
+use crate::ui::text::{Text, keys, main};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
 use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
@@ -38,7 +38,7 @@ impl KeyList {
         }
         let edge = Stroke::new(theme::LINE, look.palette.accent);
         let frame = Frame::window(ui.style()).stroke(edge);
-        let window = Window::new(look.say(keys::TITLE))
+        let window = Window::new(look.say(keys::BUTTON))
             .id(Id::unique("key list"))
             .title_bar(false)
             .resizable(false)
@@ -59,58 +59,42 @@ impl KeyList {
     }
 }
 
-/// A title, and below it the names of keys with what they do.
-type KeyGroup = (Text, Vec<(String, Text)>);
+/// The groups of the list, column by column.
+const COLUMNS: [&[Text]; 3] = [
+    &[keys::MOTION, keys::MEASURING],
+    &[keys::JOINTS],
+    &[keys::WINDOW],
+];
 
-/// The columns of the list.
-fn columns() -> [Vec<KeyGroup>; 3] {
-    let part = |title: Text, wanted: fn(Wish) -> bool| -> KeyGroup {
-        let wishes = ROWS.iter().map(|row| row.wish);
-        let mut wishes: Vec<Wish> = wishes.filter(|wish| wanted(*wish)).collect();
-        wishes.dedup();
-        let named = |wish: Wish| (wish.keys(), wish.words());
-        (title, wishes.into_iter().map(named).collect())
-    };
-    let motion = part(keys::MOTION, |wish| {
-        matches!(
-            wish,
-            Wish::Stop | Wish::ArmOrNot | Wish::Open | Wish::Half | Wish::Close
-        )
-    });
-    let joints = part(keys::JOINTS, |wish| {
-        matches!(wish, Wish::Joint(_) | Wish::LinkFingers | Wish::AngleUnit)
-    });
-    let measuring = part(keys::MEASURING, |wish| {
-        matches!(
-            wish,
-            Wish::Tare | Wish::UndoTare | Wish::Pause | Wish::Opens(Opens::Note)
-        )
-    });
-    let mut window = part(keys::WINDOW, |wish| {
-        matches!(
-            wish,
-            Wish::Opens(Opens::View(_) | Opens::Keys) | Wish::Language | Wish::Theme
-        )
-    });
-    let zoom = ZOOM.map(|(key, words)| (key.to_owned(), words));
-    window.1.extend(zoom);
-    [vec![motion, measuring], vec![joints], vec![window]]
+/// The keys of a group, and what they do.
+fn rows(group: Text) -> Vec<(String, Text)> {
+    let wishes = ROWS.iter().map(|row| row.wish);
+    let mut wishes: Vec<Wish> = wishes.filter(|wish| wish.group() == group).collect();
+    wishes.dedup();
+    let mut rows: Vec<_> = wishes
+        .into_iter()
+        .map(|wish| (wish.keys(), wish.words()))
+        .collect();
+    if group == keys::WINDOW {
+        rows.extend(ZOOM.map(|(key, words)| (key.to_owned(), words)));
+    }
+    rows
 }
 
 /// True if it is to be hidden.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    let shut = kit::head_ui(ui, look, look.say(keys::TITLE), |ui| {
-        let shut = Button::new(look.say(keys::SHUT), "").weight(Weight::Quiet);
+    let shut = kit::head_ui(ui, look, look.say(keys::BUTTON), |ui| {
+        let shut = Button::new(look.say(main::DISMISS), "").weight(Weight::Quiet);
         shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {
-        for (ui, parts) in all.iter_mut().zip(columns()) {
-            for (title, rows) in parts {
-                Label::new(look.say(title), palette.accent).small().ui(ui);
+        for (ui, parts) in all.iter_mut().zip(COLUMNS) {
+            for title in parts {
+                Label::new(look.say(*title), palette.accent).small().ui(ui);
                 let grid = Grid::new(title.en).num_columns(2).min_col_width(110.0);
                 grid.min_row_height(20.0).show(ui, |ui| {
-                    for (keys, words) in rows {
+                    for (keys, words) in rows(*title) {
                         ui.horizontal(|ui| {
                             keys.split(", ").for_each(|key| cap_ui(ui, look, key));
                         });
@@ -132,6 +116,6 @@ fn cap_ui(ui: &mut Ui, look: Look, key: &str) {
         .fill(look.palette.control)
         .corner_radius(theme::ROUND_SMALL)
         .inner_margin(Margin::symmetric(6, 1));
-    let key = egui::RichText::new(key).font(theme::number());
+    let key = egui::RichText::new(key).monospace();
     frame.show(ui, |ui| ui.add(egui::Label::new(key).extend()));
 }

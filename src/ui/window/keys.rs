@@ -166,7 +166,7 @@ impl Wish {
             Self::AngleUnit => keys::UNIT,
             Self::Tare => panels::TARE_ALL,
             Self::UndoTare => keys::UNDO_TARE,
-            Self::Pause => keys::PAUSE,
+            Self::Pause => panels::PAUSE_NAME,
             Self::Language => keys::LANGUAGE,
             Self::Theme => keys::THEME,
             Self::Opens(Opens::View(view)) => view.title(),
@@ -174,6 +174,16 @@ impl Wish {
             Self::Opens(Opens::Keys) => keys::LIST,
             Self::Opens(Opens::Drive(dof)) => words::dof(dof),
             Self::Opens(Opens::Faults) => View::Faults.title(),
+        }
+    }
+
+    /// Its group in the list of keys.
+    pub(crate) const fn group(self) -> Text {
+        match self {
+            Self::Stop | Self::ArmOrNot | Self::Open | Self::Half | Self::Close => keys::MOTION,
+            Self::Joint(_) | Self::LinkFingers | Self::AngleUnit => keys::JOINTS,
+            Self::Tare | Self::UndoTare | Self::Pause | Self::Opens(Opens::Note) => keys::MEASURING,
+            Self::Opens(_) | Self::Language | Self::Theme => keys::WINDOW,
         }
     }
 

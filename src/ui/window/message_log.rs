@@ -1,48 +1,20 @@
-//! The log of messages: filtered by level and words, copied as text. Its lines are measured once and not for each frame.
+//! Messages as rows, and the log of all of them: filtered by words, of which the level is one, and copied as text.
 
 use crate::app::notices::{Level, Notice};
-use crate::app::settings::Language;
-use crate::hand::Moment;
 use crate::ui::kit::{self, Button, Label, Look, Pane, format};
 use crate::ui::text::{Text, faults, notices};
-use crate::ui::theme;
-use egui::{Align, Color32, Layout, Sense, Ui, vec2};
-use egui_extras::{Column, TableBuilder};
+use egui::{Align, Layout, ScrollArea, Ui};
 use std::fmt::Write as _;
 
-/// Room for the lamp and for the age of a message.
-const LAMP: f32 = 12.0;
-const AGE: f32 = 52.0;
-
-/// What decides which lines there are and how high.
-#[derive(Debug, Clone, PartialEq)]
-struct LogKey {
-    newest: Option<(u64, Moment)>,
-    language: Language,
-    least: Option<Level>,
-    words: String,
-    width: f32,
-}
-
-/// One message, ready to draw.
-#[derive(Debug)]
-struct LogLine {
-    at: Moment,
-    level: Level,
-    text: String,
-    height: f32,
-}
+/// Rows that are drawn: older ones are found by their words, and copied.
+const DRAWN_MAX: usize = 200;
 
 /// What the log needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct MessageLog {
-    /// Messages of less weight are left out.
-    least: Option<Level>,
     words: String,
-    key: Option<LogKey>,
-    lines: Vec<LogLine>,
-    /// Lines that were copied last, until the list changes.
-    copied: Option<usize>,
+    /// The newest message when lines were copied last, and how many.
+    copied: Option<(Option<u64>, usize)>,
 }
 
 const fn level_word(level: Level) -> Text {
@@ -55,147 +27,94 @@ const fn level_word(level: Level) -> Text {
 
 impl MessageLog {
     /// Draws the tools and the list.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        self.tools_ui(ui, look);
-        kit::edit_ui(ui, look.both(faults::LOG_FILTER), &mut self.words);
-        self.update(ui, pane);
-        if !self.lines.is_empty() {
-            self.lines_ui(ui, pane);
-            return;
-        }
-        let text = match pane.state.notices.log().next() {
-            Some(_) => faults::LOG_NONE_PASS,
-            None => faults::LOG_NONE,
-        };
-        Label::muted(look, text).ui(ui);
-    }
-
-    /// Levels and copying.
-    fn tools_ui(&mut self, ui: &mut Ui, look: Look) {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = theme::STEP;
-            for (text, least) in [
-                (faults::LEVEL_ALL, None),
-                (faults::LEVEL_WARN, Some(Level::Warn)),
-                (faults::LEVEL_ALARM, Some(Level::Alarm)),
-            ] {
-                let name = look.pair(look.say(faults::LEVEL), look.say(text));
-                let button = Button::said(look, text)
-                    .tip(look.tip(faults::LEVEL))
-                    .named(&name);
-                if button.choice(self.least == least).ui(ui, look).clicked() {
-                    self.least = least;
-                }
-            }
-            kit::right_ui(ui, |ui| {
-                let text = match self.copied {
-                    None => look.say(faults::COPY).to_owned(),
-                    Some(lines) => format!("{} ({lines})", look.say(faults::COPIED)),
-                };
-                let name = look.pair(look.say(faults::COPY), look.say(faults::LOG));
-                let copy = Button::new(&text, look.tip(faults::COPY)).named(&name);
-                if copy
-                    .disabled_if(self.lines.is_empty(), look.say(faults::LOG_NONE))
-                    .ui(ui, look)
-                    .clicked()
-                {
-                    ui.ctx().copy_text(self.text(look));
-                    self.copied = Some(self.lines.len());
-                }
-            });
-        });
-    }
-
-    /// Measures the lines anew if anything about them has changed.
-    fn update(&mut self, ui: &Ui, pane: &Pane<'_>) {
-        let log = &pane.state.notices;
-        let key = LogKey {
-            newest: log.log().next().map(|newest| (newest.id, newest.at)),
-            language: pane.look.language,
-            least: self.least,
-            words: self.words.trim().to_lowercase(),
-            width: ui.available_width() - LAMP - AGE - 3.0 * theme::GAP,
-        };
-        if self.key.as_ref() == Some(&key) {
-            return;
-        }
-        self.copied = None;
-        let passing = log.log().filter(|notice| Some(notice.level) >= key.least);
-        let line = |notice: &Notice| LogLine {
-            at: notice.at,
-            level: notice.level,
-            text: words(pane.look, notice),
-            height: 0.0,
-        };
-        self.lines = passing.map(line).collect();
-        self.lines
-            .retain(|line| line.text.to_lowercase().contains(&key.words));
-        for line in &mut self.lines {
-            let (text, ink) = (line.text.clone(), Color32::PLACEHOLDER);
-            let galley = ui.painter().layout(text, theme::small(), ink, key.width);
-            line.height = galley.size().y + 4.0;
-        }
-        self.key = Some(key);
-    }
-
-    fn lines_ui(&self, ui: &mut Ui, pane: &Pane<'_>) {
-        let look = pane.look;
+        ui.horizontal(|ui| kit::right_ui(ui, |ui| self.tools_ui(ui, pane)));
         let lost = pane.state.notices.log_dropped();
         if lost > 0 {
             let text = look.told(faults::LOG_LOST, lost);
             Label::new(&text, look.palette.muted).small().ui(ui);
         }
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let room = self.key.as_ref().map_or(0.0, |key| key.width);
-        let table = TableBuilder::new(ui)
-            .cell_layout(Layout::left_to_right(Align::TOP))
-            .auto_shrink(false)
-            .column(Column::exact(LAMP))
-            .column(Column::exact(room))
-            .column(Column::exact(AGE));
-        let heights = self.lines.iter().map(|line| line.height);
-        table.body(|body| {
-            body.heterogeneous_rows(heights, |mut row| {
-                let Some(line) = self.lines.get(row.index()) else {
-                    return;
-                };
-                row.col(|ui| {
-                    let size = vec2(LAMP, theme::TEXT_LINE);
-                    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-                    kit::lamp(ui, place.center(), look.level(line.level));
-                });
-                row.col(|ui| {
-                    let label = Label::new(&line.text, look.palette.text);
-                    label.small().wrap().ui(ui);
-                });
-                row.col(|ui| {
-                    let age = format::age(pane.state.now.since(line.at));
-                    let right = Layout::right_to_left(Align::TOP);
-                    let label = Label::new(&age, look.palette.muted).small();
-                    ui.with_layout(right, |ui| label.ui(ui));
-                });
-            });
+        let shown: Vec<_> = self.passing(pane).take(DRAWN_MAX + 1).collect();
+        if shown.is_empty() {
+            let text = match pane.state.notices.log().next() {
+                Some(_) => faults::LOG_NONE_PASS,
+                None => faults::LOG_NONE,
+            };
+            Label::muted(look, text).ui(ui);
+        }
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for (notice, _) in shown.iter().take(DRAWN_MAX) {
+                message_ui(ui, pane, notice, |_, _, _| ());
+            }
+            if shown.len() > DRAWN_MAX {
+                Label::note(look, faults::LOG_MORE).wrap().ui(ui);
+            }
         });
     }
 
-    /// The listed messages as text, a line each, newest first.
-    fn text(&self, look: Look) -> String {
-        let mut text = String::new();
-        for line in &self.lines {
-            let level = look.say(level_word(line.level));
-            // Writing to a string cannot fail.
-            let _done = writeln!(text, "{:10.3} s  {level}  {}", line.at.secs(), line.text);
+    fn tools_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
+        let look = pane.look;
+        let newest = pane.state.notices.log().next().map(|newest| newest.id);
+        let copied = self.copied.filter(|(at, _)| *at == newest);
+        let text = match copied {
+            None => look.say(faults::COPY).to_owned(),
+            Some((_, lines)) => format!("{} ({lines})", look.say(faults::COPIED)),
+        };
+        let name = look.pair(look.say(faults::COPY), look.say(faults::LOG));
+        let none = self.passing(pane).next().is_none();
+        let copy = Button::new(&text, look.tip(faults::COPY)).named(&name);
+        let copy = copy.disabled_if(none, look.say(faults::LOG_NONE));
+        if copy.ui(ui, look).clicked() {
+            let mut text = String::new();
+            for (notice, line) in self.passing(pane) {
+                // Writing to a string cannot fail.
+                let _done = writeln!(text, "{:10.3} s  {line}", notice.at.secs());
+            }
+            self.copied = Some((newest, text.lines().count()));
+            ui.ctx().copy_text(text);
         }
-        text
+        kit::edit_ui(ui, look.both(faults::LOG_FILTER), &mut self.words);
     }
+
+    /// The messages with these words, each with its level and words in a line, newest first.
+    fn passing<'a>(&self, pane: &Pane<'a>) -> impl Iterator<Item = (&'a Notice, String)> + use<'a> {
+        let (look, wanted) = (pane.look, self.words.trim().to_lowercase());
+        let lines = pane.state.notices.log().map(move |notice| {
+            let level = look.say(level_word(notice.level));
+            (notice, format!("{level}  {}", words(look, notice)))
+        });
+        lines.filter(move |(_, line)| line.to_lowercase().contains(&wanted))
+    }
+}
+
+/// A message as a row: lamp, words, age, and what stands at the end of it.
+pub(crate) fn message_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    notice: &Notice,
+    end: impl FnOnce(&mut Ui, &mut Pane<'_>, &str),
+) {
+    let look = pane.look;
+    let text = words(look, notice);
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::TOP), |ui| {
+            end(ui, pane, &text);
+            let age = format::age(pane.state.now.since(notice.at));
+            Label::new(&age, look.palette.muted).small().ui(ui);
+            ui.with_layout(Layout::left_to_right(Align::TOP), |ui| {
+                kit::lamp_ui(ui, Some(look.level(notice.level)));
+                kit::say_ui(ui, &text, look.palette.text);
+            });
+        });
+    });
 }
 
 /// A message with how often it came.
 fn words(look: Look, notice: &Notice) -> String {
     let text = notices::notice(look, &notice.what);
-    if notice.count > 1 {
-        return format!("{text} ({} ×)", notice.count);
+    match notice.count {
+        0 | 1 => text,
+        count => format!("{text} ({count} ×)"),
     }
-    text
 }

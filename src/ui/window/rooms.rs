@@ -4,7 +4,7 @@
 use crate::app::action::Action;
 use crate::app::layout::{Layout, RoomLayout, WindowRoom};
 use crate::ui::kit::{Button, Pane, Weight};
-use crate::ui::text::{Text, main, panels, window};
+use crate::ui::text::{Text, main, window};
 use crate::ui::theme;
 use egui::{Frame, Margin, Panel, Popup, Ui};
 
@@ -32,7 +32,7 @@ pub(crate) const fn title(room: WindowRoom) -> Text {
     match room {
         WindowRoom::Joints => main::JOINTS,
         WindowRoom::Side => window::SIDE,
-        WindowRoom::Faults => panels::FAULTS,
+        WindowRoom::Faults => main::TAB_FAULTS,
         WindowRoom::Strip => main::TAB_POSES,
     }
 }

@@ -11,11 +11,11 @@ use crate::link::Dialling;
 use crate::record::{Hold, LinkState};
 use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, errors, main, notices, panels, window, words};
+use crate::ui::text::{Text, errors, main, notices, panels, poses, tune, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::text::LayoutJob;
-use egui::{Color32, Frame, Key, Rect, Stroke, TextEdit, Ui, vec2};
+use egui::{Color32, Frame, Key, Stroke, TextEdit, Ui, vec2};
 use std::fmt::Display;
 use std::time::Duration;
 
@@ -23,8 +23,6 @@ use std::time::Duration;
 const ANNOUNCE_AFTER: Duration = Duration::from_millis(500);
 /// How long the newest message is shown.
 const NEWS_FOR: Duration = Duration::from_secs(10);
-/// Width of the note being written, of the field in it, and of what stays for a warning beside it.
-const NOTE_WIDTH: f32 = 440.0;
 
 /// What helps against a warning.
 enum Help {
@@ -188,21 +186,21 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
         Mover::Stop => (say(window::MOVES_STOP), None),
         Mover::Calibration => (say(window::MOVES_CALIBRATION), None),
         Mover::Series(number, total) => {
-            let words = format!("{} {number} / {total}", look.say(window::MOVES_SERIES));
+            let words = format!("{} {number} / {total}", look.say(tune::COLUMN_TRIAL));
             (words, Some(Action::Stop))
         }
         Mover::Sequence(id, step) => {
             let sequence = pane.state.poses.library.sequence(id);
             let name = sequence.map_or("", |sequence| sequence.name.as_str());
             let steps = sequence.map_or(0, |sequence| sequence.steps.len());
-            let title = look.say(window::MOVES_SEQUENCE);
+            let title = look.say(poses::SEQUENCE);
             let (of, step) = (look.say(window::MOVES_STEP), step + 1);
             let words = format!("{title} {name}: {of} {step} / {steps}");
             (words, Some(Action::Play(Play::End)))
         }
         Mover::Gesture(gesture) => {
             let name = pane.state.settings.gesture_name(gesture);
-            let (title, name) = (look.say(window::MOVES_GESTURE), name.unwrap_or_default());
+            let (title, name) = (look.say(panels::GESTURE), name.unwrap_or_default());
             let words = format!("{title} {} {name}", gesture.get());
             (words.trim().to_owned(), None)
         }
@@ -287,7 +285,7 @@ impl StatusLine {
             .char_limit(NOTE_MAX)
             .hint_text(look.say(hint))
             .margin(theme::FIELD_INSET)
-            .desired_width((NOTE_WIDTH - words).max(theme::FIELD));
+            .desired_width((440.0 - words).max(theme::FIELD));
         let response = ui.add(edit);
         kit::named_field(&response, look.say(panels::NOTE_FIELD), true, &self.note);
         Label::new(&title, look.palette.text).ui(ui);
@@ -348,8 +346,7 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
             return;
         }
     };
-    let (_, lamp) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-    kit::lamp(ui, lamp.center(), color);
+    kit::lamp_ui(ui, Some(color));
     Label::new(&words, palette.text).ui(ui);
 }
 
@@ -357,11 +354,9 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
 fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) {
     let look = pane.look;
     let palette = look.palette;
-    let (_, place) = ui.allocate_space(vec2(theme::SIGN, theme::SIGN));
-    let sign = Rect::from_center_size(place.center(), vec2(theme::SIGN, 14.0));
     match worst.color == palette.accent {
-        true => kit::lamp(ui, sign.center(), worst.color),
-        false => kit::warning_sign(ui, sign, worst.color),
+        true => drop(kit::lamp_ui(ui, Some(worst.color))),
+        false => drop(kit::warning_ui(ui, worst.color)),
     }
     kit::right_ui(ui, |ui| {
         if let Some(help) = &worst.help {

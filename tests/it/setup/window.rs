@@ -437,14 +437,6 @@ impl Bench {
         self.harness.step();
     }
 
-    /// The secondary button on a track.
-    pub(crate) fn click_secondary(&mut self, name: &str) {
-        self.harness
-            .get_by_role_and_label(Role::Slider, name)
-            .click_secondary();
-        self.harness.step();
-    }
-
     /// One notch of the wheel over a track.
     pub(crate) fn wheel(&mut self, name: &str, notches: f32) {
         let at = self.rect(Role::Slider, name).center();
@@ -460,20 +452,6 @@ impl Bench {
         self.harness.step();
         self.harness.remove_cursor();
         self.run(60);
-    }
-
-    /// Presses a button and says what it put on the clipboard.
-    pub(crate) fn click_copy(&mut self, name: &str) -> Option<String> {
-        self.harness.get_by_label(name).click();
-        self.harness.step();
-        let commands = &self.harness.output().platform_output.commands;
-        let copied = commands.iter().find_map(|command| match command {
-            egui::OutputCommand::CopyText(text) => Some(text.clone()),
-            _ => None,
-        });
-        self.harness.remove_cursor();
-        self.harness.step();
-        copied
     }
 
     pub(crate) fn key(&mut self, key: Key) {

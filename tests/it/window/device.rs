@@ -194,7 +194,7 @@ fn where_the_hand_is_found_changes_only_under_a_card() {
     bench.run(100);
     assert_eq!(bench.writes(), [], "the card asks first");
     assert!(
-        bench.shows("Change the id of the hand?"),
+        bench.shows("Change where the hand is found?"),
         "{:?}",
         bench.texts()
     );

@@ -115,7 +115,7 @@ fn the_status_of_a_joint_is_one_click_away_from_its_explanation() {
         top("Index: Stall") < top("Ring: Motor abnormal"),
         "the asked one first"
     );
-    bench.click("Drive Ring");
+    bench.click("Ring status, explained");
     bench.run(60);
     assert!(bench.shows("Ring · says now: Motor abnormal"));
     bench.click("Show all drives");
@@ -171,14 +171,13 @@ fn the_log_keeps_what_was_dismissed_and_is_filtered_and_copied() {
         all.find("Feedback") < all.find("Index: Stall"),
         "newest first"
     );
-    bench.click("Level: Warnings");
+    bench.type_into("Filter messages", "Warning");
     bench.run(60);
     let some = copy(&mut bench);
     assert!(
         some.contains("Stall") && !some.contains("Feedback"),
         "{some}"
     );
-    bench.click("Level: All");
     bench.type_into("Filter messages", "REST");
     bench.run(60);
     let some = copy(&mut bench);
@@ -274,10 +273,10 @@ fn a_recording_is_reached_from_its_fault_and_stays_when_the_hand_is_gone() {
     bench.wait(1000);
     bench.click("Recording: Index: Stall");
     bench.run(60);
-    assert!(bench.shows("Status of the drives"));
-    bench.click("Drive Ring");
+    assert!(bench.shows("What happened"));
+    bench.click("Ring status, explained");
     bench.run(60);
-    assert!(!bench.shows("Status of the drives"), "tiles lead back");
+    assert!(!bench.shows("What happened"), "a joint leads back");
 }
 
 #[test]

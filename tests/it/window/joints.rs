@@ -122,27 +122,6 @@ fn the_wheel_moves_only_the_track_that_has_the_keyboard() {
 }
 
 #[test]
-fn the_secondary_button_shows_the_frame_and_copies_it() {
-    let mut bench = Bench::live();
-    let writes = bench.writes().len();
-    bench.click_secondary("Index force threshold");
-    bench.run(100);
-    assert!(
-        bench.shows("EB 90 01 05 12 E0 05 F4 01 F2"),
-        "{:?}",
-        bench.texts_with("EB 90")
-    );
-    bench.click("Modbus TCP");
-    bench.run(60);
-    let copied = bench.click_copy("Hex");
-    assert_eq!(
-        copied.as_deref(),
-        Some("00 01 00 00 00 09 FF 10 05 E0 00 01 02 01 F4")
-    );
-    assert_eq!(bench.writes().len(), writes);
-}
-
-#[test]
 fn a_rough_pair_of_speed_and_threshold_is_said_with_its_figure() {
     let mut bench = Bench::live();
     assert!(!bench.shows("Index impact warning"));

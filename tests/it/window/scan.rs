@@ -75,7 +75,7 @@ fn progress_is_shown_and_cancel_ends_it_with_what_was_found() {
     assert!(bench.is_disabled(Role::Button, "Scan address") || !bench.shows("Scan address"));
     bench.click_button("Cancel");
     bench.run(60);
-    assert!(bench.shows("Cancelled. 1 hand answered"));
+    assert!(bench.shows("Cancelled. Hands that answered: 1"));
     let dials = bench.dials();
     bench.wait(5000);
     assert_eq!(bench.dials(), dials, "nothing is asked any more");

@@ -119,7 +119,7 @@ fn a_hand_that_grips_when_it_is_connected_has_no_zero_until_it_lets_go() {
     };
     assert!(pressed(&bench) > 0.3, "{}", pressed(&bench));
     assert_eq!(bench.state().hand().tare.zero(Finger::Index), None);
-    assert_eq!(bench.texts_with("No zero yet").len(), 1);
+    assert_eq!(bench.texts_with("No zero").len(), 1);
     bench.click("Arm the hand");
     bench.run(100);
     bench.click("Open all");
@@ -212,9 +212,12 @@ fn all_numbers_stand_there_on_demand() {
 }
 
 #[test]
-fn a_channel_tells_its_change_and_swing_and_a_taring_its_age() {
-    let change = gripping().reading("Change and swing of channel 4");
-    assert!(change.starts_with('+'), "{change}");
+fn a_channel_tells_its_change_and_a_taring_its_age() {
+    let mut bench = gripping();
+    bench.click("All numbers");
+    bench.run(60);
+    let channel = bench.reading("Index Channel 4");
+    assert!(channel.contains(" +"), "{channel}");
     let mut bench = free();
     let tared = |bench: &Bench| bench.reading("Taring of the chosen fingertip");
     assert_eq!(tared(&bench), "Zero: first reading");
@@ -224,10 +227,6 @@ fn a_channel_tells_its_change_and_swing_and_a_taring_its_age() {
     bench.click("Fingertip: Ring");
     bench.run(60);
     assert_eq!(tared(&bench), "Zero: first reading");
-    bench.click("Raw");
-    bench.click("10 min");
-    bench.run(60);
-    assert_ne!(bench.reading("Change and swing of channel 4"), "-");
 }
 
 #[test]

@@ -285,13 +285,16 @@ mod tests {
             .expect("measured");
         assert_eq!((summary.min, summary.max), (55.0, 115.0));
         assert!((5990..=6010).contains(&summary.count), "{summary:?}");
-        let states: Vec<_> = recording
-            .states(Dof::Ring)
+        let of_ring = recording
+            .events
             .iter()
-            .map(|one| one.2.status)
-            .collect();
-        let (rest, stalled) = (Some(Status::PositionReached), Some(Status::Stalled));
-        assert_eq!(states, [rest, stalled, rest]);
+            .filter_map(|event| match event.what {
+                EventKind::Status(Dof::Ring, status) => Some(status),
+                _ => None,
+            });
+        let (rest, stalled) = (Status::PositionReached, Status::Stalled);
+        assert_eq!(recording.before[Dof::Ring].status, Some(rest));
+        assert!(of_ring.eq([stalled, rest]));
         let table = recording.table().csv();
         assert!(
             table.contains("clear errors") && table.contains("status_ring"),

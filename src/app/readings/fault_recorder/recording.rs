@@ -67,28 +67,6 @@ impl Recording {
         all.any(|fault| fault.dof == dof && fault.what == what && fault.at == since)
     }
 
-    /// What a drive said from when to when, oldest first, in seconds. Each stretch is of one state.
-    #[must_use]
-    pub fn states(&self, dof: Dof) -> Vec<(f64, f64, DriveState)> {
-        let mut stretches = Vec::new();
-        let (mut from, mut state) = (self.from, self.before[dof]);
-        for event in &self.events {
-            let mut new = state;
-            match event.what {
-                EventKind::Status(of, status) if of == dof => new.status = Some(status),
-                EventKind::Faults(of, faults) if of == dof => new.faults = Some(faults),
-                _ => {}
-            }
-            if new != state {
-                stretches.push((from.secs(), event.at.secs(), state));
-                (from, state) = (event.at, new);
-            }
-        }
-        stretches.push((from.secs(), self.to.secs(), state));
-        stretches.retain(|(from_s, to_s, _)| to_s > from_s);
-        stretches
-    }
-
     /// Everything as one table: all measurements, status and fault byte of each drive where they changed, and what
     /// happened.
     #[must_use]

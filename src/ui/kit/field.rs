@@ -1,0 +1,333 @@
+//! Fields that are typed into. A number counts with Enter, a line of text when it is left, and neither with Esc. Knows
+//! nothing of what they name.
+
+use crate::ui::kit::controls;
+use crate::ui::kit::format::UNKNOWN;
+use crate::ui::kit::look::{Look, Pane, Typing};
+use crate::ui::text::main;
+use crate::ui::theme;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
+use egui::{
+    Align2, Frame, Id, Key, Rect, Response, Stroke, TextEdit, Tooltip, Ui, UiBuilder, vec2,
+};
+use std::ops::RangeInclusive;
+
+/// Characters that fit in a field for a number.
+const TYPED_MAX: usize = 8;
+
+/// What was read, or why it is none, in words.
+type Read<T> = Result<T, String>;
+
+/// What both kinds of fields have in common.
+#[derive(Debug, Clone, Copy)]
+struct Field<'a> {
+    /// What a screen reader says.
+    name: &'a str,
+    hint: &'a str,
+    tip: &'a str,
+    disabled: Option<&'a str>,
+    max: usize,
+    is_number: bool,
+}
+
+impl Field<'_> {
+    /// Draws it with what is in force. What was typed, once it counts; what cannot be read stays, and is told why.
+    fn ui<T>(
+        self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        value: &str,
+        read: impl FnOnce(&str) -> Read<T>,
+    ) -> Option<T> {
+        let (width, height) = match self.is_number {
+            true => (
+                theme::FIELD,
+                theme::CONTROL.min(ui.spacing().interact_size.y),
+            ),
+            false => (ui.available_width(), theme::CONTROL),
+        };
+        let (id, rect) = ui.allocate_space(vec2(width, height));
+        let own = std::mem::take(pane.typing);
+        let (own, other) = match own.field.as_ref() {
+            Some((field, _)) if *field == id && self.disabled.is_none() => (own, None),
+            Some((field, _)) if *field == id => (Typing::default(), None),
+            _ => (Typing::default(), Some(own)),
+        };
+        let typed = own.field.map(|(_, text)| text);
+        let mut refused = own.refused;
+        let mut text = typed.clone().unwrap_or_else(|| value.to_owned());
+        let response = self.edit_ui(ui, (pane.look, refused.is_some()), &mut text, (id, rect));
+        if self.is_number && response.gained_focus() {
+            select_all(ui, id, &text);
+        }
+        let mut is_typed = typed.is_some();
+        if response.changed() {
+            (is_typed, refused) = (true, None);
+        }
+        let key = |key| ui.input(|input| input.key_pressed(key));
+        let mut new = None;
+        // The second pass of a frame sees the focus lost again, and no key: what was refused stays refused.
+        if is_typed && refused.is_none() && response.lost_focus() {
+            is_typed = match self.is_number {
+                true => key(Key::Enter),
+                false => !key(Key::Escape),
+            };
+            let read = is_typed.then(|| read(text.trim()));
+            (new, refused) = match read {
+                Some(Err(words)) => (None, Some(words)),
+                Some(Ok(read)) => (Some(read), None),
+                None => (None, None),
+            };
+        }
+        is_typed = refused.is_some() || is_typed && response.has_focus();
+        match &refused {
+            Some(words) => refused_ui(ui, pane.look, (id, rect), words),
+            None if self.tip.is_empty() => {}
+            None => drop(response.on_hover_text(self.tip)),
+        }
+        let field = is_typed.then_some((id, text));
+        *pane.typing = match (field, other) {
+            (None, Some(other)) => other,
+            (field, _) => Typing { field, refused },
+        };
+        new
+    }
+
+    fn edit_ui(
+        self,
+        ui: &mut Ui,
+        (look, is_refused): (Look, bool),
+        text: &mut String,
+        (id, rect): (Id, Rect),
+    ) -> Response {
+        let palette = look.palette;
+        let enabled = self.disabled.is_none();
+        let has_focus = ui.memory(|memory| memory.has_focus(id));
+        let edge = match (is_refused, has_focus) {
+            (true, _) => palette.bad,
+            (false, true) => palette.accent,
+            (false, false) => palette.edge,
+        };
+        let (ground, ink) = match enabled {
+            true => (palette.sunken, palette.text),
+            false => (palette.card, palette.faint),
+        };
+        let (font, align) = match self.is_number {
+            true => (theme::number(), Align2::RIGHT_CENTER),
+            false => (theme::body(), Align2::LEFT_CENTER),
+        };
+        let frame = Frame::new()
+            .fill(ground)
+            .stroke(Stroke::new(1.0, edge))
+            .corner_radius(theme::ROUND_SMALL)
+            .inner_margin(theme::NUMBER_INSET);
+        let edit = TextEdit::singleline(text)
+            .id(id)
+            .font(font)
+            .text_color(ink)
+            .hint_text(self.hint)
+            .align(align)
+            .char_limit(self.max)
+            .interactive(enabled)
+            .frame(frame)
+            .clip_text(true)
+            .min_size(rect.size())
+            .desired_width(rect.width() - 14.0);
+        let place = UiBuilder::new().max_rect(rect);
+        let shown = ui.scope_builder(place, |ui| {
+            // A field is as high as its place, not as high as a button.
+            ui.spacing_mut().interact_size.y = rect.height();
+            ui.add(edit)
+        });
+        controls::named_field(&shown.inner, self.name, enabled, text);
+        shown.inner
+    }
+}
+
+/// A field for a line of text.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TextField<'a>(Field<'a>);
+
+impl<'a> TextField<'a> {
+    /// A field of at most so many characters, with what a screen reader says.
+    pub(crate) const fn new(name: &'a str, max: usize) -> Self {
+        Self(Field {
+            name,
+            hint: "",
+            tip: "",
+            disabled: None,
+            max,
+            is_number: false,
+        })
+    }
+
+    /// Shows this while nothing stands in it.
+    pub(crate) const fn hint(mut self, hint: &'a str) -> Self {
+        self.0.hint = hint;
+        self
+    }
+
+    /// Draws it where `ui` is, over the width that is left, with what is in force. What was typed, once it was left with
+    /// something new in it.
+    pub(crate) fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: &str) -> Option<String> {
+        let new = self.read_ui(ui, pane, value, |text| Ok(text.to_owned()));
+        new.filter(|new| new != value)
+    }
+
+    /// The same where not every text can be read.
+    pub(crate) fn read_ui<T>(
+        self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        value: &str,
+        read: impl FnOnce(&str) -> Read<T>,
+    ) -> Option<T> {
+        self.0.ui(ui, pane, value, read)
+    }
+}
+
+/// A field for a number.
+#[derive(Debug, Clone)]
+pub(crate) struct NumberField<'a> {
+    name: &'a str,
+    tip: &'a str,
+    disabled: Option<&'a str>,
+    range: RangeInclusive<f64>,
+    decimals: usize,
+}
+
+impl<'a> NumberField<'a> {
+    /// A field for whole numbers of a range: what a screen reader says, and what it does, in a sentence.
+    pub(crate) const fn new(name: &'a str, tip: &'a str, range: RangeInclusive<f64>) -> Self {
+        Self {
+            name,
+            tip,
+            disabled: None,
+            range,
+            decimals: 0,
+        }
+    }
+
+    /// Nothing can be typed now, for this reason.
+    pub(crate) const fn disabled(mut self, reason: Option<&'a str>) -> Self {
+        self.disabled = reason;
+        self
+    }
+
+    /// So many digits may stand after the decimal mark.
+    pub(crate) const fn decimals(mut self, decimals: usize) -> Self {
+        self.decimals = decimals;
+        self
+    }
+
+    /// Draws a field for whole numbers. The one that was typed and confirmed with Enter in this frame.
+    pub(crate) fn whole_ui(
+        self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        value: Option<impl Into<f64>>,
+    ) -> Option<i64> {
+        let typed = self.ui(ui, pane, value.map(Into::into))?;
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "only whole numbers of the range pass"
+        )]
+        let whole = typed as i64;
+        Some(whole)
+    }
+
+    /// Draws it where `ui` is; what is in force is shown, none as "-". The number that was typed and confirmed with Enter
+    /// in this frame.
+    pub(crate) fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: Option<f64>) -> Option<f64> {
+        let decimals = self.decimals;
+        let shown = value.map_or_else(|| UNKNOWN.to_owned(), |value| format!("{value:.decimals$}"));
+        let (from, to) = (self.range.start(), self.range.end());
+        let only = pane.look.say(main::ONLY_FROM_TO);
+        let read = |text: &str| {
+            let number = strict(text, decimals).filter(|value| self.range.contains(value));
+            number.ok_or_else(|| format!("{only} {from}..{to}"))
+        };
+        let tip = match self.disabled {
+            Some(reason) => reason.to_owned(),
+            None => format!("{} {from}..{to}", self.tip),
+        };
+        let field = Field {
+            name: self.name,
+            hint: "",
+            tip: &tip,
+            disabled: self.disabled,
+            max: TYPED_MAX,
+            is_number: true,
+        };
+        field.ui(ui, pane, &shown, read)
+    }
+}
+
+/// Marks all of the field's text, so that what is typed next takes its place.
+fn select_all(ui: &Ui, id: Id, text: &str) {
+    let mut state = TextEditState::load(ui.ctx(), id).unwrap_or_default();
+    let end = CCursor::new(text.chars().count());
+    let all = CCursorRange::two(CCursor::default(), end);
+    state.cursor.set_char_range(Some(all));
+    state.store(ui.ctx(), id);
+}
+
+/// Why what stands in a field was not taken, over what is below it, so that nothing moves under the pointer.
+pub(crate) fn refused_ui(ui: &Ui, look: Look, (id, rect): (Id, Rect), words: &str) {
+    let id = id.with("refused");
+    let tooltip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), id, rect);
+    tooltip.show(|ui| ui.colored_label(look.palette.bad, words));
+}
+
+/// A number written with plain digits and nothing else: no group marks, no full-width digit. Where decimals are wanted
+/// a point or a comma may stand before them, and a minus before all.
+fn strict(text: &str, decimals: usize) -> Option<f64> {
+    let text = text.trim();
+    let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    if decimals == 0 {
+        return digits(text).then(|| text.parse().ok()).flatten();
+    }
+    let size = text.strip_prefix('-').unwrap_or(text);
+    let (whole, part) = size.split_once(['.', ',']).unwrap_or((size, "0"));
+    let plain = digits(whole) && digits(part) && part.len() <= decimals;
+    plain.then(|| text.replace(',', ".").parse().ok()).flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_plain_digits_are_a_number() {
+        for (text, value) in [
+            ("500", Some(500.0)),
+            (" 7 ", Some(7.0)),
+            ("-1", None),
+            ("1,000", None),
+            ("1.5", None),
+            ("５００", None),
+            ("1e3", None),
+            ("", None),
+        ] {
+            assert_eq!(strict(text, 0), value, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_decimal_comma_is_understood_where_decimals_are() {
+        for (text, value) in [
+            ("72.5", Some(72.5)),
+            ("72,5", Some(72.5)),
+            ("-13", Some(-13.0)),
+            ("1,000", None),
+            ("1.2.3", None),
+            (",5", None),
+            ("5,", None),
+            ("--1", None),
+            ("", None),
+        ] {
+            assert_eq!(strict(text, 1), value, "{text}");
+        }
+    }
+}
