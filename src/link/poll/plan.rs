@@ -8,7 +8,7 @@
 
 use crate::hand::{Moment, Span};
 use crate::link::poll::cost::{Turnaround, WireCost};
-use crate::link::poll::window::{Gaps, Joining, ReadPart, SHAPES_MAX};
+use crate::link::poll::window::{Gaps, Joining, ReadPart, SHAPES_MAX, TIP};
 use crate::link::quirks::GapRead;
 use crate::link::stats::PollGroup;
 use arrayvec::ArrayVec;
@@ -343,7 +343,7 @@ impl PollPlan {
         let joins = self
             .wanted(tempo)
             .filter(|due| tempo == Tempo::Rest || tells(due) == tells(first))
-            .filter(|due| due.joins(first, now));
+            .filter(|due| due.joins(first, now, joining.longest));
         // What belongs together goes first, so that chance neighbours do not take its place.
         let alike = joins.clone().filter(|due| due.period == first.period);
         let narrow = joining.window(first.part.span(), alike.map(|due| due.part));
@@ -399,10 +399,13 @@ impl Due {
     }
 
     /// True if it may be read with `first`, being wanted now or so soon that this read serves as well.
-    fn joins(&self, first: &Self, now: Moment) -> bool {
-        match self.part {
-            // Fingertips that were read just now wait for their turn, else the last of them would take them along.
-            ReadPart::Tip(_) => now.since(self.asked) * 3 >= now.since(first.asked) * 2,
+    fn joins(&self, first: &Self, now: Moment, longest: u16) -> bool {
+        match (self.part, first.part) {
+            // Always the same ones together: else the first and the last may be left alone, which nothing then ends.
+            (ReadPart::Tip(one), ReadPart::Tip(other)) => {
+                let together = (longest / TIP).max(1);
+                u16::from(one) / together == u16::from(other) / together
+            }
             // What belongs together stays together, and what is wanted seldom is not read much more often for company.
             _ if self.period == first.period => self.next <= now.plus(self.period / 2),
             _ => self.next <= now.plus(self.period / 8),

@@ -34,10 +34,14 @@ fn run(cost: WireCost, turnaround: Duration, rates: PollRates, tempo: Tempo) -> 
     read(PollPlan::new(rates, cost, Moment::ZERO), turnaround, tempo)
 }
 
-fn read(mut plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
-    let (mut now, cost) = (Moment::ZERO, *plan.cost());
+fn read(plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
+    read_from(Moment::ZERO, plan, turnaround, tempo)
+}
+
+fn read_from(mut now: Moment, mut plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
+    let (cost, end) = (*plan.cost(), now.plus(Duration::from_secs(SECONDS)));
     let (mut asked, mut counts) = (Vec::<Span>::new(), [0_u32; ReadPart::ALL.len()]);
-    while now < Moment::ZERO.plus(Duration::from_secs(SECONDS)) {
+    while now < end {
         let Some(question) = plan.next(now, tempo) else {
             now = plan.next_due(tempo);
             continue;
@@ -160,6 +164,33 @@ fn at_full_rate_and_rest_a_cycle_is_one_state_and_two_reads_of_fingertips() {
     let all: f64 = late.iter().map(|span| cost(span.len)).sum();
     let cycles = f64::from(u32::try_from(states).unwrap());
     assert!(cycles * cycle > all * 0.975, "{}", cycles * cycle / all);
+}
+
+#[test]
+fn fingertips_at_the_ends_that_were_read_alone_are_not_read_alone_for_ever() {
+    let cost = WireCost::rtu(115_200, MS * 7 / 4);
+    let mut plan = PollPlan::new(PollRates::FULL, cost, Moment::ZERO);
+    let mut now = Moment::ZERO;
+    // So often that the turnaround is known, and with it how much one read may hold.
+    for _ in 0..32 {
+        for (tip, together) in [(1, 3), (4, 1), (0, 1)] {
+            let window = Span::new(ReadPart::Tip(tip).span().address, 58 * together);
+            let took = cost.read(window.len, MS * 6);
+            plan.answered(window, now, took);
+            now = now.plus(took);
+        }
+        let state = Span::new(1546, 72);
+        plan.answered(state, now, cost.read(72, MS * 6));
+        now = now.plus(cost.read(72, MS * 6));
+    }
+    let run = read_from(now, plan, MS * 6, Tempo::Rest);
+    let late = run.asked.iter().skip(20);
+    let tips: Vec<_> = late.filter(|span| span.address >= 2950).collect();
+    assert!(
+        tips.iter().all(|span| span.len >= 2 * 58),
+        "{:?}",
+        &tips[..9]
+    );
 }
 
 #[test]

@@ -13,6 +13,8 @@ use std::time::Duration;
 pub(crate) const SHAPES_MAX: usize = 32;
 /// Forms that differ from the window by bytes before or behind it.
 const VARIED_MAX: usize = 14;
+/// Bytes that a form has more than its window at most. A fingertip more would cost more than it tells apart.
+const VARIED_BYTES_MAX: u16 = 24;
 /// Runs without registers, which a hand may refuse to be read through (manual 2.6 lists none there).
 const GAPS: [Span; 2] = [Span::new(1510, 12), Span::new(1558, 24)];
 /// Memory that holds registers, gaps included.
@@ -42,7 +44,7 @@ pub(crate) enum ReadPart {
 }
 
 /// Bytes of one fingertip.
-const TIP: u16 = 58;
+pub(crate) const TIP: u16 = 58;
 
 impl ReadPart {
     pub(crate) const ALL: [Self; 12] = [
@@ -193,6 +195,7 @@ impl Joining {
     pub(crate) fn shapes(&self, window: Span) -> ArrayVec<Span, SHAPES_MAX> {
         let room = room(window);
         let most = self.longest.saturating_sub(window.len);
+        let most = most.min(VARIED_BYTES_MAX);
         let ends = (0..=most / 2).flat_map(|extra| {
             let all = 2 * extra;
             let behind = (all <= room.behind).then_some((0, all));
@@ -360,7 +363,7 @@ mod tests {
             (rs485, ReadPart::Targets, &[ReadPart::Speeds][..], 58, 6),
             (rtu, ReadPart::Angle, &STATE_PARTS[..3], 250, 6),
             (rtu, ReadPart::Drives, &STATE_PARTS[2..], 60, 2),
-            (rtu, ReadPart::Tip(4), &[][..], 116, 2),
+            (rtu, ReadPart::Tip(4), &[][..], 116, 1),
             (WireCost::tcp(), ReadPart::Angle, &STATE_PARTS[..3], 250, 6),
         ] {
             let joining = joining(cost, MS * 3, longest);
