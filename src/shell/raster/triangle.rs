@@ -243,9 +243,9 @@ impl Triangle {
     }
 }
 
-/// Two places on the screen as one number.
+/// Two places on the screen, which lie far within 32 bits, as one number.
 const fn pair(x: i64, y: i64) -> u64 {
-    x.cast_unsigned().rotate_left(32) ^ y.cast_unsigned()
+    x.cast_unsigned() << 32 | y.cast_unsigned() & 0xFFFF_FFFF
 }
 
 /// The pixels of a row, inside the bounds, whose centres are inside all edges.
