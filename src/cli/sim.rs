@@ -200,9 +200,9 @@ async fn live(hands: &SimHands) {
 }
 
 async fn serve_tcp(hands: &SimHands, address: SocketAddr) -> anyhow::Result<ServedWire> {
-    let listener = TcpListener::bind(address)
-        .await
-        .with_context(|| format!("cannot serve on {address}; choose another address or port"))?;
+    let listener = TcpListener::bind(address).await.map_err(|error| {
+        anyhow!("cannot serve on {address}: {error}; choose another address or port")
+    })?;
     let bound = listener
         .local_addr()
         .context("cannot read back the address that is served")?;
