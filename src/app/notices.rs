@@ -5,10 +5,10 @@ use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, RequestError};
 use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed};
-use crate::store::{FileError, set_aside};
+use crate::store::FileError;
 use crate::trials::Abort;
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Notices that ask for attention: more than a person reads. The oldest go first.
@@ -184,15 +184,6 @@ impl NoticeKind {
     pub(crate) fn not_saved(path: PathBuf, error: &std::io::Error) -> Self {
         let message = error.to_string();
         Self::NotSaved { path, message }
-    }
-
-    /// Puts a file of this program's own aside that could not be read.
-    pub(crate) fn file_ignored(path: &Path, error: FileError) -> Self {
-        Self::FileIgnored {
-            path: path.to_owned(),
-            error,
-            kept_as: set_aside(path),
-        }
     }
 
     /// How much it matters.

@@ -1,8 +1,8 @@
-//! Opening a file that a person chooses, away from the window's thread.
+//! Opening a file that a person chooses, away from the window's thread, and what becomes of one that cannot be read.
 
 use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
-use crate::store::{BackgroundJob, FileError, on_thread};
+use crate::store::{BackgroundJob, FileError, on_thread, set_aside};
 use std::future::ready;
 use std::path::{Path, PathBuf};
 
@@ -24,4 +24,13 @@ pub(crate) fn open<T: Send + 'static>(
         let read = read.unwrap_or_else(|error| Err(error.into()));
         read.map_err(|error| NoticeKind::FileRefused { path, error })
     })
+}
+
+/// Puts a file of this program's own aside, as it is, because it could not be read.
+pub(crate) fn put_aside(path: &Path, error: FileError) -> NoticeKind {
+    NoticeKind::FileIgnored {
+        path: path.to_owned(),
+        error,
+        kept_as: set_aside(path),
+    }
 }

@@ -1,5 +1,6 @@
 //! Files of poses on disk: read at start and for import, bounded, off the window's thread. Knows no setpoint.
 
+use crate::app::files::open::put_aside;
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
 use crate::poses::library::PoseLibrary;
@@ -44,7 +45,7 @@ pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
         Ok(library) => (library, None),
         Err(error) => {
             let library = read(&last_of(path)).unwrap_or_default();
-            (library, Some(NoticeKind::file_ignored(path, error)))
+            (library, Some(put_aside(path, error)))
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Settings on disk: read at start, written whole and off the window's thread. Knows no setpoint.
 
+use crate::app::files::open::put_aside;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::store::toml_file::{self, FileText};
@@ -36,7 +37,7 @@ pub fn load(path: &Path) -> Loaded {
         },
         Err(error) => Loaded {
             settings: Settings::default(),
-            notice: Some(NoticeKind::file_ignored(path, error)),
+            notice: Some(put_aside(path, error)),
         },
     }
 }
