@@ -16,6 +16,8 @@ pub(crate) struct DriveWords {
     pub(crate) title: String,
     /// The same where room is short.
     pub(crate) short: String,
+    /// The code of its status, unless it stands in the title.
+    pub(crate) code: Option<u8>,
     /// Title, cause and advice, if anything is known.
     pub(crate) words: Option<Words>,
     /// How fresh it is.
@@ -54,6 +56,10 @@ impl DriveWords {
             (None, Some(Status::Unknown(code))) => format!("{title} ({code})"),
             _ => title.to_owned(),
         };
+        let code = match (fault, status) {
+            (None, Some(Status::Unknown(_))) => None,
+            (_, status) => status.map(Status::raw),
+        };
         let short = match (fault, status) {
             (Some(fault), _) => words::fault_short(fault, look.language).into(),
             (None, Some(Status::ForceReached)) => look.say(main::AT_FORCE).into(),
@@ -70,6 +76,7 @@ impl DriveWords {
             text,
             title,
             short,
+            code,
             words,
             freshness,
         }

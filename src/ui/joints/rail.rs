@@ -66,11 +66,9 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof) {
         ui.horizontal(|ui| {
             let status = Label::new(&drive.short, drive.text).small();
             status.named(&name).ui(ui);
-            // The code is there also where the word is of a fault, or of no code that is known.
-            let (status, freshness) = pane.newest(dof, pane.state.hand().sample.status);
-            if let Some(status) = status.filter(|_| !drive.title.ends_with(')')) {
-                let color = look.value(freshness, look.palette.muted);
-                let code = status.raw().to_string();
+            if let Some(code) = drive.code {
+                let color = look.value(drive.freshness, look.palette.muted);
+                let code = code.to_string();
                 kit::right_ui(ui, |ui| Label::new(&code, color).number().ui(ui));
             }
         });
