@@ -212,8 +212,14 @@ pub(crate) fn lost() -> State {
         attempt: 3,
         until: Moment::from_micros(63_000_000),
     };
-    state.ports = vec![PortFound {
-        path: "/dev/ttyUSB0".into(),
+    state.ports = vec![usb_port("/dev/ttyUSB0")];
+    state
+}
+
+/// A port that is a USB adapter.
+pub(crate) fn usb_port(path: &str) -> PortFound {
+    PortFound {
+        path: path.into(),
         usb: Some(UsbFound {
             vendor_id: 0x0403,
             product_id: 0x6001,
@@ -222,6 +228,5 @@ pub(crate) fn lost() -> State {
             product: Some("FT232R".into()),
             ..UsbFound::default()
         }),
-    }];
-    state
+    }
 }

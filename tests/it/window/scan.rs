@@ -1,35 +1,20 @@
 //! Claims about looking for hands: a click finds them, a click connects, nothing is written, nothing is asked unasked.
 
+use crate::setup::states::usb_port;
 use crate::setup::window::{Bench, LARGE, Role};
 use crate::window::layout::check;
 use egui::vec2;
 use handscope::app::scan::ScanStage;
 use handscope::record::LinkState;
 use handscope::sim::{SimConfig, SimHand};
-use handscope::transport::{PortFound, UsbFound};
 
 const PORT: &str = "/dev/ttyUSB7";
 const URL: &str = "rs485:/dev/ttyUSB7?baud=115200&id=1";
 
-fn adapter() -> PortFound {
-    PortFound {
-        path: PORT.into(),
-        usb: Some(UsbFound {
-            vendor_id: 0x0403,
-            product_id: 0x6001,
-            serial: Some("A50285BI".into()),
-            maker: Some("FTDI".into()),
-            product: Some("FT232R".into()),
-            location: None,
-            latency_timer_ms: None,
-        }),
-    }
-}
-
 /// The connection view, with an adapter plugged in and the hand behind it.
 fn at_connection(config: SimConfig) -> Bench {
     let mut bench = Bench::open(config, LARGE);
-    bench.list_ports(vec![adapter()]);
+    bench.list_ports(vec![usb_port(PORT)]);
     bench.wait(200);
     bench.click_first_button("Connection");
     bench.run(60);
@@ -107,7 +92,7 @@ fn each_way_to_find_nothing_has_its_words() {
             .texts_with("no serial port and no CAN interface")
             .is_empty()
     );
-    bench.list_ports(vec![adapter()]);
+    bench.list_ports(vec![usb_port(PORT)]);
     bench.unplug();
     bench.click_button("Scan all ports");
     bench.until(1000, is_done);
@@ -180,7 +165,7 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
 fn in_a_small_window_form_and_scan_scroll_together() {
     let size = vec2(1024.0, 640.0);
     let mut bench = Bench::open(SimConfig::default(), size);
-    bench.list_ports(vec![adapter()]);
+    bench.list_ports(vec![usb_port(PORT)]);
     bench.wait(200);
     bench.click_first_button("Connection");
     bench.run(60);
