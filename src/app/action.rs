@@ -14,7 +14,7 @@ use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Speed};
 use crate::history::Mark;
-use crate::link::First;
+use crate::link::PollPriority;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
@@ -106,7 +106,7 @@ pub enum Action {
     /// Draw everything so much larger than designed.
     Zoom(Zoom),
     /// Read this first while something moves.
-    ReadFirst(First),
+    ReadFirst(PollPriority),
     /// How angles are written and typed.
     AngleUnit(AngleUnit),
     /// Seconds that the plots show.

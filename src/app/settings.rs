@@ -4,7 +4,7 @@ use crate::app::layout::Layout;
 use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute};
-use crate::link::First;
+use crate::link::PollPriority;
 use crate::poses::library::clean;
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
@@ -264,7 +264,7 @@ pub struct Settings {
     /// What a person tared last, by the place and id of the hand.
     pub tares: BTreeMap<String, KeptTare>,
     /// What is read first while something moves.
-    pub read_first: First,
+    pub read_first: PollPriority,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,

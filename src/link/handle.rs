@@ -2,7 +2,7 @@
 
 use crate::hand::{HandCommand, Setpoints, Setting, Span};
 use crate::link::config::LinkConfig;
-use crate::link::poll::plan::{First, PollRates};
+use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::Session;
 use crate::link::stats::LinkStats;
@@ -149,10 +149,10 @@ impl LinkHandle {
     }
 
     /// Reads this first while something moves, reconnects included.
-    pub fn read_first(&self, first: First) {
+    pub fn read_first(&self, priority: PollPriority) {
         // Looked at before each read, so that nobody has to be woken for it.
         self.0.wanted.send_if_modified(|wanted| {
-            wanted.first = first;
+            wanted.priority = priority;
             false
         });
     }

@@ -26,7 +26,7 @@ pub use config::{LinkConfig, Wake};
 pub use handle::{LinkHandle, MotionTurn, Records, open};
 pub use latency::Ticks;
 pub use poll::line_time::line_time;
-pub use poll::plan::{First, PollRates};
+pub use poll::plan::{PollPriority, PollRates};
 pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
 pub use request::RequestError;
 pub use stats::{GroupUse, LineUse, LinkStats, PollGroup};

@@ -1,7 +1,7 @@
 //! What the program wants of a session, and the session's ends of the channels between them.
 
 use crate::hand::Setpoints;
-use crate::link::poll::plan::{First, PollRates};
+use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::Request;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
@@ -23,7 +23,7 @@ pub(crate) struct PendingControl {
     /// Who may set targets: only the newest turn.
     pub(crate) turn: u64,
     /// What is read first while something moves.
-    pub(crate) first: First,
+    pub(crate) priority: PollPriority,
 }
 
 impl PendingControl {
@@ -38,7 +38,7 @@ impl PendingControl {
         let rest = Self {
             closed: self.closed,
             turn: self.turn,
-            first: self.first,
+            priority: self.priority,
             ..Self::default()
         };
         std::mem::replace(self, rest)

@@ -6,7 +6,7 @@ use crate::app::hand::open::{Leaving, OpenLink};
 use crate::app::notices::{NoticeKind, Notices};
 use crate::hand::Moment;
 use crate::history::History;
-use crate::link::{self, First, LinkConfig, LinkStatus, PollRates, Traffic};
+use crate::link::{self, LinkConfig, LinkStatus, PollPriority, PollRates, Traffic};
 use crate::record::{Hold, LinkState};
 use crate::transport::Endpoint;
 use std::sync::Arc;
@@ -105,9 +105,9 @@ impl HandState {
     }
 
     /// Reads this first while something moves.
-    pub(crate) fn read_first(&self, first: First) {
+    pub(crate) fn read_first(&self, priority: PollPriority) {
         if let Some(open) = &self.open {
-            open.link.read_first(first);
+            open.link.read_first(priority);
         }
     }
 

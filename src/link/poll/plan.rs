@@ -42,7 +42,7 @@ pub struct PollRates {
 /// What comes first while something moves on a line that is too slow for all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum First {
+pub enum PollPriority {
     /// Angles and forces: every second read.
     #[default]
     Force,
@@ -117,7 +117,7 @@ pub(crate) struct PollPlan {
     turnaround: Turnaround,
     gaps: Gaps,
     recent: ArrayVec<Span, RECENT>,
-    first: First,
+    priority: PollPriority,
     /// Questions since the last motion state.
     since_motion: u8,
 }
@@ -136,7 +136,7 @@ impl PollPlan {
             turnaround: Turnaround::default(),
             gaps: Gaps::default(),
             recent: ArrayVec::new(),
-            first: First::Force,
+            priority: PollPriority::Force,
             since_motion: u8::MAX,
         }
     }
@@ -150,8 +150,8 @@ impl PollPlan {
     }
 
     /// What comes first from now on while something moves.
-    pub(crate) const fn prefer(&mut self, first: First) {
-        self.first = first;
+    pub(crate) const fn prefer(&mut self, priority: PollPriority) {
+        self.priority = priority;
     }
 
     /// The wire's cost model.
@@ -229,13 +229,13 @@ impl PollPlan {
         let any = || due().reduce(|a, b| a.later(b, now));
         let others = || {
             due()
-                .filter(|due| !self.tells_motion(due.part, tempo))
+                .filter(|due| !self.goes_with_motion(due.part, tempo))
                 .reduce(|a, b| a.later(b, now))
         };
-        let between = match self.first {
-            First::Force => 1,
-            First::Touch if tempo == Tempo::Motion => 2,
-            First::Touch => 1,
+        let between = match self.priority {
+            PollPriority::Force => 1,
+            PollPriority::Touch if tempo == Tempo::Motion => 2,
+            PollPriority::Touch => 1,
         };
         let first = match (tempo, self.since_motion >= between) {
             (Tempo::Rest, _) => any(),
@@ -245,8 +245,8 @@ impl PollPlan {
         first.map(|first| self.question(first, now, tempo))
     }
 
-    /// True for what is read as part of the motion state: while something moves what the drives say too, if there is room.
-    fn tells_motion(&self, part: ReadPart, tempo: Tempo) -> bool {
+    /// True for what is read with the motion state: while something moves what the drives say too, if there is room.
+    fn goes_with_motion(&self, part: ReadPart, tempo: Tempo) -> bool {
         let whole = ReadPart::Drives.span().end() - u32::from(ReadPart::Angle.span().address);
         let has_room = || u32::from(self.longest(tempo)) >= whole;
         part.is_motion() || part == ReadPart::Drives && tempo == Tempo::Motion && has_room()
@@ -268,7 +268,7 @@ impl PollPlan {
     /// What is read between two rounds of setpoints, so that a drag starves nothing; due or not it is no motion state.
     pub(crate) fn others(&self, now: Moment) -> Option<NextRead> {
         let due = self.parts.iter().filter(|due| due.at() <= now);
-        due.filter(|due| !self.tells_motion(due.part, Tempo::Motion))
+        due.filter(|due| !self.goes_with_motion(due.part, Tempo::Motion))
             .reduce(|a, b| a.later(b, now))
             .map(|first| self.question(first, now, Tempo::Motion))
     }
@@ -339,10 +339,10 @@ impl PollPlan {
     /// The question about a part and what goes well with it.
     fn question(&self, first: &Due, now: Moment, tempo: Tempo) -> NextRead {
         let joining = self.joining(tempo);
-        let tells = |due: &Due| self.tells_motion(due.part, tempo);
+        let with_motion = |due: &Due| self.goes_with_motion(due.part, tempo);
         let joins = self
             .wanted(tempo)
-            .filter(|due| tempo == Tempo::Rest || tells(due) == tells(first))
+            .filter(|due| tempo == Tempo::Rest || with_motion(due) == with_motion(first))
             .filter(|due| due.joins(first, now, joining.longest));
         // What belongs together goes first, so that chance neighbours do not take its place.
         let alike = joins.clone().filter(|due| due.period == first.period);

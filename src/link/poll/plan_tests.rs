@@ -1,7 +1,7 @@
 //! Tests of the poll plan, on a line that is nothing but its cost model.
 use crate::hand::{Moment, Span};
 use crate::link::poll::cost::WireCost;
-use crate::link::poll::plan::{First, PollPlan, PollRates, Tempo};
+use crate::link::poll::plan::{PollPlan, PollPriority, PollRates, Tempo};
 use crate::link::poll::window::ReadPart;
 use crate::link::quirks::GapRead;
 use crate::link::stats::PollGroup;
@@ -124,7 +124,7 @@ fn while_something_moves_touch_comes_at_10_hz_and_more_often_where_it_comes_firs
         plan.prefer(first);
         read(plan, MS * 6, Tempo::Motion)
     };
-    let (force, touch) = (run(First::Force), run(First::Touch));
+    let (force, touch) = (run(PollPriority::Force), run(PollPriority::Touch));
     assert!(force.of(ReadPart::Angle) >= 25.0 && force.of(ReadPart::Drives) >= 25.0);
     assert!(
         force.of(ReadPart::Tip(4)) >= 10.0,

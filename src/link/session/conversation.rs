@@ -252,7 +252,7 @@ impl Session {
                 stop: stop(wanted),
                 rates: wanted.rates,
                 turn: wanted.turn,
-                first: wanted.first,
+                priority: wanted.priority,
                 ..PendingControl::default()
             };
             false

@@ -19,7 +19,7 @@ impl Session {
     pub(crate) fn next_poll(&mut self) -> Option<NextRead> {
         let now = self.now();
         let tempo = self.tempo(now);
-        self.plan.prefer(self.ends.wanted.borrow().first);
+        self.plan.prefer(self.ends.wanted.borrow().priority);
         if self.motion.hold.is_none() {
             if self.motion.wants_pose(now) {
                 return Some(self.plan.motion(now, tempo));

@@ -1,7 +1,7 @@
 //! How the link goes: state, rates, round trips, counts, and what the line's time goes to.
 
 use crate::app::action::Action;
-use crate::link::{First, PollGroup};
+use crate::link::{PollGroup, PollPriority};
 use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
 use crate::ui::connection::link_words::link_words;
@@ -161,12 +161,12 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 }
 
 /// What is read first while something moves; another choice, if one was made.
-fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<First> {
+fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<PollPriority> {
     let look = pane.look;
     let mut first = pane.state.settings.read_first;
     let all = [
-        (First::Force, look.say(panels::FIRST_FORCE)),
-        (First::Touch, look.say(panels::FIRST_TOUCH)),
+        (PollPriority::Force, look.say(panels::FIRST_FORCE)),
+        (PollPriority::Touch, look.say(panels::FIRST_TOUCH)),
     ];
     let caption = look.say(panels::FIRST);
     let chosen = ui.horizontal(|ui| {

@@ -5,7 +5,7 @@ use crate::setup::time::Time;
 use crate::setup::window::{Bench, LARGE, Role};
 use handscope::app::settings::Settings;
 use handscope::hand::Dof;
-use handscope::link::First;
+use handscope::link::PollPriority;
 use handscope::record::LinkState;
 use handscope::shell::headless::canvas::Canvas;
 use handscope::sim::SimConfig;
@@ -171,9 +171,9 @@ fn the_list_of_labels_has_stop_the_badge_and_every_joint_with_its_value() {
 fn what_is_read_first_while_the_hand_moves_is_chosen_beside_the_lines_time_and_kept() {
     let mut bench = Bench::live();
     bench.show(View::Connection);
-    assert_eq!(bench.state().settings.read_first, First::Force);
+    assert_eq!(bench.state().settings.read_first, PollPriority::Force);
     bench.choose("While it moves, first", "Fingertips");
-    assert_eq!(bench.state().settings.read_first, First::Touch);
+    assert_eq!(bench.state().settings.read_first, PollPriority::Touch);
     let kept = toml::to_string(&bench.state().settings).unwrap();
     assert!(kept.contains("first = \"touch\""), "{kept}");
     assert_eq!(bench.writes(), []);
