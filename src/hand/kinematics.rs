@@ -138,6 +138,38 @@ const JOINTS: [SegmentJoint; 12] = [
     joint(Thumb3, [21.903, 12.816, -0.30], [0.0; 3], 0.8024 * 0.9487),
 ];
 
+/// The joints' names in the order of [`Segment::ALL`], after the hand's side: `right_little_1_joint`.
+#[rustfmt::skip]
+const JOINT_NAMES: [&str; 12] = [
+    "little_1", "little_2", "ring_1", "ring_2", "middle_1", "middle_2", "index_1", "index_2",
+    "thumb_1", "thumb_2", "thumb_3", "thumb_4",
+];
+
+/// The names of the twelve joints as the maker's model has them.
+#[must_use]
+pub fn joint_names(side: Side) -> Vec<String> {
+    let side = match side {
+        Side::Right => "right",
+        Side::Left => "left",
+    };
+    let name = |joint: &&str| format!("{side}_{joint}_joint");
+    JOINT_NAMES.iter().map(|joint| name(&joint)).collect()
+}
+
+/// How far each of the twelve joints is turned, in radians, at these angles of the drives, 0..=1000; NaN where one is not known.
+#[must_use]
+pub fn joint_radians(angles: &PerDof<Option<i16>>) -> Vec<f64> {
+    let turned = |(segment, joint): (Segment, &SegmentJoint)| {
+        let dof = segment.dof()?;
+        let share = 1.0 - f64::from(angles[dof]?) / 1000.0;
+        Some(share * f64::from(RANGE[dof]) * f64::from(joint.ratio.abs()))
+    };
+    let joints = Segment::ALL.into_iter().skip(1).zip(&JOINTS);
+    joints
+        .map(|joint| turned(joint).unwrap_or(f64::NAN))
+        .collect()
+}
+
 /// The second joint of the four fingers.
 const SECOND: [f32; 3] = [-3.426, 32.596, -0.55];
 

@@ -1,9 +1,13 @@
 //! Points in time as plain numbers, so that everything above can be given one. Reads no clock.
 
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// Microseconds since the program's own start, from a clock that never goes back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
+)]
+#[serde(transparent)]
 pub struct Moment(u64);
 
 impl Moment {

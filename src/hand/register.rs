@@ -479,7 +479,9 @@ pub fn by_address(address: u16) -> Option<&'static Register> {
 }
 
 /// How a hand puts its one-byte groups (ERROR, STATUS, TEMP) into Modbus' words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
+)]
 pub enum BytePacking {
     /// Two a word, the low byte is the lower address.
     // Manual: silent; most drivers of real hands read it so.

@@ -11,6 +11,9 @@ use crate::hand::status::Status;
 use crate::hand::tactile::TactileBlock;
 use crate::hand::units::{Angle, Force, Speed, Target};
 
+/// Stands in [`HandSample::memory`] for a set value outside its range, as it is outside of every range.
+pub const SET_OUT_OF_RANGE: i16 = i16::MIN;
+
 /// The groups of a sample, as a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Groups(u16);
@@ -43,6 +46,24 @@ pub enum Group {
 }
 
 impl Group {
+    /// All, joints first.
+    pub fn all() -> impl Iterator<Item = Self> {
+        [
+            Self::AngleSet,
+            Self::ForceSet,
+            Self::SpeedSet,
+            Self::Position,
+            Self::Angle,
+            Self::Force,
+            Self::Current,
+            Self::Faults,
+            Self::Status,
+            Self::Temperature,
+        ]
+        .into_iter()
+        .chain(Finger::ALL.map(Self::Tactile))
+    }
+
     const fn bit(self) -> u16 {
         match self {
             Self::AngleSet => 1,
@@ -73,6 +94,12 @@ impl Groups {
     #[must_use]
     pub const fn contains(self, group: Group) -> bool {
         self.0 & group.bit() != 0
+    }
+
+    /// The groups of both.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 
     /// True if no group is in the set.
@@ -224,6 +251,78 @@ impl HandSample {
                 ),
             ),
         ]
+    }
+
+    /// When the request for a group left, and when its reply was there; `None` if it was never read.
+    #[must_use]
+    pub fn times(&self, group: Group) -> Option<(Moment, Moment)> {
+        fn of<T>(read: &Option<Timed<T>>) -> Option<(Moment, Moment)> {
+            read.as_ref().map(|read| (read.asked, read.received))
+        }
+        match group {
+            Group::AngleSet => of(&self.angle_set),
+            Group::ForceSet => of(&self.force_set),
+            Group::SpeedSet => of(&self.speed_set),
+            Group::Position => of(&self.position),
+            Group::Angle => of(&self.angle),
+            Group::Force => of(&self.force),
+            Group::Current => of(&self.current),
+            Group::Faults => of(&self.faults),
+            Group::Status => of(&self.status),
+            Group::Temperature => of(&self.temperature),
+            Group::Tactile(finger) => of(&self.tactile[finger]),
+        }
+    }
+
+    /// The bytes of a group as the hand sent them, in memory order; `None` if it was never read. Of set values outside their range the
+    /// hand's own number is not kept: [`SET_OUT_OF_RANGE`] stands in its place.
+    #[must_use]
+    pub fn memory(&self, group: Group) -> Option<Vec<u8>> {
+        fn shorts<T: Copy>(
+            read: &Option<Timed<PerDof<T>>>,
+            raw: impl Fn(T) -> i16,
+        ) -> Option<Vec<u8>> {
+            let six = read.as_ref()?.value.as_array();
+            let bytes = six.iter().flat_map(|value| raw(*value).to_le_bytes());
+            Some(bytes.collect())
+        }
+        fn bytes<T: Copy>(
+            read: &Option<Timed<PerDof<T>>>,
+            raw: impl Fn(T) -> u8,
+        ) -> Option<Vec<u8>> {
+            let six = read.as_ref()?.value.as_array();
+            Some(six.iter().map(|value| raw(*value)).collect())
+        }
+        match group {
+            Group::AngleSet => shorts(&self.angle_set, |set| {
+                set.map_or(SET_OUT_OF_RANGE, Target::raw)
+            }),
+            Group::ForceSet => shorts(&self.force_set, |set| {
+                set.map_or(SET_OUT_OF_RANGE, Force::get)
+            }),
+            Group::SpeedSet => shorts(&self.speed_set, |set| {
+                set.map_or(SET_OUT_OF_RANGE, Speed::get)
+            }),
+            Group::Position => shorts(&self.position, PositionReading::raw),
+            Group::Angle => shorts(&self.angle, AngleReading::raw),
+            Group::Force => shorts(&self.force, ForceReading::raw),
+            Group::Current => shorts(&self.current, CurrentReading::raw),
+            Group::Faults => bytes(&self.faults, Faults::raw),
+            Group::Status => bytes(&self.status, Status::raw),
+            Group::Temperature => bytes(&self.temperature, TemperatureReading::raw),
+            Group::Tactile(finger) => {
+                self.tactile[finger].map(|block| block.value.as_sent().to_vec())
+            }
+        }
+    }
+
+    /// When the newest of these groups was received.
+    #[must_use]
+    pub fn newest(&self, groups: Groups) -> Option<Moment> {
+        let of = Group::all().filter(|group| groups.contains(*group));
+        of.filter_map(|group| self.times(group))
+            .map(|times| times.1)
+            .max()
     }
 
     /// True if every joint's angle is known and no older than `limit` at `now`.

@@ -4,7 +4,19 @@ use crate::hand::dof::PerDof;
 use crate::hand::units::{Force, Speed, Target};
 
 /// One arming. Setpoints carry it, so that none from an earlier arming can act.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Default,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 pub struct ArmEpoch(pub u64);
 
 /// New targets and limits for an armed hand. Joints that are `None` keep what they were told.

@@ -60,6 +60,16 @@ impl TactileBlock {
     /// Encodes the block in memory order with a right check; for the simulated hand.
     #[must_use]
     pub fn encode(&self) -> [u8; BLOCK_LEN] {
+        self.with_check(sum16)
+    }
+
+    /// The block in memory order exactly as it was sent, a wrong check included.
+    #[must_use]
+    pub fn as_sent(&self) -> [u8; BLOCK_LEN] {
+        self.with_check(|_| self.check)
+    }
+
+    fn with_check(&self, check: impl Fn(&[u8]) -> u16) -> [u8; BLOCK_LEN] {
         let mut bytes = arrayvec::ArrayVec::<u8, BLOCK_LEN>::new();
         for channel in self.raw {
             bytes.extend(channel.to_le_bytes());
@@ -70,8 +80,8 @@ impl TactileBlock {
         bytes.extend(self.tangential_delta.to_le_bytes());
         bytes.extend(self.direction_raw.to_le_bytes());
         bytes.extend(self.proximity.to_le_bytes());
-        let sum = sum16(&bytes);
-        bytes.extend(sum.to_le_bytes());
+        let check = check(&bytes);
+        bytes.extend(check.to_le_bytes());
         bytes.extend(self.reserved);
         bytes.into_inner().unwrap_or([0; BLOCK_LEN])
     }

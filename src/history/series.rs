@@ -2,14 +2,14 @@
 
 use crate::hand::register::ANGLE_SET;
 use crate::hand::{
-    Angle, Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, RegisterWrite, Span,
-    Timed, Touch,
+    Angle, Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Span, Timed, Touch,
 };
 use crate::history::mark::{Mark, MarkKind, Marks};
 use crate::history::reading::{Reading, Summary};
 use crate::history::table::{Table, TableGroup};
 use crate::history::trace::Trace;
 use crate::history::track::{HistoryTrack, Slice};
+use crate::record::WrittenMemory;
 use std::collections::BTreeSet;
 
 /// The longest window of the plots.
@@ -175,12 +175,12 @@ impl History {
     }
 
     /// Takes a write that left for the hand: targets step at the moment they were sent.
-    pub fn sent(&mut self, at: Moment, write: &RegisterWrite) {
+    pub fn sent(&mut self, at: Moment, write: &WrittenMemory) {
         let before = self.targets;
         for (dof, target) in self.targets.iter_mut() {
             let len = ANGLE_SET.element_len();
             let at = ANGLE_SET.address + len * u16::try_from(dof.index()).unwrap_or_default();
-            let raw = write.span().slice(write.bytes(), Span::new(at, len));
+            let raw = write.span().slice(&write.bytes, Span::new(at, len));
             let raw = raw.and_then(<[u8]>::first_chunk);
             let raw = raw.map(|raw| i16::from_le_bytes(*raw));
             if let Some(angle) = raw.and_then(|raw| Angle::new(raw).ok()) {

@@ -241,11 +241,35 @@ impl LinkHandle {
         }
     }
 
+    /// What may be watched of the link without keeping it open.
+    #[must_use]
+    pub fn observe(&self) -> LinkObserver {
+        LinkObserver {
+            records: self.records(),
+            tap: self.tap(),
+            status: self.0.status.clone(),
+            stats: self.0.stats.clone(),
+        }
+    }
+
     /// The recorded traffic; copies go on recording with the link.
     #[must_use]
     pub fn tap(&self) -> WireTap {
         self.0.tap.clone()
     }
+}
+
+/// What may be watched of a link. The wire closes with the last handle, whoever still watches.
+#[derive(Debug)]
+pub struct LinkObserver {
+    /// Everything that happens from the moment on at which it was made.
+    pub records: Records,
+    /// The recorded traffic.
+    pub tap: WireTap,
+    /// Where the link stands.
+    pub status: watch::Receiver<LinkStatus>,
+    /// Its statistics.
+    pub stats: watch::Receiver<LinkStats>,
 }
 
 /// What happens at a hand, one record after the other. A reader that is too slow loses the oldest, and they are counted.

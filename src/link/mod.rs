@@ -23,7 +23,7 @@ mod wanted;
 
 pub use clock::Clock;
 pub use config::{LinkConfig, Wake};
-pub use handle::{LinkHandle, MotionTurn, Records, open};
+pub use handle::{LinkHandle, LinkObserver, MotionTurn, Records, open};
 pub use latency::Ticks;
 pub use poll::line_time::line_time;
 pub use poll::plan::{PollPriority, PollRates};
@@ -31,5 +31,5 @@ pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
 pub use request::RequestError;
 pub use stats::{GroupUse, LineUse, LinkStats, PollGroup};
 pub use status::{ArmRequest, Dialling, LinkStatus, LinkTrouble};
-pub use tap::{Direction, WireTap};
+pub use tap::WireTap;
 pub use traffic::Traffic;

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 /// Counts since the link was opened, and rates over the last seconds.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct LinkStats {
     /// Whole reads of the motion state.
     pub state_reads: u64,
@@ -40,7 +41,8 @@ pub struct LinkStats {
 }
 
 /// How the time of the line is spent, over the last second.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct LineUse {
     /// Share of the time in which a request was open, or the silence after its reply was kept, 0 to 1. At full rate 1 is
     /// what the line and the hand can give.
@@ -58,7 +60,8 @@ pub struct LineUse {
 }
 
 /// What one group of reads gets, and what the wire could give.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct GroupUse {
     /// Whole reads of the group a second.
     pub hz: f64,

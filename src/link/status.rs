@@ -6,7 +6,8 @@ use crate::record::{Disarmed, Hold, LinkState, Rest};
 use crate::transport::TransportError;
 
 /// Everything the window shows of the link.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct LinkStatus {
     /// Where it stands.
     pub state: LinkState,
@@ -41,7 +42,7 @@ pub struct LinkStatus {
 }
 
 /// What happens while there is no wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Dialling {
     /// Nothing: no one asked for a hand, or there is a wire.
     #[default]
@@ -61,7 +62,7 @@ pub enum Dialling {
 }
 
 /// Why there is no live hand.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 pub enum LinkTrouble {
     /// The wire could not be opened, or broke.
     #[error(transparent)]

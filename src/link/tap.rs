@@ -3,6 +3,7 @@
 
 use crate::hand::Moment;
 use crate::link::clock::Clock;
+use crate::record::{Direction, Piece, PieceKind};
 use crate::transport::BoxedWire;
 use std::collections::VecDeque;
 use std::io;
@@ -17,39 +18,6 @@ pub const PIECES_MAX: usize = 20_000;
 pub const BYTES_MAX: usize = 1024 * 1024;
 /// Pieces handed out at once, so that the session never waits long for the lock.
 pub const PIECES_AT_ONCE: usize = 2048;
-
-/// Which way bytes went.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Direction {
-    /// From this program to the hand.
-    ToHand,
-    /// From the hand, or whoever else speaks on the wire.
-    FromHand,
-}
-
-/// What happened on the wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PieceKind {
-    /// The wire was opened.
-    Opened,
-    /// Bytes passed.
-    Bytes(Direction),
-    /// The other side hung up, or the wire broke.
-    Broken,
-    /// This program closed the wire.
-    Closed,
-}
-
-/// Bytes that passed at once, or a change of the wire itself, which has none.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Piece {
-    /// When.
-    pub at: Moment,
-    /// What.
-    pub kind: PieceKind,
-    /// The bytes; at most what one call moved.
-    pub bytes: Vec<u8>,
-}
 
 /// Pieces after a place in the stream.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

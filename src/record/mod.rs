@@ -1,16 +1,22 @@
 //! What happened at a hand, as typed values that a file can hold.
 
+pub mod entry;
+pub mod file;
 pub mod quirk_sheet;
 pub mod state;
+pub mod wire;
 pub mod write;
 
+pub use crate::record::entry::{Entry, Event, EventKind, LinkReport};
 pub use crate::record::quirk_sheet::{Fact, QuirkSheet};
 pub use crate::record::state::{ArmRefusal, Disarmed, Hold, LinkState, Rest};
+pub use crate::record::wire::{Direction, Piece, PieceKind};
 pub use crate::record::write::{
-    Calibrated, Doubt, NotSent, Reset, SaveDoubt, Saved, Verdict, Written,
+    Calibrated, Doubt, NotSent, Reset, SaveDoubt, Saved, Verdict, WriteCause, WriteFate, Written,
+    WrittenMemory,
 };
 
-use crate::hand::{Groups, HandSample, Moment, RegisterWrite};
+use crate::hand::{Groups, HandSample, Moment};
 use std::sync::Arc;
 
 /// One thing that happened at a hand. Records of one hand come in the order in which they happened.
@@ -36,8 +42,10 @@ pub enum Record {
         at: Moment,
         /// Its number on this connection, for its fate.
         number: u64,
+        /// Why it was written.
+        cause: WriteCause,
         /// What was written.
-        write: RegisterWrite,
+        write: WrittenMemory,
     },
     /// What became of a write.
     Answered {
@@ -57,16 +65,16 @@ pub enum Record {
     },
 }
 
-/// What became of a write.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum WriteFate {
-    /// The hand acknowledged it. It does not say that the value is in force.
-    Acknowledged,
-    /// The hand said no.
-    Refused {
-        /// The protocol's word for it.
-        reason: String,
-    },
-    /// No usable answer: whether the hand acted is not known.
-    Unanswered,
+impl Record {
+    /// When it was received, sent, or happened.
+    #[must_use]
+    pub fn at(&self) -> Moment {
+        match self {
+            Self::Reading { sample, fresh } => sample.newest(*fresh).unwrap_or_default(),
+            Self::State { at, .. }
+            | Self::Sent { at, .. }
+            | Self::Answered { at, .. }
+            | Self::ArmRefused { at, .. } => *at,
+        }
+    }
 }

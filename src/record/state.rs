@@ -1,9 +1,11 @@
 //! Where a link stands, how a stop went, and why a hand is not armed.
 
 use crate::hand::{Dof, Moment};
+use serde::{Deserialize, Serialize};
 
 /// Where one conversation with one hand stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LinkState {
     /// No wire.
     #[default]
@@ -32,7 +34,8 @@ impl LinkState {
 }
 
 /// Whether the hand rests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Rest {
     /// Fresh feedback shows no motion, and none was commanded just now.
     Resting,
@@ -44,7 +47,8 @@ pub enum Rest {
 }
 
 /// How a stop goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Hold {
     /// None was asked since the hand answered.
     #[default]
@@ -71,7 +75,8 @@ pub enum Hold {
 }
 
 /// Why a hand that was armed is not any more.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Disarmed {
     /// Stop.
     Stop,
@@ -90,7 +95,8 @@ pub enum Disarmed {
 }
 
 /// Why the hand cannot be armed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ArmRefusal {
     /// No live hand.
     #[error("there is no live hand")]

@@ -1,7 +1,90 @@
 //! The outcome of writing a setting, of a SAVE, and of a return to the factory parameters. Plain values; nothing is sent here.
 
-use crate::hand::Span;
+use crate::hand::command::WRITE_LEN_MAX;
+use crate::hand::{RegisterWrite, Span};
+use arrayvec::ArrayVec;
 use std::time::Duration;
+
+/// Memory as it was written. It is of the past: no register write can be made of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WrittenMemory {
+    /// The first byte's address.
+    pub address: u16,
+    /// The bytes in memory order.
+    pub bytes: ArrayVec<u8, WRITE_LEN_MAX>,
+}
+
+impl WrittenMemory {
+    /// Where it was written.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        Span::new(
+            self.address,
+            u16::try_from(self.bytes.len()).unwrap_or_default(),
+        )
+    }
+}
+
+impl From<&RegisterWrite> for WrittenMemory {
+    fn from(write: &RegisterWrite) -> Self {
+        Self {
+            address: write.address(),
+            bytes: write.bytes().iter().copied().collect(),
+        }
+    }
+}
+
+/// Why something was written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum WriteCause {
+    /// A stop, or its repetition.
+    Hold,
+    /// The limits of speed and force that arming begins with.
+    Arming,
+    /// A setpoint of whoever has the turn at moving the hand.
+    Setpoint,
+    /// A single request: a gesture, clearing errors.
+    Request,
+    /// A setting, SAVE, reset or calibration.
+    Setting,
+}
+
+impl WriteCause {
+    /// All.
+    pub const ALL: [Self; 5] = [
+        Self::Hold,
+        Self::Arming,
+        Self::Setpoint,
+        Self::Request,
+        Self::Setting,
+    ];
+
+    /// The stable word for it in files.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Hold => "hold",
+            Self::Arming => "arming",
+            Self::Setpoint => "setpoint",
+            Self::Request => "request",
+            Self::Setting => "setting",
+        }
+    }
+}
+
+/// What became of a write.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum WriteFate {
+    /// The hand acknowledged it. It does not say that the value is in force.
+    Acknowledged,
+    /// The hand said no.
+    Refused {
+        /// The protocol's word for it.
+        reason: String,
+    },
+    /// No usable answer: whether the hand acted is not known.
+    Unanswered,
+}
 
 /// Why a request for a setting, a SAVE or a reset was not sent. Nothing changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

@@ -7,6 +7,7 @@ pub mod hand;
 pub mod place;
 pub mod play;
 pub mod read;
+pub mod recording;
 pub mod reset;
 pub mod save;
 pub mod series;

@@ -43,7 +43,7 @@ fn instead(alike: &[String]) -> String {
 }
 
 /// Why a wire could not be opened, or broke. Each kind has its own words for a person.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 pub enum TransportError {
     /// The port or interface is not there.
     #[error("{place} is not there: plug the adapter in, or choose another port")]

@@ -3,9 +3,9 @@
 use crate::cli::out::Out;
 use crate::cli::watch::args::WatchArgs;
 use crate::hand::Moment;
-use crate::link::tap::Direction;
 use crate::link::traffic::frame::{Frame, Kind};
 use crate::link::{LinkHandle, Traffic};
+use crate::record::Direction;
 use std::sync::Arc;
 use std::time::Duration;
 

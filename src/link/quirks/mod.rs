@@ -8,7 +8,8 @@ use crate::hand::tactile::BLOCK_LEN;
 
 /// What was found about a hand when the link got to know it. `None` is what the wire does not ask, or the hand did not
 /// answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct Quirks {
     /// HAND_ID as the hand gives it (manual 2.6.1).
     pub hand_id: Option<u8>,
@@ -23,7 +24,9 @@ pub struct Quirks {
 }
 
 /// How a hand takes a read across the unused addresses 1558 to 1581.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
+)]
 pub enum GapRead {
     /// It answers: one window holds the whole motion state.
     #[default]
@@ -33,7 +36,7 @@ pub enum GapRead {
 }
 
 /// What the addresses from 3000 on hold, judged by their values: no register tells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum TouchVariant {
     /// Five blocks of 58 bytes (manual 2.6.21).
     Capacitive,
@@ -44,7 +47,7 @@ pub enum TouchVariant {
 }
 
 /// Why a tactile block tells no kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum TouchDoubt {
     /// All bytes are zero: no sensor, or none that speaks.
     Empty,

@@ -8,7 +8,7 @@ use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::session::job::{JOB_MAX, ReadJob, SessionJob, WriteJob};
 use crate::link::session::motion::hold_targets;
-use crate::record::LinkState;
+use crate::record::{LinkState, WriteCause};
 use arrayvec::ArrayVec;
 use std::sync::Arc;
 
@@ -80,7 +80,7 @@ impl Session {
         if job.is_motion {
             self.moving.commanded(self.now());
         }
-        match self.write(bus, &write).await {
+        match self.write(bus, &write, WriteCause::Request).await {
             Ok(()) if job.writes.is_empty() => {
                 let _told = job.answer.send(Ok(()));
             }

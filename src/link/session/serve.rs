@@ -10,7 +10,7 @@ use crate::link::session::hold::HoldWatch;
 use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::status::{ArmRequest, LinkTrouble};
 use crate::link::wanted::PendingControl;
-use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, WriteFate};
+use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, WriteCause, WriteFate};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::sleep_until;
@@ -170,7 +170,7 @@ impl Session {
             if self.stop_wanted() {
                 return Ok(());
             }
-            if let Err(error) = self.write(bus, &write).await {
+            if let Err(error) = self.write(bus, &write, WriteCause::Arming).await {
                 self.failed(bus, &error).await?;
                 self.refuse_arm(ArmRefusal::NoAnswer);
                 return Ok(());
@@ -276,7 +276,7 @@ impl Session {
             };
         }
         for write in command.writes() {
-            if let Err(error) = self.write(bus, &write).await {
+            if let Err(error) = self.write(bus, &write, WriteCause::Hold).await {
                 self.failed(bus, &error).await?;
             }
         }
@@ -304,14 +304,16 @@ impl Session {
         &mut self,
         bus: &mut dyn Bus,
         write: &RegisterWrite,
+        cause: WriteCause,
     ) -> Result<(), BusError> {
-        self.write_unless(bus, write, &|| false).await
+        self.write_unless(bus, write, cause, &|| false).await
     }
 
     async fn write_unless(
         &mut self,
         bus: &mut dyn Bus,
         write: &RegisterWrite,
+        cause: WriteCause,
         urgent: Urgent<'_>,
     ) -> Result<(), BusError> {
         let limit = self.reply_limit(bus, ACK_LEN);
@@ -322,7 +324,8 @@ impl Session {
         self.tell(Record::Sent {
             at: asked,
             number,
-            write: write.clone(),
+            cause,
+            write: write.into(),
         });
         let written = bus.write_unless(write, limit, urgent).await;
         let answered = self.now();
@@ -348,7 +351,10 @@ impl Session {
         self.moving.commanded(self.now());
         let wanted = Arc::clone(&self.ends.wanted);
         let stop = || wanted.borrow().stop;
-        if let Err(error) = self.write_unless(bus, &write, &stop).await {
+        if let Err(error) = self
+            .write_unless(bus, &write, WriteCause::Setpoint, &stop)
+            .await
+        {
             if matches!(error, BusError::Timeout { .. }) {
                 self.motion.again(write);
             }

@@ -9,7 +9,8 @@ use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::save_watch::{Ack, Next};
 use crate::link::wanted::PendingControl;
 use crate::record::{
-    Calibrated, Doubt, LinkState, NotSent, Reset, Rest, SaveDoubt, Saved, Verdict, Written,
+    Calibrated, Doubt, LinkState, NotSent, Reset, Rest, SaveDoubt, Saved, Verdict, WriteCause,
+    Written,
 };
 use std::sync::Arc;
 use std::time::Duration;
@@ -207,7 +208,7 @@ impl Session {
         let (mut refused, mut is_unanswered) = (None, false);
         for write in setting.command().writes() {
             self.give_way(bus).await?;
-            let Err(error) = self.write(bus, &write).await else {
+            let Err(error) = self.write(bus, &write, WriteCause::Setting).await else {
                 continue;
             };
             match &error {
@@ -320,7 +321,7 @@ impl Session {
 
     async fn trigger(&mut self, bus: &mut dyn Bus, command: &HandCommand) -> Result<(), BusError> {
         match command.writes().into_iter().next() {
-            Some(write) => self.write(bus, &write).await,
+            Some(write) => self.write(bus, &write, WriteCause::Setting).await,
             None => Err(BusError::TooLong),
         }
     }

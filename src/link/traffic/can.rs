@@ -4,10 +4,10 @@ use crate::codec::can::{CanFrame, CanFunction, CanId, CanRecord, RECORD_LEN, fro
 use crate::codec::slcan::{AnswerDecoder, CommandDecoder, LINE_MAX, SlcanAnswer, SlcanCommand};
 use crate::codec::usbcan::{PacketContent, PacketStart, inspect};
 use crate::hand::Span;
-use crate::link::tap::Direction;
 use crate::link::traffic::cut::FrameCut;
 use crate::link::traffic::frame::{Kind, Wrong};
 use crate::link::traffic::said::FrameContent;
+use crate::record::Direction;
 
 const CR: u8 = b'\r';
 const BEL: u8 = 0x07;

@@ -2,12 +2,12 @@
 
 use crate::hand::Moment;
 use crate::link::bus::error::id_of;
-use crate::link::tap::{Direction, Piece, PieceKind};
 use crate::link::traffic::cut::{Cut, Cutter, FrameCut};
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::matching::Matching;
 use crate::link::traffic::said::FrameContent;
 use crate::link::traffic::{can, modbus, rs485};
+use crate::record::{Direction, Piece, PieceKind};
 use crate::transport::Endpoint;
 use std::time::Duration;
 

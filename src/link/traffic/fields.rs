@@ -1,9 +1,9 @@
 //! A frame byte by byte: which bytes are what, and which of them are wrong. Words for people are the views'.
 
 use crate::codec::usbcan::split_escapes;
-use crate::link::tap::Direction;
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::values;
+use crate::record::Direction;
 use std::ops::Range;
 
 /// What some bytes of a frame are.

@@ -1,7 +1,7 @@
 //! One frame as it is shown: when, which way, what it says, what is wrong about it. How it is found is not known here.
 
 use crate::hand::{Moment, Span};
-use crate::link::tap::Direction;
+use crate::record::Direction;
 use crate::transport::Endpoint;
 use std::time::Duration;
 

@@ -5,10 +5,10 @@ use crate::codec::rs485::SaveResult;
 use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, SAVE, STATUS, TEMP};
 use crate::hand::{Moment, Span};
-use crate::link::tap::Direction;
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::rs485;
 use crate::link::traffic::said::FrameContent;
+use crate::record::Direction;
 use std::collections::VecDeque;
 use std::time::Duration;
 

@@ -5,10 +5,10 @@ use crate::codec::modbus_rtu::crc16;
 use crate::codec::pdu::{self, Len, ModbusRole, Pdu};
 use crate::hand::Span;
 use crate::hand::register::{Element, by_address};
-use crate::link::tap::Direction;
 use crate::link::traffic::cut::FrameCut;
 use crate::link::traffic::frame::{Kind, Wrong};
 use crate::link::traffic::said::FrameContent;
+use crate::record::Direction;
 
 /// Bytes before the function code of a TCP message.
 const MBAP_LEN: usize = 7;

@@ -4,10 +4,10 @@ use crate::codec::rs485::client::SaveResult;
 use crate::codec::rs485::framing::{FrameDirection, FrameStart, WRITE, parts, scan};
 use crate::hand::Span;
 use crate::hand::register::SAVE;
-use crate::link::tap::Direction;
 use crate::link::traffic::cut::FrameCut;
 use crate::link::traffic::frame::{Kind, Wrong};
 use crate::link::traffic::said::FrameContent;
+use crate::record::Direction;
 
 /// What stands here.
 #[must_use]

@@ -1,9 +1,9 @@
 //! Frames as lines: English text, JSON, CSV, for the terminal and for files. Their forms are a contract, documented in
 //! `assets/manual/json.md`.
 
-use crate::link::tap::Direction;
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind};
 use crate::link::traffic::values;
+use crate::record::Direction;
 use serde::Serialize;
 use std::fmt::Write as _;
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 /// What lets a person open a port.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Remedy {
     /// Become a member of the group that owns it.
     JoinGroup(String),

@@ -1,8 +1,8 @@
 //! Which frames of the traffic view pass. Draws nothing.
 
 use crate::hand::{REGISTERS, Span};
-use crate::link::tap::Direction;
 use crate::link::traffic::frame::Frame;
+use crate::record::Direction;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -67,8 +67,9 @@ fn bytes_of(text: &str) -> Vec<u8> {
 mod tests {
     use super::*;
     use crate::hand::Moment;
-    use crate::link::tap::{PieceKind, WireTap};
+    use crate::link::tap::WireTap;
     use crate::link::traffic::Traffic;
+    use crate::record::PieceKind;
 
     const ASK: [u8; 9] = [0xEB, 0x90, 1, 4, 0x11, 0x0A, 0x06, 12, 0x32];
     const SAVE: [u8; 9] = [0xEB, 0x90, 1, 4, 0x12, 0xED, 3, 1, 0x08];

@@ -5,8 +5,8 @@ pub(crate) mod list;
 
 use crate::app::action::Action;
 use crate::app::files::export::{Export, TrafficForm};
-use crate::link::tap::Direction;
 use crate::link::traffic::frame::Frame;
+use crate::record::Direction;
 use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{Text, main, traffic};
 use crate::ui::theme;

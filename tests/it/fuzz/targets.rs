@@ -16,12 +16,12 @@ use handscope::codec::usbcan::{self, PacketContent, PacketDecoder};
 use handscope::codec::{pdu, rs485};
 use handscope::hand::register::BytePacking;
 use handscope::hand::{HandId, Moment, REGISTERS, Span, TactileBlock};
-use handscope::link::tap::{Direction, Piece, PieceKind};
 use handscope::link::traffic::cut::WAITING_MAX;
 use handscope::link::traffic::decode::Heard;
 use handscope::link::traffic::{Decoder, values};
 use handscope::params;
 use handscope::poses;
+use handscope::record::{Direction, Piece, PieceKind};
 use handscope::transport::Endpoint;
 
 /// A target: any bytes, nothing may break.

@@ -1,0 +1,196 @@
+//! Messages as entries.
+
+use crate::hand::command::WRITE_LEN_MAX;
+use crate::hand::{Finger, Groups, HandSample, Moment, Reply, Span, register, sample::touch_span};
+use crate::record::file::cdr;
+use crate::record::file::encode::{ARM_REFUSED, link_state_key};
+use crate::record::file::message::{
+    Command, CommandFate, Event as EventMessage, Link, State, Time, Touch, Wire,
+};
+use crate::record::file::topic::Topic;
+use crate::record::{
+    Direction, Entry, Event, EventKind, LinkReport, LinkState, Piece, PieceKind, Record,
+    WriteCause, WriteFate, WrittenMemory,
+};
+use std::sync::Arc;
+
+/// Makes entries of messages: each reading is the newest of everything before it, as it was when it was heard.
+#[derive(Debug, Clone)]
+pub struct Decoder {
+    base_nanos: u64,
+    sample: HandSample,
+}
+
+impl Decoder {
+    /// For a file whose moments count from here, nanoseconds since 1970.
+    #[must_use]
+    pub fn new(base_nanos: u64) -> Self {
+        Self {
+            base_nanos,
+            sample: HandSample::default(),
+        }
+    }
+
+    fn moment(&self, time: Time) -> Moment {
+        Moment::from_micros(time.nanos().saturating_sub(self.base_nanos) / 1000)
+    }
+
+    /// The entry of a message; `None` for one that is derived from others, is empty, or cannot be read.
+    pub fn decode(&mut self, topic: Topic, bytes: &[u8]) -> Option<Entry> {
+        match topic {
+            Topic::Joints => None,
+            Topic::State => self.state(&cdr::decode(bytes)?),
+            Topic::Touch(finger) => self.touch(finger, &cdr::decode(bytes)?),
+            Topic::Command => self.command(&cdr::decode(bytes)?),
+            Topic::CommandFate => self.fate(cdr::decode(bytes)?),
+            Topic::Link => self.link(cdr::decode(bytes)?),
+            Topic::Event => self.event(cdr::decode(bytes)?),
+            Topic::Wire => self.wire(cdr::decode(bytes)?),
+        }
+    }
+
+    fn reading(&self, fresh: Groups) -> Option<Entry> {
+        (!fresh.is_empty()).then(|| {
+            Entry::Heard(Record::Reading {
+                sample: Arc::new(self.sample),
+                fresh,
+            })
+        })
+    }
+
+    fn state(&mut self, state: &State) -> Option<Entry> {
+        let (asked, received) = (self.moment(state.asked), self.moment(state.received));
+        let mut fresh = Groups::NONE;
+        let mut take = |span: Span, bytes: &[u8]| {
+            if !bytes.is_empty() {
+                let taken = self.sample.take(&Reply {
+                    span,
+                    bytes,
+                    asked,
+                    received,
+                });
+                fresh = fresh.and(taken);
+            }
+        };
+        for (row, values) in [
+            (&register::ANGLE_SET, &state.angle_set),
+            (&register::FORCE_SET, &state.force_set),
+            (&register::SPEED_SET, &state.speed_set),
+            (&register::POS_ACT, &state.position),
+            (&register::ANGLE_ACT, &state.angle),
+            (&register::FORCE_ACT, &state.force),
+            (&register::CURRENT, &state.current),
+        ] {
+            let bytes: Vec<u8> = values.iter().flat_map(|raw| raw.to_le_bytes()).collect();
+            take(row.span(), &bytes);
+        }
+        for (row, bytes) in [
+            (&register::ERROR, &state.faults),
+            (&register::STATUS, &state.status),
+            (&register::TEMP, &state.temperature),
+        ] {
+            take(row.span(), bytes);
+        }
+        self.reading(fresh)
+    }
+
+    fn touch(&mut self, finger: Finger, touch: &Touch) -> Option<Entry> {
+        let fresh = self.sample.take(&Reply {
+            span: touch_span(finger),
+            bytes: &touch.raw,
+            asked: self.moment(touch.asked),
+            received: self.moment(touch.received),
+        });
+        self.reading(fresh)
+    }
+
+    fn command(&self, command: &Command) -> Option<Entry> {
+        let bytes = command
+            .bytes
+            .get(..command.bytes.len().min(WRITE_LEN_MAX))?;
+        let cause = WriteCause::ALL.into_iter();
+        Some(Entry::Heard(Record::Sent {
+            at: self.moment(command.sent),
+            number: command.number,
+            cause: cause
+                .clone()
+                .find(|cause| cause.key() == command.cause)
+                .unwrap_or(WriteCause::Request),
+            write: WrittenMemory {
+                address: command.address,
+                bytes: bytes.iter().copied().collect(),
+            },
+        }))
+    }
+
+    fn fate(&self, fate: CommandFate) -> Option<Entry> {
+        Some(Entry::Heard(Record::Answered {
+            at: self.moment(fate.at),
+            number: fate.number,
+            fate: match fate.fate.as_str() {
+                "acknowledged" => WriteFate::Acknowledged,
+                "refused" => WriteFate::Refused {
+                    reason: fate.reason,
+                },
+                _ => WriteFate::Unanswered,
+            },
+        }))
+    }
+
+    fn link(&mut self, link: Link) -> Option<Entry> {
+        const ALL: [LinkState; 6] = [
+            LinkState::Offline,
+            LinkState::Identifying,
+            LinkState::Monitoring,
+            LinkState::Armed,
+            LinkState::Holding,
+            LinkState::Fault,
+        ];
+        let at = self.moment(link.at);
+        let mut known = ALL.into_iter();
+        let state = known.find(|state| link_state_key(*state) == link.state)?;
+        if !link.entered {
+            return Some(Entry::Link(LinkReport {
+                at,
+                state,
+                trouble: link.trouble,
+                status: link.status,
+                figures: link.figures,
+            }));
+        }
+        if !state.is_live() {
+            // Nothing of an earlier conversation is known in the next.
+            self.sample = HandSample::default();
+        }
+        Some(Entry::Heard(Record::State { at, state }))
+    }
+
+    fn event(&self, event: EventMessage) -> Option<Entry> {
+        let at = self.moment(event.at);
+        if event.kind == ARM_REFUSED {
+            let reason = serde_json::from_str(&event.words).ok()?;
+            return Some(Entry::Heard(Record::ArmRefused { at, reason }));
+        }
+        let kind = EventKind::by_key(&event.kind).filter(|kind| !kind.is_derived())?;
+        Some(Entry::Event(Event {
+            at,
+            kind,
+            words: event.words,
+        }))
+    }
+
+    fn wire(&self, wire: Wire) -> Option<Entry> {
+        Some(Entry::Wire(Piece {
+            at: self.moment(wire.at),
+            kind: match wire.kind {
+                0 => PieceKind::Opened,
+                1 => PieceKind::Bytes(Direction::ToHand),
+                2 => PieceKind::Bytes(Direction::FromHand),
+                3 => PieceKind::Broken,
+                4 => PieceKind::Closed,
+                _ => return None,
+            },
+            bytes: wire.bytes,
+        }))
+    }
+}

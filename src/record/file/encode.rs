@@ -1,0 +1,258 @@
+//! Entries as messages.
+
+use crate::hand::kinematics::{joint_names, joint_radians};
+use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, register};
+use crate::record::file::cdr;
+use crate::record::file::message::{
+    Command, CommandFate, Event, Header, JointState, Link, State, Time, Touch, Wire,
+};
+use crate::record::file::topic::Topic;
+use crate::record::file::writer::Opening;
+use crate::record::{Direction, Entry, LinkState, Piece, PieceKind, Record, WriteFate};
+
+/// The word of a refusal to arm among events; the words are the reason in JSON.
+pub(crate) const ARM_REFUSED: &str = "arm_refused";
+
+/// One message, ready to be written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Its topic.
+    pub topic: Topic,
+    /// When it was received, nanoseconds since 1970.
+    pub log_nanos: u64,
+    /// When it was asked for, nanoseconds since 1970; when it was received where nobody asked.
+    pub publish_nanos: u64,
+    /// The message in CDR.
+    pub bytes: Vec<u8>,
+}
+
+/// Makes messages of entries.
+#[derive(Debug)]
+pub(crate) struct Encoder {
+    base_nanos: u64,
+    joint_names: Vec<String>,
+}
+
+impl Encoder {
+    pub(crate) fn new(opening: &Opening) -> Self {
+        Self {
+            base_nanos: opening.base_nanos,
+            joint_names: joint_names(opening.side),
+        }
+    }
+
+    fn nanos(&self, at: Moment) -> u64 {
+        self.base_nanos
+            .saturating_add(at.micros().saturating_mul(1000))
+    }
+
+    fn time(&self, at: Moment) -> Time {
+        Time::of_nanos(self.nanos(at))
+    }
+
+    fn message<T: serde::Serialize>(&self, topic: Topic, at: Moment, message: &T) -> Message {
+        let nanos = self.nanos(at);
+        Message {
+            topic,
+            log_nanos: nanos,
+            publish_nanos: nanos,
+            bytes: cdr::encode(message),
+        }
+    }
+
+    /// The messages of one entry.
+    pub(crate) fn encode(&self, entry: &Entry) -> Vec<Message> {
+        match entry {
+            Entry::Heard(Record::Reading { sample, fresh }) => self.reading(sample, *fresh),
+            Entry::Heard(record) => self.record(record).into_iter().collect(),
+            Entry::Wire(piece) => vec![self.wire(piece)],
+            Entry::Link(report) => {
+                let link = Link {
+                    at: self.time(report.at),
+                    state: link_state_key(report.state).into(),
+                    entered: false,
+                    trouble: report.trouble.clone(),
+                    status: report.status.clone(),
+                    figures: report.figures.clone(),
+                };
+                vec![self.message(Topic::Link, report.at, &link)]
+            }
+            Entry::Event(event) => vec![self.event(event.at, event.kind.key(), &event.words)],
+        }
+    }
+
+    /// An event.
+    pub(crate) fn event(&self, at: Moment, kind: &str, words: &str) -> Message {
+        let event = Event {
+            at: self.time(at),
+            kind: kind.into(),
+            words: words.into(),
+        };
+        self.message(Topic::Event, at, &event)
+    }
+
+    fn record(&self, record: &Record) -> Option<Message> {
+        Some(match record {
+            Record::Reading { .. } => return None,
+            Record::State { at, state } => {
+                let link = Link {
+                    at: self.time(*at),
+                    state: link_state_key(*state).into(),
+                    entered: true,
+                    ..Link::default()
+                };
+                self.message(Topic::Link, *at, &link)
+            }
+            Record::Sent {
+                at,
+                number,
+                cause,
+                write,
+            } => {
+                let command = Command {
+                    sent: self.time(*at),
+                    number: *number,
+                    cause: cause.key().into(),
+                    register: register::by_address(write.address)
+                        .map_or("", |row| row.name)
+                        .into(),
+                    address: write.address,
+                    bytes: write.bytes.to_vec(),
+                };
+                self.message(Topic::Command, *at, &command)
+            }
+            Record::Answered { at, number, fate } => {
+                let (word, reason) = match fate {
+                    WriteFate::Acknowledged => ("acknowledged", ""),
+                    WriteFate::Refused { reason } => ("refused", reason.as_str()),
+                    WriteFate::Unanswered => ("unanswered", ""),
+                };
+                let fate = CommandFate {
+                    at: self.time(*at),
+                    number: *number,
+                    fate: word.into(),
+                    reason: reason.into(),
+                };
+                self.message(Topic::CommandFate, *at, &fate)
+            }
+            Record::ArmRefused { at, reason } => {
+                let words = serde_json::to_string(reason).unwrap_or_default();
+                self.event(*at, ARM_REFUSED, &words)
+            }
+        })
+    }
+
+    fn wire(&self, piece: &Piece) -> Message {
+        let wire = Wire {
+            at: self.time(piece.at),
+            kind: match piece.kind {
+                PieceKind::Opened => 0,
+                PieceKind::Bytes(Direction::ToHand) => 1,
+                PieceKind::Bytes(Direction::FromHand) => 2,
+                PieceKind::Broken => 3,
+                PieceKind::Closed => 4,
+            },
+            bytes: piece.bytes.clone(),
+        };
+        self.message(Topic::Wire, piece.at, &wire)
+    }
+
+    /// One reply: the joints' groups in one message, each fingertip in one of its own.
+    fn reading(&self, sample: &HandSample, fresh: Groups) -> Vec<Message> {
+        let mut messages = Vec::new();
+        let of_joints = Group::all()
+            .find(|group| !matches!(group, Group::Tactile(_)) && fresh.contains(*group));
+        if let Some((asked, received)) = of_joints.and_then(|group| sample.times(group)) {
+            let state = self.state(sample, fresh, (asked, received));
+            let mut message = self.message(Topic::State, received, &state);
+            message.publish_nanos = self.nanos(asked);
+            messages.push(message);
+        }
+        if fresh.contains(Group::Angle)
+            && let Some(angle) = Quantity::Angle.documented(sample)
+        {
+            let joints = JointState {
+                header: Header {
+                    stamp: self.time(angle.received),
+                    frame_id: String::new(),
+                },
+                name: self.joint_names.clone(),
+                position: joint_radians(&angle.value),
+                ..JointState::default()
+            };
+            let mut message = self.message(Topic::Joints, angle.received, &joints);
+            message.publish_nanos = self.nanos(angle.asked);
+            messages.push(message);
+        }
+        for finger in Finger::ALL {
+            let block = sample.tactile[finger].filter(|_| fresh.contains(Group::Tactile(finger)));
+            if let Some(block) = block {
+                let touch = Touch {
+                    asked: self.time(block.asked),
+                    received: self.time(block.received),
+                    normal_n: block.value.normal_n,
+                    tangential_n: block.value.tangential_n,
+                    direction_deg: block.value.direction_raw,
+                    proximity: block.value.proximity,
+                    check_ok: block.value.check_ok(),
+                    channels: block.value.raw.to_vec(),
+                    raw: block.value.as_sent().to_vec(),
+                };
+                let mut message = self.message(Topic::Touch(finger), block.received, &touch);
+                message.publish_nanos = self.nanos(block.asked);
+                messages.push(message);
+            }
+        }
+        messages
+    }
+
+    fn state(&self, sample: &HandSample, fresh: Groups, times: (Moment, Moment)) -> State {
+        let shorts = |group: Group| -> Vec<i16> {
+            let memory = sample.memory(group).filter(|_| fresh.contains(group));
+            let pairs = memory.unwrap_or_default();
+            let (pairs, _) = pairs.as_chunks::<2>();
+            pairs.iter().map(|pair| i16::from_le_bytes(*pair)).collect()
+        };
+        let bytes = |group: Group| -> Vec<u8> {
+            let memory = sample.memory(group).filter(|_| fresh.contains(group));
+            memory.unwrap_or_default()
+        };
+        let mut undocumented = Vec::new();
+        for quantity in Quantity::MEASURED {
+            let known = quantity.documented(sample);
+            if let Some(known) = known.filter(|_| fresh.contains(quantity.group())) {
+                let unknown = PerDof::iter(&known.value).filter(|(_, value)| value.is_none());
+                let place =
+                    |(dof, _): (Dof, _)| format!("{}[{}]", quantity.row().name, dof.index());
+                undocumented.extend(unknown.map(place));
+            }
+        }
+        State {
+            asked: self.time(times.0),
+            received: self.time(times.1),
+            angle_set: shorts(Group::AngleSet),
+            force_set: shorts(Group::ForceSet),
+            speed_set: shorts(Group::SpeedSet),
+            position: shorts(Group::Position),
+            angle: shorts(Group::Angle),
+            force: shorts(Group::Force),
+            current: shorts(Group::Current),
+            faults: bytes(Group::Faults),
+            status: bytes(Group::Status),
+            temperature: bytes(Group::Temperature),
+            undocumented,
+        }
+    }
+}
+
+/// The stable word of a state.
+pub(crate) const fn link_state_key(state: LinkState) -> &'static str {
+    match state {
+        LinkState::Offline => "offline",
+        LinkState::Identifying => "identifying",
+        LinkState::Monitoring => "monitoring",
+        LinkState::Armed => "armed",
+        LinkState::Holding => "holding",
+        LinkState::Fault => "fault",
+    }
+}

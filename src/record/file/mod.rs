@@ -1,0 +1,25 @@
+//! A session as a file: MCAP whose messages are ROS 2's, so that other programs open it as it is.
+//!
+//! `message` says what stands in a message, `topic` which there are; `encode` and `decode` go between entries and messages;
+//! `writer` makes bytes of entries, `recorder` puts them on the disk from a thread of its own; `walk` finds the pieces of a file
+//! that may be damaged, `reader` reads its entries, `overview` is what a file tells without being read whole.
+
+pub mod cdr;
+pub mod decode;
+pub mod disk;
+pub mod encode;
+pub mod message;
+pub mod overview;
+pub mod reader;
+pub mod recorder;
+#[cfg(test)]
+pub(crate) mod tests;
+pub mod topic;
+pub mod walk;
+pub mod writer;
+
+pub use crate::record::file::disk::{Disk, DiskFile, SystemDisk};
+pub use crate::record::file::overview::{Counts, FileMark, Overview};
+pub use crate::record::file::reader::{OpenError, SessionFile};
+pub use crate::record::file::recorder::{Recorder, RecorderStatus, RecordingPlan};
+pub use crate::record::file::writer::Opening;

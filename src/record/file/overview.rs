@@ -1,0 +1,340 @@
+//! What a session file tells without being read whole: least and greatest of each quantity for each second, what happened, and
+//! counts. The writer puts it into the file a minute at a time; a reader makes what is missing anew.
+
+use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Touch};
+use crate::record::file::cdr;
+use crate::record::{Entry, Event, EventKind, LinkState, Record};
+use serde::{Deserialize, Serialize};
+
+/// Quantities of a row: those of the six joints, and both of the five fingertips.
+pub const LINES: usize =
+    Quantity::ALL.len() * Dof::ALL.len() + Touch::ALL.len() * Finger::ALL.len();
+/// Marks kept of one file: more than a person looks at, and a bound for a damaged file.
+pub const MARKS_MAX: usize = 100_000;
+/// Seconds kept of one file: three days, in 83 MB; a longer one is drawn without its end.
+pub const SECONDS_MAX: usize = 3 * 86_400;
+
+/// Least and greatest of all quantities over one second; NaN where nothing is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OverviewRow {
+    /// The second, counted as moments are.
+    pub second: u32,
+    /// Least.
+    pub least: [f32; LINES],
+    /// Greatest.
+    pub greatest: [f32; LINES],
+}
+
+impl OverviewRow {
+    const fn empty(second: u32) -> Self {
+        Self {
+            second,
+            least: [f32::NAN; LINES],
+            greatest: [f32::NAN; LINES],
+        }
+    }
+
+    fn take(&mut self, line: usize, value: f32) {
+        if let Some(least) = self.least.get_mut(line) {
+            *least = least.min(value);
+        }
+        if let Some(greatest) = self.greatest.get_mut(line) {
+            *greatest = greatest.max(value);
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        let both = self.least.iter_mut().zip(other.least);
+        both.for_each(|(own, other)| *own = own.min(other));
+        let both = self.greatest.iter_mut().zip(other.greatest);
+        both.for_each(|(own, other)| *own = own.max(other));
+    }
+}
+
+/// The place of a joint's quantity in a row.
+#[must_use]
+pub const fn joint_line(quantity: Quantity, dof: Dof) -> usize {
+    quantity as usize * Dof::ALL.len() + dof.index()
+}
+
+/// The place of a fingertip's quantity in a row.
+#[must_use]
+pub const fn tip_line(touch: Touch, finger: Finger) -> usize {
+    Quantity::ALL.len() * Dof::ALL.len() + touch as usize * Finger::ALL.len() + finger.index()
+}
+
+/// How much there is of what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Counts {
+    /// Replies with the angles of the joints.
+    pub states: u64,
+    /// Blocks of fingertips; five are a sweep.
+    pub touch_blocks: u64,
+    /// Writes that left for the hand.
+    pub writes: u64,
+    /// Faults that came.
+    pub faults: u64,
+    /// Notes of a person.
+    pub notes: u64,
+    /// Entries that the recorder could not take.
+    pub missing: u64,
+}
+
+impl Counts {
+    fn add(&mut self, other: Self) {
+        self.states += other.states;
+        self.touch_blocks += other.touch_blocks;
+        self.writes += other.writes;
+        self.faults += other.faults;
+        self.notes += other.notes;
+        self.missing += other.missing;
+    }
+}
+
+/// Something that happened, for lists and time lines.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileMark {
+    /// When.
+    pub at: Moment,
+    /// What.
+    pub kind: EventKind,
+    /// In words.
+    pub words: String,
+}
+
+/// What a file tells without being read whole.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Overview {
+    /// In the order of time, one a second; seconds without a reading are left out.
+    pub rows: Vec<OverviewRow>,
+    /// In the order of time, at most [`MARKS_MAX`].
+    pub marks: Vec<FileMark>,
+    /// Of all.
+    pub counts: Counts,
+    faults: PerDof<u8>,
+    state: LinkState,
+    was_live: bool,
+}
+
+/// A minute of an overview as it stands in a file.
+#[derive(Debug, Serialize, Deserialize)]
+struct Block {
+    /// Where in the file the chunks begin that it is about.
+    from: u64,
+    counts: Counts,
+    seconds: Vec<u32>,
+    least: Vec<f32>,
+    greatest: Vec<f32>,
+    mark_micros: Vec<u64>,
+    mark_kinds: Vec<String>,
+    mark_words: Vec<String>,
+}
+
+impl Overview {
+    /// Takes in an entry, and gives what it shows to have happened that no entry says.
+    pub fn take(&mut self, entry: &Entry) -> Vec<FileMark> {
+        let mut derived = Vec::new();
+        match entry {
+            Entry::Heard(Record::Reading { sample, fresh }) => {
+                self.reading(sample, *fresh, &mut derived);
+            }
+            Entry::Heard(Record::State { at, state }) => self.state(*at, *state, &mut derived),
+            Entry::Heard(Record::Sent { .. }) => self.counts.writes += 1,
+            Entry::Event(event) => self.event(event),
+            Entry::Heard(Record::Answered { .. } | Record::ArmRefused { .. })
+            | Entry::Wire(_)
+            | Entry::Link(_) => {}
+        }
+        for mark in &derived {
+            self.mark(mark.clone());
+        }
+        derived
+    }
+
+    fn mark(&mut self, mark: FileMark) {
+        if self.marks.len() < MARKS_MAX {
+            self.marks.push(mark);
+        }
+    }
+
+    fn event(&mut self, event: &Event) {
+        match event.kind {
+            EventKind::Note => self.counts.notes += 1,
+            EventKind::NoteRemoved => {
+                let is_it = |mark: &FileMark| {
+                    mark.kind == EventKind::Note && mark.at == event.at && mark.words == event.words
+                };
+                if let Some(place) = self.marks.iter().position(is_it) {
+                    self.marks.remove(place);
+                }
+                self.counts.notes = self.counts.notes.saturating_sub(1);
+                return;
+            }
+            EventKind::Recording => {
+                let number = event
+                    .words
+                    .split(' ')
+                    .next()
+                    .and_then(|word| word.parse().ok());
+                self.counts.missing += number.unwrap_or(0);
+            }
+            EventKind::Parameters | EventKind::Person => return,
+            _ => {}
+        }
+        self.mark(FileMark {
+            at: event.at,
+            kind: event.kind,
+            words: event.words.clone(),
+        });
+    }
+
+    fn state(&mut self, at: Moment, state: LinkState, derived: &mut Vec<FileMark>) {
+        let before = std::mem::replace(&mut self.state, state);
+        let kind = match state {
+            LinkState::Holding => Some(EventKind::Stop),
+            LinkState::Armed => Some(EventKind::Armed),
+            _ if before.is_live() && !state.is_live() => Some(EventKind::LinkLost),
+            _ if !before.is_live() && state.is_live() && self.was_live => {
+                Some(EventKind::Reconnected)
+            }
+            _ => None,
+        };
+        self.was_live |= state.is_live();
+        derived.extend(kind.map(|kind| FileMark {
+            at,
+            kind,
+            words: String::new(),
+        }));
+    }
+
+    fn reading(&mut self, sample: &HandSample, fresh: Groups, derived: &mut Vec<FileMark>) {
+        if fresh.contains(Group::Angle) {
+            self.counts.states += 1;
+        }
+        for quantity in Quantity::ALL {
+            let six = quantity.documented(sample);
+            if let Some(six) = six.filter(|_| fresh.contains(quantity.group())) {
+                for (dof, value) in six.value.iter() {
+                    if let Some(value) = value {
+                        let line = joint_line(quantity, dof);
+                        self.value(six.received, line, f32::from(*value));
+                    }
+                }
+            }
+        }
+        for (finger, block) in sample.tactile.iter() {
+            let Some(block) = block.filter(|_| fresh.contains(Group::Tactile(finger))) else {
+                continue;
+            };
+            self.counts.touch_blocks += 1;
+            let both = [block.value.normal(), block.value.tangential()];
+            for (touch, value) in Touch::ALL.into_iter().zip(both) {
+                if let Some(value) = value {
+                    self.value(block.received, tip_line(touch, finger), value);
+                }
+            }
+        }
+        if let Some(faults) = sample.faults.filter(|_| fresh.contains(Group::Faults)) {
+            for dof in Dof::ALL {
+                let bits = faults.value[dof].raw();
+                let new = bits & !self.faults[dof];
+                self.faults[dof] = bits;
+                if new != 0 {
+                    self.counts.faults += u64::from(new.count_ones());
+                    let named = crate::hand::Faults::from_raw(new);
+                    let names: Vec<&str> = named.iter().map(|fault| fault.name()).collect();
+                    derived.push(FileMark {
+                        at: faults.received,
+                        kind: EventKind::Fault,
+                        words: format!("{}: {}", dof.name(), names.join(", ")),
+                    });
+                }
+            }
+        }
+    }
+
+    fn value(&mut self, at: Moment, line: usize, value: f32) {
+        let second = u32::try_from(at.micros() / 1_000_000).unwrap_or(u32::MAX);
+        if let Some(row) = self.row(second) {
+            row.take(line, value);
+        }
+    }
+
+    /// The row of a second, near the end.
+    fn row(&mut self, second: u32) -> Option<&mut OverviewRow> {
+        let place = self.rows.partition_point(|row| row.second < second);
+        if self.rows.get(place).is_none_or(|row| row.second != second) {
+            if self.rows.len() >= SECONDS_MAX {
+                return None;
+            }
+            self.rows.insert(place, OverviewRow::empty(second));
+        }
+        self.rows.get_mut(place)
+    }
+
+    /// The first and the last second with a reading.
+    #[must_use]
+    pub fn seconds(&self) -> Option<(u32, u32)> {
+        Some((self.rows.first()?.second, self.rows.last()?.second))
+    }
+
+    /// Rows of a stretch of seconds; both ends belong to it.
+    #[must_use]
+    pub fn rows_within(&self, from: u32, to: u32) -> &[OverviewRow] {
+        let begin = self.rows.partition_point(|row| row.second < from);
+        let end = self.rows.partition_point(|row| row.second <= to);
+        self.rows.get(begin..end.max(begin)).unwrap_or_default()
+    }
+
+    /// Gives away what was taken in since the last time, as bytes for a file whose chunks about it begin at `from`.
+    pub(crate) fn give_block(&mut self, from: u64) -> Vec<u8> {
+        let rows = std::mem::take(&mut self.rows);
+        let marks = std::mem::take(&mut self.marks);
+        let block = Block {
+            from,
+            counts: std::mem::take(&mut self.counts),
+            seconds: rows.iter().map(|row| row.second).collect(),
+            least: rows.iter().flat_map(|row| row.least).collect(),
+            greatest: rows.iter().flat_map(|row| row.greatest).collect(),
+            mark_micros: marks.iter().map(|mark| mark.at.micros()).collect(),
+            mark_kinds: marks.iter().map(|mark| mark.kind.key().into()).collect(),
+            mark_words: marks.into_iter().map(|mark| mark.words).collect(),
+        };
+        cdr::encode(&block)
+    }
+
+    /// Adds a block of a file; gives where the chunks begin that it is about. `None` for bytes that are no block.
+    pub(crate) fn take_block(&mut self, bytes: &[u8]) -> Option<u64> {
+        let block: Block = cdr::decode(bytes)?;
+        let (least, _) = block.least.as_chunks::<LINES>();
+        let (greatest, _) = block.greatest.as_chunks::<LINES>();
+        let rows = block.seconds.iter().zip(least.iter().zip(greatest));
+        for (second, (least, greatest)) in rows {
+            let read = OverviewRow {
+                second: *second,
+                least: *least,
+                greatest: *greatest,
+            };
+            if let Some(row) = self.row(*second) {
+                row.merge(&read);
+            }
+        }
+        let words = block.mark_kinds.iter().zip(block.mark_words);
+        for (micros, (kind, words)) in block.mark_micros.iter().zip(words) {
+            if let Some(kind) = EventKind::by_key(kind) {
+                self.mark(FileMark {
+                    at: Moment::from_micros(*micros),
+                    kind,
+                    words,
+                });
+            }
+        }
+        self.counts.add(block.counts);
+        Some(block.from)
+    }
+
+    /// Puts all in the order of time, once everything was taken in.
+    pub(crate) fn sort(&mut self) {
+        self.marks.sort_by_key(|mark| mark.at);
+    }
+}

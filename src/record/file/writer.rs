@@ -1,0 +1,244 @@
+//! Bytes of a session file made of entries. Writes to memory only; times are arguments.
+
+use crate::hand::Moment;
+use crate::hand::kinematics::Side;
+use crate::record::Entry;
+use crate::record::file::encode::{Encoder, Message};
+use crate::record::file::overview::Overview;
+use crate::record::file::topic::Topic;
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{Attachment, Compression, McapError, WriteOptions};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// A chunk is closed at this size before compression: what a flipped bit costs.
+const CHUNK_BYTES: u64 = 32 * 1024;
+/// How much of the recording one block of the overview is about.
+const BLOCK_OF: Duration = Duration::from_secs(60);
+/// The name of the blocks of the overview among a file's attachments.
+pub(crate) const OVERVIEW: &str = "handscope-overview";
+/// The name of what is said of a session among a file's metadata.
+pub(crate) const METADATA: &str = "handscope";
+
+/// What a session begins with.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Opening {
+    /// The time of [`Moment::ZERO`], nanoseconds since 1970.
+    pub base_nanos: u64,
+    /// When the recording began.
+    pub began: Moment,
+    /// The hand's endpoint.
+    pub hand: String,
+    /// Whether it is the built-in hand.
+    pub simulated: bool,
+    /// The hand's side, as the person said.
+    pub side: Side,
+    /// The program's version.
+    pub version: String,
+}
+
+impl Opening {
+    /// What stands in a file.
+    fn metadata(&self) -> BTreeMap<String, String> {
+        let side = match self.side {
+            Side::Left => "left",
+            Side::Right => "right",
+        };
+        [
+            ("format", "1".to_owned()),
+            ("version", self.version.clone()),
+            ("hand", self.hand.clone()),
+            ("simulated", self.simulated.to_string()),
+            ("side", side.to_owned()),
+            ("base_nanos", self.base_nanos.to_string()),
+            ("began_micros", self.began.micros().to_string()),
+        ]
+        .into_iter()
+        .map(|(key, value)| (key.to_owned(), value))
+        .collect()
+    }
+
+    /// From what stands in a file; `None` if it is not ours.
+    pub(crate) fn of_metadata(map: &BTreeMap<String, String>) -> Option<Self> {
+        let text = |key: &str| map.get(key).cloned().unwrap_or_default();
+        Some(Self {
+            base_nanos: map.get("base_nanos")?.parse().ok()?,
+            began: Moment::from_micros(map.get("began_micros")?.parse().ok()?),
+            hand: text("hand"),
+            simulated: text("simulated") == "true",
+            side: match text("side").as_str() {
+                "left" => Side::Left,
+                _ => Side::Right,
+            },
+            version: text("version"),
+        })
+    }
+}
+
+/// Bytes that wait to be taken.
+#[derive(Debug, Clone, Default)]
+struct Waiting(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Waiting {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.extend(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Makes the bytes of one session file.
+pub struct SessionWriter {
+    mcap: mcap::Writer<NoSeek<Waiting>>,
+    waiting: Waiting,
+    encoder: Encoder,
+    overview: Overview,
+    /// Bytes given away so far.
+    given: u64,
+    /// Where the chunks begin that the next block is about, and the first moment in them.
+    block_from: u64,
+    block_began: Option<Moment>,
+    sequence: u32,
+    newest: Moment,
+    base_nanos: u64,
+}
+
+impl SessionWriter {
+    /// A new file.
+    ///
+    /// # Errors
+    /// [`McapError`], which writing to memory does not bring.
+    pub fn new(opening: &Opening) -> Result<Self, McapError> {
+        let waiting = Waiting::default();
+        let options = WriteOptions::new()
+            .profile("ros2")
+            .library(format!("handscope {}", opening.version))
+            .compression(Some(Compression::Lz4))
+            .chunk_size(Some(CHUNK_BYTES))
+            .disable_seeking(true);
+        let mut mcap = options.create(NoSeek::new(waiting.clone()))?;
+        mcap.write_metadata(&Metadata {
+            name: METADATA.into(),
+            metadata: opening.metadata(),
+        })?;
+        for topic in Topic::all() {
+            let schema = topic.schema();
+            mcap.add_schema_with_id(schema.id, schema.name, "ros2msg", schema.text.as_bytes())?;
+            let none = BTreeMap::new();
+            mcap.add_channel_with_id(topic.channel(), schema.id, topic.name(), "cdr", &none)?;
+        }
+        mcap.flush()?;
+        let mut writer = Self {
+            mcap,
+            waiting,
+            encoder: Encoder::new(opening),
+            overview: Overview::default(),
+            given: 0,
+            block_from: 0,
+            block_began: None,
+            sequence: 0,
+            newest: opening.began,
+            base_nanos: opening.base_nanos,
+        };
+        writer.block_from = writer.length();
+        Ok(writer)
+    }
+
+    /// Bytes of the file so far.
+    #[must_use]
+    pub fn length(&self) -> u64 {
+        let waiting = self
+            .waiting
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        self.given + u64::try_from(waiting.len()).unwrap_or_default()
+    }
+
+    /// Adds an entry.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn push(&mut self, entry: &Entry) -> Result<(), McapError> {
+        let at = entry.at();
+        self.newest = self.newest.max(at);
+        let began = *self.block_began.get_or_insert(at);
+        if at.since(began) >= BLOCK_OF {
+            self.block()?;
+            self.block_began = Some(at);
+        }
+        let derived = self.overview.take(entry);
+        for message in self.encoder.encode(entry) {
+            self.write(&message)?;
+        }
+        for mark in derived {
+            let message = self.encoder.event(mark.at, mark.kind.key(), &mark.words);
+            self.write(&message)?;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, message: &Message) -> Result<(), McapError> {
+        self.sequence = self.sequence.wrapping_add(1);
+        let header = MessageHeader {
+            channel_id: message.topic.channel(),
+            sequence: self.sequence,
+            log_time: message.log_nanos,
+            publish_time: message.publish_nanos,
+        };
+        self.mcap.write_to_known_channel(&header, &message.bytes)
+    }
+
+    /// Closes the chunk, so that everything so far can be taken.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn flush(&mut self) -> Result<(), McapError> {
+        self.mcap.flush()
+    }
+
+    fn block(&mut self) -> Result<(), McapError> {
+        let data = self.overview.give_block(self.block_from);
+        let nanos = self.newest.micros().saturating_mul(1000);
+        let log_time = self.base_nanos.saturating_add(nanos);
+        self.mcap.attach(&Attachment {
+            log_time,
+            create_time: log_time,
+            name: OVERVIEW.into(),
+            media_type: "application/octet-stream".into(),
+            data: Cow::Owned(data),
+        })?;
+        self.block_from = self.length();
+        Ok(())
+    }
+
+    /// Ends the file with its index.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn finish(&mut self) -> Result<(), McapError> {
+        self.block()?;
+        self.mcap.finish().map(|_summary| ())
+    }
+
+    /// The bytes that were made since the last call. They follow those of before.
+    pub fn take_bytes(&mut self) -> Vec<u8> {
+        let mut waiting = self
+            .waiting
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let bytes = std::mem::take(&mut *waiting);
+        drop(waiting);
+        self.given += u64::try_from(bytes.len()).unwrap_or_default();
+        bytes
+    }
+}
