@@ -44,7 +44,7 @@ pub(crate) fn entries(seed: u64, count: u64) -> Vec<Entry> {
         let span = match random.u8(0..4) {
             0 => register::STATE,
             1 => Span::new(3000, 174),
-            2 => Span::new(1486, 36),
+            2 => Span::new(1486, 48),
             _ => Span::new(1534, 36),
         };
         let bytes: Vec<u8> = (0..span.len).map(|_| random.u8(..)).collect();
