@@ -9,6 +9,7 @@ use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::readings::fault_recorder::PersonAct;
 use crate::app::readings::faults::FaultKind;
 use crate::app::scan::ScanTarget;
+use crate::app::sessions::SessionAction;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
@@ -54,6 +55,8 @@ pub enum Action {
     Play(Play),
     /// Show a sequence on the drawn hand, or none any more; nothing is sent.
     DryRun(Option<SequenceId>),
+    /// What is asked about recorded sessions.
+    Session(SessionAction),
     /// What is asked about grasp trials.
     Trial(TrialAction),
     /// Add what a file of poses holds: one at a place that was typed, else one that is asked for.
@@ -152,6 +155,33 @@ impl Action {
             ),
             _ => false,
         }
+    }
+
+    /// True for what needs a live hand. While a recording is shown it is refused; a stop never is.
+    #[must_use]
+    pub const fn asks_a_hand(&self) -> bool {
+        if self.disturbs_series() {
+            return true;
+        }
+        matches!(
+            self,
+            Self::Disarm
+                | Self::Capture(_)
+                | Self::Recapture(_)
+                | Self::Trial(TrialAction::Start)
+                | Self::ChangePlace(..)
+                | Self::FactoryReset
+                | Self::CalibrateForce
+                | Self::Procedure(_)
+                | Self::SeenFault(..)
+                | Self::SeenFaults
+                | Self::Tare(_)
+                | Self::UndoTare
+                | Self::TakeKeptTare
+                | Self::Stage(..)
+                | Self::Param(_)
+                | Self::RemoveMark(_)
+        )
     }
 
     /// What this does to the hand, for the record of what happened; `None` if it does nothing to it. Arming, stopping,

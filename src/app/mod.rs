@@ -14,6 +14,7 @@ pub mod program;
 pub mod readings;
 pub(crate) mod running;
 pub mod scan;
+pub mod sessions;
 pub mod settings;
 pub mod state;
 pub mod trials;

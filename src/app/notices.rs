@@ -3,6 +3,7 @@
 use crate::app::readings::faults::FaultKind;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, RequestError};
+use crate::record::file::OpenError;
 use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed};
 use crate::store::FileError;
@@ -132,6 +133,20 @@ pub enum NoticeKind {
     },
     /// Something else was asked of the hand while a series runs. Nothing was sent.
     SeriesRuns,
+    /// A recorded session could not be opened or read on.
+    SessionRefused {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        why: OpenError,
+    },
+    /// Something was asked of a hand while a recording is shown. Nothing was sent.
+    Recorded,
+    /// Sessions were deleted.
+    SessionsDeleted {
+        /// How many.
+        sessions: usize,
+    },
     /// A session was read.
     SessionOpened {
         /// Where it lies.
@@ -195,6 +210,8 @@ impl NoticeKind {
             | Self::HoldConfirmed { .. }
             | Self::Acknowledged { .. }
             | Self::Saved { .. }
+            | Self::SessionsDeleted { .. }
+            | Self::Recorded
             | Self::PosesImported { .. }
             | Self::SeriesEnded { aborted: None, .. }
             | Self::SessionOpened { .. }

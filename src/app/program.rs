@@ -13,6 +13,9 @@ use crate::app::hand::sequence::Play;
 use crate::app::notices::NoticeKind;
 use crate::app::params::ParamAction;
 use crate::app::poses::PoseState;
+use crate::app::sessions::SessionAction;
+use crate::app::sessions::recording::HandRecording;
+use crate::app::sessions::work::SessionWork;
 use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::app::trials::TrialAction;
@@ -22,6 +25,7 @@ use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
 use crate::poses::library::{LibraryPose, PoseLibrary};
 use crate::poses::preview::Preview;
+use crate::record::EventKind;
 use crate::store::calendar::{since_1970, stamp};
 use crate::store::{BackgroundJob, Saver, on_thread};
 use crate::transport::{Endpoint, PortFound, ports};
@@ -53,6 +57,8 @@ pub struct App {
     importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
     sessions: Option<BackgroundJob<FilesEnd>>,
     keeping: Option<BackgroundJob<FilesEnd>>,
+    recorded: SessionWork,
+    records: bool,
 }
 
 impl App {
@@ -97,6 +103,8 @@ impl App {
             importing: None,
             sessions: None,
             keeping: None,
+            recorded: SessionWork::default(),
+            records: true,
         }
     }
 
@@ -122,14 +130,26 @@ impl App {
         }
     }
 
+    /// Records nothing in this run, whatever the settings say.
+    pub fn record_nothing(&mut self) {
+        self.records = false;
+    }
+
     /// Tells the person something that was found elsewhere, such as an unreadable settings file.
     pub fn tell(&mut self, what: NoticeKind, now: Moment) {
         self.state.notices.push(now, what);
     }
 
-    /// Everything the window shows.
+    /// Everything the window shows: the live hands, or the session that is replayed.
     #[must_use]
-    pub const fn state(&self) -> &State {
+    pub fn state(&self) -> &State {
+        let replayed = self.recorded.player.as_ref();
+        replayed.map_or(&self.state, |player| &player.state)
+    }
+
+    /// The live hands, whatever is shown.
+    #[must_use]
+    pub const fn live(&self) -> &State {
         &self.state
     }
 
@@ -155,11 +175,15 @@ impl App {
             hand.read_first(settings.read_first);
             hand.offer_tare(settings);
             hand.record();
+            if self.records {
+                hand.tick_recording(settings, env);
+            }
             hand.go_on_leaving(env, notices);
             self.quirk_notes.tick(hand, env, notices, now);
         }
         scan.drain();
         self.take_jobs(now);
+        self.recorded.tick(&mut self.state, &self.env);
         self.save_changes(now);
     }
 
@@ -212,6 +236,17 @@ impl App {
 
     /// Carries out one thing that a person asked for.
     pub fn act(&mut self, action: Action, now: Moment) {
+        if let (Some(_), Action::Note(at, words)) = (&self.recorded.player, &action) {
+            let edit = SessionAction::EditNote(*at, words.clone());
+            self.recorded.act(edit, &mut self.state, &self.env);
+            return;
+        }
+        if let Some(player) = &mut self.recorded.player
+            && action.asks_a_hand()
+        {
+            player.refuse();
+            return;
+        }
         self.state.now = now;
         let hand = self.state.hand_mut();
         hand.now = now;
@@ -222,10 +257,13 @@ impl App {
         if let Some(done) =
             action.person_act(self.state.hand().is_armed(), &self.state.poses.library)
         {
-            self.state.hand_mut().recorder.person(done, now);
+            let hand = self.state.hand_mut();
+            hand.record_event(now, EventKind::Person, done.words());
+            hand.recorder.person(done, now);
         }
         match action {
             Action::Arm if self.closing.is_some() => {}
+            Action::Session(action) => self.recorded.act(action, &mut self.state, &self.env),
             Action::Param(action) => self.param_action(action),
             Action::Trial(action) => self.trial_action(action),
             Action::Save(content) => self.export(content),
@@ -283,10 +321,16 @@ impl App {
             Action::SeenFaults => hand.faults.see_all(),
             Action::Note(at, words) => {
                 if let Some(note) = MarkKind::note(&words) {
+                    hand.record_event(at, EventKind::Note, words.trim().to_owned());
                     hand.history.mark(at, note);
                 }
             }
-            Action::RemoveMark(mark) => hand.history.remove_mark(&mark),
+            Action::RemoveMark(mark) => {
+                if let MarkKind::Note(words) = &mark.kind {
+                    hand.record_event(mark.at, EventKind::NoteRemoved, words.to_string());
+                }
+                hand.history.remove_mark(&mark);
+            }
             Action::Stage(id, value) => hand.params.stage(id, value),
             action => self.pose_action(action, now),
         }
@@ -448,11 +492,21 @@ impl App {
 
     /// Reads on what went over the wire. Called while somebody looks at it, and only then.
     pub fn read_traffic(&mut self, now: Moment) {
-        export::read_on(&mut self.state.hand_mut().traffic, now);
+        let (state, now) = match &mut self.recorded.player {
+            Some(player) => {
+                let at = player.state.now;
+                (&mut player.state, at)
+            }
+            None => (&mut self.state, now),
+        };
+        export::read_on(&mut state.hand_mut().traffic, now);
     }
 
     /// Reads what the hand keeps because somebody looks at it. Called while they do; asks only when it is due. Writes nothing.
     pub fn look_at_params(&mut self, now: Moment) {
+        if self.recorded.player.is_some() {
+            return;
+        }
         let hand = self.state.hands.shown_mut();
         hand.now = now;
         hand.look_at_params(&self.env);
@@ -481,7 +535,14 @@ impl App {
         let is_kept = trials.running.is_none() && trials.to_keep.is_empty();
         let is_kept = is_kept && self.keeping.is_none();
         let waited = now.since(closing.since);
-        (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN)
+        let goes = (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN);
+        if goes {
+            let hands = self.state.hands.iter_mut();
+            hands
+                .filter_map(|hand| hand.recording.take())
+                .for_each(HandRecording::end);
+        }
+        goes
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is kept from one start to the next. Never a setpoint: a plan of trials moves nothing before a person arms and starts it.
 
+use crate::app::files::day_folder;
 use crate::app::layout::Layout;
 use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;
@@ -9,6 +10,7 @@ use crate::poses::library::clean;
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 /// Dark or light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -233,6 +235,45 @@ impl Default for Zoom {
 pub const RECENT_MAX: usize = 5;
 /// Hands whose taring is kept; the oldest goes first.
 pub const TARES_MAX: usize = 20;
+/// What is recorded, and where.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SessionSettings {
+    /// Hands are recorded.
+    pub record: bool,
+    /// Built-in hands, too.
+    pub record_simulated: bool,
+    /// Where sessions lie; `None` = in the person's documents.
+    pub folder: Option<PathBuf>,
+    /// What all sessions together may need, gigabytes.
+    pub budget_gb: f64,
+}
+
+impl Default for SessionSettings {
+    fn default() -> Self {
+        Self {
+            record: true,
+            record_simulated: false,
+            folder: None,
+            budget_gb: 5.0,
+        }
+    }
+}
+
+impl SessionSettings {
+    /// What all sessions together may need, in bytes.
+    #[must_use]
+    pub fn budget_bytes(&self) -> u64 {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "cut to a range that fits"
+        )]
+        let bytes = (self.budget_gb.clamp(0.01, 1e6) * 1e9) as u64;
+        bytes
+    }
+}
+
 /// What is kept from one start to the next. Unknown keys of the file survive in [`Self::others`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -265,6 +306,8 @@ pub struct Settings {
     pub tares: BTreeMap<String, KeptTare>,
     /// What is read first while something moves.
     pub read_first: PollPriority,
+    /// What is recorded, and where.
+    pub sessions: SessionSettings,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,
@@ -274,6 +317,19 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Whether a hand is recorded, built-in or not.
+    #[must_use]
+    pub const fn records(&self, is_simulated: bool) -> bool {
+        self.sessions.record && (!is_simulated || self.sessions.record_simulated)
+    }
+
+    /// Where sessions lie; `None` = nowhere.
+    #[must_use]
+    pub fn sessions_folder(&self, documents: Option<&Path>) -> Option<PathBuf> {
+        let own = self.sessions.folder.clone();
+        own.or_else(|| documents.map(day_folder::of_all))
+    }
+
     /// The hand of this time, for the next start and for one click.
     pub(crate) fn remember(&mut self, endpoint: &Endpoint) {
         let text = endpoint.to_string();

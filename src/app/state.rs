@@ -4,6 +4,7 @@ use crate::app::hand::HandState;
 use crate::app::notices::Notices;
 use crate::app::poses::PoseState;
 use crate::app::scan::ScanState;
+use crate::app::sessions::{SessionsState, Timeline};
 use crate::app::settings::Settings;
 use crate::app::trials::TrialsState;
 use crate::hand::Moment;
@@ -26,6 +27,10 @@ pub struct State {
     pub ports: Vec<PortFound>,
     /// The newest scan for hands.
     pub scan: ScanState,
+    /// Recorded sessions.
+    pub sessions: SessionsState,
+    /// The time line of the session that is replayed; `None` while hands are live.
+    pub timeline: Option<Timeline>,
     /// What is kept from one start to the next.
     pub settings: Settings,
 }

@@ -12,6 +12,7 @@ use crate::cli::trial::TrialArgs;
 use crate::cli::watch::WatchArgs;
 use crate::transport::Endpoint;
 use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
 
 /// Watch, drive and tune the FTP series tactile hand.
 ///
@@ -41,9 +42,30 @@ pub(crate) struct WindowArgs {
     #[arg(long)]
     pub(crate) opengl: bool,
 
+    /// Record nothing in this run
+    #[arg(long)]
+    pub(crate) no_record: bool,
+
+    /// A recorded session to replay in the window
+    #[arg(value_name = "FILE.mcap", value_parser = recording)]
+    pub(crate) replay: Option<PathBuf>,
+
     /// The same, with the reason for the window to show
     #[arg(long, value_name = "REASON", hide = true)]
     pub(crate) software_because: Option<String>,
+}
+
+/// A mistyped command must not be taken for a file.
+fn recording(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    match ending.is_some_and(|ending| ending == "mcap") {
+        true => Ok(path),
+        false => Err(
+            "no such command, and a recording ends in .mcap; 'handscope --help' lists the commands"
+                .into(),
+        ),
+    }
 }
 
 /// What to do instead of opening the window.

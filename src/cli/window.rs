@@ -6,8 +6,15 @@ use crate::cli::args::WindowArgs;
 #[cfg(feature = "desktop")]
 pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     use crate::app::files::settings_file::{Loaded, default_path, load};
+    use crate::record::file::SessionFile;
     use crate::shell::desktop;
     use crate::shell::desktop::{DesktopError, DesktopStart, Drawing};
+    use anyhow::Context as _;
+    use std::ffi::OsString;
+    if let Some(path) = &args.replay {
+        // Said where it was asked, and not in a window that opens without it.
+        SessionFile::open(path).with_context(|| format!("cannot replay {}", path.display()))?;
+    }
     let settings_path = default_path();
     let loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
     let drawing = match args.software_because {
@@ -16,27 +23,36 @@ pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
         None if args.opengl || desktop::may_draw_with_a_card() => Drawing::OpenGl,
         None => Drawing::Software,
     };
-    let hand = args.hand.as_ref().map(ToString::to_string);
+    let mut again: Vec<OsString> = Vec::new();
+    if let Some(hand) = &args.hand {
+        again.extend(["--hand".into(), hand.to_string().into()]);
+    }
+    if args.no_record {
+        again.push("--no-record".into());
+    }
+    again.extend(args.replay.iter().map(OsString::from));
     let ended = desktop::run(DesktopStart {
         snap: crate::shell::headless::snap::snap,
         endpoint: args.hand,
         drawing,
         loaded,
         settings_path,
+        records: !args.no_record,
+        replay: args.replay,
     });
     match ended {
-        Err(DesktopError::NoOpenGl { cause }) => restart_without_opengl(hand, &cause),
+        Err(DesktopError::NoOpenGl { cause }) => restart_without_opengl(&again, &cause),
         ended => Ok(ended?),
     }
 }
 
 /// A process can have only one event loop in its life, so the window without OpenGL opens in a new process.
 #[cfg(feature = "desktop")]
-fn restart_without_opengl(hand: Option<String>, reason: &str) -> anyhow::Result<()> {
+fn restart_without_opengl(again: &[std::ffi::OsString], reason: &str) -> anyhow::Result<()> {
     use anyhow::Context as _;
     let mut program = std::process::Command::new(std::env::current_exe()?);
     program.args(["--software-because", reason]);
-    program.args(hand.iter().flat_map(|hand| ["--hand", hand]));
+    program.args(again);
     let failed = || {
         format!(
             "OpenGL does not start ({reason}), and the program could not restart itself without it; start 'handscope --software'"

@@ -10,6 +10,7 @@ use crate::history::table::{Table, TableGroup};
 use crate::history::trace::Trace;
 use crate::history::track::{HistoryTrack, Slice};
 use crate::record::WrittenMemory;
+use crate::record::file::overview::{OverviewRow, joint_line, tip_line};
 use std::collections::BTreeSet;
 
 /// The longest window of the plots.
@@ -191,6 +192,27 @@ impl History {
             self.sent_at = Some(at);
             self.add_targets(at, &before);
             self.add_targets(at, &self.targets.clone());
+        }
+    }
+
+    /// Takes in one second of a recording of which only least and greatest are known: both stand in it, one after the other.
+    pub fn overview(&mut self, row: &OverviewRow) {
+        let at = |part: u64| Moment::from_micros(u64::from(row.second) * 1_000_000 + part);
+        let known = |value: f32| Some(value).filter(|value| !value.is_nan());
+        for (values, at) in [(&row.least, at(0)), (&row.greatest, at(500_000))] {
+            let value = |line: usize| values.get(line).copied().and_then(known);
+            for quantity in Quantity::ALL {
+                let six = Dof::ALL.map(|dof| value(joint_line(quantity, dof)));
+                if six.iter().any(Option::is_some) {
+                    self.add(quantity as usize, at, &six);
+                }
+            }
+            for finger in Finger::ALL {
+                let both = Touch::ALL.map(|touch| value(tip_line(touch, finger)));
+                if both.iter().any(Option::is_some) {
+                    self.add(FIRST_TIP + finger.index(), at, &both);
+                }
+            }
         }
     }
 

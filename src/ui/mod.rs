@@ -8,6 +8,7 @@ pub(crate) mod kit;
 mod params;
 mod plots;
 mod poses;
+mod sessions;
 mod text;
 mod theme;
 mod touch;

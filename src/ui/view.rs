@@ -1,6 +1,6 @@
 //! The views of the window.
 
-use crate::ui::text::{Text, main};
+use crate::ui::text::{Text, main, sessions};
 
 /// The parts of the window that can be looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,11 +24,13 @@ pub enum View {
     Connection,
     /// What goes over the wire, frame by frame.
     Traffic,
+    /// What was recorded.
+    Sessions,
 }
 
 impl View {
     /// All, in the order of the tabs.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Live,
         Self::Touch,
         Self::Tune,
@@ -38,6 +40,7 @@ impl View {
         Self::Device,
         Self::Connection,
         Self::Traffic,
+        Self::Sessions,
     ];
 
     /// Stable lower-case name for the command line and files.
@@ -61,6 +64,7 @@ impl View {
             Self::Device => ("device", main::TAB_DEVICE),
             Self::Connection => ("connection", main::TAB_CONNECTION),
             Self::Traffic => ("traffic", main::TAB_TRAFFIC),
+            Self::Sessions => ("sessions", sessions::TITLE),
         }
     }
 

@@ -17,10 +17,16 @@ pub fn documents() -> Option<PathBuf> {
     Some(documents.unwrap_or_else(|| user.home_dir().join("Documents")))
 }
 
+/// The folder of all that nobody was asked about, in these documents.
+#[must_use]
+pub fn of_all(documents: &Path) -> PathBuf {
+    documents.join("Handscope")
+}
+
 /// The folder of a day, `2026-11-21`, in these documents.
 #[must_use]
 pub fn of_day(documents: &Path, day: &str) -> PathBuf {
-    documents.join("Handscope").join(day)
+    of_all(documents).join(day)
 }
 
 /// A path in this folder at which nothing lies: the name, or the name with a number before its ending, if it has one.

@@ -35,7 +35,7 @@ impl HandState {
         self.follow();
     }
 
-    fn take(&mut self, record: &Record, notices: &mut Notices) {
+    pub(crate) fn take(&mut self, record: &Record, notices: &mut Notices) {
         match record {
             Record::Reading { sample, fresh } => self.take_reading(sample, *fresh, notices),
             Record::State {
@@ -80,7 +80,7 @@ impl HandState {
     }
 
     /// A stop or disarm counts here at once, although the link's own word for it comes a moment later.
-    fn take_status(&mut self, mut status: LinkStatus, notices: &mut Notices) {
+    pub(crate) fn take_status(&mut self, mut status: LinkStatus, notices: &mut Notices) {
         let outdated = self.disarmed_at.is_some_and(|at| status.since <= at);
         if outdated && (status.state == LinkState::Armed || status.armed.is_some()) {
             status.state = self.link.state;

@@ -11,6 +11,7 @@ use crate::app::readings::faults::FaultList;
 use crate::app::readings::pace::ReadingPace;
 use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
+use crate::app::sessions::recording::HandRecording;
 use crate::app::trials::run::SeriesRun;
 use crate::hand::{Angle, AngleReading, Finger, Gesture, HandSample, Moment, PerDof, PerFinger};
 use crate::history::History;
@@ -70,6 +71,8 @@ pub struct HandState {
     pub procedure: Option<Procedure>,
     /// The series of trials that runs.
     pub series: Option<SeriesRun>,
+    /// The session that is recorded of it.
+    pub recording: Option<HandRecording>,
     /// What went over the wire, as far as it was looked at.
     pub traffic: Traffic,
     /// Where the task under the card wants the link.

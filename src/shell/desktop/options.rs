@@ -29,4 +29,8 @@ pub struct DesktopStart {
     pub settings_path: Option<PathBuf>,
     /// What makes pictures of the plots.
     pub snap: Snap,
+    /// Whether what happens at hands is recorded, as far as the settings say so.
+    pub records: bool,
+    /// A recorded session to begin with.
+    pub replay: Option<PathBuf>,
 }

@@ -7,6 +7,7 @@ use crate::app::files::day_folder::documents;
 use crate::app::layout::{Layout, WINDOW_LEAST, WindowSize};
 use crate::app::notices::NoticeKind;
 use crate::app::program::App;
+use crate::app::sessions::SessionAction;
 use crate::hand::Moment;
 use crate::link::Clock;
 use crate::shell::Cockpit;
@@ -111,7 +112,13 @@ impl Program {
         for notice in start.loaded.notice.into_iter().chain(without) {
             app.tell(notice, clock.now());
         }
+        if !start.records {
+            app.record_nothing();
+        }
         app.open(start.endpoint, clock.now());
+        if let Some(path) = start.replay {
+            app.act(Action::Session(SessionAction::Open(path)), clock.now());
+        }
         let mut cockpit = Cockpit::new(app).with_snap(start.snap);
         cockpit.set_software(is_software);
         Self {

@@ -11,6 +11,7 @@ pub(crate) mod panels;
 mod phrase;
 pub(crate) mod poses;
 pub(crate) mod scan;
+pub(crate) mod sessions;
 pub(crate) mod traffic;
 pub(crate) mod tune;
 pub(crate) mod window;

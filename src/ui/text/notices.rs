@@ -5,10 +5,11 @@ use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
 use crate::hand::Words;
 use crate::record::Disarmed;
+use crate::record::file::OpenError;
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{errors, main, panels, poses, scan, tune, window, words};
+use crate::ui::text::{errors, main, panels, poses, scan, sessions, tune, window, words};
 use std::path::Path;
 
 /// Title, cause and advice of what is wrong with a drive.
@@ -159,6 +160,17 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotSaved { path, message } => {
             of(window::NOT_SAVED, path, &errors::system(look, message))
         }
+        NoticeKind::SessionRefused { path, why } => {
+            let why = match why {
+                OpenError::Unreadable { message } => errors::system(look, message),
+                OpenError::NotMcap => look.say(sessions::NOT_MCAP).to_owned(),
+                OpenError::Foreign => look.say(sessions::FOREIGN).to_owned(),
+                OpenError::Empty => look.say(sessions::EMPTY).to_owned(),
+            };
+            look.fill(sessions::REFUSED, &[&path.display(), &why])
+        }
+        NoticeKind::Recorded => look.say(sessions::IS_RECORDING).to_owned(),
+        NoticeKind::SessionsDeleted { sessions: count } => look.told(sessions::DELETED, count),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),
     }

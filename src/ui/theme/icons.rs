@@ -35,12 +35,16 @@ pub(crate) const CLOSE: Icon = icons::ICON_CLOSE.codepoint;
 pub(crate) const PAUSE: Icon = icons::ICON_PAUSE.codepoint;
 /// Goes on.
 pub(crate) const PLAY: Icon = icons::ICON_PLAY_ARROW.codepoint;
+/// Kept, whatever else goes.
+pub(crate) const STAR: Icon = icons::ICON_BOOKMARK_ADDED.codepoint;
+/// Could be kept.
+pub(crate) const NO_STAR: Icon = icons::ICON_BOOKMARK.codepoint;
 /// More of the same.
 pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
 
 /// All of them.
 #[cfg(test)]
-pub(crate) const ALL: [Icon; 16] = [
+pub(crate) const ALL: [Icon; 18] = [
     TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, TUNE, LINKED, WARNING, DARK,
-    LIGHT, CLOSE, PAUSE, PLAY, MORE,
+    LIGHT, CLOSE, PAUSE, PLAY, STAR, NO_STAR, MORE,
 ];

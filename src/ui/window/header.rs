@@ -1,11 +1,14 @@
 //! The bar that is always there: which hand, how the link is, arm, and STOP. Also the row of tabs.
 
 use crate::app::action::Action;
+use crate::app::sessions::SessionAction;
 use crate::app::settings::{Language, Theme};
+use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Opens, Pane, Weight, format};
-use crate::ui::text::{Text, faults, keys, main, words};
+use crate::ui::sessions::table;
+use crate::ui::text::{Text, faults, keys, main, sessions, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use crate::ui::window::rooms;
@@ -19,11 +22,15 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {
             ui.disable();
         }
         ui.add_space(theme::STEP);
-        arm_ui(ui, pane);
+        match &pane.state.timeline {
+            Some(line) => back_ui(ui, pane, line.live_needs_eyes),
+            None => arm_ui(ui, pane),
+        }
         unseen_ui(ui, pane);
         kit::left_ui(ui, |ui| {
             badge_ui(ui, pane);
             link_ui(ui, pane);
+            recording_ui(ui, pane);
             figures_ui(ui, pane);
         });
     });
@@ -66,6 +73,72 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
+/// The way back from a recording, where arming is otherwise.
+fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
+    let look = pane.look;
+    let text = match needs_eyes {
+        true => sessions::BACK_EYES,
+        false => sessions::BACK,
+    };
+    let button = Button::new(look.say(text), look.tip(sessions::BACK));
+    let button = button.weight(Weight::Strong).large();
+    button.sends(ui, pane, Action::Session(SessionAction::Close));
+}
+
+/// Whether this hand is recorded, and the switch for it.
+fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    if pane.state.timeline.is_some() || pane.state.hand().endpoint.is_none() {
+        return;
+    }
+    let look = pane.look;
+    let palette = look.palette;
+    let simulated = pane.state.hand().is_simulated();
+    let (text, color, tip) = match &pane.state.hand().recording {
+        None => (sessions::NOT_RECORDING, palette.faint, String::new()),
+        Some(recording) => {
+            let status = &recording.status;
+            let (text, color) = match status.trouble {
+                Some(_) => (sessions::TROUBLE, palette.warn),
+                None => (sessions::RECORDING, palette.bad),
+            };
+            (text, color, recording_words(look, status))
+        }
+    };
+    if ui.available_width() < RECORDING_LEAST {
+        return;
+    }
+    let tip = format!("{}{tip}", look.tip(text));
+    let button = Button::new(look.say(text), &tip).weight(Weight::Quiet);
+    if lamp_button_ui(ui, look, button, color).clicked() {
+        let on = pane.state.hand().recording.is_none();
+        let action = match simulated {
+            true => SessionAction::RecordSimulated(on),
+            false => SessionAction::Record(on),
+        };
+        pane.actions.push(Action::Session(action));
+    }
+}
+
+/// How a recording goes, a line each.
+fn recording_words(look: Look, status: &RecorderStatus) -> String {
+    let mega = |bytes: u64| format!("{:.1}", table::giga(bytes) * 1000.0);
+    let path = status.path.as_ref().map(|path| path.display().to_string());
+    let rate = status.megabytes_an_hour();
+    let rate = rate.map_or_else(|| "-".to_owned(), |rate| format!("{rate:.0}"));
+    let mut lines = vec![
+        look.fill(sessions::FILE, &[&path.unwrap_or_default()]),
+        look.fill(sessions::RATE, &[&mega(status.bytes), &rate]),
+    ];
+    lines.extend(status.trouble.clone());
+    if status.missing > 0 {
+        lines.push(look.fill(sessions::MISSING, &[&status.missing]));
+    }
+    lines.iter().map(|line| format!("\n{line}")).collect()
+}
+
+/// Room that the lamp of the recording needs.
+const RECORDING_LEAST: f32 = 170.0;
+
 /// A button with a lamp before its words.
 fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) -> Response {
     let words = kit::text_width(ui, button.text, theme::body());
@@ -99,7 +172,9 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let palette = look.palette;
     let simulated = pane.state.hand().is_simulated();
+    let recorded = pane.state.timeline.is_some();
     let (text, fill, color) = match (&pane.state.hand().endpoint, simulated) {
+        _ if recorded => (sessions::RECORDED, palette.warn, palette.on_armed),
         (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
         (None, _) => (main::NO_HAND, palette.control, palette.muted),
@@ -109,7 +184,9 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
     ui.painter().rect_filled(place, 12.0, fill);
     let badge = Label::new(text, color).center().put(ui, place);
-    if simulated {
+    if recorded {
+        badge.on_hover_text(look.tip(sessions::RECORDED));
+    } else if simulated {
         badge.on_hover_text(look.tip(main::SIMULATED));
     }
     if let (Some(endpoint), false) = (&pane.state.hand().endpoint, simulated) {

@@ -71,7 +71,7 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [KeyRow; 31] = [
+pub(crate) static ROWS: [KeyRow; 32] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
@@ -91,6 +91,7 @@ pub(crate) static ROWS: [KeyRow; 31] = [
         Wish::Opens(Opens::View(View::Connection)),
     ),
     row(COMMAND, Key::Num9, Wish::Opens(Opens::View(View::Traffic))),
+    row(COMMAND, Key::Num0, Wish::Opens(Opens::View(View::Sessions))),
     row(NONE, Key::Num1, Wish::Joint(Dof::Little)),
     row(NONE, Key::Num2, Wish::Joint(Dof::Ring)),
     row(NONE, Key::Num3, Wish::Joint(Dof::Middle)),

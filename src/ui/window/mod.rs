@@ -20,12 +20,14 @@ pub(crate) mod keys;
 pub(crate) mod message_log;
 pub(crate) mod rooms;
 pub(crate) mod status;
+pub(crate) mod timeline;
 
 use crate::app::action::Action;
 use crate::app::hand::{Play, Preset};
 use crate::app::layout::WindowRoom;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::ProcedureAction;
+use crate::app::sessions::SessionAction;
 use crate::app::settings::{Language, Theme, Zoom};
 use crate::app::state::State;
 use crate::app::trials::TrialAction;
@@ -43,6 +45,7 @@ use crate::ui::params::procedures as guard;
 use crate::ui::plots::PlotView;
 use crate::ui::poses::PoseView;
 use crate::ui::poses::tiles as pose_tiles;
+use crate::ui::sessions::{self, SessionsView};
 use crate::ui::theme;
 use crate::ui::trials::compare;
 use crate::ui::trials::compare::CompareView;
@@ -88,6 +91,7 @@ pub struct Window {
     traffic: TrafficView,
     tune: TuneView,
     compare: CompareView,
+    sessions: SessionsView,
 }
 
 /// Puts fonts and style into a context. The window does it itself when the settings change.
@@ -132,6 +136,12 @@ impl Window {
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
         }
+        let dropped = ui.input(|input| {
+            let files = input.raw.dropped_files.iter();
+            let mut paths = files.map(|file| file.path().to_owned());
+            paths.find(|path| path.extension().is_some_and(|ending| ending == "mcap"))
+        });
+        actions.extend(dropped.map(|path| Action::Session(SessionAction::Open(path))));
         let stopped = wishes.contains(&Wish::Stop);
         let mut typing = std::mem::take(&mut self.typing);
         let mut opens = None;
@@ -252,6 +262,12 @@ impl Window {
         bar_ui(ui, ("header", theme::TOP_BAR), header, |ui| {
             header::header_ui(ui, pane, is_free);
         });
+        if let Some(line) = &pane.state.timeline {
+            let frame = Frame::new().fill(palette.card).inner_margin(MARGIN);
+            bar_ui(ui, ("timeline", timeline::HEIGHT), frame, |ui| {
+                timeline::timeline_ui(ui, pane, line);
+            });
+        }
         let status = Frame::new().inner_margin(Margin {
             bottom: 0,
             ..MARGIN
@@ -284,6 +300,7 @@ impl Window {
         let card = guard::card_of(pane.state, pane.look);
         let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
         let card = card.or_else(|| compare::card_of(pane.state, pane.look));
+        let card = card.or_else(|| sessions::card_of(pane.state, pane.look));
         let asked = self.cards.ui(ui, covered, card);
         pane.actions.extend(asked);
     }
@@ -313,6 +330,9 @@ impl Window {
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        if self.view != View::Sessions {
+            self.sessions.leave();
+        }
         match self.view {
             View::Live => self.live_ui(ui, rect, pane),
             View::Touch => self.touch.large_ui(ui, pane),
@@ -323,6 +343,7 @@ impl Window {
             View::Device => self.device.ui(ui, pane),
             View::Connection => self.connection.ui(ui, pane),
             View::Traffic => self.traffic.ui(ui, pane),
+            View::Sessions => self.sessions.ui(ui, pane),
         }
     }
 
@@ -430,6 +451,7 @@ fn is_covered(state: &State) -> bool {
     state.hand().procedure.is_some()
         || state.hand().params.question.is_some()
         || state.trials.to_confirm.is_some()
+        || state.sessions.to_delete.is_some()
 }
 
 /// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.

@@ -1,0 +1,99 @@
+//! What a person says of a session, in a small file beside it: its name, a star, notes. The recording itself is never changed.
+
+use crate::hand::Moment;
+use crate::record::EventKind;
+use crate::record::file::FileMark;
+use crate::store::toml_file::{self, FileText};
+use crate::store::{FileError, replace};
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Bytes of such a file: some thousand notes.
+const FILE_LEN_MAX: u64 = 1024 * 1024;
+
+/// A note.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SessionNote {
+    /// Microseconds of the recording's own clock.
+    pub at_micros: u64,
+    /// What was noted.
+    pub words: String,
+}
+
+/// What a person says of a session.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SessionAbout {
+    /// Its name; empty if it has none.
+    pub name: String,
+    /// Kept, whatever the budget says.
+    pub star: bool,
+    /// The notes as a person left them, in place of those in the recording; `None` if nobody changed them.
+    pub notes: Option<Vec<SessionNote>>,
+    /// Keys of a later version, kept as they are.
+    #[serde(flatten)]
+    pub others: toml::Table,
+}
+
+impl SessionAbout {
+    /// Where it stands beside a session.
+    #[must_use]
+    pub fn path(session: &Path) -> PathBuf {
+        session.with_extension("toml")
+    }
+
+    /// Reads it; nothing is said of a session without such a file.
+    ///
+    /// # Errors
+    /// [`FileError`]: what cannot be read, and where.
+    pub fn load(session: &Path) -> Result<Self, FileError> {
+        let path = Self::path(session);
+        if matches!(path.try_exists(), Ok(false)) {
+            return Ok(Self::default());
+        }
+        toml_file::load(&path, FILE_LEN_MAX, |text| FileText::plain(text).parse())
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn save(&self, session: &Path) -> io::Result<()> {
+        let text = toml::to_string_pretty(self).map_err(io::Error::other)?;
+        replace(&Self::path(session), text.as_bytes())
+    }
+
+    /// The notes in force: a person's, else those of the recording.
+    #[must_use]
+    pub fn notes(&self, marks: &[FileMark]) -> Vec<SessionNote> {
+        if let Some(notes) = &self.notes {
+            return notes.clone();
+        }
+        let notes = marks.iter().filter(|mark| mark.kind == EventKind::Note);
+        notes
+            .map(|mark| SessionNote {
+                at_micros: mark.at.micros(),
+                words: mark.words.clone(),
+            })
+            .collect()
+    }
+
+    /// True if the budget must leave the session alone.
+    #[must_use]
+    pub fn is_kept(&self, notes_recorded: u64) -> bool {
+        let notes = self
+            .notes
+            .as_ref()
+            .map_or(notes_recorded > 0, |notes| !notes.is_empty());
+        self.star || !self.name.is_empty() || notes
+    }
+}
+
+impl SessionNote {
+    /// When.
+    #[must_use]
+    pub const fn at(&self) -> Moment {
+        Moment::from_micros(self.at_micros)
+    }
+}

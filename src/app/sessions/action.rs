@@ -1,0 +1,43 @@
+//! What a person asks about sessions.
+
+use crate::hand::Moment;
+use std::path::PathBuf;
+
+/// What a person asks about sessions.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SessionAction {
+    /// Record hands from now on, or no longer.
+    Record(bool),
+    /// Record built-in hands, too, or no longer.
+    RecordSimulated(bool),
+    /// Look again which sessions there are.
+    Look,
+    /// Replay this file: one of the list, or any other.
+    Open(PathBuf),
+    /// Go back to the live hand.
+    Close,
+    /// Give a session a name; empty takes it away.
+    Name(PathBuf, String),
+    /// Give a session a star, or take it away.
+    Star(PathBuf, bool),
+    /// Ask whether this session is to be deleted.
+    AskDelete(PathBuf),
+    /// Delete the session that was asked about.
+    Delete,
+    /// Delete nothing.
+    KeepIt,
+    /// Delete what the budget has no room for.
+    Tidy,
+    /// Show this moment.
+    Seek(Moment),
+    /// Let time go on, or stop it.
+    Run(bool),
+    /// How fast time goes, 0.1 to 10.
+    Pace(f32),
+    /// Go to the next reading, or to the one before.
+    Step(bool),
+    /// Play this stretch again and again, or all once.
+    Loop(Option<(Moment, Moment)>),
+    /// Change the words of the note at a moment; of no words, take it away.
+    EditNote(Moment, String),
+}

@@ -1,0 +1,104 @@
+//! Which sessions there are. They are looked for off the window's thread, and what was read of a file that did not change is kept.
+
+use crate::app::env::Env;
+use crate::app::sessions::item::SessionItem;
+use crate::store::{BackgroundJob, on_thread};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Sessions that are listed: some for each working day of two years. Beyond, the oldest are not.
+pub const SESSIONS_MAX: usize = 2000;
+/// Folders of days that are looked into.
+const FOLDERS_MAX: usize = 4000;
+
+/// What the view of sessions shows.
+#[derive(Debug, Default, Clone)]
+pub struct SessionsState {
+    /// The newest first.
+    pub items: Arc<Vec<SessionItem>>,
+    /// Where they lie; `None` = nowhere.
+    pub folder: Option<PathBuf>,
+    /// They are being looked for.
+    pub looks: bool,
+    /// Files there that could not be read, and why.
+    pub unread: Arc<Vec<(PathBuf, String)>>,
+    /// The session that is to be deleted, once a person agrees.
+    pub to_delete: Option<PathBuf>,
+    /// What the budget has no room for.
+    pub beyond_budget: Vec<PathBuf>,
+    /// Counts how often they were looked for.
+    pub looked: u64,
+}
+
+/// What looking for sessions found.
+#[derive(Debug)]
+pub(crate) struct Looked {
+    pub(crate) items: Vec<SessionItem>,
+    pub(crate) unread: Vec<(PathBuf, String)>,
+}
+
+/// Looks for sessions in this folder and the folders of days in it.
+pub(crate) fn look(
+    folder: PathBuf,
+    known: Arc<Vec<SessionItem>>,
+    env: &Env,
+) -> BackgroundJob<Looked> {
+    let look = async move {
+        let found = on_thread(move || Ok(find(&folder, &known))).await;
+        found.unwrap_or(Looked {
+            items: Vec::new(),
+            unread: Vec::new(),
+        })
+    };
+    BackgroundJob::start(&env.runtime, &env.wake, look)
+}
+
+fn find(folder: &Path, known: &[SessionItem]) -> Looked {
+    let mut paths = files(folder);
+    paths.sort_by(|one, two| two.cmp(one));
+    paths.truncate(SESSIONS_MAX);
+    let (mut items, mut unread) = (Vec::new(), Vec::new());
+    for path in paths {
+        let bytes = std::fs::metadata(&path).map_or(0, |about| about.len());
+        let same = |item: &&SessionItem| item.path == path && item.bytes == bytes;
+        if let Some(item) = known.iter().find(same).filter(|item| item.closed) {
+            let about = crate::app::sessions::SessionAbout::load(&path).unwrap_or_default();
+            items.push(SessionItem {
+                about,
+                ..item.clone()
+            });
+            continue;
+        }
+        match SessionItem::read(&path) {
+            Ok(item) => items.push(item),
+            Err(why) => unread.push((path, why.to_string())),
+        }
+    }
+    items.sort_by(|one, two| {
+        let began =
+            |item: &SessionItem| item.opening.base_nanos / 1000 + item.opening.began.micros();
+        began(two).cmp(&began(one))
+    });
+    Looked { items, unread }
+}
+
+/// The MCAP files in a folder and in the folders in it.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = |folder: &Path| {
+        let read = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        read.map(|entry| entry.path())
+    };
+    let (mut files, mut folders) = (Vec::new(), Vec::new());
+    for path in entries(folder) {
+        match path.is_dir() {
+            true => folders.push(path),
+            false => files.push(path),
+        }
+    }
+    folders.sort();
+    for folder in folders.iter().rev().take(FOLDERS_MAX) {
+        files.extend(entries(folder));
+    }
+    files.retain(|path| path.extension().is_some_and(|end| end == "mcap"));
+    files
+}

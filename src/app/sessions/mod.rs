@@ -1,0 +1,18 @@
+//! Sessions on disk: the one that is being recorded, the list of those there are, and one that is replayed.
+
+pub mod about;
+pub mod action;
+pub mod budget;
+pub mod item;
+pub mod list;
+pub(crate) mod player;
+pub mod recording;
+pub(crate) mod replay;
+pub mod timeline;
+pub(crate) mod work;
+
+pub use crate::app::sessions::about::{SessionAbout, SessionNote};
+pub use crate::app::sessions::action::SessionAction;
+pub use crate::app::sessions::item::SessionItem;
+pub use crate::app::sessions::list::SessionsState;
+pub use crate::app::sessions::timeline::Timeline;

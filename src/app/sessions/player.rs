@@ -1,0 +1,380 @@
+//! Replays a session: which moment is shown, how time goes on, and what is read ahead. Reads files off the window's thread.
+
+use crate::app::env::Env;
+use crate::app::hand::HandState;
+use crate::app::notices::NoticeKind;
+use crate::app::sessions::about::{SessionAbout, SessionNote};
+use crate::app::sessions::action::SessionAction;
+use crate::app::sessions::item::SessionItem;
+use crate::app::sessions::replay::{Recorded, Shown};
+use crate::app::sessions::timeline::Timeline;
+use crate::app::state::State;
+use crate::hand::{Group, Moment};
+use crate::history::NOTE_MAX;
+use crate::link::tap::WireTap;
+use crate::record::file::reader::Stretch;
+use crate::record::file::{OpenError, SessionFile};
+use crate::record::{Entry, Record};
+use crate::store::{BackgroundJob, on_thread};
+use std::collections::VecDeque;
+use std::io;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Read ahead while time goes on, in seconds of the session at its own pace.
+const AHEAD: Duration = Duration::from_secs(2);
+/// A step looks this far for the next reading, at most.
+const STEP_WITHIN: Duration = Duration::from_secs(5);
+/// A frame that took longer is no reason to leap.
+const FRAME_MAX: Duration = Duration::from_millis(250);
+/// Slowest and fastest.
+pub(crate) const PACES: (f32, f32) = (0.1, 10.0);
+
+/// A file that was opened, and the hand as it was soon after the beginning.
+pub(crate) type Opened = (Arc<SessionFile>, Found);
+
+/// The hand as it was at a moment.
+type Found = (Moment, Box<Recorded>);
+
+/// The moment that is wanted.
+#[derive(Debug, Clone, Copy)]
+enum Wanted {
+    At(Moment),
+    /// The reading of the angles after this moment.
+    After(Moment),
+    /// The one before it.
+    Before(Moment),
+}
+
+/// A session that is replayed.
+pub(crate) struct Player {
+    file: Arc<SessionFile>,
+    about: SessionAbout,
+    /// Everything the window shows of it.
+    pub(crate) state: State,
+    tap: WireTap,
+    /// When it was looked at last, in the program's time.
+    ticked: Moment,
+    wanted: Option<Wanted>,
+    seeking: Option<BackgroundJob<io::Result<Found>>>,
+    ahead: VecDeque<Entry>,
+    ahead_until: Moment,
+    reading: Option<(Moment, BackgroundJob<io::Result<Vec<Entry>>>)>,
+}
+
+/// Opens a file near its beginning, off the window's thread.
+pub(crate) fn open(path: PathBuf, env: &Env) -> BackgroundJob<Result<Opened, NoticeKind>> {
+    let open = async move {
+        let place = path.clone();
+        let opened = on_thread(move || {
+            Ok(SessionFile::open(&place).and_then(|file| {
+                let at = file.first().plus(AHEAD).min(file.last());
+                let found = find(&file, Wanted::At(at))?;
+                Ok::<Opened, OpenError>((Arc::new(file), found))
+            }))
+        });
+        let opened = opened.await.unwrap_or_else(|error| Err(error.into()));
+        opened.map_err(|why| NoticeKind::SessionRefused { path, why })
+    };
+    BackgroundJob::start(&env.runtime, &env.wake, open)
+}
+
+/// The hand at the moment that is wanted.
+fn find(file: &SessionFile, wanted: Wanted) -> io::Result<Found> {
+    let one = Duration::from_micros(1);
+    let earlier = |at: Moment, by| Moment::from_duration(at.since(Moment::ZERO).saturating_sub(by));
+    let at = match wanted {
+        Wanted::At(at) => at,
+        Wanted::After(at) => {
+            let stretch = (at.plus(one), at.plus(STEP_WITHIN));
+            reading(file, stretch, true)?.unwrap_or(at)
+        }
+        Wanted::Before(at) => {
+            let stretch = (earlier(at, STEP_WITHIN), earlier(at, one));
+            reading(file, stretch, false)?.unwrap_or(at)
+        }
+    };
+    Ok((at, Box::new(Recorded::at(file, at)?)))
+}
+
+/// When the angles were read first or last in a stretch.
+fn reading(
+    file: &SessionFile,
+    (from, to): (Moment, Moment),
+    first: bool,
+) -> io::Result<Option<Moment>> {
+    let mut found = None;
+    let wire = false;
+    file.entries(Stretch { from, to, wire }, |entry| match &entry {
+        Entry::Heard(Record::Reading { fresh, .. }) if fresh.contains(Group::Angle) => {
+            found = Some(entry.at());
+            match first {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        }
+        _ => ControlFlow::Continue(()),
+    })?;
+    Ok(found)
+}
+
+impl Player {
+    /// Begins to replay a file, standing still.
+    pub(crate) fn new((file, (at, recorded)): Opened, now: Moment) -> Self {
+        let about = SessionAbout::load(file.path()).unwrap_or_default();
+        let item = SessionItem::of(&file, about.clone());
+        let timeline = Timeline {
+            path: item.path.clone(),
+            title: item.title(),
+            began: item.began(),
+            hand: item.opening.hand.clone(),
+            first: file.first(),
+            last: file.last(),
+            at,
+            runs: false,
+            pace: 1.0,
+            looped: None,
+            notes: Arc::new(item.notes()),
+            marks: Arc::new(item.marks),
+            strip: Arc::new(item.strip),
+            waits: false,
+            damaged: file.skipped() > 0,
+            live_needs_eyes: false,
+        };
+        let mut player = Self {
+            about,
+            state: State {
+                timeline: Some(timeline),
+                ..State::default()
+            },
+            tap: WireTap::default(),
+            ticked: now,
+            wanted: None,
+            seeking: None,
+            ahead: VecDeque::new(),
+            ahead_until: at,
+            reading: None,
+            file,
+        };
+        player.take_found((at, recorded));
+        player
+    }
+
+    /// The file that is replayed.
+    pub(crate) fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// What a person says of it now.
+    pub(crate) const fn about(&self) -> &SessionAbout {
+        &self.about
+    }
+
+    /// Says that nothing is sent while a recording is shown.
+    pub(crate) fn refuse(&mut self) {
+        self.state
+            .notices
+            .push(self.state.now, NoticeKind::Recorded);
+    }
+
+    fn line(&mut self) -> Option<&mut Timeline> {
+        self.state.timeline.as_mut()
+    }
+
+    fn at(&self) -> Moment {
+        self.state.now
+    }
+
+    /// Shows the hand as it was found.
+    fn take_found(&mut self, (at, recorded): Found) {
+        *self.state.hands.shown_mut() = recorded.hand;
+        self.state.notices = recorded.notices;
+        self.tap = recorded.tap;
+        self.ahead.clear();
+        (self.ahead_until, self.reading) = (at, None);
+        self.show(at);
+    }
+
+    /// Lets the views show this moment.
+    fn show(&mut self, at: Moment) {
+        self.state.now = at;
+        self.state.hands.shown_mut().now = at;
+        if let Some(line) = self.line() {
+            line.at = at;
+        }
+    }
+
+    /// Lets time go on, and takes in what was read.
+    pub(crate) fn tick(&mut self, live: &State, env: &Env) {
+        let passed = live.now.since(self.ticked);
+        self.ticked = live.now;
+        self.state.settings.clone_from(&live.settings);
+        self.state.settings.side = self.file.opening().side;
+        self.state.sessions.clone_from(&live.sessions);
+        let eyes = live.hands.iter().any(HandState::may_move);
+        self.take_seek(env);
+        self.take_ahead();
+        self.run(passed);
+        self.read_ahead(env);
+        let waits = self.seeking.is_some();
+        if let Some(line) = self.line() {
+            (line.live_needs_eyes, line.waits) = (eyes, waits);
+        }
+    }
+
+    fn take_seek(&mut self, env: &Env) {
+        match BackgroundJob::take_from(&mut self.seeking) {
+            Some(Ok(found)) => self.take_found(found),
+            Some(Err(error)) => {
+                let path = self.path().to_owned();
+                let why = error.into();
+                let what = NoticeKind::SessionRefused { path, why };
+                self.state.notices.push(self.state.now, what);
+            }
+            None => {}
+        }
+        if self.seeking.is_none()
+            && let Some(wanted) = self.wanted.take()
+        {
+            let file = Arc::clone(&self.file);
+            let seek = on_thread(move || find(&file, wanted));
+            let job = BackgroundJob::start(&env.runtime, &env.wake, seek);
+            self.seeking = Some(job);
+        }
+    }
+
+    fn take_ahead(&mut self) {
+        let Some((until, job)) = self.reading.take() else {
+            return;
+        };
+        let mut slot = Some(job);
+        match BackgroundJob::take_from(&mut slot) {
+            Some(Ok(entries)) => {
+                self.ahead.extend(entries);
+                self.ahead_until = until;
+            }
+            Some(Err(_)) => self.ahead_until = until,
+            None => self.reading = slot.map(|job| (until, job)),
+        }
+    }
+
+    /// Goes on by so much of the program's time.
+    fn run(&mut self, passed: Duration) {
+        let (ahead_until, last) = (self.ahead_until, self.file.last());
+        let is_seeking = self.seeking.is_some();
+        let Some(line) = self.line().filter(|line| line.runs && !is_seeking) else {
+            return;
+        };
+        let end = line.looped.map_or(last, |(_, end)| end);
+        let step = passed.min(FRAME_MAX).mul_f32(line.pace);
+        // What is not read yet cannot be shown: time waits for it.
+        let next = line.at.plus(step).min(ahead_until.max(line.at)).min(end);
+        let begin = line.looped.map(|(begin, _)| begin);
+        let is_over = next >= end;
+        line.runs = !is_over || begin.is_some();
+        if is_over {
+            self.wanted = begin.map(Wanted::At);
+        }
+        let mut shown = Shown {
+            hand: self.state.hands.shown_mut(),
+            notices: &mut self.state.notices,
+            tap: &self.tap,
+        };
+        while let Some(entry) = self.ahead.pop_front_if(|entry| entry.at() <= next) {
+            shown.take(&entry);
+        }
+        self.show(next);
+    }
+
+    fn read_ahead(&mut self, env: &Env) {
+        let Some(line) = self.state.timeline.as_ref().filter(|line| line.runs) else {
+            return;
+        };
+        let wanted = line.at.plus(AHEAD.mul_f32(line.pace.max(1.0)));
+        let wanted = wanted.min(self.file.last());
+        if self.reading.is_some() || self.seeking.is_some() || self.ahead_until >= wanted {
+            return;
+        }
+        let file = Arc::clone(&self.file);
+        let from = self.ahead_until.plus(Duration::from_micros(1));
+        let read = on_thread(move || {
+            let mut entries = Vec::new();
+            let stretch = Stretch {
+                from,
+                to: wanted,
+                wire: true,
+            };
+            file.entries(stretch, |entry| {
+                entries.push(entry);
+                ControlFlow::Continue(())
+            })?;
+            entries.sort_by_key(Entry::at);
+            Ok(entries)
+        });
+        let job = BackgroundJob::start(&env.runtime, &env.wake, read);
+        self.reading = Some((wanted, job));
+    }
+
+    /// Carries out what a person asks about the replayed session.
+    pub(crate) fn act(&mut self, action: &SessionAction) {
+        let (first, last) = (self.file.first(), self.file.last());
+        let within = |at: Moment| at.clamp(first, last);
+        match action {
+            SessionAction::Seek(at) => self.wanted = Some(Wanted::At(within(*at))),
+            SessionAction::Run(on) => {
+                let is_at_end = self.at() >= last;
+                if let Some(line) = self.line() {
+                    line.runs = *on;
+                }
+                if *on && is_at_end {
+                    self.wanted = Some(Wanted::At(first));
+                }
+            }
+            SessionAction::Pace(pace) => {
+                if let Some(line) = self.line() {
+                    line.pace = pace.clamp(PACES.0, PACES.1);
+                }
+            }
+            SessionAction::Loop(stretch) => {
+                if let Some(line) = self.line() {
+                    line.looped = stretch
+                        .map(|(from, to)| (within(from.min(to)), within(from.max(to))))
+                        .filter(|(from, to)| from < to);
+                }
+            }
+            SessionAction::Step(forward) => {
+                let at = self.at();
+                self.wanted = Some(match forward {
+                    true => Wanted::After(at),
+                    false => Wanted::Before(at),
+                });
+                if let Some(line) = self.line() {
+                    line.runs = false;
+                }
+            }
+            SessionAction::EditNote(at, words) => self.edit_note(*at, words),
+            _ => {}
+        }
+    }
+
+    /// Changes the note of a moment, adds one, or takes it away; what the person says of the session is to be saved then.
+    fn edit_note(&mut self, at: Moment, words: &str) {
+        let words: String = words.trim().chars().take(NOTE_MAX).collect();
+        let Some(line) = self.state.timeline.as_mut() else {
+            return;
+        };
+        let mut notes: Vec<SessionNote> = line.notes.to_vec();
+        notes.retain(|note| note.at() != at);
+        if !words.is_empty() {
+            notes.push(SessionNote {
+                at_micros: at.micros(),
+                words,
+            });
+        }
+        notes.sort_by_key(SessionNote::at);
+        line.notes = Arc::new(notes.clone());
+        self.about.notes = Some(notes);
+    }
+}

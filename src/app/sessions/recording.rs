@@ -1,0 +1,114 @@
+//! The session that is being recorded of a hand: begun when a link opens, ended when it closes or a person wants none.
+
+use crate::app::env::Env;
+use crate::hand::Moment;
+use crate::hand::kinematics::Side;
+use crate::link::LinkObserver;
+use crate::record::file::recorder::RecorderInput;
+use crate::record::file::{Opening, Recorder, RecorderStatus, RecordingPlan, SystemDisk};
+use crate::record::{Entry, Event, EventKind};
+use crate::store::calendar::{day, since_1970, stamp};
+use crate::tasks::recording;
+use crate::transport::Endpoint;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A recording under way.
+#[derive(Debug)]
+pub struct HandRecording {
+    recorder: Recorder,
+    input: RecorderInput,
+    /// How it goes, as of this frame.
+    pub status: RecorderStatus,
+}
+
+/// What is recorded, and where it goes.
+#[derive(Debug)]
+pub(crate) struct RecordingTarget<'a> {
+    /// The folder of sessions.
+    pub(crate) folder: PathBuf,
+    /// The hand.
+    pub(crate) endpoint: &'a Endpoint,
+    /// Its side, as the person says.
+    pub(crate) side: Side,
+}
+
+impl HandRecording {
+    /// Begins a recording of what is observed.
+    pub(crate) fn begin(
+        target: &RecordingTarget<'_>,
+        observed: LinkObserver,
+        env: &Env,
+    ) -> Option<Self> {
+        let now = env.clock.now();
+        let wall = since_1970();
+        let plan = RecordingPlan {
+            path: path(&target.folder, target.endpoint, wall),
+            opening: opening(target.endpoint, (now, wall), target.side),
+            disk: Arc::new(SystemDisk),
+        };
+        let recorder = Recorder::start(plan).ok()?;
+        let input = recorder.input();
+        let pump = recording::record(observed, input.clone(), env.clock);
+        env.runtime.spawn(pump);
+        Some(Self {
+            status: recorder.status(),
+            recorder,
+            input,
+        })
+    }
+
+    /// Brings the status up to date.
+    pub(crate) fn tick(&mut self) {
+        self.status = self.recorder.status();
+    }
+
+    /// Ends the file and waits for that, at most a few seconds.
+    pub(crate) fn end(self) {
+        let _ended = self.recorder.end();
+    }
+
+    /// Adds something that happened beside the link.
+    pub(crate) fn event(&self, at: Moment, kind: EventKind, words: String) {
+        self.input.push(Entry::Event(Event { at, kind, words }));
+    }
+}
+
+/// What a recording of this hand begins with, at this moment of the program and this time since 1970.
+pub(crate) fn opening(
+    endpoint: &Endpoint,
+    (now, wall): (Moment, std::time::Duration),
+    side: Side,
+) -> Opening {
+    let zero = wall.saturating_sub(now.since(Moment::ZERO));
+    Opening {
+        base_nanos: u64::try_from(zero.as_nanos()).unwrap_or_default(),
+        began: now,
+        hand: endpoint.to_string(),
+        simulated: endpoint.is_sim(),
+        side,
+        version: env!("CARGO_PKG_VERSION").into(),
+    }
+}
+
+/// Where a recording goes that begins now: `2026-11-22/093000-rs485-ttyUSB0.mcap` in the folder of sessions.
+fn path(folder: &Path, endpoint: &Endpoint, wall: std::time::Duration) -> PathBuf {
+    let time: String = stamp(wall)
+        .chars()
+        .skip(11)
+        .filter(char::is_ascii_digit)
+        .collect();
+    let text = endpoint.to_string();
+    let place = text.split('?').next().unwrap_or_default();
+    let plain = |letter: char| {
+        if letter.is_ascii_alphanumeric() {
+            letter
+        } else {
+            '-'
+        }
+    };
+    let hand: String = place.chars().map(plain).collect();
+    let hand = hand.replace("-dev-", "");
+    let hand = hand.trim_matches('-');
+    folder.join(day(wall)).join(format!("{time}-{hand}.mcap"))
+}

@@ -1,0 +1,147 @@
+//! The state of the window at a moment of a recorded session: everything is taken in as it was when it was heard.
+
+use crate::app::hand::HandState;
+use crate::app::notices::Notices;
+use crate::hand::Moment;
+use crate::history::MarkKind;
+use crate::link::Traffic;
+use crate::link::tap::WireTap;
+use crate::record::file::SessionFile;
+use crate::record::file::reader::Stretch;
+use crate::record::{Entry, Event, EventKind, LinkReport};
+use crate::transport::Endpoint;
+use std::io;
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+/// So much before the moment is taken in reading by reading: the longest a person looks at closely. What is older comes from the
+/// overview, second by second.
+const CLOSE: Duration = Duration::from_secs(30);
+/// A session of this length is taken in whole.
+const WHOLE: Duration = Duration::from_secs(60);
+
+/// A hand as it was, and what was told of it then.
+#[derive(Debug, Default)]
+pub(crate) struct Recorded {
+    pub(crate) hand: HandState,
+    pub(crate) notices: Notices,
+    pub(crate) tap: WireTap,
+}
+
+/// What recorded entries are taken into.
+pub(crate) struct Shown<'a> {
+    pub(crate) hand: &'a mut HandState,
+    pub(crate) notices: &'a mut Notices,
+    pub(crate) tap: &'a WireTap,
+}
+
+impl Recorded {
+    /// The hand of a file at a moment.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub(crate) fn at(file: &SessionFile, at: Moment) -> io::Result<Self> {
+        let mut recorded = Self::new(file);
+        let mut from = file.first();
+        if at.since(from) > WHOLE {
+            from = Moment::from_duration(at.since(Moment::ZERO).saturating_sub(CLOSE));
+            recorded.take_overview(file, from);
+        }
+        let stretch = Stretch {
+            from,
+            to: at,
+            wire: true,
+        };
+        let mut shown = Shown {
+            hand: &mut recorded.hand,
+            notices: &mut recorded.notices,
+            tap: &recorded.tap,
+        };
+        file.entries(stretch, |entry| {
+            shown.take(&entry);
+            ControlFlow::Continue(())
+        })?;
+        recorded.hand.now = at;
+        Ok(recorded)
+    }
+
+    fn new(file: &SessionFile) -> Self {
+        let endpoint: Option<Endpoint> = file.opening().hand.parse().ok();
+        let mut recorded = Self::default();
+        if let Some(endpoint) = &endpoint {
+            recorded.hand.traffic = Traffic::of(recorded.tap.clone(), endpoint);
+        }
+        recorded.hand.endpoint = endpoint;
+        recorded
+    }
+
+    /// What is before a moment, from the overview.
+    fn take_overview(&mut self, file: &SessionFile, until: Moment) {
+        let longest = Duration::from_secs(crate::history::HISTORY_SECONDS.into());
+        let from = Moment::from_duration(until.since(Moment::ZERO).saturating_sub(longest));
+        let second = |at: Moment| u32::try_from(at.micros() / 1_000_000).unwrap_or(u32::MAX);
+        let rows = file
+            .overview()
+            .rows_within(second(from), second(until).saturating_sub(1));
+        for row in rows {
+            self.hand.history.overview(row);
+        }
+        let marks = file.overview().marks.iter();
+        for mark in marks.filter(|mark| (from..until).contains(&mark.at)) {
+            if let Some(kind) = mark_kind(mark.kind, &mark.words) {
+                self.hand.history.mark(mark.at, kind);
+            }
+        }
+    }
+}
+
+impl Shown<'_> {
+    /// Takes in one entry, at its own time.
+    pub(crate) fn take(&mut self, entry: &Entry) {
+        let at = entry.at();
+        self.hand.now = self.hand.now.max(at);
+        match entry {
+            Entry::Heard(record) => self.hand.take(record, self.notices),
+            Entry::Wire(piece) => self.tap.record(piece.at, piece.kind, &piece.bytes),
+            Entry::Link(report) => self.link(report),
+            Entry::Event(event) => self.event(event),
+        }
+        self.hand.follow();
+    }
+
+    fn link(&mut self, report: &LinkReport) {
+        if let Ok(status) = serde_json::from_str(&report.status) {
+            self.hand.take_status(status, self.notices);
+        }
+        if let Ok(figures) = serde_json::from_str(&report.figures) {
+            self.hand.stats = figures;
+        }
+    }
+
+    fn event(&mut self, event: &Event) {
+        match (event.kind, mark_kind(event.kind, &event.words)) {
+            (EventKind::NoteRemoved, _) => {
+                if let Some(kind) = MarkKind::note(&event.words) {
+                    let at = event.at;
+                    let mark = crate::history::Mark { at, kind };
+                    self.hand.history.remove_mark(&mark);
+                }
+            }
+            (EventKind::Note, Some(kind)) => self.hand.history.mark(event.at, kind),
+            _ => {}
+        }
+    }
+}
+
+/// The mark that plots have for what happened.
+fn mark_kind(kind: EventKind, words: &str) -> Option<MarkKind> {
+    match kind {
+        EventKind::Note => MarkKind::note(words),
+        EventKind::Fault => Some(MarkKind::Fault),
+        EventKind::Stop => Some(MarkKind::Stop),
+        EventKind::Armed => Some(MarkKind::Armed),
+        EventKind::LinkLost => Some(MarkKind::LinkLost),
+        EventKind::Reconnected => Some(MarkKind::Reconnected),
+        _ => None,
+    }
+}

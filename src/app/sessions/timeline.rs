@@ -1,0 +1,44 @@
+//! What the time line of a replayed session shows.
+
+use crate::app::sessions::about::SessionNote;
+use crate::hand::Moment;
+use crate::record::file::FileMark;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What the time line of a replayed session shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timeline {
+    /// The file.
+    pub path: PathBuf,
+    /// The session's name, or that of its file.
+    pub title: String,
+    /// When it began, `2026-11-22T09:30:00Z`.
+    pub began: String,
+    /// The hand's endpoint.
+    pub hand: String,
+    /// The first moment.
+    pub first: Moment,
+    /// The last moment.
+    pub last: Moment,
+    /// The moment that is shown.
+    pub at: Moment,
+    /// Time goes on.
+    pub runs: bool,
+    /// How fast.
+    pub pace: f32,
+    /// The stretch that is played again and again.
+    pub looped: Option<(Moment, Moment)>,
+    /// What happened.
+    pub marks: Arc<Vec<FileMark>>,
+    /// The notes in force.
+    pub notes: Arc<Vec<SessionNote>>,
+    /// Greatest force over its length.
+    pub strip: Arc<Vec<f32>>,
+    /// The moment that was asked for is not shown yet.
+    pub waits: bool,
+    /// Whether a part of the file cannot be read.
+    pub damaged: bool,
+    /// The live hand behind it is armed, moves, or has a fault: said beside the way back.
+    pub live_needs_eyes: bool,
+}

@@ -1,0 +1,166 @@
+//! Carries out what is asked about sessions, and lets what was begun go on. Files are read, written and deleted off the window's
+//! thread.
+
+use crate::app::env::Env;
+use crate::app::notices::NoticeKind;
+use crate::app::sessions::about::SessionAbout;
+use crate::app::sessions::action::SessionAction;
+use crate::app::sessions::budget::to_delete;
+use crate::app::sessions::item::SessionItem;
+use crate::app::sessions::list::{self, Looked};
+use crate::app::sessions::player::{self, Opened, Player};
+use crate::app::state::State;
+use crate::store::{BackgroundJob, on_thread};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What goes on with sessions.
+#[derive(Default)]
+pub(crate) struct SessionWork {
+    /// The session that is replayed.
+    pub(crate) player: Option<Player>,
+    opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
+    looking: Option<BackgroundJob<Looked>>,
+    look_again: bool,
+    writing: Option<BackgroundJob<Result<usize, (PathBuf, io::Error)>>>,
+}
+
+impl SessionWork {
+    /// Takes in what was read, and lets a replay go on.
+    pub(crate) fn tick(&mut self, state: &mut State, env: &Env) {
+        if let Some(looked) = BackgroundJob::take_from(&mut self.looking) {
+            let sessions = &mut state.sessions;
+            sessions.items = Arc::new(looked.items);
+            sessions.unread = Arc::new(looked.unread);
+            sessions.looks = false;
+            sessions.looked += 1;
+            let recorded = state.hands.shown().recording.as_ref();
+            let recorded = recorded.and_then(|recording| recording.status.path.clone());
+            let limit = state.settings.sessions.budget_bytes();
+            sessions.beyond_budget = to_delete(&sessions.items, limit, recorded.as_ref());
+        }
+        if std::mem::take(&mut self.look_again) && self.looking.is_none() {
+            self.look(state, env);
+        }
+        match BackgroundJob::take_from(&mut self.opening) {
+            Some(Ok(opened)) => self.player = Some(Player::new(opened, state.now)),
+            Some(Err(refused)) => state.notices.push(state.now, refused),
+            None => {}
+        }
+        match BackgroundJob::take_from(&mut self.writing) {
+            Some(Ok(deleted)) => {
+                self.look_again = true;
+                if deleted > 0 {
+                    let told = NoticeKind::SessionsDeleted { sessions: deleted };
+                    state.notices.push(state.now, told);
+                }
+            }
+            Some(Err((path, error))) => {
+                let told = NoticeKind::not_saved(path, &error);
+                state.notices.push(state.now, told);
+            }
+            None => {}
+        }
+        if let Some(player) = &mut self.player {
+            player.tick(state, env);
+        }
+    }
+
+    /// Carries out what a person asks.
+    pub(crate) fn act(&mut self, action: SessionAction, state: &mut State, env: &Env) {
+        match action {
+            SessionAction::Record(on) => state.settings.sessions.record = on,
+            SessionAction::RecordSimulated(on) => {
+                state.settings.sessions.record_simulated = on;
+                state.settings.sessions.record |= on;
+            }
+            SessionAction::Look => self.look(state, env),
+            SessionAction::Open(path) => self.opening = Some(player::open(path, env)),
+            SessionAction::Close => (self.player, self.look_again) = (None, true),
+            SessionAction::Name(path, name) => {
+                self.say(state, env, &path, |about| about.name = name);
+            }
+            SessionAction::Star(path, star) => {
+                self.say(state, env, &path, |about| about.star = star);
+            }
+            SessionAction::AskDelete(path) => state.sessions.to_delete = Some(path),
+            SessionAction::KeepIt => state.sessions.to_delete = None,
+            SessionAction::Delete => {
+                let going = state.sessions.to_delete.take();
+                self.delete(going.into_iter().collect(), env);
+            }
+            SessionAction::Tidy => {
+                self.delete(std::mem::take(&mut state.sessions.beyond_budget), env);
+            }
+            action => self.replay(&action, env),
+        }
+    }
+
+    fn replay(&mut self, action: &SessionAction, env: &Env) {
+        let Some(player) = &mut self.player else {
+            return;
+        };
+        player.act(action);
+        if matches!(action, SessionAction::EditNote(..)) {
+            let (path, about) = (player.path().to_owned(), player.about().clone());
+            self.save(path, about, env);
+        }
+    }
+
+    /// Looks for sessions again.
+    fn look(&mut self, state: &mut State, env: &Env) {
+        let folder = state.settings.sessions_folder(env.documents.as_deref());
+        state.sessions.folder.clone_from(&folder);
+        if let Some(folder) = folder {
+            state.sessions.looks = true;
+            self.looking = Some(list::look(folder, Arc::clone(&state.sessions.items), env));
+        }
+    }
+
+    /// Changes what a person says of a session, on screen at once and in its file.
+    fn say(
+        &mut self,
+        state: &mut State,
+        env: &Env,
+        path: &Path,
+        change: impl FnOnce(&mut SessionAbout),
+    ) {
+        let items: &mut Vec<SessionItem> = Arc::make_mut(&mut state.sessions.items);
+        let Some(item) = items.iter_mut().find(|item| item.path == path) else {
+            return;
+        };
+        change(&mut item.about);
+        let about = item.about.clone();
+        self.save(path.to_owned(), about, env);
+    }
+
+    fn save(&mut self, path: PathBuf, about: SessionAbout, env: &Env) {
+        let place = SessionAbout::path(&path);
+        let save = on_thread(move || about.save(&path).map(|()| 0));
+        let save = async move { save.await.map_err(|error| (place, error)) };
+        self.writing = Some(BackgroundJob::start(&env.runtime, &env.wake, save));
+    }
+
+    fn delete(&mut self, paths: Vec<PathBuf>, env: &Env) {
+        if paths.is_empty() {
+            return;
+        }
+        let delete = async move {
+            let mut deleted = 0;
+            for path in paths {
+                let place = path.clone();
+                let gone = on_thread(move || {
+                    std::fs::remove_file(&place)?;
+                    // Not each session has one.
+                    let _said = std::fs::remove_file(SessionAbout::path(&place));
+                    Ok(())
+                });
+                gone.await.map_err(|error| (path, error))?;
+                deleted += 1;
+            }
+            Ok(deleted)
+        };
+        self.writing = Some(BackgroundJob::start(&env.runtime, &env.wake, delete));
+    }
+}

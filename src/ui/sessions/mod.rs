@@ -1,0 +1,138 @@
+//! The view of sessions: which are on disk, found, named, starred, replayed and deleted.
+pub(crate) mod strip;
+pub(crate) mod table;
+
+use crate::app::action::Action;
+use crate::app::sessions::{SessionAction, SessionItem};
+use crate::app::state::State;
+use crate::ui::kit::path_field::path_ui;
+use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane};
+use crate::ui::text::sessions;
+use egui::Ui;
+
+/// What the view needs between frames.
+#[derive(Debug, Default)]
+pub(crate) struct SessionsView {
+    find: String,
+    looked: bool,
+    /// The field for another file is open.
+    other: bool,
+}
+
+impl SessionsView {
+    /// Draws the view.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        if !std::mem::replace(&mut self.looked, true) {
+            pane.actions.push(Action::Session(SessionAction::Look));
+        }
+        kit::full_card_ui(ui, pane.look, |ui| {
+            self.head_ui(ui, pane);
+            if self.other
+                && let Some(path) = path_ui(ui, pane.look, "session")
+            {
+                let open = SessionAction::Open(path);
+                pane.actions.push(Action::Session(open));
+            }
+            foot_ui(ui, pane);
+            self.list_ui(ui, pane);
+        });
+    }
+
+    /// The list is old once the view was left.
+    pub(crate) const fn leave(&mut self) {
+        self.looked = false;
+    }
+
+    fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        kit::head_ui(ui, look, look.say(sessions::TITLE), |ui| {
+            let other = Button::said(look, sessions::OPEN_OTHER).switch(self.other);
+            if other.ui(ui, look).clicked() {
+                self.other = !self.other;
+            }
+            let mut simulated = pane.state.settings.sessions.record_simulated;
+            let text = look.say(sessions::SIM_TOO);
+            let tick = ui.checkbox(&mut simulated, text);
+            if tick.on_hover_text(look.tip(sessions::SIM_TOO)).changed() {
+                let action = SessionAction::RecordSimulated(simulated);
+                pane.actions.push(Action::Session(action));
+            }
+            ui.scope(|ui| {
+                ui.set_max_width(260.0);
+                kit::edit_ui(ui, look.both(sessions::FIND), &mut self.find);
+            });
+        });
+    }
+
+    fn list_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let state = &pane.state.sessions;
+        let all = state.items.iter();
+        let shown: Vec<&SessionItem> = all.filter(|item| item.matches(&self.find)).collect();
+        let empty = match (state.items.is_empty(), shown.is_empty()) {
+            (true, _) if state.looks || state.looked == 0 && state.folder.is_some() => {
+                Some(sessions::LOOKS)
+            }
+            (true, _) if state.folder.is_none() => Some(sessions::NOWHERE),
+            (true, _) => Some(sessions::NONE),
+            (false, true) => Some(sessions::FIND_NONE),
+            (false, false) => None,
+        };
+        match empty {
+            Some(text) => {
+                Label::muted(look, text).wrap().ui(ui);
+            }
+            None => table::table_ui(ui, pane, &shown),
+        }
+    }
+}
+
+/// How much room the sessions need, and what can go.
+fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let state = &pane.state.sessions;
+    if state.items.is_empty() && state.unread.is_empty() {
+        return;
+    }
+    let bytes: u64 = state.items.iter().map(|item| item.bytes).sum();
+    let budget = pane.state.settings.sessions.budget_gb;
+    let used = format!("{:.2}", table::giga(bytes));
+    ui.horizontal_wrapped(|ui| {
+        let parts: [&dyn std::fmt::Display; 3] = [&state.items.len(), &used, &budget];
+        let total = look.fill(sessions::TOTAL, &parts);
+        let folder = state.folder.as_ref();
+        let folder = folder.map(|folder| folder.display().to_string());
+        let label = Label::new(&total, look.palette.muted).small().ui(ui);
+        label.on_hover_text(folder.unwrap_or_default());
+        if !state.unread.is_empty() {
+            let words = look.fill(sessions::UNREAD, &[&state.unread.len()]);
+            let why = state.unread.iter().take(8);
+            let why = why.map(|(path, why)| format!("{}: {why}", path.display()));
+            let why: Vec<String> = why.collect();
+            let label = Label::new(&words, look.palette.warn).small().ui(ui);
+            label.on_hover_text(why.join("\n"));
+        }
+        let going = state.beyond_budget.len();
+        if going > 0 {
+            let words = look.fill(sessions::BEYOND, &[&going]);
+            Label::new(&words, look.palette.warn).small().ui(ui);
+            let tidy = Button::said(look, sessions::TIDY);
+            tidy.sends(ui, pane, Action::Session(SessionAction::Tidy));
+        }
+    });
+}
+
+/// The question before a session is deleted.
+pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
+    let path = state.sessions.to_delete.as_ref()?;
+    let mut all = state.sessions.items.iter();
+    let title = all.find(|item| item.path == *path).map(SessionItem::title);
+    let title = title.unwrap_or_else(|| path.display().to_string());
+    let back = Choice::new(sessions::DELETE_NOT, Manner::Safe);
+    let delete = Choice::new(sessions::DELETE_SURE, Manner::Danger);
+    let card = Card::new(look, sessions::DELETE_TITLE)
+        .warning(look.fill(sessions::DELETE_WHAT, &[&title]))
+        .choice(back.does(Action::Session(SessionAction::KeepIt)))
+        .choice(delete.does(Action::Session(SessionAction::Delete)));
+    Some(card)
+}

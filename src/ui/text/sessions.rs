@@ -1,0 +1,68 @@
+//! Sentences of recorded sessions: the list, the time line, the lamp in the header.
+
+use crate::ui::text::phrase::texts;
+
+texts! {
+    TITLE: "Sessions", "会话";
+    FIND: "Find sessions", "查找会话", "name, hand, day, note or fault", "名称、灵巧手、日期、备注或故障";
+    FIND_NONE: "No session has these words.", "没有包含这些文字的会话。";
+    NONE: "No session has been recorded yet. What a hand does is recorded here by itself; built-in hands only if you ask for it.", "还没有录制的会话。连接真实灵巧手后会自动录制；仿真手只在您要求时录制。";
+    NOWHERE: "There is no folder to record into: this computer names no documents of yours.", "没有可供录制的文件夹：此计算机未提供您的文档目录。";
+    LOOKS: "Looking for sessions ...", "正在查找会话……";
+    OPEN_OTHER: "Another file", "其他文件", "Opens a recording by its path; it can also be dropped onto the window.", "按路径打开录制文件；也可将文件拖入窗口。";
+
+    BEGAN: "Began (UTC)", "开始时间 (UTC)";
+    NAME: "Session", "会话";
+    LENGTH: "Length", "时长";
+    FORCE: "Force", "受力", "Greatest force of any joint over the session.", "整个会话中各自由度的最大受力。";
+    FAULTS: "Faults", "故障";
+    TRIALS: "Trials", "试验";
+    NOTES: "Notes", "备注";
+    SIZE: "Size", "大小";
+    STAR: "Keep", "收藏", "A session with a star, a name or notes is never deleted to make room.", "带星标、名称或备注的会话不会为腾出空间而被删除。";
+    UNSTAR: "Kept: press to take the star away.", "已收藏：按下取消星标。";
+    REPLAY: "Replay", "回放", "Shows this session in the whole window. The hand stays connected behind it.", "在整个窗口中回放此会话。灵巧手在后台保持连接。";
+    MORE: "More", "更多", "Rename, show in the folder, delete.", "重命名、打开所在文件夹、删除。";
+    RENAME: "Name of the session", "会话名称", "a name of your own", "自定义名称";
+    REVEAL: "Copy path", "复制路径", "Copies where the file lies.", "复制文件所在位置。";
+    DELETE: "Delete ...", "删除……", "Asks before anything is deleted.", "删除前会先询问。";
+    DELETE_TITLE: "Delete this session?", "删除此会话？";
+    DELETE_WHAT: "The recording of {} is lost for good.", "{} 的录制将永久丢失。";
+    DELETE_NOT: "Keep it", "保留";
+    DELETE_SURE: "Delete the recording", "删除录制";
+    UNCLOSED: "ended by a crash: all but the last quarter of a second is there", "程序异常终止：除最后四分之一秒外均已保存";
+    SIMULATED: "simulated", "仿真";
+    UNREAD: "{} files here cannot be read.", "此处有 {} 个文件无法读取。";
+    TOTAL: "{} sessions, {} of {} GB", "{} 个会话，已用 {} GB，共 {} GB";
+    BEYOND: "They need more room than they may. The {} oldest without star, name or notes can go.", "占用空间超出限额。可删除最早的 {} 个没有星标、名称或备注的会话。";
+    TIDY: "Delete those", "删除这些会话", "Deletes the oldest sessions without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的会话，直到不超限额。";
+
+    RECORDING: "Recording", "录制中", "What the hand says and what it is told goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
+    NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is told.", "按下开始录制灵巧手的反馈与指令。";
+    TROUBLE: "Recording stalled", "录制受阻", "The disk does not take what is recorded. It is tried again; what finds no room in memory is counted and said in the file.", "磁盘无法写入录制数据。程序会重试；内存中放不下的数据会被计数并在文件中注明。";
+    FILE: "File: {}", "文件：{}";
+    RATE: "{} MB so far, {} MB an hour", "已录 {} MB，每小时 {} MB";
+    MISSING: "{} entries are missing", "缺失 {} 条记录";
+
+    RECORDED: "RECORDED", "回放", "This is a recording. Nothing is sent; STOP stops the live hand.", "这是录制内容，不会发送任何指令；“停止”作用于实际连接的灵巧手。";
+    BACK: "Back to live", "返回实时", "Shows the live hand again.", "重新显示实时灵巧手。";
+    BACK_EYES: "Back to live: it moves!", "返回实时：手在动！";
+    LINE: "Time line", "时间轴", "Drag to go to a moment; with Shift, to choose the stretch that is played again and again.", "拖动到某一时刻；按住 Shift 拖动可选择循环播放的区段。";
+    RUN: "Play", "播放", "Lets time go on.", "开始播放。";
+    PAUSE: "Pause", "暂停", "Time stands still.", "暂停播放。";
+    STEP_ON: "Next reading", "下一次读数", "Goes to the next reading of the angles.", "跳到下一次角度读数。";
+    STEP_BACK: "Reading before", "上一次读数", "Goes to the reading of the angles before this.", "跳到上一次角度读数。";
+    PACE: "Pace", "速度", "How fast time goes.", "播放速度。";
+    LOOP_OFF: "Loop off", "取消循环", "Plays all of it once again.", "恢复完整播放。";
+    EVENTS: "Marks", "标记", "Faults, stops, notes and trials of this session: press one to go there.", "此会话的故障、停止、备注和试验：点击跳转。";
+    NO_EVENTS: "Nothing is marked in this session.", "此会话没有标记。";
+    NOTE_HERE: "Note here", "在此添加备注", "what is to be seen here", "此处值得注意的内容";
+    DAMAGED: "A part of this file cannot be read and is left out.", "此文件有一部分无法读取，已略过。";
+    REFUSED: "{} cannot be replayed: {}.", "无法回放 {}：{}。";
+    NOT_MCAP: "it is not an MCAP file", "它不是 MCAP 文件";
+    FOREIGN: "it is an MCAP file of another program", "它是其他程序的 MCAP 文件";
+    EMPTY: "nothing in it can be read", "其中没有可读取的内容";
+    IS_RECORDING: "This is a recording: nothing was sent. Go back to the live hand first.", "这是录制内容：没有发送任何指令。请先返回实时灵巧手。";
+    DELETED: "Sessions deleted:", "已删除会话：";
+    SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their sessions are marked.", "仿真手也会被录制，其会话会有标记。";
+}

@@ -1,0 +1,270 @@
+//! The time line of a replayed session: which moment is shown, how time goes on, what happened when.
+
+use crate::app::action::Action;
+use crate::app::sessions::{SessionAction, Timeline};
+use crate::hand::Moment;
+use crate::record::EventKind;
+use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
+use crate::ui::sessions::strip;
+use crate::ui::text::{Text, main, panels, sessions, tune};
+use crate::ui::theme;
+use egui::{Color32, Popup, Rect, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use std::time::Duration;
+
+/// Height of the whole.
+pub(crate) const HEIGHT: f32 = 84.0;
+/// Height of the line.
+const LINE: f32 = 36.0;
+/// How fast time can go.
+const PACES: [(f32, &str); 6] = [
+    (0.1, "0.1x"),
+    (0.5, "0.5x"),
+    (1.0, "1x"),
+    (2.0, "2x"),
+    (5.0, "5x"),
+    (10.0, "10x"),
+];
+/// Marks in the list.
+const LISTED: usize = 400;
+
+/// Draws it.
+pub(crate) fn timeline_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = theme::STEP;
+        ui.horizontal(|ui| {
+            ui.set_min_height(theme::CONTROL);
+            controls_ui(ui, pane, line);
+            kit::right_ui(ui, |ui| about_ui(ui, pane.look, line));
+        });
+        line_ui(ui, pane, line);
+    });
+}
+
+fn session(pane: &mut Pane<'_>, action: SessionAction) {
+    pane.actions.push(Action::Session(action));
+}
+
+fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
+    let look = pane.look;
+    let icon = |text: Text, icon| Button::said(look, text).icon(icon);
+    let back = icon(sessions::STEP_BACK, theme::TO_LEFT);
+    back.sends(ui, pane, Action::Session(SessionAction::Step(false)));
+    let run = match line.runs {
+        true => icon(sessions::PAUSE, theme::PAUSE),
+        false => icon(sessions::RUN, theme::PLAY),
+    };
+    run.sends(ui, pane, Action::Session(SessionAction::Run(!line.runs)));
+    let on = icon(sessions::STEP_ON, theme::TO_RIGHT);
+    on.sends(ui, pane, Action::Session(SessionAction::Step(true)));
+    let mut pace = line.pace;
+    let name = look.say(sessions::PACE);
+    ui.scope(|ui| {
+        ui.spacing_mut().combo_width = 64.0;
+        if kit::choose_ui(ui, name, &mut pace, &PACES) {
+            session(pane, SessionAction::Pace(pace));
+        }
+    });
+    if line.looped.is_some() {
+        let off = Button::said(look, sessions::LOOP_OFF);
+        off.sends(ui, pane, Action::Session(SessionAction::Loop(None)));
+    }
+    let at = clock(line.at.since(line.first));
+    let whole = clock(line.last.since(line.first));
+    let color = match line.waits {
+        true => look.palette.faint,
+        false => look.palette.text,
+    };
+    let words = format!("{at} / {whole}");
+    Label::new(&words, color).number().ui(ui);
+    marks_ui(ui, pane, line);
+    let note = Button::said(look, sessions::NOTE_HERE);
+    if note.ui(ui, look).clicked() {
+        pane.open(kit::Opens::Note);
+    }
+    if line.damaged {
+        kit::warning_ui(ui, look.palette.warn).on_hover_text(look.say(sessions::DAMAGED));
+    }
+}
+
+/// What session it is.
+fn about_ui(ui: &mut Ui, look: Look, line: &Timeline) {
+    let began: String = line.began.replace('T', " ").chars().take(16).collect();
+    let words = format!("{}   {began} UTC   {}", line.title, line.hand);
+    let label = Label::new(&words, look.palette.muted).small().right();
+    label.ui(ui).on_hover_text(line.path.display().to_string());
+}
+
+/// One entry of the list of marks.
+struct Entry {
+    at: Moment,
+    words: String,
+    color: Color32,
+    is_note: bool,
+}
+
+fn entries(look: Look, line: &Timeline) -> Vec<Entry> {
+    let marks = line
+        .marks
+        .iter()
+        .filter(|mark| mark.kind != EventKind::Note);
+    let marks = marks.filter_map(|mark| {
+        let (text, color) = shown(look, mark.kind)?;
+        let words = match mark.words.is_empty() {
+            true => look.say(text).to_owned(),
+            false => look.pair(look.say(text), &mark.words),
+        };
+        Some(Entry {
+            at: mark.at,
+            words,
+            color,
+            is_note: false,
+        })
+    });
+    let notes = line.notes.iter().map(|note| Entry {
+        at: note.at(),
+        words: note.words.clone(),
+        color: look.palette.text,
+        is_note: true,
+    });
+    let mut all: Vec<Entry> = marks.chain(notes).collect();
+    all.sort_by_key(|entry| entry.at);
+    all.truncate(LISTED);
+    all
+}
+
+/// The word and the colour of a mark; none for what the line does not show.
+fn shown(look: Look, kind: EventKind) -> Option<(Text, Color32)> {
+    let palette = look.palette;
+    Some(match kind {
+        EventKind::Fault => (main::FAULT_TITLE, palette.bad),
+        EventKind::Stop => (main::STOP, palette.stop_edge),
+        EventKind::Armed => (main::DISARM, palette.armed),
+        EventKind::LinkLost => (main::STATE_LOST, palette.bad),
+        EventKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
+        EventKind::Trial => (tune::COLUMN_TRIAL, palette.accent),
+        EventKind::Note => (panels::NOTES, palette.text),
+        EventKind::Recording => (sessions::RECORDING, palette.warn),
+        _ => return None,
+    })
+}
+
+fn marks_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
+    let look = pane.look;
+    let button = Button::said(look, sessions::EVENTS).ui(ui, look);
+    Popup::menu(&button).show(|ui| {
+        ui.set_min_width(320.0);
+        let all = entries(look, line);
+        if all.is_empty() {
+            Label::muted(look, sessions::NO_EVENTS).ui(ui);
+        }
+        ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+            for entry in all {
+                ui.horizontal(|ui| {
+                    kit::lamp_ui(ui, Some(entry.color));
+                    let words = format!("{}  {}", clock(entry.at.since(line.first)), entry.words);
+                    if ui.button(words).clicked() {
+                        session(pane, SessionAction::Seek(entry.at));
+                    }
+                    if entry.is_note {
+                        let delete = Button::said(look, panels::NOTE_DELETE).icon(theme::CLOSE);
+                        let none = SessionAction::EditNote(entry.at, String::new());
+                        delete
+                            .weight(Weight::Quiet)
+                            .sends(ui, pane, Action::Session(none));
+                    }
+                });
+            }
+        });
+    });
+}
+
+/// The line itself: force, marks, the stretch that is looped, and the moment that is shown.
+fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
+    let look = pane.look;
+    let size = vec2(ui.available_width(), LINE);
+    let (place, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let at_s = line.at.since(line.first).as_secs_f64();
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Slider, true, look.say(sessions::LINE));
+        info.value = Some(at_s);
+        info
+    });
+    let length = line.last.since(line.first);
+    if let Some(pointer) = response.interact_pointer_pos() {
+        let here = moment(line, length, share(place, pointer.x));
+        let (shift, pressed_at) =
+            ui.input(|input| (input.modifiers.shift, input.pointer.press_origin()));
+        match pressed_at.filter(|_| shift) {
+            Some(origin) => {
+                let from = moment(line, length, share(place, origin.x));
+                session(pane, SessionAction::Loop(Some((from, here))));
+            }
+            None => session(pane, SessionAction::Seek(here)),
+        }
+    }
+    paint(ui, look, place, line);
+    if let Some(pointer) = response.hover_pos() {
+        let here = moment(line, length, share(place, pointer.x));
+        let near = entries(look, line)
+            .into_iter()
+            .find(|entry| (x_of(place, line, entry.at) - pointer.x).abs() < theme::STEP);
+        let clock = clock(here.since(line.first));
+        let words = near.map_or_else(|| look.tip(sessions::LINE).to_owned(), |entry| entry.words);
+        response.on_hover_text(format!("{clock}\n{words}"));
+    }
+}
+
+fn paint(ui: &Ui, look: Look, place: Rect, line: &Timeline) {
+    let (painter, palette) = (ui.painter_at(place.expand(theme::STEP)), look.palette);
+    painter.rect_filled(place, theme::ROUND_SMALL, palette.sunken);
+    if let Some((from, to)) = line.looped {
+        let stretch = Rect::from_x_y_ranges(
+            x_of(place, line, from)..=x_of(place, line, to),
+            place.y_range(),
+        );
+        painter.rect_filled(stretch, 0.0, palette.accent.gamma_multiply(0.2));
+    }
+    strip::strip(
+        &painter,
+        look,
+        place.shrink2(vec2(0.0, theme::STEP)),
+        &line.strip,
+    );
+    for entry in entries(look, line) {
+        let x = x_of(place, line, entry.at);
+        painter.vline(x, place.y_range(), Stroke::new(1.0, entry.color));
+        painter.circle_filled(pos2(x, place.top() + theme::BAR), theme::BAR, entry.color);
+    }
+    let x = x_of(place, line, line.at);
+    let color = if line.waits {
+        palette.faint
+    } else {
+        palette.text
+    };
+    painter.vline(x, place.y_range(), Stroke::new(theme::STRONG, color));
+    painter.circle_filled(pos2(x, place.bottom() - theme::LAMP), theme::LAMP, color);
+}
+
+fn share(place: Rect, x: f32) -> f32 {
+    ((x - place.left()) / place.width().max(1.0)).clamp(0.0, 1.0)
+}
+
+fn moment(line: &Timeline, length: Duration, share: f32) -> Moment {
+    line.first.plus(length.mul_f64(f64::from(share)))
+}
+
+fn x_of(place: Rect, line: &Timeline, at: Moment) -> f32 {
+    let length = line.last.since(line.first).as_secs_f32().max(1e-3);
+    place.left() + at.since(line.first).as_secs_f32() / length * place.width()
+}
+
+/// `1:02:03.45`, from the beginning of the session.
+fn clock(since: Duration) -> String {
+    let seconds = since.as_secs();
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    let parts = since.subsec_millis() / 10;
+    match hours {
+        0 => format!("{minutes}:{seconds:02}.{parts:02}"),
+        hours => format!("{hours}:{minutes:02}:{seconds:02}.{parts:02}"),
+    }
+}
