@@ -10,22 +10,23 @@
 //! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the person at the hand |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
-//! | 1 | [`record`] | what happened at a hand, as typed values |
+//! | 1 | [`record`] | what happened at a hand, as typed values; their bytes in a session file, written by a thread of its own and read back |
 //! | 1 | [`store`] | files, and the calendar that their names use |
-//! | 1 | [`history`] | what was measured, cheap to draw; the one decimation of lines |
-//! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
-//! | 2 | [`sim`] | a hand that answers on the wire |
-//! | 2 | [`params`], [`poses`], [`trials`] | the subjects: parameters that a hand keeps, poses and sequences, grasp trials |
-//! | 3 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play |
-//! | 4 | [`app`] | everything the program knows, without drawing |
-//! | 5 | [`ui`] | the window: reads state, returns actions |
-//! | 6 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
-//! | 7 | [`cli`] | the command line |
+//! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
+//! | 3 | [`sim`] | a hand that answers on the wire |
+//! | 2 | [`history`] | records made cheap to draw; the one decimation of lines |
+//! | 3 | [`params`], [`poses`], [`trials`] | the subjects: parameters that a hand keeps, poses and sequences, grasp trials |
+//! | 4 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play |
+//! | 5 | [`app`] | everything the program knows, without drawing |
+//! | 6 | [`ui`] | the window: reads state, returns actions |
+//! | 7 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
+//! | 8 | [`cli`] | the command line |
 //!
 //! # Threads
 //!
 //! The window's thread owns the program's state. One tokio thread runs links, servers, the built-in hand and the tasks on a
-//! hand; files are read and written on threads of their own. Values cross between them, locks do not: what happens at a hand comes as
+//! hand; each recorded session is written by a thread of its own behind a bounded queue, and other files are read and written
+//! on threads that may wait. Values cross between them, locks do not: what happens at a hand comes as
 //! [`record::Record`]s, setpoints go into one slot that a stop empties, and a task's steps and its end come over a channel.
 //! The limits of a series are judged in its task, where the readings arrive, so no window is in their way.
 //!
@@ -39,7 +40,8 @@
 //!   the line to itself, one at a time, and no late frame counts for another write. Flash cannot be read, and the program says so.
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
 //! * No request outlives a lost link.
-//! * A fault stays unseen until a person acknowledges it; what happened around it is kept in memory, bounded.
+//! * A fault stays unseen until a person acknowledges it; what happened around it is kept in memory, bounded, and in the session.
+//! * While a recording is shown, nothing is sent but a stop of the live hand.
 pub mod app;
 pub mod cli;
 pub mod codec;

@@ -1,7 +1,9 @@
 //! What a session file holds, one entry after the other.
 
 use crate::hand::Moment;
-use crate::record::{LinkState, Piece, Record};
+use crate::record::heard::Record;
+use crate::record::state::LinkState;
+use crate::record::wire::Piece;
 
 /// One entry of a session file.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,9 +6,10 @@ use std::fs;
 use std::path::Path;
 
 /// The modules of each floor, from the lowest up.
-const FLOORS: [&[&str]; 9] = [
+const FLOORS: [&[&str]; 10] = [
     &["hand", "manual"],
-    &["codec", "transport", "record", "store", "history"],
+    &["codec", "transport", "record", "store"],
+    &["history"],
     &["link", "sim", "params", "poses", "trials"],
     &["tasks"],
     &["app"],

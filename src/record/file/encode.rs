@@ -6,8 +6,8 @@ use crate::record::file::cdr;
 use crate::record::file::message::{
     Command, CommandFate, Event, Header, JointState, Link, State, Time, Touch, Wire,
 };
+use crate::record::file::opening::Opening;
 use crate::record::file::topic::Topic;
-use crate::record::file::writer::Opening;
 use crate::record::{Direction, Entry, LinkState, Piece, PieceKind, Record, WriteFate};
 
 /// The word of a refusal to arm among events; the words are the reason in JSON.

@@ -9,6 +9,7 @@ pub mod decode;
 pub mod disk;
 pub mod encode;
 pub mod message;
+pub mod opening;
 pub mod overview;
 pub mod reader;
 pub mod recorder;
@@ -19,7 +20,7 @@ pub mod walk;
 pub mod writer;
 
 pub use crate::record::file::disk::{Disk, DiskFile, SystemDisk};
+pub use crate::record::file::opening::Opening;
 pub use crate::record::file::overview::{Counts, FileMark, Overview};
 pub use crate::record::file::reader::{OpenError, SessionFile};
 pub use crate::record::file::recorder::{Recorder, RecorderStatus, RecordingPlan};
-pub use crate::record::file::writer::Opening;

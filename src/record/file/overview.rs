@@ -1,7 +1,9 @@
 //! What a session file tells without being read whole: least and greatest of each quantity for each second, what happened, and
 //! counts. The writer puts it into the file a minute at a time; a reader makes what is missing anew.
 
-use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Touch};
+use crate::hand::{
+    Dof, Fault, Faults, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Touch,
+};
 use crate::record::file::cdr;
 use crate::record::{Entry, Event, EventKind, LinkState, Record};
 use serde::{Deserialize, Serialize};
@@ -112,6 +114,7 @@ pub struct Overview {
     /// Of all.
     pub counts: Counts,
     faults: PerDof<u8>,
+    protects: PerDof<bool>,
     state: LinkState,
     was_live: bool,
 }
@@ -234,6 +237,18 @@ impl Overview {
                 }
             }
         }
+        self.drives(sample, fresh, derived);
+    }
+
+    /// Faults that came: new bits of ERROR, and protective codes of STATUS that no bit explains (manual 2.6.18, 2.6.19).
+    fn drives(&mut self, sample: &HandSample, fresh: Groups, derived: &mut Vec<FileMark>) {
+        let mut fault = |at: Moment, dof: Dof, what: &str| {
+            derived.push(FileMark {
+                at,
+                kind: EventKind::Fault,
+                words: format!("{}: {what}", dof.name()),
+            });
+        };
         if let Some(faults) = sample.faults.filter(|_| fresh.contains(Group::Faults)) {
             for dof in Dof::ALL {
                 let bits = faults.value[dof].raw();
@@ -241,13 +256,20 @@ impl Overview {
                 self.faults[dof] = bits;
                 if new != 0 {
                     self.counts.faults += u64::from(new.count_ones());
-                    let named = crate::hand::Faults::from_raw(new);
-                    let names: Vec<&str> = named.iter().map(|fault| fault.name()).collect();
-                    derived.push(FileMark {
-                        at: faults.received,
-                        kind: EventKind::Fault,
-                        words: format!("{}: {}", dof.name(), names.join(", ")),
-                    });
+                    let names: Vec<&str> = Faults::from_raw(new).iter().map(Fault::name).collect();
+                    fault(faults.received, dof, &names.join(", "));
+                }
+            }
+        }
+        if let Some(statuses) = sample.status.filter(|_| fresh.contains(Group::Status)) {
+            for dof in Dof::ALL {
+                let status = statuses.value[dof];
+                let protects = status.is_protective();
+                let is_new = protects && !self.protects[dof] && self.faults[dof] == 0;
+                self.protects[dof] = protects;
+                if is_new {
+                    self.counts.faults += 1;
+                    fault(statuses.received, dof, status.name());
                 }
             }
         }

@@ -3,10 +3,11 @@
 use crate::hand::Moment;
 use crate::record::Entry;
 use crate::record::file::decode::Decoder;
+use crate::record::file::opening::{METADATA, Opening};
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::topic::Topic;
 use crate::record::file::walk::{self, ChunkPlace, Found, MAGIC, Place, RECORD_MAX};
-use crate::record::file::writer::{METADATA, OVERVIEW, Opening};
+use crate::record::file::writer::OVERVIEW;
 use mcap::records::{Record as McapRecord, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::fs::File;

@@ -1,7 +1,8 @@
 //! Puts a session on the disk from a thread of its own. Nobody waits for it: what it cannot take is counted, and said in the file.
 
 use crate::record::file::disk::{Disk, DiskFile};
-use crate::record::file::writer::{Opening, SessionWriter};
+use crate::record::file::opening::Opening;
+use crate::record::file::writer::SessionWriter;
 use crate::record::{Entry, Event, EventKind};
 use std::io;
 use std::path::{Path, PathBuf};

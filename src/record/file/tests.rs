@@ -5,8 +5,9 @@ use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, Dof, Group, Groups, HandSample, Moment, PerDof, Reply, Span, Target, register,
 };
+use crate::record::file::opening::Opening;
 use crate::record::file::reader::{Damage, SessionFile, Stretch};
-use crate::record::file::writer::{Opening, SessionWriter};
+use crate::record::file::writer::SessionWriter;
 use crate::record::{
     ArmRefusal, Direction, Entry, Event, EventKind, LinkReport, LinkState, Piece, PieceKind,
     Record, WriteCause, WriteFate,

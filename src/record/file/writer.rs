@@ -1,9 +1,9 @@
 //! Bytes of a session file made of entries. Writes to memory only; times are arguments.
 
 use crate::hand::Moment;
-use crate::hand::kinematics::Side;
 use crate::record::Entry;
 use crate::record::file::encode::{Encoder, Message};
+use crate::record::file::opening::{METADATA, Opening};
 use crate::record::file::overview::Overview;
 use crate::record::file::topic::Topic;
 use mcap::records::{MessageHeader, Metadata};
@@ -21,63 +21,6 @@ const CHUNK_BYTES: u64 = 32 * 1024;
 const BLOCK_OF: Duration = Duration::from_secs(60);
 /// The name of the blocks of the overview among a file's attachments.
 pub(crate) const OVERVIEW: &str = "handscope-overview";
-/// The name of what is said of a session among a file's metadata.
-pub(crate) const METADATA: &str = "handscope";
-
-/// What a session begins with.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Opening {
-    /// The time of [`Moment::ZERO`], nanoseconds since 1970.
-    pub base_nanos: u64,
-    /// When the recording began.
-    pub began: Moment,
-    /// The hand's endpoint.
-    pub hand: String,
-    /// Whether it is the built-in hand.
-    pub simulated: bool,
-    /// The hand's side, as the person said.
-    pub side: Side,
-    /// The program's version.
-    pub version: String,
-}
-
-impl Opening {
-    /// What stands in a file.
-    fn metadata(&self) -> BTreeMap<String, String> {
-        let side = match self.side {
-            Side::Left => "left",
-            Side::Right => "right",
-        };
-        [
-            ("format", "1".to_owned()),
-            ("version", self.version.clone()),
-            ("hand", self.hand.clone()),
-            ("simulated", self.simulated.to_string()),
-            ("side", side.to_owned()),
-            ("base_nanos", self.base_nanos.to_string()),
-            ("began_micros", self.began.micros().to_string()),
-        ]
-        .into_iter()
-        .map(|(key, value)| (key.to_owned(), value))
-        .collect()
-    }
-
-    /// From what stands in a file; `None` if it is not ours.
-    pub(crate) fn of_metadata(map: &BTreeMap<String, String>) -> Option<Self> {
-        let text = |key: &str| map.get(key).cloned().unwrap_or_default();
-        Some(Self {
-            base_nanos: map.get("base_nanos")?.parse().ok()?,
-            began: Moment::from_micros(map.get("began_micros")?.parse().ok()?),
-            hand: text("hand"),
-            simulated: text("simulated") == "true",
-            side: match text("side").as_str() {
-                "left" => Side::Left,
-                _ => Side::Right,
-            },
-            version: text("version"),
-        })
-    }
-}
 
 /// Bytes that wait to be taken.
 #[derive(Debug, Clone, Default)]

@@ -82,7 +82,7 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        cards, device, faults, keys, main, panels, poses, scan, traffic, tune, window,
+        cards, device, faults, keys, main, panels, poses, scan, sessions, traffic, tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {
@@ -96,6 +96,7 @@ mod tests {
             poses::ALL,
             scan::ALL,
             traffic::ALL,
+            sessions::ALL,
             tune::ALL,
             window::ALL,
         ];

@@ -587,6 +587,24 @@ impl Bench {
         texts.filter(|text| text.contains(part)).collect()
     }
 
+    /// The names of all buttons that contain these words.
+    pub(crate) fn buttons_with(&self, part: &str) -> Vec<String> {
+        let all = self.harness.query_all_by_role(Role::Button);
+        let names = all.filter_map(|node| node.accesskit_node().label());
+        names.filter(|name| name.contains(part)).collect()
+    }
+
+    /// Name and text of every label below this height.
+    pub(crate) fn labels_below(&self, top: f32) -> Vec<(String, String)> {
+        let labels = self.harness.query_all_by_role(Role::Label);
+        let below = labels.filter(|node| node.rect().top() > top);
+        let pair = |node: egui_kittest::Node<'_>| {
+            let name = node.accesskit_node().label().unwrap_or_default();
+            (name, node.value().unwrap_or_default())
+        };
+        below.map(pair).collect()
+    }
+
     /// Every text on the screen.
     pub(crate) fn texts(&self) -> Vec<String> {
         self.harness

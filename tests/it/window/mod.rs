@@ -11,6 +11,7 @@ mod motion;
 mod plots;
 mod poses;
 mod scan;
+mod sessions;
 mod start;
 mod touch;
 mod traffic;

@@ -1,0 +1,305 @@
+//! Sessions in the running program: recorded as they happen, listed, replayed in the same window, named and deleted.
+
+use crate::setup::window::{Bench, LARGE};
+use handscope::app::action::Action;
+use handscope::app::sessions::{SessionAction, SessionItem};
+use handscope::hand::Moment;
+use handscope::record::EventKind;
+use handscope::sim::{Scenario, SimConfig};
+use handscope::ui::View;
+use std::path::PathBuf;
+use std::time::Duration;
+
+const HAND: &str = "tcp:127.0.0.1:6000?unit=1";
+
+fn bench(scenario: Scenario) -> Bench {
+    let config = SimConfig {
+        scenario,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::kept(config, HAND, LARGE);
+    bench.wait(3000);
+    bench
+}
+
+/// Frames until something is so that waits for files, which take real time.
+fn settle(bench: &mut Bench, so: impl Fn(&Bench) -> bool) {
+    for _ in 0..400 {
+        if so(bench) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+        bench.run(20);
+    }
+    panic!("it does not settle: {:?}", bench.texts());
+}
+
+fn session(bench: &mut Bench, action: SessionAction) {
+    bench.act(Action::Session(action));
+    bench.run(20);
+}
+
+/// Ends the recording, and gives its file.
+fn ended(bench: &mut Bench) -> PathBuf {
+    let path = |bench: &Bench| {
+        let recording = bench.state().hand().recording.as_ref()?;
+        recording.status.path.clone()
+    };
+    settle(bench, |bench| path(bench).is_some());
+    let path = path(bench).unwrap();
+    session(bench, SessionAction::Record(false));
+    settle(bench, |_| {
+        SessionItem::read(&path).is_ok_and(|item| item.closed)
+    });
+    path
+}
+
+fn replay(bench: &mut Bench, path: PathBuf) {
+    session(bench, SessionAction::Open(path));
+    settle(bench, |bench| bench.state().timeline.is_some());
+}
+
+fn seek(bench: &mut Bench, at: Moment) {
+    session(bench, SessionAction::Seek(at));
+    settle(bench, |bench| {
+        let line = bench.state().timeline.as_ref().unwrap();
+        line.at == at && !line.waits
+    });
+}
+
+#[test]
+fn a_real_hand_is_recorded_by_itself_and_a_simulated_one_only_if_asked() {
+    let mut real = bench(Scenario::Idle);
+    assert!(real.shows("Recording"));
+    let path = ended(&mut real);
+    assert!(real.shows("Not recording"));
+    let item = SessionItem::read(&path).unwrap();
+    assert_eq!(item.opening.hand, HAND);
+    assert!(item.counts.states > 100 && item.counts.touch_blocks > 20);
+    assert!(!item.opening.simulated);
+
+    let mut built_in = Bench::keeping(SimConfig::default());
+    assert!(built_in.state().hand().recording.is_none());
+    built_in.click("Not recording");
+    built_in.run(100);
+    let path = ended(&mut built_in);
+    assert!(SessionItem::read(&path).unwrap().opening.simulated);
+}
+
+#[test]
+fn the_list_finds_names_stars_and_deletes_after_a_question() {
+    let mut bench = bench(Scenario::Grasp);
+    let path = ended(&mut bench);
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| bench.state().sessions.looked > 0);
+    let title = SessionItem::read(&path).unwrap().title();
+    assert!(bench.shows(&title), "{:?}", bench.texts());
+    bench.type_into("Find sessions", "nothing like it");
+    assert!(bench.shows("No session has these words."));
+    bench.type_into("Find sessions", "127.0.0.1");
+    assert!(bench.shows(&title));
+
+    bench.click(&format!("Keep: {title}"));
+    settle(&mut bench, |_| SessionItem::read(&path).unwrap().about.star);
+    bench.click(&format!("More: {title}"));
+    bench.run(100);
+    bench.type_into("Name of the session", "Old finger 捏");
+    bench.key(egui::Key::Enter);
+    settle(&mut bench, |_| {
+        SessionItem::read(&path).unwrap().about.name == "Old finger 捏"
+    });
+    bench.run(100);
+    assert!(bench.shows("Old finger 捏"));
+    bench.click_button("Delete ...");
+    bench.run(100);
+    assert!(bench.shows("Delete this session?") && path.exists());
+    bench.click_button("Keep it");
+    bench.run(100);
+    assert!(path.exists());
+    session(&mut bench, SessionAction::AskDelete(path.clone()));
+    bench.run(100);
+    bench.click_button("Delete the recording");
+    settle(&mut bench, |_| !path.exists());
+    assert!(!path.with_extension("toml").exists());
+}
+
+#[test]
+fn while_a_recording_is_shown_nothing_is_sent_and_stop_reaches_the_live_hand() {
+    let mut bench = bench(Scenario::Idle);
+    let path = ended(&mut bench);
+    bench.click("Arm the hand");
+    bench.run(200);
+    assert!(bench.state().hand().is_armed());
+    replay(&mut bench, path);
+    assert!(bench.shows("RECORDED") && !bench.shows("Arm the hand"));
+    let writes = bench.writes().len();
+    for action in [
+        Action::Arm,
+        Action::Preset(handscope::app::hand::Preset::Close),
+        Action::ClearErrors,
+        Action::FactoryReset,
+        Action::CalibrateForce,
+    ] {
+        bench.act(action);
+        bench.run(200);
+    }
+    assert_eq!(bench.writes().len(), writes, "a recording writes nothing");
+    bench.key(egui::Key::Space);
+    bench.run(100);
+    assert!(bench.writes().len() > writes, "the live hand was stopped");
+    bench.click_button("Back to live");
+    bench.run(100);
+    assert!(bench.state().timeline.is_none());
+    assert!(!bench.state().hand().is_armed());
+}
+
+#[test]
+fn time_goes_on_stops_steps_and_loops() {
+    let mut bench = bench(Scenario::Grasp);
+    bench.wait(4000);
+    let path = ended(&mut bench);
+    replay(&mut bench, path);
+    let at = |bench: &Bench| bench.state().timeline.as_ref().unwrap().at;
+    let first = bench.state().timeline.as_ref().unwrap().first;
+    seek(&mut bench, first.plus(Duration::from_secs(2)));
+    let begun = at(&bench);
+    bench.click_button("Play");
+    settle(&mut bench, |bench| {
+        at(bench).since(begun) > Duration::from_secs(1)
+    });
+    bench.click_button("Pause");
+    bench.run(100);
+    let stood = at(&bench);
+    bench.run(500);
+    assert_eq!(at(&bench), stood);
+    let angle = |bench: &Bench| bench.state().hand().sample.angle.unwrap().received;
+    let before = angle(&bench);
+    bench.click_button("Next reading");
+    settle(&mut bench, |bench| at(bench) > stood);
+    assert_eq!(angle(&bench), at(&bench), "at the reading itself");
+    bench.click_button("Reading before");
+    settle(&mut bench, |bench| at(bench) <= stood);
+    assert!(angle(&bench) <= before.plus(Duration::from_millis(1)));
+
+    let stretch = (
+        first.plus(Duration::from_secs(1)),
+        first.plus(Duration::from_secs(2)),
+    );
+    session(&mut bench, SessionAction::Loop(Some(stretch)));
+    session(&mut bench, SessionAction::Pace(10.0));
+    seek(&mut bench, stretch.0);
+    session(&mut bench, SessionAction::Run(true));
+    let mut rounds = 0;
+    let mut last = at(&bench);
+    settle_rounds(&mut bench, |bench| {
+        let now = at(bench);
+        assert!(now >= stretch.0 && now <= stretch.1);
+        rounds += u32::from(now < last);
+        last = now;
+        rounds >= 2
+    });
+    bench.click_button("Loop off");
+    bench.run(60);
+    assert_eq!(bench.state().timeline.as_ref().unwrap().looped, None);
+}
+
+fn settle_rounds(bench: &mut Bench, mut so: impl FnMut(&Bench) -> bool) {
+    for _ in 0..800 {
+        if so(bench) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+        bench.run(20);
+    }
+    panic!("it does not go round");
+}
+
+#[test]
+fn a_note_is_recorded_and_one_can_be_given_after_the_fact() {
+    let mut bench = bench(Scenario::Idle);
+    let at = bench.now();
+    bench.act(Action::Note(at, "before the squeeze".into()));
+    bench.wait(1000);
+    let path = ended(&mut bench);
+    let notes = |path: &PathBuf| SessionItem::read(path).unwrap().notes();
+    assert_eq!(notes(&path).len(), 1);
+    assert_eq!(notes(&path)[0].words, "before the squeeze");
+    assert_eq!(notes(&path)[0].at(), at);
+    replay(&mut bench, path.clone());
+    let later = at.plus(Duration::from_millis(500));
+    bench.act(Action::Note(later, "seen afterwards".into()));
+    settle(&mut bench, |_| notes(&path).len() == 2);
+    bench.click_button("Marks");
+    bench.run(100);
+    let entries = bench.buttons_with("seen afterwards");
+    assert_eq!(entries.len(), 1, "{:?}", bench.texts());
+    session(&mut bench, SessionAction::EditNote(at, String::new()));
+    settle(&mut bench, |_| notes(&path).len() == 1);
+}
+
+#[test]
+fn faults_stops_and_arming_are_marks_of_the_session() {
+    let mut bench = bench(Scenario::Faults);
+    bench.wait(6000);
+    bench.key(egui::Key::Space);
+    bench.wait(1000);
+    let path = ended(&mut bench);
+    let item = SessionItem::read(&path).unwrap();
+    assert!(item.counts.faults > 0 && item.count(EventKind::Fault) > 0);
+    assert!(item.count(EventKind::Stop) == 1);
+    let fault = item.marks.iter().find(|mark| mark.kind == EventKind::Fault);
+    let fault = fault.unwrap().at;
+    replay(&mut bench, path);
+    bench.show(View::Faults);
+    seek(&mut bench, fault.plus(Duration::from_millis(100)));
+    bench.run(60);
+    let active = |bench: &Bench| bench.state().hand().faults.active().count();
+    let then = active(&bench);
+    seek(&mut bench, Moment::from_micros(fault.micros() - 100_000));
+    assert!(active(&bench) < then, "{then}");
+}
+
+/// What the views say, without what belongs to the window and not to the hand.
+fn said(bench: &Bench) -> Vec<(String, String)> {
+    let top = 150.0;
+    bench.labels_below(top)
+}
+
+#[test]
+fn what_was_shown_live_is_shown_again_at_the_same_moment() {
+    for scenario in [Scenario::Grasp, Scenario::Faults] {
+        let mut bench = bench(scenario);
+        bench.wait(3500);
+        let mut live = Vec::new();
+        for view in [View::Live, View::Touch, View::Faults, View::Traffic] {
+            bench.show(view);
+            bench.run(60);
+            live.push((view, bench.now(), said(&bench)));
+        }
+        bench.wait(300);
+        let path = ended(&mut bench);
+        replay(&mut bench, path);
+        for (view, at, wanted) in live {
+            bench.show(view);
+            // What arrives in the very moment of a frame is taken in with the next.
+            seek(&mut bench, Moment::from_micros(at.micros() - 1));
+            bench.run(60);
+            let shown = said(&bench);
+            let missing: Vec<_> = wanted.iter().filter(|one| !shown.contains(one)).collect();
+            assert!(missing.is_empty(), "{view:?} of {scenario:?}: {missing:#?}");
+            assert!(wanted.len() > 10, "{view:?}: {}", wanted.len());
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_no_session_is_refused_in_words() {
+    let mut bench = bench(Scenario::Idle);
+    let path = ended(&mut bench).with_file_name("other.mcap");
+    std::fs::write(&path, "not at all").unwrap();
+    session(&mut bench, SessionAction::Open(path));
+    settle(&mut bench, |bench| {
+        !bench.texts_with("cannot be replayed").is_empty()
+    });
+    assert!(bench.state().timeline.is_none());
+}
