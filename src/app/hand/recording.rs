@@ -12,7 +12,10 @@ impl HandState {
     pub(crate) fn tick_recording(&mut self, settings: &Settings, env: &Env) {
         let wanted = settings.records(self.is_simulated());
         match (&mut self.recording, &self.open) {
-            (Some(recording), Some(_)) if wanted => recording.tick(),
+            (Some(recording), Some(_)) if wanted => {
+                recording.tick();
+                recording.params(&self.params.live_params(), self.now);
+            }
             (Some(_), _) => self.recording = None,
             (None, Some(_)) if wanted => self.recording = self.begin_recording(settings, env),
             (None, _) => {}

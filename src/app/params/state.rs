@@ -142,6 +142,12 @@ impl ParamsState {
         params
     }
 
+    /// Takes what a recording says was read.
+    pub(crate) fn take_recorded(&mut self, params: &Params, at: Moment) {
+        let known = |id: ParamId| Some((id, (params.get(id)?, at)));
+        self.live = ParamId::all().into_iter().filter_map(known).collect();
+    }
+
     /// The staged value of a row, if there is one.
     #[must_use]
     pub fn staged(&self, id: ParamId) -> Option<Value> {

@@ -4,6 +4,8 @@ use crate::app::env::Env;
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::link::LinkObserver;
+use crate::params::file::ParamsFile;
+use crate::params::values::Params;
 use crate::record::file::recorder::RecorderInput;
 use crate::record::file::{Opening, Recorder, RecorderStatus, RecordingPlan, SystemDisk};
 use crate::record::{Entry, Event, EventKind};
@@ -18,6 +20,8 @@ use std::sync::Arc;
 pub struct HandRecording {
     recorder: Recorder,
     input: RecorderInput,
+    /// What the hand keeps, as it was recorded last.
+    params: Params,
     /// How it goes, as of this frame.
     pub status: RecorderStatus,
 }
@@ -52,6 +56,7 @@ impl HandRecording {
         let pump = recording::record(observed, input.clone(), env.clock);
         env.runtime.spawn(pump);
         Some(Self {
+            params: Params::default(),
             status: recorder.status(),
             recorder,
             input,
@@ -66,6 +71,21 @@ impl HandRecording {
     /// Ends the file and waits for that, at most a few seconds.
     pub(crate) fn end(self) {
         let _ended = self.recorder.end();
+    }
+
+    /// Adds what the hand keeps, if that is not what was recorded last.
+    pub(crate) fn params(&mut self, live: &Params, now: Moment) {
+        if *live == self.params || live.is_empty() {
+            return;
+        }
+        self.params.clone_from(live);
+        let file = ParamsFile {
+            at: stamp(since_1970()),
+            why: "recorded".into(),
+            params: live.clone(),
+            ..ParamsFile::default()
+        };
+        self.event(now, EventKind::Parameters, file.to_toml());
     }
 
     /// Adds something that happened beside the link.

@@ -6,6 +6,7 @@ use crate::hand::Moment;
 use crate::history::MarkKind;
 use crate::link::Traffic;
 use crate::link::tap::WireTap;
+use crate::params;
 use crate::record::file::SessionFile;
 use crate::record::file::reader::Stretch;
 use crate::record::{Entry, Event, EventKind, LinkReport};
@@ -125,6 +126,11 @@ impl Shown<'_> {
                     let at = event.at;
                     let mark = crate::history::Mark { at, kind };
                     self.hand.history.remove_mark(&mark);
+                }
+            }
+            (EventKind::Parameters, _) => {
+                if let Ok(file) = params::file::read(&event.words) {
+                    self.hand.params.take_recorded(&file.params, event.at);
                 }
             }
             (EventKind::Note, Some(kind)) => self.hand.history.mark(event.at, kind),

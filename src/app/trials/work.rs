@@ -11,6 +11,7 @@ use crate::app::trials::run::SeriesRun;
 use crate::app::trials::state::{SessionId, SessionOrigin, TrialsState};
 use crate::hand::{Dof, PerDof};
 use crate::link::quirks::book;
+use crate::record::EventKind;
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{SeriesStart, SeriesStep, series};
 use crate::trials::plan_settings::to_settings;
@@ -182,6 +183,8 @@ impl HandState {
                 SeriesStep::View(view) => {
                     if view.number != run.view.number {
                         (run.since, run.zero) = (at, at);
+                        let words = format!("{} of {}", view.number, view.total);
+                        self.record_event(at, EventKind::Trial, words);
                     }
                     if view.stage == Stage::Closing {
                         run.zero = at;

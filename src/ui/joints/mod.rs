@@ -98,7 +98,8 @@ impl JointsView {
         let hand = pane.state.hand();
         let live = pane.freshness(hand.sample.angle.map(|angle| angle.asked)) == Freshness::Live;
         // A first look must find what comes before moving; the header says why it cannot be armed.
-        if live && !hand.is_armed() && hand.arm_refusal().is_none() {
+        let recorded = pane.state.timeline.is_some();
+        if live && !recorded && !hand.is_armed() && hand.arm_refusal().is_none() {
             Label::new(look.say(window::ARM_FIRST), look.palette.accent)
                 .small()
                 .ui(ui);

@@ -139,11 +139,21 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
             about = format!("{}  {about}", look.say(sessions::SIMULATED));
         }
         let mut color = look.palette.muted;
-        if !item.closed {
-            about = format!("{about}  {}", look.say(sessions::UNCLOSED));
-            color = look.palette.warn;
+        let recording = pane.state.hand().recording.as_ref();
+        let own = recording.and_then(|recording| recording.status.path.as_ref());
+        let state = match item.closed {
+            _ if own == Some(&item.path) => Some((sessions::RECORDS_NOW, look.palette.ok)),
+            true => None,
+            false => Some((sessions::UNCLOSED, look.palette.warn)),
+        };
+        if let Some((text, own)) = state {
+            about = format!("{}  {about}", look.say(text));
+            color = own;
         }
-        Label::new(&about, color).small().ui(ui);
+        let label = Label::new(&about, color).small().ui(ui);
+        if !item.closed {
+            label.on_hover_text(look.tip(sessions::UNCLOSED));
+        }
     });
 }
 

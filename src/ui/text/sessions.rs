@@ -30,7 +30,8 @@ texts! {
     DELETE_WHAT: "The recording of {} is lost for good.", "{} 的录制将永久丢失。";
     DELETE_NOT: "Keep it", "保留";
     DELETE_SURE: "Delete the recording", "删除录制";
-    UNCLOSED: "ended by a crash: all but the last quarter of a second is there", "程序异常终止：除最后四分之一秒外均已保存";
+    UNCLOSED: "ended by a crash", "异常终止", "The program ended before the file was closed. All but the last quarter of a second is there.", "文件关闭前程序已终止。除最后四分之一秒外均已保存。";
+    RECORDS_NOW: "is being recorded", "正在录制";
     SIMULATED: "simulated", "仿真";
     UNREAD: "{} files here cannot be read.", "此处有 {} 个文件无法读取。";
     TOTAL: "{} sessions, {} of {} GB", "{} 个会话，已用 {} GB，共 {} GB";

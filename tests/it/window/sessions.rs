@@ -262,7 +262,10 @@ fn faults_stops_and_arming_are_marks_of_the_session() {
 /// What the views say, without what belongs to the window and not to the hand.
 fn said(bench: &Bench) -> Vec<(String, String)> {
     let top = 150.0;
-    bench.labels_below(top)
+    let mut all = bench.labels_below(top);
+    // A frame that passes in the very moment of the picture is counted in one and not in the other.
+    all.retain(|(_, text)| !text.ends_with(" frames"));
+    all
 }
 
 #[test]
