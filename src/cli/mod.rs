@@ -9,6 +9,7 @@ mod params;
 mod parse;
 mod quirks;
 mod read;
+mod record;
 mod registers;
 mod scan;
 mod session;
@@ -65,6 +66,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
+        Command::Record(args) => wait_for(record::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),
