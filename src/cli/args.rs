@@ -2,6 +2,7 @@
 
 use crate::cli::doctor::DoctorArgs;
 use crate::cli::help::{self, HelpArgs};
+use crate::cli::info::InfoArgs;
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
@@ -95,6 +96,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope record --hand rs485:/dev/ttyUSB0\n  handscope record --hand tcp:192.168.11.210 --for 60 --out grasp.mcap\n\nIt only reads. Ctrl-C ends the recording and closes the file; the last line on standard output is one JSON object of statistics. No file is overwritten. After a crash the file still opens: 'handscope info' says what is missing.\n\nThe file is MCAP with ROS 2 messages ('handscope help sessions')."
     )]
     Record(RecordArgs),
+    /// Tell what a session file holds, and what of it is missing
+    #[command(
+        after_help = "Examples:\n  handscope info grasp.mcap\n  handscope info grasp.mcap --json\n\nThe file is read to its end, so that every checksum is looked at. Exit status: 0 the file could be read, complete or not; 1 it could not; 2 wrong usage."
+    )]
+    Info(InfoArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
     #[command(
         after_help = sim::help()

@@ -3,6 +3,7 @@
 mod args;
 mod doctor;
 mod help;
+mod info;
 mod interrupt;
 mod out;
 mod params;
@@ -13,6 +14,7 @@ mod record;
 mod registers;
 mod scan;
 mod session;
+mod session_file;
 mod sim;
 mod snapshot;
 mod trial;
@@ -67,6 +69,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Record(args) => wait_for(record::run(&mut out, &args)),
+        Command::Info(args) => info::run(&mut out, &args),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),
