@@ -2,6 +2,7 @@
 
 mod args;
 mod doctor;
+mod export;
 mod help;
 mod info;
 mod interrupt;
@@ -70,6 +71,8 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Record(args) => wait_for(record::run(&mut out, &args)),
         Command::Info(args) => info::run(&mut out, &args),
+        Command::Export(args) => export::run(&mut out, &args),
+        Command::Recover(args) => export::recover(&mut out, &args),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),

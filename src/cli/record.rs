@@ -60,6 +60,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
         true => PollRates::FULL,
         false => PollRates::default(),
     };
+    let opening = opening(args, clock);
     let link = session::open(&args.hand, rates, clock);
     let observed = link.observe();
     tokio::select! {
@@ -69,7 +70,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     }
     let recorder = Recorder::start(RecordingPlan {
         path: path.clone(),
-        opening: opening(args, clock),
+        opening,
         disk: Arc::new(SystemDisk),
     })
     .context("cannot start the recorder")?;

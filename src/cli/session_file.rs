@@ -31,7 +31,7 @@ impl StretchArgs {
     /// The stretch of this file.
     pub(crate) fn of(&self, file: &SessionFile) -> anyhow::Result<Stretch> {
         let at = |step: Duration| file.first().plus(step);
-        let from = self.from.map_or(file.first(), at);
+        let from = self.from.map_or(Moment::ZERO, at);
         let to = self.to.map_or(file.last(), at);
         let length_s = length(file).as_secs_f64();
         if from > to {
