@@ -1,10 +1,13 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
 use crate::cli::doctor::DoctorArgs;
+use crate::cli::export::{ExportArgs, RecoverArgs};
 use crate::cli::help::{self, HelpArgs};
+use crate::cli::info::InfoArgs;
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
+use crate::cli::record::RecordArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::sim::{self, SimArgs};
 use crate::cli::snapshot::SnapshotArgs;
@@ -111,6 +114,26 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --speed 25 --force 500 --arm\n  handscope trial --hand tcp:192.168.11.210 --joint index,thumb_bend --speed 25,100,250 --force 200,500 --repeat 3 --arm --out egg --best least-overshoot --hold 300\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --approach 1000 --until measured:40 --force 500 --arm --json\n\nThis moves the hand, and only with --arm: keep everything but the object out of its way. The joints go to --start gently, rest for half a second, close, hold for --dwell after they have stopped, and go back. No joint closes before the hand confirms the speed and the threshold that were set. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. After a stop the hand keeps what it holds: open it yourself.\n\nExit status: 0 all trials done; 1 ended early, or no setting qualifies for --best; 2 wrong usage."
     )]
     Trial(TrialArgs),
+    /// Record everything a hand reports into a session file
+    #[command(
+        after_help = "Examples:\n  handscope record --hand rs485:/dev/ttyUSB0\n  handscope record --hand tcp:192.168.11.210 --for 60 --out grasp.mcap\n\nIt only reads. Ctrl-C ends the recording and closes the file; the last line on standard output is one JSON object of statistics. No file is overwritten. After a crash the file still opens: 'handscope info' says what is missing.\n\nThe file is MCAP with ROS 2 messages ('handscope help sessions')."
+    )]
+    Record(RecordArgs),
+    /// Tell what a session file holds, and what of it is missing
+    #[command(
+        after_help = "Examples:\n  handscope info grasp.mcap\n  handscope info grasp.mcap --json\n\nThe file is read to its end, so that every checksum is looked at. Exit status: 0 the file could be read, complete or not; 1 it could not; 2 wrong usage."
+    )]
+    Info(InfoArgs),
+    /// Turn a session file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, or a shorter session file
+    #[command(
+        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
+    )]
+    Export(ExportArgs),
+    /// Write a whole copy of a session file that is damaged or was not closed
+    #[command(
+        after_help = "Examples:\n  handscope recover crashed.mcap\n  handscope recover damaged.mcap --out whole.mcap\n\nThe file itself stays as it is. The copy holds all that can be read, and a note of what was lost."
+    )]
+    Recover(RecoverArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
     #[command(
         after_help = sim::help()

@@ -2,16 +2,20 @@
 
 mod args;
 mod doctor;
+mod export;
 mod help;
+mod info;
 mod interrupt;
 mod out;
 mod params;
 mod parse;
 mod quirks;
 mod read;
+mod record;
 mod registers;
 mod scan;
 mod session;
+mod session_file;
 mod sim;
 mod snapshot;
 mod trial;
@@ -65,6 +69,10 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
+        Command::Record(args) => wait_for(record::run(&mut out, &args)),
+        Command::Info(args) => info::run(&mut out, &args),
+        Command::Export(args) => export::run(&mut out, &args),
+        Command::Recover(args) => export::recover(&mut out, &args),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),

@@ -3,6 +3,7 @@
 //! Everything that reaches a hand passes [`command::HandCommand`]; everything that comes back
 //! passes [`sample::HandSample`]. Both are built from the one table in [`register`].
 
+pub mod column;
 pub mod command;
 pub mod dof;
 pub mod fault;

@@ -1,5 +1,6 @@
 //! The whole history of one hand: which reading goes to which line. How lines are kept is told in the siblings.
 
+use crate::hand::column::{channel_column, joint_column, tip_column};
 use crate::hand::register::ANGLE_SET;
 use crate::hand::{
     Angle, Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Span, Timed, Touch,
@@ -47,15 +48,11 @@ impl Series {
     /// The head of its column in a table: what, of which part, unit. Stable.
     #[must_use]
     pub fn column_name(self) -> String {
-        let (row, part) = match self {
-            Self::Joint(quantity, dof) => (quantity.row(), dof.name()),
-            Self::Tip(touch, finger) => (touch.row(), finger.name()),
-            Self::Channel(channel, finger) => {
-                return format!("channel_{}_{}", channel + 1, finger.name());
-            }
-        };
-        let unit = if row.unit.is_empty() { "" } else { "_" };
-        format!("{}_{part}{unit}{}", row.name, row.unit)
+        match self {
+            Self::Joint(quantity, dof) => joint_column(quantity, dof),
+            Self::Tip(touch, finger) => tip_column(touch, finger),
+            Self::Channel(channel, finger) => channel_column(channel, finger),
+        }
     }
 
     /// Which row of times it is on.

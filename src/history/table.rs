@@ -1,5 +1,6 @@
 //! Measurements as a table of text: one line for each moment at which something was received. Writes no file.
 
+use crate::hand::column::text_cell;
 use std::fmt::Write as _;
 
 /// Lines that were read together.
@@ -69,7 +70,7 @@ impl Table {
                 }
             }
             text.push(',');
-            text.push_str(&line.event.map(quoted).unwrap_or_default());
+            text.push_str(&line.event.map(text_cell).unwrap_or_default());
             text.push('\n');
         }
         text
@@ -100,16 +101,6 @@ impl Table {
             })
         })
     }
-}
-
-/// A cell of free text. One that a spreadsheet would take for a formula is made a text.
-fn quoted(words: &str) -> String {
-    let formula = words.starts_with(['=', '+', '-', '@']);
-    let lead = if formula { "\'" } else { "" };
-    if formula || words.contains([',', '"', '\n', '\r']) {
-        return format!("\"{lead}{}\"", words.replace('"', "\"\""));
-    }
-    words.to_owned()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What happened at a hand, as typed values that a file can hold.
 
 pub mod entry;
+pub mod export;
 pub mod file;
 pub mod heard;
 pub mod quirk_sheet;

@@ -455,6 +455,6 @@ impl WallClock {
             Ok(ahead) => nanos(ahead),
             Err(behind) => -nanos(behind.duration()),
         };
-        (drift.unsigned_abs() > CLOCK_SET.as_nanos() as u64).then_some(drift)
+        (u128::from(drift.unsigned_abs()) > CLOCK_SET.as_nanos()).then_some(drift)
     }
 }

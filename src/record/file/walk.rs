@@ -11,6 +11,8 @@ const SUMMARY_MAX: u64 = 48 * 1024 * 1024;
 pub(crate) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 /// Operation code and length before each record.
 const HEAD: u64 = 9;
+/// The same, for pieces in memory.
+const HEAD_LEN: usize = 9;
 /// Bytes of the head of a chunk that are looked at.
 const CHUNK_HEAD: usize = 8 + 8 + 8 + 4 + 4;
 /// Bytes searched at once for the next chunk.
@@ -162,7 +164,7 @@ fn one_by_one<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Found> {
     let mut found = Found::default();
     let mut at = MAGIC.len() as u64;
     while at + HEAD <= len {
-        let mut head = [0; HEAD as usize + CHUNK_HEAD];
+        let mut head = [0; HEAD_LEN + CHUNK_HEAD];
         let there = usize::try_from(len - at)
             .unwrap_or(usize::MAX)
             .min(head.len());
@@ -198,7 +200,7 @@ fn plausible(head: &[u8], at: u64, len: u64) -> Option<u64> {
 /// The times of a chunk whose head can be right.
 fn chunk_times(head: &[u8]) -> Option<(u64, u64)> {
     let size = u64_at(head, 1)?;
-    let body = head.get(HEAD as usize..)?;
+    let body = head.get(HEAD_LEN..)?;
     let (first, last) = (u64_at(body, 0)?, u64_at(body, 8)?);
     let whole = u64_at(body, 16)?;
     let name = body
@@ -233,7 +235,7 @@ fn note(head: &[u8], at: u64, found: &mut Found) {
 
 /// The next place where a whole chunk can stand, else the end.
 fn next_chunk<F: Read + Seek>(file: &mut F, from: u64, len: u64) -> io::Result<u64> {
-    let head_len = HEAD as usize + CHUNK_HEAD;
+    let head_len = HEAD_LEN + CHUNK_HEAD;
     let mut buffer = vec![0; SEARCH];
     let mut at = from;
     while at + head_len as u64 <= len {

@@ -18,6 +18,8 @@ mod quirks;
 #[cfg(unix)]
 mod scan;
 #[cfg(unix)]
+mod sessions;
+#[cfg(unix)]
 mod several;
 #[cfg(unix)]
 mod trial;

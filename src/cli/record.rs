@@ -1,0 +1,279 @@
+//! `record`: everything that a hand reports, into a session file, until the time is up or a person ends it. Writes nothing to the
+//! hand.
+
+use crate::app::files::day_folder;
+use crate::cli::interrupt::Interrupt;
+use crate::cli::out::{Out, say};
+use crate::cli::parse::seconds;
+use crate::cli::session;
+use crate::hand::kinematics::Side;
+use crate::hand::{Finger, Moment};
+use crate::link::{Clock, LinkHandle, PollRates};
+use crate::params::file::ParamsFile;
+use crate::record::file::recorder::RecorderInput;
+use crate::record::file::{
+    Opening, Recorder, RecorderStatus, RecordingPlan, SessionFile, SystemDisk,
+};
+use crate::record::{Entry, Event, EventKind};
+use crate::store::calendar;
+use crate::tasks::{read, recording};
+use crate::transport::Endpoint;
+use anyhow::{Context as _, anyhow, bail};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::pin::pin;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::time::{sleep, timeout};
+
+/// How often it is looked whether the disk and the hand are well.
+const LOOK_EACH: Duration = Duration::from_millis(200);
+/// A hand answers what it keeps in less; after this the recording does without.
+const PARAMETERS_WITHIN: Duration = Duration::from_secs(10);
+/// The first bytes are on the disk long before.
+const FILE_WITHIN: Duration = Duration::from_secs(3);
+/// A link that is closed ends in less.
+const LINK_ENDS_WITHIN: Duration = Duration::from_secs(2);
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct RecordArgs {
+    /// The hand to record
+    #[arg(long, value_name = "URL")]
+    hand: Endpoint,
+    /// Seconds to record [default: until Ctrl-C]
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    length: Option<Duration>,
+    /// The file [default: Handscope/<day>/<time>-<hand>.mcap in your documents folder]
+    #[arg(long, value_name = "FILE.mcap")]
+    out: Option<PathBuf>,
+    /// Read as fast as the wire allows, instead of 100 states and 30 touch sweeps a second
+    #[arg(long)]
+    full_rate: bool,
+}
+
+/// Records. The last line of the output is one JSON object of statistics.
+pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> {
+    let mut interrupt = Interrupt::listen()?;
+    let path = path(args)?;
+    let clock = Clock::start();
+    let rates = match args.full_rate {
+        true => PollRates::FULL,
+        false => PollRates::default(),
+    };
+    let opening = opening(args, clock);
+    let link = session::open(&args.hand, rates, clock);
+    let observed = link.observe();
+    tokio::select! {
+        biased;
+        () = interrupt.wished() => bail!("ended before {} answered; nothing was recorded", args.hand),
+        answered = session::answered(&link, &args.hand) => answered?,
+    }
+    let recorder = Recorder::start(RecordingPlan {
+        path: path.clone(),
+        opening,
+        disk: Arc::new(SystemDisk),
+    })
+    .context("cannot start the recorder")?;
+    let input = recorder.input();
+    let pump = tokio::spawn(recording::record(observed, input.clone(), clock));
+    let length = async {
+        match args.length {
+            Some(length) => sleep(length).await,
+            None => std::future::pending().await,
+        }
+    };
+    let done = {
+        let mut recording = pin!(async {
+            begun(&recorder, &path).await?;
+            say(&format!("recording {} to {}", args.hand, path.display()));
+            tell_parameters(&link, &args.hand, &input, clock).await;
+            watch(&recorder, &link, &args.hand).await
+        });
+        tokio::select! {
+            biased;
+            () = interrupt.wished() => Ok(()),
+            () = length => Ok(()),
+            done = &mut recording => done,
+        }
+    };
+    drop(link);
+    let _ended = timeout(LINK_ENDS_WITHIN, pump).await;
+    let status = recorder.end();
+    done?;
+    finish(out, &path, &status)
+}
+
+/// The file, which must not be there.
+fn path(args: &RecordArgs) -> anyhow::Result<PathBuf> {
+    if let Some(path) = &args.out {
+        if path.symlink_metadata().is_ok() {
+            bail!(
+                "{} is already there and is not overwritten; name another file with --out",
+                path.display()
+            );
+        }
+        return Ok(path.clone());
+    }
+    let documents = day_folder::documents().context(
+        "there is no documents folder to put the recording into; name a file with --out",
+    )?;
+    let now = calendar::since_1970();
+    let folder = day_folder::of_day(&documents, &calendar::day(now));
+    let time: String = calendar::stamp(now)
+        .chars()
+        .skip_while(|letter| *letter != 'T')
+        .filter(char::is_ascii_digit)
+        .collect();
+    let name = format!("{time}-{}.mcap", in_a_name(&args.hand));
+    Ok(day_folder::free_path(&folder, &name))
+}
+
+/// A hand's endpoint as part of a file name: its kind and its place, and nothing that a file system could object to.
+fn in_a_name(hand: &Endpoint) -> String {
+    let url = hand.to_string();
+    let place = url.split('?').next().unwrap_or_default();
+    let words = place.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '.');
+    let words: Vec<&str> = words
+        .filter(|word| !word.is_empty() && *word != "dev")
+        .collect();
+    words.join("-")
+}
+
+fn opening(args: &RecordArgs, clock: Clock) -> Opening {
+    let began = clock.now();
+    let since_start = began.since(Moment::ZERO);
+    let base = calendar::since_1970().saturating_sub(since_start);
+    Opening {
+        base_nanos: u64::try_from(base.as_nanos()).unwrap_or_default(),
+        began,
+        hand: args.hand.to_string(),
+        simulated: matches!(args.hand, Endpoint::Sim { .. }),
+        side: Side::Right,
+        version: env!("CARGO_PKG_VERSION").into(),
+    }
+}
+
+/// Waits for the first bytes on the disk.
+async fn begun(recorder: &Recorder, path: &Path) -> anyhow::Result<()> {
+    let there = async {
+        loop {
+            let status = recorder.status();
+            if let Some(trouble) = status.trouble {
+                return Err(cannot_write(path, &trouble));
+            }
+            if status.bytes > 0 {
+                return Ok(());
+            }
+            sleep(Duration::from_millis(10)).await;
+        }
+    };
+    let slow = |_| cannot_write(path, "the disk does not answer");
+    timeout(FILE_WITHIN, there).await.map_err(slow)?
+}
+
+fn cannot_write(path: &Path, trouble: &str) -> anyhow::Error {
+    anyhow!(
+        "cannot write {}: {trouble}; choose another place with --out",
+        path.display()
+    )
+}
+
+/// Records what the hand keeps, if it tells.
+async fn tell_parameters(link: &LinkHandle, hand: &Endpoint, input: &RecorderInput, clock: Clock) {
+    let rows = timeout(PARAMETERS_WITHIN, read::rows(link, |_, _| ())).await;
+    let Some(rows) = rows.ok().filter(|rows| !rows.params.is_empty()) else {
+        return;
+    };
+    let file = ParamsFile {
+        hand: hand.to_string(),
+        at: calendar::stamp(calendar::since_1970()),
+        why: "recording".into(),
+        params: rows.params,
+        ..ParamsFile::default()
+    };
+    input.push(Entry::Event(Event {
+        at: clock.now(),
+        kind: EventKind::Parameters,
+        words: file.to_toml(),
+    }));
+}
+
+/// Says once each when the disk or the hand fails, and when they are well again. Never ends by itself.
+async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyhow::Result<()> {
+    let (mut disk, mut lost) = (None, None);
+    loop {
+        sleep(LOOK_EACH).await;
+        let trouble = recorder.status().trouble;
+        if disk != trouble {
+            say(&match &trouble {
+                Some(trouble) => format!("the file cannot be written: {trouble}; trying again"),
+                None => "the file is written again".to_owned(),
+            });
+            disk = trouble;
+        }
+        let status = link.status();
+        let trouble = session::trouble(&status).map(ToString::to_string);
+        if lost != trouble && (trouble.is_some() || status.state.is_live()) {
+            say(&match &trouble {
+                Some(trouble) => format!("link to {hand} lost: {trouble}; trying again"),
+                None => "the hand answers again".to_owned(),
+            });
+            lost = trouble;
+        }
+    }
+}
+
+/// Reads the file back and says what is in it.
+fn finish(out: &mut Out, asked: &Path, status: &RecorderStatus) -> anyhow::Result<()> {
+    let path = status.path.as_deref().unwrap_or(asked);
+    if let Some(trouble) = &status.trouble {
+        return Err(cannot_write(path, trouble));
+    }
+    if !status.ended {
+        bail!(
+            "{} was not ended: the disk does not take its last bytes; 'handscope recover' repairs it",
+            path.display()
+        );
+    }
+    let file = SessionFile::open(path)
+        .map_err(|error| anyhow!("cannot read {} back: {error}", path.display()))?;
+    out.object(&statistics(&file, status))
+}
+
+fn statistics(file: &SessionFile, status: &RecorderStatus) -> Value {
+    let counts = file.overview().counts;
+    json!({
+        "file": file.path(),
+        "length_s": file.last().since(file.first()).as_secs_f64(),
+        "states": counts.states,
+        "touch_sweeps": touch_sweeps(counts.touch_blocks),
+        "writes": counts.writes,
+        "faults": counts.faults,
+        "missing": status.missing,
+        "bytes": status.bytes + status.earlier_bytes,
+        "mb_per_hour": status.megabytes_an_hour(),
+    })
+}
+
+/// Whole sweeps over the fingertips.
+pub(crate) fn touch_sweeps(blocks: u64) -> u64 {
+    blocks / Finger::ALL.len() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_named_after_the_hand_without_what_file_systems_object_to() {
+        for (url, name) in [
+            ("sim:", "sim"),
+            ("rs485:/dev/ttyUSB0?baud=115200&id=1", "rs485-ttyUSB0"),
+            ("tcp:192.168.11.210:6000", "tcp-192.168.11.210-6000"),
+            ("tcp:[::1]:6000", "tcp-1-6000"),
+            ("can:can0?id=3", "can-can0"),
+        ] {
+            assert_eq!(in_a_name(&url.parse().unwrap()), name);
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Columns of a Parquet file: gathered row by row, written a group of rows at a time.
+
+use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as Physical};
+use parquet::data_type::{BoolType, DoubleType, FloatType, Int32Type, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::writer::{SerializedColumnWriter, SerializedRowGroupWriter};
+use parquet::schema::types::Type;
+use std::io::Write;
+use std::sync::Arc;
+
+/// The values of one column that are there.
+#[derive(Debug, Clone)]
+pub(crate) enum Values {
+    /// Whole numbers.
+    Int(Vec<i32>),
+    /// Large whole numbers.
+    Long(Vec<i64>),
+    /// Nanoseconds since 1970, UTC.
+    Time(Vec<i64>),
+    /// Numbers.
+    Float(Vec<f32>),
+    /// Numbers of full precision.
+    Double(Vec<f64>),
+    /// Yes or no.
+    Bool(Vec<bool>),
+}
+
+/// One value.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Cell {
+    Int(i32),
+    Long(i64),
+    Float(f32),
+    Double(f64),
+    Bool(bool),
+    /// Not read, or not known.
+    Null,
+}
+
+/// One column.
+#[derive(Debug, Clone)]
+pub(crate) struct Column {
+    pub(crate) name: String,
+    pub(crate) unit: &'static str,
+    values: Values,
+    /// 1 for each row with a value, 0 for each without.
+    there: Vec<i16>,
+}
+
+impl Column {
+    pub(crate) fn new(name: impl Into<String>, unit: &'static str, values: Values) -> Self {
+        Self {
+            name: name.into(),
+            unit,
+            values,
+            there: Vec::new(),
+        }
+    }
+
+    /// Adds a row. A value of another type than the column's is none.
+    pub(crate) fn push(&mut self, cell: Cell) {
+        match (&mut self.values, cell) {
+            (Values::Int(all), Cell::Int(value)) => all.push(value),
+            (Values::Long(all) | Values::Time(all), Cell::Long(value)) => all.push(value),
+            (Values::Float(all), Cell::Float(value)) => all.push(value),
+            (Values::Double(all), Cell::Double(value)) => all.push(value),
+            (Values::Bool(all), Cell::Bool(value)) => all.push(value),
+            (_, cell) => {
+                debug_assert!(matches!(cell, Cell::Null), "a value of the wrong type");
+                self.there.push(0);
+                return;
+            }
+        }
+        self.there.push(1);
+    }
+
+    /// Its place in the schema.
+    pub(crate) fn schema(&self) -> Result<Arc<Type>, ParquetError> {
+        let (physical, logical) = match self.values {
+            Values::Int(_) => (Physical::INT32, None),
+            Values::Long(_) => (Physical::INT64, None),
+            Values::Time(_) => (
+                Physical::INT64,
+                Some(LogicalType::timestamp(true, TimeUnit::NANOS)),
+            ),
+            Values::Float(_) => (Physical::FLOAT, None),
+            Values::Double(_) => (Physical::DOUBLE, None),
+            Values::Bool(_) => (Physical::BOOLEAN, None),
+        };
+        let column = Type::primitive_type_builder(&self.name, physical);
+        let column = column.with_repetition(Repetition::OPTIONAL);
+        column.with_logical_type(logical).build().map(Arc::new)
+    }
+
+    /// Writes what was gathered, and is empty again.
+    fn put(&mut self, mut to: SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
+        let there = Some(self.there.as_slice());
+        match &mut self.values {
+            Values::Int(all) => {
+                to.typed::<Int32Type>().write_batch(all, there, None)?;
+                all.clear();
+            }
+            Values::Long(all) | Values::Time(all) => {
+                to.typed::<Int64Type>().write_batch(all, there, None)?;
+                all.clear();
+            }
+            Values::Float(all) => {
+                to.typed::<FloatType>().write_batch(all, there, None)?;
+                all.clear();
+            }
+            Values::Double(all) => {
+                to.typed::<DoubleType>().write_batch(all, there, None)?;
+                all.clear();
+            }
+            Values::Bool(all) => {
+                to.typed::<BoolType>().write_batch(all, there, None)?;
+                all.clear();
+            }
+        }
+        self.there.clear();
+        to.close()
+    }
+}
+
+/// Writes a group of rows.
+pub(crate) fn put<W: Write + Send>(
+    columns: &mut [Column],
+    mut group: SerializedRowGroupWriter<'_, W>,
+) -> Result<(), ParquetError> {
+    for column in columns {
+        if let Some(to) = group.next_column()? {
+            column.put(to)?;
+        }
+    }
+    group.close().map(|_written| ())
+}

@@ -1,0 +1,191 @@
+//! A session as comma-separated values: one line for each moment of receipt, the columns of the history's tables, what happened last.
+
+use crate::hand::column::{channel_column, joint_column, text_cell, tip_column};
+use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity, Touch};
+use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
+use crate::record::file::reader::Stretch;
+use crate::record::file::{FileMark, SessionFile};
+use crate::record::{Entry, EventKind, Record};
+use std::io::{self, Write};
+use std::iter::Peekable;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// Channels of a fingertip.
+const CHANNELS: u8 = 8;
+
+/// Writes a stretch. Times are seconds from the session's start.
+///
+/// # Errors
+/// [`ExportError`]; then there is no file.
+pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Exported, ExportError> {
+    let output = Unfinished::new(path)?;
+    let mut to = output.file()?;
+    let marks = file.overview().marks.iter();
+    let marks = marks.filter(|mark| (stretch.from..=stretch.to).contains(&mark.at));
+    let mut lines = Lines {
+        to: &mut to,
+        start: file.first(),
+        marks: marks.peekable(),
+        line: Line::default(),
+        rows: 0,
+    };
+    let mut done = lines.head();
+    let no_wire = Stretch {
+        wire: false,
+        ..stretch
+    };
+    let damage = file.entries(no_wire, |entry| {
+        if done.is_ok()
+            && let Entry::Heard(Record::Reading { sample, fresh }) = &entry
+        {
+            done = lines.reading(entry.at(), sample, *fresh);
+        }
+        match done {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    });
+    let damage = damage.map_err(|error| unreadable(&error))?;
+    done.and_then(|()| lines.end())
+        .map_err(|error| output.error(&error))?;
+    let rows = lines.rows;
+    output.sync(to)?;
+    output.finish()?;
+    Ok(Exported { rows, damage })
+}
+
+/// What was received at one moment.
+#[derive(Default)]
+struct Line {
+    at: Option<Moment>,
+    taken: Groups,
+    cells: Vec<String>,
+}
+
+struct Lines<'a, W: Write, M: Iterator<Item = &'a FileMark>> {
+    to: &'a mut W,
+    start: Moment,
+    marks: Peekable<M>,
+    line: Line,
+    rows: u64,
+}
+
+impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
+    fn head(&mut self) -> io::Result<()> {
+        self.line.cells = vec![String::new(); columns().count()];
+        let names: Vec<String> = columns().collect();
+        writeln!(self.to, "time_s,{},event", names.join(","))
+    }
+
+    fn reading(&mut self, at: Moment, sample: &HandSample, fresh: Groups) -> io::Result<()> {
+        let is_again =
+            Group::all().any(|group| fresh.contains(group) && self.line.taken.contains(group));
+        if self.line.at != Some(at) || is_again {
+            self.put()?;
+            self.line.at = Some(at);
+        }
+        self.line.taken = self.line.taken.and(fresh);
+        for (cell, value) in self.line.cells.iter_mut().zip(values(sample, fresh)) {
+            if let Some(value) = value {
+                *cell = value;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the line that was gathered, and before it what happened until then.
+    fn put(&mut self) -> io::Result<()> {
+        let Some(at) = self.line.at.take() else {
+            return Ok(());
+        };
+        while let Some(mark) = self.marks.next_if(|mark| mark.at < at) {
+            self.mark(mark)?;
+        }
+        let mark = self.marks.next_if(|mark| mark.at == at);
+        self.rows += 1;
+        write!(self.to, "{:.6}", self.seconds(at))?;
+        for cell in &mut self.line.cells {
+            write!(self.to, ",{cell}")?;
+            cell.clear();
+        }
+        self.line.taken = Groups::NONE;
+        let words = mark.map(words).unwrap_or_default();
+        writeln!(self.to, ",{}", text_cell(&words))
+    }
+
+    /// A line on which nothing was received.
+    fn mark(&mut self, mark: &FileMark) -> io::Result<()> {
+        self.rows += 1;
+        let empty = ",".repeat(self.line.cells.len());
+        let words = text_cell(&words(mark));
+        writeln!(self.to, "{:.6}{empty},{words}", self.seconds(mark.at))
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.put()?;
+        while let Some(mark) = self.marks.next() {
+            self.mark(mark)?;
+        }
+        self.to.flush()
+    }
+
+    fn seconds(&self, at: Moment) -> f64 {
+        at.since(self.start).as_secs_f64()
+    }
+}
+
+/// What happened, as the tables of the window say it.
+fn words(mark: &FileMark) -> String {
+    let kind = match mark.kind {
+        EventKind::LinkLost => "link lost",
+        kind => kind.key(),
+    };
+    match mark.words.as_str() {
+        "" => kind.to_owned(),
+        words => format!("{kind}: {words}"),
+    }
+}
+
+/// The heads of the columns between time and event.
+fn columns() -> impl Iterator<Item = String> {
+    let joints = Quantity::ALL
+        .into_iter()
+        .flat_map(|quantity| Dof::ALL.map(|dof| joint_column(quantity, dof)));
+    let tips = Touch::ALL
+        .into_iter()
+        .flat_map(|touch| Finger::ALL.map(|finger| tip_column(touch, finger)));
+    let channels = Finger::ALL
+        .into_iter()
+        .flat_map(|finger| (0..CHANNELS).map(move |channel| channel_column(channel, finger)));
+    joints.chain(tips).chain(channels)
+}
+
+/// The values of those columns that are fresh and known.
+fn values(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Option<String>> {
+    let joints = Quantity::ALL.into_iter().flat_map(move |quantity| {
+        let six = quantity.documented(sample);
+        let six = six.filter(|_| fresh.contains(quantity.group()));
+        Dof::ALL.map(|dof| six.and_then(|six| six.value[dof].map(|value| value.to_string())))
+    });
+    let block = move |finger: Finger| {
+        let block = sample.tactile[finger].filter(|_| fresh.contains(Group::Tactile(finger)));
+        block.map(|block| block.value)
+    };
+    let tips = Touch::ALL.into_iter().flat_map(move |touch| {
+        Finger::ALL.map(|finger| {
+            let block = block(finger)?;
+            let value = match touch {
+                Touch::Normal => block.normal(),
+                Touch::Tangential => block.tangential(),
+            };
+            value.map(|value| value.to_string())
+        })
+    });
+    let channels = Finger::ALL.into_iter().flat_map(move |finger| {
+        let raw = block(finger).map(|block| block.raw);
+        let all = (0..usize::from(CHANNELS)).map(move |channel| raw?.get(channel).copied());
+        all.map(|count| count.map(|count| count.to_string()))
+    });
+    joints.chain(tips).chain(channels)
+}

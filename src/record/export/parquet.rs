@@ -1,0 +1,266 @@
+//! A session as a Parquet table: one row for each reading, nothing where it was not part of the reading. Units, the hand and what
+//! happened stand in the file's metadata.
+
+use crate::hand::column::{channel_column, joint_column, tip_column};
+use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, TactileBlock};
+use crate::hand::{Timed, Touch};
+use crate::record::export::columns::{self, Cell, Column, Values};
+use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
+use crate::record::file::SessionFile;
+use crate::record::file::reader::Stretch;
+use crate::record::{Entry, Record};
+use parquet::basic::Compression;
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
+use serde_json::{Map, json};
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Rows written at once: 6 MB.
+const GROUP_ROWS: u64 = 8192;
+/// Channels of a fingertip.
+const CHANNELS: u8 = 8;
+
+/// Writes a stretch. Times are seconds from the session's start, and nanoseconds since 1970.
+///
+/// # Errors
+/// [`ExportError`]; then there is no file.
+pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Exported, ExportError> {
+    let output = Unfinished::new(path)?;
+    let error = |error: ParquetError| output.error(&io::Error::other(error));
+    let mut table = Table::new(file, stretch, output.file()?).map_err(error)?;
+    let mut done = Ok(());
+    let no_wire = Stretch {
+        wire: false,
+        ..stretch
+    };
+    let damage = file.entries(no_wire, |entry| {
+        if let Entry::Heard(Record::Reading { sample, fresh }) = &entry {
+            done = table.reading(entry.at(), sample, *fresh);
+        }
+        match done {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    });
+    let damage = damage.map_err(|error| unreadable(&error))?;
+    let ended = done.and_then(|()| table.end());
+    let (rows, to) = ended.map_err(error)?;
+    output.sync(to)?;
+    output.finish()?;
+    Ok(Exported { rows, damage })
+}
+
+struct Table {
+    columns: Vec<Column>,
+    to: SerializedFileWriter<BufWriter<File>>,
+    start: Moment,
+    base_nanos: u64,
+    rows: u64,
+}
+
+impl Table {
+    fn new(
+        file: &SessionFile,
+        stretch: Stretch,
+        to: BufWriter<File>,
+    ) -> Result<Self, ParquetError> {
+        let columns = all_columns();
+        let fields: Result<Vec<_>, _> = columns.iter().map(Column::schema).collect();
+        let schema = Type::group_type_builder("reading").with_fields(fields?);
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_statistics_enabled(EnabledStatistics::Chunk)
+            .set_created_by(format!("handscope {}", env!("CARGO_PKG_VERSION")))
+            .set_key_value_metadata(Some(metadata(file, stretch, &columns)));
+        let to =
+            SerializedFileWriter::new(to, Arc::new(schema.build()?), Arc::new(properties.build()))?;
+        Ok(Self {
+            columns,
+            to,
+            start: file.first(),
+            base_nanos: file.opening().base_nanos,
+            rows: 0,
+        })
+    }
+
+    fn reading(
+        &mut self,
+        at: Moment,
+        sample: &HandSample,
+        fresh: Groups,
+    ) -> Result<(), ParquetError> {
+        let asked = Group::all().filter(|group| fresh.contains(*group));
+        let asked = asked
+            .filter_map(|group| sample.times(group))
+            .map(|(asked, _)| asked)
+            .min();
+        let nanos = |at: Moment| {
+            let nanos = self
+                .base_nanos
+                .saturating_add(at.micros().saturating_mul(1000));
+            Cell::Long(i64::try_from(nanos).unwrap_or(i64::MAX))
+        };
+        let head = [
+            Cell::Double(at.since(self.start).as_secs_f64()),
+            nanos(at),
+            asked.map_or(Cell::Null, nanos),
+        ];
+        let cells = head.into_iter().chain(cells(sample, fresh));
+        for (column, cell) in self.columns.iter_mut().zip(cells) {
+            column.push(cell);
+        }
+        self.rows += 1;
+        match self.rows.is_multiple_of(GROUP_ROWS) {
+            true => self.put(),
+            false => Ok(()),
+        }
+    }
+
+    fn put(&mut self) -> Result<(), ParquetError> {
+        let group = self.to.next_row_group()?;
+        columns::put(&mut self.columns, group)
+    }
+
+    fn end(mut self) -> Result<(u64, BufWriter<File>), ParquetError> {
+        if !self.rows.is_multiple_of(GROUP_ROWS) {
+            self.put()?;
+        }
+        Ok((self.rows, self.to.into_inner()?))
+    }
+}
+
+/// What stands beside the rows: the unit of each column that has one, the session, what happened.
+fn metadata(file: &SessionFile, stretch: Stretch, columns: &[Column]) -> Vec<KeyValue> {
+    let opening = file.opening();
+    let units: Map<String, serde_json::Value> = columns
+        .iter()
+        .filter(|column| !column.unit.is_empty())
+        .map(|column| (column.name.clone(), column.unit.into()))
+        .collect();
+    let marks = file.overview().marks.iter();
+    let events = marks.filter(|mark| (stretch.from..=stretch.to).contains(&mark.at));
+    let events = events.map(|mark| {
+        let time_s = mark.at.since(file.first()).as_secs_f64();
+        json!({ "time_s": time_s, "kind": mark.kind.key(), "words": mark.words })
+    });
+    let session = json!({
+        "hand": opening.hand,
+        "simulated": opening.simulated,
+        "version": opening.version,
+    });
+    [
+        ("units", json!(units)),
+        ("session", session),
+        ("events", events.collect()),
+    ]
+    .map(|(key, value)| KeyValue::new(key.to_owned(), value.to_string()))
+    .to_vec()
+}
+
+fn all_columns() -> Vec<Column> {
+    let mut all = vec![
+        Column::new("time_s", "s", Values::Double(Vec::new())),
+        Column::new("received", "", Values::Time(Vec::new())),
+        Column::new("asked", "", Values::Time(Vec::new())),
+    ];
+    for quantity in Quantity::ALL {
+        let of = |dof| (joint_column(quantity, dof), quantity.row().unit);
+        let six = Dof::ALL.map(of);
+        all.extend(six.map(|(name, unit)| Column::new(name, unit, Values::Int(Vec::new()))));
+    }
+    for (name, unit) in [
+        ("force_threshold", "g"),
+        ("target_speed", ""),
+        ("position", ""),
+        ("faults", ""),
+        ("status", ""),
+    ] {
+        let ending = if unit.is_empty() { "" } else { "_g" };
+        let six = Dof::ALL.map(|dof| format!("{name}_{}{ending}", dof.name()));
+        all.extend(six.map(|name| Column::new(name, unit, Values::Int(Vec::new()))));
+    }
+    for finger in Finger::ALL {
+        for touch in Touch::ALL {
+            let name = tip_column(touch, finger);
+            all.push(Column::new(
+                name,
+                touch.row().unit,
+                Values::Float(Vec::new()),
+            ));
+        }
+        let name = finger.name();
+        let direction = format!("direction_{name}_deg");
+        all.push(Column::new(direction, "deg", Values::Int(Vec::new())));
+        let proximity = format!("proximity_{name}");
+        all.push(Column::new(proximity, "", Values::Int(Vec::new())));
+        let check = format!("check_ok_{name}");
+        all.push(Column::new(check, "", Values::Bool(Vec::new())));
+        let channels = (0..CHANNELS).map(|channel| channel_column(channel, finger));
+        all.extend(channels.map(|name| Column::new(name, "", Values::Long(Vec::new()))));
+    }
+    all
+}
+
+/// The cells of a row after its times, in the order of the columns.
+fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Cell> {
+    let measured = Quantity::ALL.into_iter().flat_map(move |quantity| {
+        let six = quantity.documented(sample);
+        six_cells(six.filter(|_| fresh.contains(quantity.group())), |value| {
+            value.map(i32::from)
+        })
+    });
+    let is = move |group| fresh.contains(group);
+    let force = sample.force_set.filter(|_| is(Group::ForceSet));
+    let speed = sample.speed_set.filter(|_| is(Group::SpeedSet));
+    let position = sample.position.filter(|_| is(Group::Position));
+    let faults = sample.faults.filter(|_| is(Group::Faults));
+    let status = sample.status.filter(|_| is(Group::Status));
+    let others = [
+        six_cells(force, |force| Some(i32::from(force?.get()))),
+        six_cells(speed, |speed| Some(i32::from(speed?.get()))),
+        six_cells(position, |position| Some(i32::from(position.raw()))),
+        six_cells(faults, |faults| Some(i32::from(faults.raw()))),
+        six_cells(status, |status| Some(i32::from(status.raw()))),
+    ];
+    let tips = Finger::ALL.into_iter().flat_map(move |finger| {
+        let block = sample.tactile[finger].filter(|_| is(Group::Tactile(finger)));
+        tip_cells(block.map(|block| block.value))
+    });
+    measured.chain(others.into_iter().flatten()).chain(tips)
+}
+
+fn six_cells<T: Copy>(
+    six: Option<Timed<PerDof<T>>>,
+    value: impl Fn(T) -> Option<i32>,
+) -> [Cell; Dof::ALL.len()] {
+    Dof::ALL.map(|dof| {
+        let value = six.and_then(|six| value(six.value[dof]));
+        value.map_or(Cell::Null, Cell::Int)
+    })
+}
+
+fn tip_cells(block: Option<TactileBlock>) -> impl Iterator<Item = Cell> {
+    let block = block.as_ref();
+    let float = |value: Option<f32>| value.map_or(Cell::Null, Cell::Float);
+    let direction = block.and_then(TactileBlock::direction_deg);
+    let head = [
+        float(block.and_then(TactileBlock::normal)),
+        float(block.and_then(TactileBlock::tangential)),
+        direction.map_or(Cell::Null, |degrees| Cell::Int(i32::from(degrees))),
+        block.map_or(Cell::Null, |block| Cell::Int(block.proximity)),
+        block.map_or(Cell::Null, |block| Cell::Bool(block.check_ok())),
+    ];
+    let raw = block.map(|block| block.raw);
+    let channels = (0..usize::from(CHANNELS)).map(move |channel| {
+        let count = raw.and_then(|raw| raw.get(channel).copied());
+        count.map_or(Cell::Null, |count| Cell::Long(i64::from(count)))
+    });
+    head.into_iter().chain(channels)
+}

@@ -1,0 +1,378 @@
+//! Sessions on the command line: recorded, looked into, exported, recovered, and every file that is none.
+
+use crate::setup::process::{Ended, run, start};
+use nix::sys::signal::Signal;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// A session of the simulated hand in a folder of its own.
+struct Recorded {
+    folder: TempDir,
+    stats: Value,
+}
+
+fn record(seconds: &str) -> Recorded {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("session.mcap");
+    let hand = "sim:?scenario=grasp";
+    let ended = run(&[
+        "record",
+        "--hand",
+        hand,
+        "--for",
+        seconds,
+        "--out",
+        text(&file),
+    ])
+    .ok();
+    assert_eq!(ended.out.lines().count(), 1, "{}", ended.out);
+    let stats = ended.lines().remove(0);
+    Recorded { folder, stats }
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+impl Recorded {
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn info(&self, name: &str) -> Value {
+        let ended = run(&["info", text(&self.path(name)), "--json"]).ok();
+        ended.lines().remove(0)
+    }
+
+    fn export(&self, more: &[&str], to: &str) -> Ended {
+        let (file, to) = (self.path("session.mcap"), self.path(to));
+        run(&[&["export", text(&file)], more, &["--out", text(&to)]].concat())
+    }
+
+    /// Names in the folder, hidden ones too.
+    fn names(&self) -> Vec<String> {
+        let all = std::fs::read_dir(self.folder.path()).unwrap();
+        let mut names: Vec<String> = all
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+fn rows(csv: &str) -> (Vec<String>, Vec<Vec<String>>) {
+    let cells = |line: &str| line.split(',').map(str::to_owned).collect();
+    let mut lines = csv.lines();
+    (cells(lines.next().unwrap()), lines.map(cells).collect())
+}
+
+/// A sentence on standard error, and nothing else.
+fn refused(ended: &Ended, code: i32, words: &[&str]) {
+    assert_eq!(ended.code, Some(code), "{}", ended.err);
+    assert_eq!(ended.out, "");
+    for word in words {
+        assert!(ended.err.contains(word), "{word}: {}", ended.err);
+    }
+    if code == 1 {
+        assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    }
+}
+
+#[test]
+fn a_recording_tells_what_it_holds_and_nothing_is_missing_in_it() {
+    let recorded = record("1.2");
+    let stats = &recorded.stats;
+    assert!(stats["states"].as_u64().unwrap() > 50, "{stats}");
+    assert!(stats["touch_sweeps"].as_u64().unwrap() > 10, "{stats}");
+    assert_eq!(
+        (&stats["writes"], &stats["missing"]),
+        (&0.into(), &0.into())
+    );
+    let info = recorded.info("session.mcap");
+    for key in [
+        "states",
+        "touch_sweeps",
+        "writes",
+        "faults",
+        "bytes",
+        "length_s",
+    ] {
+        assert_eq!(info[key], stats[key], "{key}: {info}");
+    }
+    assert_eq!(info["hand"], "sim:?seed=1&scenario=grasp");
+    assert_eq!(info["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(
+        (&info["simulated"], &info["closed"]),
+        (&true.into(), &true.into())
+    );
+    assert_eq!((&info["gaps"], &info["notes"]), (&0.into(), &0.into()));
+    let length = info["length_s"].as_f64().unwrap();
+    assert!((1.1..5.0).contains(&length), "{info}");
+    let start = info["start"].as_str().unwrap();
+    assert!(start.len() == 20 && start.ends_with('Z'), "{start}");
+    let words = run(&["info", text(&recorded.path("session.mcap"))])
+        .ok()
+        .out;
+    assert!(words.contains("nothing is missing"), "{words}");
+    assert_eq!(recorded.names(), ["session.mcap"]);
+}
+
+#[test]
+fn a_signal_closes_the_file_in_the_folder_of_the_day() {
+    for signal in [Signal::SIGINT, Signal::SIGTERM] {
+        let documents = tempfile::tempdir().unwrap();
+        let mut command = crate::setup::process::handscope();
+        command.env("HANDSCOPE_DOCUMENTS", documents.path());
+        command.args(["record", "--hand", "sim:"]);
+        let mut running = crate::setup::process::listen(command);
+        let began = running.complaint();
+        assert!(began.contains("recording sim:"), "{began}");
+        std::thread::sleep(std::time::Duration::from_millis(400));
+        running.signal(signal);
+        let ended = running.end().ok();
+        let stats = ended.lines().remove(0);
+        let file = PathBuf::from(stats["file"].as_str().unwrap());
+        let name = file.file_name().unwrap().to_str().unwrap();
+        assert!(name.ends_with("-sim.mcap") && name.len() == 15, "{name}");
+        let day = file.parent().unwrap();
+        assert_eq!(day.parent().unwrap(), documents.path().join("Handscope"));
+        let info = run(&["info", text(&file), "--json"]).ok().lines().remove(0);
+        assert_eq!(info["closed"], true, "{info}");
+        assert!(info["states"].as_u64().unwrap() > 10, "{info}");
+    }
+}
+
+#[test]
+fn a_killed_recording_opens_says_that_it_was_not_closed_and_is_recovered() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("killed.mcap");
+    let mut running = start(&["record", "--hand", "sim:", "--out", text(&file)]);
+    running.complaint();
+    std::thread::sleep(std::time::Duration::from_millis(900));
+    running.kill();
+    let info = |path: &Path| run(&["info", text(path), "--json"]).ok().lines().remove(0);
+    let killed = info(&file);
+    assert_eq!(killed["closed"], false);
+    assert!(killed["length_s"].as_f64().unwrap() > 0.3, "{killed}");
+    let words = run(&["info", text(&file)]).ok().out;
+    assert!(words.contains("not closed"), "{words}");
+    let before = std::fs::read(&file).unwrap();
+    let told = run(&["recover", text(&file)]).ok().out;
+    assert!(told.contains("killed-recovered.mcap"), "{told}");
+    let whole = info(&folder.path().join("killed-recovered.mcap"));
+    assert_eq!(whole["closed"], true);
+    for key in ["states", "touch_sweeps", "hand", "start"] {
+        assert_eq!(whole[key], killed[key], "{key}");
+    }
+    assert_eq!(std::fs::read(&file).unwrap(), before);
+    refused(
+        &run(&["recover", text(&file)]),
+        1,
+        &["already there", "--out"],
+    );
+}
+
+#[test]
+fn damage_costs_a_piece_and_is_told() {
+    let recorded = record("1.5");
+    let mut bytes = std::fs::read(recorded.path("session.mcap")).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    std::fs::write(recorded.path("session.mcap"), &bytes).unwrap();
+    let info = recorded.info("session.mcap");
+    assert!(info["gaps"].as_u64().unwrap() >= 1, "{info}");
+    let ended = recorded.export(&["--csv"], "a.csv").ok();
+    assert!(ended.err.contains("damaged"), "{}", ended.err);
+    let file = recorded.path("session.mcap");
+    let told = run(&["recover", text(&file), "--json"])
+        .ok()
+        .lines()
+        .remove(0);
+    assert_eq!(told["damaged_chunks"], info["damaged_chunks"], "{told}");
+    let whole = recorded.info("session-recovered.mcap");
+    assert_eq!(
+        (&whole["damaged_chunks"], &whole["gaps"]),
+        (&0.into(), &1.into())
+    );
+}
+
+#[test]
+fn a_csv_has_the_columns_of_the_plots_and_a_line_for_each_moment() {
+    let recorded = record("1.2");
+    recorded.export(&["--csv"], "all.csv").ok();
+    let csv = std::fs::read_to_string(recorded.path("all.csv")).unwrap();
+    let (head, lines) = rows(&csv);
+    assert_eq!(
+        (head[0].as_str(), head.last().unwrap().as_str()),
+        ("time_s", "event")
+    );
+    for name in [
+        "angle_index",
+        "force_thumb_bend_g",
+        "current_little_mA",
+        "temperature_ring_C",
+        "target_angle_middle",
+        "normal_thumb_N",
+        "channel_8_little",
+    ] {
+        let place = head.iter().position(|head| head == name).expect(name);
+        assert!(lines.iter().any(|line| !line[place].is_empty()), "{name}");
+    }
+    let place = head.iter().position(|head| head == "angle_index").unwrap();
+    let read = lines.iter().filter(|line| !line[place].is_empty()).count();
+    assert_eq!(recorded.stats["states"], read);
+    let times: Vec<f64> = lines.iter().map(|line| line[0].parse().unwrap()).collect();
+    assert!(times.is_sorted() && times[0] >= 0.0 && *times.last().unwrap() < 5.0);
+    let told = recorded.export(
+        &["--csv", "--from", "0.5", "--to", "0.8", "--json"],
+        "part.csv",
+    );
+    let part = std::fs::read_to_string(recorded.path("part.csv")).unwrap();
+    let inside = |line: &&str| {
+        let time: f64 = line.split(',').next().unwrap().parse().unwrap_or(-1.0);
+        (0.5..=0.8).contains(&time)
+    };
+    let wanted: Vec<&str> = csv.lines().filter(inside).collect();
+    assert_eq!(part.lines().skip(1).collect::<Vec<_>>(), wanted);
+    assert_eq!(told.ok().lines()[0]["rows"], wanted.len());
+}
+
+#[test]
+fn a_cut_opens_again_with_what_the_session_said_of_itself() {
+    let recorded = record("1.5");
+    recorded
+        .export(&["--mcap", "--from", "0.4", "--to", "1"], "cut.mcap")
+        .ok();
+    let (whole, cut) = (recorded.info("session.mcap"), recorded.info("cut.mcap"));
+    for key in ["hand", "simulated", "version", "closed", "gaps"] {
+        assert_eq!(whole[key], cut[key], "{key}");
+    }
+    assert!(
+        (0.5..=0.6).contains(&cut["length_s"].as_f64().unwrap()),
+        "{cut}"
+    );
+    let file = recorded.path("cut.mcap");
+    let csv = recorded.path("cut.csv");
+    run(&["export", text(&file), "--csv", "--out", text(&csv)]).ok();
+    recorded
+        .export(&["--csv", "--from", "0.4", "--to", "1"], "part.csv")
+        .ok();
+    let values = |name: &str| {
+        let text = std::fs::read_to_string(recorded.path(name)).unwrap();
+        let lines = rows(&text).1.into_iter();
+        lines.map(|line| line[1..].to_vec()).collect::<Vec<_>>()
+    };
+    assert_eq!(values("cut.csv"), values("part.csv"));
+}
+
+#[test]
+fn tables_and_bags_take_their_place_whole_or_not_at_all() {
+    let recorded = record("1");
+    recorded.export(&["--parquet"], "a.parquet").ok();
+    let bytes = std::fs::read(recorded.path("a.parquet")).unwrap();
+    assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
+    recorded.export(&["--rosbag"], "bag").ok();
+    let bag = recorded.path("bag");
+    let yaml = std::fs::read_to_string(bag.join("metadata.yaml")).unwrap();
+    assert!(yaml.contains("storage_identifier: mcap") && yaml.contains("'bag_0.mcap'"));
+    let inside = run(&["info", text(&bag.join("bag_0.mcap")), "--json"]).ok();
+    assert_eq!(inside.lines()[0]["states"], recorded.stats["states"]);
+    let names = recorded.names();
+    for form in ["--csv", "--parquet", "--rosbag", "--mcap"] {
+        for there in ["session.mcap", "a.parquet", "bag"] {
+            refused(
+                &recorded.export(&[form], there),
+                1,
+                &["already there", "--out"],
+            );
+        }
+        refused(
+            &recorded.export(&[form], "none/here"),
+            1,
+            &["cannot write", "none/here"],
+        );
+    }
+    assert_eq!(recorded.names(), names, "nothing is left over");
+    assert_eq!(std::fs::read(recorded.path("a.parquet")).unwrap(), bytes);
+}
+
+#[test]
+fn what_is_no_session_is_refused_in_one_sentence_by_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("empty"), b"").unwrap();
+    std::fs::write(path("text.mcap"), "time_s,angle\n1,2\n".repeat(1000)).unwrap();
+    std::fs::write(path("head.mcap"), b"\x89MCAP0\r\n").unwrap();
+    std::fs::write(
+        path("huge.mcap"),
+        [b"\x89MCAP0\r\n".as_slice(), &[0xFF; 4000]].concat(),
+    )
+    .unwrap();
+    let sparse = std::fs::OpenOptions::new()
+        .write(true)
+        .open(path("huge.mcap"))
+        .unwrap();
+    sparse.set_len(200_000_000).unwrap();
+    for (name, words) in [
+        ("gone.mcap", "No such file"),
+        ("", "is not an MCAP file"),
+        ("empty", "is not an MCAP file"),
+        ("text.mcap", "is not an MCAP file"),
+        ("head.mcap", "no whole piece"),
+        ("huge.mcap", "no whole piece"),
+    ] {
+        let file = path(name);
+        let out = path("out");
+        for args in [
+            &["info", text(&file)][..],
+            &["info", text(&file), "--json"],
+            &["export", text(&file), "--csv", "--out", text(&out)],
+            &["recover", text(&file), "--out", text(&out)],
+        ] {
+            refused(&run(args), 1, &[words, "cannot open", "; "]);
+        }
+        assert!(!out.exists(), "{name}");
+    }
+}
+
+#[test]
+fn wrong_flags_are_told_before_anything_is_done() {
+    let recorded = record("0.5");
+    let file = recorded.path("session.mcap");
+    let (file, out) = (text(&file), recorded.path("x"));
+    let out = text(&out);
+    for (args, words) in [
+        (&["record"][..], "--hand"),
+        (&["record", "--hand", "nonsense"], "names no kind of link"),
+        (
+            &["record", "--hand", "sim:", "--for", "soon"],
+            "number of seconds",
+        ),
+        (&["info"], "FILE.mcap"),
+        (&["export", file, "--out", out], "--csv"),
+        (&["export", file, "--csv"], "--out"),
+        (
+            &["export", file, "--csv", "--parquet", "--out", out],
+            "cannot be used with",
+        ),
+        (
+            &["export", file, "--csv", "--from", "soon", "--out", out],
+            "number of seconds",
+        ),
+        (&["recover"], "FILE.mcap"),
+    ] {
+        refused(&run(args), 2, &[words]);
+    }
+    let backwards = recorded.export(&["--csv", "--from", "2", "--to", "1"], "x");
+    refused(
+        &backwards,
+        1,
+        &["nothing between --from and --to", "s long"],
+    );
+    let taken = run(&["record", "--hand", "sim:", "--out", file]);
+    refused(&taken, 1, &["is not overwritten", "--out"]);
+    let nowhere = run(&["record", "--hand", "tcp:127.0.0.1:1", "--out", out]);
+    refused(&nowhere, 1, &["no hand at"]);
+    assert_eq!(recorded.names(), ["session.mcap"]);
+}
