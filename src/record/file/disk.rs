@@ -14,6 +14,12 @@ pub trait Disk: Send + Sync {
 
     /// True unless it is certain that nothing has that name any more.
     fn is_there(&self, path: &Path) -> bool;
+
+    /// Removes a file into which nothing could be written.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn remove(&self, path: &Path) -> io::Result<()>;
 }
 
 /// An open file.
@@ -46,6 +52,10 @@ impl Disk for SystemDisk {
 
     fn is_there(&self, path: &Path) -> bool {
         path.try_exists().unwrap_or(true)
+    }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        std::fs::remove_file(path)
     }
 }
 

@@ -1,18 +1,23 @@
 //! A session as a file: MCAP whose messages are ROS 2's, so that other programs open it as it is.
 //!
 //! `message` says what stands in a message, `topic` which there are; `encode` and `decode` go between entries and messages;
-//! `writer` makes bytes of entries, `recorder` puts them on the disk from a thread of its own; `walk` finds the pieces of a file
-//! that may be damaged, `reader` reads its entries, `overview` is what a file tells without being read whole.
+//! `writer` makes bytes of entries, `tail` puts them on the disk, `recording` decides when and into which file, `recorder` is the
+//! thread that does it; `walk` finds the pieces of a file that may be damaged, `reader` reads its entries, `overview` is what a
+//! file tells without being read whole.
 
 pub mod cdr;
 pub mod decode;
 pub mod disk;
 pub mod encode;
+#[cfg(test)]
+mod failing;
 pub mod message;
 pub mod opening;
 pub mod overview;
 pub mod reader;
 pub mod recorder;
+mod recording;
+mod tail;
 #[cfg(test)]
 pub(crate) mod tests;
 pub mod topic;

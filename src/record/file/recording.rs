@@ -1,0 +1,384 @@
+//! One recording, step by step: what is taken, when it goes to the disk, and when another file is begun. Times are arguments.
+
+use crate::hand::Moment;
+use crate::record::file::disk::Disk;
+use crate::record::file::opening::Opening;
+use crate::record::file::recorder::RecorderStatus;
+use crate::record::file::tail::{Content, FileTail};
+use crate::record::file::writer::SessionWriter;
+use crate::record::{Entry, Event, EventKind, LinkReport, Record};
+use mcap::McapError;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Bytes that may wait for the disk: two minutes of one hand.
+pub(crate) const PENDING_MAX: usize = 8 * 1024 * 1024;
+/// What was taken goes to the file at least this often, so that a killed program loses no more than a quarter of a second.
+pub(crate) const FLUSH_EACH: Duration = Duration::from_millis(125);
+/// How often it is looked whether the file is still there and the computer's clock was set.
+pub(crate) const LOOK_EACH: Duration = Duration::from_secs(1);
+/// A clock that differs by more was set, or the computer slept.
+pub(crate) const CLOCK_SET: Duration = Duration::from_secs(1);
+/// A file that cannot be ended in this time is left as it is; a reader can do without its end.
+pub(crate) const END_WITHIN: Duration = Duration::from_secs(2);
+/// Files begun because one took nothing any more; a disk that spoils more of them is broken.
+const REPLACED_MAX: u32 = 20;
+
+/// The present time, by both clocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Now {
+    /// Since the recording began; never goes back.
+    pub(crate) since: Duration,
+    /// Nanoseconds since 1970, as the computer's clock says.
+    pub(crate) wall_nanos: i64,
+}
+
+/// An entry, and how many before it found no room.
+#[derive(Debug)]
+pub(crate) struct Given {
+    pub(crate) entry: Entry,
+    pub(crate) lost_before: u64,
+}
+
+/// A recording and its files.
+pub(crate) struct Recording {
+    opening: Opening,
+    writer: SessionWriter,
+    /// What the writer holds that no file was given yet.
+    open: Content,
+    tail: FileTail,
+    /// The file before, until all of it is written.
+    ending: Option<FileTail>,
+    /// Lost, and not said in a file yet.
+    untold: u64,
+    entries: u64,
+    missing: u64,
+    replaced: u32,
+    earlier_bytes: u64,
+    newest: Moment,
+    /// What the next file must repeat to be understood alone.
+    link: Option<LinkReport>,
+    parameters: Option<Event>,
+    clock: Now,
+    flushed_at: Duration,
+    looked_at: Duration,
+    end_by: Option<Duration>,
+    ended: bool,
+    pending_max: usize,
+}
+
+impl Recording {
+    /// A recording into a file of this name.
+    ///
+    /// # Errors
+    /// [`McapError`], which writing to memory does not bring.
+    pub(crate) fn new(
+        opening: Opening,
+        disk: Arc<dyn Disk>,
+        path: PathBuf,
+        now: Now,
+    ) -> Result<Self, McapError> {
+        Ok(Self {
+            writer: SessionWriter::new(&opening)?,
+            newest: opening.began,
+            opening,
+            open: Content::default(),
+            tail: FileTail::new(disk, path),
+            ending: None,
+            untold: 0,
+            entries: 0,
+            missing: 0,
+            replaced: 0,
+            earlier_bytes: 0,
+            link: None,
+            parameters: None,
+            clock: now,
+            flushed_at: now.since,
+            looked_at: now.since,
+            end_by: None,
+            ended: false,
+            pending_max: PENDING_MAX,
+        })
+    }
+
+    #[cfg(test)]
+    pub(crate) const fn with_pending_max(mut self, bytes: usize) -> Self {
+        self.pending_max = bytes;
+        self
+    }
+
+    /// Takes an entry, or counts it if too much waits for the disk.
+    pub(crate) fn take(&mut self, given: &Given) {
+        self.lose(given.lost_before);
+        let ending = self.ending.as_ref().map_or(0, FileTail::held);
+        if self.tail.held() + ending >= self.pending_max {
+            self.lose(1);
+            return;
+        }
+        let at = given.entry.at();
+        self.newest = self.newest.max(at);
+        self.tell_missing(at);
+        self.remember(&given.entry);
+        self.entries += 1;
+        self.open.entries += 1;
+        self.write(&given.entry);
+    }
+
+    /// Counts entries that never came here.
+    pub(crate) const fn lose(&mut self, entries: u64) {
+        self.untold += entries;
+        self.missing += entries;
+    }
+
+    /// Does what is due.
+    pub(crate) fn step(&mut self, now: Now) {
+        if now.since.saturating_sub(self.flushed_at) >= FLUSH_EACH {
+            self.flushed_at = now.since;
+            self.flush();
+            self.put(now.since, false);
+        }
+        if now.since.saturating_sub(self.looked_at) >= LOOK_EACH {
+            self.looked_at = now.since;
+            self.look(now);
+        }
+    }
+
+    /// Ends the file, as far as the disk takes it.
+    pub(crate) fn end(&mut self, now: Now) {
+        self.flush();
+        self.look(now);
+        self.tell_missing(self.newest);
+        self.finish();
+        self.end_by = Some(now.since + END_WITHIN);
+        self.end_step(now.since);
+    }
+
+    /// Goes on with ending; true once it is ended or given up.
+    pub(crate) fn end_step(&mut self, now: Duration) -> bool {
+        self.put(now, true);
+        let is_late = self.end_by.is_some_and(|by| now >= by);
+        if is_late && !self.ended {
+            let mut lost = self.tail.waiting();
+            if let Some(ending) = &self.ending {
+                lost.add(ending.waiting());
+            }
+            self.take_back(lost);
+        }
+        self.ended = is_late || self.ending.is_none() && self.tail.is_done();
+        self.ended
+    }
+
+    /// How it goes.
+    pub(crate) fn status(&self, since: Duration) -> RecorderStatus {
+        RecorderStatus {
+            path: self.tail.path().map(ToOwned::to_owned),
+            bytes: self.tail.written(),
+            earlier_bytes: self.earlier_bytes,
+            entries: self.entries,
+            missing: self.missing,
+            trouble: self
+                .ending
+                .as_ref()
+                .and_then(FileTail::trouble)
+                .or_else(|| self.tail.trouble()),
+            since,
+            ended: self.ended,
+        }
+    }
+
+    fn write(&mut self, entry: &Entry) {
+        // Writing to memory does not fail.
+        let result = self.writer.push(entry);
+        debug_assert!(result.is_ok());
+    }
+
+    fn note(&mut self, at: Moment, words: String) {
+        self.write(&Entry::Event(Event {
+            at,
+            kind: EventKind::Recording,
+            words,
+        }));
+    }
+
+    fn tell_missing(&mut self, at: Moment) {
+        let lost = std::mem::take(&mut self.untold);
+        if lost > 0 {
+            self.open.told += lost;
+            self.note(at, format!("{lost} entries are missing before this"));
+        }
+    }
+
+    /// Counts as lost what a file was given.
+    const fn take_back(&mut self, lost: Content) {
+        self.entries -= lost.entries;
+        self.missing += lost.entries;
+        self.untold += lost.entries + lost.told;
+    }
+
+    fn remember(&mut self, entry: &Entry) {
+        match entry {
+            Entry::Link(report) if !report.status.is_empty() => {
+                self.link = Some(LinkReport {
+                    figures: String::new(),
+                    ..report.clone()
+                });
+            }
+            Entry::Heard(Record::State { at, state }) => {
+                let report = self.link.get_or_insert_with(|| LinkReport {
+                    at: *at,
+                    state: *state,
+                    trouble: String::new(),
+                    status: String::new(),
+                    figures: String::new(),
+                });
+                report.state = *state;
+            }
+            Entry::Event(event) if event.kind == EventKind::Parameters => {
+                self.parameters = Some(event.clone());
+            }
+            _ => {}
+        }
+    }
+
+    fn flush(&mut self) {
+        let result = self.writer.flush();
+        debug_assert!(result.is_ok());
+        self.give();
+    }
+
+    fn finish(&mut self) {
+        let result = self.writer.finish();
+        debug_assert!(result.is_ok());
+        self.give();
+    }
+
+    fn give(&mut self) {
+        let bytes = self.writer.take_bytes();
+        let content = std::mem::take(&mut self.open);
+        if !bytes.is_empty() {
+            self.tail.add(bytes, content);
+        }
+    }
+
+    fn put(&mut self, now: Duration, is_last: bool) {
+        if let Some(mut ending) = self.ending.take() {
+            match is_last {
+                true => ending.put_safely(now),
+                false => ending.put(now),
+            }
+            match ending.is_done() {
+                true => self.earlier_bytes += ending.written(),
+                false => self.ending = Some(ending),
+            }
+        }
+        if self.ending.is_none() {
+            match is_last {
+                true => self.tail.put_safely(now),
+                false => self.tail.put(now),
+            }
+        }
+    }
+
+    /// Looks whether the files are still there and take bytes, and whether the clock goes on as before.
+    fn look(&mut self, now: Now) {
+        if let Some(ending) = self.ending.take() {
+            match (ending.is_gone(), ending.is_dead(now.since)) {
+                (true, _) => self.take_back(ending.everything()),
+                (_, true) => self.take_back(ending.waiting()),
+                _ => self.ending = Some(ending),
+            }
+        }
+        let drift = self.drift(now);
+        if self.tail.is_gone() {
+            self.flush();
+            self.take_back(self.tail.everything());
+            self.begin_next(now, drift);
+            let words = "this file goes on where another was removed while it was written";
+            self.note(self.newest, words.into());
+        } else if drift.unsigned_abs() > CLOCK_SET.as_nanos() && self.ending.is_none() {
+            self.follow_clock(now, drift);
+        } else if self.tail.is_dead(now.since) {
+            self.replace(now);
+        }
+    }
+
+    /// Nanoseconds by which the computer's clock is ahead of what it should be.
+    const fn drift(&self, now: Now) -> i128 {
+        let passed = now.since.as_nanos() as i128 - self.clock.since.as_nanos() as i128;
+        now.wall_nanos as i128 - self.clock.wall_nanos as i128 - passed
+    }
+
+    /// Goes on in another file, whose times are those of the clock as it is now.
+    fn follow_clock(&mut self, now: Now, drift: i128) {
+        let seconds = Duration::from_nanos(u64::try_from(drift.unsigned_abs()).unwrap_or(u64::MAX));
+        let seconds = format!("{:.1} s", seconds.as_secs_f64());
+        let what = match drift < 0 {
+            true => format!("the computer's clock was set back by {seconds}"),
+            false => format!("the computer slept or its clock was set forward: {seconds}"),
+        };
+        self.tell_missing(self.newest);
+        self.note(
+            self.newest,
+            format!("the recording goes on in another file: {what}"),
+        );
+        self.finish();
+        let old = self.begin_next(now, drift);
+        self.ending = Some(old);
+        self.note(
+            self.newest,
+            format!("this file goes on where another ended: {what}"),
+        );
+    }
+
+    /// Tries another file in place of one that takes nothing any more; what waits for the old one is lost if that goes.
+    fn replace(&mut self, now: Now) {
+        self.tail.spare(now.since);
+        if self.replaced >= REPLACED_MAX {
+            return;
+        }
+        self.replaced += 1;
+        let Ok(mut writer) = SessionWriter::new(&self.opening) else {
+            return;
+        };
+        let mut trial = self.tail.next();
+        trial.add(writer.take_bytes(), Content::default());
+        trial.put_safely(now.since);
+        let works = trial.is_done();
+        trial.discard();
+        if works {
+            self.flush();
+            self.take_back(self.tail.waiting());
+            let drift = self.drift(now);
+            let old = self.begin_next(now, drift);
+            self.earlier_bytes += old.written();
+            let words = "this file goes on where another could not be written any more";
+            self.note(self.newest, words.into());
+        }
+    }
+
+    /// Begins another file, and gives back the one before.
+    fn begin_next(&mut self, now: Now, drift: i128) -> FileTail {
+        if drift.unsigned_abs() > CLOCK_SET.as_nanos() {
+            let drift = i64::try_from(drift).unwrap_or_default();
+            self.opening.base_nanos = self.opening.base_nanos.saturating_add_signed(drift);
+            self.clock = now;
+        }
+        self.opening.began = self.newest;
+        let next = self.tail.next();
+        let old = std::mem::replace(&mut self.tail, next);
+        if let Ok(writer) = SessionWriter::new(&self.opening) {
+            self.writer = writer;
+        }
+        self.open = Content::default();
+        let at = self.newest;
+        if let Some(link) = self.link.clone() {
+            self.write(&Entry::Link(LinkReport { at, ..link }));
+        }
+        if let Some(parameters) = self.parameters.clone() {
+            self.write(&Entry::Event(Event { at, ..parameters }));
+        }
+        self.tell_missing(at);
+        old
+    }
+}

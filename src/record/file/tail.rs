@@ -1,0 +1,269 @@
+//! The end of a file that is being written: bytes that wait for the disk, and bytes that the disk has and may still lose.
+
+use crate::record::file::disk::{Disk, DiskFile};
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Against a loss of power.
+pub(crate) const SYNC_EACH: Duration = Duration::from_millis(700);
+/// A disk that failed is tried again after this.
+pub(crate) const RETRY_AFTER: Duration = Duration::from_millis(500);
+/// An open file that takes nothing for so long while its disk is not full will not come back: a plug was pulled.
+pub(crate) const DEAD_AFTER: Duration = Duration::from_secs(10);
+/// Files of one name in one folder; beyond that something is wrong with the folder.
+const NAMES_MAX: u32 = 100;
+
+/// How many entries some bytes hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Content {
+    /// Entries.
+    pub(crate) entries: u64,
+    /// Entries of which they say that they are missing.
+    pub(crate) told: u64,
+}
+
+impl Content {
+    pub(crate) const fn add(&mut self, other: Self) {
+        self.entries += other.entries;
+        self.told += other.told;
+    }
+
+    const fn subtract(&mut self, other: Self) {
+        self.entries -= other.entries;
+        self.told -= other.told;
+    }
+}
+
+#[derive(Debug)]
+struct Portion {
+    bytes: Vec<u8>,
+    content: Content,
+}
+
+/// The end of one file.
+pub(crate) struct FileTail {
+    disk: Arc<dyn Disk>,
+    asked: PathBuf,
+    path: Option<PathBuf>,
+    file: Option<Box<dyn DiskFile>>,
+    /// Bytes that the system took.
+    written: u64,
+    /// What they hold.
+    content: Content,
+    pending: VecDeque<Portion>,
+    /// Written since the disk last said that all is safe. A disk that fails to say so may have lost any of it.
+    unsynced: VecDeque<Portion>,
+    /// Bytes of both.
+    held: usize,
+    synced_at: Duration,
+    retry_at: Option<Duration>,
+    fails_since: Option<Duration>,
+    failure: Option<io::Error>,
+}
+
+impl FileTail {
+    /// Of a file that is made when there is something to write; if its name is taken, a number is put to it.
+    pub(crate) fn new(disk: Arc<dyn Disk>, asked: PathBuf) -> Self {
+        Self {
+            disk,
+            asked,
+            path: None,
+            file: None,
+            written: 0,
+            content: Content::default(),
+            pending: VecDeque::new(),
+            unsynced: VecDeque::new(),
+            held: 0,
+            synced_at: Duration::ZERO,
+            retry_at: None,
+            fails_since: None,
+            failure: None,
+        }
+    }
+
+    /// Another file of the same name.
+    pub(crate) fn next(&self) -> Self {
+        Self::new(Arc::clone(&self.disk), self.asked.clone())
+    }
+
+    pub(crate) fn add(&mut self, mut bytes: Vec<u8>, content: Content) {
+        bytes.shrink_to_fit();
+        self.held += bytes.len();
+        self.pending.push_back(Portion { bytes, content });
+    }
+
+    pub(crate) fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    pub(crate) const fn written(&self) -> u64 {
+        self.written
+    }
+
+    /// Bytes in memory.
+    pub(crate) const fn held(&self) -> usize {
+        self.held
+    }
+
+    /// Why nothing can be written now, in the system's words.
+    pub(crate) fn trouble(&self) -> Option<String> {
+        self.failure.as_ref().map(ToString::to_string)
+    }
+
+    /// True if all was written and is safe.
+    pub(crate) fn is_done(&self) -> bool {
+        self.pending.is_empty() && self.unsynced.is_empty()
+    }
+
+    /// True if somebody removed the file.
+    pub(crate) fn is_gone(&self) -> bool {
+        let path = self.path.as_deref();
+        path.is_some_and(|path| !self.disk.is_there(path))
+    }
+
+    /// True if the file fails for so long that another one should be tried. A full disk is no reason for that.
+    pub(crate) fn is_dead(&self, now: Duration) -> bool {
+        let is_full = self.failure.as_ref().is_some_and(|error| {
+            matches!(
+                error.kind(),
+                ErrorKind::StorageFull | ErrorKind::QuotaExceeded
+            )
+        });
+        let since = self.fails_since.filter(|_| self.file.is_some());
+        since.is_some_and(|since| !is_full && now.saturating_sub(since) >= DEAD_AFTER)
+    }
+
+    /// Lets it be tried for as long again.
+    pub(crate) const fn spare(&mut self, now: Duration) {
+        self.fails_since = Some(now);
+    }
+
+    /// What waits for the disk.
+    pub(crate) fn waiting(&self) -> Content {
+        let mut all = Content::default();
+        self.pending
+            .iter()
+            .for_each(|portion| all.add(portion.content));
+        all
+    }
+
+    /// Everything that was given to this file.
+    pub(crate) fn everything(&self) -> Content {
+        let mut all = self.waiting();
+        all.add(self.content);
+        all
+    }
+
+    /// Removes a file into which nothing could be written.
+    pub(crate) fn discard(self) {
+        let disk = Arc::clone(&self.disk);
+        let path = self.path.clone();
+        drop(self);
+        // A file that cannot be removed lies there empty and harms nobody.
+        let _removed = path.map(|path| disk.remove(&path));
+    }
+
+    /// Gives the disk what waits. What fails waits on, and is tried again at the same place.
+    pub(crate) fn put(&mut self, now: Duration) {
+        if self.retry_at.is_some_and(|at| now < at) {
+            return;
+        }
+        let is_due = now.saturating_sub(self.synced_at) >= SYNC_EACH;
+        self.attempt(now, is_due);
+    }
+
+    /// The same at once, and all of it is to be safe.
+    pub(crate) fn put_safely(&mut self, now: Duration) {
+        self.attempt(now, true);
+    }
+
+    fn attempt(&mut self, now: Duration, syncs: bool) {
+        let result = self.write().and_then(|()| match syncs {
+            true => self.sync(now),
+            false => Ok(()),
+        });
+        self.retry_at = result.is_err().then(|| now + RETRY_AFTER);
+        self.fails_since = match result {
+            Ok(()) => None,
+            Err(_) => self.fails_since.or(Some(now)),
+        };
+        self.failure = result.err();
+    }
+
+    fn write(&mut self) -> io::Result<()> {
+        if self.pending.is_empty() {
+            return Ok(());
+        }
+        if self.file.is_none() {
+            let (file, path) = create(self.disk.as_ref(), &self.asked)?;
+            (self.file, self.path) = (Some(file), Some(path));
+        }
+        let Some(file) = &mut self.file else {
+            return Ok(());
+        };
+        while let Some(portion) = self.pending.front() {
+            file.write_at(self.written, &portion.bytes)?;
+            self.written += length(portion);
+            self.content.add(portion.content);
+            self.unsynced.extend(self.pending.pop_front());
+        }
+        Ok(())
+    }
+
+    fn sync(&mut self, now: Duration) -> io::Result<()> {
+        self.synced_at = now;
+        let Some(file) = self.file.as_mut().filter(|_| !self.unsynced.is_empty()) else {
+            return Ok(());
+        };
+        match file.sync() {
+            Err(error) if !is_unknown(&error) => {
+                // The system says this once, and may have thrown away what it could not write.
+                self.rewind();
+                Err(error)
+            }
+            _ => {
+                self.unsynced.clear();
+                self.held = self.pending.iter().map(|portion| portion.bytes.len()).sum();
+                Ok(())
+            }
+        }
+    }
+
+    fn rewind(&mut self) {
+        while let Some(portion) = self.unsynced.pop_back() {
+            self.written -= length(&portion);
+            self.content.subtract(portion.content);
+            self.pending.push_front(portion);
+        }
+    }
+}
+
+fn length(portion: &Portion) -> u64 {
+    u64::try_from(portion.bytes.len()).unwrap_or_default()
+}
+
+/// True if the file system does not know what it is to make a file safe.
+fn is_unknown(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::Unsupported | ErrorKind::InvalidInput
+    )
+}
+
+/// A new file of this name, or of the name with a number.
+fn create(disk: &dyn Disk, asked: &Path) -> io::Result<(Box<dyn DiskFile>, PathBuf)> {
+    let stem = asked.file_stem().unwrap_or_default().to_string_lossy();
+    let numbered = (2..NAMES_MAX).map(|n| asked.with_file_name(format!("{stem}-{n}.mcap")));
+    let mut last = io::Error::from(ErrorKind::AlreadyExists);
+    for path in std::iter::once(asked.to_owned()).chain(numbered) {
+        match disk.create(&path) {
+            Ok(file) => return Ok((file, path)),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => last = error,
+            Err(error) => return Err(error),
+        }
+    }
+    Err(last)
+}
