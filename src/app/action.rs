@@ -96,6 +96,10 @@ pub enum Action {
     /// Make a picture of the plots in this size (width, height in points), and save it. Carried out by the shell, as
     /// the program itself draws nothing.
     SavePicture((u32, u32)),
+    /// Do not close the window after all.
+    Stay,
+    /// Close the window, whatever is lost.
+    Leave,
     /// A notice was read.
     Dismiss(u64),
     /// Dark or light.

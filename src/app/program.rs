@@ -17,7 +17,7 @@ use crate::app::sessions::SessionAction;
 use crate::app::sessions::recording::HandRecording;
 use crate::app::sessions::work::SessionWork;
 use crate::app::settings::Settings;
-use crate::app::state::State;
+use crate::app::state::{LeaveQuestion, State};
 use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
 use crate::hand::{Dof, Moment};
@@ -59,6 +59,7 @@ pub struct App {
     keeping: Option<BackgroundJob<FilesEnd>>,
     recorded: SessionWork,
     records: bool,
+    leaves: bool,
 }
 
 impl App {
@@ -105,6 +106,7 @@ impl App {
             keeping: None,
             recorded: SessionWork::default(),
             records: true,
+            leaves: false,
         }
     }
 
@@ -278,6 +280,8 @@ impl App {
             }
             Action::CancelScan => self.state.scan.cancel(),
             Action::Dismiss(id) => self.state.notices.dismiss(id),
+            Action::Stay => self.state.leave = None,
+            Action::Leave => (self.leaves, self.state.leave) = (true, None),
             action => self.hand_action(action, now),
         }
     }
@@ -510,6 +514,25 @@ impl App {
         let hand = self.state.hands.shown_mut();
         hand.now = now;
         hand.look_at_params(&self.env);
+    }
+
+    /// A person wants to close the window. True if something would be lost and they are asked first; the live hand is shown then.
+    pub fn asks_before_closing(&mut self) -> bool {
+        let series = self.state.hands.iter().any(HandState::runs_series);
+        let staged = |hand: &HandState| hand.params.all_staged().iter().count();
+        let edits = self.state.hands.iter().map(staged).sum();
+        let asks = !self.leaves && (series || edits > 0);
+        if asks {
+            self.recorded.player = None;
+            self.state.leave = Some(LeaveQuestion { series, edits });
+        }
+        asks
+    }
+
+    /// True once a person said that the window should close, whatever is lost.
+    #[must_use]
+    pub const fn leaves(&self) -> bool {
+        self.leaves
     }
 
     /// The window is about to close. A hand that is armed, or that this program set in motion, is stopped first.

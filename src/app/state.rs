@@ -10,6 +10,15 @@ use crate::app::trials::TrialsState;
 use crate::hand::Moment;
 use crate::transport::PortFound;
 
+/// What would be lost if the window closed now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LeaveQuestion {
+    /// A series of trials runs: it would end.
+    pub series: bool,
+    /// Staged values that were not applied.
+    pub edits: usize,
+}
+
 /// Everything the window shows.
 #[derive(Debug, Default)]
 pub struct State {
@@ -29,6 +38,8 @@ pub struct State {
     pub scan: ScanState,
     /// Recorded sessions.
     pub sessions: SessionsState,
+    /// What would be lost if the window closed now, once a person tried to.
+    pub leave: Option<LeaveQuestion>,
     /// The time line of the session that is replayed; `None` while hands are live.
     pub timeline: Option<Timeline>,
     /// What is kept from one start to the next.

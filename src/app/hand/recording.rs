@@ -17,7 +17,10 @@ impl HandState {
                 recording.params(&self.params.live_params(), self.now);
             }
             (Some(_), _) => self.recording = None,
-            (None, Some(_)) if wanted => self.recording = self.begin_recording(settings, env),
+            // A hand that never answers makes no file; what went over the wire before is still in the tap.
+            (None, Some(_)) if wanted && self.link.state.is_live() => {
+                self.recording = self.begin_recording(settings, env)
+            }
             (None, _) => {}
         }
     }

@@ -202,7 +202,15 @@ impl Program {
 
     /// A moving hand is held before the window goes.
     fn close(&mut self, ctx: &egui::Context, now: Moment) {
-        self.closing |= ctx.input(|input| input.viewport().close_requested());
+        if !self.closing {
+            let asked = ctx.input(|input| input.viewport().close_requested());
+            let app = self.cockpit.app();
+            if asked && app.asks_before_closing() {
+                ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+                return;
+            }
+            self.closing = asked || app.leaves();
+        }
         if !self.closing {
             return;
         }

@@ -91,7 +91,7 @@ pub(crate) static ROWS: [KeyRow; 32] = [
         Wish::Opens(Opens::View(View::Connection)),
     ),
     row(COMMAND, Key::Num9, Wish::Opens(Opens::View(View::Traffic))),
-    row(COMMAND, Key::Num0, Wish::Opens(Opens::View(View::Sessions))),
+    row(COMMAND, Key::R, Wish::Opens(Opens::View(View::Sessions))),
     row(NONE, Key::Num1, Wish::Joint(Dof::Little)),
     row(NONE, Key::Num2, Wish::Joint(Dof::Ring)),
     row(NONE, Key::Num3, Wish::Joint(Dof::Middle)),

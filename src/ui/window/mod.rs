@@ -38,7 +38,7 @@ use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
 use crate::ui::joints::row::JointRow;
-use crate::ui::kit::{self, CardView, Look, Opens, Pane, Typing};
+use crate::ui::kit::{self, Card, CardView, Choice, Look, Manner, Opens, Pane, Typing};
 use crate::ui::params::DeviceView;
 use crate::ui::params::card as device_card;
 use crate::ui::params::procedures as guard;
@@ -46,6 +46,7 @@ use crate::ui::plots::PlotView;
 use crate::ui::poses::PoseView;
 use crate::ui::poses::tiles as pose_tiles;
 use crate::ui::sessions::{self, SessionsView};
+use crate::ui::text::window;
 use crate::ui::theme;
 use crate::ui::trials::compare;
 use crate::ui::trials::compare::CompareView;
@@ -301,6 +302,7 @@ impl Window {
         let card = card.or_else(|| device_card::card_of(pane.state, pane.look));
         let card = card.or_else(|| compare::card_of(pane.state, pane.look));
         let card = card.or_else(|| sessions::card_of(pane.state, pane.look));
+        let card = leave_card(pane.state, pane.look).or(card);
         let asked = self.cards.ui(ui, covered, card);
         pane.actions.extend(asked);
     }
@@ -440,6 +442,21 @@ fn alone_ui(ui: &mut Ui, state: &State, part: impl FnOnce(&mut Ui, Rect, &mut Pa
     part(ui, whole, &mut pane);
 }
 
+/// The question before the window closes and something is lost.
+fn leave_card(state: &State, look: Look) -> Option<Card> {
+    let question = state.leave?;
+    let mut card = Card::new(look, window::LEAVE_TITLE);
+    if question.series {
+        card = card.warning(window::LEAVE_SERIES);
+    }
+    if question.edits > 0 {
+        card = card.warning(look.fill(window::LEAVE_EDITS, &[&question.edits]));
+    }
+    let stay = Choice::new(window::STAY, Manner::Safe).does(Action::Stay);
+    let leave = Choice::new(window::LEAVE, Manner::Danger).does(Action::Leave);
+    Some(card.choice(stay).choice(leave))
+}
+
 /// What the keys of the zoom did in the last frame, to be kept.
 fn zoomed(ui: &Ui, state: &State) -> Option<Action> {
     let zoom = Zoom::from(ui.ctx().zoom_factor());
@@ -452,6 +469,7 @@ fn is_covered(state: &State) -> bool {
         || state.hand().params.question.is_some()
         || state.trials.to_confirm.is_some()
         || state.sessions.to_delete.is_some()
+        || state.leave.is_some()
 }
 
 /// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.

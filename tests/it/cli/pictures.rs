@@ -4,7 +4,7 @@ use crate::setup::process::run;
 use serde_json::Value;
 use std::fs;
 
-const VIEWS: [&str; 10] = [
+const VIEWS: [&str; 11] = [
     "live",
     "touch",
     "tune",
@@ -14,6 +14,7 @@ const VIEWS: [&str; 10] = [
     "device",
     "connection",
     "traffic",
+    "sessions",
     "window",
 ];
 

@@ -537,6 +537,12 @@ impl Bench {
         self.run(40);
     }
 
+    /// The cross of the window is pressed: whether the person is asked first.
+    pub(crate) fn wants_to_close(&mut self) -> bool {
+        let cockpit = &mut self.harness.state_mut().program.cockpit;
+        cockpit.app().asks_before_closing()
+    }
+
     pub(crate) fn step(&mut self) {
         self.harness.step();
     }

@@ -112,6 +112,7 @@ fn switches_of_the_window_have_keys() {
         (Key::Num7, "device"),
         (Key::Num8, "connection"),
         (Key::Num9, "traffic"),
+        (Key::R, "sessions"),
         (Key::Num1, "live"),
     ] {
         bench.key_with(Modifiers::COMMAND, key);

@@ -306,3 +306,27 @@ fn a_file_that_is_no_session_is_refused_in_words() {
     });
     assert!(bench.state().timeline.is_none());
 }
+
+#[test]
+fn closing_asks_while_a_value_is_staged_and_closes_once_a_person_says_so() {
+    use handscope::params::rows::{ParamId, Value};
+    let mut bench = bench(Scenario::Idle);
+    assert!(!bench.wants_to_close(), "nothing is lost");
+    let id = ParamId::all()
+        .into_iter()
+        .find(|id| !id.is_place())
+        .unwrap();
+    bench.act(Action::Stage(id, Some(Value::Number(300))));
+    bench.run(100);
+    assert!(bench.wants_to_close());
+    bench.run(100);
+    assert!(bench.shows("Close Handscope?"));
+    bench.click_button("Keep it open");
+    bench.run(100);
+    assert!(!bench.shows("Close Handscope?"));
+    assert!(bench.wants_to_close());
+    bench.run(100);
+    bench.click_button("Close");
+    bench.run(100);
+    assert!(!bench.wants_to_close(), "asked once, and answered");
+}
