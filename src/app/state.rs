@@ -4,7 +4,7 @@ use crate::app::hand::HandState;
 use crate::app::notices::Notices;
 use crate::app::poses::PoseState;
 use crate::app::scan::ScanState;
-use crate::app::sessions::{SessionsState, Timeline};
+use crate::app::sessions::{BesideSession, SessionsState, Timeline};
 use crate::app::settings::Settings;
 use crate::app::trials::TrialsState;
 use crate::hand::Moment;
@@ -42,6 +42,8 @@ pub struct State {
     pub leave: Option<LeaveQuestion>,
     /// The time line of the session that is replayed; `None` while hands are live.
     pub timeline: Option<Timeline>,
+    /// A second session, drawn over the replayed one.
+    pub beside: Option<BesideSession>,
     /// What is kept from one start to the next.
     pub settings: Settings,
 }

@@ -38,6 +38,10 @@ pub enum SessionAction {
     Step(bool),
     /// Play this stretch again and again, or all once.
     Loop(Option<(Moment, Moment)>),
+    /// Draw this session over the replayed one, or none any more.
+    Beside(Option<PathBuf>),
+    /// Align both: this moment of the replayed session with that moment of the other.
+    Align(Moment, Moment),
     /// Change the words of the note at a moment; of no words, take it away.
     EditNote(Moment, String),
 }

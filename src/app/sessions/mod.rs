@@ -2,6 +2,7 @@
 
 pub mod about;
 pub mod action;
+pub mod beside;
 pub mod budget;
 pub mod item;
 pub mod list;
@@ -13,6 +14,7 @@ pub(crate) mod work;
 
 pub use crate::app::sessions::about::{SessionAbout, SessionNote};
 pub use crate::app::sessions::action::SessionAction;
+pub use crate::app::sessions::beside::BesideSession;
 pub use crate::app::sessions::item::SessionItem;
 pub use crate::app::sessions::list::SessionsState;
 pub use crate::app::sessions::timeline::Timeline;

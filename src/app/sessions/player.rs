@@ -5,6 +5,7 @@ use crate::app::hand::HandState;
 use crate::app::notices::NoticeKind;
 use crate::app::sessions::about::{SessionAbout, SessionNote};
 use crate::app::sessions::action::SessionAction;
+use crate::app::sessions::beside::{self, BesideSession};
 use crate::app::sessions::item::SessionItem;
 use crate::app::sessions::replay::{Recorded, Shown};
 use crate::app::sessions::timeline::Timeline;
@@ -62,6 +63,7 @@ pub(crate) struct Player {
     ahead: VecDeque<Entry>,
     ahead_until: Moment,
     reading: Option<(Moment, BackgroundJob<io::Result<Vec<Entry>>>)>,
+    beside: Option<BackgroundJob<Result<BesideSession, NoticeKind>>>,
 }
 
 /// Opens a file near its beginning, off the window's thread.
@@ -156,6 +158,7 @@ impl Player {
             ahead: VecDeque::new(),
             ahead_until: at,
             reading: None,
+            beside: None,
             file,
         };
         player.take_found((at, recorded));
@@ -214,6 +217,11 @@ impl Player {
         self.state.settings.side = self.file.opening().side;
         self.state.sessions.clone_from(&live.sessions);
         let eyes = live.hands.iter().any(HandState::may_move);
+        match BackgroundJob::take_from(&mut self.beside) {
+            Some(Ok(beside)) => self.state.beside = Some(beside),
+            Some(Err(refused)) => self.state.notices.push(self.state.now, refused),
+            None => {}
+        }
         self.take_seek(env);
         self.take_ahead();
         self.run(passed);
@@ -318,7 +326,7 @@ impl Player {
     }
 
     /// Carries out what a person asks about the replayed session.
-    pub(crate) fn act(&mut self, action: &SessionAction) {
+    pub(crate) fn act(&mut self, action: &SessionAction, env: &Env) {
         let (first, last) = (self.file.first(), self.file.last());
         let within = |at: Moment| at.clamp(first, last);
         match action {
@@ -352,6 +360,15 @@ impl Player {
                 });
                 if let Some(line) = self.line() {
                     line.runs = false;
+                }
+            }
+            SessionAction::Beside(Some(path)) => {
+                self.beside = Some(beside::read(path.clone(), first, env));
+            }
+            SessionAction::Beside(None) => (self.beside, self.state.beside) = (None, None),
+            SessionAction::Align(own, other) => {
+                if let Some(beside) = &mut self.state.beside {
+                    (beside.own, beside.other) = (*own, *other);
                 }
             }
             SessionAction::EditNote(at, words) => self.edit_note(*at, words),

@@ -18,6 +18,8 @@ use std::time::Duration;
 /// So much before the moment is taken in reading by reading: the longest a person looks at closely. What is older comes from the
 /// overview, second by second.
 const CLOSE: Duration = Duration::from_secs(30);
+/// A session of this length is drawn reading by reading over another.
+const CLOSE_WHOLE: Duration = Duration::from_secs(600);
 /// A session of this length is taken in whole.
 const WHOLE: Duration = Duration::from_secs(60);
 
@@ -42,10 +44,17 @@ impl Recorded {
     /// # Errors
     /// What the system says.
     pub(crate) fn at(file: &SessionFile, at: Moment) -> io::Result<Self> {
-        let mut recorded = Self::new(file);
         let mut from = file.first();
         if at.since(from) > WHOLE {
             from = Moment::from_duration(at.since(Moment::ZERO).saturating_sub(CLOSE));
+        }
+        Self::between(file, from, at)
+    }
+
+    /// The hand of a file at a moment, taken in reading by reading from another moment on.
+    fn between(file: &SessionFile, from: Moment, at: Moment) -> io::Result<Self> {
+        let mut recorded = Self::new(file);
+        if from > file.first() {
             recorded.take_overview(file, from);
         }
         let stretch = Stretch {
@@ -63,6 +72,19 @@ impl Recorded {
             ControlFlow::Continue(())
         })?;
         recorded.hand.now = at;
+        Ok(recorded)
+    }
+
+    /// The hand of a file at its end, with all of what was measured: reading by reading, or second by second in a long session.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub(crate) fn whole(file: &SessionFile) -> io::Result<Self> {
+        if file.last().since(file.first()) <= CLOSE_WHOLE {
+            return Self::between(file, file.first(), file.last());
+        }
+        let mut recorded = Self::new(file);
+        recorded.take_overview(file, file.last());
         Ok(recorded)
     }
 

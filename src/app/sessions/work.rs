@@ -101,7 +101,7 @@ impl SessionWork {
         let Some(player) = &mut self.player else {
             return;
         };
-        player.act(action);
+        player.act(action, env);
         if matches!(action, SessionAction::EditNote(..)) {
             let (path, about) = (player.path().to_owned(), player.about().clone());
             self.save(path, about, env);

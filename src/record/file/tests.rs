@@ -238,7 +238,7 @@ fn a_file_cut_anywhere_gives_all_whole_chunks_and_no_wrong_value() {
 fn no_flipped_bit_gives_a_wrong_value_and_each_costs_one_chunk_at_most() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mcap");
-    let entries = entries(4, 300);
+    let entries = entries(4, 100);
     let written: Vec<Atom> = entries.iter().flat_map(atoms).collect();
     let bytes = bytes_of(&entries);
     let mut random = fastrand::Rng::with_seed(5);

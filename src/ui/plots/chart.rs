@@ -48,6 +48,8 @@ pub(crate) struct ChartCurve<'a> {
     pub(crate) steps: bool,
     /// Digits of its value at the pointer, if that is told.
     pub(crate) told: Option<usize>,
+    /// True for a line of the second session: its points are remembered apart.
+    pub(crate) beside: bool,
 }
 
 impl<'a> ChartCurve<'a> {
@@ -60,6 +62,7 @@ impl<'a> ChartCurve<'a> {
             style: LineStyle::Solid,
             steps: false,
             told: None,
+            beside: false,
         }
     }
 
@@ -68,7 +71,7 @@ impl<'a> ChartCurve<'a> {
         match self.points {
             Points::Own(points) => vec![(self, points)],
             Points::Measured(_, series) => {
-                let pieces = traces.get(&series).into_iter();
+                let pieces = traces.get(&(self.beside, series)).into_iter();
                 let pieces = pieces.flat_map(|trace| &trace.segments);
                 pieces.map(|piece| (self, piece.as_slice())).collect()
             }
@@ -103,7 +106,7 @@ impl<'a> ChartCurve<'a> {
     }
 }
 
-type Traces = HashMap<Series, Trace>;
+type Traces = HashMap<(bool, Series), Trace>;
 
 /// What charts over one time remember between frames.
 #[derive(Debug, Default)]
@@ -253,14 +256,15 @@ impl<'a> Chart<'a> {
         let mut extent = levels.fold(None, scales::joined);
         let mut is_decimated = false;
         for curve in &self.curves {
-            let zero = curve.zero[1];
+            let [ahead_s, zero] = curve.zero;
+            let (from_s, to_s) = (from_s + ahead_s, to_s + ahead_s);
             match curve.points {
                 Points::Own(points) => {
                     let values = points.iter().map(|[_, value]| (value - zero, value - zero));
                     extent = values.fold(extent, scales::joined);
                 }
                 Points::Measured(history, series) => {
-                    let trace = traces.entry(series).or_default();
+                    let trace = traces.entry((curve.beside, series)).or_default();
                     history.trace(series, from_s, to_s, columns, trace);
                     is_decimated |= trace.decimated && !curve.steps;
                     // A trace keeps every extreme; the point before the left edge is not seen.

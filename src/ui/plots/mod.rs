@@ -15,7 +15,7 @@ use crate::app::settings::PlotKind;
 use crate::hand::{Dof, PerDof};
 use crate::history::Series;
 use crate::transport::Endpoint;
-use crate::ui::kit::{self, Look, Pane};
+use crate::ui::kit::{self, Look, Pane, dash};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartResponse, ChartView, Points};
 use crate::ui::plots::cursors::Cursors;
 use crate::ui::plots::panels::{PANELS, Panel, PanelLine};
@@ -154,6 +154,20 @@ impl PlotView {
                 self.stroke(look, line),
             )
         };
+        let lines = panel.lines(&self.hidden);
+        // The second session stands behind the first.
+        let beside = pane.state.beside.iter().flat_map(|beside| {
+            let measured = lines.iter().filter(|line| !line.wished);
+            measured.map(|line| ChartCurve {
+                zero: [beside.offset_s(), 0.0],
+                style: dash::nth(1),
+                beside: true,
+                ..ChartCurve::new(
+                    Points::Measured(&beside.history, line.series),
+                    self.stroke(look, line),
+                )
+            })
+        });
         let mut levels = Vec::new();
         if self.thresholds && panel.kind == PlotKind::Force {
             let joints = hand.joints.iter().filter(|(dof, _)| !self.hidden[*dof]);
@@ -163,7 +177,7 @@ impl PlotView {
         }
         let span = self.view.time.span();
         let chart = Chart {
-            curves: panel.lines(&self.hidden).iter().map(curve).collect(),
+            curves: beside.chain(lines.iter().map(curve)).collect(),
             levels,
             moments: marks::moments(pane, span),
             cursors: self.cursors.0,

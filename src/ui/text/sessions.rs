@@ -57,6 +57,14 @@ texts! {
     LOOP_OFF: "Loop off", "取消循环", "Plays all of it once again.", "恢复完整播放。";
     EVENTS: "Marks", "标记", "Faults, stops, notes and trials of this session: press one to go there.", "此会话的故障、停止、备注和试验：点击跳转。";
     NO_EVENTS: "Nothing is marked in this session.", "此会话没有标记。";
+    BESIDE: "Compare with", "对比会话", "Draws another session over this one, dashed, in all plots.", "在所有曲线图中以虚线叠加另一会话。";
+    BESIDE_OFF: "Compare no longer", "取消对比";
+    BESIDE_NONE: "There is no other session.", "没有其他会话。";
+    ALIGN: "Align", "对齐", "Lays a mark of each session over the other.", "将两个会话各自的一个标记对齐。";
+    ALIGN_OWN: "This session, at", "本会话，位于";
+    ALIGN_OTHER: "The other, at", "另一会话，位于";
+    BEGINNING: "its beginning", "开头";
+    THIS_MOMENT: "the moment shown", "当前时刻";
     NOTE_HERE: "Note here", "在此添加备注", "what is to be seen here", "此处值得注意的内容";
     DAMAGED: "A part of this file cannot be read and is left out.", "此文件有一部分无法读取，已略过。";
     REFUSED: "{} cannot be replayed: {}.", "无法回放 {}：{}。";

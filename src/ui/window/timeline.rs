@@ -5,8 +5,9 @@ use crate::app::sessions::{SessionAction, Timeline};
 use crate::hand::Moment;
 use crate::record::EventKind;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
-use crate::ui::sessions::strip;
-use crate::ui::text::{Text, main, panels, sessions, tune};
+use crate::ui::sessions::marks::{clock, shown};
+use crate::ui::sessions::{beside, strip};
+use crate::ui::text::{Text, panels, sessions};
 use crate::ui::theme;
 use egui::{Color32, Popup, Rect, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use std::time::Duration;
@@ -77,6 +78,7 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let words = format!("{at} / {whole}");
     Label::new(&words, color).number().ui(ui);
     marks_ui(ui, pane, line);
+    beside::beside_ui(ui, pane, line);
     let note = Button::said(look, sessions::NOTE_HERE);
     if note.ui(ui, look).clicked() {
         pane.open(kit::Opens::Note);
@@ -130,22 +132,6 @@ fn entries(look: Look, line: &Timeline) -> Vec<Entry> {
     all.sort_by_key(|entry| entry.at);
     all.truncate(LISTED);
     all
-}
-
-/// The word and the colour of a mark; none for what the line does not show.
-fn shown(look: Look, kind: EventKind) -> Option<(Text, Color32)> {
-    let palette = look.palette;
-    Some(match kind {
-        EventKind::Fault => (main::FAULT_TITLE, palette.bad),
-        EventKind::Stop => (main::STOP, palette.stop_edge),
-        EventKind::Armed => (main::DISARM, palette.armed),
-        EventKind::LinkLost => (main::STATE_LOST, palette.bad),
-        EventKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
-        EventKind::Trial => (tune::COLUMN_TRIAL, palette.accent),
-        EventKind::Note => (panels::NOTES, palette.text),
-        EventKind::Recording => (sessions::RECORDING, palette.warn),
-        _ => return None,
-    })
 }
 
 fn marks_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
@@ -256,15 +242,4 @@ fn moment(line: &Timeline, length: Duration, share: f32) -> Moment {
 fn x_of(place: Rect, line: &Timeline, at: Moment) -> f32 {
     let length = line.last.since(line.first).as_secs_f32().max(1e-3);
     place.left() + at.since(line.first).as_secs_f32() / length * place.width()
-}
-
-/// `1:02:03.45`, from the beginning of the session.
-fn clock(since: Duration) -> String {
-    let seconds = since.as_secs();
-    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
-    let parts = since.subsec_millis() / 10;
-    match hours {
-        0 => format!("{minutes}:{seconds:02}.{parts:02}"),
-        hours => format!("{hours}:{minutes:02}:{seconds:02}.{parts:02}"),
-    }
 }

@@ -5,7 +5,9 @@ use crate::session::alone;
 use crate::session::display::Display;
 use crate::session::program::{Hand, REST, Window};
 use crate::session::twin::Twin;
+use crate::setup::process;
 use handscope::app::action::Action;
+use handscope::app::sessions::SessionAction;
 use handscope::app::settings::Language;
 use handscope::hand::{Angle, Dof};
 use handscope::ui::View;
@@ -208,6 +210,39 @@ fn a_session_with_the_mouse_in_the_window_with_opengl() {
 #[test]
 fn a_session_with_the_mouse_in_the_window_without_opengl() {
     session(&["--software"]);
+}
+
+#[test]
+fn a_recording_is_scrubbed_with_the_mouse() {
+    let _alone = alone();
+    let Some(display) = Display::start() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("grasp.mcap");
+    let file = path.to_str().unwrap();
+    let hand = "sim:?scenario=grasp";
+    let recorded = process::run(&["record", "--hand", hand, "--for", "6", "--out", file]);
+    assert_eq!(recorded.code, Some(0), "{}", recorded.err);
+    let mut session = Session::start(display, &["--software", file]);
+    let open = SessionAction::Open(path.clone());
+    session.twin.act(Action::Session(open));
+    session.looks("replayed", View::Live, Language::En);
+    for share in [0.3, 0.9, 0.6] {
+        session.drag("Time line", 0.45, share);
+        session.twin.seek(share);
+        session.looks("scrubbed", View::Live, Language::En);
+    }
+    let stands = session.hand.read("ANGLE_SET");
+    session.click("Touch");
+    session.twin.view = View::Touch;
+    session.looks("another view of that moment", View::Touch, Language::En);
+    session.click("Back to live");
+    session.twin.act(Action::Session(SessionAction::Close));
+    session.looks("live again", View::Touch, Language::En);
+    assert_eq!(session.hand.read("ANGLE_SET"), stands, "nothing moved");
+    session.display.close("Handscope");
+    session.window.ends_well();
 }
 
 #[test]

@@ -109,7 +109,8 @@ impl Window {
         let home = tempfile::tempdir().unwrap();
         let mut command = handscope();
         command
-            .args(["--hand", &hand.endpoint])
+            // The twin records nothing either.
+            .args(["--hand", &hand.endpoint, "--no-record"])
             .args(more)
             .env("DISPLAY", display)
             .envs(around.iter().copied())

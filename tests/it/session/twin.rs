@@ -2,6 +2,7 @@
 
 use crate::session::display::SIZE;
 use handscope::app::action::Action;
+use handscope::app::sessions::SessionAction;
 use handscope::app::settings::{Language, Theme};
 use handscope::shell::headless::canvas::Picture;
 use handscope::shell::headless::driver::{Driver, Scene};
@@ -42,6 +43,14 @@ impl Twin {
         let now = self.driver.now();
         self.driver.cockpit().app().act(action, now);
         self.pass(Duration::from_millis(100));
+    }
+
+    /// Shows the moment at this share of the recording's length, as a drag of its time line does.
+    pub(crate) fn seek(&mut self, share: f64) {
+        let state = self.driver.cockpit().app().state();
+        let line = state.timeline.as_ref().unwrap();
+        let at = line.first.plus(line.last.since(line.first).mul_f64(share));
+        self.act(Action::Session(SessionAction::Seek(at)));
     }
 
     pub(crate) fn picture(&mut self, view: View) -> Picture {

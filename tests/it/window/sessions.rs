@@ -330,3 +330,42 @@ fn closing_asks_while_a_value_is_staged_and_closes_once_a_person_says_so() {
     bench.run(100);
     assert!(!bench.wants_to_close(), "asked once, and answered");
 }
+
+#[test]
+fn two_sessions_lie_over_each_other_aligned_by_a_mark_of_each() {
+    let mut bench = bench(Scenario::Grasp);
+    bench.wait(2000);
+    bench.act(Action::Note(bench.now(), "first grasp".into()));
+    bench.wait(1000);
+    let first = ended(&mut bench);
+    session(&mut bench, SessionAction::Record(true));
+    bench.wait(3000);
+    bench.act(Action::Note(bench.now(), "second grasp".into()));
+    bench.wait(1000);
+    let second = ended(&mut bench);
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| bench.state().sessions.items.len() == 2);
+    replay(&mut bench, first.clone());
+    bench.show(View::Live);
+    bench.click_button("Compare with");
+    bench.run(100);
+    let title = SessionItem::read(&second).unwrap().title();
+    let offered = bench.buttons_with(&title);
+    bench.click_button(&offered[0]);
+    settle(&mut bench, |bench| bench.state().beside.is_some());
+    let note = |path| SessionItem::read(path).unwrap().notes()[0].at();
+    let (own, other) = (note(&first), note(&second));
+    session(&mut bench, SessionAction::Align(own, other));
+    bench.run(100);
+    let beside = bench.state().beside.as_ref().unwrap();
+    assert_eq!(beside.offset_s(), other.secs() - own.secs());
+    let force = handscope::history::Series::Joint(
+        handscope::hand::Quantity::Force,
+        handscope::hand::Dof::Index,
+    );
+    let there = beside.history.reading(force, other.secs());
+    assert!(there.is_some(), "its own readings, at its own times");
+    bench.click(&format!("Compare no longer: {title}"));
+    bench.run(60);
+    assert!(bench.state().beside.is_none());
+}

@@ -1,0 +1,34 @@
+//! How marks and times of a session are told, in lists and on the time line.
+
+use crate::record::EventKind;
+use crate::ui::kit::Look;
+use crate::ui::text::{Text, main, panels, sessions, tune};
+use egui::Color32;
+use std::time::Duration;
+
+/// The word and the colour of a mark; none for what the line does not show.
+pub(crate) fn shown(look: Look, kind: EventKind) -> Option<(Text, Color32)> {
+    let palette = look.palette;
+    Some(match kind {
+        EventKind::Fault => (main::FAULT_TITLE, palette.bad),
+        EventKind::Stop => (main::STOP, palette.stop_edge),
+        EventKind::Armed => (main::DISARM, palette.armed),
+        EventKind::LinkLost => (main::STATE_LOST, palette.bad),
+        EventKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
+        EventKind::Trial => (tune::COLUMN_TRIAL, palette.accent),
+        EventKind::Note => (panels::NOTES, palette.text),
+        EventKind::Recording => (sessions::RECORDING, palette.warn),
+        _ => return None,
+    })
+}
+
+/// `1:02:03.45`, from the beginning of the session.
+pub(crate) fn clock(since: Duration) -> String {
+    let seconds = since.as_secs();
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    let parts = since.subsec_millis() / 10;
+    match hours {
+        0 => format!("{minutes}:{seconds:02}.{parts:02}"),
+        hours => format!("{hours}:{minutes:02}:{seconds:02}.{parts:02}"),
+    }
+}
