@@ -14,7 +14,7 @@ use std::time::Duration;
 /// Bytes that may wait for the disk: two minutes of one hand.
 pub(crate) const PENDING_MAX: usize = 8 * 1024 * 1024;
 /// What was taken goes to the file at least this often, so that a killed program loses no more than a quarter of a second.
-pub(crate) const FLUSH_EACH: Duration = Duration::from_millis(125);
+pub const FLUSH_EACH: Duration = Duration::from_millis(125);
 /// How often it is looked whether the file is still there and the computer's clock was set.
 pub(crate) const LOOK_EACH: Duration = Duration::from_secs(1);
 /// A clock that differs by more was set, or the computer slept.
