@@ -153,7 +153,7 @@ pub fn joint_names(side: Side) -> Vec<String> {
         Side::Left => "left",
     };
     let name = |joint: &&str| format!("{side}_{joint}_joint");
-    JOINT_NAMES.iter().map(|joint| name(&joint)).collect()
+    JOINT_NAMES.iter().map(name).collect()
 }
 
 /// How far each of the twelve joints is turned, in radians, at these angles of the drives, 0..=1000; NaN where one is not known.

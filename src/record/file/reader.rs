@@ -259,11 +259,10 @@ fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u8])) -> boo
                 rest = later;
             }
             Ok(LinearReadEvent::Record { data, opcode }) if opcode == op::MESSAGE => {
-                if let Ok(McapRecord::Message { header, data }) = mcap::parse_record(opcode, data)
-                    && data.len() <= MESSAGE_MAX
-                    && let Some(topic) = Topic::by_channel(header.channel_id)
+                if let Some((topic, times, message)) = message(data)
+                    && message.len() <= MESSAGE_MAX
                 {
-                    take(topic, (header.log_time, header.publish_time), &data);
+                    take(topic, times, message);
                 }
             }
             Ok(LinearReadEvent::Record { .. }) => {}
@@ -271,6 +270,17 @@ fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u8])) -> boo
         }
     }
     true
+}
+
+/// Topic, times and content of a message's record: number of the channel, number of the message, and two times stand before it.
+fn message(record: &[u8]) -> Option<(Topic, (u64, u64), &[u8])> {
+    let (channel, rest) = record.split_first_chunk()?;
+    let (_sequence, rest) = rest.split_first_chunk::<4>()?;
+    let (log, rest) = rest.split_first_chunk()?;
+    let (publish, message) = rest.split_first_chunk()?;
+    let topic = Topic::by_channel(u16::from_le_bytes(*channel))?;
+    let times = (u64::from_le_bytes(*log), u64::from_le_bytes(*publish));
+    Some((topic, times, message))
 }
 
 /// What the file says of itself. Where that is lost, what can be known without it.

@@ -303,9 +303,10 @@ impl Recording {
     }
 
     /// Nanoseconds by which the computer's clock is ahead of what it should be.
-    const fn drift(&self, now: Now) -> i128 {
-        let passed = now.since.as_nanos() as i128 - self.clock.since.as_nanos() as i128;
-        now.wall_nanos as i128 - self.clock.wall_nanos as i128 - passed
+    fn drift(&self, now: Now) -> i128 {
+        let passed = now.since.saturating_sub(self.clock.since).as_nanos();
+        let wall = i128::from(now.wall_nanos) - i128::from(self.clock.wall_nanos);
+        wall.saturating_sub_unsigned(passed)
     }
 
     /// Goes on in another file, whose times are those of the clock as it is now.

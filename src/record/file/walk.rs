@@ -17,6 +17,8 @@ const INDEX_PIECE: usize = 1024 * 1024;
 pub(crate) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 /// Operation code and length before each record.
 const HEAD: u64 = 9;
+/// The same as a number of bytes in memory.
+const HEAD_LEN: usize = 9;
 /// Bytes of the head of a chunk that are looked at.
 const CHUNK_HEAD: usize = 8 + 8 + 8 + 4 + 4;
 /// Bytes read at once where records follow each other: the indexes of a chunk's messages, and the head of the next chunk.
@@ -235,7 +237,7 @@ fn one_by_one<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Found> {
     let (mut ahead, mut ahead_at) = (Vec::new(), 0);
     while at + HEAD <= len {
         let left = usize::try_from(len - at).unwrap_or(usize::MAX);
-        let wanted = left.min(HEAD as usize + CHUNK_HEAD);
+        let wanted = left.min(HEAD_LEN + CHUNK_HEAD);
         let mut from = usize::try_from(at - ahead_at).unwrap_or(usize::MAX);
         if from.saturating_add(wanted) > ahead.len() {
             ahead.resize(left.min(AHEAD), 0);
@@ -273,7 +275,7 @@ fn plausible(head: &[u8], at: u64, len: u64) -> Option<u64> {
 /// The times of a chunk whose head can be right.
 fn chunk_times(head: &[u8]) -> Option<(u64, u64)> {
     let size = u64_at(head, 1)?;
-    let body = head.get(HEAD as usize..)?;
+    let body = head.get(HEAD_LEN..)?;
     let (first, last) = (u64_at(body, 0)?, u64_at(body, 8)?);
     let whole = u64_at(body, 16)?;
     let name = body
@@ -308,7 +310,7 @@ fn note(head: &[u8], at: u64, found: &mut Found) {
 
 /// The next place where a whole chunk can stand, else the end.
 fn next_chunk<F: Read + Seek>(file: &mut F, from: u64, len: u64) -> io::Result<u64> {
-    let head_len = HEAD as usize + CHUNK_HEAD;
+    let head_len = HEAD_LEN + CHUNK_HEAD;
     let mut buffer = vec![0; SEARCH];
     let mut at = from;
     while at + head_len as u64 <= len {
