@@ -12,12 +12,14 @@ mod line;
 mod memory;
 mod pictures;
 mod plain;
+mod record;
 mod report;
 mod scene;
 mod start;
 mod waiting;
 
 use crate::report::{Failure, Report};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// The allocator of the desktop's program.
@@ -37,7 +39,7 @@ mod line {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 10] = [
+const PARTS: [Part; 11] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -48,12 +50,18 @@ const PARTS: [Part; 10] = [
     ("memory", memory::run),
     ("idle", idle::run),
     ("waiting", waiting::run),
+    ("record", record::run),
 ];
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     if words.iter().any(|word| word == memory::CHILD) {
         return ended(memory::child());
+    }
+    if let [.., word, path] = words.as_slice()
+        && word == record::CHILD
+    {
+        return ended(record::child(Path::new(path)));
     }
     // Tests build benches too; only `cargo bench` says that time may be taken.
     if !words.iter().any(|word| word == "--bench") {

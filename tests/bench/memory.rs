@@ -41,7 +41,7 @@ pub(crate) fn child() -> Result<(), Failure> {
 }
 
 /// One line of this process's status, in MiB.
-fn mib(key: &str) -> Result<f64, Failure> {
+pub(crate) fn mib(key: &str) -> Result<f64, Failure> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let value = status
         .lines()

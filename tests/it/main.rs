@@ -19,6 +19,7 @@ mod looks;
 mod manual;
 mod place_changes;
 mod program;
+mod record;
 #[cfg(unix)]
 mod session;
 mod setup;

@@ -1,6 +1,12 @@
 //! Recordings on disks that are full, broken, slow, removed or closed to us, and under clocks that are set: 500 seeded schedules in
 //! virtual time, and what only a real thread shows.
 
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "numbers of tests are small, and clippy.toml cannot excuse them"
+)]
+
 use crate::record::file::disk::{Disk, DiskFile, SystemDisk};
 use crate::record::file::reader::SessionFile;
 use crate::record::file::recorder::{Recorder, RecorderInput, RecorderStatus, RecordingPlan};
@@ -115,7 +121,8 @@ impl Disk for FailingDisk {
 impl FailingFile {
     fn put(&self, place: u64, bytes: &[u8]) {
         let mut content = self.1.lock().unwrap();
-        let (from, to) = (place as usize, place as usize + bytes.len());
+        let from = usize::try_from(place).unwrap();
+        let to = from + bytes.len();
         let whole = content.bytes.len().max(to);
         content.bytes.resize(whole, 0);
         content.bytes[from..to].copy_from_slice(bytes);

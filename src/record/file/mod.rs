@@ -29,3 +29,4 @@ pub use crate::record::file::opening::Opening;
 pub use crate::record::file::overview::{Counts, FileMark, Overview};
 pub use crate::record::file::reader::{OpenError, SessionFile};
 pub use crate::record::file::recorder::{Recorder, RecorderStatus, RecordingPlan};
+pub use crate::record::file::recording::FLUSH_EACH;

@@ -13,8 +13,8 @@ pub const LINES: usize =
     Quantity::ALL.len() * Dof::ALL.len() + Touch::ALL.len() * Finger::ALL.len();
 /// Marks kept of one file: more than a person looks at, and a bound for a damaged file.
 pub const MARKS_MAX: usize = 100_000;
-/// Seconds kept of one file: three days, in 83 MB; a longer one is drawn without its end.
-pub const SECONDS_MAX: usize = 3 * 86_400;
+/// Seconds kept of one file: two days, in 56 MB; a longer one is drawn without its end.
+pub const SECONDS_MAX: usize = 2 * 86_400;
 
 /// Least and greatest of all quantities over one second; NaN where nothing is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -288,6 +288,12 @@ impl Overview {
         if self.rows.get(place).is_none_or(|row| row.second != second) {
             if self.rows.len() >= SECONDS_MAX {
                 return None;
+            }
+            if self.rows.len() == self.rows.capacity() {
+                // By half and not twice, so that the most is never exceeded.
+                let room = (self.rows.len() / 2).max(64);
+                self.rows
+                    .reserve_exact(room.min(SECONDS_MAX - self.rows.len()));
             }
             self.rows.insert(place, OverviewRow::empty(second));
         }

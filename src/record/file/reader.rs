@@ -17,6 +17,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
+/// No message of ours is longer. Small parts of a long one could take many times its room.
+const MESSAGE_MAX: usize = 1024 * 1024;
+/// No block of the overview is longer; what a longer one is about is made anew.
+pub(crate) const BLOCK_MAX: u64 = 1024 * 1024;
+
 /// Entries before a stretch that are read along, so that what is read seldom is known in it.
 const WARM_UP: Duration = Duration::from_secs(6);
 
@@ -255,10 +260,10 @@ fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u8])) -> boo
                 rest = later;
             }
             Ok(LinearReadEvent::Record { data, opcode }) if opcode == op::MESSAGE => {
-                if let Ok(McapRecord::Message { header, data }) = mcap::parse_record(opcode, data)
-                    && let Some(topic) = Topic::by_channel(header.channel_id)
+                if let Some((topic, times, message)) = message(data)
+                    && message.len() <= MESSAGE_MAX
                 {
-                    take(topic, (header.log_time, header.publish_time), &data);
+                    take(topic, times, message);
                 }
             }
             Ok(LinearReadEvent::Record { .. }) => {}
@@ -266,6 +271,17 @@ fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u8])) -> boo
         }
     }
     true
+}
+
+/// Topic, times and content of a message's record: number of the channel, number of the message, and two times stand before it.
+fn message(record: &[u8]) -> Option<(Topic, (u64, u64), &[u8])> {
+    let (channel, rest) = record.split_first_chunk()?;
+    let (_sequence, rest) = rest.split_first_chunk::<4>()?;
+    let (log, rest) = rest.split_first_chunk()?;
+    let (publish, message) = rest.split_first_chunk()?;
+    let topic = Topic::by_channel(u16::from_le_bytes(*channel))?;
+    let times = (u64::from_le_bytes(*log), u64::from_le_bytes(*publish));
+    Some((topic, times, message))
 }
 
 /// What the file says of itself. Where that is lost, what can be known without it.
@@ -302,7 +318,8 @@ fn opening(file: &mut File, found: &Found) -> Result<Opening, OpenError> {
 fn overview(file: &mut File, found: &Found, base_nanos: u64) -> Result<Overview, OpenError> {
     let mut overview = Overview::default();
     let mut covered = Vec::new();
-    for place in &found.attachments {
+    let blocks = found.attachments.iter();
+    for place in blocks.filter(|place| place.len <= BLOCK_MAX) {
         let content = walk::content(file, *place)?;
         if let Ok(McapRecord::Attachment { header, data, crc }) =
             mcap::parse_record(op::ATTACHMENT, &content)
@@ -313,12 +330,15 @@ fn overview(file: &mut File, found: &Found, base_nanos: u64) -> Result<Overview,
             covered.push(from..place.offset);
         }
     }
+    covered.sort_by_key(|stretch| stretch.start);
+    let is_covered = |offset: u64| {
+        let after = covered.partition_point(|stretch| stretch.start <= offset);
+        let last = after.checked_sub(1).and_then(|last| covered.get(last));
+        last.is_some_and(|stretch| offset < stretch.end)
+    };
     let mut decoder = Decoder::new(base_nanos);
     for chunk in &found.chunks {
-        if covered
-            .iter()
-            .any(|stretch| stretch.contains(&chunk.place.offset))
-        {
+        if is_covered(chunk.place.offset) {
             continue;
         }
         let bytes = walk::whole(file, chunk.place)?;

@@ -15,7 +15,7 @@ use std::time::Duration;
 /// Bytes that may wait for the disk: two minutes of one hand.
 pub(crate) const PENDING_MAX: usize = 8 * 1024 * 1024;
 /// What was taken goes to the file at least this often, so that a killed program loses no more than a quarter of a second.
-pub(crate) const FLUSH_EACH: Duration = Duration::from_millis(125);
+pub const FLUSH_EACH: Duration = Duration::from_millis(125);
 /// How often it is looked whether the file is still there and the computer's clock was set.
 pub(crate) const LOOK_EACH: Duration = Duration::from_secs(1);
 /// A clock that differs by more was set, or the computer slept.
@@ -304,9 +304,10 @@ impl Recording {
     }
 
     /// Nanoseconds by which the computer's clock is ahead of what it should be.
-    const fn drift(&self, now: Now) -> i128 {
-        let passed = now.since.as_nanos() as i128 - self.clock.since.as_nanos() as i128;
-        now.wall_nanos as i128 - self.clock.wall_nanos as i128 - passed
+    fn drift(&self, now: Now) -> i128 {
+        let passed = now.since.saturating_sub(self.clock.since).as_nanos();
+        let wall = i128::from(now.wall_nanos) - i128::from(self.clock.wall_nanos);
+        wall.saturating_sub_unsigned(passed)
     }
 
     /// Goes on in another file, whose times are those of the clock as it is now.

@@ -5,16 +5,24 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 /// No record of ours is longer; what says so is damaged.
 pub const RECORD_MAX: u64 = 8 * 1024 * 1024;
-/// The index of a closed file: 60 bytes and the channels for each chunk, so ten hours have about 13 MB.
-const SUMMARY_MAX: u64 = 48 * 1024 * 1024;
+/// Chunks of one file: more than a day of one hand, in 32 MiB. A file made of tiny ones is read without those after.
+pub const CHUNKS_MAX: usize = 1024 * 1024;
+/// Attachments and metadata of one file; ten hours have 600 blocks.
+pub const PLACES_MAX: usize = 64 * 1024;
+/// The index of a closed file is read piece by piece; none of its records is longer.
+const INDEX_RECORD_MAX: usize = 64 * 1024;
+/// Bytes of the index read at once.
+const INDEX_PIECE: usize = 1024 * 1024;
 /// Begins and ends a file.
 pub(crate) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 /// Operation code and length before each record.
 const HEAD: u64 = 9;
-/// The same, for pieces in memory.
+/// The same as a number of bytes in memory.
 const HEAD_LEN: usize = 9;
 /// Bytes of the head of a chunk that are looked at.
 const CHUNK_HEAD: usize = 8 + 8 + 8 + 4 + 4;
+/// Bytes read at once where records follow each other: the indexes of a chunk's messages, and the head of the next chunk.
+const AHEAD: usize = 4096;
 /// Bytes searched at once for the next chunk.
 const SEARCH: usize = 64 * 1024;
 
@@ -58,8 +66,29 @@ pub struct Found {
     pub metadata: Vec<Place>,
     /// True if the file was ended as it should be.
     pub closed: bool,
-    /// Bytes in which no record was found.
+    /// Bytes in which no record was found, or no room for one.
     pub skipped: u64,
+}
+
+impl Found {
+    fn chunk(&mut self, chunk: ChunkPlace) {
+        match self.chunks.len() < CHUNKS_MAX {
+            true => self.chunks.push(chunk),
+            false => self.skipped += HEAD + chunk.place.len,
+        }
+    }
+
+    fn attachment(&mut self, place: Place) {
+        if self.attachments.len() < PLACES_MAX {
+            self.attachments.push(place);
+        }
+    }
+
+    fn metadata(&mut self, place: Place) {
+        if self.metadata.len() < PLACES_MAX {
+            self.metadata.push(place);
+        }
+    }
 }
 
 /// Finds the records: by the file's own index where there is one that is whole, else one after the other.
@@ -108,68 +137,114 @@ fn by_index<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Option<Found>>
     let start = u64_at(body, 0).unwrap_or_default();
     let crc = body.get(16..).and_then(<[u8]>::first_chunk);
     let crc = crc.map_or(0, |crc| u32::from_le_bytes(*crc));
-    let size = tail_at.saturating_sub(start);
-    if start == 0 || crc == 0 || start >= tail_at || size > SUMMARY_MAX {
+    if start == 0 || crc == 0 || start >= tail_at {
         return Ok(None);
     }
-    let mut summary = vec![0; usize::try_from(size).unwrap_or_default()];
-    read_at(file, start, &mut summary)?;
-    let mut hash = crc32fast::Hasher::new();
-    hash.update(&summary);
-    hash.update(tail.get(..TAIL - 12).unwrap_or_default());
-    if hash.finalize() != crc {
-        return Ok(None);
+    let mut index = Index::new(start);
+    let mut at = start;
+    let mut piece = Vec::new();
+    while at < tail_at {
+        let len = usize::try_from(tail_at - at)
+            .unwrap_or(usize::MAX)
+            .min(INDEX_PIECE);
+        let before = piece.len();
+        piece.resize(before + len, 0);
+        let new = piece.get_mut(before..).unwrap_or_default();
+        read_at(file, at, new)?;
+        index.hash.update(new);
+        let Some(taken) = index.take(&piece) else {
+            return Ok(None);
+        };
+        piece.drain(..taken);
+        at += u64::try_from(len).unwrap_or_default();
     }
-    Ok(of_summary(&summary, start))
+    index.hash.update(tail.get(..TAIL - 12).unwrap_or_default());
+    let whole = index.hash.finalize() == crc && piece.is_empty();
+    Ok(whole.then_some(index.found))
 }
 
-/// The records that a whole index tells of; `None` if it does not tell of the file's own.
-fn of_summary(summary: &[u8], end: u64) -> Option<Found> {
-    let mut found = Found {
-        closed: true,
-        ..Found::default()
-    };
-    let mut rest = summary;
-    while !rest.is_empty() {
-        let (op, body, next) = record(rest)?;
-        rest = next;
-        let place = |offset: u64, whole: u64| {
-            let fits = whole > HEAD
-                && whole - HEAD <= RECORD_MAX
-                && offset.checked_add(whole).is_some_and(|last| last <= end);
-            fits.then_some(Place {
-                offset,
-                len: whole.wrapping_sub(HEAD),
-            })
-        };
-        match op {
-            OP_CHUNK_INDEX => found.chunks.push(ChunkPlace {
-                first_nanos: u64_at(body, 0)?,
-                last_nanos: u64_at(body, 8)?,
-                place: place(u64_at(body, 16)?, u64_at(body, 24)?)?,
-            }),
-            OP_ATTACHMENT_INDEX => found
-                .attachments
-                .push(place(u64_at(body, 0)?, u64_at(body, 8)?)?),
-            OP_METADATA_INDEX => found
-                .metadata
-                .push(place(u64_at(body, 0)?, u64_at(body, 8)?)?),
-            _ => {}
+/// What the index of a closed file tells so far.
+struct Index {
+    found: Found,
+    hash: crc32fast::Hasher,
+    /// Where the index begins: what it tells of stands before.
+    start: u64,
+    /// Where the last chunk ends. The next comes after, else one could be told of any number of times.
+    after: u64,
+}
+
+impl Index {
+    fn new(start: u64) -> Self {
+        Self {
+            found: Found {
+                closed: true,
+                ..Found::default()
+            },
+            hash: crc32fast::Hasher::new(),
+            start,
+            after: 0,
         }
     }
-    Some(found)
+
+    /// Takes the whole records of some bytes; how long they are. `None` if they do not tell of the file's own.
+    fn take(&mut self, bytes: &[u8]) -> Option<usize> {
+        let mut rest = bytes;
+        while let Some((op, body, next)) = record(rest) {
+            self.record(op, body)?;
+            rest = next;
+        }
+        let is_short = rest.len() <= INDEX_RECORD_MAX;
+        is_short.then_some(bytes.len() - rest.len())
+    }
+
+    fn record(&mut self, op: u8, body: &[u8]) -> Option<()> {
+        match op {
+            OP_CHUNK_INDEX => {
+                let place = self.place(u64_at(body, 16)?, u64_at(body, 24)?)?;
+                if place.offset < self.after {
+                    return None;
+                }
+                self.after = place.offset + HEAD + place.len;
+                self.found.chunk(ChunkPlace {
+                    place,
+                    first_nanos: u64_at(body, 0)?,
+                    last_nanos: u64_at(body, 8)?,
+                });
+            }
+            OP_ATTACHMENT_INDEX => {
+                let place = self.place(u64_at(body, 0)?, u64_at(body, 8)?)?;
+                self.found.attachment(place);
+            }
+            OP_METADATA_INDEX => {
+                let place = self.place(u64_at(body, 0)?, u64_at(body, 8)?)?;
+                self.found.metadata(place);
+            }
+            _ => {}
+        }
+        Some(())
+    }
+
+    fn place(&self, offset: u64, whole: u64) -> Option<Place> {
+        let len = whole.checked_sub(HEAD).filter(|len| *len <= RECORD_MAX)?;
+        let end = offset.checked_add(whole)?;
+        (len > 0 && end <= self.start).then_some(Place { offset, len })
+    }
 }
 
 fn one_by_one<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Found> {
     let mut found = Found::default();
     let mut at = MAGIC.len() as u64;
+    let (mut ahead, mut ahead_at) = (Vec::new(), 0);
     while at + HEAD <= len {
-        let mut head = [0; HEAD_LEN + CHUNK_HEAD];
-        let there = usize::try_from(len - at)
-            .unwrap_or(usize::MAX)
-            .min(head.len());
-        let head = head.get_mut(..there).unwrap_or_default();
-        read_at(file, at, head)?;
+        let left = usize::try_from(len - at).unwrap_or(usize::MAX);
+        let wanted = left.min(HEAD_LEN + CHUNK_HEAD);
+        let mut from = usize::try_from(at - ahead_at).unwrap_or(usize::MAX);
+        if from.saturating_add(wanted) > ahead.len() {
+            ahead.resize(left.min(AHEAD), 0);
+            read_at(file, at, &mut ahead)?;
+            (ahead_at, from) = (at, 0);
+        }
+        let head = ahead.get(from..from + wanted).unwrap_or_default();
         match plausible(head, at, len) {
             Some(next) => {
                 note(head, at, &mut found);
@@ -219,15 +294,15 @@ fn note(head: &[u8], at: u64, found: &mut Found) {
     match head.first() {
         Some(&OP_CHUNK) => {
             if let Some((first_nanos, last_nanos)) = chunk_times(head) {
-                found.chunks.push(ChunkPlace {
+                found.chunk(ChunkPlace {
                     place,
                     first_nanos,
                     last_nanos,
                 });
             }
         }
-        Some(&OP_ATTACHMENT) => found.attachments.push(place),
-        Some(&OP_METADATA) => found.metadata.push(place),
+        Some(&OP_ATTACHMENT) => found.attachment(place),
+        Some(&OP_METADATA) => found.metadata(place),
         Some(&OP_FOOTER) => found.closed = true,
         _ => {}
     }
