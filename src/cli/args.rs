@@ -102,9 +102,9 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope info grasp.mcap\n  handscope info grasp.mcap --json\n\nThe file is read to its end, so that every checksum is looked at. Exit status: 0 the file could be read, complete or not; 1 it could not; 2 wrong usage."
     )]
     Info(InfoArgs),
-    /// Turn a session file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, or a shorter session file
+    /// Turn a session file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, LeRobot, or a shorter session file
     #[command(
-        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
+        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n  handscope export grasp.mcap --lerobot --fps 30 --task 'close on an egg' --out egg\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
     )]
     Export(ExportArgs),
     /// Write a whole copy of a session file that is damaged or was not closed

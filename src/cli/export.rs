@@ -2,7 +2,8 @@
 
 use crate::cli::out::{Out, say};
 use crate::cli::session_file::{self, FileArgs, StretchArgs, lost};
-use crate::record::export::{ExportError, Exported, csv, cut, parquet, rosbag};
+use crate::record::export::lerobot::LeRobotPlan;
+use crate::record::export::{ExportError, Exported, csv, cut, lerobot, parquet, rosbag};
 use anyhow::{anyhow, bail};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -18,6 +19,17 @@ pub(crate) struct ExportArgs {
     /// The file or folder to write; it must not exist yet
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
+    /// With --lerobot: frames a second
+    #[arg(long, value_name = "N", default_value_t = 30, requires = "lerobot", value_parser = clap::value_parser!(u32).range(1..=200))]
+    fps: u32,
+    /// With --lerobot: what the hand does, in words
+    #[arg(
+        long,
+        value_name = "WORDS",
+        default_value = "grasp",
+        requires = "lerobot"
+    )]
+    task: String,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -39,6 +51,9 @@ struct FormArgs {
     /// A session file again, with its own index
     #[arg(long)]
     mcap: bool,
+    /// A LeRobot v3.0 data set without video
+    #[arg(long)]
+    lerobot: bool,
 }
 
 #[derive(Debug, clap::Args)]
@@ -64,6 +79,12 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         (parquet::write(&file, stretch, &args.out), "rows")
     } else if form.rosbag {
         (rosbag::write(&file, stretch, &args.out), "messages")
+    } else if form.lerobot {
+        let plan = LeRobotPlan {
+            fps: args.fps,
+            task: args.task.clone(),
+        };
+        (lerobot::write(&file, stretch, &args.out, &plan), "frames")
     } else {
         (cut::write(&file, stretch, &args.out), "entries")
     };

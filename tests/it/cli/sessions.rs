@@ -298,6 +298,51 @@ fn tables_and_bags_take_their_place_whole_or_not_at_all() {
 }
 
 #[test]
+fn a_data_set_for_learners_says_how_it_was_made() {
+    let recorded = record("2.5");
+    let told = recorded
+        .export(&["--lerobot", "--fps", "20", "--json"], "set")
+        .ok();
+    let frames = told.lines()[0]["rows"].as_u64().unwrap();
+    assert!((20..=90).contains(&frames), "{frames}");
+    let read = |name: &str| -> Value {
+        let text = std::fs::read_to_string(recorded.path("set/meta").join(name)).unwrap();
+        serde_json::from_str(&text).unwrap()
+    };
+    let info = read("info.json");
+    assert_eq!(
+        (&info["codebase_version"], &info["fps"]),
+        (&"v3.0".into(), &20.into())
+    );
+    assert_eq!(info["total_frames"], frames);
+    let names = &info["features"]["action"]["names"];
+    assert_eq!(names[0], "kRightHandPinky");
+    assert_eq!(names[5], "kRightHandThumbRotation");
+    assert!(
+        info["handscope"]["gaps"]
+            .as_str()
+            .unwrap()
+            .contains("0.5 s")
+    );
+    let state = &read("stats.json")["observation.state"];
+    assert_eq!(state["count"][0], frames);
+    assert!(state["q99"][3].as_f64().unwrap() <= 1.0, "{state}");
+    let short = recorded.export(&["--lerobot", "--from", "0", "--to", "0"], "none");
+    refused(&short, 1, &["no reading of the joints", "--from"]);
+    refused(
+        &recorded.export(&["--lerobot", "--fps", "0"], "none"),
+        2,
+        &["--fps"],
+    );
+    refused(
+        &recorded.export(&["--csv", "--fps", "5"], "none"),
+        2,
+        &["--lerobot"],
+    );
+    assert_eq!(recorded.names(), ["session.mcap", "set"]);
+}
+
+#[test]
 fn what_is_no_session_is_refused_in_one_sentence_by_every_command() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
