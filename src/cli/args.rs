@@ -8,6 +8,7 @@ use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
 use crate::cli::record::RecordArgs;
+use crate::cli::replay::ReplayArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::sim::{self, SimArgs};
 use crate::cli::snapshot::SnapshotArgs;
@@ -112,6 +113,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope recover crashed.mcap\n  handscope recover damaged.mcap --out whole.mcap\n\nThe file itself stays as it is. The copy holds all that can be read, and a note of what was lost."
     )]
     Recover(RecoverArgs),
+    /// Be a hand that says what was recorded, on the wires of 'handscope sim'
+    #[command(
+        after_help = "Examples:\n  handscope replay grasp.mcap --tcp 127.0.0.1:6000\n  handscope replay grasp.mcap --rs485 /tmp/hand --speed 0.5 --loop\n\nEach wire is announced as 'ready KIND PLACE'. Writes are acknowledged and change nothing. While the link was down the hand is silent. It ends with the recording, or at Ctrl-C."
+    )]
+    Replay(ReplayArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
     #[command(
         after_help = sim::help()
