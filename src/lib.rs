@@ -10,7 +10,7 @@
 //! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the person at the hand |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
-//! | 1 | [`record`] | what happened at a hand, as typed values |
+//! | 1 | [`record`] | what happened at a hand, as typed values, in files, and in the formats of others |
 //! | 1 | [`store`] | files, and the calendar that their names use |
 //! | 1 | [`history`] | what was measured, cheap to draw; the one decimation of lines |
 //! | 2 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
