@@ -183,3 +183,97 @@ impl Frames {
         Some(frame)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::cast_possible_truncation, reason = "a test may")]
+    use super::*;
+    use crate::hand::Reply;
+    use crate::hand::command::HandCommand;
+    use crate::hand::{Angle, Span};
+    use crate::record::WriteCause;
+    use std::sync::Arc;
+
+    fn empty() -> Frames {
+        Frames {
+            fps: 10,
+            with_touch: false,
+            sample: HandSample::default(),
+            sent: PerDof::splat(None),
+            began: None,
+            number: 0,
+        }
+    }
+
+    fn millis(millis: u64) -> Moment {
+        Moment::from_micros(1000 * millis)
+    }
+
+    /// A reading of everything about the joints, all angles and targets of which are `angle`.
+    fn reading(sample: &mut HandSample, at: Moment, angle: i16) -> Entry {
+        let all: Vec<u8> = (0..69).flat_map(|_| angle.to_le_bytes()).collect();
+        let fresh = sample.take(&Reply {
+            span: Span::new(ANGLE_SET.address, 138),
+            bytes: &all,
+            asked: at,
+            received: at,
+        });
+        Entry::Heard(Record::Reading {
+            sample: Arc::new(*sample),
+            fresh,
+        })
+    }
+
+    #[test]
+    fn frames_hold_the_newest_reading_and_a_silence_ends_the_episode() {
+        let (mut frames, mut sample) = (empty(), HandSample::default());
+        let mut all = Vec::new();
+        let readings = (0..10).map(|n| 40 * n).chain((0..5).map(|n| 2000 + 40 * n));
+        for (angle, at) in (1..).zip(readings) {
+            let entry = reading(&mut sample, millis(at), angle);
+            frames.take(&entry, |frame| all.push(frame.clone()));
+        }
+        let told: Vec<(u64, i32)> = all
+            .iter()
+            .map(|frame| (frame.number, (frame.state[0] * FULL_SCALE).round() as i32))
+            .collect();
+        // The last reading before the silence, at 360 ms, holds until 860 ms, and no longer.
+        let first = [
+            (0, 1),
+            (1, 3),
+            (2, 6),
+            (3, 8),
+            (4, 10),
+            (5, 10),
+            (6, 10),
+            (7, 10),
+            (8, 10),
+        ];
+        let second = [(0, 11), (1, 13)];
+        assert_eq!(told, [&first[..], &second].concat());
+        assert!((all[3].time_s - 0.3).abs() < 1e-6);
+    }
+
+    #[test]
+    fn an_action_is_what_was_sent_before_it_is_read_back() {
+        let (mut frames, mut sample) = (empty(), HandSample::default());
+        let mut all = Vec::new();
+        let command = HandCommand::Angles(PerDof::splat(Target::Go(Angle::new(900).unwrap())));
+        let sent = Entry::Heard(Record::Sent {
+            at: millis(150),
+            number: 1,
+            cause: WriteCause::Setpoint,
+            write: command.writes().first().unwrap().into(),
+        });
+        let first = reading(&mut sample, millis(0), 300);
+        let last = reading(&mut sample, millis(320), 400);
+        for entry in [first, sent, last] {
+            frames.take(&entry, |frame| all.push(frame.clone()));
+        }
+        let actions: Vec<i32> = all
+            .iter()
+            .map(|frame| (frame.action[5] * FULL_SCALE).round() as i32)
+            .collect();
+        assert_eq!(actions, [300, 300, 900, 900]);
+    }
+}

@@ -1,6 +1,6 @@
 //! Sessions on the command line: recorded, looked into, exported, recovered, and every file that is none.
 
-use crate::setup::process::{Ended, run, start};
+use crate::setup::process::{Ended, Running, run, start};
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -340,6 +340,119 @@ fn a_data_set_for_learners_says_how_it_was_made() {
         &["--lerobot"],
     );
     assert_eq!(recorded.names(), ["session.mcap", "set"]);
+}
+
+/// A recorded hand on TCP, with its endpoint.
+fn replayed(file: &Path, more: &[&str]) -> (Running, String) {
+    let args = ["replay", text(file), "--tcp", "127.0.0.1:0"];
+    let mut replay = start(&[&args, more].concat());
+    let ready = replay.line();
+    let address = ready.strip_prefix("ready tcp ").expect(&ready);
+    (replay, format!("tcp:{address}"))
+}
+
+/// The angles of a session, without those that repeat.
+fn angles(recorded: &Recorded, file: &str) -> Vec<String> {
+    let (file, csv) = (recorded.path(file), recorded.path("angles.csv"));
+    run(&["export", text(&file), "--csv", "--out", text(&csv)]).ok();
+    let lines = rows(&std::fs::read_to_string(&csv).unwrap()).1;
+    std::fs::remove_file(&csv).unwrap();
+    let six = lines.iter().map(|line| line[1..7].join(","));
+    let mut six: Vec<String> = six.filter(|six| six != ",,,,,").collect();
+    six.dedup();
+    six
+}
+
+#[test]
+fn a_replayed_hand_says_what_was_recorded_and_nothing_else() {
+    let recorded = record("3");
+    let (replay, hand) = replayed(&recorded.path("session.mcap"), &["--loop"]);
+    let again = recorded.path("again.mcap");
+    run(&[
+        "record",
+        "--hand",
+        &hand,
+        "--for",
+        "2",
+        "--out",
+        text(&again),
+    ])
+    .ok();
+    drop(replay);
+    let (before, after) = (
+        angles(&recorded, "session.mcap"),
+        angles(&recorded, "again.mcap"),
+    );
+    assert!(after.len() > 10, "{after:?}");
+    for six in &after {
+        assert!(before.contains(six), "{six} was never recorded");
+    }
+}
+
+#[test]
+fn a_replayed_hand_acknowledges_writes_and_keeps_to_the_recording() {
+    let recorded = record("1");
+    let file = recorded.path("session.mcap");
+    let (replay, hand) = replayed(&file, &["--loop", "--id", "9", "--speed", "0.5"]);
+    let read = |name: &str| {
+        run(&["read", name, "--hand", &hand, "--json"])
+            .ok()
+            .lines()
+            .remove(0)
+    };
+    let before = read("DEFAULT_SPEED_SET");
+    assert_eq!(
+        before["DEFAULT_SPEED_SET"],
+        serde_json::json!([1000, 1000, 1000, 1000, 1000, 1000])
+    );
+    let params = recorded.path("params.toml");
+    std::fs::write(
+        &params,
+        "format = \"handscope-params\"\nversion = 1\n[default_speed]\nindex = 77\n",
+    )
+    .unwrap();
+    let folder = recorded.path("kept");
+    let apply = [
+        "params",
+        "apply",
+        text(&params),
+        "--hand",
+        &hand,
+        "--folder",
+        text(&folder),
+    ];
+    let applied = run(&apply);
+    assert_eq!(applied.code, Some(1), "{}{}", applied.out, applied.err);
+    assert_eq!(read("DEFAULT_SPEED_SET"), before);
+    drop(replay);
+}
+
+#[test]
+fn a_replay_ends_with_the_recording_at_the_speed_that_was_asked_for() {
+    let recorded = record("2");
+    for (speed, seconds) in [("4", 0.3..1.8), ("1", 1.7..6.0)] {
+        let (replay, _) = replayed(&recorded.path("session.mcap"), &["--speed", speed]);
+        let ended = replay.end().ok();
+        let took = ended.took.as_secs_f64();
+        assert!(seconds.contains(&took), "{speed} times: {took}");
+    }
+    let file = recorded.path("session.mcap");
+    refused(&run(&["replay", text(&file)]), 2, &["--tcp"]);
+    let wild = [
+        "replay",
+        text(&file),
+        "--tcp",
+        "127.0.0.1:0",
+        "--speed",
+        "0",
+    ];
+    refused(&run(&wild), 2, &["between 0.1 and 100"]);
+    let gone = recorded.path("gone.mcap");
+    refused(
+        &run(&["replay", text(&gone), "--tcp", "127.0.0.1:0"]),
+        1,
+        &["No such file"],
+    );
 }
 
 #[test]
