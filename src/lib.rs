@@ -10,11 +10,11 @@
 //! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the person at the hand |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
-//! | 1 | [`record`] | what happened at a hand, as typed values; their bytes in a session file, written by a thread of its own and read back |
+//! | 1 | [`record`] | what happened at a hand, as typed values; session files, written by a thread of its own and read back; the formats of others |
 //! | 1 | [`store`] | files, and the calendar that their names use |
+//! | 2 | [`history`] | records made cheap to draw; the one decimation of lines |
 //! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
 //! | 3 | [`sim`] | a hand that answers on the wire |
-//! | 2 | [`history`] | records made cheap to draw; the one decimation of lines |
 //! | 3 | [`params`], [`poses`], [`trials`] | the subjects: parameters that a hand keeps, poses and sequences, grasp trials |
 //! | 4 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play |
 //! | 5 | [`app`] | everything the program knows, without drawing |

@@ -33,6 +33,7 @@ topics! {
     wiring: "power, Ethernet, RS485 and CAN, and how to find the hand";
     hands: "how a hand is named: sim:, rs485:, rtu:, tcp:, slcan:, usbcan:, can:";
     files: "poses, parameters, backups and trial sessions on disk";
+    sessions: "recordings of everything at a hand: files, exports, replay";
     json: "what the commands print with --json";
     figures: "how fast it is, and what each wire can carry";
 }

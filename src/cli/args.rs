@@ -8,6 +8,7 @@ use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
 use crate::cli::record::RecordArgs;
+use crate::cli::replay::ReplayArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::sim::{self, SimArgs};
 use crate::cli::snapshot::SnapshotArgs;
@@ -124,9 +125,9 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope info grasp.mcap\n  handscope info grasp.mcap --json\n\nThe file is read to its end, so that every checksum is looked at. Exit status: 0 the file could be read, complete or not; 1 it could not; 2 wrong usage."
     )]
     Info(InfoArgs),
-    /// Turn a session file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, or a shorter session file
+    /// Turn a session file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, LeRobot, or a shorter session file
     #[command(
-        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
+        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n  handscope export grasp.mcap --lerobot --fps 30 --task 'close on an egg' --out egg\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
     )]
     Export(ExportArgs),
     /// Write a whole copy of a session file that is damaged or was not closed
@@ -134,6 +135,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope recover crashed.mcap\n  handscope recover damaged.mcap --out whole.mcap\n\nThe file itself stays as it is. The copy holds all that can be read, and a note of what was lost."
     )]
     Recover(RecoverArgs),
+    /// Be a hand that says what was recorded, on the wires of 'handscope sim'
+    #[command(
+        after_help = "Examples:\n  handscope replay grasp.mcap --tcp 127.0.0.1:6000\n  handscope replay grasp.mcap --rs485 /tmp/hand --speed 0.5 --loop\n\nEach wire is announced as 'ready KIND PLACE'. Writes are acknowledged and change nothing. While the link was down the hand is silent. It ends with the recording, or at Ctrl-C."
+    )]
+    Replay(ReplayArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
     #[command(
         after_help = sim::help()

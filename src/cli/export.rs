@@ -1,11 +1,15 @@
 //! `export`: a session, or a stretch of it, in a format of others; `recover`: a damaged one made whole again.
 
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, WrongUsage, say};
 use crate::cli::session_file::{self, FileArgs, StretchArgs, lost};
-use crate::record::export::{ExportError, Exported, csv, cut, parquet, rosbag};
+use crate::record::export::lerobot::LeRobotPlan;
+use crate::record::export::{ExportError, Exported, csv, cut, lerobot, parquet, rosbag};
 use anyhow::{anyhow, bail};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+
+/// Frames a second, as cameras have it.
+const FPS: u32 = 30;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExportArgs {
@@ -18,6 +22,12 @@ pub(crate) struct ExportArgs {
     /// The file or folder to write; it must not exist yet
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
+    /// With --lerobot: frames a second [default: 30]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200))]
+    fps: Option<u32>,
+    /// With --lerobot: what the hand does, in words [default: grasp]
+    #[arg(long, value_name = "WORDS")]
+    task: Option<String>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -39,6 +49,9 @@ struct FormArgs {
     /// A session file again, with its own index
     #[arg(long)]
     mcap: bool,
+    /// A LeRobot v3.0 data set without video
+    #[arg(long)]
+    lerobot: bool,
 }
 
 #[derive(Debug, clap::Args)]
@@ -53,8 +66,23 @@ pub(crate) struct RecoverArgs {
     json: bool,
 }
 
+impl ExportArgs {
+    fn plan(&self) -> LeRobotPlan {
+        LeRobotPlan {
+            fps: self.fps.unwrap_or(FPS),
+            task: self.task.clone().unwrap_or_else(|| "grasp".into()),
+        }
+    }
+}
+
 /// Exports.
 pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
+    // clap does not ask for a flag that another one of its group rules out.
+    if !args.form.lerobot && (args.fps.is_some() || args.task.is_some()) {
+        return Err(WrongUsage::error(
+            "--fps and --task are for --lerobot; leave them out, or export with --lerobot",
+        ));
+    }
     let file = session_file::open(&args.file.file)?;
     let stretch = args.stretch.of(&file)?;
     let form = &args.form;
@@ -64,6 +92,9 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         (parquet::write(&file, stretch, &args.out), "rows")
     } else if form.rosbag {
         (rosbag::write(&file, stretch, &args.out), "messages")
+    } else if form.lerobot {
+        let plan = args.plan();
+        (lerobot::write(&file, stretch, &args.out, &plan), "frames")
     } else {
         (cut::write(&file, stretch, &args.out), "entries")
     };

@@ -13,6 +13,7 @@ mod quirks;
 mod read;
 mod record;
 mod registers;
+mod replay;
 mod scan;
 mod session;
 mod session_file;
@@ -22,6 +23,7 @@ mod trial;
 mod value;
 mod watch;
 mod window;
+mod wires;
 
 use anyhow::Context as _;
 use args::{Cli, Command};
@@ -73,6 +75,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Info(args) => info::run(&mut out, &args),
         Command::Export(args) => export::run(&mut out, &args),
         Command::Recover(args) => export::recover(&mut out, &args),
+        Command::Replay(args) => wait_for(replay::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),

@@ -125,6 +125,8 @@ pub struct SimHand {
     journal: Vec<JournalEntry>,
     /// What the hand's own script ordered last; a setpoint from outside ends it.
     pub(crate) order: Option<Order>,
+    /// It says what was recorded: no body, no script, and writes change nothing.
+    follows_recording: bool,
 }
 
 impl SimHand {
@@ -154,6 +156,7 @@ impl SimHand {
             chance: fastrand::Rng::with_seed(config.seed ^ 0x5EED),
             journal: Vec::new(),
             order: None,
+            follows_recording: false,
         };
         hand.target_actual();
         hand
@@ -162,6 +165,9 @@ impl SimHand {
     /// Lives on until `now`, in steps of one millisecond, so that the result does not depend on who asks how often.
     pub fn advance_to(&mut self, now: Moment) {
         let end = now.micros() / 1000;
+        if self.follows_recording {
+            self.now_ms = self.now_ms.max(end);
+        }
         while self.now_ms < end {
             self.now_ms += 1;
             self.tick();
@@ -205,6 +211,13 @@ impl SimHand {
             return Err(AccessError::Silent);
         }
         self.record(now, address, bytes);
+        if self.follows_recording {
+            return Ok(WriteEffect {
+                ack_id: self.id,
+                is_acked: true,
+                taken: 0,
+            });
+        }
         self.refuse_read_only(address)?;
         let id = self.id;
         let speeds = PerDof::from_fn(|dof| self.memory.short(&SPEED_SET, element(dof)));
@@ -346,6 +359,24 @@ impl SimHand {
         self.body.drive_mut(dof).set_jam(angle);
     }
 
+    /// From now on it says what it is given, as it was recorded of another hand. Writes are acknowledged and change nothing.
+    pub const fn follow_recording(&mut self) {
+        self.follows_recording = true;
+    }
+
+    /// What a recorded hand held from here on.
+    pub fn put_recorded(&mut self, address: u16, bytes: &[u8]) {
+        self.memory.put(address, bytes);
+    }
+
+    /// Whether a recorded hand answers.
+    pub const fn put_silent(&mut self, silent: bool) {
+        match silent {
+            true => self.supply.switch_off(),
+            false => self.supply.switch_on(),
+        }
+    }
+
     fn record(&mut self, at: Moment, address: u16, bytes: &[u8]) {
         if self.journal.len() >= 2 * JOURNAL_KEEPS {
             self.journal.drain(..JOURNAL_KEEPS);
@@ -469,7 +500,7 @@ impl SimHand {
 
     /// Puts the live values of this millisecond into the memory.
     fn publish(&mut self) {
-        if self.published_ms == Some(self.now_ms) {
+        if self.follows_recording || self.published_ms == Some(self.now_ms) {
             return;
         }
         self.published_ms = Some(self.now_ms);

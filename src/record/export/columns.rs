@@ -1,7 +1,9 @@
 //! Columns of a Parquet file: gathered row by row, written a group of rows at a time.
 
 use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as Physical};
-use parquet::data_type::{BoolType, DoubleType, FloatType, Int32Type, Int64Type};
+use parquet::data_type::{
+    BoolType, ByteArray, ByteArrayType, DoubleType, FloatType, Int32Type, Int64Type,
+};
 use parquet::errors::ParquetError;
 use parquet::file::writer::{SerializedColumnWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
@@ -23,6 +25,12 @@ pub(crate) enum Values {
     Double(Vec<f64>),
     /// Yes or no.
     Bool(Vec<bool>),
+    /// Text.
+    Text(Vec<ByteArray>),
+    /// Lists of one text each.
+    Texts(Vec<ByteArray>),
+    /// Lists of so many numbers.
+    Floats(usize, Vec<f32>),
 }
 
 /// One value.
@@ -43,8 +51,10 @@ pub(crate) struct Column {
     pub(crate) name: String,
     pub(crate) unit: &'static str,
     values: Values,
-    /// 1 for each row with a value, 0 for each without.
+    /// 1 for each row with a value, 0 for each without; 1 for each value of a list.
     there: Vec<i16>,
+    /// 0 for the first value of a list, 1 for those after it.
+    further: Vec<i16>,
 }
 
 impl Column {
@@ -54,6 +64,7 @@ impl Column {
             unit,
             values,
             there: Vec::new(),
+            further: Vec::new(),
         }
     }
 
@@ -74,6 +85,26 @@ impl Column {
         self.there.push(1);
     }
 
+    /// Adds a row to a column of text, or of lists of one text.
+    pub(crate) fn push_text(&mut self, text: &str) {
+        if let Values::Text(all) | Values::Texts(all) = &mut self.values {
+            all.push(text.into());
+            self.there.push(1);
+            self.further.push(0);
+        }
+    }
+
+    /// Adds a row to a column of lists, which must be as long as the column's.
+    pub(crate) fn push_list(&mut self, list: &[f32]) {
+        if let Values::Floats(width, all) = &mut self.values {
+            debug_assert_eq!(*width, list.len(), "a list of the column's length");
+            all.extend(list);
+            self.there.extend(list.iter().map(|_| 1));
+            self.further
+                .extend((0..list.len()).map(|place| i16::from(place > 0)));
+        }
+    }
+
     /// Its place in the schema.
     pub(crate) fn schema(&self) -> Result<Arc<Type>, ParquetError> {
         let (physical, logical) = match self.values {
@@ -86,6 +117,11 @@ impl Column {
             Values::Float(_) => (Physical::FLOAT, None),
             Values::Double(_) => (Physical::DOUBLE, None),
             Values::Bool(_) => (Physical::BOOLEAN, None),
+            Values::Text(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+            Values::Texts(_) => {
+                return list(&self.name, Physical::BYTE_ARRAY, Some(LogicalType::String));
+            }
+            Values::Floats(..) => return list(&self.name, Physical::FLOAT, None),
         };
         let column = Type::primitive_type_builder(&self.name, physical);
         let column = column.with_repetition(Repetition::OPTIONAL);
@@ -112,14 +148,47 @@ impl Column {
                 to.typed::<DoubleType>().write_batch(all, there, None)?;
                 all.clear();
             }
+            Values::Text(all) => {
+                to.typed::<ByteArrayType>().write_batch(all, there, None)?;
+                all.clear();
+            }
+            Values::Texts(all) => {
+                let further = Some(self.further.as_slice());
+                to.typed::<ByteArrayType>()
+                    .write_batch(all, there, further)?;
+                all.clear();
+            }
+            Values::Floats(_, all) => {
+                let further = Some(self.further.as_slice());
+                to.typed::<FloatType>().write_batch(all, there, further)?;
+                all.clear();
+            }
             Values::Bool(all) => {
                 to.typed::<BoolType>().write_batch(all, there, None)?;
                 all.clear();
             }
         }
         self.there.clear();
+        self.further.clear();
         to.close()
     }
+}
+
+/// A column of lists, which are always there and have no holes.
+fn list(
+    name: &str,
+    physical: Physical,
+    logical: Option<LogicalType>,
+) -> Result<Arc<Type>, ParquetError> {
+    let element = Type::primitive_type_builder("element", physical);
+    let element = element.with_repetition(Repetition::REQUIRED);
+    let element = element.with_logical_type(logical).build()?;
+    let inner = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
+    let inner = inner.with_fields(vec![Arc::new(element)]).build()?;
+    let outer = Type::group_type_builder(name).with_repetition(Repetition::REQUIRED);
+    let outer = outer.with_logical_type(Some(LogicalType::List));
+    let outer = outer.with_fields(vec![Arc::new(inner)]);
+    outer.build().map(Arc::new)
 }
 
 /// Writes a group of rows.

@@ -1,11 +1,14 @@
-//! Sessions in the formats of others: tables, a rosbag2 folder, a cut copy. Each reads the session as a stream, writes beside its
+//! Sessions in the formats of others: tables, a rosbag2 folder, a data set for learners, a cut copy. Each reads the session as a stream, writes beside its
 //! place, and takes the place only when it is whole.
 
 pub(crate) mod columns;
 pub mod csv;
 pub mod cut;
+pub(crate) mod frames;
+pub mod lerobot;
 pub mod output;
 pub mod parquet;
 pub mod rosbag;
+pub(crate) mod statistics;
 
 pub use crate::record::export::output::{ExportError, Exported};

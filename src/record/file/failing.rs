@@ -9,8 +9,8 @@
 
 use crate::record::file::disk::{Disk, DiskFile, SystemDisk};
 use crate::record::file::reader::SessionFile;
-use crate::record::file::recorder::{Recorder, RecorderInput, RecorderStatus, RecordingPlan};
-use crate::record::file::recording::{Now, Recording};
+use crate::record::file::recorder::{Recorder, RecorderInput, RecordingPlan};
+use crate::record::file::recording::{Now, RecorderStatus, Recording};
 use crate::record::file::tests::{Atom, atoms, entries, opening, read};
 use crate::record::{Entry, EventKind};
 use std::collections::{BTreeMap, BTreeSet};

@@ -28,5 +28,5 @@ pub use crate::record::file::disk::{Disk, DiskFile, SystemDisk};
 pub use crate::record::file::opening::Opening;
 pub use crate::record::file::overview::{Counts, FileMark, Overview};
 pub use crate::record::file::reader::{OpenError, SessionFile};
-pub use crate::record::file::recorder::{Recorder, RecorderStatus, RecordingPlan};
-pub use crate::record::file::recording::FLUSH_EACH;
+pub use crate::record::file::recorder::{Recorder, RecordingPlan};
+pub use crate::record::file::recording::{FLUSH_EACH, RecorderStatus};

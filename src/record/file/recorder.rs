@@ -3,7 +3,9 @@
 use crate::record::Entry;
 use crate::record::file::disk::Disk;
 use crate::record::file::opening::Opening;
-use crate::record::file::recording::{END_WITHIN, FLUSH_EACH, Given, Now, Recording};
+use crate::record::file::recording::{
+    END_WITHIN, FLUSH_EACH, Given, Now, RecorderStatus, Recording,
+};
 use std::io;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -27,38 +29,6 @@ pub struct RecordingPlan {
     pub opening: Opening,
     /// Where it lies.
     pub disk: Arc<dyn Disk>,
-}
-
-/// How a recording goes.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct RecorderStatus {
-    /// The file; `None` before there is one.
-    pub path: Option<PathBuf>,
-    /// Bytes that the system took.
-    pub bytes: u64,
-    /// Bytes of earlier files of the same recording.
-    pub earlier_bytes: u64,
-    /// Entries taken, without those that were lost since.
-    pub entries: u64,
-    /// Entries that are in no file.
-    pub missing: u64,
-    /// Why nothing can be written now, in the system's words.
-    pub trouble: Option<String>,
-    /// Since when it records.
-    pub since: Duration,
-    /// The recording is over; whole, if nothing is missing and there is no trouble.
-    pub ended: bool,
-}
-
-impl RecorderStatus {
-    /// Megabytes an hour, once there is enough to tell.
-    #[must_use]
-    pub fn megabytes_an_hour(&self) -> Option<f64> {
-        #[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
-        let bytes = (self.bytes + self.earlier_bytes) as f64;
-        let seconds = self.since.as_secs_f64();
-        (seconds >= 5.0).then(|| bytes / seconds * 3600.0 / 1e6)
-    }
 }
 
 /// What entries are given to. Copies give to the same recording.

@@ -3,7 +3,6 @@
 use crate::hand::Moment;
 use crate::record::file::disk::Disk;
 use crate::record::file::opening::Opening;
-use crate::record::file::recorder::RecorderStatus;
 use crate::record::file::tail::{Content, FileTail};
 use crate::record::file::writer::SessionWriter;
 use crate::record::{Entry, Event, EventKind, LinkReport, Record};
@@ -24,6 +23,38 @@ pub(crate) const CLOCK_SET: Duration = Duration::from_secs(1);
 pub(crate) const END_WITHIN: Duration = Duration::from_secs(2);
 /// Files begun because one took nothing any more; a disk that spoils more of them is broken.
 const REPLACED_MAX: u32 = 20;
+
+/// How a recording goes.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RecorderStatus {
+    /// The file; `None` before there is one.
+    pub path: Option<PathBuf>,
+    /// Bytes that the system took.
+    pub bytes: u64,
+    /// Bytes of earlier files of the same recording.
+    pub earlier_bytes: u64,
+    /// Entries taken, without those that were lost since.
+    pub entries: u64,
+    /// Entries that are in no file.
+    pub missing: u64,
+    /// Why nothing can be written now, in the system's words.
+    pub trouble: Option<String>,
+    /// Since when it records.
+    pub since: Duration,
+    /// The recording is over; whole, if nothing is missing and there is no trouble.
+    pub ended: bool,
+}
+
+impl RecorderStatus {
+    /// Megabytes an hour, once there is enough to tell.
+    #[must_use]
+    pub fn megabytes_an_hour(&self) -> Option<f64> {
+        #[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
+        let bytes = (self.bytes + self.earlier_bytes) as f64;
+        let seconds = self.since.as_secs_f64();
+        (seconds >= 5.0).then(|| bytes / seconds * 3600.0 / 1e6)
+    }
+}
 
 /// The present time, by both clocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

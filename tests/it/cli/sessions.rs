@@ -1,6 +1,6 @@
 //! Sessions on the command line: recorded, looked into, exported, recovered, and every file that is none.
 
-use crate::setup::process::{Ended, run, start};
+use crate::setup::process::{Ended, Running, run, start};
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -295,6 +295,164 @@ fn tables_and_bags_take_their_place_whole_or_not_at_all() {
     }
     assert_eq!(recorded.names(), names, "nothing is left over");
     assert_eq!(std::fs::read(recorded.path("a.parquet")).unwrap(), bytes);
+}
+
+#[test]
+fn a_data_set_for_learners_says_how_it_was_made() {
+    let recorded = record("2.5");
+    let told = recorded
+        .export(&["--lerobot", "--fps", "20", "--json"], "set")
+        .ok();
+    let frames = told.lines()[0]["rows"].as_u64().unwrap();
+    assert!((20..=90).contains(&frames), "{frames}");
+    let read = |name: &str| -> Value {
+        let text = std::fs::read_to_string(recorded.path("set/meta").join(name)).unwrap();
+        serde_json::from_str(&text).unwrap()
+    };
+    let info = read("info.json");
+    assert_eq!(
+        (&info["codebase_version"], &info["fps"]),
+        (&"v3.0".into(), &20.into())
+    );
+    assert_eq!(info["total_frames"], frames);
+    let names = &info["features"]["action"]["names"];
+    assert_eq!(names[0], "kRightHandPinky");
+    assert_eq!(names[5], "kRightHandThumbRotation");
+    assert!(
+        info["handscope"]["gaps"]
+            .as_str()
+            .unwrap()
+            .contains("0.5 s")
+    );
+    let state = &read("stats.json")["observation.state"];
+    assert_eq!(state["count"][0], frames);
+    assert!(state["q99"][3].as_f64().unwrap() <= 1.0, "{state}");
+    let short = recorded.export(&["--lerobot", "--from", "0", "--to", "0"], "none");
+    refused(&short, 1, &["no reading of the joints", "--from"]);
+    refused(
+        &recorded.export(&["--lerobot", "--fps", "0"], "none"),
+        2,
+        &["--fps"],
+    );
+    refused(
+        &recorded.export(&["--csv", "--fps", "5"], "none"),
+        2,
+        &["--lerobot"],
+    );
+    assert_eq!(recorded.names(), ["session.mcap", "set"]);
+}
+
+/// A recorded hand on TCP, with its endpoint.
+fn replayed(file: &Path, more: &[&str]) -> (Running, String) {
+    let args = ["replay", text(file), "--tcp", "127.0.0.1:0"];
+    let mut replay = start(&[&args, more].concat());
+    let ready = replay.line();
+    let address = ready.strip_prefix("ready tcp ").expect(&ready);
+    (replay, format!("tcp:{address}"))
+}
+
+/// The angles of a session, without those that repeat.
+fn angles(recorded: &Recorded, file: &str) -> Vec<String> {
+    let (file, csv) = (recorded.path(file), recorded.path("angles.csv"));
+    run(&["export", text(&file), "--csv", "--out", text(&csv)]).ok();
+    let lines = rows(&std::fs::read_to_string(&csv).unwrap()).1;
+    std::fs::remove_file(&csv).unwrap();
+    let six = lines.iter().map(|line| line[1..7].join(","));
+    let mut six: Vec<String> = six.filter(|six| six != ",,,,,").collect();
+    six.dedup();
+    six
+}
+
+#[test]
+fn a_replayed_hand_says_what_was_recorded_and_nothing_else() {
+    let recorded = record("3");
+    let (replay, hand) = replayed(&recorded.path("session.mcap"), &["--loop"]);
+    let again = recorded.path("again.mcap");
+    run(&[
+        "record",
+        "--hand",
+        &hand,
+        "--for",
+        "2",
+        "--out",
+        text(&again),
+    ])
+    .ok();
+    drop(replay);
+    let (before, after) = (
+        angles(&recorded, "session.mcap"),
+        angles(&recorded, "again.mcap"),
+    );
+    assert!(after.len() > 10, "{after:?}");
+    for six in &after {
+        assert!(before.contains(six), "{six} was never recorded");
+    }
+}
+
+#[test]
+fn a_replayed_hand_acknowledges_writes_and_keeps_to_the_recording() {
+    let recorded = record("1");
+    let file = recorded.path("session.mcap");
+    let (replay, hand) = replayed(&file, &["--loop", "--id", "9", "--speed", "0.5"]);
+    let read = |name: &str| {
+        run(&["read", name, "--hand", &hand, "--json"])
+            .ok()
+            .lines()
+            .remove(0)
+    };
+    let before = read("DEFAULT_SPEED_SET");
+    assert_eq!(
+        before["DEFAULT_SPEED_SET"],
+        serde_json::json!([1000, 1000, 1000, 1000, 1000, 1000])
+    );
+    let params = recorded.path("params.toml");
+    std::fs::write(
+        &params,
+        "format = \"handscope-params\"\nversion = 1\n[default_speed]\nindex = 77\n",
+    )
+    .unwrap();
+    let folder = recorded.path("kept");
+    let apply = [
+        "params",
+        "apply",
+        text(&params),
+        "--hand",
+        &hand,
+        "--folder",
+        text(&folder),
+    ];
+    let applied = run(&apply);
+    assert_eq!(applied.code, Some(1), "{}{}", applied.out, applied.err);
+    assert_eq!(read("DEFAULT_SPEED_SET"), before);
+    drop(replay);
+}
+
+#[test]
+fn a_replay_ends_with_the_recording_at_the_speed_that_was_asked_for() {
+    let recorded = record("2");
+    for (speed, seconds) in [("4", 0.3..1.8), ("1", 1.7..6.0)] {
+        let (replay, _) = replayed(&recorded.path("session.mcap"), &["--speed", speed]);
+        let ended = replay.end().ok();
+        let took = ended.took.as_secs_f64();
+        assert!(seconds.contains(&took), "{speed} times: {took}");
+    }
+    let file = recorded.path("session.mcap");
+    refused(&run(&["replay", text(&file)]), 2, &["--tcp"]);
+    let wild = [
+        "replay",
+        text(&file),
+        "--tcp",
+        "127.0.0.1:0",
+        "--speed",
+        "0",
+    ];
+    refused(&run(&wild), 2, &["between 0.1 and 100"]);
+    let gone = recorded.path("gone.mcap");
+    refused(
+        &run(&["replay", text(&gone), "--tcp", "127.0.0.1:0"]),
+        1,
+        &["No such file"],
+    );
 }
 
 #[test]

@@ -14,15 +14,24 @@ use handscope::codec::slcan::{
 };
 use handscope::codec::usbcan::{self, PacketContent, PacketDecoder};
 use handscope::codec::{pdu, rs485};
+use handscope::hand::kinematics::Side;
 use handscope::hand::register::BytePacking;
 use handscope::hand::{HandId, Moment, REGISTERS, Span, TactileBlock};
+use handscope::hand::{HandSample, Reply, register};
 use handscope::link::traffic::cut::WAITING_MAX;
 use handscope::link::traffic::decode::Heard;
 use handscope::link::traffic::{Decoder, values};
 use handscope::params;
 use handscope::poses;
-use handscope::record::{Direction, Piece, PieceKind};
+use handscope::record::file::reader::Stretch;
+use handscope::record::file::writer::SessionWriter;
+use handscope::record::file::{Opening, SessionFile};
+use handscope::record::{Direction, Entry, Event, EventKind, LinkState, Piece, PieceKind, Record};
 use handscope::transport::Endpoint;
+use std::io::{Seek as _, Write as _};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use tempfile::NamedTempFile;
 
 /// A target: any bytes, nothing may break.
 pub type Target = fn(&mut State, &[u8]);
@@ -42,7 +51,7 @@ pub const WIRES: [(&str, Target); 10] = [
 ];
 
 /// Everything else that reads what it was not asked to trust.
-pub const OTHERS: [(&str, Target); 13] = [
+pub const OTHERS: [(&str, Target); 14] = [
     ("tap_rs485", |state, bytes| tap(state, 0, bytes)),
     ("tap_rtu", |state, bytes| tap(state, 1, bytes)),
     ("tap_tcp", |state, bytes| tap(state, 2, bytes)),
@@ -56,6 +65,7 @@ pub const OTHERS: [(&str, Target); 13] = [
     ("settings", settings),
     ("parameter_file", parameter_file),
     ("pose_file", pose_file),
+    ("session_file", session_file),
 ];
 
 /// Decoders that live on from one input to the next, as they do on a wire.
@@ -70,6 +80,7 @@ pub struct State {
     taps: Vec<Decoder>,
     heard: Vec<Heard>,
     at: u64,
+    session: Option<NamedTempFile>,
     /// Frames that were accepted: a loop that accepts none proves nothing.
     pub accepted: u64,
 }
@@ -99,6 +110,7 @@ impl Default for State {
                 .collect(),
             heard: Vec::new(),
             at: 0,
+            session: None,
             accepted: 0,
         }
     }
@@ -449,6 +461,90 @@ fn pose_file(state: &mut State, bytes: &[u8]) {
     assert_eq!(poses::file::read(&written).unwrap(), library, "{text}");
 }
 
+/// Any file is a session or says why not; what is read of it lies in the stretch that was asked for, and reading it again gives
+/// the same.
+fn session_file(state: &mut State, bytes: &[u8]) {
+    let session = &mut state.session;
+    let file = session.get_or_insert_with(in_memory);
+    file.as_file().set_len(0).unwrap();
+    file.rewind().unwrap();
+    file.write_all(bytes).unwrap();
+    let session = match SessionFile::open(file.path()) {
+        Ok(session) => session,
+        Err(why) => return assert!(!why.to_string().is_empty()),
+    };
+    state.accepted += 1;
+    let stretch = Stretch {
+        from: session.first(),
+        to: session.last(),
+        wire: true,
+    };
+    let read = || {
+        let mut entries = Vec::new();
+        let damage = session.entries(stretch, |entry| {
+            assert!((stretch.from..=stretch.to).contains(&entry.at()));
+            entries.push(entry);
+            ControlFlow::Continue(())
+        });
+        (entries.len(), damage.unwrap())
+    };
+    assert_eq!(read(), read());
+    assert!(session.overview().rows.is_sorted_by_key(|row| row.second));
+}
+
+/// A file where no disk slows millions of inputs down, if there is such a place.
+fn in_memory() -> NamedTempFile {
+    NamedTempFile::new_in("/dev/shm")
+        .or_else(|_| NamedTempFile::new())
+        .unwrap()
+}
+
+/// A short session: a reading, bytes on the wire, a note.
+fn session() -> Vec<u8> {
+    let at = |millis: u64| Moment::from_micros(1000 * millis);
+    let opening = Opening {
+        base_nanos: 1_795_219_200_000_000_123,
+        began: at(1),
+        hand: "sim:?seed=3".into(),
+        simulated: true,
+        side: Side::Left,
+        version: "0.1.0".into(),
+    };
+    let mut sample = HandSample::default();
+    let fresh = sample.take(&Reply {
+        span: register::STATE,
+        bytes: &[7; 78],
+        asked: at(3),
+        received: at(4),
+    });
+    let mut writer = SessionWriter::new(&opening).unwrap();
+    for entry in [
+        Entry::Heard(Record::State {
+            at: at(2),
+            state: LinkState::Monitoring,
+        }),
+        Entry::Heard(Record::Reading {
+            sample: Arc::new(sample),
+            fresh,
+        }),
+        Entry::Wire(Piece {
+            at: at(5),
+            kind: PieceKind::Bytes(Direction::FromHand),
+            bytes: vec![1, 2, 3],
+        }),
+        Entry::Event(Event {
+            at: at(6),
+            kind: EventKind::Note,
+            words: "a note".into(),
+        }),
+    ] {
+        writer.push(&entry).unwrap();
+        writer.flush().unwrap();
+    }
+    writer.finish().unwrap();
+    writer.take_bytes()
+}
+
 /// A file of poses.
 const POSES: &str = "format = \"handscope-poses\"\nversion = 1\nmood = \"calm\"\n[[pose]]\nname = \"Pinch\"\ntags = [\"a\"]\n\
     speed = 300\nforce = 800\nleave = [\"little\"]\n[pose.angles]\nlittle = 1000\nring = 1000\nmiddle = 1000\n\
@@ -523,6 +619,11 @@ pub fn seeds(target: &str) -> Vec<Vec<u8>> {
             b"format = \"handscope-params\"\nversion = 1\nhand_id = 7\nip_address = \"10.0.0.9\"\n[new]\nkey = 1\n".to_vec(),
             b"format = \"handscope-params\"\nversion = 1\n[default_speed]\nindex = 150\n[default_force]\nring = 300\n".to_vec(),
         ],
+        "session_file" => {
+            let whole = session();
+            let unclosed = whole[..whole.len() / 2].to_vec();
+            vec![whole, unclosed]
+        }
         "pose_file" => vec![POSES.as_bytes().to_vec()],
         _ => vec![vec![1, 2, 3, 4], (0..24).collect()],
     }

@@ -1,0 +1,217 @@
+//! `replay`: a hand that says what was recorded, on the wires of the simulated hand.
+
+use crate::cli::interrupt::Interrupt;
+use crate::cli::out::{Out, say};
+use crate::cli::parse::number;
+use crate::cli::session_file::{self, FileArgs, WHOLE, lost};
+use crate::cli::wires::{WireArgs, failed};
+use crate::hand::{Group, HandId, Moment, register, sample::touch_span};
+use crate::params::file;
+use crate::params::rows::{ParamId, Value};
+use crate::params::values::span_of;
+use crate::record::file::SessionFile;
+use crate::record::file::reader::{Damage, Stretch};
+use crate::record::{Entry, EventKind, Record};
+use crate::sim::{SharedHand, SimConfig, SimHand, SimHands};
+use anyhow::{Context as _, anyhow};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::mpsc;
+use tokio::task::JoinHandle;
+use tokio::time::{Instant, sleep_until};
+
+/// What is read from the file ahead of its time: a second of a busy recording.
+const AHEAD: usize = 1024;
+/// What is first read in this time is known from the start: everything that is read at all is read by then.
+const KNOWN_FROM_START: Duration = Duration::from_secs(6);
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ReplayArgs {
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    wires: WireArgs,
+    /// Id of the hand [default: as recorded, else 1]
+    #[arg(long, value_name = "ID", value_parser = clap::value_parser!(u8).range(1..=254))]
+    id: Option<u8>,
+    /// So many times as fast as it was, 0.1 to 100
+    #[arg(long, value_name = "TIMES", default_value = "1", value_parser = times)]
+    speed: f64,
+    /// Begin again at the end
+    #[arg(long = "loop")]
+    again: bool,
+}
+
+fn times(text: &str) -> Result<f64, String> {
+    number(text, 0.1..=100.0, "a number between 0.1 and 100")
+}
+
+/// Serves the recorded hand until the recording ends, or a person ends it.
+pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> {
+    let mut interrupt = Interrupt::listen()?;
+    let path = &args.file.file;
+    let file = Arc::new(session_file::open(path)?);
+    let hands = SimHands::from(hand(&file, args.id)?);
+    let wires = args.wires.serve(&hands).await?;
+    out.lines(wires.iter().map(|wire| wire.ready()))?;
+    out.flush()?;
+    let play = async {
+        loop {
+            let damage = play(&file, &hands, args.speed).await?;
+            if let Some(words) = lost(damage) {
+                say(&format!("{} is damaged: {words}", path.display()));
+            }
+            if !args.again {
+                return Ok(());
+            }
+        }
+    };
+    tokio::select! {
+        biased;
+        () = interrupt.wished() => Ok(()),
+        error = failed(wires) => Err(error),
+        done = play => done,
+    }
+}
+
+/// What happens to the hand.
+enum Step {
+    /// Its memory is this from here on.
+    Memory(u16, Vec<u8>),
+    /// It does not answer, or does again.
+    Silent(bool),
+}
+
+/// The hand as the recording begins.
+fn hand(file: &SessionFile, id: Option<u8>) -> anyhow::Result<SharedHand> {
+    let mut first: Vec<(u16, Vec<u8>)> = Vec::new();
+    let mut recorded_id = None;
+    let begin = Stretch {
+        from: Moment::ZERO,
+        to: file.first().plus(KNOWN_FROM_START),
+        wire: false,
+    };
+    let read = file.entries(begin, |entry| {
+        recorded_id = recorded_id.or_else(|| hand_id(&entry));
+        for step in steps(&entry) {
+            if let Step::Memory(address, bytes) = step
+                && !first.iter().any(|(known, _)| *known == address)
+            {
+                first.push((address, bytes));
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    read.context("cannot read the recording")?;
+    let mut hand = SimHand::new(SimConfig {
+        id: id.or(recorded_id).unwrap_or(HandId::MIN.get()),
+        ..SimConfig::default()
+    });
+    hand.follow_recording();
+    for (address, bytes) in first {
+        hand.put_recorded(address, &bytes);
+    }
+    Ok(SharedHand::new(hand, Instant::now()))
+}
+
+/// Plays all of it once.
+async fn play(file: &Arc<SessionFile>, hands: &SimHands, speed: f64) -> anyhow::Result<Damage> {
+    let (give, mut steps) = mpsc::channel(AHEAD);
+    let reader = read_ahead(Arc::clone(file), give);
+    let begun = Instant::now();
+    while let Some((at, step)) = steps.recv().await {
+        let after = at.since(file.first()).div_f64(speed);
+        sleep_until(begun + after).await;
+        hands.with_each(|hand, _| match &step {
+            Step::Memory(address, bytes) => hand.put_recorded(*address, bytes),
+            Step::Silent(silent) => hand.put_silent(*silent),
+        });
+    }
+    let damage = reader.await.context("the reader of the recording ended")?;
+    damage.map_err(|error| anyhow!("cannot read the recording on: {error}"))
+}
+
+/// Reads the file on a thread of its own, no further ahead than there is room.
+fn read_ahead(
+    file: Arc<SessionFile>,
+    give: mpsc::Sender<(Moment, Step)>,
+) -> JoinHandle<std::io::Result<Damage>> {
+    tokio::task::spawn_blocking(move || {
+        let no_wire = Stretch {
+            wire: false,
+            ..WHOLE
+        };
+        file.entries(no_wire, |entry| {
+            let at = entry.at();
+            for step in steps(&entry) {
+                if give.blocking_send((at, step)).is_err() {
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        })
+    })
+}
+
+fn steps(entry: &Entry) -> Vec<Step> {
+    match entry {
+        Entry::Heard(Record::Reading { sample, fresh }) => Group::all()
+            .filter(|group| fresh.contains(*group))
+            .filter_map(|group| Some(Step::Memory(address(group), sample.memory(group)?)))
+            .collect(),
+        Entry::Heard(Record::State { state, .. }) => vec![Step::Silent(!state.is_live())],
+        Entry::Event(event) if event.kind == EventKind::Parameters => parameters(&event.words),
+        _ => Vec::new(),
+    }
+}
+
+/// Where a group stands in the hand's memory.
+const fn address(group: Group) -> u16 {
+    match group {
+        Group::AngleSet => register::ANGLE_SET.address,
+        Group::ForceSet => register::FORCE_SET.address,
+        Group::SpeedSet => register::SPEED_SET.address,
+        Group::Position => register::POS_ACT.address,
+        Group::Angle => register::ANGLE_ACT.address,
+        Group::Force => register::FORCE_ACT.address,
+        Group::Current => register::CURRENT.address,
+        Group::Faults => register::ERROR.address,
+        Group::Status => register::STATUS.address,
+        Group::Temperature => register::TEMP.address,
+        Group::Tactile(finger) => touch_span(finger).address,
+    }
+}
+
+/// What the hand kept, but its id, which is the person's to choose.
+fn parameters(toml: &str) -> Vec<Step> {
+    let Ok(file) = file::read(toml) else {
+        return Vec::new();
+    };
+    let rows = file.params.iter();
+    rows.filter(|(id, _)| *id != ParamId::HandId)
+        .map(|(id, value)| {
+            let span = span_of(id);
+            let bytes = match value {
+                Value::Number(number) => number.to_le_bytes(),
+                Value::Address(address) => address.octets(),
+            };
+            let kept = bytes.iter().take(usize::from(span.len)).copied();
+            Step::Memory(span.address, kept.collect())
+        })
+        .collect()
+}
+
+fn hand_id(entry: &Entry) -> Option<u8> {
+    let Entry::Event(event) = entry else {
+        return None;
+    };
+    let is_it = event.kind == EventKind::Parameters;
+    let file = file::read(&event.words).ok().filter(|_| is_it)?;
+    match file.params.get(ParamId::HandId)? {
+        Value::Number(number) => u8::try_from(number)
+            .ok()
+            .filter(|id| (1..=254).contains(id)),
+        Value::Address(_) => None,
+    }
+}
