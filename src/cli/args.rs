@@ -1,14 +1,14 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
 use crate::cli::doctor::DoctorArgs;
-use crate::cli::export::{ExportArgs, RecoverArgs};
 use crate::cli::help::{self, HelpArgs};
-use crate::cli::info::InfoArgs;
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
-use crate::cli::record::RecordArgs;
-use crate::cli::replay::ReplayArgs;
+use crate::cli::recordings::export::{ExportArgs, RecoverArgs};
+use crate::cli::recordings::info::InfoArgs;
+use crate::cli::recordings::record::RecordArgs;
+use crate::cli::recordings::replay::ReplayArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::sim::{self, SimArgs};
 use crate::cli::snapshot::SnapshotArgs;

@@ -2,21 +2,17 @@
 
 mod args;
 mod doctor;
-mod export;
 mod help;
-mod info;
 mod interrupt;
 mod out;
 mod params;
 mod parse;
 mod quirks;
 mod read;
-mod record;
+mod recordings;
 mod registers;
-mod replay;
 mod scan;
 mod session;
-mod session_file;
 mod sim;
 mod snapshot;
 mod trial;
@@ -71,11 +67,11 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
-        Command::Record(args) => wait_for(record::run(&mut out, &args)),
-        Command::Info(args) => info::run(&mut out, &args),
-        Command::Export(args) => export::run(&mut out, &args),
-        Command::Recover(args) => export::recover(&mut out, &args),
-        Command::Replay(args) => wait_for(replay::run(&mut out, &args)),
+        Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
+        Command::Info(args) => recordings::info::run(&mut out, &args),
+        Command::Export(args) => recordings::export::run(&mut out, &args),
+        Command::Recover(args) => recordings::export::recover(&mut out, &args),
+        Command::Replay(args) => wait_for(recordings::replay::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),

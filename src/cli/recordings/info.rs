@@ -1,8 +1,8 @@
 //! `info`: what a session file holds and what is missing in it. Reads the file to its end, so that every checksum is looked at.
 
 use crate::cli::out::Out;
-use crate::cli::record::touch_sweeps;
-use crate::cli::session_file::{self, FileArgs, WHOLE, length, lost};
+use crate::cli::recordings::record::touch_sweeps;
+use crate::cli::recordings::session_file::{self, FileArgs, WHOLE, length, lost};
 use crate::hand::Moment;
 use crate::record::EventKind;
 use crate::record::file::SessionFile;

@@ -1,7 +1,7 @@
 //! `export`: a session, or a stretch of it, in a format of others; `recover`: a damaged one made whole again.
 
 use crate::cli::out::{Out, WrongUsage, say};
-use crate::cli::session_file::{self, FileArgs, StretchArgs, lost};
+use crate::cli::recordings::session_file::{self, FileArgs, StretchArgs, lost};
 use crate::record::export::lerobot::LeRobotPlan;
 use crate::record::export::{ExportError, Exported, csv, cut, lerobot, parquet, rosbag};
 use anyhow::{anyhow, bail};

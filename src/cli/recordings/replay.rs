@@ -3,7 +3,7 @@
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
-use crate::cli::session_file::{self, FileArgs, WHOLE, lost};
+use crate::cli::recordings::session_file::{self, FileArgs, WHOLE, lost};
 use crate::cli::wires::{WireArgs, failed};
 use crate::hand::{Group, HandId, Moment, register, sample::touch_span};
 use crate::params::file;
