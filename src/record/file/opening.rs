@@ -31,7 +31,7 @@ impl Opening {
             Side::Left => "left",
             Side::Right => "right",
         };
-        [
+        let mut map: BTreeMap<String, String> = [
             ("format", "1".to_owned()),
             ("version", self.version.clone()),
             ("hand", self.hand.clone()),
@@ -42,11 +42,17 @@ impl Opening {
         ]
         .into_iter()
         .map(|(key, value)| (key.to_owned(), value))
-        .collect()
+        .collect();
+        map.insert(CHECK.into(), check(&map));
+        map
     }
 
     /// From what stands in a file; `None` if it is not ours.
     pub(crate) fn of_metadata(map: &BTreeMap<String, String>) -> Option<Self> {
+        // A flipped digit here would put the whole recording at another time.
+        if map.get(CHECK) != Some(&check(map)) {
+            return None;
+        }
         let text = |key: &str| map.get(key).cloned().unwrap_or_default();
         Some(Self {
             base_nanos: map.get("base_nanos")?.parse().ok()?,
@@ -60,4 +66,15 @@ impl Opening {
             version: text("version"),
         })
     }
+}
+
+/// The key of the sum over all others: MCAP has none over metadata.
+const CHECK: &str = "crc32";
+
+fn check(map: &BTreeMap<String, String>) -> String {
+    let mut hash = crc32fast::Hasher::new();
+    for (key, value) in map.iter().filter(|(key, _)| *key != CHECK) {
+        hash.update(format!("{key}={value}\n").as_bytes());
+    }
+    format!("{:08x}", hash.finalize())
 }

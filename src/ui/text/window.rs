@@ -18,7 +18,7 @@ texts! {
     LEAVE_SERIES: "A series of trials runs. It would end here, and the hand would be held; what was measured is kept.", "正在运行抓取试验。关闭后试验将结束并保持灵巧手；已测得的数据会保留。";
     LEAVE_EDITS: "{} staged values were not applied. They would be forgotten.", "有 {} 个暂存值尚未写入，将会丢失。";
     STAY: "Keep it open", "保持打开";
-    LEAVE: "Close", "关闭";
+    LEAVE: "Close the window", "关闭窗口";
     UNDERSTOOD: "Understood", "知道了";
     OPEN: "Expand", "展开", "Shows this room again.", "重新显示此区域。";
     SIDE: "Fingertips and faults", "指尖与故障";

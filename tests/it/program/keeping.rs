@@ -126,6 +126,7 @@ async fn settings_are_kept_and_setpoints_never() {
             "plots",
             "read_first",
             "recent",
+            "sessions",
             "side",
             "tares",
             "theme",
