@@ -51,7 +51,8 @@ impl HandState {
     }
 
     fn take_reading(&mut self, sample: &HandSample, fresh: Groups, notices: &mut Notices) {
-        let now = self.now;
+        // Dated by the reading, not by the frame that takes it in: a replay tells the same.
+        let now = sample.newest(fresh).unwrap_or(self.now);
         self.sample = *sample;
         if let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) {
             self.pace.take(angle.asked);
