@@ -30,6 +30,10 @@ const LISTED: usize = 400;
 
 /// Draws it.
 pub(crate) fn timeline_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
+    if line.runs || line.waits {
+        // No news of a live hand may come meanwhile.
+        ui.ctx().request_repaint();
+    }
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = theme::STEP;
         ui.horizontal(|ui| {
