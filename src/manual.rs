@@ -2,7 +2,7 @@
 
 /// One page of the manual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Topic {
+pub struct HelpTopic {
     /// The word a reader types after `handscope help`; also the name of the file.
     pub name: &'static str,
     /// What the page is about, in a few words, for the list of topics.
@@ -15,7 +15,7 @@ pub struct Topic {
 macro_rules! topics {
     ($($name:ident: $about:literal;)*) => {
         /// All topics, in the order of the list.
-        pub const TOPICS: &[Topic] = &[$(Topic {
+        pub const TOPICS: &[HelpTopic] = &[$(HelpTopic {
             name: stringify!($name),
             about: $about,
             text: include_str!(concat!("../assets/manual/", stringify!($name), ".md")),
@@ -40,6 +40,6 @@ topics! {
 
 /// The topic of this name.
 #[must_use]
-pub fn topic(name: &str) -> Option<&'static Topic> {
+pub fn topic(name: &str) -> Option<&'static HelpTopic> {
     TOPICS.iter().find(|topic| topic.name == name)
 }

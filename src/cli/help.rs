@@ -2,7 +2,7 @@
 
 use crate::cli::out::{Out, WrongUsage};
 use crate::cli::parse;
-use crate::manual::{self, TOPICS, Topic};
+use crate::manual::{self, HelpTopic, TOPICS};
 use clap::{Args, Command};
 
 #[derive(Debug, Args)]
@@ -16,7 +16,7 @@ pub(crate) struct HelpArgs {
 pub(crate) fn run(out: &mut Out, args: &HelpArgs, program: Command) -> anyhow::Result<()> {
     let words: Vec<String> = args.words.iter().map(|word| word.to_lowercase()).collect();
     if let [word, rest @ ..] = words.as_slice()
-        && let Some(Topic { name, text, .. }) = manual::topic(word)
+        && let Some(HelpTopic { name, text, .. }) = manual::topic(word)
     {
         if rest.is_empty() {
             return plain(text).iter().try_for_each(|line| out.line(line));

@@ -34,14 +34,14 @@ const FRAME_MAX: Duration = Duration::from_millis(250);
 pub(crate) const PACES: (f32, f32) = (0.1, 10.0);
 
 /// A file that was opened, and the hand as it was soon after the beginning.
-pub(crate) type Opened = (Arc<SessionFile>, Found);
+pub(crate) type Opened = (Arc<SessionFile>, HandThen);
 
 /// The hand as it was at a moment.
-type Found = (Moment, Box<Recorded>);
+type HandThen = (Moment, Box<Recorded>);
 
 /// The moment that is wanted.
 #[derive(Debug, Clone, Copy)]
-enum Wanted {
+enum SeekTarget {
     At(Moment),
     /// The reading of the angles after this moment.
     After(Moment),
@@ -50,7 +50,7 @@ enum Wanted {
 }
 
 /// A session that is replayed.
-pub(crate) struct Player {
+pub(crate) struct SessionPlayer {
     file: Arc<SessionFile>,
     about: SessionAbout,
     /// Everything the window shows of it.
@@ -58,8 +58,8 @@ pub(crate) struct Player {
     tap: WireTap,
     /// When it was looked at last, in the program's time.
     ticked: Moment,
-    wanted: Option<Wanted>,
-    seeking: Option<BackgroundJob<io::Result<Found>>>,
+    wanted: Option<SeekTarget>,
+    seeking: Option<BackgroundJob<io::Result<HandThen>>>,
     ahead: VecDeque<Entry>,
     ahead_until: Moment,
     reading: Option<(Moment, BackgroundJob<io::Result<Vec<Entry>>>)>,
@@ -73,7 +73,7 @@ pub(crate) fn open(path: PathBuf, env: &Env) -> BackgroundJob<Result<Opened, Not
         let opened = on_thread(move || {
             Ok(SessionFile::open(&place).and_then(|file| {
                 let at = file.first().plus(AHEAD).min(file.last());
-                let found = find(&file, Wanted::At(at))?;
+                let found = find(&file, SeekTarget::At(at))?;
                 Ok::<Opened, OpenError>((Arc::new(file), found))
             }))
         });
@@ -84,16 +84,16 @@ pub(crate) fn open(path: PathBuf, env: &Env) -> BackgroundJob<Result<Opened, Not
 }
 
 /// The hand at the moment that is wanted.
-fn find(file: &SessionFile, wanted: Wanted) -> io::Result<Found> {
+fn find(file: &SessionFile, wanted: SeekTarget) -> io::Result<HandThen> {
     let one = Duration::from_micros(1);
     let earlier = |at: Moment, by| Moment::from_duration(at.since(Moment::ZERO).saturating_sub(by));
     let at = match wanted {
-        Wanted::At(at) => at,
-        Wanted::After(at) => {
+        SeekTarget::At(at) => at,
+        SeekTarget::After(at) => {
             let stretch = (at.plus(one), at.plus(STEP_WITHIN));
             reading(file, stretch, true)?.unwrap_or(at)
         }
-        Wanted::Before(at) => {
+        SeekTarget::Before(at) => {
             let stretch = (earlier(at, STEP_WITHIN), earlier(at, one));
             reading(file, stretch, false)?.unwrap_or(at)
         }
@@ -122,7 +122,7 @@ fn reading(
     Ok(found)
 }
 
-impl Player {
+impl SessionPlayer {
     /// Begins to replay a file, standing still.
     pub(crate) fn new((file, (at, recorded)): Opened, now: Moment) -> Self {
         let about = SessionAbout::load(file.path()).unwrap_or_default();
@@ -191,7 +191,7 @@ impl Player {
     }
 
     /// Shows the hand as it was found.
-    fn take_found(&mut self, (at, recorded): Found) {
+    fn take_found(&mut self, (at, recorded): HandThen) {
         *self.state.hands.shown_mut() = recorded.hand;
         self.state.notices = recorded.notices;
         self.tap = recorded.tap;
@@ -283,7 +283,7 @@ impl Player {
         let is_over = next >= end;
         line.runs = !is_over || begin.is_some();
         if is_over {
-            self.wanted = begin.map(Wanted::At);
+            self.wanted = begin.map(SeekTarget::At);
         }
         let mut shown = Shown {
             hand: self.state.hands.shown_mut(),
@@ -330,14 +330,14 @@ impl Player {
         let (first, last) = (self.file.first(), self.file.last());
         let within = |at: Moment| at.clamp(first, last);
         match action {
-            SessionAction::Seek(at) => self.wanted = Some(Wanted::At(within(*at))),
+            SessionAction::Seek(at) => self.wanted = Some(SeekTarget::At(within(*at))),
             SessionAction::Run(on) => {
                 let is_at_end = self.at() >= last;
                 if let Some(line) = self.line() {
                     line.runs = *on;
                 }
                 if *on && is_at_end {
-                    self.wanted = Some(Wanted::At(first));
+                    self.wanted = Some(SeekTarget::At(first));
                 }
             }
             SessionAction::Pace(pace) => {
@@ -355,8 +355,8 @@ impl Player {
             SessionAction::Step(forward) => {
                 let at = self.at();
                 self.wanted = Some(match forward {
-                    true => Wanted::After(at),
-                    false => Wanted::Before(at),
+                    true => SeekTarget::After(at),
+                    false => SeekTarget::Before(at),
                 });
                 if let Some(line) = self.line() {
                     line.runs = false;

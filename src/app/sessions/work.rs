@@ -8,7 +8,7 @@ use crate::app::sessions::action::SessionAction;
 use crate::app::sessions::budget::to_delete;
 use crate::app::sessions::item::SessionItem;
 use crate::app::sessions::list::{self, Looked};
-use crate::app::sessions::player::{self, Opened, Player};
+use crate::app::sessions::player::{self, Opened, SessionPlayer};
 use crate::app::state::State;
 use crate::store::{BackgroundJob, on_thread};
 use std::io;
@@ -19,7 +19,7 @@ use std::sync::Arc;
 #[derive(Default)]
 pub(crate) struct SessionWork {
     /// The session that is replayed.
-    pub(crate) player: Option<Player>,
+    pub(crate) player: Option<SessionPlayer>,
     opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
     looking: Option<BackgroundJob<Looked>>,
     look_again: bool,
@@ -44,7 +44,7 @@ impl SessionWork {
             self.look(state, env);
         }
         match BackgroundJob::take_from(&mut self.opening) {
-            Some(Ok(opened)) => self.player = Some(Player::new(opened, state.now)),
+            Some(Ok(opened)) => self.player = Some(SessionPlayer::new(opened, state.now)),
             Some(Err(refused)) => state.notices.push(state.now, refused),
             None => {}
         }

@@ -11,7 +11,7 @@ use crate::store;
 use crate::store::calendar::stamp;
 use crate::store::{BackgroundJob, on_thread, read_text};
 use crate::trials::recording::csv;
-use crate::trials::session::writer::SessionWriter;
+use crate::trials::session::writer::TrialSessionWriter;
 use crate::trials::session::{SESSION_FILE, SessionHead, load};
 use crate::trials::{Criterion, TrialRecording, TrialSummary};
 use futures::future::BoxFuture;
@@ -126,7 +126,7 @@ fn folder_name(head: &SessionHead) -> String {
 fn write(session: TrialSession, folder: &Path, criterion: Option<Criterion>) -> io::Result<()> {
     let mut head = session.head;
     let aborted = head.aborted.take();
-    let mut writer = SessionWriter::create(folder, head, criterion)?;
+    let mut writer = TrialSessionWriter::create(folder, head, criterion)?;
     for trial in &session.trials {
         writer.add(&trial.summary, &trial.recording)?;
     }

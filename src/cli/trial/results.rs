@@ -9,7 +9,7 @@ use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::SeriesStep;
 use crate::trials::session::SessionHead;
-use crate::trials::session::writer::SessionWriter;
+use crate::trials::session::writer::TrialSessionWriter;
 use crate::trials::{Abort, EarlyEnd, Trial, TrialPlan, TrialSummary};
 use anyhow::{Context as _, anyhow};
 use std::io;
@@ -34,7 +34,7 @@ pub(crate) struct TrialResults<'a> {
 /// The way to the thread that writes, and the thread.
 type Writer = (
     mpsc::SyncSender<Trial>,
-    JoinHandle<io::Result<SessionWriter>>,
+    JoinHandle<io::Result<TrialSessionWriter>>,
 );
 
 impl<'a> TrialResults<'a> {
@@ -53,7 +53,7 @@ impl<'a> TrialResults<'a> {
             ..SessionHead::begin(plan.clone(), now)
         };
         let started = |folder: &Path| {
-            let writer = SessionWriter::create(folder, head(), args.criterion());
+            let writer = TrialSessionWriter::create(folder, head(), args.criterion());
             let writer =
                 writer.with_context(|| format!("cannot store the trials in {}", folder.display()));
             writer.map(write_on_thread)
@@ -114,7 +114,7 @@ impl<'a> TrialResults<'a> {
     }
 }
 
-fn write_on_thread(mut writer: SessionWriter) -> Writer {
+fn write_on_thread(mut writer: TrialSessionWriter) -> Writer {
     let (trials, waiting) = mpsc::sync_channel::<Trial>(WAITING_MAX);
     let thread = std::thread::spawn(move || {
         for trial in waiting {

@@ -35,7 +35,7 @@ pub(crate) enum Values {
 
 /// One value.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Cell {
+pub(crate) enum ParquetCell {
     Int(i32),
     Long(i64),
     Float(f32),
@@ -47,7 +47,7 @@ pub(crate) enum Cell {
 
 /// One column.
 #[derive(Debug, Clone)]
-pub(crate) struct Column {
+pub(crate) struct ParquetColumn {
     pub(crate) name: String,
     pub(crate) unit: &'static str,
     values: Values,
@@ -57,7 +57,7 @@ pub(crate) struct Column {
     further: Vec<i16>,
 }
 
-impl Column {
+impl ParquetColumn {
     pub(crate) fn new(name: impl Into<String>, unit: &'static str, values: Values) -> Self {
         Self {
             name: name.into(),
@@ -69,15 +69,18 @@ impl Column {
     }
 
     /// Adds a row. A value of another type than the column's is none.
-    pub(crate) fn push(&mut self, cell: Cell) {
+    pub(crate) fn push(&mut self, cell: ParquetCell) {
         match (&mut self.values, cell) {
-            (Values::Int(all), Cell::Int(value)) => all.push(value),
-            (Values::Long(all) | Values::Time(all), Cell::Long(value)) => all.push(value),
-            (Values::Float(all), Cell::Float(value)) => all.push(value),
-            (Values::Double(all), Cell::Double(value)) => all.push(value),
-            (Values::Bool(all), Cell::Bool(value)) => all.push(value),
+            (Values::Int(all), ParquetCell::Int(value)) => all.push(value),
+            (Values::Long(all) | Values::Time(all), ParquetCell::Long(value)) => all.push(value),
+            (Values::Float(all), ParquetCell::Float(value)) => all.push(value),
+            (Values::Double(all), ParquetCell::Double(value)) => all.push(value),
+            (Values::Bool(all), ParquetCell::Bool(value)) => all.push(value),
             (_, cell) => {
-                debug_assert!(matches!(cell, Cell::Null), "a value of the wrong type");
+                debug_assert!(
+                    matches!(cell, ParquetCell::Null),
+                    "a value of the wrong type"
+                );
                 self.there.push(0);
                 return;
             }
@@ -193,7 +196,7 @@ fn list(
 
 /// Writes a group of rows.
 pub(crate) fn put<W: Write + Send>(
-    columns: &mut [Column],
+    columns: &mut [ParquetColumn],
     mut group: SerializedRowGroupWriter<'_, W>,
 ) -> Result<(), ParquetError> {
     for column in columns {

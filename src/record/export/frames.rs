@@ -1,4 +1,4 @@
-//! Frames at an even rate, made of readings that come when they come.
+//! DatasetFrames at an even rate, made of readings that come when they come.
 
 use crate::hand::register::ANGLE_SET;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Target};
@@ -19,7 +19,7 @@ pub(crate) const FRAME_WIDTHS: [usize; 4] = [6, 6, 6, 10];
 
 /// What was known at one time.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Frame {
+pub(crate) struct DatasetFrame {
     /// In its episode, from 0.
     pub(crate) number: u64,
     /// Since the episode's first, s.
@@ -30,7 +30,7 @@ pub(crate) struct Frame {
     touch: [f32; 10],
 }
 
-impl Frame {
+impl DatasetFrame {
     /// Its parts, as [`FRAME_WIDTHS`] counts them; the last means nothing where the fingertips are left out.
     pub(crate) fn parts(&self) -> [&[f32]; 4] {
         [&self.state, &self.action, &self.force, &self.touch]
@@ -47,7 +47,7 @@ pub(crate) fn has_touch(file: &SessionFile) -> bool {
 
 /// Makes frames of entries.
 #[derive(Debug)]
-pub(crate) struct Frames {
+pub(crate) struct DatasetFrames {
     fps: u32,
     /// Whether a frame needs the fingertips.
     with_touch: bool,
@@ -58,7 +58,7 @@ pub(crate) struct Frames {
     number: u64,
 }
 
-impl Frames {
+impl DatasetFrames {
     pub(crate) fn new(file: &SessionFile, fps: u32) -> Self {
         Self {
             fps: fps.max(1),
@@ -71,7 +71,7 @@ impl Frames {
     }
 
     /// Gives the frames before this entry, and takes it in.
-    pub(crate) fn take(&mut self, entry: &Entry, mut give: impl FnMut(&Frame)) {
+    pub(crate) fn take(&mut self, entry: &Entry, mut give: impl FnMut(&DatasetFrame)) {
         let now = entry.at();
         while let Some((began, at)) = self.next_at().filter(|(_, at)| *at < now) {
             match self.frame(began, at) {
@@ -131,7 +131,7 @@ impl Frames {
     }
 
     /// The frame of a time; `None` if something in it is not known or too old.
-    fn frame(&self, began: Moment, at: Moment) -> Option<Frame> {
+    fn frame(&self, began: Moment, at: Moment) -> Option<DatasetFrame> {
         let fresh = |received: Moment, within: Duration| at.since(received) <= within;
         let angle = Quantity::Angle.documented(&self.sample)?;
         let force = Quantity::Force.documented(&self.sample)?;
@@ -142,7 +142,7 @@ impl Frames {
         {
             return None;
         }
-        let mut frame = Frame {
+        let mut frame = DatasetFrame {
             number: self.number,
             time_s: at.since(began).as_secs_f32(),
             state: [0.0; 6],
@@ -194,8 +194,8 @@ mod tests {
     use crate::record::WriteCause;
     use std::sync::Arc;
 
-    fn empty() -> Frames {
-        Frames {
+    fn empty() -> DatasetFrames {
+        DatasetFrames {
             fps: 10,
             with_touch: false,
             sample: HandSample::default(),

@@ -2,8 +2,8 @@
 //! not read is never filled in: a silence ends the episode.
 
 use crate::hand::kinematics::Side;
-use crate::record::export::columns::{self, Cell, Column, Values};
-use crate::record::export::frames::{FRAME_WIDTHS, Frame, Frames, has_touch};
+use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
+use crate::record::export::frames::{DatasetFrame, DatasetFrames, FRAME_WIDTHS, has_touch};
 use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
 use crate::record::export::statistics::Statistics;
 use crate::record::file::SessionFile;
@@ -21,7 +21,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Frames that an episode keeps in memory: half an hour at 30 a second. A longer one is written as several groups of rows.
+/// DatasetFrames that an episode keeps in memory: half an hour at 30 a second. A longer one is written as several groups of rows.
 const GROUP_FRAMES: u64 = 65_536;
 /// Names of what a frame holds, in the order of [`FRAME_WIDTHS`].
 const PARTS: [&str; 4] = [
@@ -36,7 +36,7 @@ const FILE: &str = "chunk-000/file-000.parquet";
 /// How frames are made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeRobotPlan {
-    /// Frames a second.
+    /// DatasetFrames a second.
     pub fps: u32,
     /// What the hand does, in words.
     pub task: String,
@@ -62,7 +62,7 @@ pub fn write(
     let data = folder.join("data").join(FILE);
     let data = BufWriter::new(File::create_new(data).map_err(error)?);
     let mut set = DataSet::new(data, parts(file)).map_err(parquet_error)?;
-    let mut frames = Frames::new(file, plan.fps);
+    let mut frames = DatasetFrames::new(file, plan.fps);
     let mut done = Ok(());
     let no_wire = Stretch {
         wire: false,
@@ -112,10 +112,10 @@ fn parts(file: &SessionFile) -> usize {
 /// The frames as they are written.
 struct DataSet {
     to: SerializedFileWriter<BufWriter<File>>,
-    columns: Vec<Column>,
+    columns: Vec<ParquetColumn>,
     parts: usize,
     statistics: Statistics,
-    /// Frames of each episode.
+    /// DatasetFrames of each episode.
     episodes: Vec<u64>,
     index: u64,
     waiting: u64,
@@ -132,11 +132,16 @@ struct Ended {
 impl DataSet {
     fn new(to: BufWriter<File>, parts: usize) -> Result<Self, ParquetError> {
         let lists = PARTS.into_iter().zip(FRAME_WIDTHS).take(parts);
-        let lists = lists.map(|(name, width)| Column::new(name, "", Values::Floats(width, vec![])));
-        let mut columns: Vec<Column> = lists.collect();
-        columns.push(Column::new("timestamp", "", Values::Float(Vec::new())));
+        let lists =
+            lists.map(|(name, width)| ParquetColumn::new(name, "", Values::Floats(width, vec![])));
+        let mut columns: Vec<ParquetColumn> = lists.collect();
+        columns.push(ParquetColumn::new(
+            "timestamp",
+            "",
+            Values::Float(Vec::new()),
+        ));
         for name in ["frame_index", "episode_index", "index", "task_index"] {
-            columns.push(Column::new(name, "", Values::Long(Vec::new())));
+            columns.push(ParquetColumn::new(name, "", Values::Long(Vec::new())));
         }
         Ok(Self {
             to: writer(to, &columns, Vec::new())?,
@@ -149,7 +154,7 @@ impl DataSet {
         })
     }
 
-    fn frame(&mut self, frame: &Frame) -> Result<(), ParquetError> {
+    fn frame(&mut self, frame: &DatasetFrame) -> Result<(), ParquetError> {
         if frame.number == 0 {
             self.put()?;
             self.episodes.push(0);
@@ -157,13 +162,13 @@ impl DataSet {
             self.put()?;
         }
         let episode = self.episodes.len().saturating_sub(1);
-        let long = |number: u64| Cell::Long(i64::try_from(number).unwrap_or(i64::MAX));
+        let long = |number: u64| ParquetCell::Long(i64::try_from(number).unwrap_or(i64::MAX));
         let scalars = [
-            Cell::Float(frame.time_s),
+            ParquetCell::Float(frame.time_s),
             long(frame.number),
-            Cell::Long(i64::try_from(episode).unwrap_or(i64::MAX)),
+            ParquetCell::Long(i64::try_from(episode).unwrap_or(i64::MAX)),
             long(self.index),
-            Cell::Long(0),
+            ParquetCell::Long(0),
         ];
         let (lists, rest) = self.columns.split_at_mut(self.parts);
         for (column, values) in lists.iter_mut().zip(frame.parts()) {
@@ -203,10 +208,10 @@ impl DataSet {
 
 fn writer(
     to: BufWriter<File>,
-    columns: &[Column],
+    columns: &[ParquetColumn],
     metadata: Vec<KeyValue>,
 ) -> Result<SerializedFileWriter<BufWriter<File>>, ParquetError> {
-    let fields: Result<Vec<_>, _> = columns.iter().map(Column::schema).collect();
+    let fields: Result<Vec<_>, _> = columns.iter().map(ParquetColumn::schema).collect();
     let schema = Type::group_type_builder("schema").with_fields(fields?);
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
@@ -303,8 +308,8 @@ impl Meta<'_> {
     }
 
     fn episodes(&self, to: BufWriter<File>) -> Result<(), ParquetError> {
-        let long = |name: &str| Column::new(name, "", Values::Long(Vec::new()));
-        let mut columns = vec![Column::new("tasks", "", Values::Texts(Vec::new()))];
+        let long = |name: &str| ParquetColumn::new(name, "", Values::Long(Vec::new()));
+        let mut columns = vec![ParquetColumn::new("tasks", "", Values::Texts(Vec::new()))];
         columns.extend(
             [
                 "episode_index",
@@ -328,7 +333,7 @@ impl Meta<'_> {
                 .iter_mut()
                 .for_each(|column| column.push_text(&self.plan.task));
             for (column, value) in numbers.iter_mut().zip(row) {
-                column.push(Cell::Long(value));
+                column.push(ParquetCell::Long(value));
             }
         }
         finish(writer(to, &columns, Vec::new())?, columns)
@@ -348,9 +353,9 @@ impl Meta<'_> {
             "creator": { "library": "handscope", "version": env!("CARGO_PKG_VERSION") },
             "pandas_version": "2.2.0",
         });
-        let mut number = Column::new("task_index", "", Values::Long(Vec::new()));
-        number.push(Cell::Long(0));
-        let mut words = Column::new(INDEX, "", Values::Text(Vec::new()));
+        let mut number = ParquetColumn::new("task_index", "", Values::Long(Vec::new()));
+        number.push(ParquetCell::Long(0));
+        let mut words = ParquetColumn::new(INDEX, "", Values::Text(Vec::new()));
         words.push_text(&self.plan.task);
         let columns = vec![number, words];
         let pandas = KeyValue::new("pandas".to_owned(), pandas.to_string());
@@ -361,7 +366,7 @@ impl Meta<'_> {
 /// Writes a table of a few rows.
 fn finish(
     mut to: SerializedFileWriter<BufWriter<File>>,
-    mut all: Vec<Column>,
+    mut all: Vec<ParquetColumn>,
 ) -> Result<(), ParquetError> {
     columns::put(&mut all, to.next_row_group()?)?;
     let file = to

@@ -4,7 +4,7 @@
 use crate::hand::column::{channel_column, joint_column, tip_column};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, TactileBlock};
 use crate::hand::{Timed, Touch};
-use crate::record::export::columns::{self, Cell, Column, Values};
+use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
 use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
 use crate::record::file::SessionFile;
 use crate::record::file::reader::Stretch;
@@ -34,7 +34,7 @@ const CHANNELS: u8 = 8;
 pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Exported, ExportError> {
     let output = Unfinished::new(path)?;
     let error = |error: ParquetError| output.error(&io::Error::other(error));
-    let mut table = Table::new(file, stretch, output.file()?).map_err(error)?;
+    let mut table = ParquetTable::new(file, stretch, output.file()?).map_err(error)?;
     let mut done = Ok(());
     let no_wire = Stretch {
         wire: false,
@@ -57,22 +57,22 @@ pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Export
     Ok(Exported { rows, damage })
 }
 
-struct Table {
-    columns: Vec<Column>,
+struct ParquetTable {
+    columns: Vec<ParquetColumn>,
     to: SerializedFileWriter<BufWriter<File>>,
     start: Moment,
     base_nanos: u64,
     rows: u64,
 }
 
-impl Table {
+impl ParquetTable {
     fn new(
         file: &SessionFile,
         stretch: Stretch,
         to: BufWriter<File>,
     ) -> Result<Self, ParquetError> {
         let columns = all_columns();
-        let fields: Result<Vec<_>, _> = columns.iter().map(Column::schema).collect();
+        let fields: Result<Vec<_>, _> = columns.iter().map(ParquetColumn::schema).collect();
         let schema = Type::group_type_builder("reading").with_fields(fields?);
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
@@ -105,12 +105,12 @@ impl Table {
             let nanos = self
                 .base_nanos
                 .saturating_add(at.micros().saturating_mul(1000));
-            Cell::Long(i64::try_from(nanos).unwrap_or(i64::MAX))
+            ParquetCell::Long(i64::try_from(nanos).unwrap_or(i64::MAX))
         };
         let head = [
-            Cell::Double(at.since(self.start).as_secs_f64()),
+            ParquetCell::Double(at.since(self.start).as_secs_f64()),
             nanos(at),
-            asked.map_or(Cell::Null, nanos),
+            asked.map_or(ParquetCell::Null, nanos),
         ];
         let cells = head.into_iter().chain(cells(sample, fresh));
         for (column, cell) in self.columns.iter_mut().zip(cells) {
@@ -137,7 +137,7 @@ impl Table {
 }
 
 /// What stands beside the rows: the unit of each column that has one, the session, what happened.
-fn metadata(file: &SessionFile, stretch: Stretch, columns: &[Column]) -> Vec<KeyValue> {
+fn metadata(file: &SessionFile, stretch: Stretch, columns: &[ParquetColumn]) -> Vec<KeyValue> {
     let opening = file.opening();
     let units: Map<String, serde_json::Value> = columns
         .iter()
@@ -164,16 +164,16 @@ fn metadata(file: &SessionFile, stretch: Stretch, columns: &[Column]) -> Vec<Key
     .to_vec()
 }
 
-fn all_columns() -> Vec<Column> {
+fn all_columns() -> Vec<ParquetColumn> {
     let mut all = vec![
-        Column::new("time_s", "s", Values::Double(Vec::new())),
-        Column::new("received", "", Values::Time(Vec::new())),
-        Column::new("asked", "", Values::Time(Vec::new())),
+        ParquetColumn::new("time_s", "s", Values::Double(Vec::new())),
+        ParquetColumn::new("received", "", Values::Time(Vec::new())),
+        ParquetColumn::new("asked", "", Values::Time(Vec::new())),
     ];
     for quantity in Quantity::ALL {
         let of = |dof| (joint_column(quantity, dof), quantity.row().unit);
         let six = Dof::ALL.map(of);
-        all.extend(six.map(|(name, unit)| Column::new(name, unit, Values::Int(Vec::new()))));
+        all.extend(six.map(|(name, unit)| ParquetColumn::new(name, unit, Values::Int(Vec::new()))));
     }
     for (name, unit) in [
         ("force_threshold", "g"),
@@ -184,12 +184,12 @@ fn all_columns() -> Vec<Column> {
     ] {
         let ending = if unit.is_empty() { "" } else { "_g" };
         let six = Dof::ALL.map(|dof| format!("{name}_{}{ending}", dof.name()));
-        all.extend(six.map(|name| Column::new(name, unit, Values::Int(Vec::new()))));
+        all.extend(six.map(|name| ParquetColumn::new(name, unit, Values::Int(Vec::new()))));
     }
     for finger in Finger::ALL {
         for touch in Touch::ALL {
             let name = tip_column(touch, finger);
-            all.push(Column::new(
+            all.push(ParquetColumn::new(
                 name,
                 touch.row().unit,
                 Values::Float(Vec::new()),
@@ -197,19 +197,23 @@ fn all_columns() -> Vec<Column> {
         }
         let name = finger.name();
         let direction = format!("direction_{name}_deg");
-        all.push(Column::new(direction, "deg", Values::Int(Vec::new())));
+        all.push(ParquetColumn::new(
+            direction,
+            "deg",
+            Values::Int(Vec::new()),
+        ));
         let proximity = format!("proximity_{name}");
-        all.push(Column::new(proximity, "", Values::Int(Vec::new())));
+        all.push(ParquetColumn::new(proximity, "", Values::Int(Vec::new())));
         let check = format!("check_ok_{name}");
-        all.push(Column::new(check, "", Values::Bool(Vec::new())));
+        all.push(ParquetColumn::new(check, "", Values::Bool(Vec::new())));
         let channels = (0..CHANNELS).map(|channel| channel_column(channel, finger));
-        all.extend(channels.map(|name| Column::new(name, "", Values::Long(Vec::new()))));
+        all.extend(channels.map(|name| ParquetColumn::new(name, "", Values::Long(Vec::new()))));
     }
     all
 }
 
 /// The cells of a row after its times, in the order of the columns.
-fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Cell> {
+fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = ParquetCell> {
     let measured = Quantity::ALL.into_iter().flat_map(move |quantity| {
         let six = quantity.documented(sample);
         six_cells(six.filter(|_| fresh.contains(quantity.group())), |value| {
@@ -239,28 +243,34 @@ fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Cell> {
 fn six_cells<T: Copy>(
     six: Option<Timed<PerDof<T>>>,
     value: impl Fn(T) -> Option<i32>,
-) -> [Cell; Dof::ALL.len()] {
+) -> [ParquetCell; Dof::ALL.len()] {
     Dof::ALL.map(|dof| {
         let value = six.and_then(|six| value(six.value[dof]));
-        value.map_or(Cell::Null, Cell::Int)
+        value.map_or(ParquetCell::Null, ParquetCell::Int)
     })
 }
 
-fn tip_cells(block: Option<TactileBlock>) -> impl Iterator<Item = Cell> {
+fn tip_cells(block: Option<TactileBlock>) -> impl Iterator<Item = ParquetCell> {
     let block = block.as_ref();
-    let float = |value: Option<f32>| value.map_or(Cell::Null, Cell::Float);
+    let float = |value: Option<f32>| value.map_or(ParquetCell::Null, ParquetCell::Float);
     let direction = block.and_then(TactileBlock::direction_deg);
     let head = [
         float(block.and_then(TactileBlock::normal)),
         float(block.and_then(TactileBlock::tangential)),
-        direction.map_or(Cell::Null, |degrees| Cell::Int(i32::from(degrees))),
-        block.map_or(Cell::Null, |block| Cell::Int(block.proximity)),
-        block.map_or(Cell::Null, |block| Cell::Bool(block.check_ok())),
+        direction.map_or(ParquetCell::Null, |degrees| {
+            ParquetCell::Int(i32::from(degrees))
+        }),
+        block.map_or(ParquetCell::Null, |block| ParquetCell::Int(block.proximity)),
+        block.map_or(ParquetCell::Null, |block| {
+            ParquetCell::Bool(block.check_ok())
+        }),
     ];
     let raw = block.map(|block| block.raw);
     let channels = (0..usize::from(CHANNELS)).map(move |channel| {
         let count = raw.and_then(|raw| raw.get(channel).copied());
-        count.map_or(Cell::Null, |count| Cell::Long(i64::from(count)))
+        count.map_or(ParquetCell::Null, |count| {
+            ParquetCell::Long(i64::from(count))
+        })
     });
     head.into_iter().chain(channels)
 }

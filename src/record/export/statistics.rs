@@ -16,14 +16,14 @@ const QUANTILES: [(&str, f64); 5] = [
 /// Statistics of some lists of numbers.
 #[derive(Debug)]
 pub(crate) struct Statistics {
-    parts: Vec<(String, Vec<Summary>)>,
+    parts: Vec<(String, Vec<ColumnSummary>)>,
 }
 
 impl Statistics {
     /// Lists of these names and lengths.
     pub(crate) fn new(parts: impl Iterator<Item = (&'static str, usize)>) -> Self {
         let part =
-            |(name, width): (&str, usize)| (name.to_owned(), vec![Summary::default(); width]);
+            |(name, width): (&str, usize)| (name.to_owned(), vec![ColumnSummary::default(); width]);
         Self {
             parts: parts.map(part).collect(),
         }
@@ -42,13 +42,14 @@ impl Statistics {
     pub(crate) fn json(&self) -> Value {
         let mut all = Map::new();
         for (name, summaries) in &self.parts {
-            let each =
-                |value: fn(&Summary) -> f64| -> Vec<f64> { summaries.iter().map(value).collect() };
+            let each = |value: fn(&ColumnSummary) -> f64| -> Vec<f64> {
+                summaries.iter().map(value).collect()
+            };
             let mut part = Map::new();
             part.insert("min".into(), each(|one| f64::from(one.min)).into());
             part.insert("max".into(), each(|one| f64::from(one.max)).into());
-            part.insert("mean".into(), each(Summary::mean).into());
-            part.insert("std".into(), each(Summary::deviation).into());
+            part.insert("mean".into(), each(ColumnSummary::mean).into());
+            part.insert("std".into(), each(ColumnSummary::deviation).into());
             let count = summaries.first().map_or(0, |one| one.count);
             part.insert("count".into(), json!([count]));
             for (key, share) in QUANTILES {
@@ -63,7 +64,7 @@ impl Statistics {
 
 /// Of one number.
 #[derive(Debug, Clone)]
-struct Summary {
+struct ColumnSummary {
     min: f32,
     max: f32,
     count: u64,
@@ -74,7 +75,7 @@ struct Summary {
     each: u64,
 }
 
-impl Default for Summary {
+impl Default for ColumnSummary {
     fn default() -> Self {
         Self {
             min: f32::INFINITY,
@@ -88,7 +89,7 @@ impl Default for Summary {
     }
 }
 
-impl Summary {
+impl ColumnSummary {
     fn take(&mut self, value: f32) {
         if self.count.is_multiple_of(self.each) {
             if self.kept.len() >= KEPT_MAX {

@@ -5,7 +5,8 @@ use crate::hand::{Finger, Groups, HandSample, Moment, Reply, Span, register, sam
 use crate::record::file::cdr;
 use crate::record::file::encode::{ARM_REFUSED, link_state_key};
 use crate::record::file::message::{
-    Command, CommandFate, Event as EventMessage, Link, State, Time, Touch, Wire,
+    CommandFate, CommandMessage, EventMessage, LinkMessage, StateMessage, Time, TouchMessage,
+    WireMessage,
 };
 use crate::record::file::topic::Topic;
 use crate::record::{
@@ -16,12 +17,12 @@ use std::sync::Arc;
 
 /// Makes entries of messages: each reading is the newest of everything before it, as it was when it was heard.
 #[derive(Debug, Clone)]
-pub struct Decoder {
+pub struct EntryDecoder {
     base_nanos: u64,
     sample: HandSample,
 }
 
-impl Decoder {
+impl EntryDecoder {
     /// For a file whose moments count from here, nanoseconds since 1970.
     #[must_use]
     pub fn new(base_nanos: u64) -> Self {
@@ -58,7 +59,7 @@ impl Decoder {
         })
     }
 
-    fn state(&mut self, state: &State) -> Option<Entry> {
+    fn state(&mut self, state: &StateMessage) -> Option<Entry> {
         let (asked, received) = (self.moment(state.asked), self.moment(state.received));
         let mut fresh = Groups::NONE;
         let mut take = |span: Span, bytes: &[u8]| {
@@ -94,7 +95,7 @@ impl Decoder {
         self.reading(fresh)
     }
 
-    fn touch(&mut self, finger: Finger, touch: &Touch) -> Option<Entry> {
+    fn touch(&mut self, finger: Finger, touch: &TouchMessage) -> Option<Entry> {
         let fresh = self.sample.take(&Reply {
             span: touch_span(finger),
             bytes: &touch.raw,
@@ -104,7 +105,7 @@ impl Decoder {
         self.reading(fresh)
     }
 
-    fn command(&self, command: &Command) -> Option<Entry> {
+    fn command(&self, command: &CommandMessage) -> Option<Entry> {
         let bytes = command
             .bytes
             .get(..command.bytes.len().min(WRITE_LEN_MAX))?;
@@ -137,7 +138,7 @@ impl Decoder {
         }))
     }
 
-    fn link(&mut self, link: Link) -> Option<Entry> {
+    fn link(&mut self, link: LinkMessage) -> Option<Entry> {
         const ALL: [LinkState; 6] = [
             LinkState::Offline,
             LinkState::Identifying,
@@ -179,7 +180,7 @@ impl Decoder {
         }))
     }
 
-    fn wire(&self, wire: Wire) -> Option<Entry> {
+    fn wire(&self, wire: WireMessage) -> Option<Entry> {
         Some(Entry::Wire(Piece {
             at: self.moment(wire.at),
             kind: match wire.kind {

@@ -4,7 +4,8 @@ use crate::hand::kinematics::{joint_names, joint_radians};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, register};
 use crate::record::file::cdr;
 use crate::record::file::message::{
-    Command, CommandFate, Event, Header, JointState, Link, State, Time, Touch, Wire,
+    CommandFate, CommandMessage, EventMessage, Header, JointState, LinkMessage, StateMessage, Time,
+    TouchMessage, WireMessage,
 };
 use crate::record::file::opening::Opening;
 use crate::record::file::topic::Topic;
@@ -28,12 +29,12 @@ pub struct Message {
 
 /// Makes messages of entries.
 #[derive(Debug)]
-pub(crate) struct Encoder {
+pub(crate) struct EntryEncoder {
     base_nanos: u64,
     joint_names: Vec<String>,
 }
 
-impl Encoder {
+impl EntryEncoder {
     pub(crate) fn new(opening: &Opening) -> Self {
         Self {
             base_nanos: opening.base_nanos,
@@ -67,7 +68,7 @@ impl Encoder {
             Entry::Heard(record) => self.record(record).into_iter().collect(),
             Entry::Wire(piece) => vec![self.wire(piece)],
             Entry::Link(report) => {
-                let link = Link {
+                let link = LinkMessage {
                     at: self.time(report.at),
                     state: link_state_key(report.state).into(),
                     entered: false,
@@ -83,7 +84,7 @@ impl Encoder {
 
     /// An event.
     pub(crate) fn event(&self, at: Moment, kind: &str, words: &str) -> Message {
-        let event = Event {
+        let event = EventMessage {
             at: self.time(at),
             kind: kind.into(),
             words: words.into(),
@@ -95,11 +96,11 @@ impl Encoder {
         Some(match record {
             Record::Reading { .. } => return None,
             Record::State { at, state } => {
-                let link = Link {
+                let link = LinkMessage {
                     at: self.time(*at),
                     state: link_state_key(*state).into(),
                     entered: true,
-                    ..Link::default()
+                    ..LinkMessage::default()
                 };
                 self.message(Topic::Link, *at, &link)
             }
@@ -109,7 +110,7 @@ impl Encoder {
                 cause,
                 write,
             } => {
-                let command = Command {
+                let command = CommandMessage {
                     sent: self.time(*at),
                     number: *number,
                     cause: cause.key().into(),
@@ -143,7 +144,7 @@ impl Encoder {
     }
 
     fn wire(&self, piece: &Piece) -> Message {
-        let wire = Wire {
+        let wire = WireMessage {
             at: self.time(piece.at),
             kind: match piece.kind {
                 PieceKind::Opened => 0,
@@ -187,7 +188,7 @@ impl Encoder {
         for finger in Finger::ALL {
             let block = sample.tactile[finger].filter(|_| fresh.contains(Group::Tactile(finger)));
             if let Some(block) = block {
-                let touch = Touch {
+                let touch = TouchMessage {
                     asked: self.time(block.asked),
                     received: self.time(block.received),
                     normal_n: block.value.normal_n,
@@ -206,7 +207,7 @@ impl Encoder {
         messages
     }
 
-    fn state(&self, sample: &HandSample, fresh: Groups, times: (Moment, Moment)) -> State {
+    fn state(&self, sample: &HandSample, fresh: Groups, times: (Moment, Moment)) -> StateMessage {
         let shorts = |group: Group| -> Vec<i16> {
             let memory = sample.memory(group).filter(|_| fresh.contains(group));
             let pairs = memory.unwrap_or_default();
@@ -227,7 +228,7 @@ impl Encoder {
                 undocumented.extend(unknown.map(place));
             }
         }
-        State {
+        StateMessage {
             asked: self.time(times.0),
             received: self.time(times.1),
             angle_set: shorts(Group::AngleSet),

@@ -10,7 +10,7 @@
 use crate::record::file::disk::{Disk, DiskFile, SystemDisk};
 use crate::record::file::reader::SessionFile;
 use crate::record::file::recorder::{Recorder, RecorderInput, RecordingPlan};
-use crate::record::file::recording::{Now, RecorderStatus, Recording};
+use crate::record::file::recording::{Now, RecorderStatus, SessionRecording};
 use crate::record::file::tests::{Atom, atoms, entries, opening, read};
 use crate::record::{Entry, EventKind};
 use std::collections::{BTreeMap, BTreeSet};
@@ -174,7 +174,7 @@ impl DiskFile for FailingFile {
 /// One recording in virtual time: entries come at a steady rate while the disk has its troubles.
 struct Schedule {
     disk: FailingDisk,
-    recording: Recording,
+    recording: SessionRecording,
     input: RecorderInput,
     taken: std::sync::mpsc::Receiver<crate::record::file::recording::Given>,
     entries: Vec<Entry>,
@@ -204,7 +204,7 @@ impl Schedule {
             wall_nanos: 0,
         };
         let shared = Arc::new(disk.clone());
-        let recording = Recording::new(opening(), shared, "a/b.mcap".into(), now).unwrap();
+        let recording = SessionRecording::new(opening(), shared, "a/b.mcap".into(), now).unwrap();
         Self {
             disk,
             recording: recording.with_pending_max(20_000 + room * 40),

@@ -57,7 +57,7 @@ pub struct JointState {
 /// One reply about the joints. Each list has six values in the order of the registers (little, ring, middle, index, thumb bend,
 /// thumb rotation), or is empty if the reply was not about it.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct State {
+pub struct StateMessage {
     /// When the request left.
     pub asked: Time,
     /// When the reply was there.
@@ -88,7 +88,7 @@ pub struct State {
 
 /// The block of one fingertip.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Touch {
+pub struct TouchMessage {
     /// When the request left.
     pub asked: Time,
     /// When the reply was there.
@@ -111,7 +111,7 @@ pub struct Touch {
 
 /// A write that left for the hand.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Command {
+pub struct CommandMessage {
     /// When.
     pub sent: Time,
     /// Its number on this connection.
@@ -141,7 +141,7 @@ pub struct CommandFate {
 
 /// Where the link stood.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Link {
+pub struct LinkMessage {
     /// When.
     pub at: Time,
     /// offline, identifying, monitoring, armed, holding or fault.
@@ -158,7 +158,7 @@ pub struct Link {
 
 /// What else happened.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Event {
+pub struct EventMessage {
     /// When.
     pub at: Time,
     /// What, in one word.
@@ -169,7 +169,7 @@ pub struct Event {
 
 /// Bytes that went over the wire.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Wire {
+pub struct WireMessage {
     /// When.
     pub at: Time,
     /// 0 the wire was opened, 1 bytes to the hand, 2 bytes from the hand, 3 the wire broke, 4 it was closed.

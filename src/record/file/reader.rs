@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::record::Entry;
-use crate::record::file::decode::Decoder;
+use crate::record::file::decode::EntryDecoder;
 use crate::record::file::opening::{METADATA, Opening};
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::topic::Topic;
@@ -168,7 +168,7 @@ impl SessionFile {
     ) -> io::Result<Damage> {
         let warm = stretch.from.since(Moment::ZERO).saturating_sub(WARM_UP);
         let warm = Moment::from_duration(warm);
-        let mut decoder = Decoder::new(self.opening.base_nanos);
+        let mut decoder = EntryDecoder::new(self.opening.base_nanos);
         let mut damage = Damage {
             chunks: 0,
             bytes: self.found.skipped,
@@ -336,7 +336,7 @@ fn overview(file: &mut File, found: &Found, base_nanos: u64) -> Result<Overview,
         let last = after.checked_sub(1).and_then(|last| covered.get(last));
         last.is_some_and(|stretch| offset < stretch.end)
     };
-    let mut decoder = Decoder::new(base_nanos);
+    let mut decoder = EntryDecoder::new(base_nanos);
     for chunk in &found.chunks {
         if is_covered(chunk.place.offset) {
             continue;

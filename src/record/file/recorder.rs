@@ -4,7 +4,7 @@ use crate::record::Entry;
 use crate::record::file::disk::Disk;
 use crate::record::file::opening::Opening;
 use crate::record::file::recording::{
-    END_WITHIN, FLUSH_EACH, Given, Now, RecorderStatus, Recording,
+    END_WITHIN, FLUSH_EACH, Given, Now, RecorderStatus, SessionRecording,
 };
 use std::io;
 use std::path::PathBuf;
@@ -91,7 +91,7 @@ impl Recorder {
     pub fn start(plan: RecordingPlan) -> io::Result<Self> {
         let (input, taken) = RecorderInput::new(QUEUE_MAX);
         let began = Instant::now();
-        let recording = Recording::new(plan.opening, plan.disk, plan.path, now(began));
+        let recording = SessionRecording::new(plan.opening, plan.disk, plan.path, now(began));
         let recorder = Self {
             input: input.clone(),
             status: Arc::new(Mutex::new(RecorderStatus::default())),
@@ -154,7 +154,7 @@ fn now(began: Instant) -> Now {
 
 /// What the thread does: it takes what waits, and lets the recording do what is due.
 struct Work {
-    recording: Recording,
+    recording: SessionRecording,
     taken: Receiver<Given>,
     lost: Arc<AtomicU64>,
     status: Arc<Mutex<RecorderStatus>>,

@@ -73,7 +73,7 @@ pub(crate) struct Given {
 }
 
 /// A recording and its files.
-pub(crate) struct Recording {
+pub(crate) struct SessionRecording {
     opening: Opening,
     writer: SessionWriter,
     /// What the writer holds that no file was given yet.
@@ -99,7 +99,7 @@ pub(crate) struct Recording {
     pending_max: usize,
 }
 
-impl Recording {
+impl SessionRecording {
     /// A recording into a file of this name.
     ///
     /// # Errors

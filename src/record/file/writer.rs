@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::record::Entry;
-use crate::record::file::encode::{Encoder, Message};
+use crate::record::file::encode::{EntryEncoder, Message};
 use crate::record::file::opening::{METADATA, Opening};
 use crate::record::file::overview::Overview;
 use crate::record::file::topic::Topic;
@@ -42,7 +42,7 @@ impl Write for Waiting {
 pub struct SessionWriter {
     mcap: mcap::Writer<NoSeek<Waiting>>,
     waiting: Waiting,
-    encoder: Encoder,
+    encoder: EntryEncoder,
     overview: Overview,
     /// Bytes given away so far.
     given: u64,
@@ -82,7 +82,7 @@ impl SessionWriter {
         let mut writer = Self {
             mcap,
             waiting,
-            encoder: Encoder::new(opening),
+            encoder: EntryEncoder::new(opening),
             overview: Overview::default(),
             given: 0,
             block_from: 0,

@@ -12,7 +12,7 @@ use crate::trials::plan::{Approach, TrialPlan};
 use crate::trials::recording::{TrialEvent, TrialRecording, seconds};
 use crate::trials::report::overlay::{BEFORE_S, Overlay};
 use crate::trials::report::plot::Plot;
-use crate::trials::session::{SessionFile, SessionHead};
+use crate::trials::session::{SessionHead, TrialSessionFile};
 use crate::trials::summary::TrialSummary;
 use askama::Template;
 
@@ -74,7 +74,7 @@ impl Report {
     ///
     /// # Errors
     /// What the template says.
-    pub fn html(&self, session: &SessionFile) -> Result<String, askama::Error> {
+    pub fn html(&self, session: &TrialSessionFile) -> Result<String, askama::Error> {
         let page = ReportPage {
             head: &session.head,
             plan: &session.head.plan,

@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `session.toml` | what was planned, the hand, and for each trial its setting and what was measured ([`SessionFile`]) |
+//! | `session.toml` | what was planned, the hand, and for each trial its setting and what was measured ([`TrialSessionFile`]) |
 //! | `trial-001.csv` … | what was read, [`crate::trials::recording::csv`]: `time_s` from the closing command, an empty cell where nothing was read |
 //! | `report.html` | all of it for a person, in one file without links ([`crate::trials::report`]) |
 //!
@@ -79,7 +79,7 @@ impl SessionHead {
 
 /// `session.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SessionFile {
+pub struct TrialSessionFile {
     /// [`FORMAT`].
     pub format: String,
     /// [`VERSION`].
@@ -96,11 +96,11 @@ pub struct SessionFile {
 ///
 /// # Errors
 /// What the system or the reader of the format says; another format, or a later version.
-pub fn load(folder: &Path) -> io::Result<SessionFile> {
+pub fn load(folder: &Path) -> io::Result<TrialSessionFile> {
     let path = folder.join(SESSION_FILE);
     let text = crate::store::read_text(&path, FILE_LEN_MAX)?;
     let text = text.ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))?;
-    let file: SessionFile = toml::from_str(&text).map_err(io::Error::other)?;
+    let file: TrialSessionFile = toml::from_str(&text).map_err(io::Error::other)?;
     if file.format != FORMAT || file.version > VERSION {
         let what = format!("format {} version {}", file.format, file.version);
         return Err(io::Error::other(format!("{what} cannot be read")));

@@ -7,7 +7,7 @@ use crate::trials::limits::Abort;
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{SampleRow, TrialEvent, TrialRecording, csv};
-use crate::trials::session::writer::SessionWriter;
+use crate::trials::session::writer::TrialSessionWriter;
 use crate::trials::session::{SessionHead, load};
 use crate::trials::summary::{EarlyEnd, Trial, TrialKind, TrialSummary};
 use std::time::Duration;
@@ -91,7 +91,7 @@ fn trial(number: usize, aborted: Option<Abort>) -> Trial {
 
 fn write(folder: &std::path::Path) {
     let all = Criterion::LeastOvershoot { steady_g: 0.0 };
-    let mut writer = SessionWriter::create(folder, head(), Some(all)).unwrap();
+    let mut writer = TrialSessionWriter::create(folder, head(), Some(all)).unwrap();
     for trial in [trial(1, None), trial(2, Some(Abort::Person))] {
         writer.add(&trial.summary, &trial.recording).unwrap();
     }
@@ -163,7 +163,7 @@ fn keys_of_a_later_version_survive_and_a_later_version_is_not_read() {
 fn a_folder_that_holds_anything_is_left_alone() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("mine.txt"), "mine").unwrap();
-    let error = SessionWriter::create(folder.path(), head(), None).unwrap_err();
+    let error = TrialSessionWriter::create(folder.path(), head(), None).unwrap_err();
     assert_eq!(error.kind(), std::io::ErrorKind::AlreadyExists);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }

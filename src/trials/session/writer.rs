@@ -5,7 +5,7 @@ use crate::store;
 use crate::trials::best::Criterion;
 use crate::trials::recording::{TrialRecording, csv};
 use crate::trials::report::Report;
-use crate::trials::session::{FORMAT, SESSION_FILE, SessionFile, SessionHead, VERSION};
+use crate::trials::session::{FORMAT, SESSION_FILE, SessionHead, TrialSessionFile, VERSION};
 use crate::trials::summary::{EarlyEnd, TrialSummary};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,13 +14,13 @@ const REPORT_FILE: &str = "report.html";
 
 /// A session that is being written.
 #[derive(Debug)]
-pub struct SessionWriter {
+pub struct TrialSessionWriter {
     folder: PathBuf,
-    file: SessionFile,
+    file: TrialSessionFile,
     report: Report,
 }
 
-impl SessionWriter {
+impl TrialSessionWriter {
     /// Makes the folder and writes what is known before the first trial. The report names the best setting by `criterion`.
     ///
     /// # Errors
@@ -37,7 +37,7 @@ impl SessionWriter {
         }
         let writer = Self {
             folder: folder.to_owned(),
-            file: SessionFile {
+            file: TrialSessionFile {
                 format: FORMAT.into(),
                 version: VERSION,
                 head,

@@ -1,7 +1,7 @@
 //! What happened in a recording, as lines of words: what a person did, how drives changed, what the link did.
 
 use crate::app::hand::{Play, Preset};
-use crate::app::readings::fault_recorder::{EventKind, PersonAct, Recording};
+use crate::app::readings::fault_recorder::{FaultEventKind, PersonAct, Recording};
 use crate::hand::{Dof, Faults};
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::Look;
@@ -50,19 +50,19 @@ fn mark_line(look: Look, mark: &Mark) -> Option<EventLine> {
     Some(EventLine { at_s, text, color })
 }
 
-fn event_words(look: Look, what: &EventKind) -> (String, Color32) {
+fn event_words(look: Look, what: &FaultEventKind) -> (String, Color32) {
     let palette = look.palette;
     let of = |dof, said: &str| look.pair(look.say(words::dof(dof)), said);
     match what {
-        EventKind::PersonAct(act) => (act_words(look, act), palette.accent),
-        EventKind::Status(dof, status) => {
+        FaultEventKind::PersonAct(act) => (act_words(look, act), palette.accent),
+        FaultEventKind::Status(dof, status) => {
             let color = match status.is_protective() {
                 true => palette.bad,
                 false => palette.muted,
             };
             (of(*dof, words::status(*status, look.language).title), color)
         }
-        EventKind::Faults(dof, bits) => {
+        FaultEventKind::Faults(dof, bits) => {
             let color = match bits.is_empty() {
                 true => palette.ok,
                 false => palette.bad,

@@ -101,14 +101,14 @@ fn about_ui(ui: &mut Ui, look: Look, line: &Timeline) {
 }
 
 /// One entry of the list of marks.
-struct Entry {
+struct TimelineEntry {
     at: Moment,
     words: String,
     color: Color32,
     is_note: bool,
 }
 
-fn entries(look: Look, line: &Timeline) -> Vec<Entry> {
+fn entries(look: Look, line: &Timeline) -> Vec<TimelineEntry> {
     let marks = line
         .marks
         .iter()
@@ -119,20 +119,20 @@ fn entries(look: Look, line: &Timeline) -> Vec<Entry> {
             true => look.say(text).to_owned(),
             false => look.pair(look.say(text), &mark.words),
         };
-        Some(Entry {
+        Some(TimelineEntry {
             at: mark.at,
             words,
             color,
             is_note: false,
         })
     });
-    let notes = line.notes.iter().map(|note| Entry {
+    let notes = line.notes.iter().map(|note| TimelineEntry {
         at: note.at(),
         words: note.words.clone(),
         color: look.palette.text,
         is_note: true,
     });
-    let mut all: Vec<Entry> = marks.chain(notes).collect();
+    let mut all: Vec<TimelineEntry> = marks.chain(notes).collect();
     all.sort_by_key(|entry| entry.at);
     all.truncate(LISTED);
     all

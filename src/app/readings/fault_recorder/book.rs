@@ -1,6 +1,6 @@
 //! When a recording begins and ends, what is noted meanwhile, and how many are kept.
 
-use crate::app::readings::fault_recorder::event::{Event, EventKind, PersonAct};
+use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, PersonAct};
 use crate::app::readings::fault_recorder::recording::{
     DriveState, FaultAt, Recording, RecordingId,
 };
@@ -37,7 +37,7 @@ struct OpenRecording {
 /// The recorder.
 #[derive(Debug, Clone, Default)]
 pub struct FaultRecorder {
-    events: VecDeque<Event>,
+    events: VecDeque<FaultEvent>,
     /// What the drives said before the oldest event.
     before: PerDof<DriveState>,
     now: PerDof<DriveState>,
@@ -57,7 +57,7 @@ impl FaultRecorder {
                     // The first word of a hand is how it is, and no change.
                     None => self.before[dof].status = Some(status),
                     Some(old) if old == status => {}
-                    Some(_) => self.note(now, EventKind::Status(dof, status)),
+                    Some(_) => self.note(now, FaultEventKind::Status(dof, status)),
                 }
             }
             if let Some(faults) = sample.faults.filter(|_| fresh.contains(Group::Faults)) {
@@ -65,7 +65,7 @@ impl FaultRecorder {
                 match self.now[dof].faults.replace(faults) {
                     None => self.before[dof].faults = Some(faults),
                     Some(old) if old == faults => {}
-                    Some(_) => self.note(now, EventKind::Faults(dof, faults)),
+                    Some(_) => self.note(now, FaultEventKind::Faults(dof, faults)),
                 }
             }
         }
@@ -75,28 +75,28 @@ impl FaultRecorder {
     pub(crate) fn person(&mut self, act: PersonAct, now: Moment) {
         let known = self.events.iter_mut().rev().take(8).find(|event| {
             let quick = now.since(event.at) < KNOB;
-            quick && matches!(&event.what, EventKind::PersonAct(old) if old.is_same_knob(&act))
+            quick && matches!(&event.what, FaultEventKind::PersonAct(old) if old.is_same_knob(&act))
         });
         match known {
-            Some(event) => event.what = EventKind::PersonAct(act),
-            None => self.note(now, EventKind::PersonAct(act)),
+            Some(event) => event.what = FaultEventKind::PersonAct(act),
+            None => self.note(now, FaultEventKind::PersonAct(act)),
         }
     }
 
-    fn note(&mut self, at: Moment, what: EventKind) {
+    fn note(&mut self, at: Moment, what: FaultEventKind) {
         if self.events.len() >= EVENTS_MAX {
             self.let_go();
             self.events_lost += 1;
         }
-        self.events.push_back(Event { at, what });
+        self.events.push_back(FaultEvent { at, what });
     }
 
     /// The oldest event goes; what it changed is remembered.
     fn let_go(&mut self) {
         match self.events.pop_front().map(|event| event.what) {
-            Some(EventKind::Status(dof, status)) => self.before[dof].status = Some(status),
-            Some(EventKind::Faults(dof, faults)) => self.before[dof].faults = Some(faults),
-            Some(EventKind::PersonAct(_)) | None => {}
+            Some(FaultEventKind::Status(dof, status)) => self.before[dof].status = Some(status),
+            Some(FaultEventKind::Faults(dof, faults)) => self.before[dof].faults = Some(faults),
+            Some(FaultEventKind::PersonAct(_)) | None => {}
         }
     }
 
@@ -289,7 +289,7 @@ mod tests {
             .events
             .iter()
             .filter_map(|event| match event.what {
-                EventKind::Status(Dof::Ring, status) => Some(status),
+                FaultEventKind::Status(Dof::Ring, status) => Some(status),
                 _ => None,
             });
         let (rest, stalled) = (Status::PositionReached, Status::Stalled);
@@ -381,7 +381,7 @@ mod tests {
             let faults = Faults::from_raw(u8::from(flip % 2 == 0));
             bench
                 .recorder
-                .note(bench.now(), EventKind::Faults(Dof::Ring, faults));
+                .note(bench.now(), FaultEventKind::Faults(Dof::Ring, faults));
         }
         assert_eq!(bench.recorder.events.len(), EVENTS_MAX);
         bench.fault(Dof::Ring);

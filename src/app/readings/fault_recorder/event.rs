@@ -66,7 +66,7 @@ impl PersonAct {
 
 /// What happened.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum EventKind {
+pub enum FaultEventKind {
     /// A person did something.
     PersonAct(PersonAct),
     /// A drive says something else.
@@ -77,9 +77,9 @@ pub enum EventKind {
 
 /// What happened, and when.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Event {
+pub struct FaultEvent {
     /// When.
     pub at: Moment,
     /// What.
-    pub what: EventKind,
+    pub what: FaultEventKind,
 }

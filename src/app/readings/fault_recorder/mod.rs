@@ -7,7 +7,7 @@ pub(crate) mod recording;
 pub use crate::app::readings::fault_recorder::book::{
     AFTER, BEFORE, EVENTS_MAX, FaultRecorder, LONGEST_AFTER, RECORDINGS_MAX,
 };
-pub use crate::app::readings::fault_recorder::event::{Event, EventKind, PersonAct};
+pub use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, PersonAct};
 pub use crate::app::readings::fault_recorder::recording::{
     DriveState, FaultAt, Recording, RecordingId,
 };

@@ -1,6 +1,6 @@
 //! One recording: everything that was measured and done around a fault, free of the history it came from.
 
-use crate::app::readings::fault_recorder::event::{Event, EventKind};
+use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind};
 use crate::app::readings::faults::FaultKind;
 use crate::hand::{Dof, Faults, Finger, Moment, PerDof, Status};
 use crate::hand::{Quantity, Touch};
@@ -48,7 +48,7 @@ pub struct Recording {
     /// What the drives said at first.
     pub before: PerDof<DriveState>,
     /// What was done and how the drives changed, oldest first.
-    pub events: Vec<Event>,
+    pub events: Vec<FaultEvent>,
     /// Events of this time that were not kept, because there were too many.
     pub events_lost: u64,
 }
@@ -80,8 +80,8 @@ impl Recording {
             .history
             .table(&series, self.from.secs(), self.to.secs());
         let acts = self.events.iter().filter_map(|event| match &event.what {
-            EventKind::PersonAct(act) => Some((event.at.secs(), act.words())),
-            EventKind::Status(..) | EventKind::Faults(..) => None,
+            FaultEventKind::PersonAct(act) => Some((event.at.secs(), act.words())),
+            FaultEventKind::Status(..) | FaultEventKind::Faults(..) => None,
         });
         table.with(self.drives(), acts.collect())
     }
@@ -92,9 +92,9 @@ impl Recording {
         let mut rows = vec![(self.from, now)];
         for event in &self.events {
             match event.what {
-                EventKind::Status(dof, status) => now[dof].status = Some(status),
-                EventKind::Faults(dof, faults) => now[dof].faults = Some(faults),
-                EventKind::PersonAct(_) => continue,
+                FaultEventKind::Status(dof, status) => now[dof].status = Some(status),
+                FaultEventKind::Faults(dof, faults) => now[dof].faults = Some(faults),
+                FaultEventKind::PersonAct(_) => continue,
             }
             rows.push((event.at, now));
         }
