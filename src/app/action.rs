@@ -161,30 +161,24 @@ impl Action {
         }
     }
 
-    /// True for what needs a live hand. While a recording is shown it is refused; a stop never is.
+    /// True for what is carried out while a recording is shown: a stop, what is done with recordings, and how the window looks. All
+    /// else is about a hand, or about what of the live window is not on screen then, and is refused.
     #[must_use]
-    pub const fn asks_a_hand(&self) -> bool {
-        if self.disturbs_series() {
-            return true;
-        }
+    pub const fn passes_in_replay(&self) -> bool {
         matches!(
             self,
-            Self::Disarm
-                | Self::Capture(_)
-                | Self::Recapture(_)
-                | Self::Trial(TrialAction::Start)
-                | Self::ChangePlace(..)
-                | Self::FactoryReset
-                | Self::CalibrateForce
-                | Self::Procedure(_)
-                | Self::SeenFault(..)
-                | Self::SeenFaults
-                | Self::Tare(_)
-                | Self::UndoTare
-                | Self::TakeKeptTare
-                | Self::Stage(..)
-                | Self::Param(_)
-                | Self::RemoveMark(_)
+            Self::Stop
+                | Self::Session(_)
+                | Self::Save(_)
+                | Self::SavePicture(_)
+                | Self::PausePlots(_)
+                | Self::Theme(_)
+                | Self::Language(_)
+                | Self::Layout(_)
+                | Self::Zoom(_)
+                | Self::AngleUnit(_)
+                | Self::PlotWindow(_)
+                | Self::ShowPlot(..)
         )
     }
 

@@ -140,6 +140,8 @@ pub enum NoticeKind {
         /// Why.
         why: OpenError,
     },
+    /// A recording was to be shown while something goes on at the hand that a person must see.
+    NotReplayedNow,
     /// Something was asked of a hand while a recording is shown. Nothing was sent.
     Recorded,
     /// Sessions were deleted.

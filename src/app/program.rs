@@ -139,6 +139,9 @@ impl App {
 
     /// Tells the person something that was found elsewhere, such as an unreadable settings file.
     pub fn tell(&mut self, what: NoticeKind, now: Moment) {
+        if let Some(player) = &mut self.recorded.player {
+            player.tell(what.clone());
+        }
         self.state.notices.push(now, what);
     }
 
@@ -238,17 +241,13 @@ impl App {
 
     /// Carries out one thing that a person asked for.
     pub fn act(&mut self, action: Action, now: Moment) {
-        if let (Some(_), Action::Note(at, words)) = (&self.recorded.player, &action) {
-            let edit = SessionAction::EditNote(*at, words.clone());
-            self.recorded.act(edit, &mut self.state, &self.env);
-            return;
-        }
-        if let Some(player) = &mut self.recorded.player
-            && action.asks_a_hand()
-        {
-            player.refuse();
-            return;
-        }
+        let action = match &mut self.recorded.player {
+            Some(player) => match player.pass(action) {
+                Some(action) => action,
+                None => return,
+            },
+            None => action,
+        };
         self.state.now = now;
         let hand = self.state.hand_mut();
         hand.now = now;
@@ -265,7 +264,15 @@ impl App {
         }
         match action {
             Action::Arm if self.closing.is_some() => {}
-            Action::Session(action) => self.recorded.act(action, &mut self.state, &self.env),
+            Action::Session(action) => {
+                let on = [
+                    SessionAction::Record(true),
+                    SessionAction::RecordSimulated(true),
+                ];
+                // A press of a person counts more than how the program was started.
+                self.records |= on.contains(&action);
+                self.recorded.act(action, &mut self.state, &self.env);
+            }
             Action::Param(action) => self.param_action(action),
             Action::Trial(action) => self.trial_action(action),
             Action::Save(content) => self.export(content),
@@ -556,7 +563,7 @@ impl App {
         let rests = !closing.held || self.state.hands.iter().all(is_held);
         let trials = &self.state.trials;
         let is_kept = trials.running.is_none() && trials.to_keep.is_empty();
-        let is_kept = is_kept && self.keeping.is_none();
+        let is_kept = is_kept && self.keeping.is_none() && self.recorded.is_written();
         let waited = now.since(closing.since);
         let goes = (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN);
         if goes {

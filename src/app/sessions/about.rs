@@ -4,7 +4,7 @@ use crate::hand::Moment;
 use crate::record::EventKind;
 use crate::record::file::FileMark;
 use crate::store::toml_file::{self, FileText};
-use crate::store::{FileError, replace};
+use crate::store::{FileError, replace, set_aside};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -55,12 +55,16 @@ impl SessionAbout {
         toml_file::load(&path, FILE_LEN_MAX, |text| FileText::plain(text).parse())
     }
 
-    /// Writes it.
+    /// Writes it. A file there that cannot be read is put aside.
     ///
     /// # Errors
     /// What the system says.
     pub fn save(&self, session: &Path) -> io::Result<()> {
         let text = toml::to_string_pretty(self).map_err(io::Error::other)?;
+        if Self::load(session).is_err() {
+            // Whatever a person wrote there by hand is kept under another name.
+            let _aside = set_aside(&Self::path(session));
+        }
         replace(&Self::path(session), text.as_bytes())
     }
 

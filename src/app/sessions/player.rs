@@ -1,5 +1,6 @@
 //! Replays a session: which moment is shown, how time goes on, and what is read ahead. Reads files off the window's thread.
 
+use crate::app::action::Action;
 use crate::app::env::Env;
 use crate::app::hand::HandState;
 use crate::app::notices::NoticeKind;
@@ -124,7 +125,7 @@ fn reading(
 
 impl SessionPlayer {
     /// Begins to replay a file, standing still.
-    pub(crate) fn new((file, (at, recorded)): Opened, now: Moment) -> Self {
+    pub(crate) fn new((file, (at, recorded)): Opened, live: &State) -> Self {
         let about = SessionAbout::load(file.path()).unwrap_or_default();
         let item = SessionItem::of(&file, about.clone());
         let timeline = Timeline {
@@ -149,10 +150,11 @@ impl SessionPlayer {
             about,
             state: State {
                 timeline: Some(timeline),
+                poses: live.poses.clone(),
                 ..State::default()
             },
             tap: WireTap::default(),
-            ticked: now,
+            ticked: live.now,
             wanted: None,
             seeking: None,
             ahead: VecDeque::new(),
@@ -170,16 +172,30 @@ impl SessionPlayer {
         self.file.path()
     }
 
-    /// What a person says of it now.
-    pub(crate) const fn about(&self) -> &SessionAbout {
-        &self.about
+    /// What a person says of it, where it is in no list.
+    pub(crate) const fn about_mut(&mut self) -> &mut SessionAbout {
+        &mut self.about
     }
 
-    /// Says that nothing is sent while a recording is shown.
-    pub(crate) fn refuse(&mut self) {
-        self.state
-            .notices
-            .push(self.state.now, NoticeKind::Recorded);
+    /// What of an action the program carries out while this is shown. A note is one of the recording.
+    pub(crate) fn pass(&mut self, action: Action) -> Option<Action> {
+        match action {
+            Action::Note(at, words) => Some(Action::Session(SessionAction::EditNote(at, words))),
+            Action::Dismiss(id) => {
+                self.state.notices.dismiss(id);
+                None
+            }
+            action if action.passes_in_replay() => Some(action),
+            _ => {
+                self.tell(NoticeKind::Recorded);
+                None
+            }
+        }
+    }
+
+    /// Tells the person something while this is shown.
+    pub(crate) fn tell(&mut self, what: NoticeKind) {
+        self.state.notices.push(self.state.now, what);
     }
 
     fn line(&mut self) -> Option<&mut Timeline> {
@@ -371,17 +387,14 @@ impl SessionPlayer {
                     (beside.own, beside.other) = (*own, *other);
                 }
             }
-            SessionAction::EditNote(at, words) => self.edit_note(*at, words),
             _ => {}
         }
     }
 
-    /// Changes the note of a moment, adds one, or takes it away; what the person says of the session is to be saved then.
-    fn edit_note(&mut self, at: Moment, words: &str) {
+    /// Changes the note of a moment, adds one, or takes it away; gives all notes as they are then.
+    pub(crate) fn edit_note(&mut self, at: Moment, words: &str) -> Option<Vec<SessionNote>> {
         let words: String = words.trim().chars().take(NOTE_MAX).collect();
-        let Some(line) = self.state.timeline.as_mut() else {
-            return;
-        };
+        let line = self.line()?;
         let mut notes: Vec<SessionNote> = line.notes.to_vec();
         notes.retain(|note| note.at() != at);
         if !words.is_empty() {
@@ -392,6 +405,6 @@ impl SessionPlayer {
         }
         notes.sort_by_key(SessionNote::at);
         line.notes = Arc::new(notes.clone());
-        self.about.notes = Some(notes);
+        Some(notes)
     }
 }

@@ -11,6 +11,7 @@ use crate::app::sessions::list::{self, Looked};
 use crate::app::sessions::player::{self, Opened, SessionPlayer};
 use crate::app::state::State;
 use crate::store::{BackgroundJob, on_thread};
+use std::collections::VecDeque;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,7 +24,17 @@ pub(crate) struct SessionWork {
     opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
     looking: Option<BackgroundJob<Looked>>,
     look_again: bool,
-    writing: Option<BackgroundJob<Result<usize, (PathBuf, io::Error)>>>,
+    /// What is to be written or deleted, one after the other: of two words about a session the later must be the last in its file.
+    to_write: VecDeque<FileWork>,
+    writing: Option<Written>,
+}
+
+/// One thing that is to be done with files.
+enum FileWork {
+    /// Write what a person says of this session.
+    Save(PathBuf, SessionAbout),
+    /// Delete these sessions.
+    Delete(Vec<PathBuf>),
 }
 
 impl SessionWork {
@@ -44,7 +55,10 @@ impl SessionWork {
             self.look(state, env);
         }
         match BackgroundJob::take_from(&mut self.opening) {
-            Some(Ok(opened)) => self.player = Some(SessionPlayer::new(opened, state.now)),
+            Some(Ok(_)) if is_busy(state) => {
+                state.notices.push(state.now, NoticeKind::NotReplayedNow);
+            }
+            Some(Ok(opened)) => self.player = Some(SessionPlayer::new(opened, state)),
             Some(Err(refused)) => state.notices.push(state.now, refused),
             None => {}
         }
@@ -62,9 +76,22 @@ impl SessionWork {
             }
             None => {}
         }
+        if self.writing.is_none()
+            && let Some(work) = self.to_write.pop_front()
+        {
+            self.writing = Some(match work {
+                FileWork::Save(path, about) => save(path, about, env),
+                FileWork::Delete(paths) => delete(paths, env),
+            });
+        }
         if let Some(player) = &mut self.player {
             player.tick(state, env);
         }
+    }
+
+    /// True once everything that a person said of sessions is in its file.
+    pub(crate) fn is_written(&self) -> bool {
+        self.writing.is_none() && self.to_write.is_empty()
     }
 
     /// Carries out what a person asks.
@@ -79,32 +106,36 @@ impl SessionWork {
             SessionAction::Open(path) => self.opening = Some(player::open(path, env)),
             SessionAction::Close => (self.player, self.look_again) = (None, true),
             SessionAction::Name(path, name) => {
-                self.say(state, env, &path, |about| about.name = name);
+                self.say(state, &path, |about| about.name = name);
             }
             SessionAction::Star(path, star) => {
-                self.say(state, env, &path, |about| about.star = star);
+                self.say(state, &path, |about| about.star = star);
             }
             SessionAction::AskDelete(path) => state.sessions.to_delete = Some(path),
             SessionAction::KeepIt => state.sessions.to_delete = None,
             SessionAction::Delete => {
                 let going = state.sessions.to_delete.take();
-                self.delete(going.into_iter().collect(), env);
+                self.to_write
+                    .push_back(FileWork::Delete(going.into_iter().collect()));
             }
             SessionAction::Tidy => {
-                self.delete(std::mem::take(&mut state.sessions.beyond_budget), env);
+                let going = std::mem::take(&mut state.sessions.beyond_budget);
+                self.to_write.push_back(FileWork::Delete(going));
             }
-            action => self.replay(&action, env),
-        }
-    }
-
-    fn replay(&mut self, action: &SessionAction, env: &Env) {
-        let Some(player) = &mut self.player else {
-            return;
-        };
-        player.act(action, env);
-        if matches!(action, SessionAction::EditNote(..)) {
-            let (path, about) = (player.path().to_owned(), player.about().clone());
-            self.save(path, about, env);
+            SessionAction::EditNote(at, words) => {
+                let edited = self.player.as_mut().and_then(|player| {
+                    let notes = player.edit_note(at, &words)?;
+                    Some((player.path().to_owned(), notes))
+                });
+                if let Some((path, notes)) = edited {
+                    self.say(state, &path, |about| about.notes = Some(notes));
+                }
+            }
+            action => {
+                if let Some(player) = &mut self.player {
+                    player.act(&action, env);
+                }
+            }
         }
     }
 
@@ -119,48 +150,51 @@ impl SessionWork {
     }
 
     /// Changes what a person says of a session, on screen at once and in its file.
-    fn say(
-        &mut self,
-        state: &mut State,
-        env: &Env,
-        path: &Path,
-        change: impl FnOnce(&mut SessionAbout),
-    ) {
+    fn say(&mut self, state: &mut State, path: &Path, change: impl FnOnce(&mut SessionAbout)) {
         let items: &mut Vec<SessionItem> = Arc::make_mut(&mut state.sessions.items);
-        let Some(item) = items.iter_mut().find(|item| item.path == path) else {
-            return;
+        let listed = items.iter_mut().find(|item| item.path == path);
+        let about = match (listed, &mut self.player) {
+            (Some(item), _) => &mut item.about,
+            (None, Some(player)) if player.path() == path => player.about_mut(),
+            (None, _) => return,
         };
-        change(&mut item.about);
-        let about = item.about.clone();
-        self.save(path.to_owned(), about, env);
+        change(about);
+        let about = about.clone();
+        self.to_write
+            .push_back(FileWork::Save(path.to_owned(), about));
     }
+}
 
-    fn save(&mut self, path: PathBuf, about: SessionAbout, env: &Env) {
-        let place = SessionAbout::path(&path);
-        let save = on_thread(move || about.save(&path).map(|()| 0));
-        let save = async move { save.await.map_err(|error| (place, error)) };
-        self.writing = Some(BackgroundJob::start(&env.runtime, &env.wake, save));
-    }
+type Written = BackgroundJob<Result<usize, (PathBuf, io::Error)>>;
 
-    fn delete(&mut self, paths: Vec<PathBuf>, env: &Env) {
-        if paths.is_empty() {
-            return;
+fn save(path: PathBuf, about: SessionAbout, env: &Env) -> Written {
+    let place = SessionAbout::path(&path);
+    let save = on_thread(move || about.save(&path).map(|()| 0));
+    let save = async move { save.await.map_err(|error| (place, error)) };
+    BackgroundJob::start(&env.runtime, &env.wake, save)
+}
+
+fn delete(paths: Vec<PathBuf>, env: &Env) -> Written {
+    let delete = async move {
+        let mut deleted = 0;
+        for path in paths {
+            let place = path.clone();
+            let gone = on_thread(move || {
+                std::fs::remove_file(&place)?;
+                // Not each session has one.
+                let _said = std::fs::remove_file(SessionAbout::path(&place));
+                Ok(())
+            });
+            gone.await.map_err(|error| (path, error))?;
+            deleted += 1;
         }
-        let delete = async move {
-            let mut deleted = 0;
-            for path in paths {
-                let place = path.clone();
-                let gone = on_thread(move || {
-                    std::fs::remove_file(&place)?;
-                    // Not each session has one.
-                    let _said = std::fs::remove_file(SessionAbout::path(&place));
-                    Ok(())
-                });
-                gone.await.map_err(|error| (path, error))?;
-                deleted += 1;
-            }
-            Ok(deleted)
-        };
-        self.writing = Some(BackgroundJob::start(&env.runtime, &env.wake, delete));
-    }
+        Ok(deleted)
+    };
+    BackgroundJob::start(&env.runtime, &env.wake, delete)
+}
+
+/// True while something goes on at the live hand that a person must see.
+fn is_busy(state: &State) -> bool {
+    let hand = state.hand();
+    hand.runs_series() || hand.procedure.is_some() || hand.params.question.is_some()
 }

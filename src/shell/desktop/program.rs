@@ -154,6 +154,7 @@ impl Program {
     fn title(&mut self, ctx: &egui::Context) {
         let state = self.cockpit.state();
         let title = match &state.hand().endpoint {
+            _ if state.timeline.is_some() => "Handscope - RECORDED session".to_owned(),
             Some(_) if state.hand().is_simulated() => "Handscope - SIMULATED hand".to_owned(),
             Some(endpoint) => format!("Handscope - {endpoint}"),
             None => "Handscope".to_owned(),

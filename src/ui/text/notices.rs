@@ -169,6 +169,7 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
             };
             look.fill(sessions::REFUSED, &[&path.display(), &why])
         }
+        NoticeKind::NotReplayedNow => look.say(sessions::NOT_NOW).to_owned(),
         NoticeKind::Recorded => look.say(sessions::IS_RECORDING).to_owned(),
         NoticeKind::SessionsDeleted { sessions: count } => look.told(sessions::DELETED, count),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),

@@ -30,7 +30,7 @@ texts! {
     DELETE_WHAT: "The recording of {} is lost for good.", "{} 的录制将永久丢失。";
     DELETE_NOT: "Keep it", "保留";
     DELETE_SURE: "Delete the recording", "删除录制";
-    UNCLOSED: "ended by a crash", "异常终止", "The program ended before the file was closed. All but the last quarter of a second is there.", "文件关闭前程序已终止。除最后四分之一秒外均已保存。";
+    UNCLOSED: "not closed", "未关闭", "The program that recorded it was cut off, or still records. All but the last quarter of a second is there.", "录制程序被中断，或仍在录制。除最后四分之一秒外均已保存。";
     RECORDS_NOW: "is being recorded", "正在录制";
     SIMULATED: "simulated", "仿真";
     UNREAD: "{} files here cannot be read.", "此处有 {} 个文件无法读取。";
@@ -72,6 +72,7 @@ texts! {
     FOREIGN: "it is an MCAP file of another program", "它是其他程序的 MCAP 文件";
     EMPTY: "nothing in it can be read", "其中没有可读取的内容";
     IS_RECORDING: "This is a recording: nothing was sent. Go back to the live hand first.", "这是录制内容：没有发送任何指令。请先返回实时灵巧手。";
+    NOT_NOW: "Not replayed now: a series of trials or a question about the hand must be ended first.", "现在不能回放：请先结束抓取试验或完成关于灵巧手的询问。";
     DELETED: "Sessions deleted:", "已删除会话：";
     SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their sessions are marked.", "仿真手也会被录制，其会话会有标记。";
 }

@@ -553,6 +553,11 @@ impl Bench {
         self.harness.state().program.state()
     }
 
+    /// The live hands, whatever is shown.
+    pub(crate) fn live_state(&mut self) -> &State {
+        self.harness.state_mut().program.cockpit.app().live()
+    }
+
     pub(crate) fn view(&self) -> View {
         self.harness.state().program.cockpit.view()
     }

@@ -372,3 +372,69 @@ fn two_sessions_lie_over_each_other_aligned_by_a_mark_of_each() {
     bench.run(60);
     assert!(bench.state().beside.is_none());
 }
+
+#[test]
+fn nothing_of_the_live_window_is_changed_from_within_a_recording() {
+    let mut bench = bench(Scenario::Idle);
+    let path = ended(&mut bench);
+    bench.act(Action::Capture("Open hand".into()));
+    bench.run(60);
+    let live = |bench: &mut Bench| {
+        let state = bench.live_state();
+        (
+            state.hand().endpoint.clone(),
+            state.poses.library.clone(),
+            state.trials.plan.clone(),
+        )
+    };
+    let before = live(&mut bench);
+    replay(&mut bench, path.clone());
+    assert!(bench.shows("Open hand"), "one's own poses are shown");
+    let mut plan = before.2.clone();
+    plan.note = "changed".into();
+    for action in [
+        Action::Disconnect,
+        Action::Connect("sim:".parse().unwrap()),
+        Action::Trial(handscope::app::trials::TrialAction::Plan(Box::new(plan))),
+        Action::Capture("Another".into()),
+    ] {
+        bench.act(action);
+        bench.run(200);
+    }
+    assert_eq!(live(&mut bench), before);
+    bench.click_button("Back to live");
+    bench.run(60);
+    bench.act(Action::FactoryReset);
+    bench.run(60);
+    session(&mut bench, SessionAction::Open(path));
+    settle(&mut bench, |bench| {
+        !bench.texts_with("Not replayed now").is_empty()
+    });
+    assert!(bench.state().timeline.is_none(), "a question is open");
+}
+
+#[test]
+fn a_note_does_not_undo_a_name_and_a_bad_file_of_words_is_kept() {
+    let mut bench = bench(Scenario::Idle);
+    let at = bench.now();
+    let path = ended(&mut bench);
+    let about = path.with_extension("toml");
+    std::fs::write(&about, "name = ").unwrap();
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| bench.state().sessions.items.len() == 1);
+    replay(&mut bench, path.clone());
+    for name in ["one", "two", "three"] {
+        bench.act(Action::Session(SessionAction::Name(
+            path.clone(),
+            name.into(),
+        )));
+    }
+    bench.act(Action::Note(at, "seen".into()));
+    settle(&mut bench, |_| {
+        SessionItem::read(&path).unwrap().notes().len() == 1
+    });
+    assert_eq!(SessionItem::read(&path).unwrap().about.name, "three");
+    let folder = std::fs::read_dir(about.parent().unwrap()).unwrap();
+    let mut texts = folder.map(|file| std::fs::read(file.unwrap().path()).unwrap());
+    assert!(texts.any(|text| text == b"name = "), "it was put aside");
+}
