@@ -13,11 +13,15 @@ use std::time::Duration;
 const HAND: &str = "tcp:127.0.0.1:6000?unit=1";
 
 fn bench(scenario: Scenario) -> Bench {
+    bench_at(HAND, scenario)
+}
+
+fn bench_at(endpoint: &str, scenario: Scenario) -> Bench {
     let config = SimConfig {
         scenario,
         ..SimConfig::default()
     };
-    let mut bench = Bench::kept(config, HAND, LARGE);
+    let mut bench = Bench::kept(config, endpoint, LARGE);
     bench.wait(3000);
     bench
 }
@@ -268,10 +272,9 @@ fn said(bench: &Bench) -> Vec<(String, String)> {
     all
 }
 
-#[test]
-fn what_was_shown_live_is_shown_again_at_the_same_moment() {
+fn shows_again(endpoint: &str) {
     for scenario in [Scenario::Grasp, Scenario::Faults] {
-        let mut bench = bench(scenario);
+        let mut bench = bench_at(endpoint, scenario);
         bench.wait(3500);
         let mut live = Vec::new();
         for view in [View::Live, View::Touch, View::Faults, View::Traffic] {
@@ -292,10 +295,38 @@ fn what_was_shown_live_is_shown_again_at_the_same_moment() {
                 shown.extend(said(&bench));
             }
             let missing: Vec<_> = wanted.iter().filter(|one| !shown.contains(one)).collect();
-            assert!(missing.is_empty(), "{view:?} of {scenario:?}: {missing:#?}");
+            assert!(
+                missing.is_empty(),
+                "{view:?} of {scenario:?} on {endpoint}: {missing:#?}"
+            );
             assert!(wanted.len() > 10, "{view:?}: {}", wanted.len());
         }
     }
+}
+
+#[test]
+fn what_was_shown_live_over_tcp_is_shown_again_at_the_same_moment() {
+    shows_again(HAND);
+}
+
+#[test]
+fn what_was_shown_live_over_rtu_is_shown_again_at_the_same_moment() {
+    shows_again("rtu:/dev/ttyUSB0?baud=115200&id=1");
+}
+
+#[test]
+fn what_was_shown_live_over_rs485_is_shown_again_at_the_same_moment() {
+    shows_again("rs485:/dev/ttyUSB0?baud=115200&id=1");
+}
+
+#[test]
+fn what_was_shown_live_over_can_is_shown_again_at_the_same_moment() {
+    shows_again("can:can0?id=1");
+}
+
+#[test]
+fn what_was_shown_live_over_slcan_is_shown_again_at_the_same_moment() {
+    shows_again("slcan:/dev/ttyACM0?id=1");
 }
 
 #[test]
