@@ -2,8 +2,8 @@
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
-    ENTRIES_MAX, LibraryPose, Millis, PoseId, PoseLibrary, STEPS_MAX, Sequence, SequenceId,
-    SequenceStep, TAGS_MAX, clean, free_name,
+    ENTRIES_MAX, LibraryPose, Millis, PoseId, PoseLibrary, ReactionId, STEPS_MAX, Sequence,
+    SequenceId, SequenceStep, TAGS_MAX, clean, free_name,
 };
 
 /// One change of a pose.
@@ -84,6 +84,8 @@ impl PoseLibrary {
         self.sequences.push(Sequence {
             id,
             name,
+            name_zh: String::new(),
+            key: None,
             looped: false,
             steps: Vec::new(),
             others: toml::Table::new(),
@@ -114,8 +116,21 @@ impl PoseLibrary {
                 known.inspect(|(_, id)| step.pose = *id).is_some()
             });
             if let Some(own) = self.sequences.iter_mut().find(|own| own.id == id) {
-                (own.steps, own.looped) = (sequence.steps, sequence.looped);
-                own.others = sequence.others;
+                sequence.id = id;
+                sequence.name.clone_from(&own.name);
+                *own = sequence;
+            }
+        }
+        for mut reaction in other.reactions {
+            let known = |pose| ids.iter().find(|(was, _)| *was == pose).map(|(_, id)| *id);
+            if let (Some(rest), Some(touched)) = (known(reaction.rest), known(reaction.touched))
+                && self.reactions.len() < ENTRIES_MAX
+            {
+                (reaction.rest, reaction.touched) = (rest, touched);
+                reaction.id = ReactionId(self.fresh());
+                let taken = |name: &str| self.reactions.iter().any(|own| own.name == name);
+                reaction.name = free_name(&reaction.name, taken);
+                self.reactions.push(reaction);
             }
         }
         for (key, value) in other.others {
@@ -144,13 +159,15 @@ impl PoseLibrary {
                 for sequence in &mut self.sequences {
                     sequence.steps.retain(|step| step.pose != id);
                 }
+                self.reactions
+                    .retain(|reaction| reaction.rest != id && reaction.touched != id);
             }
             PoseEdit::Rename(name) => {
                 let others = self.poses.iter().filter(|pose| pose.id != id);
                 let taken = |name: &str| others.clone().any(|pose| pose.name == name);
                 let name = free_name(&clean(&name), taken);
                 if let Some(pose) = self.poses.get_mut(at).filter(|_| !name.is_empty()) {
-                    pose.name = name;
+                    (pose.name, pose.name_zh) = (name, String::new());
                 }
             }
         }
@@ -161,6 +178,7 @@ impl PoseLibrary {
             return;
         };
         let last = self.poses.len();
+        let copy = LibraryPose { key: None, ..copy };
         self.add_pose(&copy.name.clone(), copy);
         put(&mut self.poses, last, at + 1);
     }
@@ -183,7 +201,9 @@ impl PoseLibrary {
             return;
         };
         match edit {
-            SequenceEdit::Rename(_) if !name.is_empty() => sequence.name = name,
+            SequenceEdit::Rename(_) if !name.is_empty() => {
+                (sequence.name, sequence.name_zh) = (name, String::new());
+            }
             SequenceEdit::Loop(looped) => sequence.looped = looped,
             SequenceEdit::Add(pose) => {
                 if let Some(speed) = speed.filter(|_| sequence.steps.len() < STEPS_MAX) {
@@ -225,6 +245,8 @@ impl LibraryPose {
         Self {
             id: PoseId(0),
             name: String::new(),
+            name_zh: String::new(),
+            key: None,
             tags: Vec::new(),
             angles,
             leave: PerDof::splat(false),

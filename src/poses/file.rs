@@ -2,8 +2,8 @@
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
-    ENTRIES_MAX, LibraryPose, Millis, NAME_CHARS_MAX, PoseId, PoseLibrary, STEPS_MAX, Sequence,
-    SequenceId, SequenceStep, TAGS_MAX, clean,
+    ENTRIES_MAX, EntryKey, LibraryPose, Millis, NAME_CHARS_MAX, PoseId, PoseLibrary, Reaction,
+    ReactionId, STEPS_MAX, Sequence, SequenceId, SequenceStep, TAGS_MAX, TouchForce, clean,
 };
 use crate::store::toml_file::VERSION;
 use crate::store::{FileCause, FileError, FileText};
@@ -20,6 +20,8 @@ struct FileRow {
     poses: Vec<PoseRow>,
     #[serde(default, rename = "sequence")]
     sequences: Vec<SequenceRow>,
+    #[serde(default, rename = "reaction", skip_serializing_if = "Vec::is_empty")]
+    reactions: Vec<ReactionRow>,
     #[serde(flatten)]
     others: toml::Table,
 }
@@ -27,6 +29,10 @@ struct FileRow {
 #[derive(Serialize, Deserialize)]
 struct PoseRow {
     name: Spanned<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    name_zh: Option<Spanned<String>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    key: Option<EntryKey>,
     #[serde(default)]
     tags: Vec<String>,
     speed: Speed,
@@ -53,6 +59,10 @@ struct AnglesRow {
 #[derive(Serialize, Deserialize)]
 struct SequenceRow {
     name: Spanned<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    name_zh: Option<Spanned<String>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    key: Option<EntryKey>,
     #[serde(default, rename = "loop")]
     looped: bool,
     #[serde(default, rename = "step")]
@@ -71,6 +81,20 @@ struct StepRow {
     others: toml::Table,
 }
 
+#[derive(Serialize, Deserialize)]
+struct ReactionRow {
+    name: Spanned<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    name_zh: Option<Spanned<String>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    key: Option<EntryKey>,
+    rest: Spanned<String>,
+    touched: Spanned<String>,
+    threshold_n: TouchForce,
+    #[serde(flatten)]
+    others: toml::Table,
+}
+
 /// The library as text.
 ///
 /// # Errors
@@ -79,11 +103,14 @@ pub fn write(library: &PoseLibrary) -> Result<String, toml::ser::Error> {
     let poses = library.poses.iter().map(pose_row).collect();
     let sequences = library.sequences.iter();
     let sequences = sequences.map(|sequence| sequence_row(library, sequence));
+    let reactions = library.reactions.iter();
+    let reactions = reactions.filter_map(|reaction| reaction_row(library, reaction));
     toml::to_string(&FileRow {
         format: FORMAT.into(),
         version: VERSION,
         poses,
         sequences: sequences.collect(),
+        reactions: reactions.collect(),
         others: library.others.clone(),
     })
 }
@@ -93,6 +120,8 @@ fn pose_row(pose: &LibraryPose) -> PoseRow {
     let left = Dof::ALL.into_iter().filter(|dof| pose.leave[*dof]);
     PoseRow {
         name: unplaced(&pose.name),
+        name_zh: chinese(&pose.name_zh),
+        key: pose.key,
         tags: pose.tags.clone(),
         speed: pose.speed,
         force: pose.force,
@@ -121,10 +150,29 @@ fn sequence_row(library: &PoseLibrary, sequence: &Sequence) -> SequenceRow {
     });
     SequenceRow {
         name: unplaced(&sequence.name),
+        name_zh: chinese(&sequence.name_zh),
+        key: sequence.key,
         looped: sequence.looped,
         steps: steps.collect(),
         others: sequence.others.clone(),
     }
+}
+
+fn reaction_row(library: &PoseLibrary, reaction: &Reaction) -> Option<ReactionRow> {
+    let name = |pose| Some(unplaced(&library.pose(pose)?.name));
+    Some(ReactionRow {
+        name: unplaced(&reaction.name),
+        name_zh: chinese(&reaction.name_zh),
+        key: reaction.key,
+        rest: name(reaction.rest)?,
+        touched: name(reaction.touched)?,
+        threshold_n: reaction.threshold,
+        others: reaction.others.clone(),
+    })
+}
+
+fn chinese(name: &str) -> Option<Spanned<String>> {
+    (!name.is_empty()).then(|| unplaced(name))
 }
 
 fn unplaced(text: &str) -> Spanned<String> {
@@ -136,8 +184,13 @@ fn unplaced(text: &str) -> Spanned<String> {
 /// # Errors
 /// [`FileError`] with line and field; nothing is taken of such a text.
 pub fn read(text: &str) -> Result<PoseLibrary, FileError> {
+    read_into(PoseLibrary::default(), text)
+}
+
+/// As [`read`], into an empty library that numbers its entries in its own way.
+pub(crate) fn read_into(empty: PoseLibrary, text: &str) -> Result<PoseLibrary, FileError> {
     let source = FileText::of(text, FORMAT)?;
-    PoseReader(source).library(source.parse()?)
+    PoseReader(source).library(empty, source.parse()?)
 }
 
 /// Makes a library of what a text holds.
@@ -145,16 +198,19 @@ pub fn read(text: &str) -> Result<PoseLibrary, FileError> {
 struct PoseReader<'a>(FileText<'a>);
 
 impl PoseReader<'_> {
-    fn library(self, file: FileRow) -> Result<PoseLibrary, FileError> {
+    fn library(self, mut library: PoseLibrary, file: FileRow) -> Result<PoseLibrary, FileError> {
         few(file.poses.len(), ENTRIES_MAX)?;
         few(file.sequences.len(), ENTRIES_MAX)?;
-        let mut library = PoseLibrary::default();
+        few(file.reactions.len(), ENTRIES_MAX)?;
         library.others = file.others;
         for row in file.poses {
             self.pose(&mut library, row)?;
         }
         for row in file.sequences {
             self.sequence(&mut library, row)?;
+        }
+        for row in file.reactions {
+            self.reaction(&mut library, row)?;
         }
         Ok(library)
     }
@@ -169,6 +225,17 @@ impl PoseReader<'_> {
             return Err(self.0.blame(name.span(), "name", cause));
         }
         Ok(text)
+    }
+
+    fn chinese(self, name: Option<&Spanned<String>>) -> Result<String, FileError> {
+        let Some(name) = name else {
+            return Ok(String::new());
+        };
+        let text = name.get_ref();
+        match text.is_empty() || clean(text) != *text {
+            true => Err(self.0.blame(name.span(), "name_zh", bad_name(text))),
+            false => Ok(text.clone()),
+        }
     }
 
     fn pose(self, library: &mut PoseLibrary, row: PoseRow) -> Result<(), FileError> {
@@ -194,6 +261,8 @@ impl PoseReader<'_> {
         library.poses.push(LibraryPose {
             id,
             name,
+            name_zh: self.chinese(row.name_zh.as_ref())?,
+            key: row.key,
             tags: row.tags,
             angles,
             leave: PerDof::from_fn(|dof| row.leave.contains(&dof)),
@@ -215,6 +284,8 @@ impl PoseReader<'_> {
         library.sequences.push(Sequence {
             id,
             name,
+            name_zh: self.chinese(row.name_zh.as_ref())?,
+            key: row.key,
             looped: row.looped,
             steps,
             others: row.others,
@@ -222,14 +293,43 @@ impl PoseReader<'_> {
         Ok(())
     }
 
-    fn step(self, library: &PoseLibrary, row: StepRow) -> Result<SequenceStep, FileError> {
-        let Some(pose) = library.pose_named(row.pose.get_ref()) else {
-            let name = row.pose.get_ref().chars().take(40).collect();
-            let cause = FileCause::Absent { name };
-            return Err(self.0.blame(row.pose.span(), "pose", cause));
+    fn reaction(self, library: &mut PoseLibrary, row: ReactionRow) -> Result<(), FileError> {
+        let mut known = library.reactions.iter();
+        let taken = known.any(|reaction| reaction.name == *row.name.get_ref());
+        let name = self.name(&row.name, taken)?;
+        let id = ReactionId(library.fresh());
+        library.reactions.push(Reaction {
+            id,
+            name,
+            name_zh: self.chinese(row.name_zh.as_ref())?,
+            key: row.key,
+            rest: self.named(library, "rest", &row.rest)?,
+            touched: self.named(library, "touched", &row.touched)?,
+            threshold: row.threshold_n,
+            others: row.others,
+        });
+        Ok(())
+    }
+
+    /// The pose of this name, which a field of the file has.
+    fn named(
+        self,
+        library: &PoseLibrary,
+        field: &str,
+        name: &Spanned<String>,
+    ) -> Result<PoseId, FileError> {
+        let Some(pose) = library.pose_named(name.get_ref()) else {
+            let cause = FileCause::Absent {
+                name: name.get_ref().chars().take(40).collect(),
+            };
+            return Err(self.0.blame(name.span(), field, cause));
         };
+        Ok(pose.id)
+    }
+
+    fn step(self, library: &PoseLibrary, row: StepRow) -> Result<SequenceStep, FileError> {
         Ok(SequenceStep {
-            pose: pose.id,
+            pose: self.named(library, "pose", &row.pose)?,
             speed: row.speed,
             dwell: row.dwell_ms,
             limit: row.limit_ms,

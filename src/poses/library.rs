@@ -1,6 +1,7 @@
 //! Poses and sequences as plain values. How they are changed is in `edit`, how they are written in `file`.
 
 use crate::hand::{Angle, Force, PerDof, Speed};
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// Poses and sequences that a library holds, each: more than a person finds again.
@@ -20,10 +21,50 @@ pub struct PoseId(pub u64);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SequenceId(pub u64);
 
+/// A reaction for as long as the program runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ReactionId(pub u64);
+
+/// The key that, with Shift, starts an entry of the library: a letter, or a digit from 1 on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct EntryKey(char);
+
+/// A text that is no such key.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("\"{got}\" is not a letter from A to Z or a digit from 1 to 9")]
+pub struct BadKey {
+    /// What was given.
+    pub got: String,
+}
+
+impl EntryKey {
+    /// A capital letter or a digit.
+    #[must_use]
+    pub const fn get(self) -> char {
+        self.0
+    }
+}
+
+impl TryFrom<String> for EntryKey {
+    type Error = BadKey;
+    fn try_from(got: String) -> Result<Self, BadKey> {
+        let mut letters = got.chars();
+        match (letters.next(), letters.next()) {
+            (Some(key @ ('A'..='Z' | '1'..='9')), None) => Ok(Self(key)),
+            _ => Err(BadKey { got }),
+        }
+    }
+}
+
+impl From<EntryKey> for String {
+    fn from(key: EntryKey) -> Self {
+        key.0.into()
+    }
+}
+
 /// A time in milliseconds, 0 to ten minutes.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "i64", into = "i64")]
 pub struct Millis(u32);
 
@@ -79,6 +120,10 @@ pub struct LibraryPose {
     pub id: PoseId,
     /// No two poses of a library have the same.
     pub name: String,
+    /// The same in Chinese; empty if there is none.
+    pub name_zh: String,
+    /// The key that, with Shift, takes it.
+    pub key: Option<EntryKey>,
     /// Words to find it by.
     pub tags: Vec<String>,
     /// Where the joints go, 0 bent to 1000 open.
@@ -97,10 +142,10 @@ impl LibraryPose {
     /// True if these words, in lower case, stand in its name or in one of its tags. No words stand everywhere.
     #[must_use]
     pub fn has(&self, words: &str) -> bool {
-        let names = std::iter::once(&self.name).chain(&self.tags);
-        names
-            .into_iter()
-            .any(|name| name.to_lowercase().contains(words))
+        let names = [&self.name, &self.name_zh];
+        let names = names.into_iter().chain(&self.tags);
+        let mut names = names.map(|name| name.to_lowercase());
+        names.any(|name| name.contains(words))
     }
 
     /// Where each joint goes; `None` for those that are left alone.
@@ -132,12 +177,74 @@ pub struct Sequence {
     pub id: SequenceId,
     /// No two sequences of a library have the same.
     pub name: String,
+    /// The same in Chinese; empty if there is none.
+    pub name_zh: String,
+    /// The key that, with Shift, starts it.
+    pub key: Option<EntryKey>,
     /// Whether the first step follows the last.
     pub looped: bool,
     /// In order.
     pub steps: Vec<SequenceStep>,
     /// Keys of a newer version, kept as they are.
     pub others: toml::Table,
+}
+
+/// The hand rests in one pose; a finger whose tip is touched goes to where another pose has it, and back once it is let go.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reaction {
+    /// To find it.
+    pub id: ReactionId,
+    /// No two reactions of a library have the same.
+    pub name: String,
+    /// The same in Chinese; empty if there is none.
+    pub name_zh: String,
+    /// The key that, with Shift, starts it.
+    pub key: Option<EntryKey>,
+    /// Where a finger is that nobody touches.
+    pub rest: PoseId,
+    /// Where a touched finger goes.
+    pub touched: PoseId,
+    /// Normal force from which a fingertip counts as touched, beyond what it felt at the start.
+    pub threshold: TouchForce,
+    /// Keys of a newer version, kept as they are.
+    pub others: toml::Table,
+}
+
+/// A normal force of a fingertip in newtons, 0.1 to 20.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(try_from = "f32", into = "f32")]
+pub struct TouchForce(f32);
+
+/// A force that no reaction may have.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{got} N is outside 0.1 to 20")]
+pub struct BadTouchForce {
+    /// What was given.
+    pub got: f32,
+}
+
+impl TouchForce {
+    /// Newtons.
+    #[must_use]
+    pub const fn newtons(self) -> f32 {
+        self.0
+    }
+}
+
+impl TryFrom<f32> for TouchForce {
+    type Error = BadTouchForce;
+    fn try_from(got: f32) -> Result<Self, BadTouchForce> {
+        match (0.1..=20.0).contains(&got) {
+            true => Ok(Self(got)),
+            false => Err(BadTouchForce { got }),
+        }
+    }
+}
+
+impl From<TouchForce> for f32 {
+    fn from(force: TouchForce) -> Self {
+        force.0
+    }
 }
 
 /// All poses and sequences, in the person's order.
@@ -147,6 +254,8 @@ pub struct PoseLibrary {
     pub poses: Vec<LibraryPose>,
     /// The sequences. Their steps name poses of this library only.
     pub sequences: Vec<Sequence>,
+    /// The reactions. They name poses of this library only.
+    pub reactions: Vec<Reaction>,
     /// Keys of a newer version, kept as they are.
     pub others: toml::Table,
     next: u64,
@@ -177,10 +286,24 @@ impl PoseLibrary {
         self.sequences.iter().find(|sequence| sequence.id == id)
     }
 
+    /// The reaction with this id.
+    #[must_use]
+    pub fn reaction(&self, id: ReactionId) -> Option<&Reaction> {
+        self.reactions.iter().find(|reaction| reaction.id == id)
+    }
+
     /// True if there is nothing in it.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
-        self.poses.is_empty() && self.sequences.is_empty()
+        self.poses.is_empty() && self.sequences.is_empty() && self.reactions.is_empty()
+    }
+
+    /// An empty library whose ids begin after this number, so that no other library has them.
+    pub(crate) fn numbered_after(number: u64) -> Self {
+        Self {
+            next: number,
+            ..Self::default()
+        }
     }
 
     /// A number that nothing in this library has.

@@ -1,10 +1,12 @@
-//! The person's own poses and sequences: library, edits, files, and how a sequence plays. Sends nothing.
+//! Poses, sequences and reactions: library, edits, files, what is shipped, and how they play. Sends nothing.
 
 pub mod edit;
 pub mod file;
 pub mod library;
 pub mod player;
 pub mod preview;
+pub mod starter;
+pub mod way;
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,9 @@
 //! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
 
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
-use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
+use crate::poses::library::{LibraryPose, Millis, PoseId, PoseLibrary, SequenceId};
+use crate::poses::way::{Targets, way};
+use std::collections::VecDeque;
 use std::time::Duration;
 
 /// One step, with all that it needs: a pose that is edited meanwhile does not change what runs.
@@ -10,7 +12,7 @@ pub struct Cue {
     /// The pose.
     pub pose: PoseId,
     /// Where each joint goes; `None` = left alone.
-    pub targets: PerDof<Option<Angle>>,
+    pub targets: Targets,
     /// Speed on the way.
     pub speed: Speed,
     /// Force threshold.
@@ -38,6 +40,37 @@ pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
         })
     });
     cues.collect()
+}
+
+impl Cue {
+    /// A pose taken alone, at its own speed.
+    #[must_use]
+    pub fn of(pose: &LibraryPose) -> Self {
+        Self {
+            pose: pose.id,
+            targets: pose.targets(),
+            speed: pose.speed,
+            force: pose.force,
+            dwell: Duration::ZERO,
+            limit: Millis::LIMIT.duration(),
+        }
+    }
+
+    /// The cues of its way from these angles on, one after the other; time is spent at the last.
+    pub(crate) fn legs(&self, from: &PerDof<Option<i16>>) -> Vec<Self> {
+        let mut legs: Vec<Self> = way(from, &self.targets)
+            .into_iter()
+            .map(|targets| Self {
+                targets,
+                dwell: Duration::ZERO,
+                ..self.clone()
+            })
+            .collect();
+        if let Some(last) = legs.last_mut() {
+            last.dwell = self.dwell;
+        }
+        legs
+    }
 }
 
 /// Why a sequence is over. Nothing starts it again but a person.
@@ -103,7 +136,9 @@ pub struct Player {
     looped: bool,
     pace: PlayMode,
     view: PlayView,
-    /// The current cue has not been sent yet.
+    /// What is left of the way to the current pose; the first was sent.
+    legs: VecDeque<Cue>,
+    /// The next part of the way is to be sent.
     due: bool,
     /// The current pose was reached, or its time is up.
     arrived: bool,
@@ -112,13 +147,14 @@ pub struct Player {
 impl Player {
     /// Begins with the first step. Without steps it is over at once.
     #[must_use]
-    pub const fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
+    pub fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
         let phase = if cues.is_empty() {
             PlayPhase::Ended(PlayEnd::Finished)
         } else {
             PlayPhase::Moving { since: now }
         };
         Self {
+            legs: VecDeque::new(),
             due: !cues.is_empty(),
             cues,
             looped,
@@ -170,11 +206,15 @@ impl Player {
             return None;
         }
         self.due = false;
-        self.cues.get(self.view.at).cloned()
+        if self.legs.pop_front().is_none() || self.legs.is_empty() {
+            let cue = self.cues.get(self.view.at)?;
+            self.legs = cue.legs(seen).into();
+        }
+        self.legs.front().cloned()
     }
 
     fn moving(&mut self, since: Moment, now: Moment, seen: &PerDof<Option<i16>>) {
-        let Some(cue) = self.cues.get(self.view.at) else {
+        let Some(cue) = self.legs.front() else {
             return;
         };
         let there = |dof: Dof| match cue.targets[dof] {
@@ -186,6 +226,10 @@ impl Player {
         let is_there = Dof::ALL.into_iter().all(there);
         let too_late = now.since(since) >= cue.limit;
         if !is_there && !too_late {
+            return;
+        }
+        if is_there && self.legs.len() > 1 {
+            self.due = true;
             return;
         }
         self.view.late += u32::from(!is_there);
@@ -217,7 +261,8 @@ impl Player {
         self.begin(now);
     }
 
-    const fn begin(&mut self, now: Moment) {
+    fn begin(&mut self, now: Moment) {
+        self.legs.clear();
         self.view.phase = PlayPhase::Moving { since: now };
         self.due = true;
         self.arrived = false;

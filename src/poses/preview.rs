@@ -69,18 +69,20 @@ impl Preview {
             left = if round > 0.0 { left % round } else { 0.0 };
         }
         for (step, cue) in self.cues.iter().enumerate() {
-            let way = way_s(cue, &angles);
-            if left < way {
-                let part = |dof: Dof| moved(cue, dof, angles[dof], left);
-                return shown(PerDof::from_fn(part), step, false);
+            for leg in legs(cue, &angles) {
+                let way = way_s(&leg, &angles);
+                if left < way {
+                    let part = |dof: Dof| moved(&leg, dof, angles[dof], left);
+                    return shown(PerDof::from_fn(part), step, false);
+                }
+                angles = PerDof::from_fn(|dof| moved(&leg, dof, angles[dof], way));
+                left -= way;
+                let dwell = leg.dwell.as_secs_f64();
+                if left < dwell {
+                    return shown(angles, step, false);
+                }
+                left -= dwell;
             }
-            angles = PerDof::from_fn(|dof| moved(cue, dof, angles[dof], way));
-            left -= way;
-            let dwell = cue.dwell.as_secs_f64();
-            if left < dwell {
-                return shown(angles, step, false);
-            }
-            left -= dwell;
         }
         shown(
             angles,
@@ -93,12 +95,19 @@ impl Preview {
     fn round(&self, mut angles: PerDof<f64>) -> (f64, PerDof<f64>) {
         let mut seconds = 0.0;
         for cue in &self.cues {
-            let way = way_s(cue, &angles);
-            seconds += way + cue.dwell.as_secs_f64();
-            angles = PerDof::from_fn(|dof| moved(cue, dof, angles[dof], way));
+            for leg in legs(cue, &angles) {
+                let way = way_s(&leg, &angles);
+                seconds += way + leg.dwell.as_secs_f64();
+                angles = PerDof::from_fn(|dof| moved(&leg, dof, angles[dof], way));
+            }
         }
         (seconds, angles)
     }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "an angle of 0 to 1000")]
+fn legs(cue: &Cue, from: &PerDof<f64>) -> Vec<Cue> {
+    cue.legs(&from.map(|angle| Some(angle.round() as i16)))
 }
 
 /// Thousandths of the stroke in a second.

@@ -6,6 +6,7 @@ mod lost_replies;
 mod motion;
 mod parameters;
 mod playing;
+mod starter;
 mod targets;
 mod tuning;
 

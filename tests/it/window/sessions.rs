@@ -420,7 +420,10 @@ fn nothing_of_the_live_window_is_changed_from_within_a_recording() {
     };
     let before = live(&mut bench);
     replay(&mut bench, path.clone());
-    assert!(!bench.buttons_with("Open hand").is_empty(), "own poses are shown");
+    assert!(
+        !bench.buttons_with("Open hand").is_empty(),
+        "own poses are shown"
+    );
     let mut plan = before.2.clone();
     plan.note = "changed".into();
     for action in [

@@ -1,0 +1,24 @@
+//! The poses, sequences and reactions that every installation has. They cannot be changed: a person copies or hides them.
+
+use crate::poses::file;
+use crate::poses::library::PoseLibrary;
+use std::sync::LazyLock;
+
+/// The tag of poses that only demos need.
+pub const DEMO: &str = "demo";
+
+/// Ids from here on belong to what is shipped.
+const FIRST_ID: u64 = 1 << 32;
+
+static STARTER: LazyLock<PoseLibrary> = LazyLock::new(|| {
+    let text = include_str!("../../assets/poses.toml");
+    let read = file::read_into(PoseLibrary::numbered_after(FIRST_ID), text);
+    debug_assert!(read.is_ok(), "{read:?}");
+    read.unwrap_or_default()
+});
+
+/// What is shipped.
+#[must_use]
+pub fn starter() -> &'static PoseLibrary {
+    &STARTER
+}

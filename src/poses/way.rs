@@ -1,0 +1,51 @@
+//! The way from one pose to another on which thumb and index do not meet. Counts only; the drawn hand's geometry proves it in the
+//! tests, and feeds no motion.
+
+use crate::hand::{Angle, Dof, PerDof};
+
+/// Angles of some joints; `None` = left alone.
+pub type Targets = PerDof<Option<Angle>>;
+
+/// From here on the index is out of the thumb's reach.
+const INDEX_CLEAR: i16 = 550;
+/// At this bend the thumb is out of the index's reach however it is rotated.
+const BEND_CLEAR: i16 = 800;
+/// The same for any rotation: twice the bend and the rotation together.
+const THUMB_CLEAR: i16 = 2 * BEND_CLEAR;
+
+/// The targets to take one after the other on the way to `to`; the last is `to`, or what of it is left to do.
+///
+/// Where one of thumb and index closes while the other opens, the thumb goes first out of the way, and bends last. A joint
+/// of which it is not known where it is counts as bent.
+#[must_use]
+pub fn way(from: &PerDof<Option<i16>>, to: &Targets) -> Vec<Targets> {
+    let ends = |dof: Dof| {
+        let from = from[dof].unwrap_or(0);
+        (from, to[dof].map_or(from, Angle::get))
+    };
+    let [index, bend, rotate] = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate].map(ends);
+    let nearest = [index, bend, rotate].map(|(from, to)| from.min(to));
+    let is_end = nearest == [index.0, bend.0, rotate.0] || nearest == [index.1, bend.1, rotate.1];
+    let [least_index, least_bend, least_rotate] = nearest;
+    let is_clear = least_index >= INDEX_CLEAR || 2 * least_bend + least_rotate >= THUMB_CLEAR;
+    let Some(bent) = to[Dof::ThumbBend].filter(|_| !is_end && !is_clear) else {
+        return vec![*to];
+    };
+    let mut ways = Vec::with_capacity(3);
+    let thumb = |angle: Angle| {
+        let mut only: Targets = PerDof::splat(None);
+        only[Dof::ThumbBend] = Some(angle);
+        only
+    };
+    let out = Angle::nearest(BEND_CLEAR.max(bent.get()));
+    if bend.0 < out.get() {
+        ways.push(thumb(out));
+    }
+    let mut others = *to;
+    others[Dof::ThumbBend] = None;
+    ways.push(others);
+    if bent != out || bend.0 > out.get() {
+        ways.push(thumb(bent));
+    }
+    ways
+}
