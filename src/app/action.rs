@@ -5,6 +5,7 @@ use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
 use crate::app::layout::Layout;
 use crate::app::params::action::ParamAction;
+use crate::app::poses::PoseState;
 use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::readings::fault_recorder::PersonAct;
 use crate::app::readings::faults::FaultKind;
@@ -18,7 +19,7 @@ use crate::history::Mark;
 use crate::link::PollPriority;
 use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
-use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
+use crate::poses::library::{PoseId, SequenceId};
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
@@ -53,6 +54,8 @@ pub enum Action {
     Recall(PoseId),
     /// Run a sequence, pause it, end it.
     Play(Play),
+    /// Show what is shipped by this name no more, or show it again. Sends nothing.
+    HideShipped(String, bool),
     /// Show a sequence on the drawn hand, or none any more; nothing is sent.
     DryRun(Option<SequenceId>),
     /// What is asked about recorded sessions.
@@ -185,7 +188,7 @@ impl Action {
     /// What this does to the hand, for the record of what happened; `None` if it does nothing to it. Arming, stopping,
     /// gestures and notes are in the history already.
     #[must_use]
-    pub fn person_act(&self, is_armed: bool, library: &PoseLibrary) -> Option<PersonAct> {
+    pub fn person_act(&self, is_armed: bool, poses: &PoseState) -> Option<PersonAct> {
         match self {
             Self::Disarm => return Some(PersonAct::Disarm),
             Self::ClearErrors => return Some(PersonAct::ClearErrors),
@@ -199,7 +202,7 @@ impl Action {
             Self::Speed(dof, speed) => PersonAct::Speed(*dof, *speed),
             Self::Lock(dof, locked) => PersonAct::Lock(*dof, *locked),
             Self::Preset(preset) => PersonAct::Preset(*preset),
-            Self::Recall(id) => PersonAct::Pose(library.pose(*id)?.name.as_str().into()),
+            Self::Recall(id) => PersonAct::Pose(poses.pose(*id)?.name.as_str().into()),
             Self::Play(play) => PersonAct::Play(*play),
             _ => return None,
         })

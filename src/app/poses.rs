@@ -2,13 +2,19 @@
 
 use crate::app::notices::NoticeKind;
 use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
-use crate::poses::library::{PoseId, PoseLibrary, SequenceId};
+use crate::poses::library::{
+    EntryId, EntryKey, EntryNames, LibraryPose, PoseId, PoseLibrary, Reaction, ReactionId,
+    Sequence, SequenceId,
+};
+use crate::poses::player::PlayPlan;
 use crate::poses::preview::Preview;
+use crate::poses::starter::starter;
+use std::collections::BTreeSet;
 
-/// The poses of a person, and what goes on with them.
+/// The poses of a person beside those that are shipped, and what goes on with them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PoseState {
-    /// Poses and sequences.
+    /// The person's own.
     pub library: PoseLibrary,
     /// The dry run, if there is one.
     pub preview: Option<Preview>,
@@ -33,6 +39,85 @@ impl PoseState {
         }
     }
 
+    /// A pose of the person's or a shipped one.
+    #[must_use]
+    pub fn pose(&self, id: PoseId) -> Option<&LibraryPose> {
+        self.library.pose(id).or_else(|| starter().pose(id))
+    }
+
+    /// A sequence of the person's or a shipped one.
+    #[must_use]
+    pub fn sequence(&self, id: SequenceId) -> Option<&Sequence> {
+        self.library_of(id).sequence(id)
+    }
+
+    /// A reaction of the person's or a shipped one.
+    #[must_use]
+    pub fn reaction(&self, id: ReactionId) -> Option<&Reaction> {
+        let shipped = || starter().reaction(id);
+        self.library.reaction(id).or_else(shipped)
+    }
+
+    /// The library that has this sequence: the person's, or what is shipped.
+    #[must_use]
+    pub fn library_of(&self, id: SequenceId) -> &PoseLibrary {
+        match self.library.sequence(id) {
+            Some(_) => &self.library,
+            None => starter(),
+        }
+    }
+
+    /// What is needed to play an entry of the person's or a shipped one.
+    #[must_use]
+    pub fn plan(&self, entry: EntryId) -> Option<PlayPlan> {
+        let shipped = || starter().plan(entry);
+        self.library.plan(entry).or_else(shipped)
+    }
+
+    /// What an entry of the person's or a shipped one is called.
+    #[must_use]
+    pub fn named(&self, entry: EntryId) -> Option<EntryNames<'_>> {
+        let shipped = || starter().named(entry);
+        self.library.named(entry).or_else(shipped)
+    }
+
+    /// What is shipped and neither hidden nor outdone by one of the person's own by the same name.
+    pub fn shipped(&self, hidden: &BTreeSet<String>) -> impl Iterator<Item = EntryId> {
+        let name = |entry| starter().named(entry).map_or("", |names| names.text);
+        let is_outdone = move |entry: EntryId| {
+            let mut own = self.library.entries().filter(|own| own.is_same_kind(entry));
+            own.any(|own| self.named(own).is_some_and(|own| own.text == name(entry)))
+        };
+        let all = starter().entries();
+        all.filter(move |entry| !hidden.contains(name(*entry)) && !is_outdone(*entry))
+    }
+
+    /// What can be started with one press: poses but those that only demos need, then sequences and reactions; a person's own
+    /// before those that are shipped.
+    #[must_use]
+    pub fn ready(&self, hidden: &BTreeSet<String>) -> Vec<EntryId> {
+        let is_demo = |entry: &EntryId| match entry {
+            EntryId::Pose(id) => self.pose(*id).is_some_and(LibraryPose::is_for_demos),
+            _ => false,
+        };
+        let all = self.library.entries().chain(self.shipped(hidden));
+        let mut ready: Vec<EntryId> = all.filter(|entry| !is_demo(entry)).collect();
+        ready.sort_by_key(|entry| match entry {
+            EntryId::Pose(_) => 0,
+            EntryId::Sequence(_) => 1,
+            EntryId::Reaction(_) => 2,
+        });
+        ready
+    }
+
+    /// What a key starts.
+    #[must_use]
+    pub fn by_key(&self, key: EntryKey, hidden: &BTreeSet<String>) -> Option<EntryId> {
+        let ready = self.ready(hidden);
+        let has = |id: &EntryId| self.named(*id).is_some_and(|names| names.key == Some(key));
+        ready.into_iter().find(has)
+    }
+
     /// True if a deletion or an import can be taken back.
     #[must_use]
     pub const fn can_undo(&self) -> bool {
@@ -55,6 +140,11 @@ impl PoseState {
             }
             LibraryEdit::Pose(id, edit) => self.library.edit_pose(id, edit),
             LibraryEdit::Sequence(id, edit) => self.library.edit_sequence(id, edit),
+            LibraryEdit::Copy(entry) => match self.library.copy_from(starter(), entry) {
+                Some(EntryId::Pose(id)) => self.newest = Some(id),
+                Some(EntryId::Sequence(id)) => self.newest_sequence = Some(id),
+                Some(EntryId::Reaction(_)) | None => {}
+            },
             LibraryEdit::NewSequence(name) => {
                 self.newest_sequence = self.library.add_sequence(&name);
             }

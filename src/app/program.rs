@@ -23,7 +23,7 @@ use crate::app::trials::files::{self, FilesEnd};
 use crate::hand::{Dof, Moment};
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
-use crate::poses::library::{LibraryPose, PoseLibrary};
+use crate::poses::library::{EntryId, LibraryPose, PoseLibrary};
 use crate::poses::preview::Preview;
 use crate::record::EventKind;
 use crate::store::calendar::{since_1970, stamp};
@@ -255,9 +255,7 @@ impl App {
             self.tell(NoticeKind::SeriesRuns, now);
             return;
         }
-        if let Some(done) =
-            action.person_act(self.state.hand().is_armed(), &self.state.poses.library)
-        {
+        if let Some(done) = action.person_act(self.state.hand().is_armed(), &self.state.poses) {
             let hand = self.state.hand_mut();
             hand.record_event(now, EventKind::Person, done.words());
             hand.recorder.person(done, now);
@@ -353,6 +351,7 @@ impl App {
             hands,
             notices,
             poses,
+            settings,
             ..
         } = &mut self.state;
         let hand = hands.shown_mut();
@@ -373,10 +372,16 @@ impl App {
                 None => notices.push(now, NoticeKind::PoseUnknown),
             },
             Action::Library(edit) => poses.edit(edit),
+            Action::HideShipped(name, hide) => {
+                let hidden = &mut settings.hidden_poses;
+                match hide {
+                    true => hidden.insert(name),
+                    false => hidden.remove(&name),
+                };
+            }
             Action::Recall(id) => {
-                if let Some(pose) = poses.library.pose(id)
-                    && hand.recall(pose)
-                {
+                let plan = poses.plan(EntryId::Pose(id));
+                if plan.is_some_and(|plan| hand.recall(plan, &self.env)) {
                     poses.recalled = Some(id);
                 }
             }
@@ -385,14 +390,14 @@ impl App {
                 let from = crate::hand::PerDof::from_fn(|dof| {
                     angle.and_then(|angle| angle.value[dof].documented())
                 });
-                let preview = |id| Preview::of(&poses.library, id, from, now);
+                let preview = |id| Preview::of(poses.library_of(id), id, from, now);
                 poses.preview = sequence.and_then(preview);
             }
             Action::Play(play) => {
                 if matches!(play, Play::Start(_) | Play::Step(_)) {
                     poses.preview = None;
                 }
-                hand.play(play, &poses.library, &self.env);
+                hand.play(play, poses, &self.env);
             }
             action => self.keep(action),
         }

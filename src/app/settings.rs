@@ -298,6 +298,8 @@ pub struct Settings {
     pub gesture_route: GestureRoute,
     /// Names that a person gave to gestures, by number.
     pub gesture_names: BTreeMap<String, String>,
+    /// Names of shipped poses, sequences and reactions that are not shown.
+    pub hidden_poses: BTreeSet<String>,
     /// How the window is divided.
     pub layout: Layout,
     /// How much larger than designed everything is drawn.

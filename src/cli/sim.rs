@@ -27,7 +27,7 @@ pub(crate) struct SimArgs {
     /// Random seed of the first hand; each further hand takes the next number
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// What the hand does: idle, free, rigid, fragile, grasp, faults, extremes
+    /// What the hand does: idle, free, rigid, fragile, grasp, touched, faults, extremes
     #[arg(long, value_name = "NAME", default_value = "idle")]
     scenario: Scenario,
     /// What the hand does where the manual leaves a choice, from the list below; may be repeated

@@ -2,8 +2,8 @@
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
-    ENTRIES_MAX, LibraryPose, Millis, PoseId, PoseLibrary, ReactionId, STEPS_MAX, Sequence,
-    SequenceId, SequenceStep, TAGS_MAX, clean, free_name,
+    ENTRIES_MAX, EntryId, LibraryPose, Millis, PoseId, PoseLibrary, Reaction, ReactionId,
+    STEPS_MAX, Sequence, SequenceId, SequenceStep, TAGS_MAX, clean, free_name,
 };
 
 /// One change of a pose.
@@ -57,6 +57,8 @@ pub enum LibraryEdit {
     NewSequence(String),
     /// Of a sequence.
     Sequence(SequenceId, SequenceEdit),
+    /// A copy of what is shipped, with the poses that it needs.
+    Copy(EntryId),
     /// Take the last deletion or import back.
     Undo,
 }
@@ -100,6 +102,54 @@ impl PoseLibrary {
         })
     }
 
+    /// Adds a copy of another library's entry. Poses that it needs are this library's own of their name, if there are such.
+    pub fn copy_from(&mut self, other: &Self, entry: EntryId) -> Option<EntryId> {
+        Some(match entry {
+            EntryId::Pose(id) => {
+                let pose = other.pose(id)?.clone();
+                EntryId::Pose(self.add_pose(&pose.name.clone(), pose)?)
+            }
+            EntryId::Sequence(id) => {
+                let mut copy = other.sequence(id)?.clone();
+                for step in &mut copy.steps {
+                    step.pose = self.needed_from(other, step.pose)?;
+                }
+                copy.id = self.add_sequence(&copy.name)?;
+                let own = self.sequences.last_mut()?;
+                copy.name.clone_from(&own.name);
+                *own = copy;
+                EntryId::Sequence(own.id)
+            }
+            EntryId::Reaction(id) => {
+                let mut copy = other.reaction(id)?.clone();
+                copy.rest = self.needed_from(other, copy.rest)?;
+                copy.touched = self.needed_from(other, copy.touched)?;
+                EntryId::Reaction(self.add_reaction(copy)?)
+            }
+        })
+    }
+
+    fn needed_from(&mut self, other: &Self, id: PoseId) -> Option<PoseId> {
+        let pose = other.pose(id)?;
+        match self.pose_named(&pose.name) {
+            Some(own) => Some(own.id),
+            None => self.add_pose(&pose.name, pose.clone()),
+        }
+    }
+
+    /// Adds a reaction behind the others; `None` if the library is full.
+    fn add_reaction(&mut self, mut reaction: Reaction) -> Option<ReactionId> {
+        if self.reactions.len() >= ENTRIES_MAX {
+            return None;
+        }
+        let taken = |name: &str| self.reactions.iter().any(|own| own.name == name);
+        reaction.name = free_name(&reaction.name, taken);
+        let id = ReactionId(self.fresh());
+        reaction.id = id;
+        self.reactions.push(reaction);
+        Some(id)
+    }
+
     /// Puts all of another library behind this one's own. Names that are taken get a number.
     pub fn merge(&mut self, other: Self) {
         let mut ids = Vec::new();
@@ -123,14 +173,9 @@ impl PoseLibrary {
         }
         for mut reaction in other.reactions {
             let known = |pose| ids.iter().find(|(was, _)| *was == pose).map(|(_, id)| *id);
-            if let (Some(rest), Some(touched)) = (known(reaction.rest), known(reaction.touched))
-                && self.reactions.len() < ENTRIES_MAX
-            {
+            if let (Some(rest), Some(touched)) = (known(reaction.rest), known(reaction.touched)) {
                 (reaction.rest, reaction.touched) = (rest, touched);
-                reaction.id = ReactionId(self.fresh());
-                let taken = |name: &str| self.reactions.iter().any(|own| own.name == name);
-                reaction.name = free_name(&reaction.name, taken);
-                self.reactions.push(reaction);
+                self.add_reaction(reaction);
             }
         }
         for (key, value) in other.others {

@@ -10,6 +10,8 @@ pub const ENTRIES_MAX: usize = 500;
 pub const STEPS_MAX: usize = 200;
 /// Characters of a name or tag: what fits a tile.
 pub const NAME_CHARS_MAX: usize = 32;
+/// The tag of poses that only demos need.
+pub const DEMO: &str = "demo";
 /// Tags of one pose.
 pub const TAGS_MAX: usize = 8;
 
@@ -24,6 +26,25 @@ pub struct SequenceId(pub u64);
 /// A reaction for as long as the program runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ReactionId(pub u64);
+
+/// An entry of the library.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EntryId {
+    /// A pose.
+    Pose(PoseId),
+    /// A sequence.
+    Sequence(SequenceId),
+    /// A reaction.
+    Reaction(ReactionId),
+}
+
+impl EntryId {
+    /// True if both are poses, both sequences, or both reactions.
+    #[must_use]
+    pub fn is_same_kind(self, other: Self) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
+    }
+}
 
 /// The key that, with Shift, starts an entry of the library: a letter, or a digit from 1 on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -61,6 +82,17 @@ impl From<EntryKey> for String {
     fn from(key: EntryKey) -> Self {
         key.0.into()
     }
+}
+
+/// What an entry of the library is called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EntryNames<'a> {
+    /// In English, or in the person's own words.
+    pub text: &'a str,
+    /// In Chinese; empty if there is no other name.
+    pub zh: &'a str,
+    /// The key that, with Shift, starts it.
+    pub key: Option<EntryKey>,
 }
 
 /// A time in milliseconds, 0 to ten minutes.
@@ -139,6 +171,12 @@ pub struct LibraryPose {
 }
 
 impl LibraryPose {
+    /// True if only demos need it: it is not offered by itself.
+    #[must_use]
+    pub fn is_for_demos(&self) -> bool {
+        self.tags.iter().any(|tag| tag == DEMO)
+    }
+
     /// True if these words, in lower case, stand in its name or in one of its tags. No words stand everywhere.
     #[must_use]
     pub fn has(&self, words: &str) -> bool {
@@ -290,6 +328,36 @@ impl PoseLibrary {
     #[must_use]
     pub fn reaction(&self, id: ReactionId) -> Option<&Reaction> {
         self.reactions.iter().find(|reaction| reaction.id == id)
+    }
+
+    /// All of it: poses, sequences, reactions.
+    pub fn entries(&self) -> impl Iterator<Item = EntryId> {
+        let poses = self.poses.iter().map(|own| EntryId::Pose(own.id));
+        let sequences = self.sequences.iter();
+        let sequences = sequences.map(|own| EntryId::Sequence(own.id));
+        let reactions = self.reactions.iter();
+        let reactions = reactions.map(|own| EntryId::Reaction(own.id));
+        poses.chain(sequences).chain(reactions)
+    }
+
+    /// What an entry is called; `None` if it is not in this library.
+    #[must_use]
+    pub fn named(&self, entry: EntryId) -> Option<EntryNames<'_>> {
+        let (text, zh, key) = match entry {
+            EntryId::Pose(id) => {
+                let own = self.pose(id)?;
+                (&own.name, &own.name_zh, own.key)
+            }
+            EntryId::Sequence(id) => {
+                let own = self.sequence(id)?;
+                (&own.name, &own.name_zh, own.key)
+            }
+            EntryId::Reaction(id) => {
+                let own = self.reaction(id)?;
+                (&own.name, &own.name_zh, own.key)
+            }
+        };
+        Some(EntryNames { text, zh, key })
     }
 
     /// True if there is nothing in it.

@@ -5,6 +5,7 @@ pub mod file;
 pub mod library;
 pub mod player;
 pub mod preview;
+pub mod reaction;
 pub mod starter;
 pub mod way;
 

@@ -1,7 +1,9 @@
 //! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
 
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
-use crate::poses::library::{LibraryPose, Millis, PoseId, PoseLibrary, SequenceId};
+use crate::poses::library::{
+    EntryId, LibraryPose, Millis, PoseId, PoseLibrary, SequenceId, TouchForce,
+};
 use crate::poses::way::{Targets, way};
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -70,6 +72,55 @@ impl Cue {
             last.dwell = self.dwell;
         }
         legs
+    }
+}
+
+/// All that is needed to play an entry of the library: one that is edited meanwhile does not change what runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlayPlan {
+    /// Which.
+    pub entry: EntryId,
+    /// The poses.
+    pub cues: Vec<Cue>,
+    /// Whether it begins again at its end.
+    pub looped: bool,
+    /// What touched fingers do once the hand is at its first pose.
+    pub reaction: Option<ReactionCue>,
+}
+
+/// What a touched finger does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReactionCue {
+    /// Where it goes, and how; back to the first pose once it is let go.
+    pub touched: Cue,
+    /// From when on it counts as touched.
+    pub threshold: TouchForce,
+}
+
+impl PoseLibrary {
+    /// What is needed to play an entry; `None` if it is not in this library.
+    #[must_use]
+    pub fn plan(&self, entry: EntryId) -> Option<PlayPlan> {
+        let plan = |cues, looped, reaction| PlayPlan {
+            entry,
+            cues,
+            looped,
+            reaction,
+        };
+        Some(match entry {
+            EntryId::Pose(id) => plan(vec![Cue::of(self.pose(id)?)], false, None),
+            EntryId::Sequence(id) => plan(cues(self, id), self.sequence(id)?.looped, None),
+            EntryId::Reaction(id) => {
+                let reaction = self.reaction(id)?;
+                let mut rest = Cue::of(self.pose(reaction.rest)?);
+                rest.dwell = Duration::MAX;
+                let touched = ReactionCue {
+                    touched: Cue::of(self.pose(reaction.touched)?),
+                    threshold: reaction.threshold,
+                };
+                plan(vec![rest], false, Some(touched))
+            }
+        })
     }
 }
 

@@ -4,9 +4,6 @@ use crate::poses::file;
 use crate::poses::library::PoseLibrary;
 use std::sync::LazyLock;
 
-/// The tag of poses that only demos need.
-pub const DEMO: &str = "demo";
-
 /// Ids from here on belong to what is shipped.
 const FIRST_ID: u64 = 1 << 32;
 

@@ -2,7 +2,7 @@
 
 use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
 use crate::hand::sample::touch_span;
-use crate::hand::{Dof, Fault, Finger, Moment, PerDof};
+use crate::hand::{Dof, Fault, Finger, Moment, PerDof, PerFinger};
 use crate::sim::body::Body;
 use crate::sim::drive::{DriveGoal, DriveSettings, position_of};
 use crate::sim::extremes;
@@ -123,6 +123,8 @@ pub struct SimHand {
     /// Chance of what is not the body's: how answers are sent.
     chance: fastrand::Rng,
     journal: Vec<JournalEntry>,
+    /// What somebody presses each fingertip with, g.
+    pressed_g: PerFinger<f64>,
     /// What the hand's own script ordered last; a setpoint from outside ends it.
     pub(crate) order: Option<Order>,
     /// It says what was recorded: no body, no script, and writes change nothing.
@@ -155,6 +157,7 @@ impl SimHand {
             baud_code: 0,
             chance: fastrand::Rng::with_seed(config.seed ^ 0x5EED),
             journal: Vec::new(),
+            pressed_g: PerFinger::splat(0.0),
             order: None,
             follows_recording: false,
         };
@@ -342,6 +345,12 @@ impl SimHand {
         self.published_ms = None;
     }
 
+    /// Presses a fingertip with so many grams, or lets it go with 0.
+    pub fn press_tip(&mut self, finger: Finger, grams: f64) {
+        self.pressed_g[finger] = grams;
+        self.published_ms = None;
+    }
+
     /// Switches a fault on.
     pub fn inject_fault(&mut self, dof: Dof, fault: Fault) {
         self.body.drive_mut(dof).inject(fault);
@@ -508,7 +517,9 @@ impl SimHand {
         let measured_ms = self.now_ms - self.now_ms % SENSOR_MS;
         let slip = scenario::slip(self.config.scenario, measured_ms);
         for finger in Finger::ALL {
-            let press = live::press(&self.body, finger);
+            let mut press = live::press(&self.body, finger);
+            press.force_g += scenario::touched_g(self.config.scenario, finger, measured_ms);
+            press.force_g += self.pressed_g[finger];
             let block = self
                 .touch
                 .block(finger, press, slip, number::seconds(measured_ms));

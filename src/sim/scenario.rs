@@ -1,6 +1,6 @@
 //! Scripts: what the simulated hand does by itself. Only decides; the hand carries out.
 
-use crate::hand::{Dof, Fault, PerDof, Status};
+use crate::hand::{Dof, Fault, Finger, PerDof, Status};
 use crate::sim::number;
 use std::str::FromStr;
 
@@ -18,6 +18,8 @@ pub enum Scenario {
     Fragile,
     /// As if another controller grasped the ball again and again.
     Grasp,
+    /// Nothing, with nothing in reach; somebody presses its fingertips, one after the other.
+    Touched,
     /// Every status code and every fault bit, in turn.
     Faults,
     /// Values that the manual does not allow.
@@ -26,7 +28,9 @@ pub enum Scenario {
 
 /// A scenario's name that does not exist.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("'{got}' is not a scenario: choose idle, free, rigid, fragile, grasp, faults or extremes")]
+#[error(
+    "'{got}' is not a scenario: choose idle, free, rigid, fragile, grasp, touched, faults or extremes"
+)]
 pub struct UnknownScenario {
     /// What was given.
     pub got: String,
@@ -34,12 +38,13 @@ pub struct UnknownScenario {
 
 impl Scenario {
     /// All, with the quiet one first.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Idle,
         Self::Free,
         Self::Rigid,
         Self::Fragile,
         Self::Grasp,
+        Self::Touched,
         Self::Faults,
         Self::Extremes,
     ];
@@ -53,6 +58,7 @@ impl Scenario {
             Self::Rigid => "rigid",
             Self::Fragile => "fragile",
             Self::Grasp => "grasp",
+            Self::Touched => "touched",
             Self::Faults => "faults",
             Self::Extremes => "extremes",
         }
@@ -151,6 +157,24 @@ pub fn slip(scenario: Scenario, now_ms: u64) -> Slip {
         friction: 0.38 * bump + 0.06 * smooth,
         turn_deg: 85.0 * smooth,
         slide_mm: 2.6 * smooth,
+    }
+}
+
+/// How long each fingertip's turn is in `touched`, and how much of that it is pressed, ms.
+const TOUCH_TURN_MS: u64 = 2000;
+const TOUCH_MS: u64 = 1200;
+/// How hard, g.
+const TOUCH_G: f64 = 300.0;
+
+/// How hard somebody presses this fingertip at this moment, g; a hand is left in peace for its first turn.
+#[must_use]
+pub fn touched_g(scenario: Scenario, finger: Finger, now_ms: u64) -> f64 {
+    let fingers = u64::try_from(Finger::ALL.len()).unwrap_or(1);
+    let turn = now_ms / TOUCH_TURN_MS;
+    let is_its = turn > 0 && u64::try_from(finger.index()).is_ok_and(|at| at == turn % fingers);
+    match scenario {
+        Scenario::Touched if is_its && now_ms % TOUCH_TURN_MS < TOUCH_MS => TOUCH_G,
+        _ => 0.0,
     }
 }
 

@@ -3,7 +3,9 @@
 
 use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
 use crate::link::{Clock, LinkStatus, MotionTurn};
-use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayView, Player};
+use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
+use crate::poses::reaction::TouchWatch;
+use crate::poses::way::Targets;
 use crate::record::{LinkState, Record};
 use crate::tasks::hand::Hand;
 use std::time::Duration;
@@ -18,10 +20,8 @@ const FRESH_FOR: Duration = Duration::from_millis(250);
 /// What a sequence begins with.
 #[derive(Debug, Clone)]
 pub struct PlayStart {
-    /// The poses.
-    pub cues: Vec<Cue>,
-    /// Whether it begins again at its end.
-    pub looped: bool,
+    /// What is played.
+    pub plan: PlayPlan,
     /// Through, or one step.
     pub pace: PlayMode,
     /// The arming that a person gave for it.
@@ -67,10 +67,17 @@ pub async fn play<H: Hand>(
 ) -> PlayEnd {
     let clock = start.clock;
     let mut records = hand.records();
+    let plan = start.plan;
+    let rest = plan.cues.first().map(|cue| cue.targets);
     let mut run = Playing {
         turn: start.turn,
         hand,
-        player: Player::start(start.cues, start.looped, start.pace, clock.now()),
+        reaction: plan.reaction.zip(rest).map(|(cue, rest)| Reacting {
+            watch: TouchWatch::new(cue.threshold),
+            cue,
+            rest,
+        }),
+        player: Player::start(plan.cues, plan.looped, start.pace, clock.now()),
         epoch: start.epoch,
         locked: start.locked,
         sample: start.seen,
@@ -101,10 +108,18 @@ pub async fn play<H: Hand>(
     }
 }
 
+/// Fingers that answer a touch.
+struct Reacting {
+    watch: TouchWatch,
+    cue: ReactionCue,
+    rest: Targets,
+}
+
 struct Playing<'a, H> {
     hand: &'a H,
     turn: MotionTurn,
     player: Player,
+    reaction: Option<Reacting>,
     epoch: ArmEpoch,
     locked: PerDof<bool>,
     sample: HandSample,
@@ -152,6 +167,36 @@ impl<H: Hand> Playing<'_, H> {
             }
             self.send(setpoints, tell);
         }
+        if matches!(self.player.view().phase, PlayPhase::Dwelling { .. }) {
+            self.react(tell);
+        }
+    }
+
+    /// Sends the fingers whose tip was touched or let go.
+    fn react(&mut self, tell: &mut impl FnMut(PlayStep)) {
+        let now = self.clock.now();
+        let Some(reacting) = &mut self.reaction else {
+            return;
+        };
+        let mut setpoints = Setpoints::none(self.epoch);
+        for (finger, tip) in self.sample.tactile.iter() {
+            let fresh = tip.filter(|tip| tip.age(now) <= FRESH_FOR);
+            let Some(newtons) = fresh.and_then(|tip| tip.value.normal()) else {
+                continue;
+            };
+            let dof = finger.bend();
+            let targets = match reacting.watch.take(finger, newtons, now) {
+                Some(true) => &reacting.cue.touched.targets,
+                Some(false) => &reacting.rest,
+                None => continue,
+            };
+            if let Some(to) = targets[dof].filter(|_| !self.locked[dof]) {
+                setpoints.angle[dof] = Some(Target::Go(to));
+                setpoints.speed[dof] = Some(reacting.cue.touched.speed);
+                setpoints.force[dof] = Some(reacting.cue.touched.force);
+            }
+        }
+        self.send(setpoints, tell);
     }
 
     /// Angles that are fresh enough to go by.
@@ -164,7 +209,7 @@ impl<H: Hand> Playing<'_, H> {
         Some(angle.value)
     }
 
-    fn free(&self, targets: &PerDof<Option<Angle>>) -> Vec<(Dof, Angle)> {
+    fn free(&self, targets: &Targets) -> Vec<(Dof, Angle)> {
         let free = targets.iter().filter(|(dof, _)| !self.locked[*dof]);
         free.filter_map(|(dof, to)| Some((dof, (*to)?))).collect()
     }

@@ -1,12 +1,13 @@
 //! What a person asks of the hand, and the rules that stand before it. Opens no link, writes no file.
 
+use crate::app::env::Env;
 use crate::app::hand::HandState;
 use crate::app::hand::joint::Preset;
 use crate::app::notices::{NoticeKind, Notices};
 use crate::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use crate::history::MarkKind;
 use crate::link::ArmRequest;
-use crate::poses::library::LibraryPose;
+use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::LinkState;
 use crate::trials::Abort;
 
@@ -114,12 +115,22 @@ impl HandState {
         });
     }
 
-    /// Takes a pose: speed and force first, then the angles of joints that are free. Arms nothing; true if something was sent.
-    pub(crate) fn recall(&mut self, pose: &LibraryPose) -> bool {
+    /// Takes a pose: speed and force first, then the angles of joints that are free. Where thumb and index could meet on the way,
+    /// it goes part by part. Arms nothing; true if something is sent.
+    pub(crate) fn recall(&mut self, plan: PlayPlan, env: &Env) -> bool {
+        let Some(cue) = plan.cues.first() else {
+            return false;
+        };
+        let angle = self.sample.angle;
+        let from = PerDof::from_fn(|dof| angle.and_then(|angle| angle.value[dof].documented()));
+        if cue.legs(&from).len() > 1 {
+            self.start(Some(plan), PlayMode::Through, env);
+            return self.is_armed();
+        }
         self.go_to(|setpoints| {
-            setpoints.angle = pose.targets().map(|to| to.map(Target::Go));
-            setpoints.speed = PerDof::splat(Some(pose.speed));
-            setpoints.force = PerDof::splat(Some(pose.force));
+            setpoints.angle = cue.targets.map(|to| to.map(Target::Go));
+            setpoints.speed = PerDof::splat(Some(cue.speed));
+            setpoints.force = PerDof::splat(Some(cue.force));
         })
     }
 

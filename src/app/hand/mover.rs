@@ -3,7 +3,7 @@
 use crate::app::hand::{Freshness, HandState};
 use crate::app::procedures::procedure::Procedure;
 use crate::hand::Gesture;
-use crate::poses::library::SequenceId;
+use crate::poses::library::EntryId;
 use crate::record::{Hold, LinkState, Rest};
 
 /// What moves the hand now.
@@ -15,8 +15,8 @@ pub enum Mover {
     Calibration,
     /// A series of trials: the trial, and how many there are.
     Series(usize, usize),
-    /// A sequence, and its step, 0 the first.
-    Sequence(SequenceId, usize),
+    /// An entry of the library that is played, and its step, 0 the first.
+    Playing(EntryId, usize),
     /// A stored gesture.
     Gesture(Gesture),
     /// Setpoints of a person.
@@ -44,7 +44,7 @@ impl HandState {
             return Some(Mover::Series(run.view.number, run.view.total));
         }
         if let Some(run) = self.sequence.as_ref().filter(|run| run.is_running()) {
-            return Some(Mover::Sequence(run.sequence, run.view.at));
+            return Some(Mover::Playing(run.entry, run.view.at));
         }
         if self.link.rest != Rest::Moving || self.commanded && self.came_to_rest() {
             return None;

@@ -3,11 +3,12 @@
 use crate::app::env::Env;
 use crate::app::hand::HandState;
 use crate::app::hand::sequence::{Play, SequenceRun};
+use crate::app::poses::PoseState;
 use crate::app::running::Running;
 use crate::hand::PerDof;
 use crate::history::MarkKind;
-use crate::poses::library::{PoseLibrary, SequenceId};
-use crate::poses::player::{PlayMode, PlayPhase, PlayView, cues};
+use crate::poses::library::EntryId;
+use crate::poses::player::{PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::tasks::play::{self, PlayCommand, PlayStart, PlayStep};
 use tokio::sync::mpsc;
 
@@ -15,20 +16,21 @@ use tokio::sync::mpsc;
 const COMMANDS_MAX: usize = 16;
 
 impl HandState {
-    /// Starts, pauses or ends a sequence of the library.
-    pub(crate) fn play(&mut self, wanted: Play, library: &PoseLibrary, env: &Env) {
+    /// Starts, pauses or ends an entry of the library.
+    pub(crate) fn play(&mut self, wanted: Play, poses: &PoseState, env: &Env) {
         let command = |command| {
             if let Some(run) = &self.sequence {
                 run.command(command);
             }
         };
         match wanted {
-            Play::Start(id) => self.start_sequence(id, PlayMode::Through, library, env),
+            Play::Start(entry) => self.start(poses.plan(entry), PlayMode::Through, env),
             Play::Step(id) => {
-                let waits = |run: &SequenceRun| run.sequence == id && run.is_paused();
+                let entry = EntryId::Sequence(id);
+                let waits = |run: &SequenceRun| run.entry == entry && run.is_paused();
                 match self.sequence.as_ref().is_some_and(waits) {
                     true => command(PlayCommand::Resume(PlayMode::OneStep)),
-                    false => self.start_sequence(id, PlayMode::OneStep, library, env),
+                    false => self.start(poses.plan(entry), PlayMode::OneStep, env),
                 }
             }
             Play::Pause => command(PlayCommand::Pause),
@@ -37,15 +39,16 @@ impl HandState {
         }
     }
 
-    fn start_sequence(&mut self, id: SequenceId, pace: PlayMode, library: &PoseLibrary, env: &Env) {
-        let Some(epoch) = self.link.armed.filter(|_| self.is_armed()) else {
+    /// Starts what a person wants played; without arming, nothing.
+    pub(crate) fn start(&mut self, plan: Option<PlayPlan>, pace: PlayMode, env: &Env) {
+        let Some((plan, epoch)) = plan.zip(self.link.armed.filter(|_| self.is_armed())) else {
             return;
         };
+        let entry = plan.entry;
         self.take_over();
         let Some(open) = &self.open else { return };
         let start = PlayStart {
-            cues: cues(library, id),
-            looped: library.sequence(id).is_some_and(|own| own.looped),
+            plan,
             pace,
             epoch,
             turn: open.turn,
@@ -59,7 +62,7 @@ impl HandState {
             play::play(&link, start, wanted, |step| steps.tell(step)).await
         });
         self.sequence = Some(SequenceRun {
-            sequence: id,
+            entry,
             view: PlayView {
                 at: 0,
                 phase: PlayPhase::Moving { since: self.now },

@@ -1,7 +1,7 @@
 //! A sequence that runs, or ran last, and what a person does with one.
 
 use crate::app::running::Running;
-use crate::poses::library::SequenceId;
+use crate::poses::library::{EntryId, SequenceId};
 use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
 use crate::tasks::play::{PlayCommand, PlayStep};
 use tokio::sync::mpsc;
@@ -9,8 +9,8 @@ use tokio::sync::mpsc;
 /// What a person does with a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Play {
-    /// Run it from its start. Needs arming.
-    Start(SequenceId),
+    /// Run a sequence or a reaction from its start. Needs arming.
+    Start(EntryId),
     /// Take one step, then wait. Needs arming.
     Step(SequenceId),
     /// Hold where the hand is, until resumed.
@@ -21,11 +21,11 @@ pub enum Play {
     End,
 }
 
-/// A sequence that runs, or ran last.
+/// A sequence, a reaction, or a pose whose way has several parts, that runs or ran last.
 #[derive(Debug)]
 pub struct SequenceRun {
     /// Which.
-    pub sequence: SequenceId,
+    pub entry: EntryId,
     /// Where it stands.
     pub view: PlayView,
     /// `None` once a person moves the hand in another way.

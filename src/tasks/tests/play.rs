@@ -1,8 +1,8 @@
 //! What a sequence sends and what ends it, on a hand that only notes what it is told.
 
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
-use crate::poses::library::PoseId;
-use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayView};
+use crate::poses::library::{EntryId, PoseId, SequenceId};
+use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::LinkState;
 use crate::tasks::Hand;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
@@ -37,8 +37,12 @@ impl Bench {
         let hand = FakeHand::new();
         hand.arm_as(1);
         let start = PlayStart {
-            cues: vec![cue(1, 700), cue(2, 200)],
-            looped: false,
+            plan: PlayPlan {
+                entry: EntryId::Sequence(SequenceId(1)),
+                cues: vec![cue(1, 700), cue(2, 200)],
+                looped: false,
+                reaction: None,
+            },
             pace,
             epoch: ArmEpoch(1),
             turn: hand.take_turn(),

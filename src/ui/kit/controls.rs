@@ -613,7 +613,7 @@ pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
 }
 
 /// A sign in the middle of a place.
-fn sign(ui: &Ui, rect: Rect, sign: Icon, color: Color32) {
+pub(crate) fn sign(ui: &Ui, rect: Rect, sign: Icon, color: Color32) {
     let center = Align2::CENTER_CENTER;
     ui.painter()
         .text(rect.center(), center, sign, theme::icon(), color);

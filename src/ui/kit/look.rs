@@ -3,10 +3,12 @@
 use crate::app::action::Action;
 use crate::app::hand::Freshness;
 use crate::app::notices::Level;
+use crate::app::poses::PoseState;
 use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Moment, PerDof, Timed};
+use crate::poses::library::EntryId;
 use crate::ui::text::{Text, main};
 use crate::ui::theme::Palette;
 use crate::ui::view::View;
@@ -42,6 +44,15 @@ impl Look {
     /// The sentence with this behind it.
     pub(crate) fn told(self, text: Text, more: impl Display) -> String {
         format!("{} {more}", self.say(text))
+    }
+
+    /// What an entry of the library is called in the window's language.
+    pub(crate) fn entry_name(self, poses: &PoseState, entry: EntryId) -> &str {
+        match (poses.named(entry), self.language) {
+            (Some(names), Language::Zh) if !names.zh.is_empty() => names.zh,
+            (Some(names), _) => names.text,
+            (None, _) => "",
+        }
     }
 
     /// The colour of a message.

@@ -3,10 +3,10 @@
 use crate::app::action::Action;
 use crate::hand::{Angle, Dof, Force, Speed};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
-use crate::poses::library::{LibraryPose, NAME_CHARS_MAX};
+use crate::poses::library::{EntryId, LibraryPose, NAME_CHARS_MAX};
 use crate::ui::hand::panel;
 use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
-use crate::ui::poses::tiles::{go_ui, shares};
+use crate::ui::poses::tiles::{shares, start_ui};
 use crate::ui::text::{Text, poses, tune, words};
 use crate::ui::theme;
 use egui::{Color32, Layout, ScrollArea, Ui, vec2};
@@ -28,7 +28,7 @@ pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
         }
         ui.horizontal(|ui| limits_ui(ui, pane, pose));
         order_ui(ui, pane, pose);
-        ui.vertical_centered_justified(|ui| go_ui(ui, pane, pose));
+        ui.vertical_centered_justified(|ui| start_ui(ui, pane, EntryId::Pose(pose.id)));
     });
 }
 

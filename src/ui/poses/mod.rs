@@ -3,6 +3,7 @@ pub(crate) mod editor;
 pub(crate) mod gestures;
 pub(crate) mod sequence_step;
 pub(crate) mod sequence_view;
+pub(crate) mod shipped;
 pub(crate) mod tiles;
 
 use crate::app::action::Action;
@@ -25,13 +26,15 @@ enum PoseSection {
     #[default]
     Mine,
     Sequences,
+    Shipped,
     InHand,
 }
 
 impl PoseSection {
-    const ALL: [(Self, Text); 3] = [
+    const ALL: [(Self, Text); 4] = [
         (Self::Mine, poses::MY_POSES),
         (Self::Sequences, poses::SEQUENCES),
+        (Self::Shipped, poses::SHIPPED),
         (Self::InHand, poses::IN_HAND),
     ];
 }
@@ -63,6 +66,7 @@ impl PoseView {
             match self.section {
                 PoseSection::Mine => self.mine_ui(ui, pane),
                 PoseSection::Sequences => self.sequences.ui(ui, pane),
+                PoseSection::Shipped => shipped::shipped_ui(ui, pane),
                 PoseSection::InHand => self.gestures.ui(ui, pane),
             }
         });
@@ -73,7 +77,7 @@ impl PoseView {
         let look = pane.look;
         let sections = (&mut self.section, poses::SECTION_TIP);
         kit::pick_ui(ui, look, sections, PoseSection::ALL);
-        if self.section != PoseSection::InHand {
+        if matches!(self.section, PoseSection::Mine | PoseSection::Sequences) {
             kit::right_ui(ui, |ui| tools_ui(ui, pane));
         }
     }

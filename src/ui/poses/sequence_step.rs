@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
-use crate::poses::library::{Millis, Sequence, SequenceStep};
+use crate::poses::library::{EntryId, Millis, Sequence, SequenceStep};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
@@ -27,7 +27,7 @@ pub(crate) fn step_now(pane: &Pane<'_>, sequence: &Sequence) -> Option<usize> {
         return Some(preview.at(pane.state.now).step);
     }
     let run = pane.state.hand().sequence.as_ref();
-    let run = run.filter(|run| run.sequence == sequence.id)?;
+    let run = run.filter(|run| run.entry == EntryId::Sequence(sequence.id))?;
     run.is_running().then_some(run.view.at)
 }
 

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::hand::Play;
 use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
-use crate::poses::library::{NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
+use crate::poses::library::{EntryId, NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
 use crate::poses::player::{PlayEnd, PlayPhase};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
@@ -188,7 +188,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
         return (look.told(poses::SAY_DRY, step), palette.simulated);
     }
     let run = pane.state.hand().sequence.as_ref();
-    let Some(run) = run.filter(|run| run.sequence == sequence.id) else {
+    let Some(run) = run.filter(|run| run.entry == EntryId::Sequence(sequence.id)) else {
         return (look.say(poses::SAY_IDLE).into(), palette.muted);
     };
     let (text, color) = match run.view.phase {
@@ -216,7 +216,7 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
     let id = sequence.id;
     let own = pane.state.hand().sequence.as_ref();
-    let own = own.filter(|run| run.sequence == id);
+    let own = own.filter(|run| run.entry == EntryId::Sequence(id));
     let running = own.is_some_and(|run| run.is_running());
     let paused = own.is_some_and(|run| run.is_paused());
     let preview = pane.state.poses.preview.as_ref();
@@ -237,7 +237,11 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     };
     let all = [
         dry_run,
-        (poses::START, cannot, Action::Play(Play::Start(id))),
+        (
+            poses::START,
+            cannot,
+            Action::Play(Play::Start(EntryId::Sequence(id))),
+        ),
         (poses::STEP, cannot, Action::Play(Play::Step(id))),
         go_on,
         (poses::END, idle, Action::Play(Play::End)),

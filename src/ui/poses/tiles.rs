@@ -1,17 +1,23 @@
 //! Poses as tiles with a drawn hand, in the library and in the overview's strip. Starts nothing by itself.
 
 use crate::app::action::Action;
+use crate::app::hand::Play;
+use crate::app::poses::PoseState;
+use crate::app::state::State;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
-use crate::poses::library::LibraryPose;
+use crate::poses::library::{EntryId, LibraryPose};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight};
-use crate::ui::text::{main, panels, poses};
+use crate::ui::text::{Text, main, panels, poses};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
+use egui::{CollapsingHeader, Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
 
-/// Width and least height of a pose in the overview: a finger's breadth.
-const STRIP_TILE: egui::Vec2 = vec2(132.0, 38.0);
+/// An entry in the overview, and in a low strip: a finger's breadth.
+const TILE: egui::Vec2 = vec2(92.0, 100.0);
+const LOW_TILE: egui::Vec2 = vec2(116.0, 38.0);
+/// Height of a tile's name.
+const NAME_HEIGHT: f32 = 20.0;
 
 /// Shares of the way to open.
 pub(crate) fn shares(angles: &PerDof<Angle>) -> PerDof<Option<f32>> {
@@ -34,17 +40,6 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
         return Some(pane.look.say(panels::GESTURES_OFF));
     }
     pane.unready()
-}
-
-/// A button that takes a pose.
-pub(crate) fn go_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
-    let look = pane.look;
-    let name = look.told(poses::RECALL_NAME, &pose.name);
-    let button = Button::said(look, poses::RECALL)
-        .named(&name)
-        .disabled(refusal(pane, pose))
-        .weight(Weight::Strong);
-    button.sends(ui, pane, Action::Recall(pose.id));
 }
 
 /// A tile of the library: picture, name, tags. True if it was chosen.
@@ -84,7 +79,7 @@ pub(crate) fn tile_ui(
     name.paint(&ui, upper);
     let about = Label::new(&about, look.palette.muted).small().center();
     about.paint(&ui, lower);
-    go_ui(&mut ui, pane, pose);
+    start_ui(&mut ui, pane, EntryId::Pose(pose.id));
     response.clicked()
 }
 
@@ -103,28 +98,31 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         area.id_salt("strip").show(ui, |ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
             ui.spacing_mut().interact_size.y = theme::CONTROL_LARGE;
-            ui.horizontal_wrapped(|ui| strip_tiles_ui(ui, pane));
+            let size = match ui.available_height() < TILE.y {
+                true => LOW_TILE,
+                false => TILE,
+            };
+            ui.horizontal_wrapped(|ui| strip_tiles_ui(ui, pane, size));
         });
     });
 }
 
-fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, size: egui::Vec2) {
     let (look, state) = (pane.look, pane.state);
-    let library = &state.poses.library;
-    if library.poses.is_empty() {
-        Label::muted(look, poses::STRIP_EMPTY).ui(ui);
-    }
-    for pose in &library.poses {
-        small_tile_ui(ui, pane, pose);
+    for entry in state.poses.ready(&state.settings.hidden_poses) {
+        entry_tile_ui(ui, pane, entry, size);
     }
     ui.end_row();
-    let caption = look.say(poses::STRIP_GESTURES);
-    Label::new(caption, look.palette.muted).small().ui(ui);
-    let (named, others): (Vec<Gesture>, Vec<Gesture>) =
-        Gesture::all().partition(|gesture| state.settings.gesture_name(*gesture).is_some());
-    for gesture in named.into_iter().chain(others) {
-        gesture_ui(ui, pane, gesture);
-    }
+    let drawer = CollapsingHeader::new(look.say(poses::STRIP_GESTURES)).id_salt("gestures");
+    drawer.show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let (named, others): (Vec<Gesture>, Vec<Gesture>) =
+                Gesture::all().partition(|gesture| state.settings.gesture_name(*gesture).is_some());
+            for gesture in named.into_iter().chain(others) {
+                gesture_ui(ui, pane, gesture);
+            }
+        });
+    });
 }
 
 /// Keeps the pose of now.
@@ -138,20 +136,120 @@ pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     }
 }
 
-fn small_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
-    let look = pane.look;
-    let name = look.told(poses::RECALL_NAME, &pose.name);
-    let button = Button::new(&pose.name, look.tip(poses::RECALL))
-        .named(&name)
-        .disabled(refusal(pane, pose));
-    let (id, rect) = ui.allocate_space(STRIP_TILE);
+/// An entry that one press starts, and another press ends while it runs: its picture, its name, and its key.
+fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::Vec2) {
+    let (look, state) = (pane.look, pane.state);
+    let name = look.entry_name(&state.poses, entry);
+    let key = state.poses.named(entry).and_then(|names| names.key);
+    let runs = runs(state, entry);
+    let verb = verb(state, entry);
+    let refused = entry_refusal(pane, entry);
+    let mut tip = match entry {
+        EntryId::Pose(_) => look.tip(poses::RECALL).to_owned(),
+        _ => look.tip(verb).to_owned(),
+    };
+    if let Some(key) = key {
+        tip = format!("{tip}\nShift+{}", key.get());
+    }
+    let label = look.told(verb, name);
+    let weight = if runs { Weight::Armed } else { Weight::Normal };
+    let button = Button::new(name, &tip)
+        .named(&label)
+        .weight(weight)
+        .disabled(refused);
+    let (id, rect) = ui.allocate_space(size);
     let response = button.ground(ui, look, rect, id);
-    let (picture, words) = rect.split_left_right_at_x(rect.left() + rect.height());
-    panel::pose_ui(ui, look, picture.shrink(2.0), &shares(&pose.angles));
-    let words = words.shrink2(vec2(theme::STEP, 0.0));
-    Label::new(&pose.name, button.text_color(look)).paint(ui, words);
+    let inner = rect.shrink(theme::STEP);
+    let is_low = size.y < TILE.y;
+    let (picture, words) = match is_low {
+        true => inner.split_left_right_at_x(inner.left() + inner.height()),
+        false => inner.split_top_bottom_at_y(inner.bottom() - NAME_HEIGHT),
+    };
+    if let Some(pose) = pictured(&state.poses, entry) {
+        panel::pose_ui(ui, look, picture, &shares(&pose.angles));
+    }
+    let color = button.text_color(look);
+    let text = Label::new(name, color);
+    match is_low {
+        true => text.paint(ui, words.shrink2(vec2(theme::STEP, 0.0))),
+        false => text.center().paint(ui, words),
+    };
+    if !matches!(entry, EntryId::Pose(_)) {
+        let corner = Rect::from_min_size(picture.left_top(), vec2(16.0, 16.0));
+        let icon = if runs { theme::PAUSE } else { theme::PLAY };
+        kit::sign(ui, corner, icon, color);
+    }
+    if let Some(key) = key.filter(|_| !is_low) {
+        let corner = Rect::from_min_size(picture.right_top() - vec2(14.0, 0.0), vec2(14.0, 16.0));
+        let key = key.get().to_string();
+        Label::new(&key, look.palette.muted)
+            .small()
+            .right()
+            .paint(ui, corner);
+    }
     if response.clicked() {
-        pane.actions.push(Action::Recall(pose.id));
+        pane.actions.push(press(state, entry));
+    }
+}
+
+fn runs(state: &State, entry: EntryId) -> bool {
+    let run = state.hand().sequence.as_ref();
+    run.is_some_and(|run| run.entry == entry && run.is_running())
+}
+
+fn verb(state: &State, entry: EntryId) -> Text {
+    match entry {
+        EntryId::Pose(_) => poses::RECALL_NAME,
+        _ if runs(state, entry) => poses::END,
+        _ => poses::START,
+    }
+}
+
+/// Why this entry cannot be started now.
+fn entry_refusal(pane: &Pane<'_>, entry: EntryId) -> Option<&'static str> {
+    match entry {
+        EntryId::Pose(id) => {
+            let pose = pane.state.poses.pose(id)?;
+            refusal(pane, pose)
+        }
+        _ => pane.unready(),
+    }
+}
+
+/// A button that starts an entry, or ends it while it runs.
+pub(crate) fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
+    let (look, state) = (pane.look, pane.state);
+    let verb = verb(state, entry);
+    let label = look.told(verb, look.entry_name(&state.poses, entry));
+    let text = match entry {
+        EntryId::Pose(_) => poses::RECALL,
+        _ => verb,
+    };
+    let button = Button::said(look, text)
+        .named(&label)
+        .disabled(entry_refusal(pane, entry))
+        .weight(Weight::Strong);
+    button.sends(ui, pane, press(state, entry));
+}
+
+/// What a press on an entry does: it starts it, or ends it while it runs. A pose starts again.
+pub(crate) fn press(state: &State, entry: EntryId) -> Action {
+    match entry {
+        EntryId::Pose(id) => Action::Recall(id),
+        _ if runs(state, entry) => Action::Play(Play::End),
+        _ => Action::Play(Play::Start(entry)),
+    }
+}
+
+/// The pose that stands for an entry.
+pub(crate) fn pictured(library: &PoseState, entry: EntryId) -> Option<&LibraryPose> {
+    match entry {
+        EntryId::Pose(id) => library.pose(id),
+        EntryId::Sequence(id) => {
+            let steps = &library.sequence(id)?.steps;
+            library.pose(steps.get(steps.len() / 2)?.pose)
+        }
+        EntryId::Reaction(id) => library.pose(library.reaction(id)?.touched),
     }
 }
 

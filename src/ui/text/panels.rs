@@ -218,6 +218,7 @@ texts! {
         Scenario::Rigid => "Hard block", "硬块";
         Scenario::Fragile => "Fragile cup", "易碎杯";
         Scenario::Grasp => "Grasps by itself", "自动抓握";
+        Scenario::Touched => "Fingertips are touched", "指尖被触摸";
         Scenario::Faults => "All faults in turn", "依次出现各种故障";
         Scenario::Extremes => "Impossible values", "异常数值";
     }

@@ -75,6 +75,9 @@ fn rows(group: Text) -> Vec<(String, Text)> {
         .into_iter()
         .map(|wish| (wish.keys(), wish.words()))
         .collect();
+    if group == keys::MOTION {
+        rows.push(("Shift+A-Z".to_owned(), keys::ENTRY));
+    }
     if group == keys::WINDOW {
         rows.extend(ZOOM.map(|(key, words)| (key.to_owned(), words)));
     }

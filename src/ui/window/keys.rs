@@ -2,6 +2,7 @@
 //! one control, such as the arrows of a track, are that control's own. Carries nothing out.
 
 use crate::hand::Dof;
+use crate::poses::library::EntryKey;
 use crate::ui::kit::Opens;
 use crate::ui::text::{Text, keys, main, panels, words};
 use crate::ui::view::View;
@@ -20,6 +21,8 @@ pub(crate) enum Wish {
     Half,
     /// All joints bent.
     Close,
+    /// The pose or demo of this key.
+    Entry(EntryKey),
     /// The keyboard goes to this joint's angle.
     Joint(Dof),
     /// The four fingers move together, or not.
@@ -162,6 +165,7 @@ impl Wish {
             Self::Open => main::OPEN,
             Self::Half => main::HALF,
             Self::Close => main::CLOSE,
+            Self::Entry(_) => keys::ENTRY,
             Self::Joint(dof) => words::dof(dof),
             Self::LinkFingers => keys::LINK,
             Self::AngleUnit => keys::UNIT,
@@ -181,7 +185,12 @@ impl Wish {
     /// Its group in the list of keys.
     pub(crate) const fn group(self) -> Text {
         match self {
-            Self::Stop | Self::ArmOrNot | Self::Open | Self::Half | Self::Close => keys::MOTION,
+            Self::Stop
+            | Self::ArmOrNot
+            | Self::Open
+            | Self::Half
+            | Self::Close
+            | Self::Entry(_) => keys::MOTION,
             Self::Joint(_) | Self::LinkFingers | Self::AngleUnit => keys::JOINTS,
             Self::Tare | Self::UndoTare | Self::Pause | Self::Opens(Opens::Note) => keys::MEASURING,
             Self::Opens(_) | Self::Language | Self::Theme => keys::WINDOW,
@@ -239,7 +248,9 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
             .iter()
             .find(|row| row.is_meant(event) || row.is_stop(event));
         let Some(row) = meant.filter(|row| !typing || row.key == Key::Escape) else {
-            return true;
+            let key = entry_key(event).filter(|_| !typing && meant.is_none());
+            wishes.extend(key.map(Wish::Entry));
+            return key.is_none();
         };
         if let Event::Key {
             pressed: true,
@@ -261,6 +272,25 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
             .retain(|event| !matches!(event, Event::Text(_)));
     }
     wishes
+}
+
+/// The key of a pose or demo: Shift and a letter or digit that is no other key.
+fn entry_key(event: &Event) -> Option<EntryKey> {
+    let Event::Key {
+        key,
+        physical_key,
+        pressed: true,
+        repeat: false,
+        modifiers,
+    } = event
+    else {
+        return None;
+    };
+    let alone = modifiers.shift && !modifiers.command && !modifiers.ctrl && !modifiers.alt;
+    // With Shift the digits of many keyboards are other characters.
+    let names = [Some(*key), *physical_key].into_iter().flatten();
+    let mut keys = names.filter_map(|key| EntryKey::try_from(key.name().to_owned()).ok());
+    keys.next().filter(|_| alone)
 }
 
 impl KeyRow {

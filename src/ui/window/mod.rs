@@ -179,6 +179,11 @@ impl Window {
             Wish::Open => preset(Preset::Open),
             Wish::Half => preset(Preset::Half),
             Wish::Close => preset(Preset::Close),
+            Wish::Entry(key) => {
+                let entry = state.poses.by_key(key, &state.settings.hidden_poses);
+                let entry = entry.filter(|_| pane.unready().is_none());
+                entry.map(|entry| pose_tiles::press(state, entry))
+            }
             Wish::AngleUnit => Some(Action::AngleUnit(state.settings.angle_unit.next())),
             Wish::Tare if !state.hand().link.state.is_live() => None,
             Wish::Tare => Some(Action::Tare(None)),
@@ -358,7 +363,7 @@ impl Window {
         let strip = if rect.height() < 640.0 {
             STRIP_LEAST
         } else {
-            160.0
+            264.0
         };
         let strip = RoomSize {
             designed: strip + theme::GAP,
@@ -502,7 +507,7 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
 mod tests {
     use super::*;
     use crate::hand::{Angle, Dof, Gesture};
-    use crate::poses::library::{PoseId, SequenceId};
+    use crate::poses::library::{EntryId, PoseId, SequenceId};
 
     #[test]
     fn a_stop_goes_first_and_nothing_moves_in_the_same_frame() {
@@ -515,7 +520,7 @@ mod tests {
                 Action::Recall(PoseId(1)),
                 Action::Procedure(ProcedureAction::Begin),
                 Action::Trial(TrialAction::Start),
-                Action::Play(Play::Start(SequenceId(1))),
+                Action::Play(Play::Start(EntryId::Sequence(SequenceId(1)))),
                 Action::Play(Play::Step(SequenceId(1))),
                 Action::Play(Play::Resume),
                 Action::Param(ParamAction::Apply),

@@ -8,6 +8,7 @@ use crate::app::notices::{Level, Notice, NoticeKind};
 use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
+use crate::poses::library::EntryId;
 use crate::record::{Hold, LinkState};
 use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
 use crate::ui::plots::times::clock;
@@ -189,13 +190,23 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
             let words = format!("{} {number} / {total}", look.say(tune::COLUMN_TRIAL));
             (words, Some(Action::Stop))
         }
-        Mover::Sequence(id, step) => {
-            let sequence = pane.state.poses.library.sequence(id);
-            let name = sequence.map_or("", |sequence| sequence.name.as_str());
-            let steps = sequence.map_or(0, |sequence| sequence.steps.len());
-            let title = look.say(poses::SEQUENCE);
-            let (of, step) = (look.say(window::MOVES_STEP), step + 1);
-            let words = format!("{title} {name}: {of} {step} / {steps}");
+        Mover::Playing(entry, step) => {
+            let name = look.entry_name(&pane.state.poses, entry);
+            let title = look.say(match entry {
+                EntryId::Pose(_) => poses::POSE,
+                EntryId::Sequence(_) => poses::SEQUENCE,
+                EntryId::Reaction(_) => poses::REACTION,
+            });
+            let mut words = format!("{title} {name}");
+            if let EntryId::Sequence(id) = entry {
+                let steps = pane
+                    .state
+                    .poses
+                    .sequence(id)
+                    .map_or(0, |own| own.steps.len());
+                let (of, step) = (look.say(window::MOVES_STEP), step + 1);
+                words = look.pair(&words, &format!("{of} {step} / {steps}"));
+            }
             (words, Some(Action::Play(Play::End)))
         }
         Mover::Gesture(gesture) => {

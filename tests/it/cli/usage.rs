@@ -41,7 +41,7 @@ fn wrong_usage_ends_with_two_and_says_what_is_right() {
         (&["sim", "--tcp", "6000"], "127.0.0.1:6000"),
         (
             &["sim", "--tcp", "127.0.0.1:0", "--scenario", "party"],
-            "idle, free, rigid, fragile, grasp, faults or extremes",
+            "idle, free, rigid, fragile, grasp, touched, faults or extremes",
         ),
         (&["sim", "--tcp", "127.0.0.1:0", "--id", "255"], "254"),
         (

@@ -424,7 +424,9 @@ fn action(words: &[&str], state: &State) -> Action {
         ["route", "library"] => Action::GestureRoute(GestureRoute::ActionLibrary),
         ["route", "off"] => Action::GestureRoute(GestureRoute::Off),
         ["recall", name] => Action::Recall(pose(name)),
-        ["play", "start"] => Action::Play(Play::Start(sequence())),
+        ["play", "start"] => Action::Play(Play::Start(
+            handscope::poses::library::EntryId::Sequence(sequence()),
+        )),
         ["play", "step"] => Action::Play(Play::Step(sequence())),
         ["play", "pause"] => Action::Play(Play::Pause),
         ["play", "resume"] => Action::Play(Play::Resume),

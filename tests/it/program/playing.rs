@@ -5,10 +5,12 @@ use crate::setup::line::Trouble;
 use handscope::app::action::Action;
 use handscope::app::hand::{Play, Preset};
 use handscope::app::notices::NoticeKind;
+use handscope::hand::Finger;
 use handscope::hand::{Angle, Dof, Fault, Force, PerDof, Speed};
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
-use handscope::poses::library::{Millis, PoseId, SequenceId, SequenceStep};
+use handscope::poses::library::{EntryId, Millis, PoseId, SequenceId, SequenceStep};
 use handscope::poses::player::{PlayEnd, PlayPhase};
+use handscope::poses::starter::starter;
 use tokio::time::Duration;
 
 /// Two poses, each captured and then edited, and a sequence of both.
@@ -65,7 +67,12 @@ async fn a_captured_pose_is_the_one_the_hand_has_and_an_old_one_is_refused() {
 async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arms() {
     let mut bench = Bench::live().await;
     let (a, own) = library(&mut bench);
-    for play in [Play::Start(own), Play::Step(own), Play::Resume, Play::End] {
+    for play in [
+        Play::Start(EntryId::Sequence(own)),
+        Play::Step(own),
+        Play::Resume,
+        Play::End,
+    ] {
         bench.act(Action::Play(play));
     }
     bench.act(Action::Recall(a));
@@ -131,7 +138,7 @@ async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
     for (break_off, want) in ways {
         let mut bench = Bench::armed().await;
         let (_, own) = library(&mut bench);
-        bench.act(Action::Play(Play::Start(own)));
+        bench.act(Action::Play(Play::Start(EntryId::Sequence(own))));
         bench.run(200).await;
         assert!(bench.hand().sequence.as_ref().unwrap().is_running());
         break_off(&mut bench);
@@ -159,5 +166,136 @@ async fn a_dry_run_sends_nothing_even_while_armed() {
     assert!(bench.state().poses.preview.is_some());
     bench.run(5000).await;
     bench.act(Action::DryRun(None));
+    assert_eq!(bench.addresses(), [0_u16; 0]);
+}
+
+fn shipped(name: &str) -> PoseId {
+    starter().pose_named(name).unwrap().id
+}
+
+/// Where the joints were told to go, one entry a write of angles: joints that were left alone are -1.
+fn angles_told(bench: &Bench) -> Vec<[i16; 6]> {
+    let written = bench.written();
+    let angles = written
+        .iter()
+        .filter(|one| (ANGLE_SET..ANGLE_SET + 12).contains(&one.address));
+    let mut told: Vec<[i16; 6]> = Vec::new();
+    for one in angles {
+        let first = usize::from((one.address - ANGLE_SET) / 2);
+        let mut all = [-1; 6];
+        for (at, value) in shorts(one).into_iter().enumerate() {
+            all[first + at] = value;
+        }
+        if told.last() != Some(&all) {
+            told.push(all);
+        }
+    }
+    told
+}
+
+#[tokio::test(start_paused = true)]
+async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_bends_last() {
+    let mut bench = Bench::armed().await;
+    bench.act(Action::Recall(shipped("Pinch")));
+    bench.run(6000).await;
+    assert!(
+        bench.hand().sequence.is_none(),
+        "straight from the open hand"
+    );
+    bench.forget();
+    bench.act(Action::Recall(shipped("Fist")));
+    bench.run(400).await;
+    let run = bench.hand().sequence.as_ref().unwrap();
+    assert!(run.is_running() && run.entry == EntryId::Pose(shipped("Fist")));
+    bench.run(8000).await;
+    assert_eq!(phase(&bench), Some(PlayPhase::Ended(PlayEnd::Finished)));
+    let told = angles_told(&bench);
+    assert_eq!(
+        told,
+        [
+            [-1, -1, -1, -1, 800, -1],
+            [0, 0, 0, 0, -1, 200],
+            [-1, -1, -1, -1, 600, -1],
+        ]
+    );
+    assert!((bench.angle(Dof::ThumbBend) - 600).abs() <= 20);
+    bench.forget();
+    bench.act(Action::Recall(shipped("Pinch")));
+    bench.run(300).await;
+    bench.act(Action::Stop);
+    bench.run(300).await;
+    bench.forget();
+    bench.run(8000).await;
+    assert!(angles_told(&bench).is_empty(), "nothing after a stop");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_touched_finger_bends_and_goes_back_once_it_is_let_go() {
+    let mut bench = Bench::armed().await;
+    let reaction = EntryId::Reaction(starter().reactions[0].id);
+    bench
+        .hand
+        .with(|hand, _| hand.set_object(&handscope::sim::object::Object::none()));
+    bench.act(Action::Play(Play::Start(reaction)));
+    bench.run(4000).await;
+    let rest = bench.angle(Dof::Middle);
+    assert!((rest - 740).abs() <= 20, "{rest}");
+    bench.forget();
+    bench.run(3000).await;
+    assert!(angles_told(&bench).is_empty(), "nobody touches it");
+    bench
+        .hand
+        .with(|hand, _| hand.press_tip(Finger::Middle, 200.0));
+    bench.run(2500).await;
+    assert_eq!(angles_told(&bench), [[-1, -1, 250, -1, -1, -1]]);
+    assert!((bench.angle(Dof::Middle) - 250).abs() <= 20);
+    bench
+        .hand
+        .with(|hand, _| hand.press_tip(Finger::Middle, 0.0));
+    bench.run(3000).await;
+    assert!((bench.angle(Dof::Middle) - 740).abs() <= 20);
+    assert!(bench.hand().sequence.as_ref().unwrap().is_running());
+    bench.act(Action::Stop);
+    bench.run(500).await;
+    bench.forget();
+    bench
+        .hand
+        .with(|hand, _| hand.press_tip(Finger::Middle, 200.0));
+    bench.run(3000).await;
+    assert!(angles_told(&bench).is_empty(), "stopped");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_copy_of_what_is_shipped_wins_and_deleting_it_brings_the_shipped_one_back() {
+    let mut bench = Bench::live().await;
+    let ready = |bench: &Bench| {
+        let state = bench.state();
+        let all = state.poses.ready(&state.settings.hidden_poses);
+        let named = |id| state.poses.named(id).unwrap().text.to_owned();
+        all.into_iter()
+            .map(|id| (named(id), id))
+            .collect::<Vec<_>>()
+    };
+    let count = ready(&bench).len();
+    let fist = EntryId::Pose(shipped("Fist"));
+    assert!(ready(&bench).contains(&("Fist".into(), fist)));
+    bench.act(Action::Library(LibraryEdit::Copy(fist)));
+    let own = bench.state().poses.newest.unwrap();
+    assert_eq!(ready(&bench)[0], ("Fist".into(), EntryId::Pose(own)));
+    assert_eq!(ready(&bench).len(), count, "it stands in the other's place");
+    bench.act(Action::Library(LibraryEdit::Pose(own, PoseEdit::Delete)));
+    assert!(ready(&bench).contains(&("Fist".into(), fist)));
+    bench.act(Action::Library(LibraryEdit::Pose(
+        shipped("Fist"),
+        PoseEdit::Delete,
+    )));
+    bench.act(Action::HideShipped("Fist".into(), true));
+    assert_eq!(ready(&bench).len(), count - 1);
+    bench.act(Action::HideShipped("Fist".into(), false));
+    assert_eq!(ready(&bench).len(), count, "never lost");
+    let wave = EntryId::Sequence(starter().sequences[1].id);
+    bench.act(Action::Library(LibraryEdit::Copy(wave)));
+    let copied = &bench.state().poses.library;
+    assert_eq!((copied.sequences.len(), copied.poses.len()), (1, 5));
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use handscope::hand::kinematics::{Segment, SegmentFrames, Side};
 use handscope::hand::{Angle, Dof, PerDof};
 use handscope::poses::library::LibraryPose;
-use handscope::poses::starter::{DEMO, starter};
+use handscope::poses::starter::starter;
 use handscope::poses::way::{Targets, way};
 use std::collections::BTreeSet;
 
@@ -183,7 +183,7 @@ fn the_shipped_library_is_gentle_named_in_both_languages_and_has_a_key_each() {
             "{pose:?}"
         );
         assert!(!pose.name_zh.is_empty());
-        let is_demo = pose.tags.iter().any(|tag| tag == DEMO);
+        let is_demo = pose.is_for_demos();
         assert_eq!(pose.key.is_none(), is_demo, "{}", pose.name);
         assert!(pose.key.is_none_or(|key| keys.insert(key)), "{}", pose.name);
     }

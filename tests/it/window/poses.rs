@@ -1,10 +1,13 @@
 //! Claims about poses: kept, taken, played, read from files; and that none of it moves a hand unasked.
 
 use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, Role, SPEED_SET, Write};
-use egui::Key;
+use egui::{Key, Modifiers};
+use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
+use handscope::app::settings::Language;
 use handscope::hand::Dof;
 use handscope::poses::player::{PlayEnd, PlayPhase};
+use handscope::ui::View;
 
 const LEAVE: i16 = -1;
 
@@ -56,7 +59,7 @@ fn phase(bench: &Bench) -> PlayPhase {
 fn a_captured_pose_is_renamed_and_taken_with_speed_and_force_first() {
     let mut bench = Bench::live();
     open(&mut bench);
-    assert!(bench.shows("No poses yet"));
+    assert!(bench.shows("No poses of your own yet"));
     pose(&mut bench, 500);
     let before = bench.writes().len();
     bench.click("Save the pose the hand has now");
@@ -381,4 +384,78 @@ fn names_that_nobody_typed_are_chinese_in_a_chinese_window() {
     let library = &bench.state().poses.library;
     assert_eq!(library.poses[0].name, "姿态");
     assert_eq!(library.sequences[0].name, "序列");
+}
+
+#[test]
+fn shipped_poses_are_on_live_with_a_key_each_and_a_press_without_arming_says_what_to_do() {
+    let mut bench = Bench::live();
+    bench.click_within_one_frame("Go to Thumbs up");
+    bench.run(60);
+    let told = bench.texts_with("Arm");
+    assert!(!told.is_empty(), "{:?}", bench.texts());
+    bench.key_with(Modifiers::SHIFT, Key::U);
+    bench.run(300);
+    assert!(bench.writes().is_empty(), "not armed");
+    bench.click("Arm the hand");
+    bench.run(300);
+    let before = bench.writes().len();
+    bench.click("Go to Thumbs up");
+    bench.run(300);
+    let told = |bench: &Bench| {
+        let writes = bench.writes();
+        let angles = writes.iter().filter(|write| write.address == ANGLE_SET);
+        angles.last().map(Write::shorts)
+    };
+    assert!(bench.writes().len() > before);
+    assert_eq!(told(&bench), Some(vec![0, 0, 0, 0, 1000, 1000]));
+    bench.key_with(Modifiers::SHIFT, Key::R);
+    bench.run(300);
+    assert_eq!(told(&bench), Some(vec![1000, 0, 0, 1000, 350, 100]));
+}
+
+#[test]
+fn a_demo_starts_from_live_and_is_ended_in_every_view() {
+    let mut bench = Bench::armed();
+    bench.click("Start Wave");
+    bench.run(500);
+    for view in [View::Faults, View::Touch, View::Live] {
+        bench.show(view);
+        bench.run(60);
+        assert!(!bench.texts_with("Sequence Wave").is_empty(), "{view:?}");
+    }
+    bench.show(View::Touch);
+    bench.run(60);
+    bench.click_button("End");
+    bench.run(300);
+    assert_eq!(phase(&bench), PlayPhase::Ended(PlayEnd::Person));
+    bench.show(View::Live);
+    bench.run(60);
+    bench.click("Start Wave");
+    bench.run(500);
+    bench.click("End Wave");
+    bench.run(300);
+    assert_eq!(phase(&bench), PlayPhase::Ended(PlayEnd::Person));
+}
+
+#[test]
+fn what_is_shipped_is_hidden_shown_and_copied_and_has_a_chinese_name() {
+    let mut bench = Bench::live();
+    assert!(!bench.buttons_with("Go to Fist").is_empty());
+    open(&mut bench);
+    bench.click("Starter library");
+    bench.run(60);
+    bench.click("Hide Fist");
+    bench.run(60);
+    bench.click("Copy V");
+    bench.run(60);
+    bench.show(View::Live);
+    bench.run(60);
+    assert!(bench.buttons_with("Go to Fist").is_empty());
+    assert_eq!(bench.buttons_with("Go to V").len(), 1);
+    bench.act(Action::Language(Language::Zh));
+    bench.run(60);
+    assert_eq!(bench.buttons_with("点赞").len(), 1);
+    bench.act(Action::HideShipped("Fist".into(), false));
+    bench.run(60);
+    assert_eq!(bench.buttons_with("握拳").len(), 1);
 }

@@ -1,0 +1,87 @@
+//! Which fingertips are touched, as a reaction takes it. Reads no clock and sends nothing.
+
+use crate::hand::{Finger, Moment, PerFinger};
+use crate::poses::library::TouchForce;
+use std::time::Duration;
+
+/// A fingertip counts as let go once it was for this long: a hand that trembles does not make the finger tremble.
+const LET_GO_FOR: Duration = Duration::from_millis(300);
+/// A fingertip counts as let go below this share of the threshold.
+const LET_GO_SHARE: f32 = 0.5;
+
+/// Which fingertips are touched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TouchWatch {
+    threshold: TouchForce,
+    tips: PerFinger<TipWatch>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct TipWatch {
+    /// What it feels while nobody touches it: the least since the start, newtons.
+    zero: Option<f32>,
+    is_touched: bool,
+    below_since: Option<Moment>,
+}
+
+impl TouchWatch {
+    /// Nothing is touched yet; the first reading of a fingertip is its zero.
+    #[must_use]
+    pub fn new(threshold: TouchForce) -> Self {
+        Self {
+            threshold,
+            tips: PerFinger::from_fn(|_| TipWatch::default()),
+        }
+    }
+
+    /// Takes in the normal force of a fingertip in newtons. Says so if it is touched or let go with that: `Some(true)` for touched.
+    pub fn take(&mut self, finger: Finger, newtons: f32, now: Moment) -> Option<bool> {
+        let tip = &mut self.tips[finger];
+        if !newtons.is_finite() {
+            return None;
+        }
+        let zero = tip.zero.map_or(newtons, |zero| zero.min(newtons));
+        tip.zero = Some(zero);
+        let felt = newtons - zero;
+        if felt >= self.threshold.newtons() {
+            tip.below_since = None;
+            return (!std::mem::replace(&mut tip.is_touched, true)).then_some(true);
+        }
+        if !tip.is_touched || felt >= self.threshold.newtons() * LET_GO_SHARE {
+            tip.below_since = None;
+            return None;
+        }
+        let since = *tip.below_since.get_or_insert(now);
+        if now.since(since) < LET_GO_FOR {
+            return None;
+        }
+        tip.is_touched = false;
+        Some(false)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+
+    #[test]
+    fn a_touch_counts_from_what_the_tip_felt_at_first_and_ends_after_a_while() {
+        let mut watch = TouchWatch::new(TouchForce::try_from(0.5).unwrap());
+        let mut take =
+            |ms: u64, newtons| watch.take(Finger::Index, newtons, Moment::from_micros(ms * 1000));
+        assert_eq!(take(0, 2.0), None, "its zero, whatever it is");
+        assert_eq!(take(20, 2.4), None);
+        assert_eq!(take(40, f32::NAN), None);
+        assert_eq!(take(60, 2.5), Some(true));
+        assert_eq!(take(80, 9.0), None, "once");
+        assert_eq!(take(100, 2.3), None, "not let go");
+        assert_eq!(take(120, 2.1), None);
+        assert_eq!(take(300, 2.6), None, "touched again meanwhile");
+        assert_eq!(take(320, 2.0), None);
+        assert_eq!(take(619, 2.0), None);
+        assert_eq!(take(620, 2.0), Some(false));
+        assert_eq!(take(640, 1.0), None, "it was touched at the start");
+        assert_eq!(take(660, 1.5), Some(true));
+    }
+}
