@@ -11,11 +11,13 @@ use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight};
 use crate::ui::text::{Text, main, panels, poses};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{CollapsingHeader, Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
+use egui::{Id, Popup, PopupCloseBehavior, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
 
 /// An entry in the overview, and in a low strip: a finger's breadth.
 const TILE: egui::Vec2 = vec2(92.0, 100.0);
-const LOW_TILE: egui::Vec2 = vec2(116.0, 38.0);
+const LOW_TILE: egui::Vec2 = vec2(148.0, 38.0);
+/// Width of the drawer of gestures.
+const DRAWER: f32 = 460.0;
 /// Height of a tile's name.
 const NAME_HEIGHT: f32 = 20.0;
 
@@ -93,31 +95,38 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
             let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
+            gestures_ui(ui, pane);
         });
+        let size = match ui.available_height() < TILE.y {
+            true => LOW_TILE,
+            false => TILE,
+        };
         let area = ScrollArea::vertical().auto_shrink(false);
         area.id_salt("strip").show(ui, |ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
             ui.spacing_mut().interact_size.y = theme::CONTROL_LARGE;
-            let size = match ui.available_height() < TILE.y {
-                true => LOW_TILE,
-                false => TILE,
-            };
             ui.horizontal_wrapped(|ui| strip_tiles_ui(ui, pane, size));
         });
     });
 }
 
 fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, size: egui::Vec2) {
-    let (look, state) = (pane.look, pane.state);
+    let state = pane.state;
     for entry in state.poses.ready(&state.settings.hidden_poses) {
         entry_tile_ui(ui, pane, entry, size);
     }
-    ui.end_row();
-    let drawer = CollapsingHeader::new(look.say(poses::STRIP_GESTURES)).id_salt("gestures");
-    drawer.show(ui, |ui| {
+}
+
+/// The gestures in the hand, in a drawer behind a button: those that a person named first.
+fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let button = Button::said(look, poses::STRIP_GESTURES).ui(ui, look);
+    let drawer = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    drawer.width(DRAWER).show(|ui| {
         ui.horizontal_wrapped(|ui| {
-            let (named, others): (Vec<Gesture>, Vec<Gesture>) =
-                Gesture::all().partition(|gesture| state.settings.gesture_name(*gesture).is_some());
+            ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
+            let is_named = |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
+            let (named, others): (Vec<Gesture>, Vec<Gesture>) = Gesture::all().partition(is_named);
             for gesture in named.into_iter().chain(others) {
                 gesture_ui(ui, pane, gesture);
             }

@@ -120,6 +120,7 @@ async fn settings_are_kept_and_setpoints_never() {
             "angle_unit",
             "gesture_names",
             "gesture_route",
+            "hidden_poses",
             "language",
             "layout",
             "plot_window",

@@ -214,11 +214,11 @@ async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_b
         told,
         [
             [-1, -1, -1, -1, 800, -1],
-            [0, 0, 0, 0, -1, 200],
-            [-1, -1, -1, -1, 600, -1],
+            [0, 0, 0, 0, -1, 300],
+            [-1, -1, -1, -1, 580, -1],
         ]
     );
-    assert!((bench.angle(Dof::ThumbBend) - 600).abs() <= 20);
+    assert!((bench.angle(Dof::ThumbBend) - 580).abs() <= 20);
     bench.forget();
     bench.act(Action::Recall(shipped("Pinch")));
     bench.run(300).await;

@@ -95,9 +95,16 @@ fn escape_stops_while_typing_and_space_types() {
     assert_eq!(actions(&mut harness), [Action::Stop]);
 }
 
+/// Opens the drawer of gestures on Live.
+fn open_gestures(harness: &mut Harness<'_, Shown>) {
+    harness.get_by_label("Gestures").click();
+    harness.run_steps(4);
+}
+
 #[test]
 fn every_control_has_its_name() {
-    let harness = open(states::armed());
+    let mut harness = open(states::armed());
+    open_gestures(&mut harness);
     for joint in [
         "Little",
         "Ring",
@@ -144,7 +151,8 @@ fn angles_can_be_moved_only_while_armed_and_not_locked() {
         states::faulted(),
         states::lost(),
     ] {
-        let harness = open(state);
+        let mut harness = open(state);
+        open_gestures(&mut harness);
         for name in [
             "Index angle target",
             "Index angle number",
@@ -364,11 +372,12 @@ fn arming_and_disarming_is_one_press() {
 #[test]
 fn gestures_start_by_number_and_take_names() {
     let mut harness = open(states::armed());
+    open_gestures(&mut harness);
     harness.get_by_label("Gesture 7").click();
     let seven = Gesture::nearest(7);
     assert_eq!(actions(&mut harness), [Action::Gesture(seven)]);
     let mut harness = open_at(states::armed(), View::Poses, LARGE);
-    harness.get_by_label("Stored in the hand").click();
+    harness.get_by_label("In the hand").click();
     harness.run_steps(2);
     harness.get_by_label("Gesture 40");
     assert!(harness.query_by_label("Gesture route").is_none());

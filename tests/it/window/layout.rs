@@ -65,7 +65,7 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
         check(&bench, size, "STOP", &format!("{size} armed"));
         bench.click_first_button("Poses");
         bench.run(60);
-        bench.click("Stored in the hand");
+        bench.click("In the hand");
         bench.run(60);
         bench.click("Name gestures");
         bench.run(60);

@@ -425,7 +425,8 @@ fn a_demo_starts_from_live_and_is_ended_in_every_view() {
     }
     bench.show(View::Touch);
     bench.run(60);
-    bench.click_button("End");
+    let end = bench.buttons_with("End: Sequence Wave");
+    bench.click(&end[0]);
     bench.run(300);
     assert_eq!(phase(&bench), PlayPhase::Ended(PlayEnd::Person));
     bench.show(View::Live);
@@ -442,7 +443,7 @@ fn what_is_shipped_is_hidden_shown_and_copied_and_has_a_chinese_name() {
     let mut bench = Bench::live();
     assert!(!bench.buttons_with("Go to Fist").is_empty());
     open(&mut bench);
-    bench.click("Starter library");
+    bench.click("Built in");
     bench.run(60);
     bench.click("Hide Fist");
     bench.run(60);
