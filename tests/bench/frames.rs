@@ -2,7 +2,7 @@
 //! a plain drawing of the same lines.
 
 use crate::clock::Sorted;
-use crate::cycles::Server;
+use crate::cycles::{Server, count};
 use crate::plain;
 use crate::report::{Aim, Failure, Report};
 use crate::scene::{Scene, Time};
@@ -22,6 +22,8 @@ const AIM_MS: f64 = 2.5;
 const AIM_SLOW_MS: f64 = 4.0;
 /// A dead link may cost no more than this, as a part of what a live one costs.
 const AIM_DEAD: f64 = 1.1;
+/// The same while the hand is recorded.
+const AIM_RECORDED: f64 = 1.05;
 /// Until a link that is gone is known to be gone.
 const DEAD_AFTER: Duration = Duration::from_secs(3);
 /// Growth that is still none: what one figure differs from the next anyway.
@@ -50,7 +52,43 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     views(report, &mut scene)?;
     growth(report, young, old)?;
     beside(report, scene.state(), old)?;
+    recorded(report)?;
     dead(report)
+}
+
+/// What frames cost and how fast the link is while the hand is recorded, to the same without; in real time.
+fn recorded(report: &mut Report) -> Result<(), Failure> {
+    let server = Server::tcp()?;
+    let folder = tempfile::tempdir()?;
+    let mut plain = Scene::open(Time::Real, server.endpoint.clone())?;
+    let [without, without_rate] = frames_and_rate(&mut plain)?;
+    drop(plain);
+    let mut scene = Scene::recorded(server.endpoint.clone(), folder.path())?;
+    let [with, with_rate] = frames_and_rate(&mut scene)?;
+    if scene.state().hand().recording.is_none() {
+        return Err("the hand is not recorded".into());
+    }
+    let what = "while recording to not: window frame, 99 of 100";
+    report.row(what, with / without, "times", Aim::AtMost(AIM_RECORDED))?;
+    let what = "  readings a second";
+    let least = Aim::AtLeast(2.0 - AIM_RECORDED);
+    report.row(what, with_rate / without_rate, "times", least)
+}
+
+/// The slow frames in milliseconds, and readings a second.
+fn frames_and_rate(scene: &mut Scene) -> Result<[f64; 2], Failure> {
+    scene.run(Duration::from_secs(10));
+    let reads = |scene: &Scene| {
+        let stats = &scene.state().hand().stats;
+        count(stats.state_reads + stats.tactile_reads)
+    };
+    let (before, begun) = (reads(scene), scene.state().now);
+    let [whole, ..] = measure(scene);
+    let took = scene.state().now.since(begun).as_secs_f64();
+    if !scene.state().hand().link.state.is_live() {
+        return Err("the served hand does not become live".into());
+    }
+    Ok([whole.percentile(99), (reads(scene) - before) / took])
 }
 
 /// The same lines in egui_plot, and the whole window as a part of that.

@@ -17,6 +17,7 @@ use handscope::shell::Cockpit;
 use handscope::shell::raster::Raster;
 use handscope::transport::Endpoint;
 use handscope::ui::View;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
@@ -57,6 +58,15 @@ impl Scene {
 
     /// Starts the program with a hand.
     pub(crate) fn open(time: Time, hand: Endpoint) -> Result<Self, Failure> {
+        Self::begin(time, hand, None)
+    }
+
+    /// Starts the program with a hand that is recorded in this folder.
+    pub(crate) fn recorded(hand: Endpoint, folder: &Path) -> Result<Self, Failure> {
+        Self::begin(Time::Real, hand, Some(folder.to_owned()))
+    }
+
+    fn begin(time: Time, hand: Endpoint, documents: Option<PathBuf>) -> Result<Self, Failure> {
         let news = Arc::new(Notify::new());
         let wakes = Arc::clone(&news);
         let runtime = match time {
@@ -78,7 +88,7 @@ impl Scene {
             wake: Arc::new(move || wakes.notify_one()),
             files: Arc::new(NoChoice),
             settings_path: None,
-            documents: None,
+            documents,
         };
         let mut app = App::new(env, Settings::default());
         app.open(Some(hand), clock.now());
