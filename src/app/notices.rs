@@ -175,6 +175,13 @@ pub enum NoticeKind {
         /// The system's words.
         message: String,
     },
+    /// A file could not be shown in the system's file manager.
+    NotRevealed {
+        /// The file.
+        path: PathBuf,
+        /// The system's words.
+        message: String,
+    },
     /// No place was chosen for a file: the dialog was cancelled, or this desktop has none.
     NoFileChosen,
     /// The hand at this address answers otherwise than the one of last time: it may be another.

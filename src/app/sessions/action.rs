@@ -10,12 +10,18 @@ pub enum SessionAction {
     Record(bool),
     /// Record built-in hands, too, or no longer.
     RecordSimulated(bool),
+    /// Record into this folder from the next recording on; without a path a person is asked for one.
+    ChooseFolder(Option<PathBuf>),
+    /// Record into the person's documents again.
+    DefaultFolder,
     /// Look again which sessions there are.
     Look,
     /// Replay this file: one of the list, or any other.
     Open(PathBuf),
     /// Go back to the live hand.
     Close,
+    /// Show where this file lies, in the system's file manager.
+    Reveal(PathBuf),
     /// Give a session a name; empty takes it away.
     Name(PathBuf, String),
     /// Give a session a star, or take it away.

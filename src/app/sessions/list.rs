@@ -18,6 +18,8 @@ pub struct SessionsState {
     pub items: Arc<Vec<SessionItem>>,
     /// Where they lie; `None` = nowhere.
     pub folder: Option<PathBuf>,
+    /// No folder was chosen in a dialog: its path can be typed.
+    pub asks_folder: bool,
     /// They are being looked for.
     pub looks: bool,
     /// Files there that could not be read, and why.

@@ -4,6 +4,7 @@ pub mod about;
 pub mod action;
 pub mod beside;
 pub mod budget;
+pub(crate) mod folder;
 pub mod item;
 pub mod list;
 pub(crate) mod player;

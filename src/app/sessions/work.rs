@@ -2,10 +2,12 @@
 //! thread.
 
 use crate::app::env::Env;
+use crate::app::files::reveal::reveal;
 use crate::app::notices::NoticeKind;
 use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::action::SessionAction;
 use crate::app::sessions::budget::to_delete;
+use crate::app::sessions::folder;
 use crate::app::sessions::item::SessionItem;
 use crate::app::sessions::list::{self, Looked};
 use crate::app::sessions::player::{self, Opened, SessionPlayer};
@@ -24,6 +26,8 @@ pub(crate) struct SessionWork {
     opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
     looking: Option<BackgroundJob<Looked>>,
     look_again: bool,
+    choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
+    revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
     /// What is to be written or deleted, one after the other: of two words about a session the later must be the last in its file.
     to_write: VecDeque<FileWork>,
     writing: Option<Written>,
@@ -54,6 +58,15 @@ impl SessionWork {
         if std::mem::take(&mut self.look_again) && self.looking.is_none() {
             self.look(state, env);
         }
+        self.take_opened(state);
+        self.take_folder(state);
+        self.go_on_writing(state, env);
+        if let Some(player) = &mut self.player {
+            player.tick(state, env);
+        }
+    }
+
+    fn take_opened(&mut self, state: &mut State) {
         match BackgroundJob::take_from(&mut self.opening) {
             Some(Ok(_)) if is_busy(state) => {
                 state.notices.push(state.now, NoticeKind::NotReplayedNow);
@@ -62,6 +75,30 @@ impl SessionWork {
             Some(Err(refused)) => state.notices.push(state.now, refused),
             None => {}
         }
+    }
+
+    fn take_folder(&mut self, state: &mut State) {
+        match BackgroundJob::take_from(&mut self.choosing_folder) {
+            Some(Ok(folder)) => self.record_into(Some(folder), state),
+            Some(Err(why)) => {
+                state.sessions.asks_folder = true;
+                state.notices.push(state.now, why);
+            }
+            None => {}
+        }
+        if let Some(Err(why)) = BackgroundJob::take_from(&mut self.revealing) {
+            state.notices.push(state.now, why);
+        }
+    }
+
+    /// From the next recording on; the sessions of that folder are listed at once.
+    fn record_into(&mut self, folder: Option<PathBuf>, state: &mut State) {
+        state.settings.sessions.folder = folder;
+        (state.sessions.asks_folder, self.look_again) = (false, true);
+    }
+
+    /// One file after the other.
+    fn go_on_writing(&mut self, state: &mut State, env: &Env) {
         match BackgroundJob::take_from(&mut self.writing) {
             Some(Ok(deleted)) => {
                 self.look_again = true;
@@ -84,9 +121,6 @@ impl SessionWork {
                 FileWork::Delete(paths) => delete(paths, env),
             });
         }
-        if let Some(player) = &mut self.player {
-            player.tick(state, env);
-        }
     }
 
     /// True once everything that a person said of sessions is in its file.
@@ -102,6 +136,11 @@ impl SessionWork {
                 state.settings.sessions.record_simulated = on;
                 state.settings.sessions.record |= on;
             }
+            SessionAction::ChooseFolder(typed) if self.choosing_folder.is_none() => {
+                self.choosing_folder = Some(folder::choose(typed, env));
+            }
+            SessionAction::DefaultFolder => self.record_into(None, state),
+            SessionAction::Reveal(path) => self.revealing = Some(reveal(path, env)),
             SessionAction::Look => self.look(state, env),
             SessionAction::Open(path) => self.opening = Some(player::open(path, env)),
             SessionAction::Close => (self.player, self.look_again) = (None, true),

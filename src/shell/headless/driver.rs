@@ -5,6 +5,7 @@ use crate::app::action::Action;
 use crate::app::connect::SimDial;
 use crate::app::env::Env;
 use crate::app::files::choose::NoChoice;
+use crate::app::files::reveal::no_reveal;
 use crate::app::params::action::ParamAction;
 use crate::app::program::App;
 use crate::app::settings::Settings;
@@ -138,6 +139,7 @@ impl Driver {
             dial: Arc::new(dial),
             wake: Arc::new(|| ()),
             files: Arc::new(NoChoice),
+            reveal: no_reveal(),
             settings_path,
             documents: None,
         };

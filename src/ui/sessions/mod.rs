@@ -7,7 +7,7 @@ pub(crate) mod table;
 use crate::app::action::Action;
 use crate::app::sessions::{SessionAction, SessionItem};
 use crate::app::state::State;
-use crate::ui::kit::path_field::path_ui;
+use crate::ui::kit::path_field::{folder_path_ui, path_ui};
 use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane};
 use crate::ui::text::sessions;
 use egui::Ui;
@@ -35,6 +35,7 @@ impl SessionsView {
                 let open = SessionAction::Open(path);
                 pane.actions.push(Action::Session(open));
             }
+            folder_ui(ui, pane);
             foot_ui(ui, pane);
             self.list_ui(ui, pane);
         });
@@ -89,6 +90,38 @@ impl SessionsView {
     }
 }
 
+/// Where sessions lie, and what changes that.
+fn folder_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    ui.horizontal(|ui| {
+        kit::right_ui(ui, |ui| {
+            let is_default = pane.state.settings.sessions.folder.is_none();
+            let default = Button::said(look, sessions::FOLDER_DEFAULT);
+            let default = default.disabled_if(is_default, look.say(sessions::FOLDER_IS_DEFAULT));
+            let action = Action::Session(SessionAction::DefaultFolder);
+            default.sends(ui, pane, action);
+            let change = Button::said(look, sessions::FOLDER_CHANGE);
+            let action = Action::Session(SessionAction::ChooseFolder(None));
+            change.sends(ui, pane, action);
+            kit::left_ui(ui, |ui| {
+                Label::muted(look, sessions::FOLDER).ui(ui);
+                let folder = pane.state.sessions.folder.as_ref();
+                let folder = folder.map(|folder| folder.display().to_string());
+                let folder = folder.unwrap_or_else(|| "-".into());
+                let label = Label::new(&folder, look.palette.text);
+                let label = label.named(look.say(sessions::FOLDER)).ui(ui);
+                label.on_hover_text(look.tip(sessions::FOLDER));
+            });
+        });
+    });
+    if pane.state.sessions.asks_folder
+        && let Some(path) = folder_path_ui(ui, look)
+    {
+        let choose = SessionAction::ChooseFolder(Some(path));
+        pane.actions.push(Action::Session(choose));
+    }
+}
+
 /// How much room the sessions need, and what can go.
 fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
@@ -102,10 +135,7 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.horizontal_wrapped(|ui| {
         let parts: [&dyn std::fmt::Display; 3] = [&state.items.len(), &used, &budget];
         let total = look.fill(sessions::TOTAL, &parts);
-        let folder = state.folder.as_ref();
-        let folder = folder.map(|folder| folder.display().to_string());
-        let label = Label::new(&total, look.palette.muted).small().ui(ui);
-        label.on_hover_text(folder.unwrap_or_default());
+        Label::new(&total, look.palette.muted).small().ui(ui);
         if !state.unread.is_empty() {
             let words = look.fill(sessions::UNREAD, &[&state.unread.len()]);
             let why = state.unread.iter().take(8);

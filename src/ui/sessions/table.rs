@@ -178,7 +178,14 @@ fn ends_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
         }
         let reveal = ui.button(look.say(sessions::REVEAL));
         if reveal.on_hover_text(look.tip(sessions::REVEAL)).clicked() {
+            let reveal = SessionAction::Reveal(item.path.clone());
+            pane.actions.push(Action::Session(reveal));
+            ui.close();
+        }
+        let copy = ui.button(look.say(sessions::COPY_PATH));
+        if copy.on_hover_text(look.tip(sessions::COPY_PATH)).clicked() {
             ui.copy_text(item.path.display().to_string());
+            ui.close();
         }
         let delete = ui.button(look.say(sessions::DELETE));
         if delete.on_hover_text(look.tip(sessions::DELETE)).clicked() {

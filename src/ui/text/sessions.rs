@@ -8,6 +8,12 @@ texts! {
     FIND_NONE: "No session has these words.", "没有包含这些文字的会话。";
     NONE: "No session has been recorded yet. What a hand does is recorded here by itself; built-in hands only if you ask for it.", "还没有录制的会话。连接真实灵巧手后会自动录制；仿真手只在您要求时录制。";
     NOWHERE: "There is no folder to record into: this computer names no documents of yours.", "没有可供录制的文件夹：此计算机未提供您的文档目录。";
+    FOLDER: "Folder", "文件夹", "Where sessions are recorded. A recording that runs stays in its file; the next goes into a newly chosen folder.", "会话的录制位置。正在进行的录制保留在原文件中；下一次录制使用新文件夹。";
+    FOLDER_CHANGE: "Change ...", "更改……", "Chooses the folder for sessions.", "选择会话文件夹。";
+    FOLDER_DEFAULT: "Default", "默认", "Records into your documents again.", "恢复录制到您的文档目录。";
+    FOLDER_IS_DEFAULT: "This is the default folder.", "已是默认文件夹。";
+    FOLDER_PATH: "Path of the folder", "文件夹路径", "type the path of the folder here", "在此输入文件夹路径";
+    FOLDER_TAKE: "Record here", "录制到此处", "Records into the folder that was typed. Enter does the same.", "录制到所输入的文件夹。按回车作用相同。";
     LOOKS: "Looking for sessions ...", "正在查找会话……";
     OPEN_OTHER: "Another file", "其他文件", "Opens a recording by its path; it can also be dropped onto the window.", "按路径打开录制文件；也可将文件拖入窗口。";
 
@@ -24,7 +30,9 @@ texts! {
     REPLAY: "Replay", "回放", "Shows this session in the whole window. The hand stays connected behind it.", "在整个窗口中回放此会话。灵巧手在后台保持连接。";
     MORE: "More", "更多", "Rename, show in the folder, delete.", "重命名、打开所在文件夹、删除。";
     RENAME: "Name of the session", "会话名称", "a name of your own", "自定义名称";
-    REVEAL: "Copy path", "复制路径", "Copies where the file lies.", "复制文件所在位置。";
+    REVEAL: "Show in folder", "在文件夹中显示", "Shows the file in the system's file manager.", "在系统文件管理器中显示此文件。";
+    NOT_REVEALED: "The file manager did not start: {}. The file is {}", "无法启动文件管理器：{}。文件位于 {}";
+    COPY_PATH: "Copy path", "复制路径", "Copies where the file lies.", "复制文件所在位置。";
     DELETE: "Delete ...", "删除……", "Asks before anything is deleted.", "删除前会先询问。";
     DELETE_TITLE: "Delete this session?", "删除此会话？";
     DELETE_WHAT: "The recording of {} is lost for good.", "{} 的录制将永久丢失。";

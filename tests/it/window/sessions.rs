@@ -41,12 +41,7 @@ fn session(bench: &mut Bench, action: SessionAction) {
 
 /// Ends the recording, and gives its file.
 fn ended(bench: &mut Bench) -> PathBuf {
-    let path = |bench: &Bench| {
-        let recording = bench.state().hand().recording.as_ref()?;
-        recording.status.path.clone()
-    };
-    settle(bench, |bench| path(bench).is_some());
-    let path = path(bench).unwrap();
+    let path = recorded(bench);
     session(bench, SessionAction::Record(false));
     settle(bench, |_| {
         SessionItem::read(&path).is_ok_and(|item| item.closed)
@@ -389,7 +384,12 @@ fn nothing_of_the_live_window_is_changed_from_within_a_recording() {
     };
     let before = live(&mut bench);
     replay(&mut bench, path.clone());
-    assert!(bench.shows("Open hand"), "one's own poses are shown");
+    bench.run(60);
+    assert!(
+        bench.shows("Open hand"),
+        "one's own poses are shown: {:?}",
+        bench.texts()
+    );
     let mut plan = before.2.clone();
     plan.note = "changed".into();
     for action in [
@@ -437,4 +437,77 @@ fn a_note_does_not_undo_a_name_and_a_bad_file_of_words_is_kept() {
     let folder = std::fs::read_dir(about.parent().unwrap()).unwrap();
     let mut texts = folder.map(|file| std::fs::read(file.unwrap().path()).unwrap());
     assert!(texts.any(|text| text == b"name = "), "it was put aside");
+}
+
+/// The file that is being recorded, once there is one.
+fn recorded(bench: &mut Bench) -> PathBuf {
+    let path = |bench: &Bench| {
+        let recording = bench.state().hand().recording.as_ref()?;
+        recording.status.path.clone()
+    };
+    settle(bench, |bench| path(bench).is_some());
+    path(bench).unwrap()
+}
+
+#[test]
+fn a_folder_is_chosen_for_the_next_recording_and_the_running_one_stays() {
+    let mut bench = bench(Scenario::Idle);
+    let first = recorded(&mut bench);
+    let default = bench.folder().join("documents/Handscope");
+    assert!(first.starts_with(&default));
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| bench.state().sessions.looked > 0);
+    assert_eq!(bench.reading("Folder"), default.display().to_string());
+    assert!(bench.is_disabled(egui::accesskit::Role::Button, "Default"));
+    // In the place of a folder there is a file: it is told, and a path can be typed.
+    let no_folder = Some(first.join("sessions"));
+    session(&mut bench, SessionAction::ChooseFolder(no_folder));
+    settle(&mut bench, |bench| bench.shows("Path of the folder"));
+    assert!(!bench.texts_with("sessions").is_empty());
+    let typed = bench.folder().join("typed");
+    bench.type_into("Path of the folder", &typed.display().to_string());
+    bench.click_button("Record here");
+    settle(&mut bench, |bench| {
+        bench.reading("Folder") == typed.display().to_string()
+    });
+    assert!(!bench.shows("Path of the folder") && typed.is_dir());
+    assert_eq!(recorded(&mut bench), first);
+    ended(&mut bench);
+    session(&mut bench, SessionAction::Record(true));
+    assert!(recorded(&mut bench).starts_with(&typed));
+    let folder = bench.folder().to_owned();
+    bench.click_button("Change ...");
+    settle(&mut bench, |bench| {
+        bench.reading("Folder") == folder.display().to_string()
+    });
+    bench.click_button("Default");
+    settle(&mut bench, |bench| {
+        bench.reading("Folder") == default.display().to_string()
+    });
+}
+
+#[test]
+fn a_session_is_shown_in_the_file_manager_and_a_failure_is_told_with_its_path() {
+    let mut bench = bench(Scenario::Idle);
+    let path = ended(&mut bench);
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| !bench.state().sessions.items.is_empty());
+    let title = SessionItem::read(&path).unwrap().title();
+    bench.click(&format!("More: {title}"));
+    bench.run(100);
+    bench.click_button("Show in folder");
+    settle(&mut bench, |bench| !bench.revealed().is_empty());
+    assert_eq!(bench.revealed(), std::slice::from_ref(&path));
+    bench.click(&format!("More: {title}"));
+    bench.run(100);
+    let copied = bench.click_to_copy("Copy path");
+    assert_eq!(copied, Some(path.display().to_string()));
+    let gone = path.with_file_name("gone.mcap");
+    session(&mut bench, SessionAction::Reveal(gone.clone()));
+    settle(&mut bench, |bench| {
+        let told = bench.texts_with("The file manager did not start");
+        told.iter()
+            .any(|told| told.contains(&gone.display().to_string()))
+    });
+    assert_eq!(bench.revealed().len(), 1, "nothing was started");
 }

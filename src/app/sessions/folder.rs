@@ -1,0 +1,28 @@
+//! The folder that sessions go into: chosen by a person, and made if it is not there.
+
+use crate::app::env::Env;
+use crate::app::notices::NoticeKind;
+use crate::store::{BackgroundJob, on_thread};
+use std::future::ready;
+use std::path::PathBuf;
+
+/// The folder that was typed, else one that is asked for. It exists once it is there.
+pub(crate) fn choose(
+    typed: Option<PathBuf>,
+    env: &Env,
+) -> BackgroundJob<Result<PathBuf, NoticeKind>> {
+    let chosen = match typed {
+        Some(path) => Box::pin(ready(Some(path))),
+        None => env.files.folder(),
+    };
+    BackgroundJob::start(&env.runtime, &env.wake, async move {
+        let path = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
+        let place = path.clone();
+        let made = on_thread(move || {
+            let place = std::path::absolute(place)?;
+            std::fs::create_dir_all(&place).map(|()| place)
+        });
+        let made = made.await;
+        made.map_err(|error| NoticeKind::not_saved(path, &error))
+    })
+}
