@@ -32,8 +32,10 @@ pub enum SessionAction {
     Delete,
     /// Delete nothing.
     KeepIt,
-    /// Delete what the budget has no room for.
-    Tidy,
+    /// Delete what the budget has no room for, now.
+    MakeRoom,
+    /// Give a star to all that the budget has no room for.
+    KeepPlanned,
     /// Show this moment.
     Seek(Moment),
     /// Let time go on, or stop it.

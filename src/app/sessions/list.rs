@@ -1,6 +1,7 @@
 //! Which sessions there are. They are looked for off the window's thread, and what was read of a file that did not change is kept.
 
 use crate::app::env::Env;
+use crate::app::sessions::budget::{self, PlannedDeletion};
 use crate::app::sessions::item::SessionItem;
 use crate::store::{BackgroundJob, on_thread};
 use std::path::{Path, PathBuf};
@@ -26,8 +27,8 @@ pub struct SessionsState {
     pub unread: Arc<Vec<(PathBuf, String)>>,
     /// The session that is to be deleted, once a person agrees.
     pub to_delete: Option<PathBuf>,
-    /// What the budget has no room for.
-    pub beyond_budget: Vec<PathBuf>,
+    /// What the budget has no room for, the oldest first.
+    pub planned: Vec<PlannedDeletion>,
     /// Counts how often they were looked for.
     pub looked: u64,
 }
@@ -37,6 +38,8 @@ pub struct SessionsState {
 pub(crate) struct Looked {
     pub(crate) items: Vec<SessionItem>,
     pub(crate) unread: Vec<(PathBuf, String)>,
+    /// What was told before of sessions that are to make room.
+    pub(crate) told: Vec<PlannedDeletion>,
 }
 
 /// Looks for sessions in this folder and the folders of days in it.
@@ -50,6 +53,7 @@ pub(crate) fn look(
         found.unwrap_or(Looked {
             items: Vec::new(),
             unread: Vec::new(),
+            told: Vec::new(),
         })
     };
     BackgroundJob::start(&env.runtime, &env.wake, look)
@@ -81,7 +85,11 @@ fn find(folder: &Path, known: &[SessionItem]) -> Looked {
             |item: &SessionItem| item.opening.base_nanos / 1000 + item.opening.began.micros();
         began(two).cmp(&began(one))
     });
-    Looked { items, unread }
+    Looked {
+        items,
+        unread,
+        told: budget::load_told(folder),
+    }
 }
 
 /// The MCAP files in a folder and in the folders in it.

@@ -16,6 +16,7 @@ pub(crate) mod work;
 pub use crate::app::sessions::about::{SessionAbout, SessionNote};
 pub use crate::app::sessions::action::SessionAction;
 pub use crate::app::sessions::beside::BesideSession;
+pub use crate::app::sessions::budget::PlannedDeletion;
 pub use crate::app::sessions::item::SessionItem;
 pub use crate::app::sessions::list::SessionsState;
 pub use crate::app::sessions::timeline::Timeline;

@@ -8,7 +8,7 @@ use crate::app::action::Action;
 use crate::app::sessions::{SessionAction, SessionItem};
 use crate::app::state::State;
 use crate::ui::kit::path_field::{folder_path_ui, path_ui};
-use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane};
+use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, format};
 use crate::ui::text::sessions;
 use egui::Ui;
 
@@ -131,7 +131,7 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
     let bytes: u64 = state.items.iter().map(|item| item.bytes).sum();
     let budget = pane.state.settings.sessions.budget_gb;
-    let used = format!("{:.2}", table::giga(bytes));
+    let used = format!("{:.2}", format::giga(bytes));
     ui.horizontal_wrapped(|ui| {
         let parts: [&dyn std::fmt::Display; 3] = [&state.items.len(), &used, &budget];
         let total = look.fill(sessions::TOTAL, &parts);
@@ -144,14 +144,30 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             let label = Label::new(&words, look.palette.warn).small().ui(ui);
             label.on_hover_text(why.join("\n"));
         }
-        let going = state.beyond_budget.len();
-        if going > 0 {
-            let words = look.fill(sessions::BEYOND, &[&going]);
-            Label::new(&words, look.palette.warn).small().ui(ui);
-            let tidy = Button::said(look, sessions::TIDY);
-            tidy.sends(ui, pane, Action::Session(SessionAction::Tidy));
-        }
+        planned_ui(ui, pane);
     });
+}
+
+/// What goes to make room, and how that is kept from happening.
+fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (look, state) = (pane.look, &pane.state.sessions);
+    let Some(first) = state.planned.iter().min_by_key(|one| one.due_unix_s()) else {
+        return;
+    };
+    let bytes = state.planned.iter().map(|one| one.bytes).sum();
+    let parts: [&dyn std::fmt::Display; 3] = [
+        &state.planned.len(),
+        &format::megabytes(bytes),
+        &first.due(),
+    ];
+    let words = look.fill(sessions::BEYOND, &parts);
+    Label::new(&words, look.palette.warn).small().ui(ui);
+    for (text, action) in [
+        (sessions::ROOM_KEEP, SessionAction::KeepPlanned),
+        (sessions::ROOM_NOW, SessionAction::MakeRoom),
+    ] {
+        Button::said(look, text).sends(ui, pane, Action::Session(action));
+    }
 }
 
 /// The question before a session is deleted.

@@ -97,19 +97,25 @@ fn cell_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem, column: usize) 
             let notes = item.notes().len();
             count(ui, u64::try_from(notes).unwrap_or_default(), palette.text);
         }
-        8 => number(
-            ui,
-            &format!("{:.1} MB", giga(item.bytes) * 1000.0),
-            palette.muted,
-        ),
+        8 => size_ui(ui, pane, item),
         _ => ends_ui(ui, pane, item),
     }
 }
 
-/// Gigabytes.
-#[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
-pub(crate) fn giga(bytes: u64) -> f64 {
-    bytes as f64 / 1e9
+/// The size; told apart where it goes to make room.
+fn size_ui(ui: &mut Ui, pane: &Pane<'_>, item: &SessionItem) {
+    let look = pane.look;
+    let mut planned = pane.state.sessions.planned.iter();
+    let planned = planned.find(|planned| planned.path == item.path);
+    let color = match planned {
+        Some(_) => look.palette.warn,
+        None => look.palette.muted,
+    };
+    let size = format::megabytes(item.bytes);
+    let label = Label::new(&size, color).number().ui(ui);
+    if let Some(planned) = planned {
+        label.on_hover_text(look.fill(sessions::GOES, &[&planned.due()]));
+    }
 }
 
 fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {

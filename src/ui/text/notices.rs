@@ -175,6 +175,15 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::NotReplayedNow => look.say(sessions::NOT_NOW).to_owned(),
         NoticeKind::Recorded => look.say(sessions::IS_RECORDING).to_owned(),
+        NoticeKind::SessionsPlanned {
+            sessions: count,
+            bytes,
+            days: (first, last),
+            due,
+        } => {
+            let size = format::megabytes(*bytes);
+            look.fill(sessions::PLANNED, &[count, &size, first, last, due])
+        }
         NoticeKind::SessionsDeleted { sessions: count } => look.told(sessions::DELETED, count),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),

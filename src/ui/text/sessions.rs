@@ -43,8 +43,11 @@ texts! {
     SIMULATED: "simulated", "仿真";
     UNREAD: "{} files here cannot be read.", "此处有 {} 个文件无法读取。";
     TOTAL: "{} sessions, {} of {} GB", "{} 个会话，已用 {} GB，共 {} GB";
-    BEYOND: "They need more room than they may. The {} oldest without star, name or notes can go.", "占用空间超出限额。可删除最早的 {} 个没有星标、名称或备注的会话。";
-    TIDY: "Delete those", "删除这些会话", "Deletes the oldest sessions without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的会话，直到不超限额。";
+    PLANNED: "Recorded sessions need more room than they may. The {} oldest without star, name or notes ({}, recorded {} to {}) are deleted when a recording begins after {} UTC. The view Sessions shows them and keeps them if you like.", "录制的会话占用空间超出限额。最早的 {} 个没有星标、名称或备注的会话（{}，录制于 {} 至 {}）将在 {} UTC 之后开始录制时删除。可在“会话”视图中查看并保留。";
+    BEYOND: "More than fits: the {} oldest ({}) go when a recording begins after {} UTC.", "超出限额：最早的 {} 个会话（{}）将在 {} UTC 之后开始录制时删除。";
+    GOES: "Goes to make room, not before {} UTC. A star, a name or a note keeps it.", "为腾出空间将被删除，不早于 {} UTC。星标、名称或备注可将其保留。";
+    ROOM_NOW: "Delete now", "立即删除", "Deletes the oldest sessions without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的会话，直到不超限额。";
+    ROOM_KEEP: "Keep them", "全部保留", "Gives each of them a star, so that none is deleted by itself.", "为这些会话全部加星标，使其不会被自动删除。";
 
     RECORDING: "Recording", "录制中", "What the hand says and what it is told goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
     NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is told.", "按下开始录制灵巧手的反馈与指令。";

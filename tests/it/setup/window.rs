@@ -256,6 +256,13 @@ impl Bench {
         Self::begin(Room::new(config, settings, Keeps::Records), size)
     }
 
+    /// A start with settings, and everything kept in the folder of saved files.
+    pub(crate) fn kept_with(config: SimConfig, change: impl FnOnce(&mut Settings)) -> Self {
+        let mut settings = Settings::default();
+        change(&mut settings);
+        Self::begin(Room::new(config, settings, Keeps::Records), LARGE)
+    }
+
     /// A start with these settings; nothing is kept on disk.
     pub(crate) fn with(settings: Settings) -> Self {
         let room = Room::new(SimConfig::default(), settings, Keeps::Nothing);

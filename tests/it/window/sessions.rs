@@ -2,12 +2,12 @@
 
 use crate::setup::window::{Bench, LARGE};
 use handscope::app::action::Action;
-use handscope::app::sessions::{SessionAction, SessionItem};
+use handscope::app::sessions::{SessionAbout, SessionAction, SessionItem};
 use handscope::hand::Moment;
 use handscope::record::EventKind;
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 const HAND: &str = "tcp:127.0.0.1:6000?unit=1";
@@ -510,4 +510,85 @@ fn a_session_is_shown_in_the_file_manager_and_a_failure_is_told_with_its_path() 
             .any(|told| told.contains(&gone.display().to_string()))
     });
     assert_eq!(bench.revealed().len(), 1, "nothing was started");
+}
+
+/// Copies of a session in the folder of sessions: of five days, the oldest first.
+fn old_sessions(bench: &Bench, of: &Path) -> Vec<PathBuf> {
+    let folder = bench.folder().join("documents/Handscope/2020-01-01");
+    std::fs::create_dir_all(&folder).unwrap();
+    let paths = ["1", "2", "3"].map(|name| folder.join(format!("{name}.mcap")));
+    for path in &paths {
+        std::fs::copy(of, path).unwrap();
+    }
+    paths.into()
+}
+
+fn tell(bench: &Bench, path: &Path, told_unix_s: u64) {
+    let bytes = std::fs::metadata(path).unwrap().len();
+    let path = path.display();
+    let text =
+        format!("[[session]]\npath = '{path}'\nbytes = {bytes}\ntold_unix_s = {told_unix_s}\n");
+    let folder = bench.folder().join("documents/Handscope");
+    std::fs::write(folder.join("to-delete.toml"), text).unwrap();
+}
+
+#[test]
+fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begins() {
+    let config = SimConfig {
+        scenario: Scenario::Idle,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::kept_with(config, |settings| {
+        settings.endpoint = Some(HAND.into());
+        settings.sessions.budget_gb = 0.0;
+    });
+    bench.wait(2000);
+    let first = ended(&mut bench);
+    // Nobody may delete what somebody cares for.
+    let mut about = SessionAbout::load(&first).unwrap();
+    about.name = "first".into();
+    about.save(&first).unwrap();
+    // A session of some 20 MB: the least budget has no room for it.
+    let old = old_sessions(&bench, &first);
+    for path in &old {
+        let file = std::fs::OpenOptions::new().append(true).open(path).unwrap();
+        file.set_len(20_000_000).unwrap();
+    }
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| {
+        bench.state().sessions.planned.len() == 3
+    });
+    assert!(
+        !bench
+            .texts_with("Recorded sessions need more room")
+            .is_empty()
+    );
+    let told = bench.folder().join("documents/Handscope/to-delete.toml");
+    settle(&mut bench, |_| told.exists());
+    session(&mut bench, SessionAction::Record(true));
+    recorded(&mut bench);
+    bench.wait(1000);
+    assert!(old.iter().all(|path| path.exists()), "told just now");
+
+    // One of them was told long before, and one that was told has a star by now.
+    ended(&mut bench);
+    tell(&bench, &old[1], 1);
+    session(&mut bench, SessionAction::Record(true));
+    settle(&mut bench, |_| !old[1].exists());
+    assert!(old[0].exists() && old[2].exists() && first.exists());
+    assert!(!bench.texts_with("Sessions deleted").is_empty());
+    settle(&mut bench, |bench| {
+        bench.state().sessions.planned.len() == 2
+    });
+    bench.click_button("Keep them");
+    settle(&mut bench, |_| {
+        SessionItem::read(&old[2]).unwrap().about.star
+    });
+    session(&mut bench, SessionAction::Star(old[0].clone(), false));
+    settle(&mut bench, |bench| {
+        !bench.state().sessions.planned.is_empty()
+    });
+    bench.click_button("Delete now");
+    settle(&mut bench, |_| !old[0].exists());
+    assert!(old[2].exists() && first.exists());
 }
