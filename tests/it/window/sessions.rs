@@ -2,11 +2,18 @@
 
 use crate::setup::window::{Bench, LARGE};
 use handscope::app::action::Action;
+use handscope::app::sessions::recording::HandRecording;
 use handscope::app::sessions::{SessionAbout, SessionAction, SessionItem};
+use handscope::app::settings::Theme;
 use handscope::hand::Moment;
+use handscope::record::Entry;
 use handscope::record::EventKind;
+use handscope::record::Rest;
+use handscope::record::file::SessionFile;
+use handscope::record::file::reader::Stretch;
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -386,7 +393,7 @@ fn nothing_of_the_live_window_is_changed_from_within_a_recording() {
     replay(&mut bench, path.clone());
     bench.run(60);
     assert!(
-        bench.shows("Open hand"),
+        !bench.buttons_with("Open hand").is_empty(),
         "one's own poses are shown: {:?}",
         bench.texts()
     );
@@ -591,4 +598,75 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
     bench.click_button("Delete now");
     settle(&mut bench, |_| !old[0].exists());
     assert!(old[2].exists() && first.exists());
+}
+
+/// The words of all events of a kind, in order.
+fn events(path: &Path, kind: EventKind) -> Vec<String> {
+    let file = SessionFile::open(path).unwrap();
+    let mut words = Vec::new();
+    let all = Stretch {
+        from: file.first(),
+        to: file.last(),
+        wire: false,
+    };
+    let read = file.entries(all, |entry| {
+        if let Entry::Event(event) = entry
+            && event.kind == kind
+        {
+            words.push(event.words);
+        }
+        ControlFlow::Continue(())
+    });
+    read.unwrap();
+    words
+}
+
+#[test]
+fn a_recording_tells_what_the_hand_keeps_and_the_settings_though_nobody_looked() {
+    let mut bench = bench(Scenario::Idle);
+    bench.act(Action::Theme(Theme::Light));
+    bench.wait(1500);
+    let layout = handscope::app::layout::Layout {
+        window: [1300.0, 800.0].into(),
+        ..bench.state().settings.layout
+    };
+    bench.act(Action::Layout(layout));
+    bench.wait(1500);
+    assert_eq!(bench.writes(), [], "it was only read");
+    let path = ended(&mut bench);
+    let kept = events(&path, EventKind::Parameters);
+    assert_eq!(kept.len(), 1, "{kept:?}");
+    let file = handscope::params::file::read(&kept[0]).unwrap();
+    let all = handscope::params::rows::ParamId::all();
+    assert_eq!(file.params.iter().count(), all.len());
+    let settings = events(&path, EventKind::Settings);
+    let themes = settings.iter().map(|text| {
+        let table: toml::Table = text.parse().unwrap();
+        table["theme"].as_str().unwrap().to_owned()
+    });
+    assert_eq!(themes.collect::<Vec<_>>(), ["dark", "light"]);
+    assert!(
+        SessionItem::read(&path).unwrap().marks.is_empty(),
+        "no marks of the time line"
+    );
+}
+
+#[test]
+fn a_hand_that_moves_is_asked_for_what_it_keeps_only_once_it_rests() {
+    let config = SimConfig {
+        scenario: Scenario::Grasp,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::kept(config, HAND, LARGE);
+    let (mut moved, mut asked) = (false, false);
+    for _ in 0..400 {
+        let hand = bench.state().hand();
+        moved |= hand.link.rest == Rest::Moving;
+        let was_asked = asked;
+        asked = hand.recording.as_ref().is_some_and(HandRecording::is_asked);
+        assert!(was_asked || !asked || hand.link.rest == Rest::Resting);
+        bench.wait(20);
+    }
+    assert!(moved, "it is looked at while it moves, too");
+    assert_eq!(bench.writes(), []);
 }
