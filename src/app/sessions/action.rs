@@ -18,6 +18,8 @@ pub enum SessionAction {
     Look,
     /// Replay this file: one of the list, or any other.
     Open(PathBuf),
+    /// Replay this file from the first of two moments on, the stretch between them again and again.
+    OpenAt(PathBuf, (Moment, Moment)),
     /// Go back to the live hand.
     Close,
     /// Show where this file lies, in the system's file manager.

@@ -3,14 +3,37 @@
 use crate::app::env::Env;
 use crate::app::sessions::budget::{self, PlannedDeletion};
 use crate::app::sessions::item::SessionItem;
+use crate::hand::Moment;
 use crate::store::{BackgroundJob, on_thread};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Sessions that are listed: some for each working day of two years. Beyond, the oldest are not.
 pub const SESSIONS_MAX: usize = 2000;
+/// Sessions of this run of the program that are remembered: one each few minutes of a working day. The oldest go first.
+pub(crate) const OWN_MAX: usize = 100;
 /// Folders of days that are looked into.
 const FOLDERS_MAX: usize = 4000;
+
+/// A session that was recorded since the program began.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnSession {
+    /// The file.
+    pub path: PathBuf,
+    /// The hand, in the spelling of endpoints.
+    pub hand: String,
+    /// When it began.
+    pub first: Moment,
+    /// Until when it was recorded, as of now.
+    pub last: Moment,
+}
+
+impl OwnSession {
+    /// True if it holds this moment of a hand.
+    pub(crate) fn holds(&self, hand: &str, at: Moment) -> bool {
+        self.hand == hand && (self.first..=self.last).contains(&at)
+    }
+}
 
 /// What the view of sessions shows.
 #[derive(Debug, Default, Clone)]
@@ -29,6 +52,8 @@ pub struct SessionsState {
     pub to_delete: Option<PathBuf>,
     /// What the budget has no room for, the oldest first.
     pub planned: Vec<PlannedDeletion>,
+    /// What was recorded since the program began, the oldest first.
+    pub own: Vec<OwnSession>,
     /// Counts how often they were looked for.
     pub looked: u64,
 }

@@ -2,16 +2,16 @@
 //! thread.
 
 use crate::app::env::Env;
-use crate::app::files::reveal::reveal;
 use crate::app::notices::NoticeKind;
 use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::action::SessionAction;
 use crate::app::sessions::budget::{self, PlannedDeletion, SessionRoom};
 use crate::app::sessions::folder;
 use crate::app::sessions::item::SessionItem;
-use crate::app::sessions::list::{self, Looked};
+use crate::app::sessions::list::{self, Looked, OWN_MAX, OwnSession};
 use crate::app::sessions::player::{self, Opened, SessionPlayer};
 use crate::app::state::State;
+use crate::hand::Moment;
 use crate::store::calendar::since_1970;
 use crate::store::{BackgroundJob, on_thread};
 use std::collections::VecDeque;
@@ -74,11 +74,29 @@ impl SessionWork {
     }
 
     /// Looks at what there is once a recording begins, so that there is room for it.
-    fn follow_recordings(&mut self, state: &State) {
-        let hands = state.hands.iter();
-        let recordings = hands.filter_map(|hand| hand.recording.as_ref());
-        let paths = recordings.filter_map(|recording| recording.status.path.clone());
-        let recorded: Vec<PathBuf> = paths.collect();
+    fn follow_recordings(&mut self, state: &mut State) {
+        let State {
+            hands,
+            sessions,
+            now,
+            ..
+        } = state;
+        let recordings = hands.iter().filter_map(|hand| hand.recording.as_ref());
+        let mut recorded = Vec::new();
+        for (recording, path) in
+            recordings.filter_map(|recording| Some((recording, recording.status.path.clone()?)))
+        {
+            sessions.own.retain(|own| own.path != path);
+            sessions.own.push(OwnSession {
+                path: path.clone(),
+                hand: recording.hand.clone(),
+                first: recording.began,
+                last: *now,
+            });
+            recorded.push(path);
+        }
+        let over = sessions.own.len().saturating_sub(OWN_MAX);
+        sessions.own.drain(..over);
         let begins = recorded.iter().any(|path| !self.recorded.contains(path));
         self.makes_room |= begins;
         self.look_again |= begins;
@@ -215,12 +233,10 @@ impl SessionWork {
                 self.choosing_folder = Some(folder::choose(typed, env));
             }
             SessionAction::DefaultFolder => self.record_into(None, state),
-            SessionAction::Reveal(path) => self.revealing = Some(reveal(path, env)),
+            SessionAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
             SessionAction::Look => self.look(state, env),
-            SessionAction::Open(path) => {
-                self.opened = [Some(path.clone()), None];
-                self.opening = Some(player::open(path, env));
-            }
+            SessionAction::Open(path) => self.open(path, None, env),
+            SessionAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),
             SessionAction::Close => (self.player, self.look_again) = (None, true),
             SessionAction::Name(path, name) => {
                 self.say(state, &path, |about| about.name = name);
@@ -263,6 +279,16 @@ impl SessionWork {
                 }
             }
         }
+    }
+
+    /// Opens a file, unless it is shown already and only another stretch of it is wanted.
+    fn open(&mut self, path: PathBuf, stretch: Option<(Moment, Moment)>, env: &Env) {
+        let shown = self.player.as_mut().filter(|player| player.path() == path);
+        if let (Some(player), Some(stretch)) = (shown, stretch) {
+            return player.show_stretch(stretch, env);
+        }
+        self.opened = [Some(path.clone()), None];
+        self.opening = Some(player::open(path, stretch, env));
     }
 
     /// Looks for sessions again.

@@ -1,6 +1,7 @@
 //! The view of sessions: which are on disk, found, named, starred, replayed and deleted.
 pub(crate) mod beside;
 pub(crate) mod marks;
+pub(crate) mod stretch;
 pub(crate) mod strip;
 pub(crate) mod table;
 

@@ -28,6 +28,8 @@ texts! {
     STAR: "Keep", "收藏", "A session with a star, a name or notes is never deleted to make room.", "带星标、名称或备注的会话不会为腾出空间而被删除。";
     UNSTAR: "Kept: press to take the star away.", "已收藏：按下取消星标。";
     REPLAY: "Replay", "回放", "Shows this session in the whole window. The hand stays connected behind it.", "在整个窗口中回放此会话。灵巧手在后台保持连接。";
+    REPLAY_STRETCH: "Replay", "回放", "Replays the recorded session from two seconds before, this stretch again and again.", "从此前两秒开始循环回放录制会话的这一段。";
+    REPLAY_NONE: "No session of this run of the program holds it.", "本次运行录制的会话中没有这一段。";
     MORE: "More", "更多", "Rename, show in the folder, delete.", "重命名、打开所在文件夹、删除。";
     RENAME: "Name of the session", "会话名称", "a name of your own", "自定义名称";
     REVEAL: "Show in folder", "在文件夹中显示", "Shows the file in the system's file manager.", "在系统文件管理器中显示此文件。";

@@ -1,6 +1,7 @@
 //! Sessions in the running program: recorded as they happen, listed, replayed in the same window, named and deleted.
 
 use crate::setup::window::{Bench, LARGE};
+use crate::window::tune;
 use handscope::app::action::Action;
 use handscope::app::sessions::recording::HandRecording;
 use handscope::app::sessions::{SessionAbout, SessionAction, SessionItem};
@@ -669,4 +670,89 @@ fn a_hand_that_moves_is_asked_for_what_it_keeps_only_once_it_rests() {
     }
     assert!(moved, "it is looked at while it moves, too");
     assert_eq!(bench.writes(), []);
+}
+
+/// Presses the first button that replays what has these words, and gives the beginning and the end of what is looped.
+fn replay_listed(bench: &mut Bench, words: &str, path: &Path) -> (Moment, Moment) {
+    // The file has what happened a quarter of a second ago.
+    std::thread::sleep(Duration::from_millis(400));
+    bench.run(60);
+    let buttons = bench.buttons_with("Replay: ");
+    let button = buttons.iter().find(|name| name.contains(words));
+    let button = button
+        .unwrap_or_else(|| panic!("{words}: {buttons:?}"))
+        .clone();
+    bench.click_first_button(&button);
+    settle(bench, |bench| bench.state().timeline.is_some());
+    let line = bench.state().timeline.as_ref().unwrap();
+    assert_eq!(line.path, path);
+    let looped = line.looped.unwrap();
+    assert_eq!(line.at, looped.0);
+    looped
+}
+
+#[test]
+fn a_fault_is_replayed_from_two_seconds_before_while_its_session_is_recorded() {
+    let mut bench = bench(Scenario::Faults);
+    bench.wait(9000);
+    let path = recorded(&mut bench);
+    bench.show(View::Faults);
+    bench.run(60);
+    let fault = *bench.state().hand().faults.iter().next().unwrap();
+    let joint = "Replay: ";
+    let looped = replay_listed(&mut bench, joint, &path);
+    let mut faults = bench.live_state().hand().faults.iter();
+    let before = |since: Moment| Moment::from_micros(since.micros() - 2_000_000);
+    assert!(
+        faults.any(|fault| before(fault.since) == looped.0),
+        "{fault:?}"
+    );
+    drop(faults);
+    assert!(looped.1 > looped.0.plus(Duration::from_secs(2)));
+    // In the replay the same button goes there within the same file.
+    session(&mut bench, SessionAction::Loop(None));
+    let end = bench.state().timeline.as_ref().unwrap().last;
+    seek(&mut bench, end);
+    let again = replay_listed(&mut bench, joint, &path);
+    assert_eq!(again.0, looped.0);
+}
+
+#[test]
+fn what_no_session_holds_cannot_be_replayed_and_says_so() {
+    let config = SimConfig {
+        scenario: Scenario::Faults,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::open(config, LARGE);
+    bench.wait(10_000);
+    bench.show(View::Faults);
+    bench.run(60);
+    let buttons = bench.buttons_with("Replay: ");
+    assert!(!buttons.is_empty());
+    for button in buttons {
+        assert!(bench.all_disabled(&button).into_iter().all(|is| is));
+    }
+}
+
+#[test]
+fn a_trial_is_replayed_from_two_seconds_before_its_closing_command() {
+    let config = SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::kept(config, HAND, LARGE);
+    bench.wait(1000);
+    bench.show(View::Tune);
+    bench.run(40);
+    tune::short(&mut bench);
+    tune::arm(&mut bench);
+    bench.click("Start trials");
+    tune::finish(&mut bench, 60_000);
+    let path = recorded(&mut bench);
+    bench.show(View::Compare);
+    bench.run(100);
+    let trials = &bench.state().trials.sessions[0];
+    let (close, _) = trials.stretch(trials.trials[0].summary.number).unwrap();
+    let looped = replay_listed(&mut bench, "Replay: 1 ", &path);
+    assert_eq!(looped.0.plus(Duration::from_secs(2)), close);
 }
