@@ -117,6 +117,11 @@ impl Window {
         self.view = view;
     }
 
+    /// Lets the plots show just this stretch of time, in seconds.
+    pub const fn show_stretch(&mut self, stretch: (f64, f64)) {
+        self.plots.pin(stretch);
+    }
+
     /// The open view.
     #[must_use]
     pub const fn view(&self) -> View {
