@@ -52,6 +52,8 @@ pub struct SessionsState {
     pub to_delete: Option<PathBuf>,
     /// What the budget has no room for, the oldest first.
     pub planned: Vec<PlannedDeletion>,
+    /// Files that are being recorded.
+    pub recorded: Vec<PathBuf>,
     /// What was recorded since the program began, the oldest first.
     pub own: Vec<OwnSession>,
     /// Counts how often they were looked for.

@@ -27,8 +27,6 @@ pub(crate) struct SessionWork {
     opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
     looking: Option<BackgroundJob<Looked>>,
     look_again: bool,
-    /// Files that are being recorded.
-    recorded: Vec<PathBuf>,
     /// A recording began since the last look: what was told long enough before makes room for it.
     makes_room: bool,
     /// What is to go was told in this run of the program.
@@ -97,10 +95,12 @@ impl SessionWork {
         }
         let over = sessions.own.len().saturating_sub(OWN_MAX);
         sessions.own.drain(..over);
-        let begins = recorded.iter().any(|path| !self.recorded.contains(path));
+        let begins = recorded
+            .iter()
+            .any(|path| !sessions.recorded.contains(path));
         self.makes_room |= begins;
         self.look_again |= begins;
-        self.recorded = recorded;
+        sessions.recorded = recorded;
     }
 
     /// Tells what has no room, and deletes what was told long enough before a recording that begins.
@@ -111,7 +111,7 @@ impl SessionWork {
         sessions.looks = false;
         sessions.looked += 1;
         let opened = self.opened.iter().flatten();
-        let in_use: Vec<PathBuf> = self.recorded.iter().chain(opened).cloned().collect();
+        let in_use: Vec<PathBuf> = sessions.recorded.iter().chain(opened).cloned().collect();
         let room = SessionRoom {
             limit: state.settings.sessions.budget_bytes(),
             in_use: &in_use,

@@ -132,7 +132,7 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
     let bytes: u64 = state.items.iter().map(|item| item.bytes).sum();
     let budget = pane.state.settings.sessions.budget_gb;
-    let used = format!("{:.2}", format::giga(bytes));
+    let used = format::size(bytes);
     ui.horizontal_wrapped(|ui| {
         let parts: [&dyn std::fmt::Display; 3] = [&state.items.len(), &used, &budget];
         let total = look.fill(sessions::TOTAL, &parts);
@@ -156,11 +156,8 @@ fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     };
     let bytes = state.planned.iter().map(|one| one.bytes).sum();
-    let parts: [&dyn std::fmt::Display; 3] = [
-        &state.planned.len(),
-        &format::megabytes(bytes),
-        &first.due(),
-    ];
+    let parts: [&dyn std::fmt::Display; 3] =
+        [&state.planned.len(), &format::size(bytes), &first.due()];
     let words = look.fill(sessions::BEYOND, &parts);
     Label::new(&words, look.palette.warn).small().ui(ui);
     for (text, action) in [

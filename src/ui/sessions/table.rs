@@ -14,31 +14,39 @@ const ROW: f32 = 32.0;
 /// Characters of a name.
 const NAME_MAX: usize = 80;
 
-/// The columns: title and width; the name takes what is left.
+/// The least width of a name.
+const NAME: f32 = 140.0;
+/// The strip of force where there is much room, and where there is little.
+const STRIP: (f32, f32) = (48.0, 112.0);
+
+/// The columns: title and width; the strip of force takes what it can have beside a name, the name what is left then.
 const COLUMNS: [(Text, f32); 10] = [
-    (sessions::STAR, 44.0),
+    (sessions::STAR, 36.0),
     (sessions::NAME, 0.0),
     (sessions::BEGAN, 132.0),
-    (sessions::LENGTH, 76.0),
-    (sessions::FORCE, 112.0),
+    (sessions::LENGTH, 64.0),
+    (sessions::FORCE, STRIP.0),
     (sessions::FAULTS, 52.0),
     (sessions::TRIALS, 52.0),
     (sessions::NOTES, 52.0),
     (sessions::SIZE, 72.0),
-    (sessions::REPLAY, 118.0),
+    (sessions::REPLAY, 100.0),
 ];
 
 /// Draws the table.
 pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, items: &[&SessionItem]) {
     let look = pane.look;
+    ui.spacing_mut().item_spacing.x = theme::STEP;
+    let strip = strip_width(ui.available_width());
     let mut table = TableBuilder::new(ui)
         .id_salt("recorded")
         .striped(true)
         .cell_layout(Layout::left_to_right(Align::Center))
         .auto_shrink([false, false]);
-    for (_, width) in COLUMNS {
+    for (title, width) in COLUMNS {
         table = table.column(match width {
-            0.0 => Column::remainder().at_least(140.0).clip(true),
+            0.0 => Column::remainder().at_least(NAME).clip(true),
+            _ if title == sessions::FORCE => Column::exact(strip),
             width => Column::exact(width),
         });
     }
@@ -63,6 +71,13 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, items: &[&SessionItem])
             }
         });
     });
+}
+
+/// How wide the strip of force is, so that all columns fit in the smallest window.
+fn strip_width(room: f32) -> f32 {
+    let others = COLUMNS.iter().map(|(_, width)| width + theme::STEP);
+    let taken = others.sum::<f32>() - STRIP.0 + NAME;
+    (room - taken - theme::GAP).clamp(STRIP.0, STRIP.1)
 }
 
 fn cell_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem, column: usize) {
@@ -145,10 +160,9 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
             about = format!("{}  {about}", look.say(sessions::SIMULATED));
         }
         let mut color = look.palette.muted;
-        let recording = pane.state.hand().recording.as_ref();
-        let own = recording.and_then(|recording| recording.status.path.as_ref());
+        let is_recorded = pane.state.sessions.recorded.contains(&item.path);
         let state = match item.closed {
-            _ if own == Some(&item.path) => Some((sessions::RECORDS_NOW, look.palette.ok)),
+            _ if is_recorded => Some((sessions::RECORDS_NOW, look.palette.ok)),
             true => None,
             false => Some((sessions::UNCLOSED, look.palette.warn)),
         };

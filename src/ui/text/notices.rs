@@ -181,7 +181,7 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
             days: (first, last),
             due,
         } => {
-            let size = format::megabytes(*bytes);
+            let size = format::size(*bytes);
             look.fill(sessions::PLANNED, &[count, &size, first, last, due])
         }
         NoticeKind::SessionsDeleted { sessions: count } => look.told(sessions::DELETED, count),

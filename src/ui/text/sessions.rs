@@ -44,7 +44,7 @@ texts! {
     RECORDS_NOW: "is being recorded", "正在录制";
     SIMULATED: "simulated", "仿真";
     UNREAD: "{} files here cannot be read.", "此处有 {} 个文件无法读取。";
-    TOTAL: "{} sessions, {} of {} GB", "{} 个会话，已用 {} GB，共 {} GB";
+    TOTAL: "Sessions: {}. Room: {} of {} GB.", "会话：{} 个。空间：已用 {}，共 {} GB。";
     PLANNED: "Recorded sessions need more room than they may. The {} oldest without star, name or notes ({}, recorded {} to {}) are deleted when a recording begins after {} UTC. The view Sessions shows them and keeps them if you like.", "录制的会话占用空间超出限额。最早的 {} 个没有星标、名称或备注的会话（{}，录制于 {} 至 {}）将在 {} UTC 之后开始录制时删除。可在“会话”视图中查看并保留。";
     BEYOND: "More than fits: the {} oldest ({}) go when a recording begins after {} UTC.", "超出限额：最早的 {} 个会话（{}）将在 {} UTC 之后开始录制时删除。";
     GOES: "Goes to make room, not before {} UTC. A star, a name or a note keeps it.", "为腾出空间将被删除，不早于 {} UTC。星标、名称或备注可将其保留。";

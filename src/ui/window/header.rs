@@ -173,7 +173,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let simulated = pane.state.hand().is_simulated();
     let recorded = pane.state.timeline.is_some();
     let (text, fill, color) = match (&pane.state.hand().endpoint, simulated) {
-        _ if recorded => (sessions::RECORDED, palette.warn, palette.on_armed),
+        _ if recorded => (sessions::RECORDED, palette.warn, palette.on_accent),
         (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
         (None, _) => (main::NO_HAND, palette.control, palette.muted),

@@ -683,12 +683,14 @@ fn replay_listed(bench: &mut Bench, words: &str, path: &Path) -> (Moment, Moment
         .unwrap_or_else(|| panic!("{words}: {buttons:?}"))
         .clone();
     bench.click_first_button(&button);
-    settle(bench, |bench| bench.state().timeline.is_some());
-    let line = bench.state().timeline.as_ref().unwrap();
-    assert_eq!(line.path, path);
-    let looped = line.looped.unwrap();
-    assert_eq!(line.at, looped.0);
-    looped
+    let looped = |bench: &Bench| {
+        let line = bench.state().timeline.as_ref()?;
+        line.looped
+            .filter(|looped| looped.0 == line.at && !line.waits)
+    };
+    settle(bench, |bench| looped(bench).is_some());
+    assert_eq!(bench.state().timeline.as_ref().unwrap().path, path);
+    looped(bench).unwrap()
 }
 
 #[test]
@@ -714,7 +716,7 @@ fn a_fault_is_replayed_from_two_seconds_before_while_its_session_is_recorded() {
     let end = bench.state().timeline.as_ref().unwrap().last;
     seek(&mut bench, end);
     let again = replay_listed(&mut bench, joint, &path);
-    assert_eq!(again.0, looped.0);
+    assert!(again.0 < end);
 }
 
 #[test]
