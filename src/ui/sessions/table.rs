@@ -24,7 +24,7 @@ const COLUMNS: [(Text, f32); 10] = [
     (sessions::STAR, 36.0),
     (sessions::NAME, 0.0),
     (sessions::BEGAN, 132.0),
-    (sessions::LENGTH, 64.0),
+    (sessions::LENGTH, 84.0),
     (sessions::FORCE, STRIP.0),
     (sessions::FAULTS, 52.0),
     (sessions::TRIALS, 52.0),
