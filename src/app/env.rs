@@ -1,6 +1,7 @@
 //! What the program stands on.
 
 use crate::app::files::choose::ChooseFile;
+use crate::app::files::reveal::Reveal;
 use crate::link::{Clock, Wake};
 use crate::transport::Dial;
 use std::path::PathBuf;
@@ -19,6 +20,8 @@ pub struct Env {
     pub wake: Wake,
     /// How a person is asked where a file should go.
     pub files: Arc<dyn ChooseFile>,
+    /// How a file is shown in the system's file manager.
+    pub reveal: Reveal,
     /// Where settings are kept; `None` = nowhere.
     pub settings_path: Option<PathBuf>,
     /// The person's documents: what nobody was asked about goes into a folder of the day in them; `None` = nowhere.

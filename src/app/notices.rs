@@ -144,6 +144,17 @@ pub enum NoticeKind {
     NotReplayedNow,
     /// Something was asked of a hand while a recording is shown. Nothing was sent.
     Recorded,
+    /// Sessions need more room than they may: the oldest are deleted when a recording begins later.
+    SessionsPlanned {
+        /// How many.
+        sessions: usize,
+        /// Bytes that this frees.
+        bytes: u64,
+        /// When the first and the last of them were recorded, as days.
+        days: (String, String),
+        /// Not before this time, `2026-11-22 09:30`, UTC.
+        due: String,
+    },
     /// Sessions were deleted.
     SessionsDeleted {
         /// How many.
@@ -171,6 +182,13 @@ pub enum NoticeKind {
     /// A file could not be written.
     NotSaved {
         /// Where.
+        path: PathBuf,
+        /// The system's words.
+        message: String,
+    },
+    /// A file could not be shown in the system's file manager.
+    NotRevealed {
+        /// The file.
         path: PathBuf,
         /// The system's words.
         message: String,
@@ -225,8 +243,10 @@ impl NoticeKind {
 
     /// Kinds that differ only in a measured figure are one notice, with the newest figure.
     fn is_same(&self, other: &Self) -> bool {
-        let confirmed = |kind: &Self| matches!(kind, Self::HoldConfirmed { .. });
-        self == other || confirmed(self) && confirmed(other)
+        let confirmed: fn(&Self) -> bool = |kind| matches!(kind, Self::HoldConfirmed { .. });
+        let planned: fn(&Self) -> bool = |kind| matches!(kind, Self::SessionsPlanned { .. });
+        let alike = |is: fn(&Self) -> bool| is(self) && is(other);
+        self == other || alike(confirmed) || alike(planned)
     }
 }
 

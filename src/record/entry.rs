@@ -72,6 +72,8 @@ pub enum EventKind {
     Setting,
     /// The parameters that the hand kept, in TOML.
     Parameters,
+    /// The settings of the program, in TOML, without where its window stands.
+    Settings,
     /// Something about the recording itself: entries that are missing, a clock that was set.
     Recording,
     /// A drive reported a fault. Derived from the readings.
@@ -97,6 +99,7 @@ impl EventKind {
             Self::Trial => "trial",
             Self::Setting => "setting",
             Self::Parameters => "parameters",
+            Self::Settings => "settings",
             Self::Recording => "recording",
             Self::Fault => "fault",
             Self::Stop => "stop",
@@ -109,13 +112,14 @@ impl EventKind {
     /// The kind of a word in a file.
     #[must_use]
     pub fn by_key(key: &str) -> Option<Self> {
-        const ALL: [EventKind; 12] = [
+        const ALL: [EventKind; 13] = [
             EventKind::Note,
             EventKind::NoteRemoved,
             EventKind::Person,
             EventKind::Trial,
             EventKind::Setting,
             EventKind::Parameters,
+            EventKind::Settings,
             EventKind::Recording,
             EventKind::Fault,
             EventKind::Stop,

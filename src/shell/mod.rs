@@ -106,6 +106,11 @@ impl Cockpit {
         self.window.set_view(view);
     }
 
+    /// Lets the plots show just the time from one moment to another.
+    pub fn show_stretch(&mut self, (from, to): (Moment, Moment)) {
+        self.window.show_stretch((from.secs(), to.secs()));
+    }
+
     /// The view that is shown.
     #[must_use]
     pub const fn view(&self) -> View {

@@ -7,6 +7,7 @@ use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
 use handscope::app::env::Env;
 use handscope::app::files::choose::NoChoice;
+use handscope::app::files::reveal::no_reveal;
 use handscope::app::program::App;
 use handscope::app::settings::PlotWindow;
 use handscope::app::settings::Settings;
@@ -87,6 +88,7 @@ impl Scene {
             dial: Arc::new(SimDial::new(clock)),
             wake: Arc::new(move || wakes.notify_one()),
             files: Arc::new(NoChoice),
+            reveal: no_reveal(),
             settings_path: None,
             documents,
         };

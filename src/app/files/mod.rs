@@ -6,4 +6,5 @@ pub mod export;
 pub(crate) mod open;
 pub mod pose_file;
 pub(crate) mod quirk_notes;
+pub mod reveal;
 pub mod settings_file;

@@ -13,8 +13,13 @@ impl HandState {
         let wanted = settings.records(self.is_simulated());
         match (&mut self.recording, &self.open) {
             (Some(recording), Some(_)) if wanted => {
-                recording.tick();
-                recording.params(&self.params.live_params(), self.now);
+                recording.tick(self.now);
+                recording.settings(settings, self.now);
+                // Half of a reading is no news.
+                if !self.params.is_busy() {
+                    recording.params(&self.params.live_params(), self.now);
+                }
+                self.ask_params_to_record(env);
             }
             (Some(_), _) => self.recording = None,
             // A hand that never answers makes no file; what went over the wire before is still in the tap.
@@ -22,6 +27,18 @@ impl HandState {
                 self.recording = self.begin_recording(settings, env)
             }
             (None, _) => {}
+        }
+    }
+
+    /// A recording tells what the hand keeps: that is read once, as soon as the hand rests and nothing else goes on, unless a person
+    /// looked at it before.
+    fn ask_params_to_record(&mut self, env: &Env) {
+        let is_idle = self.procedure.is_none() && !self.runs_series();
+        if is_idle
+            && self.write_refusal().is_none()
+            && let (Some(recording), Some(open)) = (&mut self.recording, &self.open)
+        {
+            recording.ask_params(&open.link, env);
         }
     }
 

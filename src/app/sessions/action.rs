@@ -10,12 +10,20 @@ pub enum SessionAction {
     Record(bool),
     /// Record built-in hands, too, or no longer.
     RecordSimulated(bool),
+    /// Record into this folder from the next recording on; without a path a person is asked for one.
+    ChooseFolder(Option<PathBuf>),
+    /// Record into the person's documents again.
+    DefaultFolder,
     /// Look again which sessions there are.
     Look,
     /// Replay this file: one of the list, or any other.
     Open(PathBuf),
+    /// Replay this file from the first of two moments on, the stretch between them again and again.
+    OpenAt(PathBuf, (Moment, Moment)),
     /// Go back to the live hand.
     Close,
+    /// Show where this file lies, in the system's file manager.
+    Reveal(PathBuf),
     /// Give a session a name; empty takes it away.
     Name(PathBuf, String),
     /// Give a session a star, or take it away.
@@ -26,8 +34,10 @@ pub enum SessionAction {
     Delete,
     /// Delete nothing.
     KeepIt,
-    /// Delete what the budget has no room for.
-    Tidy,
+    /// Delete what the budget has no room for, now.
+    MakeRoom,
+    /// Give a star to all that the budget has no room for.
+    KeepPlanned,
     /// Show this moment.
     Seek(Moment),
     /// Let time go on, or stop it.

@@ -1,23 +1,269 @@
-//! Which sessions go when they need more room than they may: the oldest first, and none that a person cares for.
+//! Which sessions go when they need more room than they may: the oldest first, none that a person cares for, and by themselves
+//! only what was told long enough before.
 
+use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::item::SessionItem;
-use std::path::PathBuf;
+use crate::store::toml_file::{self, FileText};
+use crate::store::{calendar, replace};
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-/// The sessions that go so that at most `limit` bytes are left, `items` being the oldest last. One that is being recorded, has a
-/// star, a name or notes stays.
+/// A session is deleted by itself this long after that was told, at the earliest: a person comes back the next day and can say no.
+pub const TOLD_FOR: Duration = Duration::from_secs(24 * 3600);
+/// Beside the sessions: what was told of them.
+const FILE_NAME: &str = "to-delete.toml";
+/// Some thousand sessions.
+const FILE_LEN_MAX: u64 = 1024 * 1024;
+
+/// A session that is to make room, and since when that is told.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlannedDeletion {
+    /// The file.
+    pub path: PathBuf,
+    /// Its size when it was told: one that grew since is another.
+    pub bytes: u64,
+    /// When it was told, in seconds since 1970.
+    pub told_unix_s: u64,
+}
+
+/// What was told of a folder's sessions, as a file.
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+struct ToldFile {
+    session: Vec<PlannedDeletion>,
+}
+
+/// How much room there is, and what must stay.
+#[derive(Debug)]
+pub struct SessionRoom<'a> {
+    /// What all sessions together may need, bytes.
+    pub limit: u64,
+    /// Files that are being recorded or replayed.
+    pub in_use: &'a [PathBuf],
+}
+
+impl PlannedDeletion {
+    /// From when on it goes by itself, in seconds since 1970.
+    #[must_use]
+    pub const fn due_unix_s(&self) -> u64 {
+        self.told_unix_s.saturating_add(TOLD_FOR.as_secs())
+    }
+
+    /// The same as `2026-11-22 09:30`, UTC.
+    #[must_use]
+    pub fn due(&self) -> String {
+        let stamp = calendar::stamp(Duration::from_secs(self.due_unix_s()));
+        stamp.replace('T', " ").chars().take(16).collect()
+    }
+
+    /// Deletes the file and what was said of it, unless it changed since or a person cares for it by now. True if it is gone.
+    pub(crate) fn carry_out(&self) -> io::Result<bool> {
+        let about = SessionAbout::load(&self.path);
+        let is_same = std::fs::metadata(&self.path)?.len() == self.bytes;
+        // What cannot be read may be a star.
+        if !is_same || about.map_or(true, |about| about.is_kept(0)) {
+            return Ok(false);
+        }
+        delete(&self.path).map(|()| true)
+    }
+}
+
+/// Deletes a session and what was said of it.
+pub(crate) fn delete(session: &Path) -> io::Result<()> {
+    std::fs::remove_file(session)?;
+    // Not each session has one.
+    let _said = std::fs::remove_file(SessionAbout::path(session));
+    Ok(())
+}
+
+/// The sessions that go so that no more is left than there is room, `items` being the oldest last. One that is in use, has a
+/// star, a name or notes stays. Of what was `told` before, the time is kept, unless the file changed or a clock was set back.
 #[must_use]
-pub fn to_delete(items: &[SessionItem], limit: u64, recording: Option<&PathBuf>) -> Vec<PathBuf> {
+pub fn plan(
+    items: &[SessionItem],
+    room: &SessionRoom<'_>,
+    told: &[PlannedDeletion],
+    now_unix_s: u64,
+) -> Vec<PlannedDeletion> {
     let mut bytes: u64 = items.iter().map(|item| item.bytes).sum();
-    let mut going = Vec::new();
+    let mut planned = Vec::new();
     for item in items.iter().rev() {
-        if bytes <= limit {
+        if bytes <= room.limit {
             break;
         }
-        if item.about.is_kept(item.counts.notes) || recording == Some(&item.path) {
+        if item.about.is_kept(item.counts.notes) || room.in_use.contains(&item.path) {
             continue;
         }
         bytes = bytes.saturating_sub(item.bytes);
-        going.push(item.path.clone());
+        let same = |known: &&PlannedDeletion| {
+            known.path == item.path && known.bytes == item.bytes && known.told_unix_s <= now_unix_s
+        };
+        planned.push(PlannedDeletion {
+            path: item.path.clone(),
+            bytes: item.bytes,
+            told_unix_s: told
+                .iter()
+                .find(same)
+                .map_or(now_unix_s, |known| known.told_unix_s),
+        });
     }
-    going
+    planned
+}
+
+/// What of a plan was told long enough before: only what `told`, as it was read from the disk, says.
+#[must_use]
+pub fn due(
+    planned: &[PlannedDeletion],
+    told: &[PlannedDeletion],
+    now_unix_s: u64,
+) -> Vec<PlannedDeletion> {
+    let is_due = |one: &&PlannedDeletion| told.contains(one) && one.due_unix_s() <= now_unix_s;
+    planned.iter().filter(is_due).cloned().collect()
+}
+
+/// What was told of the sessions of this folder. Where that cannot be read, nothing was: it is told again.
+pub(crate) fn load_told(folder: &Path) -> Vec<PlannedDeletion> {
+    let path = folder.join(FILE_NAME);
+    let read = toml_file::load(&path, FILE_LEN_MAX, |text| FileText::plain(text).parse());
+    read.map(|file: ToldFile| file.session).unwrap_or_default()
+}
+
+/// Keeps what was told of the sessions of this folder.
+pub(crate) fn save_told(
+    folder: &Path,
+    session: Vec<PlannedDeletion>,
+) -> Result<(), (PathBuf, io::Error)> {
+    let path = folder.join(FILE_NAME);
+    let text = toml::to_string_pretty(&ToldFile { session }).map_err(io::Error::other);
+    let saved = text.and_then(|text| replace(&path, text.as_bytes()));
+    saved.map_err(|error| (path, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::Moment;
+    use crate::hand::kinematics::Side;
+    use crate::record::file::{Counts, Opening};
+
+    const DAY_S: u64 = 24 * 3600;
+    const NOW_S: u64 = 100 * DAY_S;
+
+    fn item(name: &str, bytes: u64) -> SessionItem {
+        let opening = Opening {
+            base_nanos: 0,
+            began: Moment::ZERO,
+            hand: String::new(),
+            simulated: false,
+            side: Side::Right,
+            version: String::new(),
+        };
+        SessionItem {
+            opening,
+            path: name.into(),
+            bytes,
+            length: Duration::ZERO,
+            counts: Counts::default(),
+            marks: Vec::new(),
+            strip: Vec::new(),
+            closed: true,
+            about: SessionAbout::default(),
+        }
+    }
+
+    fn told(name: &str, bytes: u64, told_unix_s: u64) -> PlannedDeletion {
+        PlannedDeletion {
+            path: name.into(),
+            bytes,
+            told_unix_s,
+        }
+    }
+
+    /// The newest first; each needs ten bytes.
+    fn items() -> Vec<SessionItem> {
+        ["d", "c", "b", "a"].map(|name| item(name, 10)).into()
+    }
+
+    fn names(planned: &[PlannedDeletion]) -> Vec<&str> {
+        planned.iter().filter_map(|one| one.path.to_str()).collect()
+    }
+
+    #[test]
+    fn the_oldest_go_until_the_rest_fits_and_what_a_person_cares_for_stays() {
+        let check = |limit, in_use: &[PathBuf], change: fn(&mut SessionItem), wanted: &[&str]| {
+            let mut items = items();
+            // The oldest.
+            items.last_mut().map(change).unwrap();
+            let planned = plan(&items, &SessionRoom { limit, in_use }, &[], NOW_S);
+            assert_eq!(names(&planned), wanted, "{limit} {in_use:?}");
+            assert!(planned.iter().all(|one| one.told_unix_s == NOW_S));
+        };
+        check(40, &[], |_| (), &[]);
+        check(39, &[], |_| (), &["a"]);
+        check(15, &[], |_| (), &["a", "b", "c"]);
+        check(25, &[], |item| item.about.star = true, &["b", "c"]);
+        check(
+            25,
+            &[],
+            |item| item.about.name = "grasp".into(),
+            &["b", "c"],
+        );
+        check(25, &[], |item| item.counts.notes = 1, &["b", "c"]);
+        check(25, &["a".into()], |_| (), &["b", "c"]);
+        check(0, &["d".into()], |item| item.about.star = true, &["b", "c"]);
+    }
+
+    #[test]
+    fn only_what_was_told_a_day_before_and_did_not_change_is_due() {
+        let check = |known: PlannedDeletion, is_due: bool, told_unix_s: u64| {
+            let room = SessionRoom {
+                limit: 30,
+                in_use: &[],
+            };
+            let known = [known];
+            let planned = plan(&items(), &room, &known, NOW_S);
+            assert_eq!(names(&planned), ["a"]);
+            assert_eq!(planned[0].told_unix_s, told_unix_s, "{known:?}");
+            let wanted: &[&str] = if is_due { &["a"] } else { &[] };
+            assert_eq!(names(&due(&planned, &known, NOW_S)), wanted, "{known:?}");
+        };
+        check(told("a", 10, NOW_S - DAY_S), true, NOW_S - DAY_S);
+        check(told("a", 10, NOW_S - DAY_S + 1), false, NOW_S - DAY_S + 1);
+        check(told("a", 10, 0), true, 0);
+        // Another session was told, another size, or at a time that is still to come.
+        check(told("b", 10, 0), false, NOW_S);
+        check(told("a", 9, 0), false, NOW_S);
+        check(told("a", 10, NOW_S + 1), false, NOW_S);
+    }
+
+    #[test]
+    fn what_was_told_is_kept_and_what_cannot_be_read_was_not_told() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(load_told(folder.path()), []);
+        let all = vec![told("a", 10, 5), told("捏", 7, 6)];
+        save_told(folder.path(), all.clone()).unwrap();
+        assert_eq!(load_told(folder.path()), all);
+        std::fs::write(folder.path().join(FILE_NAME), "session = 3").unwrap();
+        assert_eq!(load_told(folder.path()), []);
+    }
+
+    #[test]
+    fn a_file_that_changed_or_got_a_star_meanwhile_is_not_deleted() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.mcap");
+        let mut planned = told("", 3, 0);
+        planned.path.clone_from(&path);
+        std::fs::write(&path, "longer").unwrap();
+        assert!(!planned.carry_out().unwrap());
+        std::fs::write(&path, "abc").unwrap();
+        for about in ["star = true", "name = \"x\"", "no toml at all"] {
+            std::fs::write(SessionAbout::path(&path), about).unwrap();
+            assert!(!planned.carry_out().unwrap() && path.exists(), "{about}");
+        }
+        std::fs::write(SessionAbout::path(&path), "star = false").unwrap();
+        assert!(planned.carry_out().unwrap());
+        assert!(!path.exists() && !SessionAbout::path(&path).exists());
+    }
 }

@@ -1,15 +1,39 @@
 //! Which sessions there are. They are looked for off the window's thread, and what was read of a file that did not change is kept.
 
 use crate::app::env::Env;
+use crate::app::sessions::budget::{self, PlannedDeletion};
 use crate::app::sessions::item::SessionItem;
+use crate::hand::Moment;
 use crate::store::{BackgroundJob, on_thread};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Sessions that are listed: some for each working day of two years. Beyond, the oldest are not.
 pub const SESSIONS_MAX: usize = 2000;
+/// Sessions of this run of the program that are remembered: one each few minutes of a working day. The oldest go first.
+pub(crate) const OWN_MAX: usize = 100;
 /// Folders of days that are looked into.
 const FOLDERS_MAX: usize = 4000;
+
+/// A session that was recorded since the program began.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnSession {
+    /// The file.
+    pub path: PathBuf,
+    /// The hand, in the spelling of endpoints.
+    pub hand: String,
+    /// When it began.
+    pub first: Moment,
+    /// Until when it was recorded, as of now.
+    pub last: Moment,
+}
+
+impl OwnSession {
+    /// True if it holds this moment of a hand.
+    pub(crate) fn holds(&self, hand: &str, at: Moment) -> bool {
+        self.hand == hand && (self.first..=self.last).contains(&at)
+    }
+}
 
 /// What the view of sessions shows.
 #[derive(Debug, Default, Clone)]
@@ -18,14 +42,20 @@ pub struct SessionsState {
     pub items: Arc<Vec<SessionItem>>,
     /// Where they lie; `None` = nowhere.
     pub folder: Option<PathBuf>,
+    /// No folder was chosen in a dialog: its path can be typed.
+    pub asks_folder: bool,
     /// They are being looked for.
     pub looks: bool,
     /// Files there that could not be read, and why.
     pub unread: Arc<Vec<(PathBuf, String)>>,
     /// The session that is to be deleted, once a person agrees.
     pub to_delete: Option<PathBuf>,
-    /// What the budget has no room for.
-    pub beyond_budget: Vec<PathBuf>,
+    /// What the budget has no room for, the oldest first.
+    pub planned: Vec<PlannedDeletion>,
+    /// Files that are being recorded.
+    pub recorded: Vec<PathBuf>,
+    /// What was recorded since the program began, the oldest first.
+    pub own: Vec<OwnSession>,
     /// Counts how often they were looked for.
     pub looked: u64,
 }
@@ -35,6 +65,8 @@ pub struct SessionsState {
 pub(crate) struct Looked {
     pub(crate) items: Vec<SessionItem>,
     pub(crate) unread: Vec<(PathBuf, String)>,
+    /// What was told before of sessions that are to make room.
+    pub(crate) told: Vec<PlannedDeletion>,
 }
 
 /// Looks for sessions in this folder and the folders of days in it.
@@ -48,6 +80,7 @@ pub(crate) fn look(
         found.unwrap_or(Looked {
             items: Vec::new(),
             unread: Vec::new(),
+            told: Vec::new(),
         })
     };
     BackgroundJob::start(&env.runtime, &env.wake, look)
@@ -79,7 +112,11 @@ fn find(folder: &Path, known: &[SessionItem]) -> Looked {
             |item: &SessionItem| item.opening.base_nanos / 1000 + item.opening.began.micros();
         began(two).cmp(&began(one))
     });
-    Looked { items, unread }
+    Looked {
+        items,
+        unread,
+        told: budget::load_told(folder),
+    }
 }
 
 /// The MCAP files in a folder and in the folders in it.

@@ -34,8 +34,12 @@ const FRAME_MAX: Duration = Duration::from_millis(250);
 /// Slowest and fastest.
 pub(crate) const PACES: (f32, f32) = (0.1, 10.0);
 
-/// A file that was opened, and the hand as it was soon after the beginning.
-pub(crate) type Opened = (Arc<SessionFile>, HandThen);
+/// A file that was opened, and the hand as it was soon after the beginning, or at the beginning of the stretch that is wanted.
+pub(crate) struct Opened {
+    file: Arc<SessionFile>,
+    found: HandThen,
+    stretch: Option<(Moment, Moment)>,
+}
 
 /// The hand as it was at a moment.
 type HandThen = (Moment, Box<Recorded>);
@@ -67,15 +71,24 @@ pub(crate) struct SessionPlayer {
     beside: Option<BackgroundJob<Result<BesideSession, NoticeKind>>>,
 }
 
-/// Opens a file near its beginning, off the window's thread.
-pub(crate) fn open(path: PathBuf, env: &Env) -> BackgroundJob<Result<Opened, NoticeKind>> {
+/// Opens a file near its beginning or at a stretch of it, off the window's thread.
+pub(crate) fn open(
+    path: PathBuf,
+    stretch: Option<(Moment, Moment)>,
+    env: &Env,
+) -> BackgroundJob<Result<Opened, NoticeKind>> {
     let open = async move {
         let place = path.clone();
         let opened = on_thread(move || {
             Ok(SessionFile::open(&place).and_then(|file| {
-                let at = file.first().plus(AHEAD).min(file.last());
+                let at = stretch.map_or(file.first().plus(AHEAD), |(from, _)| from);
+                let at = at.clamp(file.first(), file.last());
                 let found = find(&file, SeekTarget::At(at))?;
-                Ok::<Opened, OpenError>((Arc::new(file), found))
+                Ok::<Opened, OpenError>(Opened {
+                    file: Arc::new(file),
+                    found,
+                    stretch,
+                })
             }))
         });
         let opened = opened.await.unwrap_or_else(|error| Err(error.into()));
@@ -125,7 +138,12 @@ fn reading(
 
 impl SessionPlayer {
     /// Begins to replay a file, standing still.
-    pub(crate) fn new((file, (at, recorded)): Opened, live: &State) -> Self {
+    pub(crate) fn new(opened: Opened, live: &State) -> Self {
+        let Opened {
+            file,
+            found: (at, recorded),
+            stretch,
+        } = opened;
         let about = SessionAbout::load(file.path()).unwrap_or_default();
         let item = SessionItem::of(&file, about.clone());
         let timeline = Timeline {
@@ -164,6 +182,7 @@ impl SessionPlayer {
             file,
         };
         player.take_found((at, recorded));
+        player.set_loop(stretch);
         player
     }
 
@@ -361,13 +380,7 @@ impl SessionPlayer {
                     line.pace = pace.clamp(PACES.0, PACES.1);
                 }
             }
-            SessionAction::Loop(stretch) => {
-                if let Some(line) = self.line() {
-                    line.looped = stretch
-                        .map(|(from, to)| (within(from.min(to)), within(from.max(to))))
-                        .filter(|(from, to)| from < to);
-                }
-            }
+            SessionAction::Loop(stretch) => self.set_loop(*stretch),
             SessionAction::Step(forward) => {
                 let at = self.at();
                 self.wanted = Some(match forward {
@@ -389,6 +402,22 @@ impl SessionPlayer {
             }
             _ => {}
         }
+    }
+
+    fn set_loop(&mut self, stretch: Option<(Moment, Moment)>) {
+        let (first, last) = (self.file.first(), self.file.last());
+        let within = |at: Moment| at.clamp(first, last);
+        if let Some(line) = self.line() {
+            line.looped = stretch
+                .map(|(from, to)| (within(from.min(to)), within(from.max(to))))
+                .filter(|(from, to)| from < to);
+        }
+    }
+
+    /// Goes to the beginning of a stretch, and plays that again and again.
+    pub(crate) fn show_stretch(&mut self, stretch: (Moment, Moment), env: &Env) {
+        self.act(&SessionAction::Loop(Some(stretch)), env);
+        self.act(&SessionAction::Seek(stretch.0), env);
     }
 
     /// Changes the note of a moment, adds one, or takes it away; gives all notes as they are then.

@@ -1,27 +1,45 @@
 //! The session that is being recorded of a hand: begun when a link opens, ended when it closes or a person wants none.
 
 use crate::app::env::Env;
+use crate::app::files::settings_file;
+use crate::app::layout::Layout;
+use crate::app::settings::{Settings, Zoom};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
-use crate::link::LinkObserver;
+use crate::link::{LinkHandle, LinkObserver};
 use crate::params::file::ParamsFile;
 use crate::params::values::Params;
 use crate::record::file::recorder::RecorderInput;
 use crate::record::file::{Opening, Recorder, RecorderStatus, RecordingPlan, SystemDisk};
 use crate::record::{Entry, Event, EventKind};
+use crate::store::BackgroundJob;
 use crate::store::calendar::{day, since_1970, stamp};
+use crate::tasks::read::rows;
 use crate::tasks::recording;
 use crate::transport::Endpoint;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
+
+/// Settings are compared this often: whoever types or drags changes them with each frame.
+const SETTINGS_EACH: Duration = Duration::from_secs(1);
 
 /// A recording under way.
 #[derive(Debug)]
 pub struct HandRecording {
     recorder: Recorder,
     input: RecorderInput,
+    /// The hand, in the spelling of endpoints.
+    pub hand: String,
+    /// When it began.
+    pub began: Moment,
     /// What the hand keeps, as it was recorded last.
     params: Params,
+    /// The hand was asked for that.
+    is_asked: bool,
+    asking: Option<BackgroundJob<Params>>,
+    /// The settings that were recorded last, and when they were looked at.
+    settings: Option<(Settings, Moment)>,
     /// How it goes, as of this frame.
     pub status: RecorderStatus,
 }
@@ -56,21 +74,45 @@ impl HandRecording {
         let pump = recording::record(observed, input.clone(), env.clock);
         env.runtime.spawn(pump);
         Some(Self {
+            hand: target.endpoint.to_string(),
+            began: now,
             params: Params::default(),
+            is_asked: false,
+            asking: None,
+            settings: None,
             status: recorder.status(),
             recorder,
             input,
         })
     }
 
-    /// Brings the status up to date.
-    pub(crate) fn tick(&mut self) {
+    /// Brings the status up to date, and takes in what the hand was asked for.
+    pub(crate) fn tick(&mut self, now: Moment) {
         self.status = self.recorder.status();
+        if let Some(kept) = BackgroundJob::take_from(&mut self.asking) {
+            self.params(&kept, now);
+        }
     }
 
     /// Ends the file and waits for that, at most a few seconds.
     pub(crate) fn end(self) {
         let _ended = self.recorder.end();
+    }
+
+    /// Reads what the hand keeps, for the file alone: what the views show of it, and when, stays with those who ask for that. Once.
+    pub(crate) fn ask_params(&mut self, link: &LinkHandle, env: &Env) {
+        if std::mem::replace(&mut self.is_asked, true) || !self.params.is_empty() {
+            return;
+        }
+        let link = link.clone();
+        let read = async move { rows(&link, |_, _| ()).await.params };
+        self.asking = Some(BackgroundJob::start(&env.runtime, &env.wake, read));
+    }
+
+    /// True once the hand was asked for what it keeps.
+    #[must_use]
+    pub const fn is_asked(&self) -> bool {
+        self.is_asked
     }
 
     /// Adds what the hand keeps, if that is not what was recorded last.
@@ -88,6 +130,26 @@ impl HandRecording {
         self.event(now, EventKind::Parameters, file.to_toml());
     }
 
+    /// Adds the settings of the program, if they are not what was recorded last. Where the window stands is nothing of a hand's.
+    pub(crate) fn settings(&mut self, settings: &Settings, now: Moment) {
+        let looked = self.settings.as_ref().map(|(_, at)| *at);
+        if looked.is_some_and(|at| now.since(at) < SETTINGS_EACH) {
+            return;
+        }
+        let own = Settings {
+            layout: Layout::default(),
+            zoom: Zoom::default(),
+            ..settings.clone()
+        };
+        let before = self.settings.replace((own.clone(), now));
+        if before.is_some_and(|(before, _)| before == own) {
+            return;
+        }
+        if let Ok(words) = settings_file::text(&own) {
+            self.event(now, EventKind::Settings, words);
+        }
+    }
+
     /// Adds something that happened beside the link.
     pub(crate) fn event(&self, at: Moment, kind: EventKind, words: String) {
         self.input.push(Entry::Event(Event { at, kind, words }));
@@ -95,11 +157,7 @@ impl HandRecording {
 }
 
 /// What a recording of this hand begins with, at this moment of the program and this time since 1970.
-pub(crate) fn opening(
-    endpoint: &Endpoint,
-    (now, wall): (Moment, std::time::Duration),
-    side: Side,
-) -> Opening {
+pub(crate) fn opening(endpoint: &Endpoint, (now, wall): (Moment, Duration), side: Side) -> Opening {
     let zero = wall.saturating_sub(now.since(Moment::ZERO));
     Opening {
         base_nanos: u64::try_from(zero.as_nanos()).unwrap_or_default(),
@@ -112,7 +170,7 @@ pub(crate) fn opening(
 }
 
 /// Where a recording goes that begins now: `2026-11-22/093000-rs485-ttyUSB0.mcap` in the folder of sessions.
-fn path(folder: &Path, endpoint: &Endpoint, wall: std::time::Duration) -> PathBuf {
+fn path(folder: &Path, endpoint: &Endpoint, wall: Duration) -> PathBuf {
     let time: String = stamp(wall)
         .chars()
         .skip(11)

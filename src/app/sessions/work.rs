@@ -5,11 +5,14 @@ use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
 use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::action::SessionAction;
-use crate::app::sessions::budget::to_delete;
+use crate::app::sessions::budget::{self, PlannedDeletion, SessionRoom};
+use crate::app::sessions::folder;
 use crate::app::sessions::item::SessionItem;
-use crate::app::sessions::list::{self, Looked};
+use crate::app::sessions::list::{self, Looked, OWN_MAX, OwnSession};
 use crate::app::sessions::player::{self, Opened, SessionPlayer};
 use crate::app::state::State;
+use crate::hand::Moment;
+use crate::store::calendar::since_1970;
 use crate::store::{BackgroundJob, on_thread};
 use std::collections::VecDeque;
 use std::io;
@@ -24,6 +27,14 @@ pub(crate) struct SessionWork {
     opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
     looking: Option<BackgroundJob<Looked>>,
     look_again: bool,
+    /// A recording began since the last look: what was told long enough before makes room for it.
+    makes_room: bool,
+    /// What is to go was told in this run of the program.
+    has_told: bool,
+    /// The files that a person opened last, to be replayed and beside it.
+    opened: [Option<PathBuf>; 2],
+    choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
+    revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
     /// What is to be written or deleted, one after the other: of two words about a session the later must be the last in its file.
     to_write: VecDeque<FileWork>,
     writing: Option<Written>,
@@ -33,27 +44,120 @@ pub(crate) struct SessionWork {
 enum FileWork {
     /// Write what a person says of this session.
     Save(PathBuf, SessionAbout),
-    /// Delete these sessions.
-    Delete(Vec<PathBuf>),
+    /// Delete this session.
+    Delete(PathBuf),
+    /// Delete these sessions, as far as nobody cares for them by now.
+    MakeRoom(Vec<PlannedDeletion>),
+    /// Keep what was told of the sessions of this folder.
+    Tell(PathBuf, Vec<PlannedDeletion>),
 }
 
 impl SessionWork {
     /// Takes in what was read, and lets a replay go on.
     pub(crate) fn tick(&mut self, state: &mut State, env: &Env) {
         if let Some(looked) = BackgroundJob::take_from(&mut self.looking) {
-            let sessions = &mut state.sessions;
-            sessions.items = Arc::new(looked.items);
-            sessions.unread = Arc::new(looked.unread);
-            sessions.looks = false;
-            sessions.looked += 1;
-            let recorded = state.hands.shown().recording.as_ref();
-            let recorded = recorded.and_then(|recording| recording.status.path.clone());
-            let limit = state.settings.sessions.budget_bytes();
-            sessions.beyond_budget = to_delete(&sessions.items, limit, recorded.as_ref());
+            self.take_looked(looked, state);
         }
-        if std::mem::take(&mut self.look_again) && self.looking.is_none() {
+        self.follow_recordings(state);
+        if self.look_again && self.looking.is_none() {
+            self.look_again = false;
             self.look(state, env);
         }
+        self.take_opened(state);
+        self.take_folder(state);
+        self.go_on_writing(state, env);
+        if let Some(player) = &mut self.player {
+            player.tick(state, env);
+        }
+    }
+
+    /// Looks at what there is once a recording begins, so that there is room for it.
+    fn follow_recordings(&mut self, state: &mut State) {
+        let State {
+            hands,
+            sessions,
+            now,
+            ..
+        } = state;
+        let recordings = hands.iter().filter_map(|hand| hand.recording.as_ref());
+        let mut recorded = Vec::new();
+        for (recording, path) in
+            recordings.filter_map(|recording| Some((recording, recording.status.path.clone()?)))
+        {
+            sessions.own.retain(|own| own.path != path);
+            sessions.own.push(OwnSession {
+                path: path.clone(),
+                hand: recording.hand.clone(),
+                first: recording.began,
+                last: *now,
+            });
+            recorded.push(path);
+        }
+        let over = sessions.own.len().saturating_sub(OWN_MAX);
+        sessions.own.drain(..over);
+        let begins = recorded
+            .iter()
+            .any(|path| !sessions.recorded.contains(path));
+        self.makes_room |= begins;
+        self.look_again |= begins;
+        sessions.recorded = recorded;
+    }
+
+    /// Tells what has no room, and deletes what was told long enough before a recording that begins.
+    fn take_looked(&mut self, looked: Looked, state: &mut State) {
+        let sessions = &mut state.sessions;
+        sessions.items = Arc::new(looked.items);
+        sessions.unread = Arc::new(looked.unread);
+        sessions.looks = false;
+        sessions.looked += 1;
+        let opened = self.opened.iter().flatten();
+        let in_use: Vec<PathBuf> = sessions.recorded.iter().chain(opened).cloned().collect();
+        let room = SessionRoom {
+            limit: state.settings.sessions.budget_bytes(),
+            in_use: &in_use,
+        };
+        let now_unix_s = since_1970().as_secs();
+        let planned = budget::plan(&sessions.items, &room, &looked.told, now_unix_s);
+        if std::mem::take(&mut self.makes_room) {
+            let due = budget::due(&planned, &looked.told, now_unix_s);
+            let due = Some(due).filter(|due| !due.is_empty());
+            self.to_write.extend(due.map(FileWork::MakeRoom));
+        }
+        let is_new = planned.iter().any(|one| !looked.told.contains(one));
+        sessions.planned.clone_from(&planned);
+        if let Some(told) = self.what_to_tell(state, is_new) {
+            state.notices.push(state.now, told);
+        }
+        if planned != looked.told
+            && let Some(folder) = state.sessions.folder.clone()
+        {
+            self.to_write.push_back(FileWork::Tell(folder, planned));
+        }
+    }
+
+    /// What a person should know of what is planned: when that changes, and once in each run of the program.
+    fn what_to_tell(&mut self, state: &State, is_new: bool) -> Option<NoticeKind> {
+        let planned = &state.sessions.planned;
+        if !is_new && self.has_told {
+            return None;
+        }
+        let day = |one: &PlannedDeletion| {
+            let mut items = state.sessions.items.iter();
+            let item = items.find(|item| item.path == one.path)?;
+            Some(item.began().chars().take(10).collect::<String>())
+        };
+        let days = (day(planned.first()?)?, day(planned.last()?)?);
+        let due = planned.iter().min_by_key(|one| one.due_unix_s())?.due();
+        self.has_told = true;
+        Some(NoticeKind::SessionsPlanned {
+            sessions: planned.len(),
+            bytes: planned.iter().map(|one| one.bytes).sum(),
+            days,
+            due,
+        })
+    }
+
+    fn take_opened(&mut self, state: &mut State) {
         match BackgroundJob::take_from(&mut self.opening) {
             Some(Ok(_)) if is_busy(state) => {
                 state.notices.push(state.now, NoticeKind::NotReplayedNow);
@@ -62,6 +166,30 @@ impl SessionWork {
             Some(Err(refused)) => state.notices.push(state.now, refused),
             None => {}
         }
+    }
+
+    fn take_folder(&mut self, state: &mut State) {
+        match BackgroundJob::take_from(&mut self.choosing_folder) {
+            Some(Ok(folder)) => self.record_into(Some(folder), state),
+            Some(Err(why)) => {
+                state.sessions.asks_folder = true;
+                state.notices.push(state.now, why);
+            }
+            None => {}
+        }
+        if let Some(Err(why)) = BackgroundJob::take_from(&mut self.revealing) {
+            state.notices.push(state.now, why);
+        }
+    }
+
+    /// From the next recording on; the sessions of that folder are listed at once.
+    fn record_into(&mut self, folder: Option<PathBuf>, state: &mut State) {
+        state.settings.sessions.folder = folder;
+        (state.sessions.asks_folder, self.look_again) = (false, true);
+    }
+
+    /// One file after the other.
+    fn go_on_writing(&mut self, state: &mut State, env: &Env) {
         match BackgroundJob::take_from(&mut self.writing) {
             Some(Ok(deleted)) => {
                 self.look_again = true;
@@ -81,11 +209,10 @@ impl SessionWork {
         {
             self.writing = Some(match work {
                 FileWork::Save(path, about) => save(path, about, env),
-                FileWork::Delete(paths) => delete(paths, env),
+                FileWork::Delete(path) => delete(path, env),
+                FileWork::MakeRoom(planned) => make_room(planned, env),
+                FileWork::Tell(folder, planned) => tell(folder, planned, env),
             });
-        }
-        if let Some(player) = &mut self.player {
-            player.tick(state, env);
         }
     }
 
@@ -102,8 +229,14 @@ impl SessionWork {
                 state.settings.sessions.record_simulated = on;
                 state.settings.sessions.record |= on;
             }
+            SessionAction::ChooseFolder(typed) if self.choosing_folder.is_none() => {
+                self.choosing_folder = Some(folder::choose(typed, env));
+            }
+            SessionAction::DefaultFolder => self.record_into(None, state),
+            SessionAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
             SessionAction::Look => self.look(state, env),
-            SessionAction::Open(path) => self.opening = Some(player::open(path, env)),
+            SessionAction::Open(path) => self.open(path, None, env),
+            SessionAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),
             SessionAction::Close => (self.player, self.look_again) = (None, true),
             SessionAction::Name(path, name) => {
                 self.say(state, &path, |about| about.name = name);
@@ -115,12 +248,16 @@ impl SessionWork {
             SessionAction::KeepIt => state.sessions.to_delete = None,
             SessionAction::Delete => {
                 let going = state.sessions.to_delete.take();
-                self.to_write
-                    .push_back(FileWork::Delete(going.into_iter().collect()));
+                self.to_write.extend(going.map(FileWork::Delete));
             }
-            SessionAction::Tidy => {
-                let going = std::mem::take(&mut state.sessions.beyond_budget);
-                self.to_write.push_back(FileWork::Delete(going));
+            SessionAction::MakeRoom => {
+                let going = std::mem::take(&mut state.sessions.planned);
+                self.to_write.push_back(FileWork::MakeRoom(going));
+            }
+            SessionAction::KeepPlanned => {
+                for planned in std::mem::take(&mut state.sessions.planned) {
+                    self.say(state, &planned.path, |about| about.star = true);
+                }
             }
             SessionAction::EditNote(at, words) => {
                 let edited = self.player.as_mut().and_then(|player| {
@@ -132,11 +269,26 @@ impl SessionWork {
                 }
             }
             action => {
+                if let (SessionAction::Beside(Some(path)), [_, beside]) =
+                    (&action, &mut self.opened)
+                {
+                    *beside = Some(path.clone());
+                }
                 if let Some(player) = &mut self.player {
                     player.act(&action, env);
                 }
             }
         }
+    }
+
+    /// Opens a file, unless it is shown already and only another stretch of it is wanted.
+    fn open(&mut self, path: PathBuf, stretch: Option<(Moment, Moment)>, env: &Env) {
+        let shown = self.player.as_mut().filter(|player| player.path() == path);
+        if let (Some(player), Some(stretch)) = (shown, stretch) {
+            return player.show_stretch(stretch, env);
+        }
+        self.opened = [Some(path.clone()), None];
+        self.opening = Some(player::open(path, stretch, env));
     }
 
     /// Looks for sessions again.
@@ -174,23 +326,34 @@ fn save(path: PathBuf, about: SessionAbout, env: &Env) -> Written {
     BackgroundJob::start(&env.runtime, &env.wake, save)
 }
 
-fn delete(paths: Vec<PathBuf>, env: &Env) -> Written {
+fn delete(path: PathBuf, env: &Env) -> Written {
+    let place = path.clone();
+    let delete = on_thread(move || budget::delete(&place).map(|()| 1));
+    let delete = async move { delete.await.map_err(|error| (path, error)) };
+    BackgroundJob::start(&env.runtime, &env.wake, delete)
+}
+
+fn make_room(planned: Vec<PlannedDeletion>, env: &Env) -> Written {
     let delete = async move {
         let mut deleted = 0;
-        for path in paths {
-            let place = path.clone();
-            let gone = on_thread(move || {
-                std::fs::remove_file(&place)?;
-                // Not each session has one.
-                let _said = std::fs::remove_file(SessionAbout::path(&place));
-                Ok(())
-            });
-            gone.await.map_err(|error| (path, error))?;
-            deleted += 1;
+        for one in planned {
+            let path = one.path.clone();
+            let gone = on_thread(move || one.carry_out()).await;
+            deleted += usize::from(gone.map_err(|error| (path, error))?);
         }
         Ok(deleted)
     };
     BackgroundJob::start(&env.runtime, &env.wake, delete)
+}
+
+fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> Written {
+    let place = folder.clone();
+    let save = on_thread(move || Ok(budget::save_told(&folder, planned)));
+    let save = async move {
+        let saved = save.await.unwrap_or_else(|error| Err((place, error)));
+        saved.map(|()| 0)
+    };
+    BackgroundJob::start(&env.runtime, &env.wake, save)
 }
 
 /// True while something goes on at the live hand that a person must see.

@@ -2,6 +2,7 @@
 
 use crate::app::notices::NoticeKind;
 use crate::app::trials::lines::JointLines;
+use crate::hand::Moment;
 use crate::trials::recording::TrialRecording;
 use crate::trials::session::SessionHead;
 use crate::trials::{Trial, TrialPlan, TrialSummary};
@@ -98,6 +99,15 @@ pub struct TrialSession {
 }
 
 impl TrialSession {
+    /// From the closing command of a trial to its end, in the program's time; `None` if it was not run here.
+    #[must_use]
+    pub fn stretch(&self, number: usize) -> Option<(Moment, Moment)> {
+        let mut trials = self.trials.iter();
+        let recording = &trials.find(|own| own.summary.number == number)?.recording;
+        let end = recording.marks().last()?.at;
+        Some((recording.zero(), end))
+    }
+
     /// Drops the samples of its oldest trials, until so many rows less are held.
     fn drop_rows(&mut self, over: &mut usize) {
         let is_in_files = self.origin.is_in_files();

@@ -1,9 +1,11 @@
 //! `export`: a session, or a stretch of it, in a format of others; `recover`: a damaged one made whole again.
 
 use crate::cli::out::{Out, WrongUsage, say};
+use crate::cli::recordings::picture;
 use crate::cli::recordings::session_file::{self, FileArgs, StretchArgs, lost};
 use crate::record::export::lerobot::LeRobotPlan;
 use crate::record::export::{ExportError, Exported, csv, cut, lerobot, parquet, rosbag};
+use crate::record::file::SessionFile;
 use anyhow::{anyhow, bail};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -52,6 +54,9 @@ struct FormArgs {
     /// A LeRobot v3.0 data set without video
     #[arg(long)]
     lerobot: bool,
+    /// A picture of the window, its plots over the stretch
+    #[arg(long)]
+    png: bool,
 }
 
 #[derive(Debug, clap::Args)]
@@ -86,6 +91,9 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     let file = session_file::open(&args.file.file)?;
     let stretch = args.stretch.of(&file)?;
     let form = &args.form;
+    if form.png {
+        return picture(out, args, &file);
+    }
     let (done, what) = if form.csv {
         (csv::write(&file, stretch, &args.out), "lines")
     } else if form.parquet {
@@ -103,6 +111,21 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         say(&format!("{} is damaged: {words}", args.file.file.display()));
     }
     let line = format!("{} {what} in {}", exported.rows, args.out.display());
+    out.result(args.json, &as_json(&args.out, exported), [line])
+}
+
+/// Draws the window.
+fn picture(out: &mut Out, args: &ExportArgs, file: &SessionFile) -> anyhow::Result<()> {
+    let drawn = picture::draw(file, args.stretch.of(file)?, &args.out);
+    drawn.map_err(|error| match error.downcast() {
+        Ok(error) => told(error),
+        Err(error) => error,
+    })?;
+    let exported = Exported {
+        rows: 1,
+        ..Exported::default()
+    };
+    let line = format!("1 picture in {}", args.out.display());
     out.result(args.json, &as_json(&args.out, exported), [line])
 }
 

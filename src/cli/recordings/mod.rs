@@ -2,6 +2,7 @@
 
 pub(crate) mod export;
 pub(crate) mod info;
+pub(crate) mod picture;
 pub(crate) mod record;
 pub(crate) mod replay;
 pub(crate) mod session_file;

@@ -181,7 +181,7 @@ impl Overview {
                     .and_then(|word| word.parse().ok());
                 self.counts.missing += number.unwrap_or(0);
             }
-            EventKind::Parameters | EventKind::Person => return,
+            EventKind::Parameters | EventKind::Settings | EventKind::Person => return,
             _ => {}
         }
         self.mark(FileMark {

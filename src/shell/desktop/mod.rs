@@ -3,6 +3,7 @@
 pub(crate) mod card;
 pub(crate) mod dialog;
 pub(crate) mod failure;
+pub(crate) mod file_manager;
 pub(crate) mod gl;
 pub(crate) mod icon;
 pub(crate) mod libraries;

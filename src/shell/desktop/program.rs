@@ -12,6 +12,7 @@ use crate::hand::Moment;
 use crate::link::Clock;
 use crate::shell::Cockpit;
 use crate::shell::desktop::dialog::NativeDialog;
+use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
 use egui::{Vec2, ViewportBuilder, ViewportCommand};
@@ -100,6 +101,7 @@ impl Program {
             clock,
             wake,
             files: Arc::new(NativeDialog),
+            reveal: Arc::new(file_manager::show),
             settings_path: start.settings_path,
             documents: documents(),
         };

@@ -5,8 +5,10 @@ use crate::app::action::Action;
 use crate::app::connect::SimDial;
 use crate::app::env::Env;
 use crate::app::files::choose::NoChoice;
+use crate::app::files::reveal::no_reveal;
 use crate::app::params::action::ParamAction;
 use crate::app::program::App;
+use crate::app::sessions::SessionAction;
 use crate::app::settings::Settings;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
@@ -20,6 +22,7 @@ use crate::shell::headless::snap::snap;
 use crate::transport::Endpoint;
 use crate::trials::{Limits, TrialGrid, TrialPlan};
 use crate::ui::View;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use tempfile::TempDir;
@@ -31,6 +34,8 @@ pub const STEP: Duration = Duration::from_millis(20);
 const ARM_WITHIN: Duration = Duration::from_millis(400);
 /// A small grid of grasps takes less.
 const GRASPS_WITHIN: Duration = Duration::from_secs(300);
+/// Opening a session and going to a moment in it: a long one is read from a slow disk.
+const REPLAYED_WITHIN: Duration = Duration::from_secs(60);
 /// A hand that is there answers long before.
 pub const ANSWER_WITHIN: Duration = Duration::from_secs(3);
 
@@ -71,6 +76,14 @@ pub enum DriveError {
         endpoint: Endpoint,
         /// Why it is not there.
         trouble: LinkTrouble,
+    },
+    /// A session was not opened in time, or not at all.
+    #[error("{} was not opened within {within_s} s", path.display())]
+    NotReplayed {
+        /// The file.
+        path: PathBuf,
+        /// How long was waited.
+        within_s: u64,
     },
     /// Nothing at all was heard in time.
     #[error(
@@ -138,6 +151,7 @@ impl Driver {
             dial: Arc::new(dial),
             wake: Arc::new(|| ()),
             files: Arc::new(NoChoice),
+            reveal: no_reveal(),
             settings_path,
             documents: None,
         };
@@ -248,6 +262,34 @@ impl Driver {
         while !so(self.cockpit.state()) && self.now().since(begun) < within {
             self.step(STEP);
         }
+    }
+
+    /// Replays a session: shows its hand as it was at the end of this stretch, and in the plots just the stretch.
+    ///
+    /// # Errors
+    /// [`DriveError::NotReplayed`].
+    pub fn replay(
+        &mut self,
+        path: PathBuf,
+        (from, to): (Moment, Moment),
+    ) -> Result<(), DriveError> {
+        let within_s = REPLAYED_WITHIN.as_secs();
+        let open = SessionAction::OpenAt(path.clone(), (from, to));
+        self.act(Action::Session(open));
+        self.until(REPLAYED_WITHIN, |state| state.timeline.is_some());
+        self.act(Action::Session(SessionAction::Seek(to)));
+        let is_there = |state: &State| {
+            let line = state.timeline.as_ref();
+            line.is_some_and(|line| line.at == to && !line.waits)
+        };
+        self.until(REPLAYED_WITHIN, is_there);
+        if !is_there(self.cockpit.state()) {
+            return Err(DriveError::NotReplayed { path, within_s });
+        }
+        // The plots begin anew with a hand they see for the first time.
+        self.hold_still();
+        self.cockpit.show_stretch((from, to));
+        Ok(())
     }
 
     /// Reads what the hand keeps, and waits for it.

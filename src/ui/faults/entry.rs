@@ -6,10 +6,16 @@ use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
+use crate::ui::sessions::stretch::ReplayedStretch;
 use crate::ui::text::{Text, faults, notices, words};
 use crate::ui::theme;
 use egui::{CornerRadius, Frame, Margin, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use std::time::Duration;
 
+/// Of a fault that stays, so much is replayed.
+const SHOWN: Duration = Duration::from_secs(10);
+/// So much after a fault is replayed, too.
+const AFTER: Duration = Duration::from_secs(2);
 /// Size of the number on a tab.
 const FAULT_BADGE: f32 = 16.0;
 
@@ -136,25 +142,35 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
 }
 
 /// Times, and the way to the recording of it, if there is one.
-fn foot_ui(ui: &mut Ui, pane: &Pane<'_>, entry: &FaultEntry) -> Option<RecordingId> {
+fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<RecordingId> {
     let look = pane.look;
     let text = times(pane, entry);
     let recorder = &pane.state.hand().recorder;
     let recording = recorder.of(entry.dof, entry.what, entry.since);
-    if text.is_empty() && recording.is_none() {
-        return None;
-    }
+    let mut replay = None;
     let pressed = ui.horizontal_wrapped(|ui| {
         if !text.is_empty() {
             kit::say_ui(ui, &text, look.palette.muted);
         }
-        recording.filter(|_| {
+        let recording = recording.filter(|_| {
             let words = look.say(faults::RECORDING);
             let name = format!("{words}: {}", title(pane, entry.dof, entry.what));
             let button = Button::new(words, look.tip(faults::RECORDING_OPEN));
             button.named(&name).ui(ui, look).clicked()
-        })
+        });
+        let hand = pane.state.hand().endpoint.as_ref().map(ToString::to_string);
+        let stretch = ReplayedStretch {
+            title: &title(pane, entry.dof, entry.what),
+            hand: &hand.unwrap_or_default(),
+            stretch: Some((
+                entry.since,
+                entry.last.min(entry.since.plus(SHOWN)).plus(AFTER),
+            )),
+        };
+        replay = stretch.ui(ui, pane);
+        recording
     });
+    pane.actions.extend(replay.map(Action::Session));
     pressed.inner.map(|recording| recording.id)
 }
 

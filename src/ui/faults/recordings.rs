@@ -13,6 +13,7 @@ use crate::ui::plots;
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::plots::panels::{self, PANELS, PanelLine};
 use crate::ui::plots::times::Times;
+use crate::ui::sessions::stretch::ReplayedStretch;
 use crate::ui::text::{device, faults};
 use crate::ui::theme;
 use egui::{Panel, ScrollArea, Stroke, Ui};
@@ -278,7 +279,7 @@ fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {
 }
 
 /// One recording of the list. True if it is to be opened.
-fn row_ui(ui: &mut Ui, pane: &Pane<'_>, recording: &Recording) -> bool {
+fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) -> bool {
     let look = pane.look;
     let palette = look.palette;
     let row = ui.horizontal(|ui| {
@@ -287,6 +288,14 @@ fn row_ui(ui: &mut Ui, pane: &Pane<'_>, recording: &Recording) -> bool {
         let name = format!("{text}: {title}");
         let open = Button::new(text, look.tip(faults::RECORDING_OPEN)).named(&name);
         let pressed = open.ui(ui, look).clicked();
+        let from = recording.fault().map(|fault| fault.at);
+        let stretch = ReplayedStretch {
+            title: &title,
+            hand: &recording.hand,
+            stretch: from.map(|from| (from, recording.to)),
+        };
+        let replay = stretch.ui(ui, pane).map(Action::Session);
+        pane.actions.extend(replay);
         let at = kit::lamp_ui(ui, None);
         fault_entry::mark(ui, at, palette.warn);
         ui.vertical(|ui| {

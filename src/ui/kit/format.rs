@@ -5,6 +5,25 @@ use std::time::Duration;
 /// What is shown for a value that is not known.
 pub(crate) const UNKNOWN: &str = "-";
 
+/// Gigabytes.
+#[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
+pub(crate) fn giga(bytes: u64) -> f64 {
+    bytes as f64 / 1e9
+}
+
+/// What several files need, `345.6 MB` or `1.23 GB`.
+pub(crate) fn size(bytes: u64) -> String {
+    match bytes {
+        0..1_000_000_000 => megabytes(bytes),
+        _ => format!("{:.2} GB", giga(bytes)),
+    }
+}
+
+/// The size of a file, `3.4 MB`.
+pub(crate) fn megabytes(bytes: u64) -> String {
+    format!("{:.1} MB", giga(bytes) * 1000.0)
+}
+
 /// A whole number, right-aligned in `width`, or "-".
 pub(crate) fn whole(value: Option<i64>, width: usize) -> String {
     value.map_or_else(

@@ -19,6 +19,7 @@ use crate::ui::kit::{self, Look, Pane, dash};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartResponse, ChartView, Points};
 use crate::ui::plots::cursors::Cursors;
 use crate::ui::plots::panels::{PANELS, Panel, PanelLine};
+use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::Times;
 use crate::ui::text::panels as text;
 use crate::ui::theme;
@@ -61,6 +62,11 @@ impl PlotView {
             head::legend_ui(ui, pane.look, self);
             self.body_ui(ui, pane);
         });
+    }
+
+    /// Shows just this stretch of time.
+    pub(crate) const fn pin(&mut self, span: TimeSpan) {
+        self.view.time.pin(span);
     }
 
     /// Time went on; nothing that was chosen for one hand is kept for another.

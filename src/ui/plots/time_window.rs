@@ -68,6 +68,11 @@ impl TimeWindow {
         self.held = None;
     }
 
+    /// Shows just this stretch, wherever the measurements end.
+    pub(crate) const fn pin(&mut self, span: TimeSpan) {
+        self.held = Some(span);
+    }
+
     /// Shows this stretch.
     pub(crate) fn show(&mut self, (from, to): TimeSpan) {
         let width = (to - from).clamp(SHORTEST_S, LONGEST_S);

@@ -1,14 +1,15 @@
 //! The view of sessions: which are on disk, found, named, starred, replayed and deleted.
 pub(crate) mod beside;
 pub(crate) mod marks;
+pub(crate) mod stretch;
 pub(crate) mod strip;
 pub(crate) mod table;
 
 use crate::app::action::Action;
 use crate::app::sessions::{SessionAction, SessionItem};
 use crate::app::state::State;
-use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane};
+use crate::ui::kit::path_field::{folder_path_ui, path_ui};
+use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, format};
 use crate::ui::text::sessions;
 use egui::Ui;
 
@@ -35,6 +36,7 @@ impl SessionsView {
                 let open = SessionAction::Open(path);
                 pane.actions.push(Action::Session(open));
             }
+            folder_ui(ui, pane);
             foot_ui(ui, pane);
             self.list_ui(ui, pane);
         });
@@ -89,6 +91,38 @@ impl SessionsView {
     }
 }
 
+/// Where sessions lie, and what changes that.
+fn folder_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    ui.horizontal(|ui| {
+        kit::right_ui(ui, |ui| {
+            let is_default = pane.state.settings.sessions.folder.is_none();
+            let default = Button::said(look, sessions::FOLDER_DEFAULT);
+            let default = default.disabled_if(is_default, look.say(sessions::FOLDER_IS_DEFAULT));
+            let action = Action::Session(SessionAction::DefaultFolder);
+            default.sends(ui, pane, action);
+            let change = Button::said(look, sessions::FOLDER_CHANGE);
+            let action = Action::Session(SessionAction::ChooseFolder(None));
+            change.sends(ui, pane, action);
+            kit::left_ui(ui, |ui| {
+                Label::muted(look, sessions::FOLDER).ui(ui);
+                let folder = pane.state.sessions.folder.as_ref();
+                let folder = folder.map(|folder| folder.display().to_string());
+                let folder = folder.unwrap_or_else(|| "-".into());
+                let label = Label::new(&folder, look.palette.text);
+                let label = label.named(look.say(sessions::FOLDER)).ui(ui);
+                label.on_hover_text(look.tip(sessions::FOLDER));
+            });
+        });
+    });
+    if pane.state.sessions.asks_folder
+        && let Some(path) = folder_path_ui(ui, look)
+    {
+        let choose = SessionAction::ChooseFolder(Some(path));
+        pane.actions.push(Action::Session(choose));
+    }
+}
+
 /// How much room the sessions need, and what can go.
 fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
@@ -98,14 +132,11 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
     let bytes: u64 = state.items.iter().map(|item| item.bytes).sum();
     let budget = pane.state.settings.sessions.budget_gb;
-    let used = format!("{:.2}", table::giga(bytes));
+    let used = format::size(bytes);
     ui.horizontal_wrapped(|ui| {
         let parts: [&dyn std::fmt::Display; 3] = [&state.items.len(), &used, &budget];
         let total = look.fill(sessions::TOTAL, &parts);
-        let folder = state.folder.as_ref();
-        let folder = folder.map(|folder| folder.display().to_string());
-        let label = Label::new(&total, look.palette.muted).small().ui(ui);
-        label.on_hover_text(folder.unwrap_or_default());
+        Label::new(&total, look.palette.muted).small().ui(ui);
         if !state.unread.is_empty() {
             let words = look.fill(sessions::UNREAD, &[&state.unread.len()]);
             let why = state.unread.iter().take(8);
@@ -114,14 +145,27 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             let label = Label::new(&words, look.palette.warn).small().ui(ui);
             label.on_hover_text(why.join("\n"));
         }
-        let going = state.beyond_budget.len();
-        if going > 0 {
-            let words = look.fill(sessions::BEYOND, &[&going]);
-            Label::new(&words, look.palette.warn).small().ui(ui);
-            let tidy = Button::said(look, sessions::TIDY);
-            tidy.sends(ui, pane, Action::Session(SessionAction::Tidy));
-        }
+        planned_ui(ui, pane);
     });
+}
+
+/// What goes to make room, and how that is kept from happening.
+fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (look, state) = (pane.look, &pane.state.sessions);
+    let Some(first) = state.planned.iter().min_by_key(|one| one.due_unix_s()) else {
+        return;
+    };
+    let bytes = state.planned.iter().map(|one| one.bytes).sum();
+    let parts: [&dyn std::fmt::Display; 3] =
+        [&state.planned.len(), &format::size(bytes), &first.due()];
+    let words = look.fill(sessions::BEYOND, &parts);
+    Label::new(&words, look.palette.warn).small().ui(ui);
+    for (text, action) in [
+        (sessions::ROOM_KEEP, SessionAction::KeepPlanned),
+        (sessions::ROOM_NOW, SessionAction::MakeRoom),
+    ] {
+        Button::said(look, text).sends(ui, pane, Action::Session(action));
+    }
 }
 
 /// The question before a session is deleted.

@@ -14,31 +14,39 @@ const ROW: f32 = 32.0;
 /// Characters of a name.
 const NAME_MAX: usize = 80;
 
-/// The columns: title and width; the name takes what is left.
+/// The least width of a name.
+const NAME: f32 = 140.0;
+/// The strip of force where there is much room, and where there is little.
+const STRIP: (f32, f32) = (48.0, 112.0);
+
+/// The columns: title and width; the strip of force takes what it can have beside a name, the name what is left then.
 const COLUMNS: [(Text, f32); 10] = [
-    (sessions::STAR, 44.0),
+    (sessions::STAR, 36.0),
     (sessions::NAME, 0.0),
     (sessions::BEGAN, 132.0),
-    (sessions::LENGTH, 76.0),
-    (sessions::FORCE, 112.0),
+    (sessions::LENGTH, 84.0),
+    (sessions::FORCE, STRIP.0),
     (sessions::FAULTS, 52.0),
     (sessions::TRIALS, 52.0),
     (sessions::NOTES, 52.0),
     (sessions::SIZE, 72.0),
-    (sessions::REPLAY, 118.0),
+    (sessions::REPLAY, 100.0),
 ];
 
 /// Draws the table.
 pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, items: &[&SessionItem]) {
     let look = pane.look;
+    ui.spacing_mut().item_spacing.x = theme::STEP;
+    let strip = strip_width(ui.available_width());
     let mut table = TableBuilder::new(ui)
         .id_salt("recorded")
         .striped(true)
         .cell_layout(Layout::left_to_right(Align::Center))
         .auto_shrink([false, false]);
-    for (_, width) in COLUMNS {
+    for (title, width) in COLUMNS {
         table = table.column(match width {
-            0.0 => Column::remainder().at_least(140.0).clip(true),
+            0.0 => Column::remainder().at_least(NAME).clip(true),
+            _ if title == sessions::FORCE => Column::exact(strip),
             width => Column::exact(width),
         });
     }
@@ -63,6 +71,13 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, items: &[&SessionItem])
             }
         });
     });
+}
+
+/// How wide the strip of force is, so that all columns fit in the smallest window.
+fn strip_width(room: f32) -> f32 {
+    let others = COLUMNS.iter().map(|(_, width)| width + theme::STEP);
+    let taken = others.sum::<f32>() - STRIP.0 + NAME;
+    (room - taken - theme::GAP).clamp(STRIP.0, STRIP.1)
 }
 
 fn cell_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem, column: usize) {
@@ -97,19 +112,25 @@ fn cell_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem, column: usize) 
             let notes = item.notes().len();
             count(ui, u64::try_from(notes).unwrap_or_default(), palette.text);
         }
-        8 => number(
-            ui,
-            &format!("{:.1} MB", giga(item.bytes) * 1000.0),
-            palette.muted,
-        ),
+        8 => size_ui(ui, pane, item),
         _ => ends_ui(ui, pane, item),
     }
 }
 
-/// Gigabytes.
-#[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
-pub(crate) fn giga(bytes: u64) -> f64 {
-    bytes as f64 / 1e9
+/// The size; told apart where it goes to make room.
+fn size_ui(ui: &mut Ui, pane: &Pane<'_>, item: &SessionItem) {
+    let look = pane.look;
+    let mut planned = pane.state.sessions.planned.iter();
+    let planned = planned.find(|planned| planned.path == item.path);
+    let color = match planned {
+        Some(_) => look.palette.warn,
+        None => look.palette.muted,
+    };
+    let size = format::megabytes(item.bytes);
+    let label = Label::new(&size, color).number().ui(ui);
+    if let Some(planned) = planned {
+        label.on_hover_text(look.fill(sessions::GOES, &[&planned.due()]));
+    }
 }
 
 fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
@@ -139,10 +160,9 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
             about = format!("{}  {about}", look.say(sessions::SIMULATED));
         }
         let mut color = look.palette.muted;
-        let recording = pane.state.hand().recording.as_ref();
-        let own = recording.and_then(|recording| recording.status.path.as_ref());
+        let is_recorded = pane.state.sessions.recorded.contains(&item.path);
         let state = match item.closed {
-            _ if own == Some(&item.path) => Some((sessions::RECORDS_NOW, look.palette.ok)),
+            _ if is_recorded => Some((sessions::RECORDS_NOW, look.palette.ok)),
             true => None,
             false => Some((sessions::UNCLOSED, look.palette.warn)),
         };
@@ -178,7 +198,14 @@ fn ends_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
         }
         let reveal = ui.button(look.say(sessions::REVEAL));
         if reveal.on_hover_text(look.tip(sessions::REVEAL)).clicked() {
+            let reveal = SessionAction::Reveal(item.path.clone());
+            pane.actions.push(Action::Session(reveal));
+            ui.close();
+        }
+        let copy = ui.button(look.say(sessions::COPY_PATH));
+        if copy.on_hover_text(look.tip(sessions::COPY_PATH)).clicked() {
             ui.copy_text(item.path.display().to_string());
+            ui.close();
         }
         let delete = ui.button(look.say(sessions::DELETE));
         if delete.on_hover_text(look.tip(sessions::DELETE)).clicked() {

@@ -160,6 +160,10 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotSaved { path, message } => {
             of(window::NOT_SAVED, path, &errors::system(look, message))
         }
+        NoticeKind::NotRevealed { path, message } => {
+            let why = errors::system(look, message);
+            look.fill(sessions::NOT_REVEALED, &[&why, &path.display()])
+        }
         NoticeKind::SessionRefused { path, why } => {
             let why = match why {
                 OpenError::Unreadable { message } => errors::system(look, message),
@@ -171,6 +175,15 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::NotReplayedNow => look.say(sessions::NOT_NOW).to_owned(),
         NoticeKind::Recorded => look.say(sessions::IS_RECORDING).to_owned(),
+        NoticeKind::SessionsPlanned {
+            sessions: count,
+            bytes,
+            days: (first, last),
+            due,
+        } => {
+            let size = format::size(*bytes);
+            look.fill(sessions::PLANNED, &[count, &size, first, last, due])
+        }
         NoticeKind::SessionsDeleted { sessions: count } => look.told(sessions::DELETED, count),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),

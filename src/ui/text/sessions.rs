@@ -8,6 +8,12 @@ texts! {
     FIND_NONE: "No session has these words.", "没有包含这些文字的会话。";
     NONE: "No session has been recorded yet. What a hand does is recorded here by itself; built-in hands only if you ask for it.", "还没有录制的会话。连接真实灵巧手后会自动录制；仿真手只在您要求时录制。";
     NOWHERE: "There is no folder to record into: this computer names no documents of yours.", "没有可供录制的文件夹：此计算机未提供您的文档目录。";
+    FOLDER: "Folder", "文件夹", "Where sessions are recorded. A recording that runs stays in its file; the next goes into a newly chosen folder.", "会话的录制位置。正在进行的录制保留在原文件中；下一次录制使用新文件夹。";
+    FOLDER_CHANGE: "Change ...", "更改……", "Chooses the folder for sessions.", "选择会话文件夹。";
+    FOLDER_DEFAULT: "Default", "默认", "Records into your documents again.", "恢复录制到您的文档目录。";
+    FOLDER_IS_DEFAULT: "This is the default folder.", "已是默认文件夹。";
+    FOLDER_PATH: "Path of the folder", "文件夹路径", "type the path of the folder here", "在此输入文件夹路径";
+    FOLDER_TAKE: "Record here", "录制到此处", "Records into the folder that was typed. Enter does the same.", "录制到所输入的文件夹。按回车作用相同。";
     LOOKS: "Looking for sessions ...", "正在查找会话……";
     OPEN_OTHER: "Another file", "其他文件", "Opens a recording by its path; it can also be dropped onto the window.", "按路径打开录制文件；也可将文件拖入窗口。";
 
@@ -22,9 +28,13 @@ texts! {
     STAR: "Keep", "收藏", "A session with a star, a name or notes is never deleted to make room.", "带星标、名称或备注的会话不会为腾出空间而被删除。";
     UNSTAR: "Kept: press to take the star away.", "已收藏：按下取消星标。";
     REPLAY: "Replay", "回放", "Shows this session in the whole window. The hand stays connected behind it.", "在整个窗口中回放此会话。灵巧手在后台保持连接。";
+    REPLAY_STRETCH: "Replay", "回放", "Replays the recorded session from two seconds before, this stretch again and again.", "从此前两秒开始循环回放录制会话的这一段。";
+    REPLAY_NONE: "No session of this run of the program holds it.", "本次运行录制的会话中没有这一段。";
     MORE: "More", "更多", "Rename, show in the folder, delete.", "重命名、打开所在文件夹、删除。";
     RENAME: "Name of the session", "会话名称", "a name of your own", "自定义名称";
-    REVEAL: "Copy path", "复制路径", "Copies where the file lies.", "复制文件所在位置。";
+    REVEAL: "Show in folder", "在文件夹中显示", "Shows the file in the system's file manager.", "在系统文件管理器中显示此文件。";
+    NOT_REVEALED: "The file manager did not start: {}. The file is {}", "无法启动文件管理器：{}。文件位于 {}";
+    COPY_PATH: "Copy path", "复制路径", "Copies where the file lies.", "复制文件所在位置。";
     DELETE: "Delete ...", "删除……", "Asks before anything is deleted.", "删除前会先询问。";
     DELETE_TITLE: "Delete this session?", "删除此会话？";
     DELETE_WHAT: "The recording of {} is lost for good.", "{} 的录制将永久丢失。";
@@ -34,9 +44,12 @@ texts! {
     RECORDS_NOW: "is being recorded", "正在录制";
     SIMULATED: "simulated", "仿真";
     UNREAD: "{} files here cannot be read.", "此处有 {} 个文件无法读取。";
-    TOTAL: "{} sessions, {} of {} GB", "{} 个会话，已用 {} GB，共 {} GB";
-    BEYOND: "They need more room than they may. The {} oldest without star, name or notes can go.", "占用空间超出限额。可删除最早的 {} 个没有星标、名称或备注的会话。";
-    TIDY: "Delete those", "删除这些会话", "Deletes the oldest sessions without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的会话，直到不超限额。";
+    TOTAL: "Sessions: {}. Room: {} of {} GB.", "会话：{} 个。空间：已用 {}，共 {} GB。";
+    PLANNED: "Recorded sessions need more room than they may. The {} oldest without star, name or notes ({}, recorded {} to {}) are deleted when a recording begins after {} UTC. The view Sessions shows them and keeps them if you like.", "录制的会话占用空间超出限额。最早的 {} 个没有星标、名称或备注的会话（{}，录制于 {} 至 {}）将在 {} UTC 之后开始录制时删除。可在“会话”视图中查看并保留。";
+    BEYOND: "More than fits: the {} oldest ({}) go when a recording begins after {} UTC.", "超出限额：最早的 {} 个会话（{}）将在 {} UTC 之后开始录制时删除。";
+    GOES: "Goes to make room, not before {} UTC. A star, a name or a note keeps it.", "为腾出空间将被删除，不早于 {} UTC。星标、名称或备注可将其保留。";
+    ROOM_NOW: "Delete now", "立即删除", "Deletes the oldest sessions without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的会话，直到不超限额。";
+    ROOM_KEEP: "Keep them", "全部保留", "Gives each of them a star, so that none is deleted by itself.", "为这些会话全部加星标，使其不会被自动删除。";
 
     RECORDING: "Recording", "录制中", "What the hand says and what it is told goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
     NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is told.", "按下开始录制灵巧手的反馈与指令。";

@@ -248,6 +248,7 @@ mod tests {
                 (palette.on_strong, palette.stop),
                 (palette.on_strong, palette.stop_hover),
                 (palette.on_accent, palette.simulated),
+                (palette.on_accent, palette.warn),
                 (palette.on_armed, palette.armed),
             ] {
                 let found = contrast(text, ground);

@@ -71,7 +71,8 @@ impl CompareView {
         let room = ui.available_size();
         let table = Panel::bottom("trial table");
         kit::bare(table, room.y * 0.48, theme::GAP_TOP).show(ui, |ui| {
-            self.table.ui(ui, pane, &comparison, &mut self.strong);
+            let replay = self.table.ui(ui, pane, &comparison, &mut self.strong);
+            pane.actions.extend(replay.map(Action::Session));
         });
         let width = (room.x * 0.36).clamp(256.0, 440.0);
         kit::bare(Panel::right("best"), width, theme::GAP_LEFT).show(ui, |ui| {

@@ -1,9 +1,11 @@
 //! What was measured, one row a trial and joint. Sorts, measures nothing.
 
+use crate::app::sessions::SessionAction;
 use crate::app::settings::Language;
 use crate::app::trials::{ComparedRow, Comparison, RowKey};
 use crate::trials::columns::{COLUMNS, Metric};
 use crate::ui::kit::{self, Label, Pane, dash};
+use crate::ui::sessions::stretch::ReplayedStretch;
 use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
@@ -14,6 +16,9 @@ use egui::{
     Align, Color32, Layout, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2,
 };
 use egui_extras::{Column, TableBuilder, TableRow};
+
+/// Height of a row.
+const ROW: f32 = 20.0;
 
 /// What rows can be sorted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -41,6 +46,12 @@ pub(crate) struct TableView {
     is_old: bool,
 }
 
+/// What was pressed in it.
+struct Pressed<'a> {
+    strong: &'a mut Option<TrialKey>,
+    replay: Option<SessionAction>,
+}
+
 /// What every part of the table is drawn with.
 struct TrialSheet<'a, 'b> {
     pane: &'a Pane<'b>,
@@ -53,14 +64,14 @@ impl TableView {
         self.is_old = true;
     }
 
-    /// Draws the table over all of `ui`. A pressed row stands out in the curves.
+    /// Draws the table over all of `ui`. A pressed row stands out in the curves; what replays a trial is given back.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
         pane: &Pane<'_>,
         comparison: &Comparison,
         strong: &mut Option<TrialKey>,
-    ) {
+    ) -> Option<SessionAction> {
         let sheet = TrialSheet { pane, comparison };
         let is_pointed = ui.rect_contains_pointer(ui.available_rect_before_wrap());
         self.sort(&sheet, is_pointed);
@@ -71,6 +82,10 @@ impl TableView {
         ui.visuals_mut().selection.bg_fill = palette.wash(palette.accent);
         ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
         let width = ui.available_width();
+        let mut pressed = Pressed {
+            strong,
+            replay: None,
+        };
         ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
             let number = Column::exact((width * 0.063).clamp(52.0, 84.0));
             let table = TableBuilder::new(ui)
@@ -84,13 +99,14 @@ impl TableView {
                 .column(Column::remainder().at_least(88.0).clip(true))
                 .header(36.0, |mut row| sheet.head_ui(&mut row, sorting));
             table.body(|body| {
-                body.rows(20.0, order.len(), |mut row| {
+                body.rows(ROW, order.len(), |mut row| {
                     if let Some(key) = order.get(row.index()) {
-                        sheet.row_ui(&mut row, *key, strong);
+                        sheet.row_ui(&mut row, *key, &mut pressed);
                     }
                 });
             });
         });
+        pressed.replay
     }
 
     /// Puts the rows in their order, only when something changed; what is new comes last while the pointer is on them.
@@ -199,12 +215,12 @@ impl<'a> TrialSheet<'a, '_> {
         }
     }
 
-    fn row_ui(&self, row: &mut TableRow<'_, '_>, place: RowKey, strong: &mut Option<TrialKey>) {
+    fn row_ui(&self, row: &mut TableRow<'_, '_>, place: RowKey, pressed: &mut Pressed<'_>) {
         let look = self.pane.look;
         let Some(seen) = self.seen(place) else { return };
         let (session, tried) = (seen.session.id, seen.trial);
         let key = Some((session, tried.number));
-        let is_chosen = *strong == key;
+        let is_chosen = *pressed.strong == key;
         row.set_selected(is_chosen);
         let kind = match tried.is_probe() {
             true => look.say(tune::PROBE).to_owned(),
@@ -232,13 +248,21 @@ impl<'a> TrialSheet<'a, '_> {
         }
         row.col(|ui| {
             ui.add_space(theme::GAP);
+            ui.spacing_mut().interact_size.y = ROW;
+            let stretch = ReplayedStretch {
+                title: &whole,
+                hand: &seen.session.head.hand,
+                stretch: seen.session.stretch(number),
+            };
+            let replay = stretch.ui(ui, self.pane);
+            pressed.replay = pressed.replay.take().or(replay);
             let end = self.end(seen);
             Label::new(&end, look.palette.muted).small().ui(ui);
         });
         let response = row.response();
         response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_chosen, &whole));
         if response.clicked() {
-            *strong = key.filter(|_| !is_chosen);
+            *pressed.strong = key.filter(|_| !is_chosen);
         }
     }
 }

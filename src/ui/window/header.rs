@@ -7,7 +7,6 @@ use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Opens, Pane, Weight, format};
-use crate::ui::sessions::table;
 use crate::ui::text::{Text, faults, keys, main, sessions, words};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -121,7 +120,7 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// How a recording goes, a line each.
 fn recording_words(look: Look, status: &RecorderStatus) -> String {
-    let mega = |bytes: u64| format!("{:.1}", table::giga(bytes) * 1000.0);
+    let mega = |bytes: u64| format!("{:.1}", format::giga(bytes) * 1000.0);
     let path = status.path.as_ref().map(|path| path.display().to_string());
     let rate = status.megabytes_an_hour();
     let rate = rate.map_or_else(|| "-".to_owned(), |rate| format!("{rate:.0}"));
@@ -174,7 +173,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let simulated = pane.state.hand().is_simulated();
     let recorded = pane.state.timeline.is_some();
     let (text, fill, color) = match (&pane.state.hand().endpoint, simulated) {
-        _ if recorded => (sessions::RECORDED, palette.warn, palette.on_armed),
+        _ if recorded => (sessions::RECORDED, palette.warn, palette.on_accent),
         (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
         (None, _) => (main::NO_HAND, palette.control, palette.muted),

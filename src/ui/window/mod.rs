@@ -67,6 +67,8 @@ const JOINTS_LEAST: f32 = 384.0;
 const SIDE_LEAST: f32 = 288.0;
 /// The least width of the plots.
 const PLOTS_LEAST: f32 = 320.0;
+/// A replay shows poses, too, where the view is as high as this.
+const REPLAY_WITH_POSES: f32 = 480.0;
 /// Height of the strip in a low window, and its least one.
 const STRIP_LEAST: f32 = 88.0;
 
@@ -115,6 +117,11 @@ impl Window {
     /// Opens a view.
     pub fn set_view(&mut self, view: View) {
         self.view = view;
+    }
+
+    /// Lets the plots show just this stretch of time, in seconds.
+    pub const fn show_stretch(&mut self, stretch: (f64, f64)) {
+        self.plots.pin(stretch);
     }
 
     /// The open view.
@@ -370,7 +377,10 @@ impl Window {
             least: STRIP_LEAST + theme::GAP,
             rest: 300.0,
         };
-        rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
+        // Under a time line, a small window has room for what was measured only; no pose can be taken there anyway.
+        if pane.state.timeline.is_none() || rect.height() >= REPLAY_WITH_POSES {
+            rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
+        }
         let side = (rect.width() * 0.4).clamp(SIDE_LEAST, 560.0);
         let side = RoomSize {
             designed: side + theme::GAP,

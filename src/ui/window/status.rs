@@ -392,7 +392,7 @@ fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     let (font, color) = (theme::body(), look.palette.text);
     let mut job = LayoutJob::simple(warning.body.clone(), font, color, ui.available_width());
     job.wrap.max_rows = 2;
-    let response = ui.add(egui::Label::new(job));
+    let response = ui.add(egui::Label::new(job).wrap());
     response.on_hover_text(&warning.body);
 }
 

@@ -538,3 +538,56 @@ fn wrong_flags_are_told_before_anything_is_done() {
     refused(&nowhere, 1, &["no hand at"]);
     assert_eq!(recorded.names(), ["session.mcap"]);
 }
+
+/// Width, height and pixels of a picture, RGB row by row.
+fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut rgb).unwrap();
+    (info.width, info.height, rgb)
+}
+
+#[test]
+fn a_picture_shows_just_the_stretch_and_a_wrong_one_makes_no_file() {
+    let recorded = record("4");
+    let draw = |from: &str, to: &str, name: &str| {
+        recorded.export(&["--png", "--from", from, "--to", to], name)
+    };
+    for (from, to, name) in [
+        ("0.5", "1.5", "a.png"),
+        ("0.5", "1.5", "b.png"),
+        ("1", "3.5", "c.png"),
+    ] {
+        let ended = draw(from, to, name).ok();
+        assert!(ended.out.contains("1 picture in"), "{}", ended.out);
+    }
+    let [a, b, c] = ["a.png", "b.png", "c.png"].map(|name| pixels(&recorded.path(name)));
+    assert_eq!((a.0, a.1), (1440, 900));
+    assert!(a == b, "the same stretch gives the same picture");
+    // The plots fill the lower middle of the window.
+    let row = 1440 * 3;
+    let plots = |picture: &(u32, u32, Vec<u8>)| {
+        let rows = picture.2.chunks_exact(row).skip(450).take(350);
+        rows.flat_map(|row| row[600 * 3..900 * 3].to_vec())
+            .collect::<Vec<u8>>()
+    };
+    let (one, other) = (plots(&a), plots(&c));
+    let differ = one.chunks_exact(3).zip(other.chunks_exact(3));
+    let differ = differ.filter(|(one, other)| one != other).count();
+    assert!(differ > 300, "{differ} pixels of the plots differ");
+    let names = recorded.names();
+    refused(&draw("3", "1", "d.png"), 1, &["--from must be before --to"]);
+    refused(
+        &draw("100", "200", "d.png"),
+        1,
+        &["nothing", "--from and --to"],
+    );
+    refused(&draw("0", "1", "a.png"), 1, &["already there", "--out"]);
+    refused(
+        &draw("0", "1", "none/a.png"),
+        1,
+        &["cannot write", "none/a.png"],
+    );
+    assert_eq!(recorded.names(), names);
+}

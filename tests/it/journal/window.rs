@@ -8,6 +8,7 @@ use futures::FutureExt as _;
 use futures::future::{BoxFuture, ready};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
+use handscope::app::files::reveal::no_reveal;
 use handscope::app::hand::{Play, Preset};
 use handscope::app::params::action::ParamAction;
 use handscope::app::params::state::SaveEnd;
@@ -131,6 +132,7 @@ impl Program {
             clock,
             dial: Arc::new(Dialled(Arc::clone(line))),
             wake: Arc::new(|| ()),
+            reveal: no_reveal(),
             files: Arc::new(InFolder(folder.path().into())),
             settings_path: Some(folder.path().join("settings.toml")),
             documents: None,

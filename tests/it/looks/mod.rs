@@ -4,7 +4,11 @@
 //! After a wanted change, `RENEW=1 cargo test --test it looks` writes what differs; look at the difference before you commit
 //! it. `RENEW=screenshots` draws the README's pictures as well: do that seldom, each one stays in the history for good.
 
+use crate::setup::recorded;
+use handscope::app::action::Action;
+use handscope::app::sessions::SessionAction;
 use handscope::app::settings::{Language, Theme};
+use handscope::hand::Moment;
 use handscope::shell::headless::canvas::Picture;
 use handscope::shell::headless::cards::SceneCard;
 use handscope::shell::headless::driver::{Driver, Scene};
@@ -101,7 +105,7 @@ const STAGES: [Stage; 8] = [
 ];
 
 /// What has a small picture.
-const PICTURES: [&str; 8] = [
+const PICTURES: [&str; 10] = [
     "live",
     "live-light",
     "touch",
@@ -110,6 +114,8 @@ const PICTURES: [&str; 8] = [
     "faults",
     "device-zh",
     "card-danger",
+    "sessions",
+    "replay-zh",
 ];
 
 /// The pictures of the README.
@@ -168,6 +174,43 @@ fn draw(
             }
         }
     }
+}
+
+/// Draws the view of sessions, and one of them replayed, in each dress.
+fn draw_sessions(wants: impl Fn(&str) -> bool, mut take: impl FnMut(String, &Picture)) {
+    let folder = tempfile::tempdir().unwrap();
+    let [_, faulty, _] = recorded::three(folder.path());
+    let scene = Scene {
+        endpoint: Endpoint::sim(),
+        size: SIZE,
+        scale: 1.0,
+        theme: Theme::Dark,
+        language: Language::En,
+    };
+    let mut driver = Driver::start(&scene).unwrap();
+    driver.connect().unwrap();
+    let now = driver.now();
+    let choose = SessionAction::ChooseFolder(Some(folder.path().into()));
+    driver.cockpit().app().act(Action::Session(choose), now);
+    driver.run_for(Duration::from_secs(2));
+    assert_eq!(driver.cockpit().state().sessions.items.len(), 3);
+    let mut shoot = |driver: &mut Driver, name: &str, view| {
+        for (theme, language, of_dress) in DRESSES {
+            let name = format!("{name}{of_dress}");
+            if wants(&name) {
+                driver.dress(theme, language);
+                let mut picture = driver.picture(view);
+                let labels = picture.labels.to_string();
+                let labels = labels.replace(folder.path().to_str().unwrap(), "FOLDER");
+                picture.labels = labels.parse().unwrap();
+                take(name, &picture);
+            }
+        }
+    };
+    shoot(&mut driver, "sessions", View::Sessions);
+    let stretch = [10, 20].map(|second| Moment::from_micros(second * 1_000_000));
+    driver.replay(faulty, stretch.into()).unwrap();
+    shoot(&mut driver, "replay", View::Live);
 }
 
 /// A small picture: RGB, row by row.
@@ -357,22 +400,24 @@ fn the_window_looks_as_it_is_committed() {
     let folder = root().join("tests/it/looks");
     fs::create_dir_all(&folder).unwrap();
     let (mut wrong, mut names) = (Vec::new(), Vec::new());
+    // Colours change no label.
+    let wants = |name: &str| !name.ends_with("-light") || PICTURES.contains(&name);
+    let mut take = |name: String, picture: &Picture| {
+        if !name.ends_with("-light") {
+            let path = folder.join(format!("{name}.txt"));
+            check_list(&path, &list(&picture.labels), &mut wrong);
+            names.push(path);
+        }
+        if PICTURES.contains(&name.as_str()) {
+            let path = folder.join(format!("{name}.png"));
+            check_picture(&path, &Small::of(picture), &mut wrong);
+            names.push(path);
+        }
+    };
     for stage in &STAGES {
-        // Colours change no label.
-        let wants = |name: &str| !name.ends_with("-light") || PICTURES.contains(&name);
-        draw(stage, 1.0, wants, |name, picture| {
-            if !name.ends_with("-light") {
-                let path = folder.join(format!("{name}.txt"));
-                check_list(&path, &list(&picture.labels), &mut wrong);
-                names.push(path);
-            }
-            if PICTURES.contains(&name.as_str()) {
-                let path = folder.join(format!("{name}.png"));
-                check_picture(&path, &Small::of(picture), &mut wrong);
-                names.push(path);
-            }
-        });
+        draw(stage, 1.0, wants, &mut take);
     }
+    draw_sessions(wants, &mut take);
     for kind in ["txt", "png"] {
         for path in files("tests/it/looks", kind)
             .iter()

@@ -10,6 +10,7 @@ pub(crate) mod line;
 pub(crate) mod link;
 pub(crate) mod process;
 pub(crate) mod program;
+pub(crate) mod recorded;
 pub(crate) mod skipped;
 pub(crate) mod states;
 pub(crate) mod time;

@@ -6,6 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
 use handscope::app::env::Env;
 use handscope::app::files::choose::{ChooseFile, NoChoice};
+use handscope::app::files::reveal::no_reveal;
 use handscope::app::program::App;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
@@ -26,6 +27,7 @@ pub(crate) fn env() -> Env {
         dial: Arc::new(SimDial::new(clock)),
         wake: Arc::new(|| ()),
         files: Arc::new(NoChoice),
+        reveal: no_reveal(),
         settings_path: None,
         documents: None,
     }

@@ -19,6 +19,7 @@ use handscope::sim::serve::SharedHand;
 use handscope::sim::{SimConfig, SimHand, SimHands};
 use handscope::transport::{BoxedWire, Dial, Endpoint, PortFound, Wire, pair};
 use handscope::ui::View;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -143,6 +144,8 @@ struct Room {
     socket: Arc<Socket>,
     /// Where files go that the person saves.
     folder: TempDir,
+    /// Files that were shown in the file manager.
+    revealed: Arc<Mutex<Vec<PathBuf>>>,
     /// Every state of the link there was at a frame's time, without repetitions.
     seen: Vec<LinkState>,
 }
@@ -150,12 +153,18 @@ struct Room {
 impl Room {
     fn new(config: SimConfig, settings: Settings, keeps: Keeps) -> Self {
         let folder = TempDir::new().unwrap();
+        let revealed = Arc::new(Mutex::new(Vec::new()));
+        let told = Arc::clone(&revealed);
         let mut socket = None;
         let mut program = Program::start(Time::Virtual, None, || {
             let socket = socket.insert(Arc::new(Socket::to(hand::shared(config))));
             let env = Env {
                 dial: Arc::clone(socket) as Arc<dyn Dial>,
                 files: Arc::new(InFolder(folder.path().into())),
+                reveal: Arc::new(move |path| {
+                    told.lock().unwrap().push(path.to_owned());
+                    Ok(())
+                }),
                 documents: match keeps {
                     Keeps::Nothing => None,
                     Keeps::Records => Some(folder.path().join("documents")),
@@ -175,6 +184,7 @@ impl Room {
             program,
             socket: socket.unwrap(),
             folder,
+            revealed,
             seen: Vec::new(),
         }
     }
@@ -244,6 +254,13 @@ impl Bench {
             ..Settings::default()
         };
         Self::begin(Room::new(config, settings, Keeps::Records), size)
+    }
+
+    /// A start with settings, and everything kept in the folder of saved files.
+    pub(crate) fn kept_with(config: SimConfig, change: impl FnOnce(&mut Settings)) -> Self {
+        let mut settings = Settings::default();
+        change(&mut settings);
+        Self::begin(Room::new(config, settings, Keeps::Records), LARGE)
     }
 
     /// A start with these settings; nothing is kept on disk.
@@ -826,6 +843,11 @@ impl Bench {
         self.harness.remove_cursor();
         self.run(2 * FRAME_MS);
         clicked
+    }
+
+    /// Files that were shown in the file manager.
+    pub(crate) fn revealed(&self) -> Vec<PathBuf> {
+        self.harness.state().revealed.lock().unwrap().clone()
     }
 
     /// The folder of saved files.

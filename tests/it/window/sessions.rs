@@ -1,13 +1,21 @@
 //! Sessions in the running program: recorded as they happen, listed, replayed in the same window, named and deleted.
 
 use crate::setup::window::{Bench, LARGE};
+use crate::window::tune;
 use handscope::app::action::Action;
-use handscope::app::sessions::{SessionAction, SessionItem};
+use handscope::app::sessions::recording::HandRecording;
+use handscope::app::sessions::{SessionAbout, SessionAction, SessionItem};
+use handscope::app::settings::Theme;
 use handscope::hand::Moment;
+use handscope::record::Entry;
 use handscope::record::EventKind;
+use handscope::record::Rest;
+use handscope::record::file::SessionFile;
+use handscope::record::file::reader::Stretch;
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
-use std::path::PathBuf;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 const HAND: &str = "tcp:127.0.0.1:6000?unit=1";
@@ -45,12 +53,7 @@ fn session(bench: &mut Bench, action: SessionAction) {
 
 /// Ends the recording, and gives its file.
 fn ended(bench: &mut Bench) -> PathBuf {
-    let path = |bench: &Bench| {
-        let recording = bench.state().hand().recording.as_ref()?;
-        recording.status.path.clone()
-    };
-    settle(bench, |bench| path(bench).is_some());
-    let path = path(bench).unwrap();
+    let path = recorded(bench);
     session(bench, SessionAction::Record(false));
     settle(bench, |_| {
         SessionItem::read(&path).is_ok_and(|item| item.closed)
@@ -420,9 +423,11 @@ fn nothing_of_the_live_window_is_changed_from_within_a_recording() {
     };
     let before = live(&mut bench);
     replay(&mut bench, path.clone());
+    bench.run(60);
     assert!(
         !bench.buttons_with("Open hand").is_empty(),
-        "own poses are shown"
+        "one's own poses are shown: {:?}",
+        bench.texts()
     );
     let mut plan = before.2.clone();
     plan.note = "changed".into();
@@ -471,4 +476,316 @@ fn a_note_does_not_undo_a_name_and_a_bad_file_of_words_is_kept() {
     let folder = std::fs::read_dir(about.parent().unwrap()).unwrap();
     let mut texts = folder.map(|file| std::fs::read(file.unwrap().path()).unwrap());
     assert!(texts.any(|text| text == b"name = "), "it was put aside");
+}
+
+/// The file that is being recorded, once there is one.
+fn recorded(bench: &mut Bench) -> PathBuf {
+    let path = |bench: &Bench| {
+        let recording = bench.state().hand().recording.as_ref()?;
+        recording.status.path.clone()
+    };
+    settle(bench, |bench| path(bench).is_some());
+    path(bench).unwrap()
+}
+
+#[test]
+fn a_folder_is_chosen_for_the_next_recording_and_the_running_one_stays() {
+    let mut bench = bench(Scenario::Idle);
+    let first = recorded(&mut bench);
+    let default = bench.folder().join("documents/Handscope");
+    assert!(first.starts_with(&default));
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| bench.state().sessions.looked > 0);
+    assert_eq!(bench.reading("Folder"), default.display().to_string());
+    assert!(bench.is_disabled(egui::accesskit::Role::Button, "Default"));
+    // In the place of a folder there is a file: it is told, and a path can be typed.
+    let no_folder = Some(first.join("sessions"));
+    session(&mut bench, SessionAction::ChooseFolder(no_folder));
+    settle(&mut bench, |bench| bench.shows("Path of the folder"));
+    assert!(!bench.texts_with("sessions").is_empty());
+    let typed = bench.folder().join("typed");
+    bench.type_into("Path of the folder", &typed.display().to_string());
+    bench.click_button("Record here");
+    settle(&mut bench, |bench| {
+        bench.reading("Folder") == typed.display().to_string()
+    });
+    assert!(!bench.shows("Path of the folder") && typed.is_dir());
+    assert_eq!(recorded(&mut bench), first);
+    ended(&mut bench);
+    session(&mut bench, SessionAction::Record(true));
+    assert!(recorded(&mut bench).starts_with(&typed));
+    let folder = bench.folder().to_owned();
+    bench.click_button("Change ...");
+    settle(&mut bench, |bench| {
+        bench.reading("Folder") == folder.display().to_string()
+    });
+    bench.click_button("Default");
+    settle(&mut bench, |bench| {
+        bench.reading("Folder") == default.display().to_string()
+    });
+}
+
+#[test]
+fn a_session_is_shown_in_the_file_manager_and_a_failure_is_told_with_its_path() {
+    let mut bench = bench(Scenario::Idle);
+    let path = ended(&mut bench);
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| !bench.state().sessions.items.is_empty());
+    let title = SessionItem::read(&path).unwrap().title();
+    bench.click(&format!("More: {title}"));
+    bench.run(100);
+    bench.click_button("Show in folder");
+    settle(&mut bench, |bench| !bench.revealed().is_empty());
+    assert_eq!(bench.revealed(), std::slice::from_ref(&path));
+    bench.click(&format!("More: {title}"));
+    bench.run(100);
+    let copied = bench.click_to_copy("Copy path");
+    assert_eq!(copied, Some(path.display().to_string()));
+    let gone = path.with_file_name("gone.mcap");
+    session(&mut bench, SessionAction::Reveal(gone.clone()));
+    settle(&mut bench, |bench| {
+        let told = bench.texts_with("The file manager did not start");
+        told.iter()
+            .any(|told| told.contains(&gone.display().to_string()))
+    });
+    assert_eq!(bench.revealed().len(), 1, "nothing was started");
+}
+
+/// Copies of a session in the folder of sessions: of five days, the oldest first.
+fn old_sessions(bench: &Bench, of: &Path) -> Vec<PathBuf> {
+    let folder = bench.folder().join("documents/Handscope/2020-01-01");
+    std::fs::create_dir_all(&folder).unwrap();
+    let paths = ["1", "2", "3"].map(|name| folder.join(format!("{name}.mcap")));
+    for path in &paths {
+        std::fs::copy(of, path).unwrap();
+    }
+    paths.into()
+}
+
+fn tell(bench: &Bench, path: &Path, told_unix_s: u64) {
+    let bytes = std::fs::metadata(path).unwrap().len();
+    let path = path.display();
+    let text =
+        format!("[[session]]\npath = '{path}'\nbytes = {bytes}\ntold_unix_s = {told_unix_s}\n");
+    let folder = bench.folder().join("documents/Handscope");
+    std::fs::write(folder.join("to-delete.toml"), text).unwrap();
+}
+
+#[test]
+fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begins() {
+    let config = SimConfig {
+        scenario: Scenario::Idle,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::kept_with(config, |settings| {
+        settings.endpoint = Some(HAND.into());
+        settings.sessions.budget_gb = 0.0;
+    });
+    bench.wait(2000);
+    let first = ended(&mut bench);
+    // Nobody may delete what somebody cares for.
+    let mut about = SessionAbout::load(&first).unwrap();
+    about.name = "first".into();
+    about.save(&first).unwrap();
+    // A session of some 20 MB: the least budget has no room for it.
+    let old = old_sessions(&bench, &first);
+    for path in &old {
+        let file = std::fs::OpenOptions::new().append(true).open(path).unwrap();
+        file.set_len(20_000_000).unwrap();
+    }
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| {
+        bench.state().sessions.planned.len() == 3
+    });
+    assert!(
+        !bench
+            .texts_with("Recorded sessions need more room")
+            .is_empty()
+    );
+    let told = bench.folder().join("documents/Handscope/to-delete.toml");
+    settle(&mut bench, |_| told.exists());
+    session(&mut bench, SessionAction::Record(true));
+    recorded(&mut bench);
+    bench.wait(1000);
+    assert!(old.iter().all(|path| path.exists()), "told just now");
+
+    // One of them was told long before, and one that was told has a star by now.
+    ended(&mut bench);
+    tell(&bench, &old[1], 1);
+    session(&mut bench, SessionAction::Record(true));
+    settle(&mut bench, |_| !old[1].exists());
+    assert!(old[0].exists() && old[2].exists() && first.exists());
+    assert!(!bench.texts_with("Sessions deleted").is_empty());
+    settle(&mut bench, |bench| {
+        bench.state().sessions.planned.len() == 2
+    });
+    bench.click_button("Keep them");
+    settle(&mut bench, |_| {
+        SessionItem::read(&old[2]).unwrap().about.star
+    });
+    session(&mut bench, SessionAction::Star(old[0].clone(), false));
+    settle(&mut bench, |bench| {
+        !bench.state().sessions.planned.is_empty()
+    });
+    bench.click_button("Delete now");
+    settle(&mut bench, |_| !old[0].exists());
+    assert!(old[2].exists() && first.exists());
+}
+
+/// The words of all events of a kind, in order.
+fn events(path: &Path, kind: EventKind) -> Vec<String> {
+    let file = SessionFile::open(path).unwrap();
+    let mut words = Vec::new();
+    let all = Stretch {
+        from: file.first(),
+        to: file.last(),
+        wire: false,
+    };
+    let read = file.entries(all, |entry| {
+        if let Entry::Event(event) = entry
+            && event.kind == kind
+        {
+            words.push(event.words);
+        }
+        ControlFlow::Continue(())
+    });
+    read.unwrap();
+    words
+}
+
+#[test]
+fn a_recording_tells_what_the_hand_keeps_and_the_settings_though_nobody_looked() {
+    let mut bench = bench(Scenario::Idle);
+    bench.act(Action::Theme(Theme::Light));
+    bench.wait(1500);
+    let layout = handscope::app::layout::Layout {
+        window: [1300.0, 800.0].into(),
+        ..bench.state().settings.layout
+    };
+    bench.act(Action::Layout(layout));
+    bench.wait(1500);
+    assert_eq!(bench.writes(), [], "it was only read");
+    let path = ended(&mut bench);
+    let kept = events(&path, EventKind::Parameters);
+    assert_eq!(kept.len(), 1, "{kept:?}");
+    let file = handscope::params::file::read(&kept[0]).unwrap();
+    let all = handscope::params::rows::ParamId::all();
+    assert_eq!(file.params.iter().count(), all.len());
+    let settings = events(&path, EventKind::Settings);
+    let themes = settings.iter().map(|text| {
+        let table: toml::Table = text.parse().unwrap();
+        table["theme"].as_str().unwrap().to_owned()
+    });
+    assert_eq!(themes.collect::<Vec<_>>(), ["dark", "light"]);
+    assert!(
+        SessionItem::read(&path).unwrap().marks.is_empty(),
+        "no marks of the time line"
+    );
+}
+
+#[test]
+fn a_hand_that_moves_is_asked_for_what_it_keeps_only_once_it_rests() {
+    let config = SimConfig {
+        scenario: Scenario::Grasp,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::kept(config, HAND, LARGE);
+    let (mut moved, mut asked) = (false, false);
+    for _ in 0..400 {
+        let hand = bench.state().hand();
+        moved |= hand.link.rest == Rest::Moving;
+        let was_asked = asked;
+        asked = hand.recording.as_ref().is_some_and(HandRecording::is_asked);
+        assert!(was_asked || !asked || hand.link.rest == Rest::Resting);
+        bench.wait(20);
+    }
+    assert!(moved, "it is looked at while it moves, too");
+    assert_eq!(bench.writes(), []);
+}
+
+/// Presses the first button that replays what has these words, and gives the beginning and the end of what is looped.
+fn replay_listed(bench: &mut Bench, words: &str, path: &Path) -> (Moment, Moment) {
+    // The file has what happened a quarter of a second ago.
+    std::thread::sleep(Duration::from_millis(400));
+    bench.run(60);
+    let buttons = bench.buttons_with("Replay: ");
+    let button = buttons.iter().find(|name| name.contains(words));
+    let button = button
+        .unwrap_or_else(|| panic!("{words}: {buttons:?}"))
+        .clone();
+    bench.click_first_button(&button);
+    let looped = |bench: &Bench| {
+        let line = bench.state().timeline.as_ref()?;
+        line.looped
+            .filter(|looped| looped.0 == line.at && !line.waits)
+    };
+    settle(bench, |bench| looped(bench).is_some());
+    assert_eq!(bench.state().timeline.as_ref().unwrap().path, path);
+    looped(bench).unwrap()
+}
+
+#[test]
+fn a_fault_is_replayed_from_two_seconds_before_while_its_session_is_recorded() {
+    let mut bench = bench(Scenario::Faults);
+    bench.wait(9000);
+    let path = recorded(&mut bench);
+    bench.show(View::Faults);
+    bench.run(60);
+    let fault = *bench.state().hand().faults.iter().next().unwrap();
+    let joint = "Replay: ";
+    let looped = replay_listed(&mut bench, joint, &path);
+    let mut faults = bench.live_state().hand().faults.iter();
+    let before = |since: Moment| Moment::from_micros(since.micros() - 2_000_000);
+    assert!(
+        faults.any(|fault| before(fault.since) == looped.0),
+        "{fault:?}"
+    );
+    drop(faults);
+    assert!(looped.1 > looped.0.plus(Duration::from_secs(2)));
+    // In the replay the same button goes there within the same file.
+    session(&mut bench, SessionAction::Loop(None));
+    let end = bench.state().timeline.as_ref().unwrap().last;
+    seek(&mut bench, end);
+    let again = replay_listed(&mut bench, joint, &path);
+    assert!(again.0 < end);
+}
+
+#[test]
+fn what_no_session_holds_cannot_be_replayed_and_says_so() {
+    let config = SimConfig {
+        scenario: Scenario::Faults,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::open(config, LARGE);
+    bench.wait(10_000);
+    bench.show(View::Faults);
+    bench.run(60);
+    let buttons = bench.buttons_with("Replay: ");
+    assert!(!buttons.is_empty());
+    for button in buttons {
+        assert!(bench.all_disabled(&button).into_iter().all(|is| is));
+    }
+}
+
+#[test]
+fn a_trial_is_replayed_from_two_seconds_before_its_closing_command() {
+    let config = SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::kept(config, HAND, LARGE);
+    bench.wait(1000);
+    bench.show(View::Tune);
+    bench.run(40);
+    tune::short(&mut bench);
+    tune::arm(&mut bench);
+    bench.click("Start trials");
+    tune::finish(&mut bench, 60_000);
+    let path = recorded(&mut bench);
+    bench.show(View::Compare);
+    bench.run(100);
+    let trials = &bench.state().trials.sessions[0];
+    let (close, _) = trials.stretch(trials.trials[0].summary.number).unwrap();
+    let looped = replay_listed(&mut bench, "Replay: 1 ", &path);
+    assert_eq!(looped.0.plus(Duration::from_secs(2)), close);
 }

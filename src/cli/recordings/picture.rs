@@ -1,0 +1,44 @@
+//! `export --png`: the window as it replays a session, its plots over a stretch.
+
+use crate::app::settings::{Language, Theme};
+use crate::hand::Moment;
+use crate::record::export::ExportError;
+use crate::record::file::SessionFile;
+use crate::record::file::reader::Stretch;
+use crate::shell::headless::driver::{Driver, Scene};
+use crate::shell::headless::png;
+use crate::transport::Endpoint;
+use crate::ui::View;
+use anyhow::bail;
+use std::path::Path;
+
+/// The window as it first opens.
+const SIZE: (u32, u32) = (1440, 900);
+
+/// Draws the picture. The place must be free.
+pub(crate) fn draw(file: &SessionFile, stretch: Stretch, out: &Path) -> anyhow::Result<()> {
+    let (first, last): (Moment, Moment) = (file.first(), file.last());
+    let (from, to) = (stretch.from.max(first), stretch.to.min(last));
+    if from >= to {
+        let length_s = last.since(first).as_secs_f64();
+        bail!(
+            "there is nothing to draw between --from and --to: the session is {length_s:.1} s long"
+        );
+    }
+    if out.symlink_metadata().is_ok() {
+        let path = out.to_owned();
+        return Err(ExportError::Exists { path }.into());
+    }
+    let scene = Scene {
+        // Behind a replay nothing else is to be connected.
+        endpoint: Endpoint::sim(),
+        size: SIZE,
+        scale: 1.0,
+        theme: Theme::default(),
+        language: Language::default(),
+    };
+    let mut driver = Driver::start(&scene)?;
+    driver.replay(file.path().to_owned(), (from, to))?;
+    let picture = driver.picture(View::Live);
+    Ok(png::save(out, &picture.rgba, picture.size)?)
+}
