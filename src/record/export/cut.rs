@@ -112,8 +112,11 @@ pub(crate) fn copy(
     if let Some(event) = said(damage) {
         copy.push(&Entry::Event(event))?;
     }
-    copy.writer.finish()?;
+    let end = copy.writer.finish()?;
     copy.put()?;
+    for piece in end {
+        copy.to.write_all(&piece).map_err(CopyError::Copy)?;
+    }
     copy.to.flush().map_err(CopyError::Copy)?;
     let exported = Exported {
         rows: copy.rows,

@@ -541,8 +541,10 @@ fn session() -> Vec<u8> {
         writer.push(&entry).unwrap();
         writer.flush().unwrap();
     }
-    writer.finish().unwrap();
-    writer.take_bytes()
+    let end = writer.finish().unwrap();
+    let mut bytes = writer.take_bytes();
+    bytes.extend(end.flatten());
+    bytes
 }
 
 /// A file of poses.

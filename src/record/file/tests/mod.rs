@@ -1,5 +1,8 @@
 //! Sessions written and read back: whole, cut at any byte, with flipped bits, on disks that fail.
 
+mod failing;
+mod index;
+
 use crate::hand::command::HandCommand;
 use crate::hand::kinematics::Side;
 use crate::hand::{
@@ -136,8 +139,10 @@ pub(crate) fn bytes_of(entries: &[Entry]) -> Vec<u8> {
             writer.flush().unwrap();
         }
     }
-    writer.finish().unwrap();
-    writer.take_bytes()
+    let end = writer.finish().unwrap();
+    let mut bytes = writer.take_bytes();
+    bytes.extend(end.flatten());
+    bytes
 }
 
 pub(crate) fn read(path: &Path) -> Option<(Vec<Atom>, SessionFile, Damage)> {
