@@ -2,8 +2,8 @@
 
 use crate::cli::parse::seconds;
 use crate::hand::Moment;
-use crate::record::file::SessionFile;
 use crate::record::file::reader::{Damage, OpenError, Stretch};
+use crate::record::file::{FLUSH_EACH, SessionFile};
 use anyhow::{anyhow, bail};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -52,7 +52,9 @@ pub(crate) fn open(path: &Path) -> anyhow::Result<SessionFile> {
     SessionFile::open(path).map_err(|error| {
         let what_to_do = match error {
             OpenError::Unreadable { .. } => "check the path",
-            OpenError::NotMcap => "name a session file of 'handscope record' or of the window",
+            OpenError::NotAFile | OpenError::NotMcap => {
+                "name a session file of 'handscope record' or of the window"
+            }
             OpenError::Foreign => "only sessions of Handscope can be opened",
             OpenError::Empty => "there is nothing to recover",
         };
@@ -81,7 +83,8 @@ pub(crate) fn lost(damage: Damage) -> Option<String> {
         } else {
             ("pieces", "are")
         };
-        format!("{chunks} {noun} of about a quarter of a second {verb} damaged and left out")
+        let length_s = FLUSH_EACH.as_secs_f64();
+        format!("{chunks} {noun} of about {length_s} s {verb} damaged and left out")
     });
     let bytes = (bytes > 0).then(|| format!("{bytes} bytes hold no record"));
     let words: Vec<String> = chunks.into_iter().chain(bytes).collect();

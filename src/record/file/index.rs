@@ -1,19 +1,16 @@
 //! The end of a session file: what other programs find its chunks by. While the file is written this takes some twenty bytes for
 //! each chunk, and it is written in pieces, because after a day it is longer than everything else that the recorder holds.
 
+use crate::record::file::chunk_list::{ChunkList, ListedChunk, decoded, messages_len};
 use crate::record::file::topic::Topic;
 use crate::record::file::walk::MAGIC;
-use mcap::records::{AttachmentIndex, ChunkIndex, MetadataIndex, op};
+use mcap::records::{AttachmentIndex, MetadataIndex, op};
 use std::collections::BTreeMap;
 
 /// How the chunks are compressed.
 const COMPRESSION: &str = "lz4";
 /// Bytes of a chunk's record before what was compressed: code, length, two times, two sizes, a sum, and the compression's name.
 const CHUNK_HEAD: u64 = 9 + 8 + 8 + 8 + 4 + 4 + COMPRESSION.len() as u64 + 8;
-/// Bytes of the record that tells where the messages of one channel stand, and of each message in it.
-const MESSAGES_HEAD: u64 = 9 + 2 + 4;
-const MESSAGES_EACH: u64 = 8 + 8;
-
 /// What was written so far.
 #[derive(Debug, Default)]
 pub(crate) struct FileIndex {
@@ -32,9 +29,9 @@ impl FileIndex {
     /// Adds what was written since the last time; its places count from `base`.
     pub(crate) fn add(&mut self, block: mcap::Summary, base: u64) {
         let mut coded = Vec::new();
-        let mut before = Chunk::default();
+        let mut before = ListedChunk::default();
         for index in &block.chunk_indexes {
-            let chunk = Chunk::of(index, base);
+            let chunk = ListedChunk::of(index, base);
             chunk.code(&before, &mut coded);
             before = chunk;
             self.chunk_count = self.chunk_count.saturating_add(1);
@@ -59,6 +56,16 @@ impl FileIndex {
         *times = (times.0.min(first), times.1.max(last));
     }
 
+    /// The list of what was added last, whose last attachment is its overview.
+    pub(crate) fn list(&self, before: u64, from: u64) -> ChunkList {
+        ChunkList {
+            before,
+            from,
+            overview: self.attachments.last().map_or(0, |last| last.offset),
+            coded: self.chunks.last().cloned().unwrap_or_default(),
+        }
+    }
+
     /// The end of a file whose `data` are so many bytes with this sum.
     pub(crate) fn end(self, data: u64, crc: u32) -> FileEnd {
         FileEnd {
@@ -78,142 +85,6 @@ impl FileIndex {
         let bytes = blocks.map(|block| size_of_val(block) + block.len()).sum();
         (bytes, self.chunk_count)
     }
-}
-
-/// A chunk, and how many messages of which channel it holds.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-struct Chunk {
-    offset: u64,
-    len: u64,
-    unpacked: u64,
-    first_nanos: u64,
-    last_nanos: u64,
-    messages: Vec<(u16, u64)>,
-}
-
-impl Chunk {
-    fn of(index: &ChunkIndex, base: u64) -> Self {
-        let end = index.chunk_start_offset + index.chunk_length + index.message_index_length;
-        let places = index.message_index_offsets.values().copied();
-        let ends = places.clone().skip(1).chain([end]);
-        let counts = places.zip(ends).map(|(from, to)| {
-            debug_assert_eq!((to - from - MESSAGES_HEAD) % MESSAGES_EACH, 0);
-            to.saturating_sub(from + MESSAGES_HEAD) / MESSAGES_EACH
-        });
-        let channels = index.message_index_offsets.keys().copied();
-        Self {
-            offset: base + index.chunk_start_offset,
-            len: index.chunk_length,
-            unpacked: index.uncompressed_size,
-            first_nanos: index.message_start_time,
-            last_nanos: index.message_end_time,
-            messages: channels.zip(counts).collect(),
-        }
-    }
-
-    /// Where the records after it end that tell where its messages stand.
-    fn end(&self) -> u64 {
-        self.offset + self.len + self.messages_len()
-    }
-
-    fn messages_len(&self) -> u64 {
-        let each = |(_, count): &(u16, u64)| MESSAGES_HEAD + MESSAGES_EACH * count;
-        self.messages.iter().map(each).sum()
-    }
-
-    /// Adds what differs from the chunk before.
-    fn code(&self, before: &Self, to: &mut Vec<u8>) {
-        let channels = self.messages.iter();
-        let channels = channels.fold(0, |all, (channel, _)| all | 1 << channel);
-        debug_assert!(self.messages.iter().all(|(channel, _)| *channel < 64));
-        for number in [
-            self.offset.wrapping_sub(before.end()),
-            self.len,
-            self.unpacked,
-            zigzag(self.first_nanos.wrapping_sub(before.last_nanos)),
-            self.last_nanos.wrapping_sub(self.first_nanos),
-            channels,
-        ] {
-            code(number, to);
-        }
-        for (_, count) in &self.messages {
-            code(*count, to);
-        }
-    }
-
-    /// The next of a block.
-    fn decode(before: &Self, from: &mut &[u8]) -> Option<Self> {
-        let offset = before.end().wrapping_add(decode(from)?);
-        let (len, unpacked) = (decode(from)?, decode(from)?);
-        let first_nanos = before.last_nanos.wrapping_add(unzigzag(decode(from)?));
-        let last_nanos = first_nanos.wrapping_add(decode(from)?);
-        let channels = decode(from)?;
-        let channels = (0..64).filter(|channel| channels >> channel & 1 == 1);
-        let messages = channels.map(|channel| Some((channel, decode(from)?)));
-        Some(Self {
-            offset,
-            len,
-            unpacked,
-            first_nanos,
-            last_nanos,
-            messages: messages.collect::<Option<_>>()?,
-        })
-    }
-
-    fn record(&self) -> RecordBytes {
-        let mut record = RecordBytes::default();
-        record.long(self.first_nanos);
-        record.long(self.last_nanos);
-        record.long(self.offset);
-        record.long(self.len);
-        let mut places = RecordBytes::default();
-        let mut place = self.offset + self.len;
-        for (channel, count) in &self.messages {
-            places.short(*channel);
-            places.long(place);
-            place += MESSAGES_HEAD + MESSAGES_EACH * count;
-        }
-        record.long_bytes(&places.0);
-        record.long(self.messages_len());
-        record.text(COMPRESSION);
-        record.long(self.len.saturating_sub(CHUNK_HEAD));
-        record.long(self.unpacked);
-        record
-    }
-}
-
-/// Small numbers below zero as small numbers.
-const fn zigzag(number: u64) -> u64 {
-    number << 1 ^ (number.cast_signed() >> 63).cast_unsigned()
-}
-
-const fn unzigzag(coded: u64) -> u64 {
-    coded >> 1 ^ (coded & 1).wrapping_neg()
-}
-
-/// Seven bits a byte, the lowest first; the last byte is below 128.
-fn code(mut number: u64, to: &mut Vec<u8>) {
-    loop {
-        let [low, ..] = number.to_le_bytes();
-        number >>= 7;
-        if number == 0 {
-            return to.push(low);
-        }
-        to.push(low | 128);
-    }
-}
-
-fn decode(from: &mut &[u8]) -> Option<u64> {
-    let mut number = 0;
-    for shift in (0..64).step_by(7) {
-        let (byte, rest) = from.split_first()?;
-        *from = rest;
-        number |= u64::from(byte & 127) << shift;
-        if *byte < 128 {
-            return Some(number);
-        }
-    }
-    None
 }
 
 /// The content of a record.
@@ -242,6 +113,28 @@ impl RecordBytes {
     fn text(&mut self, text: &str) {
         self.long_bytes(text.as_bytes());
     }
+}
+
+/// What the end of a file says of a chunk.
+fn chunk_record(chunk: &ListedChunk) -> RecordBytes {
+    let mut record = RecordBytes::default();
+    record.long(chunk.first_nanos);
+    record.long(chunk.last_nanos);
+    record.long(chunk.offset);
+    record.long(chunk.len);
+    let mut places = RecordBytes::default();
+    let mut place = chunk.offset + chunk.len;
+    for (channel, count) in &chunk.messages {
+        places.short(*channel);
+        places.long(place);
+        place += messages_len(*count);
+    }
+    record.long_bytes(&places.0);
+    record.long(chunk.messages_len());
+    record.text(COMPRESSION);
+    record.long(chunk.len.saturating_sub(CHUNK_HEAD));
+    record.long(chunk.unpacked);
+    record
 }
 
 /// What is written next of an end.
@@ -377,12 +270,9 @@ impl FileEnd {
     fn chunks(&mut self, block: usize, piece: &mut Vec<u8>) {
         let coded = self.index.chunks.get_mut(block).map(std::mem::take);
         let coded = coded.unwrap_or_default();
-        let (mut rest, mut before) = (&*coded, Chunk::default());
-        while let Some(chunk) = Chunk::decode(&before, &mut rest) {
-            self.put(op::CHUNK_INDEX, &chunk.record(), piece);
-            before = chunk;
+        for chunk in decoded(&coded) {
+            self.put(op::CHUNK_INDEX, &chunk_record(&chunk), piece);
         }
-        debug_assert!(rest.is_empty());
     }
 
     fn rest(&mut self, piece: &mut Vec<u8>) {

@@ -6,10 +6,9 @@ use crate::record::file::decode::EntryDecoder;
 use crate::record::file::opening::{METADATA, Opening};
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::topic::Topic;
-use crate::record::file::walk::{self, ChunkPlace, Found, MAGIC, Place, RECORD_MAX};
+use crate::record::file::walk::{self, ChunkPlace, Found, MAGIC, Place, messages};
 use crate::record::file::writer::OVERVIEW;
 use mcap::records::{Record as McapRecord, op};
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::ops::ControlFlow;
@@ -17,8 +16,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// No message of ours is longer. Small parts of a long one could take many times its room.
-const MESSAGE_MAX: usize = 1024 * 1024;
 /// No block of the overview is longer; what a longer one is about is made anew.
 pub(crate) const BLOCK_MAX: u64 = 1024 * 1024;
 
@@ -34,6 +31,9 @@ pub enum OpenError {
         /// What the system says.
         message: String,
     },
+    /// A folder, a device, a pipe.
+    #[error("it is no file, but a folder or a device")]
+    NotAFile,
     /// Not MCAP.
     #[error("it is not an MCAP file: its first bytes are others")]
     NotMcap,
@@ -67,7 +67,7 @@ pub struct SessionFile {
 /// What of a file is missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Damage {
-    /// Chunks that cannot be read; each holds about a quarter of a second.
+    /// Chunks that cannot be read; each holds about what is recorded within [`FLUSH_EACH`](crate::record::file::FLUSH_EACH).
     pub chunks: u64,
     /// Bytes in which no record was found.
     pub bytes: u64,
@@ -91,7 +91,7 @@ impl SessionFile {
     /// [`OpenError`].
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         if !std::fs::metadata(path)?.is_file() {
-            return Err(OpenError::NotMcap);
+            return Err(OpenError::NotAFile);
         }
         let mut file = File::open(path)?;
         let mut magic = [0; MAGIC.len()];
@@ -231,57 +231,24 @@ impl SessionFile {
             self.opening.base_nanos.saturating_add(nanos)
         };
         let (from, to) = (nanos(from), nanos(to).saturating_add(999));
-        let all = self.found.chunks.iter();
-        all.filter(move |chunk| chunk.last_nanos >= from && chunk.first_nanos <= to)
+        let all = self.found.chunks.as_slice();
+        // The times in a chunk's head may be damaged: it reaches at least from the chunk before it to the one after.
+        let before = std::iter::once(0).chain(all.iter().map(|chunk| chunk.last_nanos));
+        let after = all.iter().skip(1).map(|chunk| chunk.first_nanos);
+        let around = before.zip(after.chain([u64::MAX]));
+        let reaching = all
+            .iter()
+            .zip(around)
+            .filter(move |(chunk, (before, after))| {
+                chunk.last_nanos.max(*after) >= from && chunk.first_nanos.min(*before) <= to
+            });
+        reaching.map(|(chunk, _)| chunk)
     }
 
     fn read(&self, place: Place) -> io::Result<Vec<u8>> {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         walk::whole(&mut *file, place)
     }
-}
-
-/// Gives each message of a chunk's record (topic, times, bytes); false if the chunk is damaged, and then it gives none of it.
-fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u8])) -> bool {
-    let options = LinearReaderOptions::default()
-        .with_skip_start_magic(true)
-        .with_skip_end_magic(true)
-        .with_prevalidate_chunk_crcs(true)
-        .with_record_length_limit(usize::try_from(RECORD_MAX).unwrap_or(usize::MAX));
-    let mut reader = LinearReader::new_with_options(options);
-    let mut rest = chunk;
-    while let Some(event) = reader.next_event() {
-        match event {
-            Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let give = rest.len().min(wanted);
-                let (now, later) = rest.split_at(give);
-                reader.insert(give).copy_from_slice(now);
-                reader.notify_read(give);
-                rest = later;
-            }
-            Ok(LinearReadEvent::Record { data, opcode }) if opcode == op::MESSAGE => {
-                if let Some((topic, times, message)) = message(data)
-                    && message.len() <= MESSAGE_MAX
-                {
-                    take(topic, times, message);
-                }
-            }
-            Ok(LinearReadEvent::Record { .. }) => {}
-            Err(_damaged) => return false,
-        }
-    }
-    true
-}
-
-/// Topic, times and content of a message's record: number of the channel, number of the message, and two times stand before it.
-fn message(record: &[u8]) -> Option<(Topic, (u64, u64), &[u8])> {
-    let (channel, rest) = record.split_first_chunk()?;
-    let (_sequence, rest) = rest.split_first_chunk::<4>()?;
-    let (log, rest) = rest.split_first_chunk()?;
-    let (publish, message) = rest.split_first_chunk()?;
-    let topic = Topic::by_channel(u16::from_le_bytes(*channel))?;
-    let times = (u64::from_le_bytes(*log), u64::from_le_bytes(*publish));
-    Some((topic, times, message))
 }
 
 /// What the file says of itself. Where that is lost, what can be known without it.

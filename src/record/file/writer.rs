@@ -2,6 +2,7 @@
 
 use crate::hand::Moment;
 use crate::record::Entry;
+use crate::record::file::chunk_list::CHUNK_LIST;
 use crate::record::file::encode::{EntryEncoder, Message};
 use crate::record::file::index::{FileEnd, FileIndex};
 use crate::record::file::opening::{METADATA, Opening};
@@ -62,6 +63,8 @@ pub struct SessionWriter {
     /// Where the chunks begin that the next block is about, and the first moment in them.
     block_from: u64,
     block_began: Option<Moment>,
+    /// Where the last list of chunks stands, and what follows it.
+    listed: (u64, u64),
     sequence: u32,
     newest: Moment,
     base_nanos: u64,
@@ -89,6 +92,7 @@ impl SessionWriter {
             name: METADATA.into(),
             metadata: opening.metadata(),
         })?;
+        let listed = (0, u64::try_from(waiting.bytes().len()).unwrap_or_default());
         define(&mut mcap)?;
         mcap.flush()?;
         let mut writer = Self {
@@ -104,6 +108,7 @@ impl SessionWriter {
             given: 0,
             block_from: 0,
             block_began: None,
+            listed,
             sequence: 0,
             newest: opening.began,
             base_nanos: opening.base_nanos,
@@ -165,15 +170,7 @@ impl SessionWriter {
     /// Writes the overview of what was pushed since the last block, and ends the crate's writer.
     fn block(&mut self) -> Result<(), McapError> {
         let data = self.overview.give_block(self.block_from);
-        let nanos = self.newest.micros().saturating_mul(1000);
-        let log_time = self.base_nanos.saturating_add(nanos);
-        self.mcap.attach(&Attachment {
-            log_time,
-            create_time: log_time,
-            name: OVERVIEW.into(),
-            media_type: "application/octet-stream".into(),
-            data: Cow::Owned(data),
-        })?;
+        self.attach(OVERVIEW, data)?;
         self.collect();
         let block = self.mcap.finish()?;
         self.index.add(block, self.base);
@@ -181,7 +178,19 @@ impl SessionWriter {
         Ok(())
     }
 
-    /// Goes on with another writer of the crate, whose beginning the file has already.
+    fn attach(&mut self, name: &str, data: Vec<u8>) -> Result<(), McapError> {
+        let nanos = self.newest.micros().saturating_mul(1000);
+        let log_time = self.base_nanos.saturating_add(nanos);
+        self.mcap.attach(&Attachment {
+            log_time,
+            create_time: log_time,
+            name: name.into(),
+            media_type: "application/octet-stream".into(),
+            data: Cow::Owned(data),
+        })
+    }
+
+    /// Goes on with another writer of the crate, whose beginning the file has already, and first with a list of the block before.
     fn begin_block(&mut self) -> Result<(), McapError> {
         let waiting = Waiting::default();
         let options = self.options.clone();
@@ -191,6 +200,10 @@ impl SessionWriter {
         self.block_from = self.length();
         let beginning = u64::try_from(beginning).unwrap_or_default();
         self.base = self.block_from.saturating_sub(beginning);
+        let (before, from) = self.listed;
+        let list = self.index.list(before, from);
+        self.attach(CHUNK_LIST, list.to_bytes())?;
+        self.listed = (self.block_from, self.length());
         define(&mut self.mcap)
     }
 

@@ -2,6 +2,7 @@
 
 mod failing;
 mod index;
+mod lists;
 
 use crate::hand::command::HandCommand;
 use crate::hand::kinematics::Side;
@@ -282,7 +283,11 @@ fn what_is_no_session_is_refused_in_words() {
     assert!(words(&bytes_of(&[])[..8]).contains("no whole piece"));
     let gone = SessionFile::open(&folder.path().join("b.mcap")).unwrap_err();
     assert!(gone.to_string().starts_with("it cannot be read"));
-    assert!(SessionFile::open(folder.path()).is_err());
+    let folder = SessionFile::open(folder.path()).unwrap_err();
+    assert_eq!(
+        folder.to_string(),
+        "it is no file, but a folder or a device"
+    );
     let mut writer = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
     let none = std::collections::BTreeMap::new();
     let channel = writer.add_channel(0, "/tf", "json", &none).unwrap();
