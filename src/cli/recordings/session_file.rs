@@ -67,13 +67,6 @@ pub(crate) fn length(file: &SessionFile) -> Duration {
     file.last().since(file.first())
 }
 
-/// All of it, wire included.
-pub(crate) const WHOLE: Stretch = Stretch {
-    from: Moment::ZERO,
-    to: Moment::from_micros(u64::MAX / 2000),
-    wire: true,
-};
-
 /// What could not be read, in words; `None` if all could.
 pub(crate) fn lost(damage: Damage) -> Option<String> {
     let Damage { chunks, bytes } = damage;

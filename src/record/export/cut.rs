@@ -1,6 +1,5 @@
 //! A stretch of a session as a session file of its own: closed, with an index, made anew of what could be read.
 
-use crate::hand::Moment;
 use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
 use crate::record::file::reader::{Damage, Stretch};
 use crate::record::file::writer::SessionWriter;
@@ -33,15 +32,10 @@ pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Export
 /// # Errors
 /// [`ExportError`]; then there is no file.
 pub fn recover(file: &SessionFile, path: &Path) -> Result<Exported, ExportError> {
-    let whole = Stretch {
-        from: Moment::ZERO,
-        to: file.last(),
-        wire: true,
-    };
     let output = Unfinished::new(path)?;
     let said = |damage: Damage| (damage != Damage::default()).then(|| recovered(file, damage));
     let (exported, to) =
-        copy(file, whole, output.file()?, said).map_err(|error| error.of(&output))?;
+        copy(file, Stretch::WHOLE, output.file()?, said).map_err(|error| error.of(&output))?;
     output.sync(to)?;
     output.finish()?;
     Ok(exported)

@@ -83,6 +83,12 @@ pub struct Counts {
 }
 
 impl Counts {
+    /// Whole sweeps over the fingertips.
+    #[must_use]
+    pub const fn touch_sweeps(&self) -> u64 {
+        self.touch_blocks / Finger::ALL.len() as u64
+    }
+
     fn add(&mut self, other: Self) {
         self.states += other.states;
         self.touch_blocks += other.touch_blocks;

@@ -3,7 +3,7 @@
 use crate::hand::Moment;
 use crate::record::Entry;
 use crate::record::file::decode::EntryDecoder;
-use crate::record::file::opening::{METADATA, Opening};
+use crate::record::file::opening::{METADATA, Opening, moment_of, nanos_of};
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::topic::Topic;
 use crate::record::file::walk::{self, ChunkPlace, Found, MAGIC, Place, messages};
@@ -11,7 +11,7 @@ use crate::record::file::writer::OVERVIEW;
 use mcap::records::{Record as McapRecord, op};
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -84,6 +84,15 @@ pub struct Stretch {
     pub wire: bool,
 }
 
+impl Stretch {
+    /// All of a file.
+    pub const WHOLE: Self = Self {
+        from: Moment::ZERO,
+        to: Moment::from_micros(u64::MAX / 2000),
+        wire: true,
+    };
+}
+
 impl SessionFile {
     /// Opens a file.
     ///
@@ -103,10 +112,10 @@ impl SessionFile {
         let opening = opening(&mut file, &found)?;
         let overview = overview(&mut file, &found, opening.base_nanos)?;
         let last_nanos = found.chunks.iter().map(|chunk| chunk.last_nanos).max();
-        let micros = |nanos: u64| nanos.saturating_sub(opening.base_nanos) / 1000;
+        let last = moment_of(opening.base_nanos, last_nanos.unwrap_or_default());
         Ok(Self {
             path: path.to_owned(),
-            last: Moment::from_micros(last_nanos.map_or(0, micros)).max(opening.began),
+            last: last.max(opening.began),
             file: Mutex::new(file),
             found,
             opening,
@@ -208,11 +217,7 @@ impl SessionFile {
             chunks: 0,
             bytes: self.found.skipped,
         };
-        let nanos = |at: Moment| {
-            let nanos = at.micros().saturating_mul(1000);
-            self.opening.base_nanos.saturating_add(nanos)
-        };
-        let within = nanos(from)..=nanos(to).saturating_add(999);
+        let within = self.nanos(from, to);
         for chunk in self.chunks(from, to) {
             let bytes = self.read(chunk.place)?;
             let whole = messages(&bytes, |topic, times, message| {
@@ -225,12 +230,14 @@ impl SessionFile {
         Ok(damage)
     }
 
+    /// A stretch in nanoseconds since 1970, the whole last microsecond included.
+    fn nanos(&self, from: Moment, to: Moment) -> RangeInclusive<u64> {
+        let base = self.opening.base_nanos;
+        nanos_of(base, from)..=nanos_of(base, to).saturating_add(999)
+    }
+
     fn chunks(&self, from: Moment, to: Moment) -> impl Iterator<Item = &ChunkPlace> {
-        let nanos = |at: Moment| {
-            let nanos = at.micros().saturating_mul(1000);
-            self.opening.base_nanos.saturating_add(nanos)
-        };
-        let (from, to) = (nanos(from), nanos(to).saturating_add(999));
+        let (from, to) = self.nanos(from, to).into_inner();
         let all = self.found.chunks.as_slice();
         // The times in a chunk's head may be damaged: it reaches at least from the chunk before it to the one after.
         let before = std::iter::once(0).chain(all.iter().map(|chunk| chunk.last_nanos));

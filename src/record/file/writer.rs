@@ -5,7 +5,7 @@ use crate::record::Entry;
 use crate::record::file::chunk_list::CHUNK_LIST;
 use crate::record::file::encode::{EntryEncoder, Message};
 use crate::record::file::index::{FileEnd, FileIndex};
-use crate::record::file::opening::{METADATA, Opening};
+use crate::record::file::opening::{METADATA, Opening, nanos_of};
 use crate::record::file::overview::Overview;
 use crate::record::file::topic::Topic;
 use mcap::records::{MessageHeader, Metadata};
@@ -179,8 +179,7 @@ impl SessionWriter {
     }
 
     fn attach(&mut self, name: &str, data: Vec<u8>) -> Result<(), McapError> {
-        let nanos = self.newest.micros().saturating_mul(1000);
-        let log_time = self.base_nanos.saturating_add(nanos);
+        let log_time = nanos_of(self.base_nanos, self.newest);
         self.mcap.attach(&Attachment {
             log_time,
             create_time: log_time,

@@ -149,13 +149,8 @@ pub(crate) fn bytes_of(entries: &[Entry]) -> Vec<u8> {
 pub(crate) fn read(path: &Path) -> Option<(Vec<Atom>, SessionFile, Damage)> {
     let file = SessionFile::open(path).ok()?;
     let mut all = Vec::new();
-    let stretch = Stretch {
-        from: Moment::ZERO,
-        to: Moment::from_micros(u64::MAX / 2000),
-        wire: true,
-    };
     let damage = file
-        .entries(stretch, |entry| {
+        .entries(Stretch::WHOLE, |entry| {
             all.extend(atoms(&entry));
             ControlFlow::Continue(())
         })
