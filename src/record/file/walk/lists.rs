@@ -2,9 +2,9 @@
 //! before stands. So only the last minute of a long recording is gone through record by record.
 
 use super::found::{
-    ChunkPlace, Found, HEAD, HEAD_LEN, Place, RECORD_MAX, content, read_at, u64_at,
+    CHUNKS_MAX, ChunkPlace, Found, HEAD, HEAD_LEN, Place, RECORD_MAX, content, read_at, u64_at,
 };
-use crate::record::file::chunk_list::{CHUNK_LIST, ChunkList, ListedChunk};
+use crate::record::file::chunk_list::{CHUNK_LIST, ChunkList};
 use mcap::records::{Record, op};
 use std::io::{self, Read, Seek};
 
@@ -25,48 +25,56 @@ const BEFORE_NAME: u64 = HEAD + 16;
 #[derive(Debug)]
 pub(super) struct ListedBlock {
     place: Place,
-    pub(super) list: ChunkList,
+    /// Where the list before stands; 0 for the first.
+    before: u64,
+    /// Where the block begins.
+    pub(super) from: u64,
+    overview: Place,
+    chunks: Vec<ChunkPlace>,
 }
 
 impl ListedBlock {
+    /// `None` if the chunks of the list do not fill its block up to the overview: so it can neither hide one nor tell of one twice.
+    fn new(place: Place, list: &ChunkList) -> Option<Self> {
+        let (mut at, mut chunks) = (list.from, Vec::new());
+        for chunk in list.chunks() {
+            let len = chunk.len.checked_sub(HEAD)?;
+            if chunk.offset != at || len == 0 || len > RECORD_MAX {
+                return None;
+            }
+            at = chunk.end();
+            chunks.push(ChunkPlace {
+                place: Place {
+                    offset: chunk.offset,
+                    len,
+                },
+                first_nanos: chunk.first_nanos,
+                last_nanos: chunk.last_nanos,
+            });
+        }
+        let overview = place.offset.checked_sub(list.overview)?;
+        let overview = overview.checked_sub(HEAD).filter(|len| *len > 0)?;
+        (at == list.overview).then_some(Self {
+            place,
+            before: list.before,
+            from: list.from,
+            overview: Place {
+                offset: list.overview,
+                len: overview,
+            },
+            chunks,
+        })
+    }
+
     /// Where what follows the list begins.
     pub(super) const fn end(&self) -> u64 {
         self.place.offset + HEAD + self.place.len
     }
 
     pub(super) fn add_to(&self, found: &mut Found) {
-        for chunk in self.list.chunks() {
-            found.chunk(place(&chunk));
-        }
-        let offset = self.list.overview;
-        found.attachment(Place {
-            offset,
-            len: self.place.offset - offset - HEAD,
-        });
+        self.chunks.iter().for_each(|chunk| found.chunk(*chunk));
+        found.attachment(self.overview);
         found.attachment(self.place);
-    }
-
-    /// True if the chunks that it tells of fill its block up to the overview: so it can neither hide one nor tell of one twice.
-    fn is_plausible(&self) -> bool {
-        let ends = self.list.overview.checked_add(HEAD);
-        let mut at = self.list.from;
-        let follow = self.list.chunks().all(|chunk| {
-            let follows = chunk.offset == at;
-            at = chunk.end();
-            follows && chunk.len > HEAD && chunk.len - HEAD <= RECORD_MAX
-        });
-        follow && at == self.list.overview && ends.is_some_and(|end| end < self.place.offset)
-    }
-}
-
-fn place(chunk: &ListedChunk) -> ChunkPlace {
-    ChunkPlace {
-        place: Place {
-            offset: chunk.offset,
-            len: chunk.len - HEAD,
-        },
-        first_nanos: chunk.first_nanos,
-        last_nanos: chunk.last_nanos,
     }
 }
 
@@ -74,11 +82,16 @@ fn place(chunk: &ListedChunk) -> ChunkPlace {
 pub(super) fn by_lists<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Vec<ListedBlock>> {
     let mut all = Vec::new();
     let mut next = last(file, len)?;
+    let mut chunks = 0;
     while let Some(block) = next.take() {
-        let before = block.list.before;
-        if before < block.list.from && before > 0 && all.len() < LISTS_MAX {
-            let earlier = at(file, before, block.list.from)?;
-            next = earlier.filter(|earlier| earlier.end() == block.list.from);
+        chunks += block.chunks.len();
+        if block.before < block.from
+            && block.before > 0
+            && chunks < CHUNKS_MAX
+            && all.len() < LISTS_MAX
+        {
+            let earlier = at(file, block.before, block.from)?;
+            next = earlier.filter(|earlier| earlier.end() == block.from);
         }
         all.push(block);
     }
@@ -143,6 +156,5 @@ fn at<F: Read + Seek>(file: &mut F, offset: u64, end: u64) -> io::Result<Option<
     let body = body.and_then(|end| content.get(..end)).unwrap_or_default();
     let is_whole = crc != 0 && crc32fast::hash(body) == crc && header.name == CHUNK_LIST;
     let list = ChunkList::of_bytes(&data).filter(|_| is_whole);
-    let block = list.map(|list| ListedBlock { place, list });
-    Ok(block.filter(ListedBlock::is_plausible))
+    Ok(list.and_then(|list| ListedBlock::new(place, &list)))
 }

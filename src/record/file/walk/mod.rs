@@ -35,7 +35,7 @@ pub fn walk<F: Read + Seek>(file: &mut F) -> io::Result<Found> {
     let listed = by_lists(file, len)?;
     match listed.last().zip(listed.first()) {
         Some((first, last)) => {
-            one_by_one(file, begin..first.list.from, &mut found)?;
+            one_by_one(file, begin..first.from, &mut found)?;
             listed
                 .iter()
                 .rev()
