@@ -42,8 +42,10 @@ struct Told<'a> {
 }
 
 impl Told<'_> {
-    fn start(&self) -> String {
-        calendar::stamp(self.file.opening().began_since_1970())
+    /// `None` if the day is not known.
+    fn start(&self) -> Option<String> {
+        let opening = self.file.opening();
+        (!opening.is_imported()).then(|| calendar::stamp(opening.began_since_1970()))
     }
 
     /// Stretches that the recorder said to be missing.
@@ -95,7 +97,7 @@ impl Told<'_> {
         #[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
         let megabytes = self.bytes as f64 / 1e6;
         let mut lines = vec![
-            format!("start         {}", self.start()),
+            format!("start         {}", known(&self.start().unwrap_or_default())),
             format!("length        {:.3} s", length(self.file).as_secs_f64()),
             format!("hand          {}{simulated}", known(&opening.hand)),
             format!("version       {}", known(&opening.version)),

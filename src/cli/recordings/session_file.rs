@@ -50,8 +50,10 @@ impl StretchArgs {
 /// Opens a file.
 pub(crate) fn open(path: &Path) -> anyhow::Result<SessionFile> {
     SessionFile::open(path).map_err(|error| {
+        let is_csv = path.extension().is_some_and(|ending| ending == "csv");
         let what_to_do = match error {
             OpenError::Unreadable { .. } => "check the path",
+            OpenError::NotMcap if is_csv => "make a session file of it with 'handscope import'",
             OpenError::NotAFile | OpenError::NotMcap => {
                 "name a session file of 'handscope record' or of the window"
             }

@@ -88,11 +88,7 @@ pub(crate) fn copy(
         began: stretch.from.max(file.first()),
         ..file.opening().clone()
     };
-    let mut copy = Copy {
-        writer: SessionWriter::new(&opening)?,
-        to,
-        rows: 0,
-    };
+    let mut copy = SessionCopy::new(&opening, to)?;
     let mut done = Ok(());
     let damage = file.entries(stretch, |entry| {
         done = copy.push(&entry);
@@ -106,27 +102,27 @@ pub(crate) fn copy(
     if let Some(event) = said(damage) {
         copy.push(&Entry::Event(event))?;
     }
-    let end = copy.writer.finish()?;
-    copy.put()?;
-    for piece in end {
-        copy.to.write_all(&piece).map_err(CopyError::Copy)?;
-    }
-    copy.to.flush().map_err(CopyError::Copy)?;
-    let exported = Exported {
-        rows: copy.rows,
-        damage,
-    };
-    Ok((exported, copy.to))
+    let (rows, to) = copy.end()?;
+    Ok((Exported { rows, damage }, to))
 }
 
-struct Copy {
+/// A session file that is made of entries.
+pub(crate) struct SessionCopy {
     writer: SessionWriter,
     to: BufWriter<File>,
     rows: u64,
 }
 
-impl Copy {
-    fn push(&mut self, entry: &Entry) -> Result<(), CopyError> {
+impl SessionCopy {
+    pub(crate) fn new(opening: &Opening, to: BufWriter<File>) -> Result<Self, CopyError> {
+        Ok(Self {
+            writer: SessionWriter::new(opening)?,
+            to,
+            rows: 0,
+        })
+    }
+
+    pub(crate) fn push(&mut self, entry: &Entry) -> Result<(), CopyError> {
         self.writer.push(entry)?;
         self.rows += 1;
         match self.rows.is_multiple_of(ENTRIES_AT_ONCE) {
@@ -138,5 +134,16 @@ impl Copy {
     fn put(&mut self) -> Result<(), CopyError> {
         let bytes = self.writer.take_bytes();
         self.to.write_all(&bytes).map_err(CopyError::Copy)
+    }
+
+    /// Ends the file; how many entries are in it.
+    pub(crate) fn end(mut self) -> Result<(u64, BufWriter<File>), CopyError> {
+        let end = self.writer.finish()?;
+        self.put()?;
+        for piece in end {
+            self.to.write_all(&piece).map_err(CopyError::Copy)?;
+        }
+        self.to.flush().map_err(CopyError::Copy)?;
+        Ok((self.rows, self.to))
     }
 }

@@ -8,7 +8,7 @@ use crate::record::file::message::{
     CommandFate, CommandMessage, EventMessage, LinkMessage, StateMessage, Time, TouchMessage,
     WireMessage,
 };
-use crate::record::file::opening::moment_of;
+use crate::record::file::opening::{Opening, moment_of};
 use crate::record::file::topic::Topic;
 use crate::record::{
     Direction, Entry, Event, EventKind, LinkReport, LinkState, Piece, PieceKind, Record,
@@ -21,6 +21,8 @@ use std::sync::Arc;
 pub struct EntryDecoder {
     base_nanos: u64,
     sample: HandSample,
+    /// Whether events that a reader finds out by itself are entries all the same.
+    with_derived: bool,
 }
 
 impl EntryDecoder {
@@ -30,6 +32,15 @@ impl EntryDecoder {
         Self {
             base_nanos,
             sample: HandSample::default(),
+            with_derived: false,
+        }
+    }
+
+    /// For a file that begins so.
+    pub(crate) fn of(opening: &Opening) -> Self {
+        Self {
+            with_derived: opening.is_imported(),
+            ..Self::new(opening.base_nanos)
         }
     }
 
@@ -173,7 +184,8 @@ impl EntryDecoder {
             let reason = serde_json::from_str(&event.words).ok()?;
             return Some(Entry::Heard(Record::ArmRefused { at, reason }));
         }
-        let kind = EventKind::by_key(&event.kind).filter(|kind| !kind.is_derived())?;
+        let kind = EventKind::by_key(&event.kind)
+            .filter(|kind| self.with_derived || !kind.is_derived())?;
         Some(Entry::Event(Event {
             at,
             kind,

@@ -26,6 +26,17 @@ pub struct Opening {
 }
 
 impl Opening {
+    /// The time of [`Moment::ZERO`] where the day is not known: a second after 1970, because 0 is no time of a message.
+    pub const NO_DATE: u64 = 1_000_000_000;
+    /// Ends the version of a session that was read from values.
+    pub const IMPORTED: &'static str = "(imported)";
+
+    /// True if the session was read from values: its events stand in it as they were written, and the day is not known.
+    #[must_use]
+    pub fn is_imported(&self) -> bool {
+        self.version.ends_with(Self::IMPORTED)
+    }
+
     /// Of a recording that begins now, at this moment of the program and this time since 1970. The hand is its endpoint.
     #[must_use]
     pub fn begin(hand: String, (now, since_1970): (Moment, Duration), side: Side) -> Self {

@@ -187,7 +187,9 @@ impl Overview {
                     .and_then(|word| word.parse().ok());
                 self.counts.missing += number.unwrap_or(0);
             }
-            EventKind::Parameters | EventKind::Person => return,
+            // A session that was imported has them as entries, because its readings do not tell them.
+            EventKind::Fault => self.counts.faults += 1,
+            kind if !kind.is_listed() => return,
             _ => {}
         }
         self.mark(FileMark {

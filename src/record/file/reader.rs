@@ -110,7 +110,7 @@ impl SessionFile {
         let mut found = walk::walk(&mut file)?;
         found.chunks.retain(|chunk| chunk.last_nanos > 0);
         let opening = opening(&mut file, &found)?;
-        let overview = overview(&mut file, &found, opening.base_nanos)?;
+        let overview = overview(&mut file, &found, &opening)?;
         let last_nanos = found.chunks.iter().map(|chunk| chunk.last_nanos).max();
         let last = moment_of(opening.base_nanos, last_nanos.unwrap_or_default());
         Ok(Self {
@@ -177,7 +177,7 @@ impl SessionFile {
     ) -> io::Result<Damage> {
         let warm = stretch.from.since(Moment::ZERO).saturating_sub(WARM_UP);
         let warm = Moment::from_duration(warm);
-        let mut decoder = EntryDecoder::new(self.opening.base_nanos);
+        let mut decoder = EntryDecoder::of(&self.opening);
         let mut damage = Damage {
             chunks: 0,
             bytes: self.found.skipped,
@@ -289,7 +289,7 @@ fn opening(file: &mut File, found: &Found) -> Result<Opening, OpenError> {
 }
 
 /// The blocks of the file, and what they miss made anew.
-fn overview(file: &mut File, found: &Found, base_nanos: u64) -> Result<Overview, OpenError> {
+fn overview(file: &mut File, found: &Found, opening: &Opening) -> Result<Overview, OpenError> {
     let mut overview = Overview::default();
     let mut covered = Vec::new();
     let blocks = found.attachments.iter();
@@ -310,7 +310,7 @@ fn overview(file: &mut File, found: &Found, base_nanos: u64) -> Result<Overview,
         let last = after.checked_sub(1).and_then(|last| covered.get(last));
         last.is_some_and(|stretch| offset < stretch.end)
     };
-    let mut decoder = EntryDecoder::new(base_nanos);
+    let mut decoder = EntryDecoder::of(opening);
     for chunk in &found.chunks {
         if is_covered(chunk.place.offset) {
             continue;
