@@ -6,6 +6,7 @@ use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
 use crate::cli::recordings::export::{ExportArgs, RecoverArgs};
+use crate::cli::recordings::import::ImportArgs;
 use crate::cli::recordings::info::InfoArgs;
 use crate::cli::recordings::record::RecordArgs;
 use crate::cli::recordings::replay::ReplayArgs;
@@ -63,9 +64,12 @@ pub(crate) struct WindowArgs {
 fn recording(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    match ending.is_some_and(|ending| ending == "mcap") {
-        true => Ok(path),
-        false => Err(
+    match ending.as_ref().and_then(|ending| ending.to_str()) {
+        Some("mcap") => Ok(path),
+        Some("csv") => {
+            Err("values are no recording; 'handscope import' makes a recording of them".into())
+        }
+        _ => Err(
             "no such command, and a recording ends in .mcap; 'handscope --help' lists the commands"
                 .into(),
         ),
@@ -135,6 +139,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope recover crashed.mcap\n  handscope recover damaged.mcap --out whole.mcap\n\nThe file itself stays as it is. The copy holds all that can be read, and a note of what was lost."
     )]
     Recover(RecoverArgs),
+    /// Make a session file of the values that 'export --csv' wrote
+    #[command(
+        after_help = "Examples:\n  handscope import grasp.csv\n  handscope import grasp.csv --out again.mcap\n\nColumns are known by their names, in any order; others are skipped and named. What no column says stays unknown: the day, the hand, what it kept, the bytes on the wire."
+    )]
+    Import(ImportArgs),
     /// Be a hand that says what was recorded, on the wires of 'handscope sim'
     #[command(
         after_help = "Examples:\n  handscope replay grasp.mcap --tcp 127.0.0.1:6000\n  handscope replay grasp.mcap --rs485 /tmp/hand --speed 0.5 --loop\n\nEach wire is announced as 'ready KIND PLACE'. Writes are acknowledged and change nothing. While the link was down the hand is silent. It ends with the recording, or at Ctrl-C."

@@ -71,6 +71,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Info(args) => recordings::info::run(&mut out, &args),
         Command::Export(args) => recordings::export::run(&mut out, &args),
         Command::Recover(args) => recordings::export::recover(&mut out, &args),
+        Command::Import(args) => recordings::import::run(&mut out, &args),
         Command::Replay(args) => wait_for(recordings::replay::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),

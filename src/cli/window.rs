@@ -6,14 +6,13 @@ use crate::cli::args::WindowArgs;
 #[cfg(feature = "desktop")]
 pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     use crate::app::files::settings_file::{Loaded, default_path, load};
-    use crate::record::file::SessionFile;
+    use crate::cli::recordings::session_file;
     use crate::shell::desktop;
     use crate::shell::desktop::{DesktopError, DesktopStart, Drawing};
-    use anyhow::Context as _;
     use std::ffi::OsString;
     if let Some(path) = &args.replay {
         // Said where it was asked, and not in a window that opens without it.
-        SessionFile::open(path).with_context(|| format!("cannot replay {}", path.display()))?;
+        session_file::open(path)?;
     }
     let settings_path = default_path();
     let loaded = settings_path.as_deref().map_or_else(Loaded::default, load);

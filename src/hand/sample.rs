@@ -46,6 +46,24 @@ pub enum Group {
 }
 
 impl Group {
+    /// Where it stands in the hand's memory.
+    #[must_use]
+    pub const fn span(self) -> Span {
+        match self {
+            Self::AngleSet => register::ANGLE_SET.span(),
+            Self::ForceSet => register::FORCE_SET.span(),
+            Self::SpeedSet => register::SPEED_SET.span(),
+            Self::Position => register::POS_ACT.span(),
+            Self::Angle => register::ANGLE_ACT.span(),
+            Self::Force => register::FORCE_ACT.span(),
+            Self::Current => register::CURRENT.span(),
+            Self::Faults => register::ERROR.span(),
+            Self::Status => register::STATUS.span(),
+            Self::Temperature => register::TEMP.span(),
+            Self::Tactile(finger) => touch_span(finger),
+        }
+    }
+
     /// All, joints first.
     pub fn all() -> impl Iterator<Item = Self> {
         [

@@ -1,10 +1,7 @@
 //! The whole history of one hand: which reading goes to which line. How lines are kept is told in the siblings.
 
 use crate::hand::column::{channel_column, joint_column, tip_column};
-use crate::hand::register::ANGLE_SET;
-use crate::hand::{
-    Angle, Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Span, Timed, Touch,
-};
+use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Timed, Touch};
 use crate::history::mark::{Mark, MarkKind, Marks};
 use crate::history::reading::{Reading, Summary};
 use crate::history::table::{Table, TableGroup};
@@ -175,14 +172,9 @@ impl History {
     /// Takes a write that left for the hand: targets step at the moment they were sent.
     pub fn sent(&mut self, at: Moment, write: &WrittenMemory) {
         let before = self.targets;
-        for (dof, target) in self.targets.iter_mut() {
-            let len = ANGLE_SET.element_len();
-            let at = ANGLE_SET.address + len * u16::try_from(dof.index()).unwrap_or_default();
-            let raw = write.span().slice(&write.bytes, Span::new(at, len));
-            let raw = raw.and_then(<[u8]>::first_chunk);
-            let raw = raw.map(|raw| i16::from_le_bytes(*raw));
-            if let Some(angle) = raw.and_then(|raw| Angle::new(raw).ok()) {
-                *target = Some(f32::from(angle.get()));
+        for (dof, angle) in write.angle_targets().iter() {
+            if let Some(angle) = angle {
+                self.targets[dof] = Some(f32::from(angle.get()));
             }
         }
         if self.targets != before {

@@ -130,6 +130,15 @@ impl EventKind {
         ALL.into_iter().find(|kind| kind.key() == key)
     }
 
+    /// True for what stands in lists of what happened.
+    #[must_use]
+    pub const fn is_listed(self) -> bool {
+        !matches!(
+            self,
+            Self::NoteRemoved | Self::Person | Self::Parameters | Self::Settings
+        )
+    }
+
     /// True for what a reader finds out by itself from the other entries.
     #[must_use]
     pub const fn is_derived(self) -> bool {

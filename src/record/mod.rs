@@ -4,6 +4,7 @@ pub mod entry;
 pub mod export;
 pub mod file;
 pub mod heard;
+pub mod import;
 pub mod quirk_sheet;
 pub mod state;
 pub mod wire;

@@ -1,7 +1,8 @@
 //! The outcome of writing a setting, of a SAVE, and of a return to the factory parameters. Plain values; nothing is sent here.
 
 use crate::hand::command::WRITE_LEN_MAX;
-use crate::hand::{RegisterWrite, Span};
+use crate::hand::register::ANGLE_SET;
+use crate::hand::{Angle, PerDof, RegisterWrite, Span};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
@@ -22,6 +23,22 @@ impl WrittenMemory {
             self.address,
             u16::try_from(self.bytes.len()).unwrap_or_default(),
         )
+    }
+}
+
+impl WrittenMemory {
+    /// The targets of the joints that it sets; `None` where it leaves a joint alone or is about something else.
+    #[must_use]
+    pub fn angle_targets(&self) -> PerDof<Option<Angle>> {
+        let mut targets = PerDof::splat(None);
+        let len = ANGLE_SET.element_len();
+        for (place, (_, target)) in (0..).zip(targets.iter_mut()) {
+            let at = Span::new(ANGLE_SET.address + len * place, len);
+            let raw = self.span().slice(&self.bytes, at);
+            let raw = raw.and_then(<[u8]>::first_chunk);
+            *target = raw.and_then(|raw| Angle::new(i16::from_le_bytes(*raw)).ok());
+        }
+        targets
     }
 }
 

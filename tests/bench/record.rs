@@ -51,8 +51,14 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     let long = folder.path().join("long.mcap");
     let (mut writer, mut file) = write(report, &entries, &long, hours)?;
     opened(report, &long, &format!("{hours} h, never ended"))?;
-    writer.finish()?;
+    let before = mib("VmRSS:")?;
+    let end = writer.finish()?;
     file.write_all(&writer.take_bytes())?;
+    for piece in end {
+        file.write_all(&piece)?;
+    }
+    let what = "  memory that ending it took";
+    report.row(what, mib("VmRSS:")? - before, "MiB", Aim::AtMost(8.0))?;
     drop((writer, file));
     opened(report, &long, &format!("{hours} h, ended"))
 }

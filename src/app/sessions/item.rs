@@ -68,8 +68,7 @@ impl SessionItem {
     /// When it began, `2026-11-22T09:30:00Z`.
     #[must_use]
     pub fn began(&self) -> String {
-        let zero = Duration::from_nanos(self.opening.base_nanos);
-        stamp(zero + self.opening.began.since(Moment::ZERO))
+        stamp(self.opening.began_since_1970())
     }
 
     /// Its name, or that of its file.

@@ -17,7 +17,7 @@ use crate::store::calendar::{day, since_1970, stamp};
 use crate::tasks::read::rows;
 use crate::tasks::recording;
 use crate::transport::Endpoint;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -62,11 +62,14 @@ impl HandRecording {
         observed: LinkObserver,
         env: &Env,
     ) -> Option<Self> {
-        let now = env.clock.now();
         let wall = since_1970();
+        let now = env.clock.now();
+        let moments = (now, wall);
+        let opening = Opening::begin(target.endpoint.to_string(), moments, target.side);
+        let name = opening.file_name(&stamp(wall));
         let plan = RecordingPlan {
-            path: path(&target.folder, target.endpoint, wall),
-            opening: opening(target.endpoint, (now, wall), target.side),
+            path: target.folder.join(day(wall)).join(name),
+            opening,
             disk: Arc::new(SystemDisk),
         };
         let recorder = Recorder::start(plan).ok()?;
@@ -154,39 +157,4 @@ impl HandRecording {
     pub(crate) fn event(&self, at: Moment, kind: EventKind, words: String) {
         self.input.push(Entry::Event(Event { at, kind, words }));
     }
-}
-
-/// What a recording of this hand begins with, at this moment of the program and this time since 1970.
-pub(crate) fn opening(endpoint: &Endpoint, (now, wall): (Moment, Duration), side: Side) -> Opening {
-    let zero = wall.saturating_sub(now.since(Moment::ZERO));
-    Opening {
-        base_nanos: u64::try_from(zero.as_nanos()).unwrap_or_default(),
-        began: now,
-        hand: endpoint.to_string(),
-        simulated: endpoint.is_sim(),
-        side,
-        version: env!("CARGO_PKG_VERSION").into(),
-    }
-}
-
-/// Where a recording goes that begins now: `2026-11-22/093000-rs485-ttyUSB0.mcap` in the folder of sessions.
-fn path(folder: &Path, endpoint: &Endpoint, wall: Duration) -> PathBuf {
-    let time: String = stamp(wall)
-        .chars()
-        .skip(11)
-        .filter(char::is_ascii_digit)
-        .collect();
-    let text = endpoint.to_string();
-    let place = text.split('?').next().unwrap_or_default();
-    let plain = |letter: char| {
-        if letter.is_ascii_alphanumeric() {
-            letter
-        } else {
-            '-'
-        }
-    };
-    let hand: String = place.chars().map(plain).collect();
-    let hand = hand.replace("-dev-", "");
-    let hand = hand.trim_matches('-');
-    folder.join(day(wall)).join(format!("{time}-{hand}.mcap"))
 }

@@ -167,7 +167,7 @@ fn as_json(path: &Path, exported: Exported) -> serde_json::Value {
 }
 
 /// An error of an export, with what to do.
-fn told(error: ExportError) -> anyhow::Error {
+pub(crate) fn told(error: ExportError) -> anyhow::Error {
     match error {
         ExportError::Exists { .. } => anyhow!("{error}; name another place with --out"),
         ExportError::Unwritable { .. } => {

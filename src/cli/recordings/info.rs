@@ -1,12 +1,10 @@
 //! `info`: what a session file holds and what is missing in it. Reads the file to its end, so that every checksum is looked at.
 
 use crate::cli::out::Out;
-use crate::cli::recordings::record::touch_sweeps;
-use crate::cli::recordings::session_file::{self, FileArgs, WHOLE, length, lost};
-use crate::hand::Moment;
+use crate::cli::recordings::session_file::{self, FileArgs, length, lost};
 use crate::record::EventKind;
 use crate::record::file::SessionFile;
-use crate::record::file::reader::Damage;
+use crate::record::file::reader::{Damage, Stretch};
 use crate::store::calendar;
 use anyhow::Context as _;
 use serde_json::{Value, json};
@@ -26,7 +24,7 @@ pub(crate) fn run(out: &mut Out, args: &InfoArgs) -> anyhow::Result<()> {
     let path = &args.file.file;
     let file = session_file::open(path)?;
     let damage = file
-        .messages(WHOLE.from, WHOLE.to, |_, _, _| ())
+        .messages(Stretch::WHOLE.from, Stretch::WHOLE.to, |_, _, _| ())
         .with_context(|| format!("cannot read {} to its end", path.display()))?;
     let bytes = std::fs::metadata(path).map_or(0, |data| data.len());
     let told = Told {
@@ -44,10 +42,10 @@ struct Told<'a> {
 }
 
 impl Told<'_> {
-    fn start(&self) -> String {
-        let began = self.file.first().since(Moment::ZERO);
-        let base = Duration::from_nanos(self.file.opening().base_nanos);
-        calendar::stamp(base + began)
+    /// `None` if the day is not known.
+    fn start(&self) -> Option<String> {
+        let opening = self.file.opening();
+        (!opening.is_imported()).then(|| calendar::stamp(opening.began_since_1970()))
     }
 
     /// Stretches that the recorder said to be missing.
@@ -73,7 +71,7 @@ impl Told<'_> {
             "simulated": opening.simulated,
             "version": opening.version,
             "states": counts.states,
-            "touch_sweeps": touch_sweeps(counts.touch_blocks),
+            "touch_sweeps": counts.touch_sweeps(),
             "writes": counts.writes,
             "faults": counts.faults,
             "notes": counts.notes,
@@ -99,12 +97,12 @@ impl Told<'_> {
         #[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
         let megabytes = self.bytes as f64 / 1e6;
         let mut lines = vec![
-            format!("start         {}", self.start()),
+            format!("start         {}", known(&self.start().unwrap_or_default())),
             format!("length        {:.3} s", length(self.file).as_secs_f64()),
             format!("hand          {}{simulated}", known(&opening.hand)),
             format!("version       {}", known(&opening.version)),
             format!("states        {}", counts.states),
-            format!("touch sweeps  {}", touch_sweeps(counts.touch_blocks)),
+            format!("touch sweeps  {}", counts.touch_sweeps()),
             format!("writes        {}", counts.writes),
             format!("faults        {}", counts.faults),
             format!("notes         {}", counts.notes),

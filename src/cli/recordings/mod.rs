@@ -1,6 +1,7 @@
 //! The commands on recorded sessions: recording one without a window, and all that is done with its file.
 
 pub(crate) mod export;
+pub(crate) mod import;
 pub(crate) mod info;
 pub(crate) mod picture;
 pub(crate) mod record;

@@ -7,7 +7,6 @@ use crate::cli::out::{Out, say};
 use crate::cli::parse::seconds;
 use crate::cli::session;
 use crate::hand::kinematics::Side;
-use crate::hand::{Finger, Moment};
 use crate::link::{Clock, LinkHandle, PollRates};
 use crate::params::file::ParamsFile;
 use crate::record::file::recorder::RecorderInput;
@@ -54,13 +53,14 @@ pub(crate) struct RecordArgs {
 /// Records. The last line of the output is one JSON object of statistics.
 pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
-    let path = path(args)?;
     let clock = Clock::start();
+    let moments = (clock.now(), calendar::since_1970());
+    let opening = Opening::begin(args.hand.to_string(), moments, Side::Right);
+    let path = path(args, &opening)?;
     let rates = match args.full_rate {
         true => PollRates::FULL,
         false => PollRates::default(),
     };
-    let opening = opening(args, clock);
     let link = session::open(&args.hand, rates, clock);
     let observed = link.observe();
     tokio::select! {
@@ -104,7 +104,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
 }
 
 /// The file, which must not be there.
-fn path(args: &RecordArgs) -> anyhow::Result<PathBuf> {
+fn path(args: &RecordArgs, opening: &Opening) -> anyhow::Result<PathBuf> {
     if let Some(path) = &args.out {
         if path.symlink_metadata().is_ok() {
             bail!(
@@ -117,40 +117,10 @@ fn path(args: &RecordArgs) -> anyhow::Result<PathBuf> {
     let documents = day_folder::documents().context(
         "there is no documents folder to put the recording into; name a file with --out",
     )?;
-    let now = calendar::since_1970();
-    let folder = day_folder::of_day(&documents, &calendar::day(now));
-    let time: String = calendar::stamp(now)
-        .chars()
-        .skip_while(|letter| *letter != 'T')
-        .filter(char::is_ascii_digit)
-        .collect();
-    let name = format!("{time}-{}.mcap", in_a_name(&args.hand));
+    let began = opening.began_since_1970();
+    let folder = day_folder::of_day(&documents, &calendar::day(began));
+    let name = opening.file_name(&calendar::stamp(began));
     Ok(day_folder::free_path(&folder, &name))
-}
-
-/// A hand's endpoint as part of a file name: its kind and its place, and nothing that a file system could object to.
-fn in_a_name(hand: &Endpoint) -> String {
-    let url = hand.to_string();
-    let place = url.split('?').next().unwrap_or_default();
-    let words = place.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '.');
-    let words: Vec<&str> = words
-        .filter(|word| !word.is_empty() && *word != "dev")
-        .collect();
-    words.join("-")
-}
-
-fn opening(args: &RecordArgs, clock: Clock) -> Opening {
-    let began = clock.now();
-    let since_start = began.since(Moment::ZERO);
-    let base = calendar::since_1970().saturating_sub(since_start);
-    Opening {
-        base_nanos: u64::try_from(base.as_nanos()).unwrap_or_default(),
-        began,
-        hand: args.hand.to_string(),
-        simulated: matches!(args.hand, Endpoint::Sim { .. }),
-        side: Side::Right,
-        version: env!("CARGO_PKG_VERSION").into(),
-    }
 }
 
 /// Waits for the first bytes on the disk.
@@ -246,34 +216,11 @@ fn statistics(file: &SessionFile, status: &RecorderStatus) -> Value {
         "file": file.path(),
         "length_s": file.last().since(file.first()).as_secs_f64(),
         "states": counts.states,
-        "touch_sweeps": touch_sweeps(counts.touch_blocks),
+        "touch_sweeps": counts.touch_sweeps(),
         "writes": counts.writes,
         "faults": counts.faults,
         "missing": status.missing,
         "bytes": status.bytes + status.earlier_bytes,
         "mb_per_hour": status.megabytes_an_hour(),
     })
-}
-
-/// Whole sweeps over the fingertips.
-pub(crate) fn touch_sweeps(blocks: u64) -> u64 {
-    blocks / Finger::ALL.len() as u64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_file_is_named_after_the_hand_without_what_file_systems_object_to() {
-        for (url, name) in [
-            ("sim:", "sim"),
-            ("rs485:/dev/ttyUSB0?baud=115200&id=1", "rs485-ttyUSB0"),
-            ("tcp:192.168.11.210:6000", "tcp-192.168.11.210-6000"),
-            ("tcp:[::1]:6000", "tcp-1-6000"),
-            ("can:can0?id=3", "can-can0"),
-        ] {
-            assert_eq!(in_a_name(&url.parse().unwrap()), name);
-        }
-    }
 }

@@ -3,9 +3,9 @@
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
-use crate::cli::recordings::session_file::{self, FileArgs, WHOLE, lost};
+use crate::cli::recordings::session_file::{self, FileArgs, lost};
 use crate::cli::wires::{WireArgs, failed};
-use crate::hand::{Group, HandId, Moment, register, sample::touch_span};
+use crate::hand::{Group, HandId, Moment};
 use crate::params::file;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::span_of;
@@ -140,7 +140,7 @@ fn read_ahead(
     tokio::task::spawn_blocking(move || {
         let no_wire = Stretch {
             wire: false,
-            ..WHOLE
+            ..Stretch::WHOLE
         };
         file.entries(no_wire, |entry| {
             let at = entry.at();
@@ -158,28 +158,11 @@ fn steps(entry: &Entry) -> Vec<Step> {
     match entry {
         Entry::Heard(Record::Reading { sample, fresh }) => Group::all()
             .filter(|group| fresh.contains(*group))
-            .filter_map(|group| Some(Step::Memory(address(group), sample.memory(group)?)))
+            .filter_map(|group| Some(Step::Memory(group.span().address, sample.memory(group)?)))
             .collect(),
         Entry::Heard(Record::State { state, .. }) => vec![Step::Silent(!state.is_live())],
         Entry::Event(event) if event.kind == EventKind::Parameters => parameters(&event.words),
         _ => Vec::new(),
-    }
-}
-
-/// Where a group stands in the hand's memory.
-const fn address(group: Group) -> u16 {
-    match group {
-        Group::AngleSet => register::ANGLE_SET.address,
-        Group::ForceSet => register::FORCE_SET.address,
-        Group::SpeedSet => register::SPEED_SET.address,
-        Group::Position => register::POS_ACT.address,
-        Group::Angle => register::ANGLE_ACT.address,
-        Group::Force => register::FORCE_ACT.address,
-        Group::Current => register::CURRENT.address,
-        Group::Faults => register::ERROR.address,
-        Group::Status => register::STATUS.address,
-        Group::Temperature => register::TEMP.address,
-        Group::Tactile(finger) => touch_span(finger).address,
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::cli::parse::seconds;
 use crate::hand::Moment;
-use crate::record::file::SessionFile;
 use crate::record::file::reader::{Damage, OpenError, Stretch};
+use crate::record::file::{FLUSH_EACH, SessionFile};
 use anyhow::{anyhow, bail};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -50,9 +50,13 @@ impl StretchArgs {
 /// Opens a file.
 pub(crate) fn open(path: &Path) -> anyhow::Result<SessionFile> {
     SessionFile::open(path).map_err(|error| {
+        let is_csv = path.extension().is_some_and(|ending| ending == "csv");
         let what_to_do = match error {
             OpenError::Unreadable { .. } => "check the path",
-            OpenError::NotMcap => "name a session file of 'handscope record' or of the window",
+            OpenError::NotMcap if is_csv => "make a session file of it with 'handscope import'",
+            OpenError::NotAFile | OpenError::NotMcap => {
+                "name a session file of 'handscope record' or of the window"
+            }
             OpenError::Foreign => "only sessions of Handscope can be opened",
             OpenError::Empty => "there is nothing to recover",
         };
@@ -65,13 +69,6 @@ pub(crate) fn length(file: &SessionFile) -> Duration {
     file.last().since(file.first())
 }
 
-/// All of it, wire included.
-pub(crate) const WHOLE: Stretch = Stretch {
-    from: Moment::ZERO,
-    to: Moment::from_micros(u64::MAX / 2000),
-    wire: true,
-};
-
 /// What could not be read, in words; `None` if all could.
 pub(crate) fn lost(damage: Damage) -> Option<String> {
     let Damage { chunks, bytes } = damage;
@@ -81,7 +78,8 @@ pub(crate) fn lost(damage: Damage) -> Option<String> {
         } else {
             ("pieces", "are")
         };
-        format!("{chunks} {noun} of about a quarter of a second {verb} damaged and left out")
+        let length_s = FLUSH_EACH.as_secs_f64();
+        format!("{chunks} {noun} of about {length_s} s {verb} damaged and left out")
     });
     let bytes = (bytes > 0).then(|| format!("{bytes} bytes hold no record"));
     let words: Vec<String> = chunks.into_iter().chain(bytes).collect();

@@ -1,6 +1,5 @@
 //! A stretch of a session as a session file of its own: closed, with an index, made anew of what could be read.
 
-use crate::hand::Moment;
 use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
 use crate::record::file::reader::{Damage, Stretch};
 use crate::record::file::writer::SessionWriter;
@@ -33,15 +32,10 @@ pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Export
 /// # Errors
 /// [`ExportError`]; then there is no file.
 pub fn recover(file: &SessionFile, path: &Path) -> Result<Exported, ExportError> {
-    let whole = Stretch {
-        from: Moment::ZERO,
-        to: file.last(),
-        wire: true,
-    };
     let output = Unfinished::new(path)?;
     let said = |damage: Damage| (damage != Damage::default()).then(|| recovered(file, damage));
     let (exported, to) =
-        copy(file, whole, output.file()?, said).map_err(|error| error.of(&output))?;
+        copy(file, Stretch::WHOLE, output.file()?, said).map_err(|error| error.of(&output))?;
     output.sync(to)?;
     output.finish()?;
     Ok(exported)
@@ -94,11 +88,7 @@ pub(crate) fn copy(
         began: stretch.from.max(file.first()),
         ..file.opening().clone()
     };
-    let mut copy = Copy {
-        writer: SessionWriter::new(&opening)?,
-        to,
-        rows: 0,
-    };
+    let mut copy = SessionCopy::new(&opening, to)?;
     let mut done = Ok(());
     let damage = file.entries(stretch, |entry| {
         done = copy.push(&entry);
@@ -112,24 +102,27 @@ pub(crate) fn copy(
     if let Some(event) = said(damage) {
         copy.push(&Entry::Event(event))?;
     }
-    copy.writer.finish()?;
-    copy.put()?;
-    copy.to.flush().map_err(CopyError::Copy)?;
-    let exported = Exported {
-        rows: copy.rows,
-        damage,
-    };
-    Ok((exported, copy.to))
+    let (rows, to) = copy.end()?;
+    Ok((Exported { rows, damage }, to))
 }
 
-struct Copy {
+/// A session file that is made of entries.
+pub(crate) struct SessionCopy {
     writer: SessionWriter,
     to: BufWriter<File>,
     rows: u64,
 }
 
-impl Copy {
-    fn push(&mut self, entry: &Entry) -> Result<(), CopyError> {
+impl SessionCopy {
+    pub(crate) fn new(opening: &Opening, to: BufWriter<File>) -> Result<Self, CopyError> {
+        Ok(Self {
+            writer: SessionWriter::new(opening)?,
+            to,
+            rows: 0,
+        })
+    }
+
+    pub(crate) fn push(&mut self, entry: &Entry) -> Result<(), CopyError> {
         self.writer.push(entry)?;
         self.rows += 1;
         match self.rows.is_multiple_of(ENTRIES_AT_ONCE) {
@@ -141,5 +134,16 @@ impl Copy {
     fn put(&mut self) -> Result<(), CopyError> {
         let bytes = self.writer.take_bytes();
         self.to.write_all(&bytes).map_err(CopyError::Copy)
+    }
+
+    /// Ends the file; how many entries are in it.
+    pub(crate) fn end(mut self) -> Result<(u64, BufWriter<File>), CopyError> {
+        let end = self.writer.finish()?;
+        self.put()?;
+        for piece in end {
+            self.to.write_all(&piece).map_err(CopyError::Copy)?;
+        }
+        self.to.flush().map_err(CopyError::Copy)?;
+        Ok((self.rows, self.to))
     }
 }

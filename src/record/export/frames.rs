@@ -1,6 +1,5 @@
 //! DatasetFrames at an even rate, made of readings that come when they come.
 
-use crate::hand::register::ANGLE_SET;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Target};
 use crate::record::file::SessionFile;
 use crate::record::{Entry, Record, WrittenMemory};
@@ -40,7 +39,7 @@ impl DatasetFrame {
 /// Whether the fingertips of a session were read often enough to be in frames.
 pub(crate) fn has_touch(file: &SessionFile) -> bool {
     #[expect(clippy::cast_precision_loss, reason = "far below 2^53 sweeps")]
-    let sweeps = file.overview().counts.touch_blocks as f64 / 5.0;
+    let sweeps = file.overview().counts.touch_sweeps() as f64;
     let length_s = file.last().since(file.first()).as_secs_f64();
     sweeps > 0.0 && sweeps >= TOUCH_HZ_MIN * length_s
 }
@@ -118,14 +117,9 @@ impl DatasetFrames {
     }
 
     fn sent(&mut self, at: Moment, write: &WrittenMemory) {
-        for dof in Dof::ALL {
-            let place = 2 * dof.index() + usize::from(ANGLE_SET.address);
-            let bytes = place
-                .checked_sub(usize::from(write.address))
-                .and_then(|begin| write.bytes.get(begin..)?.first_chunk());
-            let value = bytes.map(|pair| i16::from_le_bytes(*pair));
-            if let Some(value) = value.filter(|value| (0..=1000).contains(value)) {
-                self.sent[dof] = Some((at, value));
+        for (dof, angle) in write.angle_targets().iter() {
+            if let Some(angle) = angle {
+                self.sent[dof] = Some((at, angle.get()));
             }
         }
     }
@@ -190,6 +184,7 @@ mod tests {
     use super::*;
     use crate::hand::Reply;
     use crate::hand::command::HandCommand;
+    use crate::hand::register::ANGLE_SET;
     use crate::hand::{Angle, Span};
     use crate::record::WriteCause;
     use std::sync::Arc;

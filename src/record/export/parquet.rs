@@ -7,6 +7,7 @@ use crate::hand::{Timed, Touch};
 use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
 use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
 use crate::record::file::SessionFile;
+use crate::record::file::opening::nanos_of;
 use crate::record::file::reader::Stretch;
 use crate::record::{Entry, Record};
 use parquet::basic::Compression;
@@ -102,9 +103,7 @@ impl ParquetTable {
             .map(|(asked, _)| asked)
             .min();
         let nanos = |at: Moment| {
-            let nanos = self
-                .base_nanos
-                .saturating_add(at.micros().saturating_mul(1000));
+            let nanos = nanos_of(self.base_nanos, at);
             ParquetCell::Long(i64::try_from(nanos).unwrap_or(i64::MAX))
         };
         let head = [

@@ -1,6 +1,5 @@
 //! A session as a rosbag2 folder: a copy of the stretch, and beside it the `metadata.yaml` that ROS 2 reads first.
 
-use crate::hand::Moment;
 use crate::record::export::cut::copy;
 use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
 use crate::record::file::SessionFile;
@@ -54,12 +53,16 @@ impl Counted {
             first_nanos: u64::MAX,
             last_nanos: 0,
         };
-        let all = copy.messages(Moment::ZERO, copy.last(), |topic, (received, _), _| {
-            let (_, count) = counted.topics.entry(topic.channel()).or_insert((topic, 0));
-            *count += 1;
-            counted.first_nanos = counted.first_nanos.min(received);
-            counted.last_nanos = counted.last_nanos.max(received);
-        });
+        let all = copy.messages(
+            Stretch::WHOLE.from,
+            Stretch::WHOLE.to,
+            |topic, (received, _), _| {
+                let (_, count) = counted.topics.entry(topic.channel()).or_insert((topic, 0));
+                *count += 1;
+                counted.first_nanos = counted.first_nanos.min(received);
+                counted.last_nanos = counted.last_nanos.max(received);
+            },
+        );
         all.map_err(|error| unreadable(&error))?;
         counted.first_nanos = counted.first_nanos.min(counted.last_nanos);
         Ok(counted)

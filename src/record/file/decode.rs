@@ -1,13 +1,14 @@
 //! Messages as entries.
 
 use crate::hand::command::WRITE_LEN_MAX;
-use crate::hand::{Finger, Groups, HandSample, Moment, Reply, Span, register, sample::touch_span};
+use crate::hand::{Finger, Group, Groups, HandSample, Moment, Reply, Span};
 use crate::record::file::cdr;
 use crate::record::file::encode::{ARM_REFUSED, link_state_key};
 use crate::record::file::message::{
     CommandFate, CommandMessage, EventMessage, LinkMessage, StateMessage, Time, TouchMessage,
     WireMessage,
 };
+use crate::record::file::opening::{Opening, moment_of};
 use crate::record::file::topic::Topic;
 use crate::record::{
     Direction, Entry, Event, EventKind, LinkReport, LinkState, Piece, PieceKind, Record,
@@ -20,6 +21,8 @@ use std::sync::Arc;
 pub struct EntryDecoder {
     base_nanos: u64,
     sample: HandSample,
+    /// Whether events that a reader finds out by itself are entries all the same.
+    with_derived: bool,
 }
 
 impl EntryDecoder {
@@ -29,11 +32,20 @@ impl EntryDecoder {
         Self {
             base_nanos,
             sample: HandSample::default(),
+            with_derived: false,
+        }
+    }
+
+    /// For a file that begins so.
+    pub(crate) fn of(opening: &Opening) -> Self {
+        Self {
+            with_derived: opening.is_imported(),
+            ..Self::new(opening.base_nanos)
         }
     }
 
     fn moment(&self, time: Time) -> Moment {
-        Moment::from_micros(time.nanos().saturating_sub(self.base_nanos) / 1000)
+        moment_of(self.base_nanos, time.nanos())
     }
 
     /// The entry of a message; `None` for one that is derived from others, is empty, or cannot be read.
@@ -73,31 +85,31 @@ impl EntryDecoder {
                 fresh = fresh.and(taken);
             }
         };
-        for (row, values) in [
-            (&register::ANGLE_SET, &state.angle_set),
-            (&register::FORCE_SET, &state.force_set),
-            (&register::SPEED_SET, &state.speed_set),
-            (&register::POS_ACT, &state.position),
-            (&register::ANGLE_ACT, &state.angle),
-            (&register::FORCE_ACT, &state.force),
-            (&register::CURRENT, &state.current),
+        for (group, values) in [
+            (Group::AngleSet, &state.angle_set),
+            (Group::ForceSet, &state.force_set),
+            (Group::SpeedSet, &state.speed_set),
+            (Group::Position, &state.position),
+            (Group::Angle, &state.angle),
+            (Group::Force, &state.force),
+            (Group::Current, &state.current),
         ] {
             let bytes: Vec<u8> = values.iter().flat_map(|raw| raw.to_le_bytes()).collect();
-            take(row.span(), &bytes);
+            take(group.span(), &bytes);
         }
-        for (row, bytes) in [
-            (&register::ERROR, &state.faults),
-            (&register::STATUS, &state.status),
-            (&register::TEMP, &state.temperature),
+        for (group, bytes) in [
+            (Group::Faults, &state.faults),
+            (Group::Status, &state.status),
+            (Group::Temperature, &state.temperature),
         ] {
-            take(row.span(), bytes);
+            take(group.span(), bytes);
         }
         self.reading(fresh)
     }
 
     fn touch(&mut self, finger: Finger, touch: &TouchMessage) -> Option<Entry> {
         let fresh = self.sample.take(&Reply {
-            span: touch_span(finger),
+            span: Group::Tactile(finger).span(),
             bytes: &touch.raw,
             asked: self.moment(touch.asked),
             received: self.moment(touch.received),
@@ -172,7 +184,8 @@ impl EntryDecoder {
             let reason = serde_json::from_str(&event.words).ok()?;
             return Some(Entry::Heard(Record::ArmRefused { at, reason }));
         }
-        let kind = EventKind::by_key(&event.kind).filter(|kind| !kind.is_derived())?;
+        let kind = EventKind::by_key(&event.kind)
+            .filter(|kind| self.with_derived || !kind.is_derived())?;
         Some(Entry::Event(Event {
             at,
             kind,

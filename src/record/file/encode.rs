@@ -7,7 +7,7 @@ use crate::record::file::message::{
     CommandFate, CommandMessage, EventMessage, Header, JointState, LinkMessage, StateMessage, Time,
     TouchMessage, WireMessage,
 };
-use crate::record::file::opening::Opening;
+use crate::record::file::opening::{Opening, nanos_of};
 use crate::record::file::topic::Topic;
 use crate::record::{Direction, Entry, LinkState, Piece, PieceKind, Record, WriteFate};
 
@@ -43,8 +43,7 @@ impl EntryEncoder {
     }
 
     fn nanos(&self, at: Moment) -> u64 {
-        self.base_nanos
-            .saturating_add(at.micros().saturating_mul(1000))
+        nanos_of(self.base_nanos, at)
     }
 
     fn time(&self, at: Moment) -> Time {

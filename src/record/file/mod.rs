@@ -1,16 +1,17 @@
 //! A session as a file: MCAP whose messages are ROS 2's, so that other programs open it as it is.
 //!
 //! `message` says what stands in a message, `topic` which there are; `encode` and `decode` go between entries and messages;
-//! `writer` makes bytes of entries, `tail` puts them on the disk, `recording` decides when and into which file, `recorder` is the
+//! `writer` makes bytes of entries, `index` those of the file's end, `chunk_list` what it and each
+//! minute say of their chunks, `tail` puts them on the disk, `recording` decides when and into which file, `recorder` is the
 //! thread that does it; `walk` finds the pieces of a file that may be damaged, `reader` reads its entries, `overview` is what a
 //! file tells without being read whole.
 
 pub mod cdr;
+mod chunk_list;
 pub mod decode;
 pub mod disk;
 pub mod encode;
-#[cfg(test)]
-mod failing;
+pub mod index;
 pub mod message;
 pub mod opening;
 pub mod overview;

@@ -3,6 +3,7 @@
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// The name of what is said of a session among a file's metadata.
 pub(crate) const METADATA: &str = "handscope";
@@ -25,6 +26,51 @@ pub struct Opening {
 }
 
 impl Opening {
+    /// The time of [`Moment::ZERO`] where the day is not known: a second after 1970, because 0 is no time of a message.
+    pub const NO_DATE: u64 = 1_000_000_000;
+    /// Ends the version of a session that was read from values.
+    pub const IMPORTED: &'static str = "(imported)";
+
+    /// True if the session was read from values: its events stand in it as they were written, and the day is not known.
+    #[must_use]
+    pub fn is_imported(&self) -> bool {
+        self.version.ends_with(Self::IMPORTED)
+    }
+
+    /// Of a recording that begins now, at this moment of the program and this time since 1970. The hand is its endpoint.
+    #[must_use]
+    pub fn begin(hand: String, (now, since_1970): (Moment, Duration), side: Side) -> Self {
+        let zero = since_1970.saturating_sub(now.since(Moment::ZERO));
+        Self {
+            base_nanos: u64::try_from(zero.as_nanos()).unwrap_or_default(),
+            began: now,
+            simulated: hand.starts_with("sim:"),
+            hand,
+            side,
+            version: env!("CARGO_PKG_VERSION").into(),
+        }
+    }
+
+    /// When the recording began, by the computer's clock.
+    #[must_use]
+    pub fn began_since_1970(&self) -> Duration {
+        Duration::from_nanos(nanos_of(self.base_nanos, self.began))
+    }
+
+    /// The name of its file: the time of day out of `2026-11-21T09:30:00Z`, and the hand's kind and place without anything that a
+    /// file system could object to.
+    #[must_use]
+    pub fn file_name(&self, stamp: &str) -> String {
+        let time = stamp.chars().skip_while(|letter| *letter != 'T');
+        let time: String = time.filter(char::is_ascii_digit).collect();
+        let place = self.hand.split('?').next().unwrap_or_default();
+        let words = place.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '.');
+        let words: Vec<&str> = words
+            .filter(|word| !word.is_empty() && *word != "dev")
+            .collect();
+        format!("{time}-{}.mcap", words.join("-"))
+    }
+
     /// What stands in a file.
     pub(crate) fn metadata(&self) -> BTreeMap<String, String> {
         let side = match self.side {
@@ -68,6 +114,16 @@ impl Opening {
     }
 }
 
+/// A moment as nanoseconds since 1970, in a file whose moments count from `base_nanos`.
+pub(crate) const fn nanos_of(base_nanos: u64, at: Moment) -> u64 {
+    base_nanos.saturating_add(at.micros().saturating_mul(1000))
+}
+
+/// Nanoseconds since 1970 as a moment.
+pub(crate) const fn moment_of(base_nanos: u64, nanos: u64) -> Moment {
+    Moment::from_micros(nanos.saturating_sub(base_nanos) / 1000)
+}
+
 /// The key of the sum over all others: MCAP has none over metadata.
 const CHECK: &str = "crc32";
 
@@ -77,4 +133,27 @@ fn check(map: &BTreeMap<String, String>) -> String {
         hash.update(format!("{key}={value}\n").as_bytes());
     }
     format!("{:08x}", hash.finalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_named_after_the_hand_without_what_file_systems_object_to() {
+        let moments = (Moment::from_micros(5), Duration::from_secs(1));
+        for (url, name) in [
+            ("sim:", "sim"),
+            ("rs485:/dev/ttyUSB0?baud=115200&id=1", "rs485-ttyUSB0"),
+            ("tcp:192.168.11.210:6000", "tcp-192.168.11.210-6000"),
+            ("tcp:[::1]:6000", "tcp-1-6000"),
+            ("can:can0?id=3", "can-can0"),
+        ] {
+            let opening = Opening::begin(url.into(), moments, Side::Left);
+            let named = opening.file_name("2026-11-21T09:30:00Z");
+            assert_eq!(named, format!("093000-{name}.mcap"));
+            assert_eq!(opening.simulated, name == "sim");
+            assert_eq!(opening.began_since_1970(), Duration::from_secs(1));
+        }
+    }
 }

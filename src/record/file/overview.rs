@@ -83,6 +83,12 @@ pub struct Counts {
 }
 
 impl Counts {
+    /// Whole sweeps over the fingertips.
+    #[must_use]
+    pub const fn touch_sweeps(&self) -> u64 {
+        self.touch_blocks / Finger::ALL.len() as u64
+    }
+
     fn add(&mut self, other: Self) {
         self.states += other.states;
         self.touch_blocks += other.touch_blocks;
@@ -181,7 +187,9 @@ impl Overview {
                     .and_then(|word| word.parse().ok());
                 self.counts.missing += number.unwrap_or(0);
             }
-            EventKind::Parameters | EventKind::Settings | EventKind::Person => return,
+            // A session that was imported has them as entries, because its readings do not tell them.
+            EventKind::Fault => self.counts.faults += 1,
+            kind if !kind.is_listed() => return,
             _ => {}
         }
         self.mark(FileMark {

@@ -3,22 +3,19 @@
 use crate::hand::Moment;
 use crate::record::Entry;
 use crate::record::file::decode::EntryDecoder;
-use crate::record::file::opening::{METADATA, Opening};
+use crate::record::file::opening::{METADATA, Opening, moment_of, nanos_of};
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::topic::Topic;
-use crate::record::file::walk::{self, ChunkPlace, Found, MAGIC, Place, RECORD_MAX};
+use crate::record::file::walk::{self, ChunkPlace, Found, MAGIC, Place, messages};
 use crate::record::file::writer::OVERVIEW;
 use mcap::records::{Record as McapRecord, op};
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// No message of ours is longer. Small parts of a long one could take many times its room.
-const MESSAGE_MAX: usize = 1024 * 1024;
 /// No block of the overview is longer; what a longer one is about is made anew.
 pub(crate) const BLOCK_MAX: u64 = 1024 * 1024;
 
@@ -34,6 +31,9 @@ pub enum OpenError {
         /// What the system says.
         message: String,
     },
+    /// A folder, a device, a pipe.
+    #[error("it is no file, but a folder or a device")]
+    NotAFile,
     /// Not MCAP.
     #[error("it is not an MCAP file: its first bytes are others")]
     NotMcap,
@@ -67,7 +67,7 @@ pub struct SessionFile {
 /// What of a file is missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Damage {
-    /// Chunks that cannot be read; each holds about a quarter of a second.
+    /// Chunks that cannot be read; each holds about what is recorded within [`FLUSH_EACH`](crate::record::file::FLUSH_EACH).
     pub chunks: u64,
     /// Bytes in which no record was found.
     pub bytes: u64,
@@ -84,6 +84,15 @@ pub struct Stretch {
     pub wire: bool,
 }
 
+impl Stretch {
+    /// All of a file.
+    pub const WHOLE: Self = Self {
+        from: Moment::ZERO,
+        to: Moment::from_micros(u64::MAX / 2000),
+        wire: true,
+    };
+}
+
 impl SessionFile {
     /// Opens a file.
     ///
@@ -91,7 +100,7 @@ impl SessionFile {
     /// [`OpenError`].
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         if !std::fs::metadata(path)?.is_file() {
-            return Err(OpenError::NotMcap);
+            return Err(OpenError::NotAFile);
         }
         let mut file = File::open(path)?;
         let mut magic = [0; MAGIC.len()];
@@ -101,12 +110,12 @@ impl SessionFile {
         let mut found = walk::walk(&mut file)?;
         found.chunks.retain(|chunk| chunk.last_nanos > 0);
         let opening = opening(&mut file, &found)?;
-        let overview = overview(&mut file, &found, opening.base_nanos)?;
+        let overview = overview(&mut file, &found, &opening)?;
         let last_nanos = found.chunks.iter().map(|chunk| chunk.last_nanos).max();
-        let micros = |nanos: u64| nanos.saturating_sub(opening.base_nanos) / 1000;
+        let last = moment_of(opening.base_nanos, last_nanos.unwrap_or_default());
         Ok(Self {
             path: path.to_owned(),
-            last: Moment::from_micros(last_nanos.map_or(0, micros)).max(opening.began),
+            last: last.max(opening.began),
             file: Mutex::new(file),
             found,
             opening,
@@ -168,7 +177,7 @@ impl SessionFile {
     ) -> io::Result<Damage> {
         let warm = stretch.from.since(Moment::ZERO).saturating_sub(WARM_UP);
         let warm = Moment::from_duration(warm);
-        let mut decoder = EntryDecoder::new(self.opening.base_nanos);
+        let mut decoder = EntryDecoder::of(&self.opening);
         let mut damage = Damage {
             chunks: 0,
             bytes: self.found.skipped,
@@ -208,11 +217,7 @@ impl SessionFile {
             chunks: 0,
             bytes: self.found.skipped,
         };
-        let nanos = |at: Moment| {
-            let nanos = at.micros().saturating_mul(1000);
-            self.opening.base_nanos.saturating_add(nanos)
-        };
-        let within = nanos(from)..=nanos(to).saturating_add(999);
+        let within = self.nanos(from, to);
         for chunk in self.chunks(from, to) {
             let bytes = self.read(chunk.place)?;
             let whole = messages(&bytes, |topic, times, message| {
@@ -225,63 +230,32 @@ impl SessionFile {
         Ok(damage)
     }
 
+    /// A stretch in nanoseconds since 1970, the whole last microsecond included.
+    fn nanos(&self, from: Moment, to: Moment) -> RangeInclusive<u64> {
+        let base = self.opening.base_nanos;
+        nanos_of(base, from)..=nanos_of(base, to).saturating_add(999)
+    }
+
     fn chunks(&self, from: Moment, to: Moment) -> impl Iterator<Item = &ChunkPlace> {
-        let nanos = |at: Moment| {
-            let nanos = at.micros().saturating_mul(1000);
-            self.opening.base_nanos.saturating_add(nanos)
-        };
-        let (from, to) = (nanos(from), nanos(to).saturating_add(999));
-        let all = self.found.chunks.iter();
-        all.filter(move |chunk| chunk.last_nanos >= from && chunk.first_nanos <= to)
+        let (from, to) = self.nanos(from, to).into_inner();
+        let all = self.found.chunks.as_slice();
+        // The times in a chunk's head may be damaged: it reaches at least from the chunk before it to the one after.
+        let before = std::iter::once(0).chain(all.iter().map(|chunk| chunk.last_nanos));
+        let after = all.iter().skip(1).map(|chunk| chunk.first_nanos);
+        let around = before.zip(after.chain([u64::MAX]));
+        let reaching = all
+            .iter()
+            .zip(around)
+            .filter(move |(chunk, (before, after))| {
+                chunk.last_nanos.max(*after) >= from && chunk.first_nanos.min(*before) <= to
+            });
+        reaching.map(|(chunk, _)| chunk)
     }
 
     fn read(&self, place: Place) -> io::Result<Vec<u8>> {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         walk::whole(&mut *file, place)
     }
-}
-
-/// Gives each message of a chunk's record (topic, times, bytes); false if the chunk is damaged, and then it gives none of it.
-fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u8])) -> bool {
-    let options = LinearReaderOptions::default()
-        .with_skip_start_magic(true)
-        .with_skip_end_magic(true)
-        .with_prevalidate_chunk_crcs(true)
-        .with_record_length_limit(usize::try_from(RECORD_MAX).unwrap_or(usize::MAX));
-    let mut reader = LinearReader::new_with_options(options);
-    let mut rest = chunk;
-    while let Some(event) = reader.next_event() {
-        match event {
-            Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let give = rest.len().min(wanted);
-                let (now, later) = rest.split_at(give);
-                reader.insert(give).copy_from_slice(now);
-                reader.notify_read(give);
-                rest = later;
-            }
-            Ok(LinearReadEvent::Record { data, opcode }) if opcode == op::MESSAGE => {
-                if let Some((topic, times, message)) = message(data)
-                    && message.len() <= MESSAGE_MAX
-                {
-                    take(topic, times, message);
-                }
-            }
-            Ok(LinearReadEvent::Record { .. }) => {}
-            Err(_damaged) => return false,
-        }
-    }
-    true
-}
-
-/// Topic, times and content of a message's record: number of the channel, number of the message, and two times stand before it.
-fn message(record: &[u8]) -> Option<(Topic, (u64, u64), &[u8])> {
-    let (channel, rest) = record.split_first_chunk()?;
-    let (_sequence, rest) = rest.split_first_chunk::<4>()?;
-    let (log, rest) = rest.split_first_chunk()?;
-    let (publish, message) = rest.split_first_chunk()?;
-    let topic = Topic::by_channel(u16::from_le_bytes(*channel))?;
-    let times = (u64::from_le_bytes(*log), u64::from_le_bytes(*publish));
-    Some((topic, times, message))
 }
 
 /// What the file says of itself. Where that is lost, what can be known without it.
@@ -315,7 +289,7 @@ fn opening(file: &mut File, found: &Found) -> Result<Opening, OpenError> {
 }
 
 /// The blocks of the file, and what they miss made anew.
-fn overview(file: &mut File, found: &Found, base_nanos: u64) -> Result<Overview, OpenError> {
+fn overview(file: &mut File, found: &Found, opening: &Opening) -> Result<Overview, OpenError> {
     let mut overview = Overview::default();
     let mut covered = Vec::new();
     let blocks = found.attachments.iter();
@@ -336,7 +310,7 @@ fn overview(file: &mut File, found: &Found, base_nanos: u64) -> Result<Overview,
         let last = after.checked_sub(1).and_then(|last| covered.get(last));
         last.is_some_and(|stretch| offset < stretch.end)
     };
-    let mut decoder = EntryDecoder::new(base_nanos);
+    let mut decoder = EntryDecoder::of(opening);
     for chunk in &found.chunks {
         if is_covered(chunk.place.offset) {
             continue;

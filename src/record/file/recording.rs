@@ -279,9 +279,12 @@ impl SessionRecording {
     }
 
     fn finish(&mut self) {
-        let result = self.writer.finish();
-        debug_assert!(result.is_ok());
+        let end = self.writer.finish();
+        debug_assert!(end.is_ok());
         self.give();
+        if let Ok(end) = end {
+            self.tail.end_with(end);
+        }
     }
 
     fn give(&mut self) {

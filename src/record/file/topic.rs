@@ -35,10 +35,25 @@ pub struct Schema {
     pub text: &'static str,
 }
 
+/// A definition, followed by that of the times in it.
+macro_rules! with_time {
+    ($text:literal) => {
+        concat!(
+            $text,
+            "================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"
+        )
+    };
+}
+
 const JOINT_STATE: Schema = Schema {
     id: 1,
     name: "sensor_msgs/msg/JointState",
-    text: "std_msgs/Header header
+    text: with_time!(
+        "std_msgs/Header header
 string[] name
 float64[] position
 float64[] velocity
@@ -47,16 +62,14 @@ float64[] effort
 MSG: std_msgs/Header
 builtin_interfaces/Time stamp
 string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-",
+"
+    ),
 };
 const STATE: Schema = Schema {
     id: 2,
     name: "handscope_msgs/msg/State",
-    text: "# One reply about the joints. A list has six values (little, ring, middle, index, thumb bend, thumb rotation), or
+    text: with_time!(
+"# One reply about the joints. A list has six values (little, ring, middle, index, thumb bend, thumb rotation), or
 # none if the reply was not about it. Numbers are as the hand sent them; -32768 in a set point is one out of its range.
 builtin_interfaces/Time asked
 builtin_interfaces/Time received
@@ -72,16 +85,14 @@ uint8[] status
 uint8[] temperature
 # Values outside the ranges of the manual, as angle[4].
 string[] undocumented
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-",
+"
+    ),
 };
 const COMMAND: Schema = Schema {
     id: 3,
     name: "handscope_msgs/msg/Command",
-    text: "# A write that left for the hand.
+    text: with_time!(
+        "# A write that left for the hand.
 builtin_interfaces/Time sent
 uint64 number
 # hold, arming, setpoint, request or setting
@@ -89,30 +100,26 @@ string cause
 string register
 uint16 address
 uint8[] bytes
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-",
+"
+    ),
 };
 const COMMAND_FATE: Schema = Schema {
     id: 4,
     name: "handscope_msgs/msg/CommandFate",
-    text: "# The end of a write: acknowledged, refused or unanswered.
+    text: with_time!(
+        "# The end of a write: acknowledged, refused or unanswered.
 builtin_interfaces/Time at
 uint64 number
 string fate
 string reason
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-",
+"
+    ),
 };
 const LINK: Schema = Schema {
     id: 5,
     name: "handscope_msgs/msg/Link",
-    text: "# Where the link stood: offline, identifying, monitoring, armed, holding or fault.
+    text: with_time!(
+        "# Where the link stood: offline, identifying, monitoring, armed, holding or fault.
 builtin_interfaces/Time at
 string state
 # True if the state began here.
@@ -122,42 +129,36 @@ string trouble
 string status
 # In JSON; empty if not told here.
 string figures
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-",
+"
+    ),
 };
 const EVENT: Schema = Schema {
     id: 6,
     name: "handscope_msgs/msg/Event",
-    text: "# What happened beside: fault, stop, armed, note, trial, ...
+    text: with_time!(
+        "# What happened beside: fault, stop, armed, note, trial, ...
 builtin_interfaces/Time at
 string kind
 string words
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-",
+"
+    ),
 };
 const WIRE: Schema = Schema {
     id: 7,
     name: "handscope_msgs/msg/Wire",
-    text: "# 0 the wire was opened, 1 bytes to the hand, 2 bytes from the hand, 3 it broke, 4 it was closed.
+    text: with_time!(
+"# 0 the wire was opened, 1 bytes to the hand, 2 bytes from the hand, 3 it broke, 4 it was closed.
 builtin_interfaces/Time at
 uint8 kind
 uint8[] bytes
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-",
+"
+    ),
 };
 const TOUCH: Schema = Schema {
     id: 8,
     name: "handscope_msgs/msg/Touch",
-    text: "# The block of one fingertip.
+    text: with_time!(
+        "# The block of one fingertip.
 builtin_interfaces/Time asked
 builtin_interfaces/Time received
 float32 normal_n
@@ -169,11 +170,8 @@ bool check_ok
 uint32[] channels
 # The 58 bytes as they were sent.
 uint8[] raw
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-",
+"
+    ),
 };
 
 /// Topics without the fingertips' in the order of their numbers.

@@ -167,6 +167,7 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::SessionRefused { path, why } => {
             let why = match why {
                 OpenError::Unreadable { message } => errors::system(look, message),
+                OpenError::NotAFile => look.say(sessions::NOT_A_FILE).to_owned(),
                 OpenError::NotMcap => look.say(sessions::NOT_MCAP).to_owned(),
                 OpenError::Foreign => look.say(sessions::FOREIGN).to_owned(),
                 OpenError::Empty => look.say(sessions::EMPTY).to_owned(),

@@ -82,6 +82,7 @@ texts! {
     DAMAGED: "A part of this file cannot be read and is left out.", "此文件有一部分无法读取，已略过。";
     REFUSED: "{} cannot be replayed: {}.", "无法回放 {}：{}。";
     NOT_MCAP: "it is not an MCAP file", "它不是 MCAP 文件";
+    NOT_A_FILE: "it is no file, but a folder or a device", "它不是文件，而是文件夹或设备";
     FOREIGN: "it is an MCAP file of another program", "它是其他程序的 MCAP 文件";
     EMPTY: "nothing in it can be read", "其中没有可读取的内容";
     IS_RECORDING: "This is a recording: nothing was sent. Go back to the live hand first.", "这是录制内容：没有发送任何指令。请先返回实时灵巧手。";

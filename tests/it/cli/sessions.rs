@@ -478,7 +478,7 @@ fn what_is_no_session_is_refused_in_one_sentence_by_every_command() {
     sparse.set_len(200_000_000).unwrap();
     for (name, words) in [
         ("gone.mcap", "No such file"),
-        ("", "is not an MCAP file"),
+        ("", "is no file, but a folder"),
         ("empty", "is not an MCAP file"),
         ("text.mcap", "is not an MCAP file"),
         ("head.mcap", "no whole piece"),
@@ -496,6 +496,51 @@ fn what_is_no_session_is_refused_in_one_sentence_by_every_command() {
         }
         assert!(!out.exists(), "{name}");
     }
+}
+
+#[test]
+fn exported_values_are_made_a_session_again_that_says_what_it_does_not_know() {
+    let recorded = record("1");
+    recorded.export(&["--csv"], "values.csv").ok();
+    let csv = recorded.path("values.csv");
+    for args in [
+        &["info", text(&csv)][..],
+        &["recover", text(&csv)],
+        &["replay", text(&csv), "--tcp", "127.0.0.1:0"],
+    ] {
+        refused(&run(args), 1, &["not an MCAP file", "handscope import"]);
+    }
+    refused(&run(&[text(&csv)]), 2, &["handscope import"]);
+    let told = run(&["import", text(&csv), "--json"])
+        .ok()
+        .lines()
+        .remove(0);
+    assert_eq!(told["skipped_columns"], serde_json::json!([]));
+    let rows = std::fs::read_to_string(&csv).unwrap().lines().count() - 1;
+    assert_eq!(told["rows"], rows);
+    let info = recorded.info("values.mcap");
+    assert_eq!(
+        (info["start"].clone(), info["hand"].clone()),
+        (Value::Null, "".into())
+    );
+    assert_eq!(
+        (info["gaps"].clone(), info["closed"].clone()),
+        (0.into(), true.into())
+    );
+    assert_eq!(info["states"], recorded.info("session.mcap")["states"]);
+    let words = run(&["info", text(&recorded.path("values.mcap"))]).ok().out;
+    assert!(words.contains("start         not known"), "{words}");
+    let again = run(&["import", text(&csv)]);
+    refused(&again, 1, &["is not overwritten", "--out"]);
+    std::fs::write(&csv, "time_s,mood\n").unwrap();
+    let out = recorded.path("x.mcap");
+    let wrong = run(&["import", text(&csv), "--out", text(&out)]);
+    refused(
+        &wrong,
+        1,
+        &["cannot import", "line 1: no column of it but time_s"],
+    );
+    assert!(!out.exists());
 }
 
 #[test]
@@ -523,6 +568,7 @@ fn wrong_flags_are_told_before_anything_is_done() {
             "number of seconds",
         ),
         (&["recover"], "FILE.mcap"),
+        (&["import"], "FILE.csv"),
     ] {
         refused(&run(args), 2, &[words]);
     }

@@ -1,6 +1,7 @@
 //! What must hold for any bytes, one function a decoder. The plain loops beside this file and the
 //! fuzz targets of `tests/fuzz` run the same functions. Each panics where a promise is broken.
 
+use handscope::app::sessions::SessionAbout;
 use handscope::app::settings::Settings;
 use handscope::codec::can::{self, CanRecord, from_record, to_record};
 use handscope::codec::mbap::{self, MbapSplitter};
@@ -26,6 +27,7 @@ use handscope::poses;
 use handscope::record::file::reader::Stretch;
 use handscope::record::file::writer::SessionWriter;
 use handscope::record::file::{Opening, SessionFile};
+use handscope::record::import::csv::{CsvValues, ImportError};
 use handscope::record::{Direction, Entry, Event, EventKind, LinkState, Piece, PieceKind, Record};
 use handscope::transport::Endpoint;
 use std::io::{Seek as _, Write as _};
@@ -51,7 +53,7 @@ pub const WIRES: [(&str, Target); 10] = [
 ];
 
 /// Everything else that reads what it was not asked to trust.
-pub const OTHERS: [(&str, Target); 14] = [
+pub const OTHERS: [(&str, Target); 16] = [
     ("tap_rs485", |state, bytes| tap(state, 0, bytes)),
     ("tap_rtu", |state, bytes| tap(state, 1, bytes)),
     ("tap_tcp", |state, bytes| tap(state, 2, bytes)),
@@ -66,6 +68,8 @@ pub const OTHERS: [(&str, Target); 14] = [
     ("parameter_file", parameter_file),
     ("pose_file", pose_file),
     ("session_file", session_file),
+    ("session_about", session_about),
+    ("csv_values", csv_values),
 ];
 
 /// Decoders that live on from one input to the next, as they do on a wire.
@@ -492,6 +496,47 @@ fn session_file(state: &mut State, bytes: &[u8]) {
     assert!(session.overview().rows.is_sorted_by_key(|row| row.second));
 }
 
+/// Any file beside a session says something of it or what is wrong; what is taken is read back as it was.
+fn session_about(state: &mut State, bytes: &[u8]) {
+    let session = &mut state.session;
+    let session = session.get_or_insert_with(in_memory).path().to_owned();
+    let path = SessionAbout::path(&session);
+    std::fs::write(&path, bytes).unwrap();
+    let read = SessionAbout::load(&session);
+    std::fs::remove_file(&path).unwrap();
+    let about = match read {
+        Ok(about) => about,
+        Err(why) => return assert!(!why.to_string().is_empty()),
+    };
+    state.accepted += 1;
+    let written = toml::to_string_pretty(&about).unwrap();
+    assert_eq!(toml::from_str::<SessionAbout>(&written).unwrap(), about);
+}
+
+/// Any file holds values line by line, until a line of which it says what is wrong. Each reading is about something.
+fn csv_values(state: &mut State, bytes: &[u8]) {
+    let said = |why: ImportError| {
+        let words = why.to_string();
+        assert!(!words.contains('\n') && words.len() < 300, "{words}");
+    };
+    let mut values = match CsvValues::new(bytes) {
+        Ok(values) => values,
+        Err(why) => return said(why),
+    };
+    state.accepted += 1;
+    loop {
+        match values.next_row() {
+            Ok(Some(entries)) => assert!(entries.len() <= 2),
+            Ok(None) => return,
+            Err(why) => return said(why),
+        }
+    }
+}
+
+/// Values with each kind of column.
+const VALUES: &str = "time_s,angle_index,force_ring_g,temperature_little_C,normal_thumb_N,channel_1_thumb,mood,event\n\
+    0.000000,1000,-33,20,,,calm,\n0.010000,,,,0.25,77,,\"note: a \"\"quoted\"\", one\"\n0.5,0,4000,,,,,link lost\n";
+
 /// A file where no disk slows millions of inputs down, if there is such a place.
 fn in_memory() -> NamedTempFile {
     NamedTempFile::new_in("/dev/shm")
@@ -541,8 +586,10 @@ fn session() -> Vec<u8> {
         writer.push(&entry).unwrap();
         writer.flush().unwrap();
     }
-    writer.finish().unwrap();
-    writer.take_bytes()
+    let end = writer.finish().unwrap();
+    let mut bytes = writer.take_bytes();
+    bytes.extend(end.flatten());
+    bytes
 }
 
 /// A file of poses.
@@ -624,6 +671,11 @@ pub fn seeds(target: &str) -> Vec<Vec<u8>> {
             let unclosed = whole[..whole.len() / 2].to_vec();
             vec![whole, unclosed]
         }
+        "csv_values" => vec![VALUES.as_bytes().to_vec()],
+        "session_about" => vec![
+            b"name = \"egg\"\nstar = true\n[[notes]]\nat_micros = 5\nwords = \"x\"\n[new]\nkey = 1\n".to_vec(),
+            b"star = false\nnotes = []\n".to_vec(),
+        ],
         "pose_file" => vec![POSES.as_bytes().to_vec()],
         _ => vec![vec![1, 2, 3, 4], (0..24).collect()],
     }

@@ -1,7 +1,6 @@
 //! Files that were made to harm: whatever they claim, reading them takes little memory, and ends with entries or with one sentence.
 
 use crate::setup::process::listen;
-use handscope::hand::Moment;
 use handscope::record::file::reader::{SessionFile, Stretch};
 use handscope::record::file::topic::Topic;
 use handscope::record::file::walk::CHUNKS_MAX;
@@ -31,11 +30,7 @@ fn child_reads_a_file_and_says_what_it_took() {
     let words = match SessionFile::open(Path::new(&path)) {
         Ok(file) => {
             let mut entries = 0_u64;
-            let all = Stretch {
-                from: Moment::ZERO,
-                to: Moment::from_micros(u64::MAX / 2000),
-                wire: true,
-            };
+            let all = Stretch::WHOLE;
             let took = file.entries(all, |_| {
                 entries += 1;
                 ControlFlow::Continue(())

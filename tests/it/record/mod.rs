@@ -2,6 +2,7 @@
 
 #[cfg(target_os = "linux")]
 mod hostile;
+mod import;
 #[cfg(unix)]
 mod journal;
 #[cfg(unix)]

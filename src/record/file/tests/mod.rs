@@ -1,5 +1,9 @@
 //! Sessions written and read back: whole, cut at any byte, with flipped bits, on disks that fail.
 
+mod failing;
+mod index;
+mod lists;
+
 use crate::hand::command::HandCommand;
 use crate::hand::kinematics::Side;
 use crate::hand::{
@@ -136,20 +140,17 @@ pub(crate) fn bytes_of(entries: &[Entry]) -> Vec<u8> {
             writer.flush().unwrap();
         }
     }
-    writer.finish().unwrap();
-    writer.take_bytes()
+    let end = writer.finish().unwrap();
+    let mut bytes = writer.take_bytes();
+    bytes.extend(end.flatten());
+    bytes
 }
 
 pub(crate) fn read(path: &Path) -> Option<(Vec<Atom>, SessionFile, Damage)> {
     let file = SessionFile::open(path).ok()?;
     let mut all = Vec::new();
-    let stretch = Stretch {
-        from: Moment::ZERO,
-        to: Moment::from_micros(u64::MAX / 2000),
-        wire: true,
-    };
     let damage = file
-        .entries(stretch, |entry| {
+        .entries(Stretch::WHOLE, |entry| {
             all.extend(atoms(&entry));
             ControlFlow::Continue(())
         })
@@ -277,7 +278,11 @@ fn what_is_no_session_is_refused_in_words() {
     assert!(words(&bytes_of(&[])[..8]).contains("no whole piece"));
     let gone = SessionFile::open(&folder.path().join("b.mcap")).unwrap_err();
     assert!(gone.to_string().starts_with("it cannot be read"));
-    assert!(SessionFile::open(folder.path()).is_err());
+    let folder = SessionFile::open(folder.path()).unwrap_err();
+    assert_eq!(
+        folder.to_string(),
+        "it is no file, but a folder or a device"
+    );
     let mut writer = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
     let none = std::collections::BTreeMap::new();
     let channel = writer.add_channel(0, "/tf", "json", &none).unwrap();

@@ -1,0 +1,107 @@
+//! What is found of a session file, and how its bytes are read: no further than the longest record of ours.
+
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// No record of ours is longer; what says so is damaged.
+pub const RECORD_MAX: u64 = 8 * 1024 * 1024;
+/// Chunks of one file: more than a day of one hand, in 32 MiB. A file made of tiny ones is read without those after.
+pub const CHUNKS_MAX: usize = 1024 * 1024;
+/// Attachments and metadata of one file; ten hours have 1200 attachments.
+pub const PLACES_MAX: usize = 64 * 1024;
+/// Begins and ends a file.
+pub(crate) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
+/// Operation code and length before each record.
+pub(super) const HEAD: u64 = 9;
+/// The same as a number of bytes in memory.
+pub(super) const HEAD_LEN: usize = 9;
+
+/// Where a record stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// Of its operation code.
+    pub offset: u64,
+    /// Bytes after operation code and length.
+    pub len: u64,
+}
+
+/// A chunk and the times of its messages, in nanoseconds since 1970.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ChunkPlace {
+    /// Where.
+    pub place: Place,
+    /// Of its first message.
+    pub first_nanos: u64,
+    /// Of its last message.
+    pub last_nanos: u64,
+}
+
+/// The records of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Found {
+    /// In the order of the file.
+    pub chunks: Vec<ChunkPlace>,
+    /// Attachments.
+    pub attachments: Vec<Place>,
+    /// Metadata.
+    pub metadata: Vec<Place>,
+    /// True if the file was ended as it should be.
+    pub closed: bool,
+    /// Bytes in which no record was found, or no room for one.
+    pub skipped: u64,
+}
+
+impl Found {
+    pub(super) fn chunk(&mut self, chunk: ChunkPlace) {
+        match self.chunks.len() < CHUNKS_MAX {
+            true => self.chunks.push(chunk),
+            false => self.skipped += HEAD + chunk.place.len,
+        }
+    }
+
+    pub(super) fn attachment(&mut self, place: Place) {
+        if self.attachments.len() < PLACES_MAX {
+            self.attachments.push(place);
+        }
+    }
+
+    pub(super) fn metadata(&mut self, place: Place) {
+        if self.metadata.len() < PLACES_MAX {
+            self.metadata.push(place);
+        }
+    }
+}
+
+pub(super) fn read_at<F: Read + Seek>(
+    file: &mut F,
+    offset: u64,
+    bytes: &mut [u8],
+) -> io::Result<()> {
+    file.seek(SeekFrom::Start(offset))?;
+    file.read_exact(bytes)
+}
+
+pub(super) fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
+    let eight = bytes.get(at..)?.first_chunk()?;
+    Some(u64::from_le_bytes(*eight))
+}
+
+/// The content of a record.
+///
+/// # Errors
+/// What the system says.
+pub(crate) fn content<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Vec<u8>> {
+    let mut bytes = vec![0; usize::try_from(place.len.min(RECORD_MAX)).unwrap_or_default()];
+    read_at(file, place.offset + HEAD, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// The whole of a record, operation code and length included.
+///
+/// # Errors
+/// What the system says.
+pub(crate) fn whole<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Vec<u8>> {
+    let len = place.len.min(RECORD_MAX) + HEAD;
+    let mut bytes = vec![0; usize::try_from(len).unwrap_or_default()];
+    read_at(file, place.offset, &mut bytes)?;
+    Ok(bytes)
+}

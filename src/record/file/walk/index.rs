@@ -1,0 +1,129 @@
+//! The records of a file that was ended: its own index tells of them.
+
+use super::found::{ChunkPlace, Found, HEAD, MAGIC, Place, RECORD_MAX, read_at, u64_at};
+use mcap::records::op;
+use std::io::{self, Read, Seek};
+
+/// The index of a closed file is read piece by piece; none of its records is longer.
+const INDEX_RECORD_MAX: usize = 64 * 1024;
+/// Bytes of the index read at once.
+const INDEX_PIECE: usize = 1024 * 1024;
+
+/// What the index tells; `None` if there is none that is whole.
+pub(super) fn by_index<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Option<Found>> {
+    const TAIL: usize = 9 + 20 + 8;
+    let tail_at = len.saturating_sub(TAIL as u64);
+    let mut tail = [0; TAIL];
+    if len < TAIL as u64 + 8 {
+        return Ok(None);
+    }
+    read_at(file, tail_at, &mut tail)?;
+    let footer = record(&tail).filter(|(op, body, _)| *op == op::FOOTER && body.len() == 20);
+    let Some((_, body, rest)) = footer.filter(|(_, _, rest)| *rest == MAGIC) else {
+        return Ok(None);
+    };
+    debug_assert_eq!(rest.len(), MAGIC.len());
+    let start = u64_at(body, 0).unwrap_or_default();
+    let crc = body.get(16..).and_then(<[u8]>::first_chunk);
+    let crc = crc.map_or(0, |crc| u32::from_le_bytes(*crc));
+    if start == 0 || crc == 0 || start >= tail_at {
+        return Ok(None);
+    }
+    let mut index = Index::new(start);
+    let mut at = start;
+    let mut piece = Vec::new();
+    while at < tail_at {
+        let len = usize::try_from(tail_at - at)
+            .unwrap_or(usize::MAX)
+            .min(INDEX_PIECE);
+        let before = piece.len();
+        piece.resize(before + len, 0);
+        let new = piece.get_mut(before..).unwrap_or_default();
+        read_at(file, at, new)?;
+        index.hash.update(new);
+        let Some(taken) = index.take(&piece) else {
+            return Ok(None);
+        };
+        piece.drain(..taken);
+        at += u64::try_from(len).unwrap_or_default();
+    }
+    index.hash.update(tail.get(..TAIL - 12).unwrap_or_default());
+    let whole = index.hash.finalize() == crc && piece.is_empty();
+    Ok(whole.then_some(index.found))
+}
+
+/// What the index of a closed file tells so far.
+struct Index {
+    found: Found,
+    hash: crc32fast::Hasher,
+    /// Where the index begins: what it tells of stands before.
+    start: u64,
+    /// Where the last chunk ends. The next comes after, else one could be told of any number of times.
+    after: u64,
+}
+
+impl Index {
+    fn new(start: u64) -> Self {
+        Self {
+            found: Found {
+                closed: true,
+                ..Found::default()
+            },
+            hash: crc32fast::Hasher::new(),
+            start,
+            after: 0,
+        }
+    }
+
+    /// Takes the whole records of some bytes; how long they are. `None` if they do not tell of the file's own.
+    fn take(&mut self, bytes: &[u8]) -> Option<usize> {
+        let mut rest = bytes;
+        while let Some((op, body, next)) = record(rest) {
+            self.record(op, body)?;
+            rest = next;
+        }
+        let is_short = rest.len() <= INDEX_RECORD_MAX;
+        is_short.then_some(bytes.len() - rest.len())
+    }
+
+    fn record(&mut self, op: u8, body: &[u8]) -> Option<()> {
+        match op {
+            op::CHUNK_INDEX => {
+                let place = self.place(u64_at(body, 16)?, u64_at(body, 24)?)?;
+                if place.offset < self.after {
+                    return None;
+                }
+                self.after = place.offset + HEAD + place.len;
+                self.found.chunk(ChunkPlace {
+                    place,
+                    first_nanos: u64_at(body, 0)?,
+                    last_nanos: u64_at(body, 8)?,
+                });
+            }
+            op::ATTACHMENT_INDEX => {
+                let place = self.place(u64_at(body, 0)?, u64_at(body, 8)?)?;
+                self.found.attachment(place);
+            }
+            op::METADATA_INDEX => {
+                let place = self.place(u64_at(body, 0)?, u64_at(body, 8)?)?;
+                self.found.metadata(place);
+            }
+            _ => {}
+        }
+        Some(())
+    }
+
+    fn place(&self, offset: u64, whole: u64) -> Option<Place> {
+        let len = whole.checked_sub(HEAD).filter(|len| *len <= RECORD_MAX)?;
+        let end = offset.checked_add(whole)?;
+        (len > 0 && end <= self.start).then_some(Place { offset, len })
+    }
+}
+
+/// Operation code, content, and what follows it.
+fn record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
+    let (op, rest) = bytes.split_first()?;
+    let len = usize::try_from(u64_at(rest, 0)?).ok()?;
+    let rest = rest.get(8..)?;
+    Some((*op, rest.get(..len)?, rest.get(len..)?))
+}

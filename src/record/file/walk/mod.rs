@@ -1,0 +1,49 @@
+//! Finds the records of a session file that may be cut, damaged, or made to harm: every length is checked before it is used.
+//!
+//! `index` asks the index of a file that was ended, `lists` the lists of chunks that stand in every file, and `hops` goes from
+//! record to record where neither tells; `times` corrects what it found there.
+
+mod found;
+mod hops;
+mod index;
+mod lists;
+mod messages;
+mod times;
+
+pub use found::{CHUNKS_MAX, ChunkPlace, Found, PLACES_MAX, Place, RECORD_MAX};
+pub(crate) use found::{MAGIC, content, whole};
+pub(crate) use messages::messages;
+
+use hops::one_by_one;
+use index::by_index;
+use lists::by_lists;
+use std::io::{self, Read, Seek, SeekFrom};
+use times::mend;
+
+/// Finds the records: by the file's own index where there is one that is whole, else by the lists of chunks, and one after the
+/// other where those do not tell.
+///
+/// # Errors
+/// What the system says; nothing that stands in the file is an error.
+pub fn walk<F: Read + Seek>(file: &mut F) -> io::Result<Found> {
+    let len = file.seek(SeekFrom::End(0))?;
+    if let Some(found) = by_index(file, len)? {
+        return Ok(found);
+    }
+    let mut found = Found::default();
+    let begin = MAGIC.len() as u64;
+    let listed = by_lists(file, len)?;
+    match listed.last().zip(listed.first()) {
+        Some((first, last)) => {
+            one_by_one(file, begin..first.from, &mut found)?;
+            listed
+                .iter()
+                .rev()
+                .for_each(|block| block.add_to(&mut found));
+            one_by_one(file, last.end()..len, &mut found)?;
+        }
+        None => one_by_one(file, begin..len, &mut found)?,
+    }
+    mend(file, &mut found)?;
+    Ok(found)
+}

@@ -1,0 +1,50 @@
+//! The times of chunks found without an index. No sum protects what a chunk's head says of them, so those that do not fit their
+//! neighbours are taken from the chunk's messages.
+
+use super::found::{ChunkPlace, Found, whole};
+use super::messages::messages;
+use std::io::{self, Read, Seek};
+
+/// Entries of several sources come in almost the order of time.
+const APART_NANOS: u64 = 1_000_000_000;
+/// No chunk of ours is longer.
+const LENGTH_NANOS: u64 = 10_000_000_000;
+
+/// Corrects the times that cannot be right.
+pub(super) fn mend<F: Read + Seek>(file: &mut F, found: &mut Found) -> io::Result<()> {
+    let mut before: Option<u64> = None;
+    for at in 0..found.chunks.len() {
+        let after = found.chunks.get(at + 1).map(|chunk| chunk.first_nanos);
+        let Some(chunk) = found.chunks.get_mut(at) else {
+            break;
+        };
+        // The definitions stand in a chunk without messages, which has no times.
+        let is_empty = (chunk.first_nanos, chunk.last_nanos) == (0, 0);
+        if !is_empty && !fits(chunk, before, after) {
+            let bytes = whole(file, chunk.place)?;
+            let mut times = None;
+            let is_whole = messages(&bytes, |_, (time, _), _| {
+                let (first, last) = times.get_or_insert((time, time));
+                (*first, *last) = ((*first).min(time), (*last).max(time));
+            });
+            let unknown = match is_whole {
+                true => (0, 0),
+                false => (before.unwrap_or(1), after.or(before).unwrap_or(1)),
+            };
+            (chunk.first_nanos, chunk.last_nanos) = times.unwrap_or(unknown);
+        }
+        if chunk.last_nanos > 0 {
+            before = Some(chunk.last_nanos);
+        }
+    }
+    Ok(())
+}
+
+/// True if the times can be right. Nothing follows the last chunk that its times could be compared with.
+fn fits(chunk: &ChunkPlace, before: Option<u64>, after: Option<u64>) -> bool {
+    let length = chunk.last_nanos.checked_sub(chunk.first_nanos);
+    let follows = |first: u64, then: u64| then.saturating_add(APART_NANOS) >= first;
+    length.is_some_and(|length| length <= LENGTH_NANOS)
+        && before.is_none_or(|before| follows(before, chunk.first_nanos))
+        && after.is_some_and(|after| follows(chunk.last_nanos, after))
+}

@@ -1,0 +1,480 @@
+//! A session out of the comma-separated values that `export::csv` writes: its columns are known by their names, whatever their order.
+//! What no column says stays unknown: the day, the hand, its settings, the bytes on the wire.
+
+use crate::hand::column::{channel_column, joint_column, tip_column};
+use crate::hand::kinematics::Side;
+use crate::hand::sample::SET_OUT_OF_RANGE;
+use crate::hand::tactile::{BLOCK_LEN, TactileBlock};
+use crate::hand::{
+    Dof, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger, Quantity, Reply, Touch,
+};
+use crate::record::export::cut::{CopyError, SessionCopy};
+use crate::record::export::output::{ExportError, Unfinished};
+use crate::record::file::Opening;
+use crate::record::import::lines::{CsvLines, LineError, LineFault};
+use crate::record::{Entry, Event, EventKind, LinkState, Record};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Channels of a fingertip.
+const CHANNELS: usize = 8;
+/// Ten years. Nobody recorded longer.
+const SECONDS_MAX: f64 = 10.0 * 366.0 * 86_400.0;
+/// Names and cells are told this far.
+const TOLD_MAX: usize = 40;
+/// Unknown columns that are named.
+const UNKNOWN_MAX: usize = 20;
+/// Temperatures above the manual's range: 255 means that the hand does not know.
+const TEMPERATURE_UNKNOWN: u8 = 255;
+/// Words of a direction that are neither an angle nor "no contact".
+const DIRECTION_UNKNOWN: u16 = 65_534;
+
+/// Why nothing was imported.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ImportError {
+    /// The system could not read it.
+    #[error("it cannot be read: {message}")]
+    Unreadable {
+        /// What the system says.
+        message: String,
+    },
+    /// A line of it is wrong.
+    #[error("line {line}: {fault}")]
+    Line {
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong with it.
+        fault: CsvFault,
+    },
+    /// The session file could not be written.
+    #[error(transparent)]
+    Output(#[from] ExportError),
+}
+
+/// What can be wrong with a line.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum CsvFault {
+    /// It cannot be taken apart.
+    #[error(transparent)]
+    Cells(#[from] LineFault),
+    /// The first line is not that of such a file.
+    #[error("there is no column time_s, so these are not the values of a session")]
+    NoTime,
+    /// No column but the time is known.
+    #[error("no column of it but time_s is known")]
+    NothingKnown,
+    /// One column twice.
+    #[error("the column {name} is there twice")]
+    Twice {
+        /// Which.
+        name: String,
+    },
+    /// Other cells than the first line has.
+    #[error("it has {cells} cells, and the first line has {columns}")]
+    Ragged {
+        /// Of this line.
+        cells: usize,
+        /// Of the first line.
+        columns: usize,
+    },
+    /// A cell that is no value of its column.
+    #[error("'{text}' cannot stand in the column {column}")]
+    BadValue {
+        /// The column's name.
+        column: String,
+        /// What stands there, or its beginning.
+        text: String,
+    },
+}
+
+/// What was imported.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Imported {
+    /// Lines after the first.
+    pub rows: u64,
+    /// Columns of another meaning, which were skipped; the first of them.
+    pub unknown: Vec<String>,
+    /// Readings of a fingertip without all of its forces' and channels' columns, which were left out.
+    pub incomplete_tips: u64,
+}
+
+/// Reads a file, and writes what it says as a session file.
+///
+/// # Errors
+/// [`ImportError`]; then there is no session file.
+pub fn import(csv: &Path, session: &Path) -> Result<Imported, ImportError> {
+    let from = File::open(csv).map_err(|error| unreadable(&error))?;
+    let mut values = CsvValues::new(BufReader::new(from))?;
+    let output = Unfinished::new(session)?;
+    let written = |error: CopyError| error.of(&output);
+    let opening = Opening::imported();
+    let mut copy = SessionCopy::new(&opening, output.file()?).map_err(written)?;
+    let monitoring = Entry::Heard(Record::State {
+        at: opening.began,
+        state: LinkState::Monitoring,
+    });
+    copy.push(&monitoring).map_err(written)?;
+    while let Some(entries) = values.next_row()? {
+        for entry in entries {
+            copy.push(&entry).map_err(written)?;
+        }
+    }
+    let (_, to) = copy.end().map_err(written)?;
+    output.sync(to)?;
+    output.finish()?;
+    Ok(values.imported)
+}
+
+fn unreadable(error: &io::Error) -> ImportError {
+    ImportError::Unreadable {
+        message: error.to_string(),
+    }
+}
+
+/// The values of a file, line by line.
+#[derive(Debug)]
+pub struct CsvValues<R> {
+    lines: CsvLines<R>,
+    cells: Vec<String>,
+    columns: CsvColumns,
+    sample: HandSample,
+    imported: Imported,
+}
+
+impl<R: BufRead> CsvValues<R> {
+    /// Reads the names of the columns.
+    ///
+    /// # Errors
+    /// [`ImportError`].
+    pub fn new(from: R) -> Result<Self, ImportError> {
+        let (mut lines, mut cells) = (CsvLines::new(from), Vec::new());
+        read(&mut lines, &mut cells)?;
+        let columns = CsvColumns::of(&cells);
+        let columns = columns.map_err(|fault| ImportError::Line {
+            line: lines.number(),
+            fault,
+        })?;
+        Ok(Self {
+            imported: Imported {
+                unknown: columns.unknown.clone(),
+                ..Imported::default()
+            },
+            lines,
+            cells,
+            columns,
+            sample: HandSample::default(),
+        })
+    }
+
+    /// The entries of the next line; `None` at the end.
+    ///
+    /// # Errors
+    /// [`ImportError`].
+    pub fn next_row(&mut self) -> Result<Option<Vec<Entry>>, ImportError> {
+        if read(&mut self.lines, &mut self.cells)?.is_none() {
+            return Ok(None);
+        }
+        let row = self.columns.row(&self.cells);
+        let row = row.map_err(|fault| ImportError::Line {
+            line: self.lines.number(),
+            fault,
+        })?;
+        self.imported.rows += 1;
+        self.imported.incomplete_tips += row.incomplete_tips();
+        Ok(Some(row.entries(&mut self.sample)))
+    }
+}
+
+fn read<R: BufRead>(
+    lines: &mut CsvLines<R>,
+    cells: &mut Vec<String>,
+) -> Result<Option<()>, ImportError> {
+    lines.next(cells).map_err(|error| match error {
+        LineError::System(error) => unreadable(&error),
+        LineError::Fault(fault) => ImportError::Line {
+            line: lines.number(),
+            fault: fault.into(),
+        },
+    })
+}
+
+impl Opening {
+    /// What is known of a session that is read from values: not the day, and not the hand.
+    fn imported() -> Self {
+        Self {
+            base_nanos: Self::NO_DATE,
+            began: Moment::ZERO,
+            hand: String::new(),
+            simulated: false,
+            side: Side::Right,
+            version: format!("{} {}", env!("CARGO_PKG_VERSION"), Self::IMPORTED),
+        }
+    }
+}
+
+/// What a column tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum CsvColumn {
+    Time,
+    Joint(Quantity, Dof),
+    Tip(Touch, Finger),
+    Channel(usize, Finger),
+    Event,
+    Unknown,
+}
+
+/// The columns of one file.
+#[derive(Debug)]
+struct CsvColumns {
+    all: Vec<(String, CsvColumn)>,
+    unknown: Vec<String>,
+}
+
+impl CsvColumns {
+    fn of(names: &[String]) -> Result<Self, CsvFault> {
+        let known = known();
+        let (mut all, mut unknown) = (Vec::new(), Vec::new());
+        for name in names {
+            let column = known.get(name.trim()).copied();
+            let column = column.unwrap_or(CsvColumn::Unknown);
+            let is_there = |(_, other): &(String, CsvColumn)| *other == column;
+            match column {
+                CsvColumn::Unknown if unknown.len() < UNKNOWN_MAX => unknown.push(told(name)),
+                CsvColumn::Unknown => {}
+                _ if all.iter().any(is_there) => return Err(CsvFault::Twice { name: told(name) }),
+                _ => {}
+            }
+            all.push((told(name), column));
+        }
+        let has = |wanted: fn(CsvColumn) -> bool| all.iter().any(|(_, column)| wanted(*column));
+        if !has(|column| column == CsvColumn::Time) {
+            return Err(CsvFault::NoTime);
+        }
+        if !has(|column| !matches!(column, CsvColumn::Time | CsvColumn::Unknown)) {
+            return Err(CsvFault::NothingKnown);
+        }
+        Ok(Self { all, unknown })
+    }
+
+    fn row(&self, cells: &[String]) -> Result<CsvRow, CsvFault> {
+        if cells.len() != self.all.len() {
+            return Err(CsvFault::Ragged {
+                cells: cells.len(),
+                columns: self.all.len(),
+            });
+        }
+        let mut row = CsvRow::default();
+        for ((name, column), cell) in self.all.iter().zip(cells) {
+            let is_needed = *column == CsvColumn::Time;
+            if cell.is_empty() && !is_needed {
+                continue;
+            }
+            if row.take(*column, cell).is_none() {
+                return Err(CsvFault::BadValue {
+                    column: name.clone(),
+                    text: told(cell),
+                });
+            }
+        }
+        Ok(row)
+    }
+}
+
+/// The columns that `export::csv` writes.
+fn known() -> BTreeMap<String, CsvColumn> {
+    let mut known = BTreeMap::new();
+    known.insert("time_s".to_owned(), CsvColumn::Time);
+    known.insert("event".to_owned(), CsvColumn::Event);
+    for quantity in Quantity::ALL {
+        for dof in Dof::ALL {
+            known.insert(joint_column(quantity, dof), CsvColumn::Joint(quantity, dof));
+        }
+    }
+    for finger in Finger::ALL {
+        for touch in Touch::ALL {
+            known.insert(tip_column(touch, finger), CsvColumn::Tip(touch, finger));
+        }
+        for (number, channel) in (0..).zip(0..CHANNELS) {
+            let name = channel_column(number, finger);
+            known.insert(name, CsvColumn::Channel(channel, finger));
+        }
+    }
+    known
+}
+
+/// As much of a text as an error tells.
+fn told(text: &str) -> String {
+    let plain = text.chars().filter(|letter| !letter.is_control());
+    plain.take(TOLD_MAX).collect()
+}
+
+/// What is known of a fingertip.
+#[derive(Debug, Clone, Copy, Default)]
+struct TipCells {
+    forces: [Option<f32>; 2],
+    channels: [Option<u32>; CHANNELS],
+}
+
+impl TipCells {
+    fn is_there(&self) -> bool {
+        let forces = self.forces.iter().any(Option::is_some);
+        forces || self.channels.iter().any(Option::is_some)
+    }
+
+    /// The block as the hand would send it. A count has no number that means "not known", so without all of them there is none.
+    /// The check word is wrong on purpose: these bytes are not the hand's.
+    fn block(&self) -> Option<[u8; BLOCK_LEN]> {
+        let [normal, tangential] = self.forces.map(|force| force.unwrap_or(f32::NAN));
+        let mut bytes = Vec::with_capacity(BLOCK_LEN);
+        for channel in self.channels {
+            bytes.extend(channel?.to_le_bytes());
+        }
+        let unknown = i32::MIN.to_le_bytes();
+        bytes.extend(normal.to_le_bytes());
+        bytes.extend(unknown);
+        bytes.extend(tangential.to_le_bytes());
+        bytes.extend(unknown);
+        bytes.extend(DIRECTION_UNKNOWN.to_le_bytes());
+        bytes.extend(unknown);
+        bytes.extend([0; 4]);
+        let block = TactileBlock::decode(&bytes)?;
+        let check = !block.sum;
+        Some(TactileBlock { check, ..block }.as_sent())
+    }
+}
+
+/// The values of one line.
+#[derive(Debug, Default)]
+struct CsvRow {
+    at: Moment,
+    joints: [PerDof<Option<i16>>; Quantity::ALL.len()],
+    tips: PerFinger<TipCells>,
+    event: Option<(EventKind, String)>,
+}
+
+impl CsvRow {
+    /// Takes in a cell; `None` if it cannot stand in its column.
+    fn take(&mut self, column: CsvColumn, cell: &str) -> Option<()> {
+        match column {
+            CsvColumn::Unknown => {}
+            CsvColumn::Time => self.at = moment(cell)?,
+            CsvColumn::Event => self.event = Some(event(cell)),
+            CsvColumn::Joint(quantity, dof) => {
+                let value = cell.parse().ok()?;
+                let six = self.joints.get_mut(quantity as usize)?;
+                six[dof] = Some(value);
+                // Only what the manual knows is written, so nothing else is read.
+                documented(quantity, six)[dof]?;
+            }
+            CsvColumn::Tip(touch, finger) => {
+                let value: f32 = cell.parse().ok()?;
+                let force = self.tips[finger].forces.get_mut(touch as usize)?;
+                *force = Some(value).filter(|value| value.is_finite());
+                (*force)?;
+            }
+            CsvColumn::Channel(channel, finger) => {
+                let count = cell.parse().ok()?;
+                *self.tips[finger].channels.get_mut(channel)? = Some(count);
+            }
+        }
+        Some(())
+    }
+
+    fn incomplete_tips(&self) -> u64 {
+        let tips = self.tips.iter();
+        let incomplete = tips.filter(|(_, tip)| tip.is_there() && tip.block().is_none());
+        u64::try_from(incomplete.count()).unwrap_or(u64::MAX)
+    }
+
+    /// The entries of the line. When a reading was asked for is not known, so it is when it was received.
+    fn entries(self, sample: &mut HandSample) -> Vec<Entry> {
+        let mut fresh = Groups::NONE;
+        for (quantity, six) in Quantity::ALL.into_iter().zip(&self.joints) {
+            if six.iter().any(|(_, value)| value.is_some()) {
+                let bytes = memory(quantity, six);
+                fresh = fresh.and(sample.take(&reply(quantity.group(), &bytes, self.at)));
+            }
+        }
+        for (finger, tip) in self.tips.iter() {
+            if let Some(block) = tip.block() {
+                let reply = reply(Group::Tactile(finger), &block, self.at);
+                fresh = fresh.and(sample.take(&reply));
+            }
+        }
+        let reading = (!fresh.is_empty()).then(|| {
+            Entry::Heard(Record::Reading {
+                sample: Arc::new(*sample),
+                fresh,
+            })
+        });
+        let at = self.at;
+        let event = self.event;
+        let event = event.map(|(kind, words)| Entry::Event(Event { at, kind, words }));
+        reading.into_iter().chain(event).collect()
+    }
+}
+
+fn reply(group: Group, bytes: &[u8], at: Moment) -> Reply<'_> {
+    Reply {
+        span: group.span(),
+        bytes,
+        asked: at,
+        received: at,
+    }
+}
+
+/// What the hand's memory would hold. A value that is not known is one that the manual does not know.
+fn memory(quantity: Quantity, six: &PerDof<Option<i16>>) -> Vec<u8> {
+    let values = six.iter().map(|(_, value)| *value);
+    if quantity == Quantity::Temperature {
+        let bytes = values.map(|value| value.and_then(|value| u8::try_from(value).ok()));
+        return bytes
+            .map(|byte| byte.unwrap_or(TEMPERATURE_UNKNOWN))
+            .collect();
+    }
+    let shorts = values.map(|value| value.unwrap_or(SET_OUT_OF_RANGE));
+    shorts.flat_map(i16::to_le_bytes).collect()
+}
+
+/// The six values as a reader of the session will see them.
+fn documented(quantity: Quantity, six: &PerDof<Option<i16>>) -> PerDof<Option<i16>> {
+    let mut sample = HandSample::default();
+    sample.take(&reply(
+        quantity.group(),
+        &memory(quantity, six),
+        Moment::ZERO,
+    ));
+    let read = quantity.documented(&sample);
+    read.map_or_else(|| PerDof::splat(None), |read| read.value)
+}
+
+/// Seconds from the session's start, to the microsecond.
+fn moment(cell: &str) -> Option<Moment> {
+    let seconds: f64 = cell.parse().ok()?;
+    if !(0.0..=SECONDS_MAX).contains(&seconds) {
+        return None;
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "not below zero, and far below 2^53"
+    )]
+    let micros = (seconds * 1e6).round() as u64;
+    Some(Moment::from_micros(micros))
+}
+
+/// What happened, and its words. What is none of our kinds is a person's note.
+fn event(cell: &str) -> (EventKind, String) {
+    let (key, words) = cell.split_once(": ").unwrap_or((cell, ""));
+    let kind = match key {
+        "link lost" => Some(EventKind::LinkLost),
+        key => EventKind::by_key(key).filter(|kind| kind.is_listed() && key != "link_lost"),
+    };
+    match kind {
+        Some(kind) => (kind, words.to_owned()),
+        None => (EventKind::Note, cell.to_owned()),
+    }
+}

@@ -1,0 +1,158 @@
+//! Comma-separated values line by line, in bounded memory: quoted cells, which may hold line breaks, and a count of lines for errors.
+
+use std::io::{self, BufRead, Read as _};
+
+/// Bytes of one line with all its quoted line breaks: more than the longest note.
+pub(crate) const LINE_MAX: usize = 1024 * 1024;
+/// Cells of one line.
+pub(crate) const CELLS_MAX: usize = 4096;
+
+/// Why a line cannot be taken apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum LineFault {
+    /// Too many bytes.
+    #[error("it is longer than {} KiB", LINE_MAX / 1024)]
+    TooLong,
+    /// Too many cells.
+    #[error("it has more than {CELLS_MAX} cells")]
+    TooManyCells,
+    /// Not UTF-8.
+    #[error("it is no text in UTF-8")]
+    NotText,
+    /// The file ends within quotation marks, or something follows them.
+    #[error("a quotation mark in it has no fellow")]
+    Unquoted,
+}
+
+/// One line or why there is none; the system's words where the file cannot be read on.
+#[derive(Debug)]
+pub(crate) enum LineError {
+    System(io::Error),
+    Fault(LineFault),
+}
+
+impl From<io::Error> for LineError {
+    fn from(error: io::Error) -> Self {
+        Self::System(error)
+    }
+}
+
+/// The lines of a file.
+#[derive(Debug)]
+pub(crate) struct CsvLines<R> {
+    from: R,
+    /// The number of the line that is read, and of the one after it.
+    number: u64,
+    next: u64,
+    bytes: Vec<u8>,
+}
+
+impl<R: BufRead> CsvLines<R> {
+    pub(crate) const fn new(from: R) -> Self {
+        Self {
+            from,
+            number: 0,
+            next: 1,
+            bytes: Vec::new(),
+        }
+    }
+
+    /// Counted from 1, as editors do.
+    pub(crate) const fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// The cells of the next line that is not empty; `None` at the end.
+    pub(crate) fn next(&mut self, cells: &mut Vec<String>) -> Result<Option<()>, LineError> {
+        loop {
+            self.number = self.next;
+            if !self.read()? {
+                return Ok(None);
+            }
+            if !self.bytes.is_empty() {
+                break;
+            }
+        }
+        let text = std::str::from_utf8(&self.bytes);
+        let text = text.map_err(|_utf8| LineError::Fault(LineFault::NotText))?;
+        // A spreadsheet marks UTF-8 so.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        split(text, cells).map_err(LineError::Fault)?;
+        Ok(Some(()))
+    }
+
+    /// Reads up to a line break outside quotation marks; false at the end.
+    fn read(&mut self) -> Result<bool, LineError> {
+        self.bytes.clear();
+        let mut is_quoted = false;
+        loop {
+            let begin = self.bytes.len();
+            let room = u64::try_from(LINE_MAX + 1 - begin).unwrap_or_default();
+            let mut from = self.from.by_ref().take(room);
+            let read = from.read_until(b'\n', &mut self.bytes)?;
+            if self.bytes.len() > LINE_MAX {
+                return Err(LineError::Fault(LineFault::TooLong));
+            }
+            let new = self.bytes.get(begin..).unwrap_or_default();
+            let marks = new.iter().filter(|byte| **byte == b'"').count();
+            is_quoted ^= marks % 2 == 1;
+            let is_broken = new.last() == Some(&b'\n');
+            self.next += u64::from(is_broken);
+            if is_quoted && read == 0 {
+                return Err(LineError::Fault(LineFault::Unquoted));
+            }
+            if !is_quoted {
+                if is_broken {
+                    self.bytes.pop();
+                }
+                if self.bytes.last() == Some(&b'\r') {
+                    self.bytes.pop();
+                }
+                return Ok(read > 0);
+            }
+        }
+    }
+}
+
+fn split(line: &str, cells: &mut Vec<String>) -> Result<(), LineFault> {
+    cells.clear();
+    let mut rest = line;
+    loop {
+        if cells.len() >= CELLS_MAX {
+            return Err(LineFault::TooManyCells);
+        }
+        let (cell, after) = match rest.strip_prefix('"') {
+            Some(quoted) => unquoted(quoted)?,
+            None => {
+                let end = rest.find(',').unwrap_or(rest.len());
+                let (cell, after) = rest.split_at(end);
+                if cell.contains('"') {
+                    return Err(LineFault::Unquoted);
+                }
+                (cell.to_owned(), after)
+            }
+        };
+        cells.push(cell);
+        match after.strip_prefix(',') {
+            Some(next) => rest = next,
+            None if after.is_empty() => return Ok(()),
+            None => return Err(LineFault::Unquoted),
+        }
+    }
+}
+
+/// The text up to the closing mark, and what follows that. Two marks stand for one.
+fn unquoted(mut rest: &str) -> Result<(String, &str), LineFault> {
+    let mut text = String::new();
+    while let Some((part, after)) = rest.split_once('"') {
+        text.push_str(part);
+        match after.strip_prefix('"') {
+            Some(more) => {
+                text.push('"');
+                rest = more;
+            }
+            None => return Ok((text, after)),
+        }
+    }
+    Err(LineFault::Unquoted)
+}
