@@ -65,9 +65,12 @@ impl SessionItem {
         }
     }
 
-    /// When it began, `2026-11-22T09:30:00Z`.
+    /// When it began, `2026-11-22T09:30:00Z`; `-` if nobody knows.
     #[must_use]
     pub fn began(&self) -> String {
+        if self.opening.is_imported() {
+            return "-".into();
+        }
         stamp(self.opening.began_since_1970())
     }
 

@@ -107,11 +107,7 @@ fn find(folder: &Path, known: &[SessionItem]) -> Looked {
             Err(why) => unread.push((path, why.to_string())),
         }
     }
-    items.sort_by(|one, two| {
-        let began =
-            |item: &SessionItem| item.opening.base_nanos / 1000 + item.opening.began.micros();
-        began(two).cmp(&began(one))
-    });
+    items.sort_by_key(|item| std::cmp::Reverse(item.opening.began_since_1970()));
     Looked {
         items,
         unread,

@@ -37,7 +37,7 @@ pub(crate) struct SessionWork {
     revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
     /// What is to be written or deleted, one after the other: of two words about a session the later must be the last in its file.
     to_write: VecDeque<FileWork>,
-    writing: Option<Written>,
+    writing: Option<FilesWritten>,
 }
 
 /// One thing that is to be done with files.
@@ -317,23 +317,23 @@ impl SessionWork {
     }
 }
 
-type Written = BackgroundJob<Result<usize, (PathBuf, io::Error)>>;
+type FilesWritten = BackgroundJob<Result<usize, (PathBuf, io::Error)>>;
 
-fn save(path: PathBuf, about: SessionAbout, env: &Env) -> Written {
+fn save(path: PathBuf, about: SessionAbout, env: &Env) -> FilesWritten {
     let place = SessionAbout::path(&path);
     let save = on_thread(move || about.save(&path).map(|()| 0));
     let save = async move { save.await.map_err(|error| (place, error)) };
     BackgroundJob::start(&env.runtime, &env.wake, save)
 }
 
-fn delete(path: PathBuf, env: &Env) -> Written {
+fn delete(path: PathBuf, env: &Env) -> FilesWritten {
     let place = path.clone();
     let delete = on_thread(move || budget::delete(&place).map(|()| 1));
     let delete = async move { delete.await.map_err(|error| (path, error)) };
     BackgroundJob::start(&env.runtime, &env.wake, delete)
 }
 
-fn make_room(planned: Vec<PlannedDeletion>, env: &Env) -> Written {
+fn make_room(planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
     let delete = async move {
         let mut deleted = 0;
         for one in planned {
@@ -346,7 +346,7 @@ fn make_room(planned: Vec<PlannedDeletion>, env: &Env) -> Written {
     BackgroundJob::start(&env.runtime, &env.wake, delete)
 }
 
-fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> Written {
+fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
     let place = folder.clone();
     let save = on_thread(move || Ok(budget::save_told(&folder, planned)));
     let save = async move {

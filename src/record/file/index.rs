@@ -70,7 +70,7 @@ impl FileIndex {
     pub(crate) fn end(self, data: u64, crc: u32) -> FileEnd {
         FileEnd {
             index: self,
-            stage: Stage::Begin { crc },
+            stage: IndexStage::Begin { crc },
             at: data,
             start: data,
             hash: crc32fast::Hasher::new(),
@@ -139,7 +139,7 @@ fn chunk_record(chunk: &ListedChunk) -> RecordBytes {
 
 /// What is written next of an end.
 #[derive(Debug)]
-enum Stage {
+enum IndexStage {
     /// The end of the data, whose sum this is, and what there is of which kind.
     Begin {
         crc: u32,
@@ -157,7 +157,7 @@ enum Stage {
 #[derive(Debug)]
 pub struct FileEnd {
     index: FileIndex,
-    stage: Stage,
+    stage: IndexStage,
     /// Where in the file the next byte goes.
     at: u64,
     /// Where the index begins.
@@ -173,22 +173,22 @@ impl Iterator for FileEnd {
     fn next(&mut self) -> Option<Vec<u8>> {
         let mut piece = Vec::new();
         match self.stage {
-            Stage::Begin { crc } => {
+            IndexStage::Begin { crc } => {
                 self.begin(crc, &mut piece);
-                self.stage = Stage::Chunks { block: 0 };
+                self.stage = IndexStage::Chunks { block: 0 };
             }
-            Stage::Chunks { block } => {
+            IndexStage::Chunks { block } => {
                 self.chunks(block, &mut piece);
                 self.stage = match block + 1 < self.index.chunks.len() {
-                    true => Stage::Chunks { block: block + 1 },
-                    false => Stage::Rest,
+                    true => IndexStage::Chunks { block: block + 1 },
+                    false => IndexStage::Rest,
                 };
             }
-            Stage::Rest => {
+            IndexStage::Rest => {
                 self.rest(&mut piece);
-                self.stage = Stage::Done;
+                self.stage = IndexStage::Done;
             }
-            Stage::Done => return None,
+            IndexStage::Done => return None,
         }
         Some(piece)
     }

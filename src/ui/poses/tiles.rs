@@ -14,7 +14,7 @@ use crate::ui::view::View;
 use egui::{Id, Popup, PopupCloseBehavior, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
 
 /// An entry in the overview, and in a low strip: a finger's breadth.
-const TILE: egui::Vec2 = vec2(92.0, 100.0);
+const TILE: egui::Vec2 = vec2(90.0, 74.0);
 const LOW_TILE: egui::Vec2 = vec2(148.0, 38.0);
 /// Width of the drawer of gestures.
 const DRAWER: f32 = 460.0;

@@ -370,7 +370,7 @@ impl Window {
         let strip = if rect.height() < 640.0 {
             STRIP_LEAST
         } else {
-            264.0
+            212.0
         };
         let strip = RoomSize {
             designed: strip + theme::GAP,

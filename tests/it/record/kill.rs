@@ -182,6 +182,10 @@ fn span(group: Group) -> Span {
 /// Bytes from the hand that the file has of each connection, and how many groups of readings, all of which are as the journal has
 /// them.
 fn compare(path: &Path, journal: &[Connection]) -> (Vec<usize>, usize) {
+    if !path.exists() {
+        // Nothing of it was on the disk yet.
+        return (vec![0; journal.len()], 0);
+    }
     let file = SessionFile::open(path).unwrap();
     let said: Vec<Said> = journal.iter().flat_map(Connection::said).collect();
     let mut said = said.iter().peekable();

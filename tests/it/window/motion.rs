@@ -224,6 +224,8 @@ fn a_locked_joint_is_left_alone_by_drags_and_by_open_all() {
 #[test]
 fn a_gesture_needs_arming_and_then_writes_its_number() {
     let mut bench = Bench::live();
+    bench.click("Gestures");
+    bench.run(60);
     assert!(bench.is_disabled(Role::Button, "Gesture 12"));
     bench.click("Gesture 12");
     bench.wait(200);
@@ -231,6 +233,8 @@ fn a_gesture_needs_arming_and_then_writes_its_number() {
     bench.click("Arm the hand");
     bench.wait(200);
     let armed = bench.writes().len();
+    bench.click("Gestures");
+    bench.run(60);
     bench.click("Gesture 12");
     bench.wait(3500);
     let writes = bench.writes().split_off(armed);

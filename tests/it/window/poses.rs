@@ -404,7 +404,7 @@ fn shipped_poses_are_on_live_with_a_key_each_and_a_press_without_arming_says_wha
     let told = |bench: &Bench| {
         let writes = bench.writes();
         let angles = writes.iter().filter(|write| write.address == ANGLE_SET);
-        angles.last().map(Write::shorts)
+        angles.map(Write::shorts).next_back()
     };
     assert!(bench.writes().len() > before);
     assert_eq!(told(&bench), Some(vec![0, 0, 0, 0, 1000, 1000]));

@@ -116,8 +116,9 @@ fn without_arming_no_control_of_the_joints_writes() {
         bench.drag(&format!("{joint} force threshold"), 0.2, 0.6);
         bench.drag(&format!("{joint} speed"), 0.2, 0.6);
     }
-    for name in ["Open all", "Gesture 1", "Index lock"] {
+    for name in ["Open all", "Index lock", "Gestures", "Gesture 1"] {
         bench.click(name);
+        bench.run(60);
     }
     bench.wait(500);
     assert_eq!(bench.writes(), []);

@@ -25,7 +25,7 @@ fn an_unplugged_hand_is_said_in_words_and_cannot_be_driven() {
         (Role::Button, "Arm the hand"),
         (Role::Button, "Clear errors"),
         (Role::Button, "Open all"),
-        (Role::Button, "Gesture 1"),
+        (Role::Button, "Go to Fist"),
         (Role::Slider, "Index angle target"),
         (Role::TextInput, "Index angle number"),
     ] {
