@@ -9,7 +9,7 @@ use crate::scene::{Scene, Time};
 use handscope::app::settings::PlotWindow;
 use handscope::app::state::State;
 use handscope::ui::View;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Frames of one figure: eight seconds, one whole grasp of the built-in hand, so that each figure has the same in it.
 const FRAMES: usize = 500;
@@ -22,8 +22,6 @@ const AIM_MS: f64 = 2.5;
 const AIM_SLOW_MS: f64 = 4.0;
 /// A dead link may cost no more than this, as a part of what a live one costs.
 const AIM_DEAD: f64 = 1.1;
-/// How often frames with and without a recording are compared.
-const TURNS: usize = 5;
 /// The same while the hand is recorded.
 const AIM_RECORDED: f64 = 1.05;
 /// Until a link that is gone is known to be gone.
@@ -58,46 +56,50 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     dead(report)
 }
 
-/// What frames cost and how fast the link is while the hand is recorded, to the same without; in real time, in turns, as a machine
-/// has its moods.
+/// What frames cost and how fast the link is while the hand is recorded, to the same without; in real time, frame beside frame, as
+/// a machine has its moods.
 fn recorded(report: &mut Report) -> Result<(), Failure> {
-    let server = Server::tcp()?;
+    let servers = [Server::tcp()?, Server::tcp()?];
     let folder = tempfile::tempdir()?;
-    let [mut frames, mut rates] = [const { Vec::new() }; 2];
-    for _ in 0..TURNS {
-        let mut plain = Scene::open(Time::Real, server.endpoint.clone())?;
-        let [without, without_rate] = frames_and_rate(&mut plain)?;
-        drop(plain);
-        let mut scene = Scene::recorded(server.endpoint.clone(), folder.path())?;
-        let [with, with_rate] = frames_and_rate(&mut scene)?;
-        if scene.state().hand().recording.is_none() {
-            return Err("the hand is not recorded".into());
-        }
-        frames.push(with / without);
-        rates.push(with_rate / without_rate);
+    let [plain, kept] = &servers;
+    let mut scenes = [
+        Scene::open(Time::Real, plain.endpoint.clone())?,
+        Scene::recorded(kept.endpoint.clone(), folder.path())?,
+    ];
+    for scene in &mut scenes {
+        scene.run(Duration::from_secs(10));
     }
-    let [frames, rates] = [frames, rates].map(|ratios| Sorted::new(ratios).median());
-    let what = "while recording to not: window frame, 99 of 100";
-    report.row(what, frames, "times", Aim::AtMost(AIM_RECORDED))?;
-    let what = "  readings a second";
-    let least = Aim::AtLeast(2.0 - AIM_RECORDED);
-    report.row(what, rates, "times", least)
-}
-
-/// The slow frames in milliseconds, and readings a second.
-fn frames_and_rate(scene: &mut Scene) -> Result<[f64; 2], Failure> {
-    scene.run(Duration::from_secs(10));
+    // What the first did meanwhile is no news any more then.
+    for scene in &mut scenes {
+        scene.run(FRAME_EACH);
+    }
     let reads = |scene: &Scene| {
         let stats = &scene.state().hand().stats;
         count(stats.state_reads + stats.tactile_reads)
     };
-    let (before, begun) = (reads(scene), scene.state().now);
-    let [whole, ..] = measure(scene);
-    let took = scene.state().now.since(begun).as_secs_f64();
-    if !scene.state().hand().link.state.is_live() {
-        return Err("the served hand does not become live".into());
+    let (before, begun) = (scenes.each_ref().map(reads), Instant::now());
+    let mut frames = [const { Vec::new() }; 2];
+    for _ in 0..2 * FRAMES {
+        for (scene, frames) in scenes.iter_mut().zip(&mut frames) {
+            scene.pass(FRAME_EACH);
+            frames.push(scene.frame().iter().sum());
+        }
     }
-    Ok([whole.percentile(99), (reads(scene) - before) / took])
+    let took = begun.elapsed().as_secs_f64();
+    let [_, with] = &scenes;
+    if with.state().hand().recording.is_none() {
+        return Err("the hand is not recorded".into());
+    }
+    let [without, with] = frames.map(|frames| Sorted::new(frames).percentile(99));
+    let what = "while recording to not: window frame, 99 of 100";
+    report.row(what, with / without, "times", Aim::AtMost(AIM_RECORDED))?;
+    let [first, second] = scenes.each_ref().map(reads);
+    let [first_before, second_before] = before;
+    let without = (first - first_before) / took;
+    let with = (second - second_before) / took;
+    let what = "  readings a second";
+    let least = Aim::AtLeast(2.0 - AIM_RECORDED);
+    report.row(what, with / without, "times", least)
 }
 
 /// The same lines in egui_plot, and the whole window as a part of that.
