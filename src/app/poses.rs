@@ -81,15 +81,15 @@ impl PoseState {
         self.library.named(entry).or_else(shipped)
     }
 
-    /// What is shipped and neither hidden nor outdone by one of the person's own by the same name.
+    /// What is shipped and neither hidden nor overridden by one of the person's own by the same name.
     pub fn shipped(&self, hidden: &BTreeSet<String>) -> impl Iterator<Item = EntryId> {
         let name = |entry| starter().named(entry).map_or("", |names| names.text);
-        let is_outdone = move |entry: EntryId| {
+        let is_overridden = move |entry: EntryId| {
             let mut own = self.library.entries().filter(|own| own.is_same_kind(entry));
             own.any(|own| self.named(own).is_some_and(|own| own.text == name(entry)))
         };
         let all = starter().entries();
-        all.filter(move |entry| !hidden.contains(name(*entry)) && !is_outdone(*entry))
+        all.filter(move |entry| !hidden.contains(name(*entry)) && !is_overridden(*entry))
     }
 
     /// What can be started with one press: poses but those that only demos need, then sequences and reactions; a person's own

@@ -57,7 +57,7 @@ pub enum LibraryEdit {
     NewSequence(String),
     /// Of a sequence.
     Sequence(SequenceId, SequenceEdit),
-    /// A copy of what is shipped, with the poses that it needs.
+    /// A copy of a shipped pose, or of a shipped sequence with the poses that it needs.
     Copy(EntryId),
     /// Take the last deletion or import back.
     Undo,
@@ -102,7 +102,7 @@ impl PoseLibrary {
         })
     }
 
-    /// Adds a copy of another library's entry. Poses that it needs are this library's own of their name, if there are such.
+    /// Adds a copy of another library's pose or sequence. Poses that it needs are this library's own of their name, if there are such.
     pub fn copy_from(&mut self, other: &Self, entry: EntryId) -> Option<EntryId> {
         Some(match entry {
             EntryId::Pose(id) => {
@@ -120,12 +120,8 @@ impl PoseLibrary {
                 *own = copy;
                 EntryId::Sequence(own.id)
             }
-            EntryId::Reaction(id) => {
-                let mut copy = other.reaction(id)?.clone();
-                copy.rest = self.needed_from(other, copy.rest)?;
-                copy.touched = self.needed_from(other, copy.touched)?;
-                EntryId::Reaction(self.add_reaction(copy)?)
-            }
+            // One that was copied could not be edited or deleted here.
+            EntryId::Reaction(_) => return None,
         })
     }
 

@@ -3,8 +3,9 @@
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
     ENTRIES_MAX, EntryKey, LibraryPose, Millis, NAME_CHARS_MAX, PoseId, PoseLibrary, Reaction,
-    ReactionId, STEPS_MAX, Sequence, SequenceId, SequenceStep, TAGS_MAX, TouchForce, clean,
+    ReactionId, STEPS_MAX, Sequence, SequenceId, SequenceStep, TAGS_MAX, clean,
 };
+use crate::poses::reaction::TouchForce;
 use crate::store::toml_file::VERSION;
 use crate::store::{FileCause, FileError, FileText};
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,7 @@
 //! Poses and sequences as plain values. How they are changed is in `edit`, how they are written in `file`.
 
 use crate::hand::{Angle, Force, PerDof, Speed};
+use crate::poses::reaction::TouchForce;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -46,14 +47,14 @@ impl EntryId {
     }
 }
 
-/// The key that, with Shift, starts an entry of the library: a letter, or a digit from 1 on.
+/// The key that, with Shift, starts an entry of the library: a letter that means nothing else with Shift, or a digit from 1 on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct EntryKey(char);
 
 /// A text that is no such key.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("\"{got}\" is not a letter from A to Z or a digit from 1 to 9")]
+#[error("\"{got}\" is not a letter from A to Z but A, C, H, O and T, or a digit from 1 to 9")]
 pub struct BadKey {
     /// What was given.
     pub got: String,
@@ -72,6 +73,7 @@ impl TryFrom<String> for EntryKey {
     fn try_from(got: String) -> Result<Self, BadKey> {
         let mut letters = got.chars();
         match (letters.next(), letters.next()) {
+            (Some('A' | 'C' | 'H' | 'O' | 'T'), None) => Err(BadKey { got }),
             (Some(key @ ('A'..='Z' | '1'..='9')), None) => Ok(Self(key)),
             _ => Err(BadKey { got }),
         }
@@ -246,43 +248,6 @@ pub struct Reaction {
     pub threshold: TouchForce,
     /// Keys of a newer version, kept as they are.
     pub others: toml::Table,
-}
-
-/// A normal force of a fingertip in newtons, 0.1 to 20.
-#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
-#[serde(try_from = "f32", into = "f32")]
-pub struct TouchForce(f32);
-
-/// A force that no reaction may have.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{got} N is outside 0.1 to 20")]
-pub struct BadTouchForce {
-    /// What was given.
-    pub got: f32,
-}
-
-impl TouchForce {
-    /// Newtons.
-    #[must_use]
-    pub const fn newtons(self) -> f32 {
-        self.0
-    }
-}
-
-impl TryFrom<f32> for TouchForce {
-    type Error = BadTouchForce;
-    fn try_from(got: f32) -> Result<Self, BadTouchForce> {
-        match (0.1..=20.0).contains(&got) {
-            true => Ok(Self(got)),
-            false => Err(BadTouchForce { got }),
-        }
-    }
-}
-
-impl From<TouchForce> for f32 {
-    fn from(force: TouchForce) -> Self {
-        force.0
-    }
 }
 
 /// All poses and sequences, in the person's order.

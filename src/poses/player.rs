@@ -1,9 +1,8 @@
 //! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
 
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
-use crate::poses::library::{
-    EntryId, LibraryPose, Millis, PoseId, PoseLibrary, SequenceId, TouchForce,
-};
+use crate::poses::library::{EntryId, LibraryPose, Millis, PoseId, PoseLibrary, SequenceId};
+use crate::poses::reaction::TouchForce;
 use crate::poses::way::{Targets, way};
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -21,7 +20,7 @@ pub struct Cue {
     pub force: Force,
     /// Time at the pose.
     pub dwell: Duration,
-    /// Time after which a pose that is not reached counts as reached.
+    /// Time after which a pose, or a part of the way to it, that is not reached counts as reached.
     pub limit: Duration,
 }
 
@@ -280,6 +279,8 @@ impl Player {
             return;
         }
         if is_there && self.legs.len() > 1 {
+            // Each part of the way has as much time as a straight one.
+            self.view.phase = PlayPhase::Moving { since: now };
             self.due = true;
             return;
         }

@@ -1,13 +1,50 @@
 //! Which fingertips are touched, as a reaction takes it. Reads no clock and sends nothing.
 
 use crate::hand::{Finger, Moment, PerFinger};
-use crate::poses::library::TouchForce;
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// A fingertip counts as let go once it was for this long: a hand that trembles does not make the finger tremble.
 const LET_GO_FOR: Duration = Duration::from_millis(300);
 /// A fingertip counts as let go below this share of the threshold.
 const LET_GO_SHARE: f32 = 0.5;
+
+/// A normal force of a fingertip in newtons, 0.1 to 20.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(try_from = "f32", into = "f32")]
+pub struct TouchForce(f32);
+
+/// A force that no reaction may have.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{got} N is outside 0.1 to 20")]
+pub struct BadTouchForce {
+    /// What was given.
+    pub got: f32,
+}
+
+impl TouchForce {
+    /// Newtons.
+    #[must_use]
+    pub const fn newtons(self) -> f32 {
+        self.0
+    }
+}
+
+impl TryFrom<f32> for TouchForce {
+    type Error = BadTouchForce;
+    fn try_from(got: f32) -> Result<Self, BadTouchForce> {
+        match (0.1..=20.0).contains(&got) {
+            true => Ok(Self(got)),
+            false => Err(BadTouchForce { got }),
+        }
+    }
+}
+
+impl From<TouchForce> for f32 {
+    fn from(force: TouchForce) -> Self {
+        force.0
+    }
+}
 
 /// Which fingertips are touched.
 #[derive(Debug, Clone, PartialEq)]

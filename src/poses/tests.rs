@@ -80,6 +80,9 @@ fn a_bad_file_is_refused_with_line_and_field() {
         ("pose = \"Pinch\"", "pose = \"Fist\"", 24, "pose"),
         ("dwell_ms = 400", "dwell_ms = 600001", 26, "dwell_ms"),
         ("loop = true", "loop = 1", 22, "loop"),
+        ("colour = \"red\"", "key = \"A\"", 11, "key"),
+        ("colour = \"red\"", "key = \"é\"", 11, "key"),
+        ("colour = \"red\"", "name_zh = \"\"", 11, "name_zh"),
     ] {
         let error = read(&GOOD.replacen(from, to, 1)).unwrap_err();
         assert_eq!(error.field.as_deref(), Some(field), "{to}: {error}");
@@ -195,6 +198,43 @@ fn a_player_waits_for_arrival_then_for_the_dwell_and_loops() {
         "from the start again"
     );
     assert_eq!(player.view().late, 1);
+}
+
+#[test]
+fn each_part_of_a_way_has_its_own_time() {
+    let angles = |index, thumb_bend| {
+        let mut all = at(500);
+        (all[Dof::Index], all[Dof::ThumbBend]) = (Some(index), Some(thumb_bend));
+        all[Dof::ThumbRotate] = Some(0);
+        all
+    };
+    let targets = angles(0, 600).map(|angle| Angle::new(angle?).ok());
+    let cues = vec![Cue { targets, ..cue(0) }];
+    let mut player = Player::start(cues, false, PlayMode::Through, ms(0));
+    let mut sent = |now, seen: PerDof<Option<i16>>| {
+        let sent = player.tick(ms(now), &seen)?;
+        Some(sent.targets.map(|angle| angle.map(Angle::get)))
+    };
+    let thumb = |angle| {
+        let mut only = PerDof::splat(None);
+        only[Dof::ThumbBend] = Some(angle);
+        only
+    };
+    assert_eq!(sent(0, angles(500, 60)), Some(thumb(800)));
+    assert_eq!(sent(800, angles(500, 700)), None);
+    let others = sent(900, angles(500, 800)).unwrap();
+    assert_eq!(
+        (others[Dof::Index], others[Dof::ThumbBend]),
+        (Some(0), None)
+    );
+    assert_eq!(
+        sent(1800, angles(100, 800)),
+        None,
+        "a second after the first part"
+    );
+    assert_eq!(sent(1850, angles(0, 800)), Some(thumb(600)));
+    assert_eq!(sent(2700, angles(0, 600)), None);
+    assert_eq!(player.view().late, 0);
 }
 
 #[test]

@@ -16,12 +16,16 @@ const THUMB_CLEAR: i16 = 2 * BEND_CLEAR;
 /// The targets to take one after the other on the way to `to`; the last is `to`, or what of it is left to do.
 ///
 /// Where one of thumb and index closes while the other opens, the thumb goes first out of the way, and bends last. A joint
-/// of which it is not known where it is counts as bent.
+/// of which it is not known where it is counts as bent, and one that has arrived counts as at its target.
 #[must_use]
 pub fn way(from: &PerDof<Option<i16>>, to: &Targets) -> Vec<Targets> {
     let ends = |dof: Dof| {
         let from = from[dof].unwrap_or(0);
-        (from, to[dof].map_or(from, Angle::get))
+        let to = to[dof].map_or(from, Angle::get);
+        match from.abs_diff(to) <= Angle::ARRIVED_WITHIN {
+            true => (to, to),
+            false => (from, to),
+        }
     };
     let [index, bend, rotate] = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate].map(ends);
     let nearest = [index, bend, rotate].map(|(from, to)| from.min(to));

@@ -36,7 +36,7 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     let name = look.entry_name(&state.poses, entry);
     let key = starter().named(entry).map_or("", |names| names.text);
     let hidden = state.settings.hidden_poses.contains(key);
-    let outdone = !hidden
+    let overridden = !hidden
         && !state
             .poses
             .shipped(&state.settings.hidden_poses)
@@ -49,21 +49,23 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     if let Some(pose) = pictured(&state.poses, entry) {
         panel::pose_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
     }
-    let color = match hidden || outdone {
+    let color = match hidden || overridden {
         true => look.palette.muted,
         false => look.palette.text,
     };
     ui.vertical_centered(|ui| Label::new(name, color).ui(ui));
     start_ui(ui, pane, entry);
     ui.columns_const(|[left, right]: &mut [Ui; 2]| {
+        let is_reaction = matches!(entry, EntryId::Reaction(_));
         let copy = Button::said(look, poses::COPY).weight(Weight::Quiet);
+        let copy = copy.disabled_if(is_reaction, look.say(poses::COPY_REACTION));
         let label = look.told(poses::COPY, name);
         let action = Action::Library(LibraryEdit::Copy(entry));
         copy.named(&label).sends(left, pane, action);
         let text = if hidden { poses::SHOW } else { poses::HIDE };
         let label = look.told(text, name);
         let hide = Button::said(look, text).weight(Weight::Quiet);
-        let hide = hide.disabled_if(outdone, look.say(poses::OUTDONE));
+        let hide = hide.disabled_if(overridden, look.say(poses::OVERRIDDEN));
         hide.named(&label)
             .sends(right, pane, Action::HideShipped(key.to_owned(), !hidden));
     });

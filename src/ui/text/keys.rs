@@ -5,7 +5,7 @@ use crate::ui::text::phrase::texts;
 texts! {
     BUTTON: "Keys", "快捷键", "Shows what each key does.", "显示各个按键的作用。";
     CLOSE: "Close the list of keys", "关闭快捷键列表";
-    ENTRY: "Pose or demo: the letter on its tile", "姿态或演示：见图块上的字母";
+    ENTRY: "Fist; so each tile by its letter or digit", "握拳；其他图块按其字母或数字";
     STOP: "STOP, from everywhere", "停止（任何时候）";
     ARM: "Arm or disarm", "使能或取消使能";
     LINK: "Link the fingers", "四指联动";

@@ -8,9 +8,10 @@ texts! {
     SHIPPED: "Built in", "内置";
     SHIPPED_ABOUT: "These come with the program and cannot be changed or lost. Copy one to change it: your own by the same name takes its place.", "这些随程序提供，不会被更改或丢失。复制后即可修改：同名的自有姿态会取而代之。";
     COPY: "Copy", "复制", "Puts a copy among your own, to be changed.", "复制一份到自己的姿态中，以便修改。";
+    COPY_REACTION: "Reactions are written in a file, see the page Files of the manual.", "触摸反应写在文件中，见手册“文件”一页。";
     HIDE: "Hide", "隐藏", "Takes it off the Live view.", "不在总览中显示。";
     SHOW: "Show", "显示", "Puts it on the Live view again.", "重新在总览中显示。";
-    OUTDONE: "One of your own by the same name is shown in its place.", "已由同名的自有姿态代替。";
+    OVERRIDDEN: "One of your own by the same name is shown in its place.", "已由同名的自有姿态代替。";
     IN_HAND: "In the hand", "手内手势";
     SECTION_TIP: "Shows this part.", "显示这一部分。";
     POSE: "Pose", "姿态";

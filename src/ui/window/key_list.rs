@@ -76,7 +76,7 @@ fn rows(group: Text) -> Vec<(String, Text)> {
         .map(|wish| (wish.keys(), wish.words()))
         .collect();
     if group == keys::MOTION {
-        rows.push(("Shift+A-Z".to_owned(), keys::ENTRY));
+        rows.push(("Shift+F".to_owned(), keys::ENTRY));
     }
     if group == keys::WINDOW {
         rows.extend(ZOOM.map(|(key, words)| (key.to_owned(), words)));

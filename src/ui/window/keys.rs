@@ -325,6 +325,19 @@ mod tests {
     }
 
     #[test]
+    fn no_key_of_the_window_can_be_that_of_a_pose() {
+        for row in ROWS.iter().filter(|row| row.modifiers == SHIFT) {
+            let name = row.key.name().to_owned();
+            assert!(EntryKey::try_from(name).is_err(), "{}", row.name());
+        }
+        let free = event(row(SHIFT, Key::F, Wish::Close), false);
+        let (wishes, left) = taken(vec![free.clone()], false);
+        let key = EntryKey::try_from("F".to_owned()).unwrap();
+        assert_eq!((wishes, left), (vec![Wish::Entry(key)], 0));
+        assert_eq!(taken(vec![free], true), (vec![], 1), "it is typed");
+    }
+
+    #[test]
     fn every_row_does_what_it_says_and_no_row_is_hidden_by_another() {
         for row in ROWS {
             let left = usize::from(row.key == Key::Escape);

@@ -154,6 +154,20 @@ fn thumb_and_fingers_never_meet_on_the_way_between_two_shipped_poses() {
 }
 
 #[test]
+fn a_hand_that_is_at_a_pose_takes_it_again_without_moving_the_thumb_out() {
+    for pose in &starter().poses {
+        for noise in [-20, -3, 3, 20] {
+            for (dof, other) in [(Dof::Index, Dof::ThumbBend), (Dof::ThumbBend, Dof::Index)] {
+                let mut at = angles(pose);
+                at[dof] += noise;
+                at[other] -= noise;
+                assert_eq!(way(&at.map(Some), &pose.targets()), [pose.targets()]);
+            }
+        }
+    }
+}
+
+#[test]
 fn a_way_ends_at_the_pose_and_touches_no_joint_that_is_left_alone() {
     for from in &starter().poses {
         for to in &starter().poses {
@@ -187,6 +201,13 @@ fn the_shipped_library_is_gentle_named_in_both_languages_and_has_a_key_each() {
         assert_eq!(pose.key.is_none(), is_demo, "{}", pose.name);
         assert!(pose.key.is_none_or(|key| keys.insert(key)), "{}", pose.name);
     }
+    let steps = library.sequences.iter().flat_map(|own| &own.steps);
+    assert!(steps.map(|step| step.speed.get()).max() <= Some(600));
+    let names = library
+        .entries()
+        .map(|entry| library.named(entry).unwrap().text);
+    let distinct: BTreeSet<_> = names.collect();
+    assert_eq!(distinct.len(), library.entries().count(), "hidden by name");
     let named = library.sequences.iter().map(|own| (&own.name_zh, own.key));
     let named = named.chain(library.reactions.iter().map(|own| (&own.name_zh, own.key)));
     for (name_zh, key) in named {

@@ -389,10 +389,14 @@ fn names_that_nobody_typed_are_chinese_in_a_chinese_window() {
 #[test]
 fn shipped_poses_are_on_live_with_a_key_each_and_a_press_without_arming_says_what_to_do() {
     let mut bench = Bench::live();
-    bench.click_within_one_frame("Go to Thumbs up");
-    bench.run(60);
-    let told = bench.texts_with("Arm");
-    assert!(!told.is_empty(), "{:?}", bench.texts());
+    let advice = "Not armed: press Arm first.";
+    assert!(!bench.shows(advice));
+    bench.click("Go to Thumbs up");
+    bench.run(100);
+    assert!(bench.shows(advice), "{:?}", bench.texts());
+    let tile = bench.rect(Role::Button, "Go to Thumbs up");
+    let told = bench.rect(Role::Label, advice);
+    assert!(tile.expand(40.0).intersects(told), "{told} at {tile}");
     bench.key_with(Modifiers::SHIFT, Key::U);
     bench.run(300);
     assert!(bench.writes().is_empty(), "not armed");
