@@ -186,6 +186,13 @@ pub enum NoticeKind {
         /// The system's words.
         message: String,
     },
+    /// A session could not be deleted.
+    NotDeleted {
+        /// The file.
+        path: PathBuf,
+        /// The system's words.
+        message: String,
+    },
     /// A file could not be shown in the system's file manager.
     NotRevealed {
         /// The file.
@@ -219,6 +226,12 @@ impl NoticeKind {
     pub(crate) fn not_saved(path: PathBuf, error: &std::io::Error) -> Self {
         let message = error.to_string();
         Self::NotSaved { path, message }
+    }
+
+    /// A session could not be deleted.
+    pub(crate) fn not_deleted(path: PathBuf, error: &std::io::Error) -> Self {
+        let message = error.to_string();
+        Self::NotDeleted { path, message }
     }
 
     /// How much it matters.

@@ -60,8 +60,12 @@ impl PlannedDeletion {
 
     /// Deletes the file and what was said of it, unless it changed since or a person cares for it by now. True if it is gone.
     pub(crate) fn carry_out(&self) -> io::Result<bool> {
+        let is_same = match std::fs::metadata(&self.path) {
+            Ok(file) => file.len() == self.bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
+            Err(error) => return Err(error),
+        };
         let about = SessionAbout::load(&self.path);
-        let is_same = std::fs::metadata(&self.path)?.len() == self.bytes;
         // What cannot be read may be a star.
         if !is_same || about.map_or(true, |about| about.is_kept(0)) {
             return Ok(false);
@@ -125,20 +129,20 @@ pub fn due(
 
 /// What was told of the sessions of this folder. Where that cannot be read, nothing was: it is told again.
 pub(crate) fn load_told(folder: &Path) -> Vec<PlannedDeletion> {
-    let path = folder.join(FILE_NAME);
+    let path = told_path(folder);
     let read = toml_file::load(&path, FILE_LEN_MAX, |text| FileText::plain(text).parse());
     read.map(|file: ToldFile| file.session).unwrap_or_default()
 }
 
 /// Keeps what was told of the sessions of this folder.
-pub(crate) fn save_told(
-    folder: &Path,
-    session: Vec<PlannedDeletion>,
-) -> Result<(), (PathBuf, io::Error)> {
-    let path = folder.join(FILE_NAME);
-    let text = toml::to_string_pretty(&ToldFile { session }).map_err(io::Error::other);
-    let saved = text.and_then(|text| replace(&path, text.as_bytes()));
-    saved.map_err(|error| (path, error))
+pub(crate) fn save_told(folder: &Path, session: Vec<PlannedDeletion>) -> io::Result<()> {
+    let text = toml::to_string_pretty(&ToldFile { session }).map_err(io::Error::other)?;
+    replace(&told_path(folder), text.as_bytes())
+}
+
+/// Where that stands.
+pub(crate) fn told_path(folder: &Path) -> PathBuf {
+    folder.join(FILE_NAME)
 }
 
 #[cfg(test)]
@@ -265,5 +269,6 @@ mod tests {
         std::fs::write(SessionAbout::path(&path), "star = false").unwrap();
         assert!(planned.carry_out().unwrap());
         assert!(!path.exists() && !SessionAbout::path(&path).exists());
+        assert!(!planned.carry_out().unwrap(), "it is gone already");
     }
 }

@@ -15,7 +15,6 @@ use crate::hand::Moment;
 use crate::store::calendar::since_1970;
 use crate::store::{BackgroundJob, on_thread};
 use std::collections::VecDeque;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -198,10 +197,7 @@ impl SessionWork {
                     state.notices.push(state.now, told);
                 }
             }
-            Some(Err((path, error))) => {
-                let told = NoticeKind::not_saved(path, &error);
-                state.notices.push(state.now, told);
-            }
+            Some(Err(why)) => state.notices.push(state.now, why),
             None => {}
         }
         if self.writing.is_none()
@@ -317,19 +313,22 @@ impl SessionWork {
     }
 }
 
-type FilesWritten = BackgroundJob<Result<usize, (PathBuf, io::Error)>>;
+/// How many sessions were deleted with that.
+type FilesWritten = BackgroundJob<Result<usize, NoticeKind>>;
 
 fn save(path: PathBuf, about: SessionAbout, env: &Env) -> FilesWritten {
     let place = SessionAbout::path(&path);
     let save = on_thread(move || about.save(&path).map(|()| 0));
-    let save = async move { save.await.map_err(|error| (place, error)) };
+    let not_saved = move |error| NoticeKind::not_saved(place, &error);
+    let save = async move { save.await.map_err(not_saved) };
     BackgroundJob::start(&env.runtime, &env.wake, save)
 }
 
 fn delete(path: PathBuf, env: &Env) -> FilesWritten {
     let place = path.clone();
     let delete = on_thread(move || budget::delete(&place).map(|()| 1));
-    let delete = async move { delete.await.map_err(|error| (path, error)) };
+    let not_deleted = move |error| NoticeKind::not_deleted(path, &error);
+    let delete = async move { delete.await.map_err(not_deleted) };
     BackgroundJob::start(&env.runtime, &env.wake, delete)
 }
 
@@ -339,7 +338,8 @@ fn make_room(planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
         for one in planned {
             let path = one.path.clone();
             let gone = on_thread(move || one.carry_out()).await;
-            deleted += usize::from(gone.map_err(|error| (path, error))?);
+            let gone = gone.map_err(|error| NoticeKind::not_deleted(path, &error))?;
+            deleted += usize::from(gone);
         }
         Ok(deleted)
     };
@@ -347,12 +347,10 @@ fn make_room(planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
 }
 
 fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
-    let place = folder.clone();
-    let save = on_thread(move || Ok(budget::save_told(&folder, planned)));
-    let save = async move {
-        let saved = save.await.unwrap_or_else(|error| Err((place, error)));
-        saved.map(|()| 0)
-    };
+    let place = budget::told_path(&folder);
+    let save = on_thread(move || budget::save_told(&folder, planned).map(|()| 0));
+    let not_saved = move |error| NoticeKind::not_saved(place, &error);
+    let save = async move { save.await.map_err(not_saved) };
     BackgroundJob::start(&env.runtime, &env.wake, save)
 }
 

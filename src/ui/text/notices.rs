@@ -160,6 +160,9 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotSaved { path, message } => {
             of(window::NOT_SAVED, path, &errors::system(look, message))
         }
+        NoticeKind::NotDeleted { path, message } => {
+            of(sessions::NOT_DELETED, path, &errors::system(look, message))
+        }
         NoticeKind::NotRevealed { path, message } => {
             let why = errors::system(look, message);
             look.fill(sessions::NOT_REVEALED, &[&why, &path.display()])

@@ -33,6 +33,7 @@ texts! {
     MORE: "More", "更多", "Rename, show in the folder, delete.", "重命名、打开所在文件夹、删除。";
     RENAME: "Name of the session", "会话名称", "a name of your own", "自定义名称";
     REVEAL: "Show in folder", "在文件夹中显示", "Shows the file in the system's file manager.", "在系统文件管理器中显示此文件。";
+    NOT_DELETED: "Could not be deleted:", "无法删除：";
     NOT_REVEALED: "The file manager did not start: {}. The file is {}", "无法启动文件管理器：{}。文件位于 {}";
     COPY_PATH: "Copy path", "复制路径", "Copies where the file lies.", "复制文件所在位置。";
     DELETE: "Delete ...", "删除……", "Asks before anything is deleted.", "删除前会先询问。";
